@@ -1,0 +1,13 @@
+#pragma once
+#include <cstdio>
+#include <cstdlib>
+
+/// A broken promise of our own code, not of the world: says where and stops. Stays on in release
+/// builds.
+#define MORTISE_CHECK(condition, what)                                                             \
+  do {                                                                                             \
+    if (!(condition)) [[unlikely]] {                                                               \
+      std::fprintf(stderr, "%s:%d: check failed: %s: %s\n", __FILE__, __LINE__, #condition, what); \
+      std::abort();                                                                                \
+    }                                                                                              \
+  } while (false)

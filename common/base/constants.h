@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+
+/// Every numerical constant of the library: value, unit, reason, reader. Nothing else holds a bare
+/// number.
+namespace mortise {
+
+/// Unit round-off of double, 2^-53.
+inline constexpr double kUnitRoundoff = 1.1102230246251565e-16;
+
+/// Rounding allowance of a pair-local coordinate, in units of round-off times extent (L + D, mesh
+/// extent plus distance of the frames). 8 covers forming the coordinates, 12 a test along a
+/// direction; 32 leaves room for both bodies. Read by ccd and depth. Smaller: contacts may be found
+/// a few ulp late.
+inline constexpr double kRoundingFactor = 32.0;
+
+/// Default distance at which two meshes count as touching, mm. Far below any tolerance of ISO 286
+/// (IT01 is 3e-4 mm), far above rounding at 1 m (7e-12 mm). Read by ccd.
+inline constexpr double kAccuracyDefault_mm = 1e-6;
+
+/// Width to which a depth bracket is refined when a caller asks for the full bracket, mm. A tenth
+/// of a micrometre.
+inline constexpr double kDepthAccuracyDefault_mm = 1e-4;
+
+/// Largest rotation of one increment, rad. A rotation vector cannot say more than half a turn.
+inline constexpr double kMaxRotationPerTick_rad = 3.14159265358979323846;
+
+/// Edges with a larger exterior angle are sharp, rad (30 degrees, the default of CAD tessellators
+/// lies just below).
+inline constexpr double kSharpEdge_rad = 0.52359877559829887;
+
+/// Factor on estimated mesh deviations, which are never called guaranteed.
+inline constexpr double kEstimatedDeviationFactor = 1.5;
+
+/// Work cap of one first-contact query, in box tests of eight children. Reached only by threads at
+/// large rotation.
+inline constexpr std::uint64_t kCcdWorkCap = 2'000'000;
+
+}  // namespace mortise

@@ -1,0 +1,87 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/base/constants.h"
+#include "common/ccd/first_contact.h"
+#include "common/geometry/surface_band.h"
+#include "common/math/interval.h"
+
+namespace mortise {
+
+/// How far to refine. kDecided: until every region's class is decided by the bands (lazy); kFull:
+/// until the brackets of delta and gpd are narrower than accuracy_mm.
+enum class Refinement : std::uint8_t { kDecided, kFull };
+
+struct OverlapQuery {
+  const Solid* a = nullptr;
+  const Solid* b = nullptr;
+  const SurfaceBand* band_a = nullptr;
+  const SurfaceBand* band_b = nullptr;
+  Pose X_WA, X_WB;  ///< where the overlap is judged (the target of the tick)
+  Refinement refinement = Refinement::kDecided;
+  double accuracy_mm = kDepthAccuracyDefault_mm;
+  std::uint64_t work_cap =
+      200'000;  ///< branch-and-bound evaluations; on the cap brackets stay wide, never wrong
+};
+
+/// One connected component of the overlap (or of the near band where only offsets can make the
+/// parts meet). World frame.
+///   delta_mm:     overlap of the meshes, -min(sd_A + sd_B) over the region; negative when apart (=
+///   -distance). certain_mm:   bracket of sup over pairs of faces of (overlap + lower offsets): > 0
+///   means that every admissible pair
+///                 of real surfaces interferes (collision.md section 5);
+///   possible_mm:  the same with upper offsets: <= 0 means that none does.
+/// Lower ends are reached at a point (true lower bounds); upper ends are proven over the continuous
+/// surface.
+struct OverlapRegion {
+  Interval delta_mm, certain_mm, possible_mm;
+  Vec3 point_W = Vec3::Zero();    ///< where delta.lo is reached
+  Vec3 normal_W = Vec3::UnitZ();  ///< from B to A: moving A along it separates
+  double area_mm2 = 0.0;
+  std::uint32_t triangle_a = 0, triangle_b = 0;  ///< at point_W
+  std::uint32_t deciding_triangle_a = 0,
+                deciding_triangle_b = 0;  ///< pair of faces that decides the class
+  FaceShape shape_a = FaceShape::kUnknown, shape_b = FaceShape::kUnknown;
+  bool has_witness = false;
+  Vec3 witness_W =
+      Vec3::Zero();     ///< inside both real parts whatever the tolerances, when certain_mm.lo > 0
+  bool capped = false;  ///< work cap reached: brackets are wide
+  std::vector<Vec3> points_W;  ///< sample of contact points for the fitted separating motion
+};
+
+struct OverlapResult {
+  bool meshes_cross = false;
+  bool contained = false;
+  bool no_inside = false;  ///< a part is open or non-manifold: crossing is known, depth is not
+  std::vector<OverlapRegion> regions;  ///< sorted by delta.lo, deepest first
+  std::uint64_t evaluations = 0;
+};
+
+/// Overlap of two parts at fixed poses, per region. Near pairs that do not cross yield regions only
+/// within the band (sum of the largest offsets). Two movers, any poses; deterministic.
+OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
+
+struct SweptQuery {
+  OverlapQuery at_target;  ///< poses of the query are ignored
+  Motion motion_a, motion_b;
+  double accuracy_mm = 1e-4;  ///< how closely the answer is known, along the path of any point
+};
+
+/// When the overlap becomes certain (real) in the tick.
+struct RealTime {
+  bool becomes_real = false;
+  double t_free =
+      1.0;  ///< not real at any t <= t_free, proven; the pose at which `stop` leaves the part
+  double t_real = 1.0;  ///< real at t_real, when becomes_real
+  bool capped = false;  ///< t_free is still proven; beyond it nothing is said
+  bool real_at_start = false;
+  std::uint64_t evaluations = 0;
+};
+
+/// First time at which certain_mm > 0 somewhere (collision.md section 5), found by branch and bound
+/// over the swept surface, so that a thin wall cannot be passed between ticks even when the meshes
+/// overlapped before.
+RealTime find_real_time(const SweptQuery& query, CcdScratch& scratch);
+
+}  // namespace mortise

@@ -1,0 +1,53 @@
+#pragma once
+#include <string>
+
+#include "common/geometry/surface_band.h"
+#include "common/math/interval.h"
+#include "common/messages/event.h"
+
+namespace mortise {
+
+/// The paper's two thresholds on the overlap delta. fake_below <= real_above always.
+struct Thresholds {
+  double fake_below_mm = 0.0;
+  double real_above_mm = 0.0;
+};
+
+/// delta > real_above <=> sup(delta + lower offsets) > 0; likewise fake_below with the upper
+/// offsets. mm.
+Thresholds thresholds_of(Interval delta_mm, Interval certain_mm, Interval possible_mm);
+
+/// Total and exhaustive: real iff certain.lo > 0 (and a witness was verified), fake iff possible.hi
+/// <= 0 and the meshes overlap, none iff possible.hi <= 0 and they do not, else potential. A part
+/// without an inside is potential at best.
+struct ClassifyInput {
+  Interval delta_mm, certain_mm, possible_mm;
+  bool has_witness = false;
+  bool no_inside = false;
+};
+CollisionClass classify(const ClassifyInput& input);
+
+/// P(interference) when the offsets are independent and normal with +-3 sigma at their limits;
+/// ranks potential clashes, never changes a class (ALG 5.3). Closed form.
+double interference_probability(Interval certain_mm, Interval possible_mm, Interval tolerance_a_mm,
+                                Interval tolerance_b_mm);
+
+/// One sentence that explains the class: overlap, thresholds, what set each, margin. Micrometres.
+struct ExplainInput {
+  CollisionClass collision_class = CollisionClass::kNone;
+  Interval delta_mm;
+  Thresholds thresholds;
+  double margin_mm = 0.0;
+  const SurfaceBand::Face* face_a = nullptr;
+  const SurfaceBand::Face* face_b = nullptr;
+  Interval deviation_mm;  ///< sum of both at the deciding point
+  Interval tolerance_mm;  ///< sum of both
+  DeviationGrade grade = DeviationGrade::kUnknown;
+  double probability = 0.0;
+  bool no_inside = false;
+  bool capped = false;
+  std::string fit;  ///< "Ø20 H7/g6" when the pair has one
+};
+std::string explain(const ExplainInput& input);
+
+}  // namespace mortise

@@ -1,0 +1,45 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/mesh.h"
+
+namespace mortise {
+
+/// Flat tree with up to eight children a node. Boxes are single precision, rounded outward;
+/// triangles stay double. Boxes may only discard; every number that leaves a query comes from the
+/// double triangles. Built once per distinct mesh (binned SAH), shared by all instances.
+struct Bvh {
+  static constexpr int kWidth = 8;
+  static constexpr int kLeafSize = 4;
+
+  struct alignas(32) Node {
+    float center[3][kWidth];  ///< box centres, part frame, mm; unused lanes repeat lane 0
+    float half[3]
+              [kWidth];  ///< half extents, rounded outward: the box contains its triangles exactly
+    std::int32_t child[kWidth];  ///< >= 0: node; < 0: ~leaf
+    std::int32_t count = 0;      ///< used lanes
+    float size = 0.0F;           ///< sum of the half extents of the node's own box
+  };
+  struct Leaf {
+    std::uint32_t first = 0;  ///< into triangle_order
+    std::uint32_t count = 0;  ///< 1..kLeafSize
+  };
+
+  std::vector<Node> nodes;
+  std::vector<Leaf> leaves;
+  std::vector<std::uint32_t> triangle_order;  ///< triangle ids in leaf order
+  std::vector<std::array<double, 9>>
+      corners;  ///< corners of triangle_order[i], x y z of each corner
+  Box bounds;
+  double extent_mm = 0.0;  ///< largest |coordinate| of any point: scale of rounding
+  std::int32_t root = 0;   ///< >= 0 node, < 0 ~leaf
+
+  std::size_t bytes() const;
+};
+
+/// Deterministic. mesh must have at least one triangle. O(n log n).
+Bvh build_bvh(const TriangleMesh& mesh);
+
+}  // namespace mortise

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/math/interval.h"
+#include "common/math/types.h"
+#include "common/messages/event.h"
+
+namespace mortise {
+
+enum class SurfaceKind : std::uint8_t { kUnknown = 0, kPlane, kCylinder, kCone, kSphere, kTorus };
+
+/// The true surface of a face, part frame, mm. `inward` is true for a bore: the material lies
+/// outside the radius.
+struct Surface {
+  SurfaceKind kind = SurfaceKind::kUnknown;
+  Vec3 point = Vec3::Zero();    ///< on the plane / on the axis / apex of the cone / centre
+  Vec3 axis = Vec3::UnitZ();    ///< unit: plane normal (outward), axis of cylinder, cone (apex to
+                                ///< wide), torus
+  double radius_mm = 0.0;       ///< cylinder, sphere; torus: of the centre circle
+  double tube_radius_mm = 0.0;  ///< torus
+  double half_angle_rad = 0.0;  ///< cone
+  bool inward = false;  ///< bore, countersink, socket: outward normal points to the axis or centre
+
+  /// Signed distance of x to the true surface, positive on the outside of the material. mm, exact.
+  double signed_distance_mm(const Vec3& x) const;
+  /// Unit outward normal of the material at the surface point nearest to x.
+  Vec3 outward_normal(const Vec3& x) const;
+  /// Upper bound of |1/curvature radius| near x: 1/R for a cylinder. 0 for a plane.
+  double curvature_bound(const Vec3& x) const;
+};
+
+/// A declared (or recognized) face of a part: its true surface and which triangles of the mesh
+/// stand for it.
+struct Feature {
+  std::string name;
+  Surface surface;
+  DeviationGrade grade = DeviationGrade::kDeclaredFeature;
+  double residual_mm = 0.0;  ///< largest distance of a mesh corner of the face from the surface
+  std::vector<std::uint32_t> triangles;
+};
+
+}  // namespace mortise

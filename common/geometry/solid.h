@@ -1,0 +1,42 @@
+#pragma once
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "common/geometry/bvh.h"
+#include "common/geometry/mesh.h"
+#include "common/geometry/topology.h"
+
+namespace mortise {
+
+/// One distinct mesh with all that is derived from it; immutable, shared by every instance of it.
+/// The tree and the topology are built when first asked for (thread safe): a scene in which nothing
+/// moves builds none.
+class Solid {
+ public:
+  explicit Solid(TriangleMesh mesh);
+  Solid(const Solid&) = delete;
+  Solid& operator=(const Solid&) = delete;
+
+  const TriangleMesh& mesh() const { return mesh_; }
+  const std::string& hash() const { return hash_; }
+  const BoundingSphere& sphere() const { return sphere_; }
+  const Box& bounds() const { return bounds_; }
+  const Bvh& bvh() const;
+  const Topology& topology() const;
+  /// Bytes of tree, topology and other derived data built so far, beyond the mesh itself.
+  std::size_t derived_bytes() const;
+
+ private:
+  TriangleMesh mesh_;
+  std::string hash_;
+  BoundingSphere sphere_;
+  Box bounds_;
+  mutable std::once_flag bvh_once_, topology_once_;
+  mutable std::unique_ptr<const Bvh> bvh_;
+  mutable std::unique_ptr<const Topology> topology_;
+};
+
+using SolidPtr = std::shared_ptr<const Solid>;
+
+}  // namespace mortise

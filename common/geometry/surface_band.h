@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/feature.h"
+#include "common/math/interval.h"
+
+namespace mortise {
+
+/// Where the real surface of one part may lie, face by face: outward offset from the mesh =
+/// deviation(x) + tolerance. One band belongs to a part; a pair of parts with a fit of its own has
+/// bands of its own. Built by evaluation, read by depth, which knows neither scenario nor standard.
+struct SurfaceBand {
+  struct Face {
+    std::string name;  ///< feature name, empty for the rest of the part
+    std::optional<Surface>
+        surface;  ///< set: deviation is the exact e(x) of this surface +- residual
+    double residual_mm = 0.0;
+    Interval deviation_mm;  ///< used where `surface` is not set: [0, s], [-s, 0], [-s, s]
+    Interval tolerance_mm;  ///< outward positive, of the modelled surface
+    DeviationGrade grade = DeviationGrade::kNominal;
+    std::string tolerance_source;  ///< "Ø20 H7", "profile 0.1", "" when nothing is declared
+  };
+  std::vector<Face> faces;  ///< faces[0] is the rest of the part
+  std::vector<std::uint16_t>
+      face_of_triangle;  ///< index into faces; empty: all triangles are faces[0]
+
+  const Face& face_of(std::uint32_t triangle) const {
+    return faces[face_of_triangle.empty() ? 0 : face_of_triangle[triangle]];
+  }
+  /// Outward offset of the real surface from mesh point x of a triangle. Exact for a face with a
+  /// surface.
+  Interval offset_mm(std::uint32_t triangle, const Vec3& x) const;
+  /// Largest outward offset of any face, >= 0 for the band in which near pairs must be examined
+  /// (mm).
+  double largest_offset_mm = 0.0;
+  /// No face has deviation or tolerance: the mesh is the part.
+  bool trivial = true;
+};
+
+/// A band that says nothing: the mesh is taken for the surface.
+SurfaceBand nominal_band();
+
+}  // namespace mortise

@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/geometry/mesh.h"
+
+namespace mortise {
+
+struct ImportLimits {
+  double seconds = 60.0;                    ///< wall time of the child process
+  std::uint64_t memory_bytes = 4ULL << 30;  ///< its address space
+};
+
+/// What was found in a file and what was done about it.
+struct ImportReport {
+  std::string file, format;
+  std::uint64_t raw_vertices = 0, points = 0, raw_triangles = 0, triangles = 0;
+  std::uint64_t degenerate_dropped = 0, duplicate_triangles = 0, points_and_lines_dropped = 0;
+  std::uint64_t boundary_edges = 0, non_manifold_edges = 0, misoriented_edges = 0, components = 0;
+  double volume_mm3 = 0.0;
+  bool closed = false;
+  bool flipped = false;     ///< all triangles were turned: the volume was negative
+  double quantum_mm = 0.0;  ///< coordinates are floats: half an ulp of the largest coordinate
+};
+
+struct ImportedMesh {
+  TriangleMesh mesh;
+  ImportReport report;
+};
+
+/// Reads STL, OBJ, PLY, glTF/GLB or DAE with assimp in a child process with limits, since a hostile
+/// file can crash it. Node transforms applied, all meshes of the file joined, points welded by
+/// exact position, degenerate triangles dropped and counted. unit_mm: mm per file unit. 3MF is
+/// refused. Never throws; the process lives.
+Result<ImportedMesh> import_mesh(const std::filesystem::path& file, double unit_mm,
+                                 const ImportLimits& limits = {});
+
+}  // namespace mortise

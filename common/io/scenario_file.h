@@ -1,0 +1,29 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/session/scenario.h"
+
+namespace mortise {
+
+/// A finding of lint: errors make the scenario unusable, warnings do not.
+struct Finding {
+  bool is_error = true;
+  std::string text;  ///< "file:line: what; what to do"
+};
+
+struct ScenarioReading {
+  Scenario scenario;
+  std::vector<Finding> findings;  ///< all of them, not only the first
+  bool usable() const;
+};
+
+/// Strict: unknown keys, missing units, wrong types are errors with file and line. Result fails
+/// only when the file cannot be read or is not YAML at all.
+Result<ScenarioReading> read_scenario(const std::filesystem::path& file);
+Result<ScenarioReading> read_scenario_text(std::string_view yaml, const std::string& name);
+
+}  // namespace mortise

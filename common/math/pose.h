@@ -1,0 +1,25 @@
+#pragma once
+#include "common/math/types.h"
+
+namespace mortise {
+
+/// Rigid motion X_AB: p_A = X_AB * p_B. Unit quaternion and translation in mm. Neighbouring frame
+/// letters must match: X_AC = X_AB * X_BC.
+struct Pose {
+  Quat q = Quat::Identity();
+  Vec3 p = Vec3::Zero();
+
+  static Pose translation(const Vec3& p_mm) { return {Quat::Identity(), p_mm}; }
+
+  Vec3 operator*(const Vec3& x) const { return q * x + p; }
+  Pose operator*(const Pose& other) const { return {(q * other.q).normalized(), q * other.p + p}; }
+  Pose inverse() const { return {q.conjugate(), -(q.conjugate() * p)}; }
+  Mat3 rotation() const { return q.toRotationMatrix(); }
+};
+
+/// Bit-wise the same pose.
+inline bool identical(const Pose& a, const Pose& b) {
+  return (a.q.coeffs().array() == b.q.coeffs().array()).all() && (a.p.array() == b.p.array()).all();
+}
+
+}  // namespace mortise

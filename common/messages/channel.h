@@ -1,0 +1,133 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/messages/increment.h"
+#include "common/messages/report.h"
+#include "common/messages/scene.h"
+
+namespace mortise {
+
+/// Names the sender of a message as the transport knows it (DDS: hex of the GUID prefix). What it
+/// sends for a user that it did not join as is refused.
+using ClientKey = std::string;
+
+struct JoinRequest {
+  ClientKey client;
+  std::uint64_t nonce =
+      0;  ///< chosen by the client, echoed in the reply: several users of one process
+  std::string name;
+  std::string role;  ///< designer | observer | bot
+};
+struct JoinReply {
+  ClientKey client;
+  std::uint64_t nonce = 0;
+  UserId user;  ///< none when refused
+  Refusal refusal = Refusal::kNone;
+  std::string text;
+};
+
+struct ReceivedIncrement {
+  ClientKey client;
+  Increment increment;
+  std::int64_t sent_ns = 0;  ///< sender's clock, only for latency figures
+};
+struct ReceivedCommand {
+  ClientKey client;
+  Command command;
+};
+struct LostUser {
+  UserId user;  ///< none: all users of the client
+  ClientKey client;
+  bool said_goodbye = false;  ///< left, as against lost liveliness
+};
+
+/// What the transport dropped at the door, by reason; never silent.
+struct ChannelCounters {
+  std::uint64_t received = 0, malformed = 0, foreign = 0, lost = 0, send_failed = 0,
+                guard_dropped = 0;
+};
+
+struct ServerInput {
+  std::vector<JoinRequest> joins;
+  std::vector<ReceivedCommand> commands;
+  std::vector<ReceivedIncrement> increments;
+  std::vector<RefusedIncrement>
+      refused_at_door;  ///< not finite and the like, with the user it claimed
+  std::vector<LostUser> lost;
+  std::vector<UserId> heartbeats;
+};
+
+struct Ack {
+  UserId user;
+  std::uint64_t seq = 0;     ///< highest increment sequence seen (applied or refused)
+  std::int64_t sent_ns = 0;  ///< of that increment, echoed
+};
+
+/// Changed parts of one tick. A part that a client missed is in the next snapshot.
+struct PoseBatch {
+  std::uint64_t tick = 0;
+  std::uint64_t event_seq = 0;  ///< of the last event up to this tick
+  std::int64_t sent_ns = 0;     ///< server's clock
+  std::vector<PartPose> parts;
+  std::vector<Ack> acks;
+  bool keyframe = false;  ///< holds all parts
+};
+
+/// Figures of the running session, once a second.
+struct SessionPulse {
+  std::uint64_t tick = 0;
+  std::uint64_t clashes_open[4] = {0, 0, 0, 0};  ///< by CollisionClass
+  std::uint64_t clashes_total[4] = {0, 0, 0, 0};
+  double tick_p50_us = 0.0, tick_p99_us = 0.0, tick_max_us = 0.0, lateness_p99_us = 0.0;
+  std::uint64_t overloads = 0, refused = 0, not_examined = 0;
+  std::uint32_t users = 0;
+};
+
+/// The server's end of a transport. take() and publish_*() never block and are called from the tick
+/// thread.
+class ServerChannel {
+ public:
+  virtual ~ServerChannel() = default;
+  virtual ServerInput take() = 0;
+  virtual void publish_join_reply(const JoinReply& reply) = 0;
+  virtual void publish_replies(std::span<const Reply> replies) = 0;
+  virtual void publish_refusals(std::span<const RefusedIncrement> refused) = 0;
+  virtual void publish_poses(const PoseBatch& batch) = 0;
+  virtual void publish_events(std::span<const ClashEvent> events) = 0;
+  virtual void publish_snapshot(const Snapshot& snapshot) = 0;  ///< kept for late joiners
+  virtual void publish_mesh(const std::string& hash,
+                            std::span<const std::byte> bytes) = 0;  ///< kept
+  virtual void publish_pulse(const SessionPulse& pulse) = 0;
+  virtual bool has_readers() const = 0;
+  virtual ChannelCounters counters() const = 0;
+};
+
+struct ClientInput {
+  std::vector<JoinReply> join_replies;  ///< only those for this client
+  std::vector<Reply> replies;
+  std::vector<RefusedIncrement> refused;
+  std::vector<Snapshot> snapshots;
+  std::vector<PoseBatch> poses;
+  std::vector<ClashEvent> events;
+  std::vector<SessionPulse> pulses;
+  bool server_lost = false;
+};
+
+/// A participant's end. Thread-compatible; take() never blocks.
+class ClientChannel {
+ public:
+  virtual ~ClientChannel() = default;
+  virtual void join(std::uint64_t nonce, const std::string& name, const std::string& role) = 0;
+  virtual void leave(UserId user) = 0;
+  virtual void heartbeat(UserId user) = 0;
+  virtual void send(const Increment& increment, std::int64_t sent_ns) = 0;
+  virtual void send(const Command& command) = 0;
+  virtual ClientInput take() = 0;
+  virtual ChannelCounters counters() const = 0;
+};
+
+}  // namespace mortise

@@ -1,0 +1,149 @@
+#include "common/messages/names.h"
+
+namespace mortise {
+
+std::string_view name_of(CollisionClass value) {
+  switch (value) {
+    case CollisionClass::kNone:
+      return "none";
+    case CollisionClass::kFake:
+      return "fake";
+    case CollisionClass::kPotential:
+      return "potential";
+    case CollisionClass::kReal:
+      return "real";
+  }
+  return "?";
+}
+
+std::string_view name_of(DeviationGrade value) {
+  switch (value) {
+    case DeviationGrade::kUnknown:
+      return "unknown";
+    case DeviationGrade::kPlanar:
+      return "planar";
+    case DeviationGrade::kDeclaredFeature:
+      return "declared feature";
+    case DeviationGrade::kRecognizedFeature:
+      return "recognized feature";
+    case DeviationGrade::kDeclaredChord:
+      return "declared chord error";
+    case DeviationGrade::kEstimated:
+      return "estimated";
+    case DeviationGrade::kNominal:
+      return "nominal";
+  }
+  return "?";
+}
+
+std::string_view name_of(FaceShape value) {
+  switch (value) {
+    case FaceShape::kUnknown:
+      return "unknown";
+    case FaceShape::kPlanar:
+      return "planar";
+    case FaceShape::kConvex:
+      return "convex";
+    case FaceShape::kConcave:
+      return "concave";
+    case FaceShape::kSaddle:
+      return "saddle";
+    case FaceShape::kEdge:
+      return "edge";
+  }
+  return "?";
+}
+
+std::string_view name_of(Refusal value) {
+  switch (value) {
+    case Refusal::kNone:
+      return "none";
+    case Refusal::kUnknownUser:
+      return "unknown user";
+    case Refusal::kUnknownPart:
+      return "unknown part";
+    case Refusal::kPartIsStatic:
+      return "part is static";
+    case Refusal::kNotHolder:
+      return "not the holder";
+    case Refusal::kHeldByOther:
+      return "held by another user";
+    case Refusal::kNotAllowed:
+      return "not allowed to hold this part";
+    case Refusal::kNotFinite:
+      return "not finite";
+    case Refusal::kRotationTooLarge:
+      return "rotation above pi";
+    case Refusal::kJumpTooLarge:
+      return "jump above the limit";
+    case Refusal::kDuplicate:
+      return "duplicate sequence";
+    case Refusal::kStale:
+      return "stale sequence";
+    case Refusal::kNothingToUndo:
+      return "nothing to undo";
+    case Refusal::kMovedBySomeoneElse:
+      return "moved by someone else since";
+    case Refusal::kRateTooHigh:
+      return "rate above the limit";
+    case Refusal::kSessionFull:
+      return "session is full";
+  }
+  return "?";
+}
+
+std::string_view name_of(CommandKind value) {
+  switch (value) {
+    case CommandKind::kUnknown:
+      return "unknown";
+    case CommandKind::kGrab:
+      return "grab";
+    case CommandKind::kRelease:
+      return "release";
+    case CommandKind::kUndo:
+      return "undo";
+    case CommandKind::kReset:
+      return "reset";
+  }
+  return "?";
+}
+
+std::string_view name_of(Decision::Kind value) {
+  switch (value) {
+    case Decision::Kind::kUnknown:
+      return "unknown";
+    case Decision::Kind::kJoin:
+      return "join";
+    case Decision::Kind::kLeave:
+      return "leave";
+    case Decision::Kind::kGrab:
+      return "grab";
+    case Decision::Kind::kRelease:
+      return "release";
+    case Decision::Kind::kLeaseEnd:
+      return "lease end";
+    case Decision::Kind::kLivelinessLost:
+      return "liveliness lost";
+    case Decision::Kind::kUndo:
+      return "undo";
+    case Decision::Kind::kReset:
+      return "reset";
+  }
+  return "?";
+}
+
+std::string_view name_of(ClashEvent::Kind value) {
+  switch (value) {
+    case ClashEvent::Kind::kUnknown:
+      return "unknown";
+    case ClashEvent::Kind::kBegin:
+      return "begin";
+    case ClashEvent::Kind::kChange:
+      return "change";
+    case ClashEvent::Kind::kEnd:
+      return "end";
+  }
+  return "?";
+}
+
+}  // namespace mortise

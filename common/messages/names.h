@@ -1,0 +1,18 @@
+#pragma once
+#include <string_view>
+
+#include "common/messages/command.h"
+#include "common/messages/event.h"
+
+namespace mortise {
+
+/// Stable lower-case names, used in JSON, tables and explanations.
+std::string_view name_of(CollisionClass value);
+std::string_view name_of(DeviationGrade value);
+std::string_view name_of(FaceShape value);
+std::string_view name_of(Refusal value);
+std::string_view name_of(CommandKind value);
+std::string_view name_of(Decision::Kind value);
+std::string_view name_of(ClashEvent::Kind value);
+
+}  // namespace mortise

@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/math/pose.h"
+#include "common/messages/command.h"
+#include "common/messages/event.h"
+
+namespace mortise {
+
+/// One stage of the tick: in = out + sum of skipped. Cheap, always on.
+struct StageCount {
+  std::uint64_t in = 0, out = 0;
+};
+
+/// What the tick did, did not do, and why.
+struct StepCounters {
+  StageCount increments;                               ///< offered -> applied
+  std::array<std::uint64_t, kRefusalCount> refused{};  ///< by Refusal
+  StageCount moves;  ///< parts with increments -> parts that really move
+  std::uint64_t moves_below_rounding = 0;
+  StageCount pairs;  ///< candidate pairs -> pairs asked for first contact or depth
+  std::uint64_t pairs_static = 0, pairs_still = 0, pairs_excluded = 0, pairs_boxes_apart = 0,
+                pairs_budget = 0;
+  StageCount contacts;  ///< pairs asked -> pairs in contact or in the band
+  std::uint64_t contacts_clear = 0, contacts_undecided = 0;
+  std::uint64_t first_contact_queries = 0, distance_queries = 0, depth_queries = 0;
+  StageCount verdicts;  ///< regions judged -> regions with a class
+  std::uint64_t verdicts_by_class[4] = {0, 0, 0, 0};
+  std::uint64_t stopped_parts = 0, rounds = 0;
+  std::uint64_t box_tests = 0, triangle_tests = 0, depth_evaluations = 0;
+  std::uint64_t parts_without_inside =
+      0;  ///< open or non-manifold parts that took part: crossing is found, depth is not
+  std::uint64_t not_examined =
+      0;  ///< pairs given up by a work cap or overload; never reported as clear
+};
+
+struct PartPose {
+  PartId part;
+  UserId holder;
+  Pose X_WP;
+};
+
+struct RefusedIncrement {
+  UserId user;
+  PartId part;
+  std::uint64_t seq = 0;
+  Refusal reason = Refusal::kNone;
+};
+
+struct StepReport {
+  std::uint64_t tick = 0;
+  std::vector<PartPose> moved;     ///< parts whose pose changed, by id
+  std::vector<ClashEvent> events;  ///< in order of ClashEvent::seq
+  std::vector<RefusedIncrement> refused;
+  StepCounters counters;
+  std::uint64_t state_hash =
+      0;  ///< of all poses, holders, open clashes and verdicts after the tick
+};
+
+}  // namespace mortise

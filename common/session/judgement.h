@@ -1,0 +1,34 @@
+#pragma once
+#include <vector>
+
+#include "common/depth/generalized_depth.h"
+#include "common/depth/overlap.h"
+#include "common/evaluation/verdict.h"
+#include "common/session/world.h"
+
+namespace mortise {
+
+/// One pair at its target poses, depth, thresholds and verdict in one go (stage 4 of the tick).
+struct JudgementQuery {
+  const Part* a = nullptr;
+  const Part* b = nullptr;
+  const PairRule* rule = nullptr;  ///< may be null
+  Motion motion_a,
+      motion_b;  ///< of the tick, ending at the poses to judge; still when nothing moved
+  double t_contact = 1.0;
+  Refinement refinement = Refinement::kDecided;
+  bool want_gpd = true;
+};
+
+struct Judgement {
+  std::vector<Verdict> verdicts;  ///< classes other than kNone, worst first
+  OverlapResult overlap;
+};
+
+/// Bands of the pair: the rule's where it has them, else the parts' own.
+const SurfaceBand& band_a_of(const JudgementQuery& query);
+const SurfaceBand& band_b_of(const JudgementQuery& query);
+
+Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch);
+
+}  // namespace mortise

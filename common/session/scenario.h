@@ -1,0 +1,79 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/feature.h"
+#include "common/math/pose.h"
+
+namespace mortise {
+
+/// Where a statement stands in its file, for messages; line 0 when it was made in code.
+struct SourceLine {
+  int line = 0;
+};
+
+enum class Policy : std::uint8_t { kUnknown = 0, kStop, kReport };
+
+/// A scenario as it is written, in mm and rad; read from YAML by io/scenario_file, or made in code.
+struct Scenario {
+  struct MeshSource {
+    std::string file;                          ///< relative to the scenario; empty when generated
+    double unit_mm = 1.0;                      ///< mm per file unit, times scale
+    std::string generator;                     ///< e.g. "shaft"; empty when from a file
+    std::map<std::string, double> parameters;  ///< of the generator, mm, rad or counts
+  };
+  struct Tolerance {     ///< outward offset of the surface
+    Interval offset_mm;  ///< [-t, +t] for +-t; profile zone: [-t/2, t/2], unequal allowed
+    std::string text;    ///< as written
+  };
+  struct FeatureSpec {
+    std::string name;
+    Surface surface;  ///< part frame
+    std::optional<Tolerance> tolerance;
+    std::string iso_class;    ///< "H7" or "g6"; empty when none
+    double nominal_mm = 0.0;  ///< nominal diameter of iso_class; 0: twice the radius
+    SourceLine at;
+  };
+  struct PartSpec {
+    std::string name;
+    MeshSource mesh;
+    Pose X_WP;
+    bool moving = false;
+    std::optional<double> chord_error_mm;  ///< declared largest mesh error
+    std::optional<Tolerance> tolerance;    ///< of every face without its own
+    std::vector<FeatureSpec> features;
+    SourceLine at;
+  };
+  struct FitSpec {
+    std::string part_a, feature_a, part_b, feature_b;  ///< names, '*' allowed
+    std::string code;                                  ///< "H7/g6"; empty when +-
+    std::optional<Tolerance> tolerance;
+    double nominal_mm = 0.0;  ///< 0: from the declared radius
+    SourceLine at;
+  };
+  struct Exclusion {
+    std::string part_a, part_b;  ///< names, '*' allowed
+    std::string reason;
+    SourceLine at;
+  };
+  struct UserSpec {
+    std::string name;
+    std::vector<std::string> may_hold;  ///< part names, '*' allowed; empty: nothing (observer)
+    SourceLine at;
+  };
+
+  std::string name;
+  std::string file;  ///< path it came from, for messages and relative meshes
+  double tick_rate_hz = 60.0;
+  Policy policy = Policy::kStop;
+  double max_jump_mm = 50.0;  ///< largest translation of one increment
+  double lease_s = 5.0;
+  std::vector<PartSpec> parts;
+  std::vector<FitSpec> fits;
+  std::vector<Exclusion> exclusions;
+  std::vector<UserSpec> users;  ///< empty: anyone may hold any moving part
+};
+
+}  // namespace mortise

@@ -1,0 +1,91 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/solid.h"
+#include "common/geometry/surface_band.h"
+#include "common/messages/command.h"
+#include "common/messages/report.h"
+#include "common/messages/scene.h"
+#include "common/session/scenario.h"
+
+namespace mortise {
+
+/// One part of a session. Everything but pose, holder and the undo record is fixed after load.
+struct Part {
+  PartId id;
+  std::string name;
+  SolidPtr solid;
+  SurfaceBand band;               ///< resolved: deviation and tolerance of its faces
+  std::vector<Feature> features;  ///< checked against the mesh
+  bool moving = false;
+  Pose X_WP_scenario;  ///< where the scenario put it
+  Pose X_WP;
+  UserId holder;
+  UserId last_mover;              ///< who moved it last
+  std::optional<Pose> undo_X_WP;  ///< pose before the last mover's grab
+};
+
+/// What a pair of parts has of its own: bands that replace the parts' bands, or an exclusion.
+struct PairRule {
+  PartId a, b;                                        ///< a < b
+  std::shared_ptr<const SurfaceBand> band_a, band_b;  ///< null: the part's own
+  std::string fit;                                    ///< "Ø20 H7/g6"
+  bool excluded = false;
+  std::string reason;
+};
+
+struct User {
+  UserId id;
+  std::string name;
+  bool present = false;
+  std::uint64_t last_seq = 0;  ///< highest applied increment sequence
+};
+
+struct SessionState;  ///< caches and open clashes between ticks, session/session_state.h
+
+/// A session between two ticks: what `step` reads and, at its end, writes. Nothing here knows a
+/// clock or a socket.
+struct World {
+  std::string name;
+  double tick_rate_hz = 60.0;
+  Policy policy = Policy::kStop;
+  double max_jump_mm = 50.0;
+  double lease_s = 5.0;
+  std::uint64_t tick = 0;
+  std::vector<Part> parts;  ///< parts[i].id.value == i + 1
+  std::vector<User> users;  ///< users[i].id.value == i + 1
+  std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
+  std::vector<Scenario::UserSpec> may_hold;  ///< by user name; empty: anyone
+  bool evaluates = false;  ///< some part has deviation or tolerance: near pairs are examined
+  std::shared_ptr<SessionState> state;  ///< made by the first step
+
+  Part* find(PartId id) { return id.value - 1 < parts.size() ? &parts[id.value - 1] : nullptr; }
+  const Part* find(PartId id) const {
+    return id.value - 1 < parts.size() ? &parts[id.value - 1] : nullptr;
+  }
+  User* find(UserId id) { return id.value - 1 < users.size() ? &users[id.value - 1] : nullptr; }
+  const User* find(UserId id) const {
+    return id.value - 1 < users.size() ? &users[id.value - 1] : nullptr;
+  }
+  const Part* find_part(const std::string& part_name) const;
+  const PairRule* rule(PartId a, PartId b) const;
+};
+
+/// What the wire tells a participant of the world.
+Snapshot snapshot_of(const World& world);
+
+/// Checks and applies one request of a user (grab, release, undo, reset). On success `decision` is
+/// what to log.
+Reply apply_command(World& world, const Command& command, Decision& decision);
+
+/// Applies a decision without asking: join, leave (frees the user's parts), lease end, and, in a
+/// replay, all the others. Returns the parts whose holder or pose changed.
+std::vector<PartPose> apply_decision(World& world, const Decision& decision);
+
+}  // namespace mortise
