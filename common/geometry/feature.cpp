@@ -1,0 +1,180 @@
+#include "common/geometry/feature.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace mortise {
+namespace {
+
+// The half plane through the axis and x: height z along the axis, distance r from it, and the unit
+// direction of r (any fixed perpendicular when x lies on the axis).
+struct AxisView {
+  double z_mm = 0.0;
+  double r_mm = 0.0;
+  Vec3 radial = Vec3::UnitX();
+};
+
+AxisView view_from_axis(const Surface& s, const Vec3& x) {
+  AxisView view;
+  const Vec3 d = x - s.point;
+  view.z_mm = d.dot(s.axis);
+  const Vec3 across = d - view.z_mm * s.axis;
+  view.r_mm = across.norm();
+  view.radial = view.r_mm > 0.0 ? Vec3(across / view.r_mm) : s.axis.unitOrthogonal();
+  return view;
+}
+
+// Foot of x on the cone's generator line, counted from the apex; negative: the apex is nearest.
+double along_generator(const Surface& s, const AxisView& v) {
+  return v.z_mm * std::cos(s.half_angle_rad) + v.r_mm * std::sin(s.half_angle_rad);
+}
+
+// Distance as if the material lay inside the radius.
+double outside_distance(const Surface& s, const Vec3& x) {
+  switch (s.kind) {
+    case SurfaceKind::kPlane:
+      return (x - s.point).dot(s.axis);
+    case SurfaceKind::kCylinder:
+      return view_from_axis(s, x).r_mm - s.radius_mm;
+    case SurfaceKind::kCone: {
+      const AxisView v = view_from_axis(s, x);
+      if (along_generator(s, v) < 0.0) return std::hypot(v.z_mm, v.r_mm);
+      return v.r_mm * std::cos(s.half_angle_rad) - v.z_mm * std::sin(s.half_angle_rad);
+    }
+    case SurfaceKind::kSphere:
+      return (x - s.point).norm() - s.radius_mm;
+    case SurfaceKind::kTorus: {
+      const AxisView v = view_from_axis(s, x);
+      return std::hypot(v.r_mm - s.radius_mm, v.z_mm) - s.tube_radius_mm;
+    }
+    case SurfaceKind::kUnknown:
+      break;
+  }
+  return 0.0;
+}
+
+Vec3 outside_normal(const Surface& s, const Vec3& x) {
+  const auto unit_or = [](const Vec3& v, const Vec3& otherwise) -> Vec3 {
+    const double length = v.norm();
+    return length > 0.0 ? Vec3(v / length) : otherwise;
+  };
+  switch (s.kind) {
+    case SurfaceKind::kCylinder:
+      return view_from_axis(s, x).radial;
+    case SurfaceKind::kCone: {
+      const AxisView v = view_from_axis(s, x);
+      if (along_generator(s, v) < 0.0) return unit_or(x - s.point, -s.axis);
+      return std::cos(s.half_angle_rad) * v.radial - std::sin(s.half_angle_rad) * s.axis;
+    }
+    case SurfaceKind::kSphere:
+      return unit_or(x - s.point, s.axis);
+    case SurfaceKind::kTorus: {
+      const AxisView v = view_from_axis(s, x);
+      return unit_or((v.r_mm - s.radius_mm) * v.radial + v.z_mm * s.axis, v.radial);
+    }
+    case SurfaceKind::kPlane:
+    case SurfaceKind::kUnknown:
+      break;
+  }
+  return s.axis;
+}
+
+// The distance to a cylinder, cone or sphere is a convex function; the distance to a torus bends
+// the other way by no more than this on its inner side: 1/(R - r).
+double concave_bend(const Surface& s) {
+  if (s.kind != SurfaceKind::kTorus) return 0.0;
+  const double inner = s.radius_mm - s.tube_radius_mm;
+  return inner > 0.0 ? 1.0 / inner : std::numeric_limits<double>::infinity();
+}
+
+using Corners = std::array<Vec3, 3>;
+
+struct LeastSearch {
+  const Surface& surface;
+  double bend;
+  double accuracy_mm;
+  double best;  // least value met so far
+};
+
+// Lower bound of the outside distance over a triangle, within accuracy: the tangent at the middle
+// bounds a convex function from below, and halving the longest edge tightens it quadratically.
+double least_over(LeastSearch& search, const Corners& c, int depth) {
+  const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+  const double at_middle = outside_distance(search.surface, middle);
+  const Vec3 slope = outside_normal(search.surface, middle);
+  double bound = std::numeric_limits<double>::infinity();
+  double reach = 0.0;
+  search.best = std::min(search.best, at_middle);
+  for (const Vec3& corner : c) {
+    bound = std::min(bound, at_middle + slope.dot(corner - middle));
+    reach = std::max(reach, (corner - middle).norm());
+    search.best = std::min(search.best, outside_distance(search.surface, corner));
+  }
+  // A distance changes by no more than the path walked, whatever the curvature.
+  bound = std::max(bound - 0.5 * search.bend * reach * reach, at_middle - reach);
+  if (bound >= search.best - search.accuracy_mm || depth == 0) return bound;
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if ((c[(k + 1) % 3] - c[k]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm())
+      longest = k;
+  const Vec3 half = 0.5 * (c[longest] + c[(longest + 1) % 3]);
+  const Vec3& apex = c[(longest + 2) % 3];
+  return std::min(least_over(search, {c[longest], half, apex}, depth - 1),
+                  least_over(search, {half, c[(longest + 1) % 3], apex}, depth - 1));
+}
+
+}  // namespace
+
+double Surface::signed_distance_mm(const Vec3& x) const {
+  const double outside = outside_distance(*this, x);
+  return inward && kind != SurfaceKind::kPlane ? -outside : outside;
+}
+
+Vec3 Surface::outward_normal(const Vec3& x) const {
+  const Vec3 normal = outside_normal(*this, x);
+  return inward && kind != SurfaceKind::kPlane ? Vec3(-normal) : normal;
+}
+
+double Surface::curvature_bound(const Vec3& x) const {
+  switch (kind) {
+    case SurfaceKind::kCylinder:
+    case SurfaceKind::kSphere:
+      return 1.0 / radius_mm;
+    case SurfaceKind::kCone: {
+      // Meusnier at the foot of x: the circle of radius r there is tilted by the half angle.
+      const double along = along_generator(*this, view_from_axis(*this, x));
+      const double r = along * std::sin(half_angle_rad);
+      return r > 0.0 ? std::cos(half_angle_rad) / r : std::numeric_limits<double>::infinity();
+    }
+    case SurfaceKind::kTorus:
+      return std::max(1.0 / tube_radius_mm, concave_bend(*this));
+    case SurfaceKind::kPlane:
+    case SurfaceKind::kUnknown:
+      break;
+  }
+  return 0.0;
+}
+
+Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const Vec3& c,
+                                           double accuracy_mm) const {
+  constexpr int kHalvings = 24;  // 4096 pieces along each side: far below any accuracy asked for
+  const double da = outside_distance(*this, a), db = outside_distance(*this, b),
+               dc = outside_distance(*this, c);
+  if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown)
+    return {std::min({da, db, dc}), std::max({da, db, dc})};
+  LeastSearch search{*this, concave_bend(*this), accuracy_mm, std::min({da, db, dc})};
+  const double least = least_over(search, {a, b, c}, kHalvings);
+  // A convex function is largest at a corner; a torus exceeds that by its inner curvature over the
+  // circle around the triangle, whose radius is at most longest edge / sqrt(3).
+  double most = std::max({da, db, dc});
+  if (kind == SurfaceKind::kTorus) {
+    const double longest =
+        std::sqrt(std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()}));
+    most += std::min(longest * longest / 6.0 * concave_bend(*this), longest);
+  }
+  return inward ? Interval{-most, -least} : Interval{least, most};
+}
+
+}  // namespace mortise
