@@ -1,0 +1,193 @@
+#include "common/geometry/topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "common/base/constants.h"
+
+namespace mortise {
+namespace {
+
+/// A corner that lies off the plane of the neighbour by less than this part of the longest edge
+/// counts as in the plane (ALG 3.6). Scale-free; far above rounding, far below any drawn chamfer.
+constexpr double kFlatEdge = 1e-9;
+
+/// Which way an edge is passed by one triangle.
+struct Side {
+  std::uint32_t high;  ///< the larger point index of the edge; the smaller one names the bucket
+  std::uint32_t id;    ///< 3 * triangle + edge
+  bool forward;        ///< from the smaller index to the larger
+};
+
+/// Root of `i`, with the path halved on the way.
+std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+void join(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  parent[std::max(a, b)] = std::min(a, b);
+}
+
+/// Twice the area vector of a triangle.
+Vec3 area_vector(const TriangleMesh& mesh, std::uint32_t t) {
+  return (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+}
+
+struct EdgeShape {
+  EdgeKind kind = EdgeKind::kFlat;
+  bool sharp = false;
+};
+
+/// Dihedral of edge `k` of triangle `t` with its neighbour `u`, whose corner off the edge is
+/// `across`. Symmetric in both triangles up to rounding; called once an edge.
+EdgeShape shape_of_edge(const TriangleMesh& mesh, double extent_mm, std::uint32_t t, int k,
+                        std::uint32_t u, int across) {
+  const Vec3 normal_t = area_vector(mesh, t);
+  const Vec3 normal_u = area_vector(mesh, u);
+  const double length_t = normal_t.norm();
+  const double length_u = normal_u.norm();
+  if (length_t == 0.0 || length_u == 0.0) return {};  // a sliver bends nothing
+  const Vec3& start = mesh.corner(t, k);
+  const Vec3& end = mesh.corner(t, (k + 1) % 3);
+  const Vec3 beyond = mesh.corner(u, across) - start;
+  const Vec3 before = mesh.corner(t, (k + 2) % 3) - start;
+  const double size = std::sqrt(
+      std::max({(end - start).squaredNorm(), beyond.squaredNorm(), before.squaredNorm()}));
+  const double epsilon_mm = kRoundingFactor * kUnitRoundoff * extent_mm;
+  const double height_mm = normal_t.dot(beyond) / length_t;
+  EdgeShape shape;
+  const double exterior_rad = std::atan2(normal_t.cross(normal_u).norm(), normal_t.dot(normal_u));
+  shape.sharp = exterior_rad > kSharpEdge_rad;
+  if (std::abs(height_mm) > kFlatEdge * size + epsilon_mm)
+    shape.kind = height_mm < 0.0 ? EdgeKind::kConvex : EdgeKind::kConcave;
+  else if (shape.sharp)
+    shape.kind = EdgeKind::kConvex;  // folded back onto itself: a blade of no thickness
+  return shape;
+}
+
+Topology without_edges(const TriangleMesh& mesh) {
+  Topology topology;
+  const std::size_t count = mesh.triangles.size();
+  topology.neighbor.assign(count, {Topology::kNone, Topology::kNone, Topology::kNone});
+  topology.edge_kind.assign(count, {EdgeKind::kBoundary, EdgeKind::kBoundary, EdgeKind::kBoundary});
+  topology.edge_sharp.assign(count, {false, false, false});
+  topology.volume_mm3 = signed_volume_mm3(mesh);
+  return topology;
+}
+
+double extent_of(const TriangleMesh& mesh) {
+  double extent_mm = 0.0;
+  for (const Vec3& point : mesh.points_mm)
+    extent_mm = std::max(extent_mm, point.cwiseAbs().maxCoeff());
+  return extent_mm;
+}
+
+/// Writes down one edge: `sides` are all triangles that have it.
+void record_edge(const TriangleMesh& mesh, double extent_mm, const Side* sides, std::size_t count,
+                 bool no_length, Topology& topology) {
+  const auto triangle = [&](std::size_t i) { return sides[i].id / 3; };
+  const auto edge = [&](std::size_t i) { return static_cast<int>(sides[i].id % 3); };
+  if (no_length || count > 2) {
+    ++topology.non_manifold_edges;
+    for (std::size_t i = 0; i < count; ++i)
+      topology.edge_kind[triangle(i)][edge(i)] = EdgeKind::kNonManifold;
+    return;
+  }
+  if (count == 1) {
+    ++topology.boundary_edges;
+    return;
+  }
+  topology.neighbor[triangle(0)][edge(0)] = triangle(1);
+  topology.neighbor[triangle(1)][edge(1)] = triangle(0);
+  EdgeShape shape{EdgeKind::kNonManifold, true};
+  if (sides[0].forward == sides[1].forward)
+    ++topology.misoriented_edges;
+  else
+    shape = shape_of_edge(mesh, extent_mm, triangle(0), edge(0), triangle(1), (edge(1) + 2) % 3);
+  for (std::size_t i = 0; i < 2; ++i) {
+    topology.edge_kind[triangle(i)][edge(i)] = shape.kind;
+    topology.edge_sharp[triangle(i)][edge(i)] = shape.sharp;
+  }
+}
+
+std::uint32_t count_components(std::vector<std::uint32_t>& parent) {
+  std::uint32_t components = 0;
+  for (std::uint32_t i = 0; i < parent.size(); ++i) components += parent[i] == i ? 1 : 0;
+  return components;
+}
+
+}  // namespace
+
+Topology build_topology(const TriangleMesh& mesh) {
+  Topology topology = without_edges(mesh);
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  const double extent_mm = extent_of(mesh);
+
+  // 1. All sides of all triangles, bucketed by the smaller point index (counting sort).
+  std::vector<std::uint32_t> begin(mesh.points_mm.size() + 1, 0);
+  for (const auto& corners : mesh.triangles)
+    for (int k = 0; k < 3; ++k) ++begin[std::min(corners[k], corners[(k + 1) % 3]) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Side> sides(3 * static_cast<std::size_t>(count));
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (std::uint32_t t = 0; t < count; ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = mesh.triangles[t][k];
+      const std::uint32_t to = mesh.triangles[t][(k + 1) % 3];
+      sides[next[std::min(from, to)]++] = {std::max(from, to), 3 * t + k, from < to};
+    }
+
+  // 2. Within a bucket the sides of one edge stand together; ties by triangle.
+  std::vector<std::uint32_t> parent(count);
+  std::iota(parent.begin(), parent.end(), 0U);
+  for (std::uint32_t low = 0; low < mesh.points_mm.size(); ++low) {
+    const auto first = sides.begin() + begin[low];
+    const auto last = sides.begin() + begin[low + 1];
+    std::sort(first, last, [](const Side& a, const Side& b) {
+      return a.high != b.high ? a.high < b.high : a.id < b.id;
+    });
+    for (auto run = first; run != last;) {
+      auto end = run;
+      while (end != last && end->high == run->high) join(parent, run->id / 3, (end++)->id / 3);
+      record_edge(mesh, extent_mm, &*run, static_cast<std::size_t>(end - run), run->high == low,
+                  topology);
+      run = end;
+    }
+  }
+  topology.components = count_components(parent);
+  return topology;
+}
+
+Topology build_topology_brute_force(const TriangleMesh& mesh) {
+  Topology topology = without_edges(mesh);
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  const double extent_mm = extent_of(mesh);
+  std::vector<std::uint32_t> parent(count);
+  std::iota(parent.begin(), parent.end(), 0U);
+  for (std::uint32_t t = 0; t < count; ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = mesh.triangles[t][k];
+      const std::uint32_t to = mesh.triangles[t][(k + 1) % 3];
+      std::vector<Side> same;
+      for (std::uint32_t id = 0; id < 3 * count; ++id) {
+        const std::uint32_t a = mesh.triangles[id / 3][id % 3];
+        const std::uint32_t b = mesh.triangles[id / 3][(id % 3 + 1) % 3];
+        if (std::min(a, b) == std::min(from, to) && std::max(a, b) == std::max(from, to))
+          same.push_back({std::max(a, b), id, a < b});
+      }
+      if (same.front().id != 3 * t + k) continue;  // recorded when its first side came
+      for (const Side& side : same) join(parent, t, side.id / 3);
+      record_edge(mesh, extent_mm, same.data(), same.size(), from == to, topology);
+    }
+  topology.components = count_components(parent);
+  return topology;
+}
+
+}  // namespace mortise
