@@ -59,6 +59,7 @@ struct ServerInput {
       refused_at_door;  ///< not finite and the like, with the user it claimed
   std::vector<LostUser> lost;
   std::vector<UserId> heartbeats;
+  std::vector<ClientKey> snapshot_requests;  ///< who missed something: publish a snapshot again
 };
 
 struct Ack {
@@ -106,6 +107,12 @@ class ServerChannel {
   virtual ChannelCounters counters() const = 0;
 };
 
+/// A mesh as publish_mesh() gave it.
+struct MeshBytes {
+  std::string hash;
+  std::vector<std::byte> bytes;
+};
+
 struct ClientInput {
   std::vector<JoinReply> join_replies;  ///< only those for this client
   std::vector<Reply> replies;
@@ -114,7 +121,10 @@ struct ClientInput {
   std::vector<PoseBatch> poses;
   std::vector<ClashEvent> events;
   std::vector<SessionPulse> pulses;
-  bool server_lost = false;
+  std::vector<MeshBytes> meshes;
+  std::uint64_t poses_missed = 0;  ///< pose batches known to be lost since the last take()
+  bool server_lost = false;        ///< noticed since the last take()
+  bool server_present = false;     ///< as of now
 };
 
 /// A participant's end. Thread-compatible; take() never blocks.
@@ -126,6 +136,7 @@ class ClientChannel {
   virtual void heartbeat(UserId user) = 0;
   virtual void send(const Increment& increment, std::int64_t sent_ns) = 0;
   virtual void send(const Command& command) = 0;
+  virtual void request_snapshot() = 0;  ///< after a gap, or when none has come
   virtual ClientInput take() = 0;
   virtual ChannelCounters counters() const = 0;
 };

@@ -1,0 +1,144 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/messages/channel.h"
+
+namespace mortise {
+
+struct ClientOptions {
+  double heartbeat_s =
+      0.2;  ///< below a quarter of the liveliness lease is wasted, above half risky
+  double join_retry_s = 1.0;  ///< an unanswered join is sent again after this
+  double resync_after_s =
+      0.2;  ///< so long may a gap of events stand before a snapshot is asked for
+  double resync_retry_s = 1.0;  ///< between two requests for a snapshot
+  double pose_resync_s = 2.0;   ///< so long may lost poses wait for a keyframe
+};
+
+/// A user of this client, in the order of add_user().
+using LocalUser = std::size_t;
+
+enum class JoinState : std::uint8_t { kUnknown = 0, kJoining, kJoined, kRefused, kLeft };
+
+/// What a client knows of a part.
+struct KnownPart {
+  PartInfo info;           ///< pose and holder are the latest known
+  std::uint64_t tick = 0;  ///< of that pose
+};
+
+/// What one poll() brought.
+struct ClientUpdate {
+  std::vector<PartId> changed;            ///< parts with a new pose or holder, by id, each once
+  std::vector<ClashEvent> events;         ///< in order of seq, without gap and repeat
+  std::vector<Reply> replies;             ///< to our users
+  std::vector<RefusedIncrement> refused;  ///< of our users
+  std::vector<LocalUser> joined;          ///< joined, or joined again
+  std::vector<double> latency_ms;         ///< from send() to the ack seen here
+  std::optional<SessionPulse> pulse;      ///< the latest
+  std::vector<MeshBytes> meshes;          ///< arrived
+  bool resynced = false;                  ///< a snapshot took the place of what was known
+  bool server_lost = false;               ///< users join again by themselves when it is back
+};
+
+/// Never silent: what was missed, repeated or repaired.
+struct ClientStatistics {
+  std::uint64_t events_applied = 0, events_duplicate = 0,
+                events_skipped = 0;  ///< skipped: covered by a snapshot
+  std::uint64_t gaps = 0, snapshots_requested = 0, snapshots_applied = 0, snapshots_stale = 0;
+  std::uint64_t poses_missed = 0, poses_stale = 0;
+  std::uint64_t joins_sent = 0, server_losses = 0, increments_sent = 0, not_joined = 0;
+  std::uint64_t highest_event_seq = 0, highest_tick = 0;
+};
+
+/// A participant of a session without an engine: asks the server and keeps what it answers. Holds
+/// any number of logical users over one channel. Thread-compatible; call poll() at least each
+/// heartbeat_s.
+class Client {
+ public:
+  /// Nanoseconds of a clock that never goes back.
+  using Clock = std::function<std::int64_t()>;
+
+  /// The channel must outlive the client. Without a clock: std::chrono::steady_clock.
+  explicit Client(ClientChannel& channel, const ClientOptions& options = {}, Clock clock = {});
+
+  /// Asks to join; the answer comes by poll(). role: designer | observer | bot.
+  LocalUser add_user(const std::string& name, const std::string& role);
+  void leave(LocalUser user);
+
+  JoinState join_state(LocalUser user) const;
+  UserId user_id(LocalUser user) const;  ///< none while not joined
+  const std::string& refusal_text(LocalUser user) const;
+  std::size_t user_count() const { return users_.size(); }
+
+  /// Commands: the sequence number that the reply will echo, 0 when the user has not joined
+  /// (counted).
+  std::uint64_t grab(LocalUser user, PartId part);
+  std::uint64_t release(LocalUser user, PartId part);
+  std::uint64_t undo(LocalUser user, PartId part);
+  std::uint64_t reset(LocalUser user, PartId part);
+
+  /// Sends an increment (see increment.h), with the user's next sequence number, which is returned;
+  /// 0 when the user has not joined (counted).
+  std::uint64_t send(LocalUser user, PartId part, const Vec3& translation_mm,
+                     const Vec3& rotation_rad = Vec3::Zero());
+
+  /// Takes what has come, never blocks, sends what is due (joins, heartbeats, snapshot requests).
+  ClientUpdate poll();
+
+  bool synced() const { return synced_; }  ///< a snapshot has come and no gap is open
+  bool server_present() const { return server_present_; }
+  const std::string& session() const { return session_; }
+  const std::string& policy() const { return policy_; }
+  double tick_rate_hz() const { return tick_rate_hz_; }
+  const std::map<PartId, KnownPart>& parts() const { return parts_; }
+  const std::vector<UserInfo>& users() const { return session_users_; }
+  const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
+  PartId find_part(const std::string& name) const;  ///< none when unknown
+  const ClientStatistics& statistics() const { return statistics_; }
+
+ private:
+  struct LocalUserState {
+    std::string name, role;
+    JoinState state = JoinState::kUnknown;
+    UserId id;
+    std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
+    std::int64_t joined_at_ns = 0, heartbeat_at_ns = 0;  ///< last sent
+    std::string refusal;
+  };
+
+  std::uint64_t command(LocalUser user, PartId part, CommandKind kind);
+  void ask_to_join(LocalUserState& user, bool again);
+  LocalUserState* own_user(UserId id);
+  void lose_user(UserId id);
+  void apply_joins(const ClientInput& input, ClientUpdate& update);
+  void apply_answers(const ClientInput& input, ClientUpdate& update);
+  void apply_snapshot(const Snapshot& snapshot, ClientUpdate& update);
+  void apply_poses(const PoseBatch& batch, ClientUpdate& update);
+  void apply_events(ClientUpdate& update);
+  void send_what_is_due();
+
+  ClientChannel& channel_;
+  ClientOptions options_;
+  Clock clock_;
+  std::vector<LocalUserState> users_;
+  std::uint64_t next_nonce_ = 1;
+  std::string session_, policy_;
+  double tick_rate_hz_ = 0.0;
+  std::map<PartId, KnownPart> parts_;
+  std::vector<UserInfo> session_users_;
+  std::map<ClashId, ClashEvent> open_clashes_;
+  std::map<std::uint64_t, ClashEvent> pending_;  ///< events beyond a gap, by seq
+  std::uint64_t event_seq_ = 0;                  ///< applied up to here
+  std::uint64_t known_event_seq_ = 0;            ///< the server has said that this one exists
+  bool have_snapshot_ = false, synced_ = false, server_present_ = false;
+  std::int64_t gap_since_ns_ = 0, poses_stale_since_ns_ = 0, requested_at_ns_ = 0;  ///< 0: none
+  std::int64_t now_ns_ = 0;
+  ClientStatistics statistics_;
+};
+
+}  // namespace mortise

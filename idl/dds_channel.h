@@ -1,0 +1,31 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/messages/channel.h"
+
+namespace mortise {
+
+/// Where a session is met. Servers of one host live beside each other by another domain or another
+/// port.
+struct DdsOptions {
+  std::string session = "default";      ///< partition "session/<name>"
+  int domain = 0;                       ///< 0..232
+  std::string interface = "127.0.0.1";  ///< own IPv4 address; nothing is sent or heard elsewhere
+  std::string server = "";              ///< client: IPv4 of the server; empty: same as interface
+  int discovery_port = 0;  ///< server's fixed UDP port (and the next one); 0: 7402 + 250 domain
+  double liveliness_lease_s = 0.8;   ///< server and client: a silent client is gone after this
+  double participant_lease_s = 2.0;  ///< a silent process is gone after this
+  double heartbeat_period_s = 0.1;   ///< of reliable writers; 0.02 on lossy links
+  bool meshes = true;                ///< client: receive meshes
+};
+
+/// The server's end: the fixed point that clients look for. Fails in one line when the port is in
+/// use, the interface is not of this machine, or the domain is out of range.
+Result<std::unique_ptr<ServerChannel>> open_server_channel(const DdsOptions& options);
+
+/// A participant's end. Returns at once; the server may come later (ClientInput::server_present).
+Result<std::unique_ptr<ClientChannel>> open_client_channel(const DdsOptions& options);
+
+}  // namespace mortise
