@@ -15,9 +15,11 @@ struct Bvh {
   static constexpr int kLeafSize = 4;
 
   struct alignas(32) Node {
-    float center[3][kWidth];  ///< box centres, part frame, mm; unused lanes repeat lane 0
-    float half[3]
-              [kWidth];  ///< half extents, rounded outward: the box contains its triangles exactly
+    /// Box centres *relative to Bvh::origin* (axes of the part), mm; unused lanes repeat lane 0.
+    /// Use child_box() for a box in the part frame.
+    float local_center[3][kWidth];
+    /// Half extents, rounded outward: the box contains its triangles exactly.
+    float half[3][kWidth];
     std::int32_t child[kWidth];  ///< >= 0: node; < 0: ~leaf
     std::int32_t count = 0;      ///< used lanes
     float size = 0.0F;           ///< sum of the half extents of the node's own box
@@ -31,10 +33,15 @@ struct Bvh {
   std::vector<Leaf> leaves;
   std::vector<std::uint32_t> triangle_order;  ///< triangle ids in leaf order
   std::vector<std::array<double, 9>>
-      corners;  ///< corners of triangle_order[i], x y z of each corner
-  Box bounds;
-  double extent_mm = 0.0;  ///< largest |coordinate| of any point: scale of rounding
+      corners;             ///< corners of triangle_order[i], x y z of each corner
+  Box bounds;              ///< part frame
+  Vec3 origin;             ///< centre of `bounds`: keeps the boxes fine when a mesh lies far away
+  double radius_mm = 0.0;  ///< no point is farther from `origin`
+  double extent_mm = 0.0;  ///< no point is farther from the part's own origin: scale of rounding
   std::int32_t root = 0;   ///< >= 0 node, < 0 ~leaf
+
+  /// Box of child k of a node, part frame; contains its triangles.
+  Box child_box(const Node& node, int k) const;
 
   std::size_t bytes() const;
 };

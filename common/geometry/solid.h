@@ -1,10 +1,14 @@
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "common/geometry/bvh.h"
 #include "common/geometry/mesh.h"
+#include "common/geometry/shells.h"
 #include "common/geometry/topology.h"
 
 namespace mortise {
@@ -24,6 +28,8 @@ class Solid {
   const Box& bounds() const { return bounds_; }
   const Bvh& bvh() const;
   const Topology& topology() const;
+  /// The lowest triangle of each connected shell, ascending.
+  const std::vector<std::uint32_t>& shells() const;
   /// Bytes of tree, topology and other derived data built so far, beyond the mesh itself.
   std::size_t derived_bytes() const;
 
@@ -32,9 +38,11 @@ class Solid {
   std::string hash_;
   BoundingSphere sphere_;
   Box bounds_;
-  mutable std::once_flag bvh_once_, topology_once_;
+  mutable std::once_flag bvh_once_, topology_once_, shells_once_;
   mutable std::unique_ptr<const Bvh> bvh_;
   mutable std::unique_ptr<const Topology> topology_;
+  mutable std::vector<std::uint32_t> shells_;
+  mutable std::atomic<std::size_t> derived_bytes_{0};
 };
 
 using SolidPtr = std::shared_ptr<const Solid>;

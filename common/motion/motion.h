@@ -28,6 +28,13 @@ struct Motion {
   /// the reference point is at most radius_mm.
   double travel_upper_bound_mm(double radius_mm, double t0, double t1) const;
 
+  /// Velocity of the reference point at t, world axes, mm per tick. The part turns with w_W.
+  Vec3 velocity_at(double t) const;
+
+  /// Distance of the reference point from the axis of the rotation, mm: 0 for kLinear. A point r
+  /// from the reference point is accelerated by at most |w|^2 (r + turn_radius_mm).
+  double turn_radius_mm() const;
+
   bool moves() const { return kind != PathKind::kStill; }
 };
 

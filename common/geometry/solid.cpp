@@ -1,0 +1,41 @@
+#include "common/geometry/solid.h"
+
+#include <utility>
+
+namespace mortise {
+
+Solid::Solid(TriangleMesh mesh)
+    : mesh_(std::move(mesh)),
+      hash_(mesh_hash(mesh_)),
+      sphere_(bounding_sphere(mesh_)),
+      bounds_(bounds_of(mesh_)) {}
+
+const Bvh& Solid::bvh() const {
+  std::call_once(bvh_once_, [this] {
+    bvh_ = std::make_unique<const Bvh>(build_bvh(mesh_));
+    derived_bytes_ += bvh_->bytes();
+  });
+  return *bvh_;
+}
+
+const Topology& Solid::topology() const {
+  std::call_once(topology_once_, [this] {
+    topology_ = std::make_unique<const Topology>(build_topology(mesh_));
+    derived_bytes_ += topology_->neighbor.capacity() * sizeof(topology_->neighbor[0]) +
+                      topology_->edge_kind.capacity() * sizeof(topology_->edge_kind[0]) +
+                      topology_->edge_sharp.capacity() * sizeof(topology_->edge_sharp[0]);
+  });
+  return *topology_;
+}
+
+const std::vector<std::uint32_t>& Solid::shells() const {
+  std::call_once(shells_once_, [this] {
+    shells_ = first_triangle_of_each_shell(mesh_);
+    derived_bytes_ += shells_.capacity() * sizeof(shells_[0]);
+  });
+  return shells_;
+}
+
+std::size_t Solid::derived_bytes() const { return derived_bytes_; }
+
+}  // namespace mortise
