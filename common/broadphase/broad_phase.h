@@ -1,0 +1,37 @@
+#pragma once
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/math/box.h"
+
+namespace mortise {
+
+/// Two parts by index, a < b.
+struct IndexPair {
+  std::uint32_t a = 0, b = 0;
+  friend constexpr auto operator<=>(const IndexPair&, const IndexPair&) = default;
+};
+
+/// Which parts could meet: boxes in, candidate pairs out. Keeps the boxes between ticks, so that a
+/// tick pays only for the parts that it names. The answer is a function of the boxes alone: closed
+/// boxes that share a point are candidates, in every implementation alike.
+class BroadPhase {
+ public:
+  virtual ~BroadPhase() = default;
+  /// World box of part `part`, mm; the first call for a part adds it. Parts are numbered from 0.
+  virtual void set_box(std::uint32_t part, const Box& box) = 0;
+  /// All pairs of overlapping boxes of which at least one part is in `moved` (no repeats in it).
+  /// Sorted, each pair once. `pairs` is replaced, its capacity reused.
+  virtual void find_pairs(std::span<const std::uint32_t> moved, std::vector<IndexPair>& pairs) = 0;
+};
+
+/// FCL's dynamic AABB tree (Debian's libfcl, used for boxes only).
+std::unique_ptr<BroadPhase> make_dynamic_tree();
+
+/// The slow twin: every moved part against every part.
+std::unique_ptr<BroadPhase> make_brute_force();
+
+}  // namespace mortise
