@@ -18,7 +18,8 @@ struct SurfaceBand {
     std::optional<Surface>
         surface;  ///< set: deviation is the exact e(x) of this surface +- residual
     double residual_mm = 0.0;
-    Interval deviation_mm;  ///< used where `surface` is not set: [0, s], [-s, 0], [-s, s]
+    Interval deviation_mm;  ///< where `surface` is not set: [0, s], [-s, 0], [-s, s]; where it is
+                            ///< set: bound of e(x) +- residual over all triangles of the face
     Interval tolerance_mm;  ///< outward positive, of the modelled surface
     DeviationGrade grade = DeviationGrade::kNominal;
     std::string tolerance_source;  ///< "Ø20 H7", "profile 0.1", "" when nothing is declared

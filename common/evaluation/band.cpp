@@ -1,0 +1,121 @@
+#include "common/evaluation/band.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/check.h"
+#include "common/evaluation/deviation.h"
+
+namespace mortise {
+namespace {
+
+// Offsets below this are rounding of the declared numbers, not knowledge: a picometre.
+constexpr double kNothing_mm = 1e-9;
+
+bool says_nothing(const SurfaceBand::Face& face) {
+  return std::fabs(face.deviation_mm.lo) <= kNothing_mm &&
+         std::fabs(face.deviation_mm.hi) <= kNothing_mm && face.tolerance_mm == Interval{};
+}
+
+// Faces without triangles (a part whose features cover it) must not widen the search for near
+// pairs.
+void summarize(SurfaceBand& band) {
+  std::vector<bool> used(band.faces.size(), band.face_of_triangle.empty());
+  for (const std::uint16_t face : band.face_of_triangle) used[face] = true;
+  band.largest_offset_mm = 0.0;
+  band.trivial = true;
+  for (std::size_t i = 0; i < band.faces.size(); ++i) {
+    const SurfaceBand::Face& face = band.faces[i];
+    if (!used[i] || says_nothing(face)) continue;
+    band.trivial = false;
+    band.largest_offset_mm =
+        std::max(band.largest_offset_mm, face.deviation_mm.hi + face.tolerance_mm.hi);
+  }
+}
+
+void state(SurfaceBand::Face& face, const FaceStatement& statement) {
+  face.tolerance_mm = statement.offset_mm;
+  face.tolerance_source = statement.source;
+}
+
+SurfaceBand::Face face_of_feature(const Feature& feature, const TriangleMesh& mesh) {
+  SurfaceBand::Face face;
+  face.name = feature.name;
+  face.residual_mm = feature.residual_mm > kNothing_mm ? feature.residual_mm : 0.0;
+  if (feature.surface.kind == SurfaceKind::kPlane) {
+    face.grade = DeviationGrade::kPlanar;
+    face.deviation_mm = {-face.residual_mm, face.residual_mm};
+    return face;
+  }
+  face.grade = feature.grade;
+  face.surface = feature.surface;
+  bool first = true;
+  for (const std::uint32_t t : feature.triangles) {
+    const Interval outward = -feature.surface.signed_distance_range_mm(
+        mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2));
+    face.deviation_mm = first ? outward : hull(face.deviation_mm, outward);
+    first = false;
+  }
+  face.deviation_mm = face.deviation_mm + Interval{-face.residual_mm, face.residual_mm};
+  return face;
+}
+
+// The rest of the part by shape: faces[0] keeps what is of unknown shape, the others go behind.
+void split_rest_by_shape(SurfaceBand& band, const Solid& solid, double chord_error_mm) {
+  const std::vector<FaceShape> shapes = face_shapes(solid, chord_error_mm);
+  band.faces[0].deviation_mm = chord_deviation_mm(FaceShape::kUnknown, chord_error_mm);
+  band.faces[0].grade = DeviationGrade::kDeclaredChord;
+  for (const FaceShape shape : {FaceShape::kConvex, FaceShape::kConcave, FaceShape::kPlanar}) {
+    const auto index = static_cast<std::uint16_t>(band.faces.size());
+    bool found = false;
+    for (std::size_t t = 0; t < shapes.size(); ++t) {
+      if (band.face_of_triangle[t] != 0 || shapes[t] != shape) continue;
+      band.face_of_triangle[t] = index;
+      found = true;
+    }
+    if (!found) continue;
+    SurfaceBand::Face face;
+    face.deviation_mm = chord_deviation_mm(shape, chord_error_mm);
+    face.grade =
+        shape == FaceShape::kPlanar ? DeviationGrade::kPlanar : DeviationGrade::kDeclaredChord;
+    band.faces.push_back(std::move(face));
+  }
+}
+
+std::size_t feature_count(const SurfaceBand& band) {
+  return static_cast<std::size_t>(
+      std::count_if(band.faces.begin() + 1, band.faces.end(),
+                    [](const SurfaceBand::Face& face) { return !face.name.empty(); }));
+}
+
+}  // namespace
+
+SurfaceBand build_band(const BandInput& input) {
+  MORTISE_CHECK(input.solid != nullptr, "a band belongs to a solid");
+  MORTISE_CHECK(input.features.size() < 60000, "face indices are 16 bit: fewer features a part");
+  SurfaceBand band = nominal_band();
+  band.faces[0].grade = DeviationGrade::kNominal;
+  const TriangleMesh& mesh = input.solid->mesh();
+  const bool chord = input.chord_error_mm.value_or(0.0) > 0.0;
+  if (!input.features.empty() || chord) band.face_of_triangle.assign(mesh.triangles.size(), 0);
+  for (const Feature& feature : input.features) {
+    const auto index = static_cast<std::uint16_t>(band.faces.size());
+    for (const std::uint32_t t : feature.triangles) band.face_of_triangle[t] = index;
+    band.faces.push_back(face_of_feature(feature, mesh));
+  }
+  if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
+  return with_statements(band, input.rest, input.of_feature);
+}
+
+SurfaceBand with_statements(const SurfaceBand& band, const FaceStatement& rest,
+                            std::span<const FaceStatement> of_feature) {
+  SurfaceBand stated = band;
+  const std::size_t features = feature_count(band);
+  MORTISE_CHECK(of_feature.size() == features, "one statement for each feature of the band");
+  for (std::size_t i = 0; i < stated.faces.size(); ++i)
+    state(stated.faces[i], i >= 1 && i <= features ? of_feature[i - 1] : rest);
+  summarize(stated);
+  return stated;
+}
+
+}  // namespace mortise

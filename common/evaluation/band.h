@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/evaluation/tolerance.h"
+#include "common/geometry/solid.h"
+#include "common/geometry/surface_band.h"
+
+namespace mortise {
+
+/// All that is known of one part's surface.
+struct BandInput {
+  const Solid* solid = nullptr;
+  std::span<const Feature> features;  ///< matched; a triangle belongs to one feature at most
+  std::optional<double> chord_error_mm;
+  FaceStatement rest;                     ///< every face without a statement of its own
+  std::vector<FaceStatement> of_feature;  ///< by feature
+};
+
+/// faces[0] is the rest of the part, faces[1 + i] feature i; under a declared chord error the rest
+/// is split by shape into further faces behind. Triangles and topology are only asked for when
+/// something is declared.
+SurfaceBand build_band(const BandInput& input);
+
+/// The same faces under other statements: what a pair with a fit of its own uses.
+SurfaceBand with_statements(const SurfaceBand& band, const FaceStatement& rest,
+                            std::span<const FaceStatement> of_feature);
+
+}  // namespace mortise

@@ -1,0 +1,127 @@
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "common/evaluation/verdict.h"
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+constexpr double kUmPerMm = 1e3;
+constexpr double kShown_um = 0.05;  // sentences show tenths: less is nothing
+
+std::string um(double mm) {
+  char text[32];
+  const double value = mm * kUmPerMm;
+  std::snprintf(text, sizeof text, "%.1f", std::fabs(value) < kShown_um ? 0.0 : value);
+  return text;
+}
+
+bool shown(double mm) { return std::fabs(mm) * kUmPerMm >= kShown_um; }
+
+std::string range(double lo_mm, double hi_mm) {
+  if (!std::isfinite(hi_mm)) return "at least " + um(lo_mm);
+  return shown(hi_mm - lo_mm) ? um(lo_mm) + " to " + um(hi_mm) : um(lo_mm);
+}
+
+std::string overlap_part(const Interval& delta) {
+  if (delta.hi < 0.0) return "gap " + range(-delta.hi, -delta.lo) + " µm";
+  if (delta.lo < 0.0 && shown(delta.lo))
+    return "overlap at most " + um(delta.hi) + " µm, gap at most " + um(-delta.lo) + " µm";
+  return "overlap " + range(std::fmax(delta.lo, 0.0), delta.hi) + " µm";
+}
+
+std::string tolerance_source(const ExplainInput& in) {
+  if (!in.fit.empty()) return in.fit;
+  const std::string a = in.face_a != nullptr ? in.face_a->tolerance_source : "";
+  const std::string b = in.face_b != nullptr ? in.face_b->tolerance_source : "";
+  if (a.empty() || a == b) return b.empty() ? a : (a.empty() ? b : "twice " + b);
+  return b.empty() ? a : a + " and " + b;
+}
+
+std::string signed_term(const std::string& so_far, bool negative, const std::string& term) {
+  if (so_far.empty()) return negative ? "-" + term : term;
+  return so_far + (negative ? " - " : " + ") + term;
+}
+
+std::string mesh_error_name(const ExplainInput& in) {
+  switch (in.grade) {
+    case DeviationGrade::kPlanar:
+    case DeviationGrade::kDeclaredFeature:
+    case DeviationGrade::kRecognizedFeature:
+      return shown(in.deviation_mm.width()) ? " within " + um(in.deviation_mm.width()) : " exact";
+    case DeviationGrade::kDeclaredChord:
+      return " by declared chord error";
+    case DeviationGrade::kEstimated:
+      return " estimated, not guaranteed";
+    case DeviationGrade::kNominal:
+    case DeviationGrade::kUnknown:
+      break;
+  }
+  return "";
+}
+
+// What a threshold is made of, at one end of the offsets. A fit that leaves room adds clearance.
+std::string made_of(const ExplainInput& in, double deviation_mm, double tolerance_mm, bool least) {
+  std::string text;
+  if (shown(deviation_mm))
+    text = signed_term(text, deviation_mm > 0.0,
+                       "mesh error " + um(std::fabs(deviation_mm)) + mesh_error_name(in));
+  const std::string source = tolerance_source(in);
+  if (source.empty()) return text;
+  const bool interferes = tolerance_mm > 0.0;
+  std::string what;
+  if (in.fit.empty())
+    what = "tolerance";
+  else if (interferes)
+    what = least ? "largest radial interference" : "least radial interference";
+  else
+    what = least ? "least radial clearance" : "largest radial clearance";
+  return signed_term(text, interferes, what + " " + um(std::fabs(tolerance_mm)) + " of " + source);
+}
+
+std::string thresholds_part(const ExplainInput& in) {
+  const double fake = in.thresholds.fake_below_mm;
+  const double real = in.thresholds.real_above_mm;
+  const std::string why_fake = made_of(in, in.deviation_mm.hi, in.tolerance_mm.hi, true);
+  if (why_fake.empty() && !shown(fake) && !shown(real)) {
+    const bool nominal =
+        in.grade == DeviationGrade::kNominal || in.grade == DeviationGrade::kUnknown;
+    return nominal
+               ? "nothing declared, the mesh is taken for the surface (nominal)"
+               : "no tolerance declared, mesh error 0.0 (" + std::string(name_of(in.grade)) + ")";
+  }
+  std::string text = "fake up to " + um(fake) + " µm";
+  if (!why_fake.empty()) text += " (" + why_fake + ")";
+  return text + ", real above " + um(real) + " µm";
+}
+
+std::string conclusion(const ExplainInput& in) {
+  const std::string name(name_of(in.collision_class));
+  switch (in.collision_class) {
+    case CollisionClass::kReal:
+      return name + ", " + um(in.margin_mm) + " µm beyond";
+    case CollisionClass::kFake:
+      return name + ", " + um(in.margin_mm) + " µm to spare";
+    case CollisionClass::kPotential: {
+      if (in.no_inside) return name + ", a part is open: crossing is known, depth is not";
+      char text[48];
+      std::snprintf(text, sizeof text, ", P(interference) %.3g %%", 100.0 * in.probability);
+      return name + text;
+    }
+    case CollisionClass::kNone:
+      break;
+  }
+  return name;
+}
+
+}  // namespace
+
+std::string explain(const ExplainInput& in) {
+  std::string text = overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
+  if (in.capped) text += "; work limit reached, brackets are wide";
+  return text;
+}
+
+}  // namespace mortise

@@ -1,0 +1,112 @@
+#include "common/evaluation/tolerance.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace mortise {
+namespace {
+
+// Sizes that went through another unit differ by rounding; a nanometre is far below IT01.
+constexpr double kSameSize_mm = 1e-6;
+
+bool has_size(const Surface& surface) {
+  return surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kSphere;
+}
+
+Result<FaceStatement> statement_of(const SizeLimits& limits, const Surface& surface,
+                                   double residual_mm) {
+  const double modelled_mm = 2.0 * surface.radius_mm;
+  const double slack_mm = 2.0 * residual_mm + kSameSize_mm;
+  const double least_mm = limits.nominal_mm + limits.deviation_mm.lo;
+  const double most_mm = limits.nominal_mm + limits.deviation_mm.hi;
+  const bool nominal = std::fabs(modelled_mm - limits.nominal_mm) <= slack_mm;
+  const bool within = modelled_mm >= least_mm - slack_mm && modelled_mm <= most_mm + slack_mm;
+  const std::string name = "Ø" + size_text(limits.nominal_mm) + " " + limits.code;
+  if (!nominal && !within)
+    return fail(Code::kInvalidInput, "modelled diameter " + size_text(modelled_mm) +
+                                         " mm is neither the nominal size nor within the limits " +
+                                         size_text(least_mm) + " to " + size_text(most_mm) +
+                                         " mm of " + name + "; state its nominal size");
+  return FaceStatement{size_offset_mm(limits, surface.radius_mm), name};
+}
+
+std::string side_text(const FitSide& side) {
+  return side.name + (side.surface->inward ? " is a hole" : " is a shaft");
+}
+
+}  // namespace
+
+std::string size_text(double mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6f", mm);
+  std::string trimmed = text;
+  while (trimmed.back() == '0') trimmed.pop_back();
+  if (trimmed.back() == '.') trimmed.pop_back();
+  return trimmed == "-0" ? "0" : trimmed;
+}
+
+Interval size_offset_mm(const SizeLimits& limits, double modelled_radius_mm) {
+  const Interval radius_mm{0.5 * (limits.nominal_mm + limits.deviation_mm.lo),
+                           0.5 * (limits.nominal_mm + limits.deviation_mm.hi)};
+  const Interval grown{radius_mm.lo - modelled_radius_mm, radius_mm.hi - modelled_radius_mm};
+  return limits.hole ? -grown : grown;
+}
+
+Result<FaceStatement> iso_statement(const std::string& code, double nominal_mm,
+                                    const Surface& surface, double residual_mm) {
+  if (!has_size(surface))
+    return fail(
+        Code::kInvalidInput,
+        "an ISO 286 class needs a diameter (cylinder or sphere); use plus_minus or profile");
+  const Result<SizeLimits> limits =
+      iso286_limits(code, nominal_mm > 0.0 ? nominal_mm : 2.0 * surface.radius_mm);
+  if (!limits) return limits.error();
+  if (limits->hole != surface.inward)
+    return fail(Code::kInvalidInput,
+                std::string("class ") + code + " is for a " + (limits->hole ? "hole" : "shaft") +
+                    ", but the feature is a " + (surface.inward ? "hole" : "shaft") +
+                    (limits->hole ? "; use a small letter or say inward: true"
+                                  : "; use a capital letter or say inward: false"));
+  return statement_of(*limits, surface, residual_mm);
+}
+
+Result<FitStatement> fit_statement(const std::string& code, double nominal_mm, const FitSide& a,
+                                   const FitSide& b) {
+  for (const FitSide* side : {&a, &b})
+    if (!has_size(*side->surface))
+      return fail(Code::kInvalidInput, "fit " + code + ": " + side->name +
+                                           " has no diameter; name cylinders or spheres");
+  if (a.surface->inward == b.surface->inward)
+    return fail(Code::kInvalidInput, "fit " + code + " joins a hole and a shaft, but " +
+                                         side_text(a) + " and " + side_text(b));
+  if (nominal_mm <= 0.0) {
+    const double slack_mm = a.residual_mm + b.residual_mm + kSameSize_mm;
+    if (std::fabs(a.surface->radius_mm - b.surface->radius_mm) > slack_mm)
+      return fail(Code::kInvalidInput,
+                  "fit " + code + ": " + a.name + " is modelled at Ø" +
+                      size_text(2.0 * a.surface->radius_mm) + " and " + b.name + " at Ø" +
+                      size_text(2.0 * b.surface->radius_mm) + " mm; add nominal: the common size");
+    nominal_mm = 2.0 * (a.surface->inward ? a : b).surface->radius_mm;
+  }
+  Result<Fit> fit = iso286_fit(code, nominal_mm);
+  if (!fit) return fit.error();
+  const auto of = [&](const FitSide& side) -> Result<FaceStatement> {
+    Result<FaceStatement> stated = statement_of(side.surface->inward ? fit->hole : fit->shaft,
+                                                *side.surface, side.residual_mm);
+    if (!stated) return fail(stated.error().code, side.name + ": " + stated.error().text);
+    return stated;
+  };
+  Result<FaceStatement> of_a = of(a);
+  if (!of_a) return of_a.error();
+  Result<FaceStatement> of_b = of(b);
+  if (!of_b) return of_b.error();
+  FitStatement statement;
+  statement.a = std::move(of_a).value();
+  statement.b = std::move(of_b).value();
+  statement.nominal_mm = nominal_mm;
+  statement.text = "Ø" + size_text(nominal_mm) + " " + code;
+  statement.fit = std::move(fit).value();
+  return statement;
+}
+
+}  // namespace mortise
