@@ -1,0 +1,297 @@
+#include "common/io/report_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string name_at(const std::vector<std::string>& names, std::uint32_t id) {
+  if (id == 0) return "none";
+  return id <= names.size() ? names[id - 1] : fmt::format("#{}", id);
+}
+
+/// The counts of a row, by class name, without "none".
+Json by_class(const std::uint64_t (&counts)[4]) {
+  Json json;
+  for (int c = 3; c >= 1; --c) {
+    json[std::string(name_of(static_cast<CollisionClass>(c)))] = counts[c];
+  }
+  return json;
+}
+
+Json json_of_row(const SessionStatistics::Row& row) {
+  Json json;
+  json["clashes"] = by_class(row.clashes);
+  json["ticks"] = by_class(row.ticks);
+  json["first_tick"] = row.first_tick;
+  json["last_tick"] = row.last_tick;
+  json["worst_tick"] = row.worst_tick;
+  json["worst"] = json_of(row.worst);
+  return json;
+}
+
+Json json_of_stage(const StageCount& stage) { return {{"in", stage.in}, {"out", stage.out}}; }
+
+std::string micrometres(double mm) {
+  return std::isfinite(mm) ? fmt::format("{:.1f} µm", mm * 1e3) : "unbounded";
+}
+
+template <class Rows, class NameOf>
+std::string rows_table(const char* title, const Rows& rows, NameOf name_of_key) {
+  if (rows.empty()) return {};
+  std::string text =
+      fmt::format("\n{:<34}{:>6}{:>11}{:>6}  {}\n", title, "real", "potential", "fake", "worst");
+  for (const auto& [key, row] : rows) {
+    text += fmt::format("  {:<32}{:>6}{:>11}{:>6}  {} {}\n", name_of_key(key), row.clashes[3],
+                        row.clashes[2], row.clashes[1], name_of(row.worst.collision_class),
+                        micrometres(row.worst.delta_mm.lo));
+  }
+  return text;
+}
+
+std::string stage_line(const char* name, const StageCount& stage,
+                       std::initializer_list<std::pair<const char*, std::uint64_t>> skipped) {
+  std::string reasons;
+  for (const auto& [why, count] : skipped) {
+    if (count == 0) continue;
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, why);
+  }
+  return fmt::format("  {:<14}{:>12}{:>12}  {}\n", name, stage.in, stage.out, reasons);
+}
+
+}  // namespace
+
+std::string SessionNames::part(PartId id) const { return name_at(parts, id.value); }
+std::string SessionNames::user(UserId id) const { return name_at(users, id.value); }
+std::string SessionNames::pair(PartId a, PartId b) const { return part(a) + " × " + part(b); }
+
+SessionNames names_of(const World& world) {
+  SessionNames names;
+  for (const Part& part : world.parts) names.parts.push_back(part.name);
+  for (const User& user : world.users) names.users.push_back(user.name);
+  return names;
+}
+
+SessionNames names_of(const Snapshot& snapshot) {
+  SessionNames names;
+  const auto put = [](std::vector<std::string>& list, std::uint32_t id, const std::string& name) {
+    if (id == 0) return;
+    if (list.size() < id) list.resize(id);
+    list[id - 1] = name;
+  };
+  for (const PartInfo& part : snapshot.parts) put(names.parts, part.part.value, part.name);
+  for (const UserInfo& user : snapshot.users) put(names.users, user.user.value, user.name);
+  return names;
+}
+
+Json json_of(const Vec3& v) { return Json::array({number(v.x()), number(v.y()), number(v.z())}); }
+
+Json json_of(Interval interval) { return Json::array({number(interval.lo), number(interval.hi)}); }
+
+Json json_of(const Pose& pose) {
+  return {{"position_mm", json_of(pose.p)},
+          {"quaternion_wxyz", {pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()}}};
+}
+
+Json json_of(const Verdict& verdict) {
+  Json json;
+  json["class"] = name_of(verdict.collision_class);
+  json["delta_mm"] = json_of(verdict.delta_mm);
+  json["gpd_mm"] = json_of(verdict.gpd_mm);
+  json["fake_below_mm"] = number(verdict.fake_below_mm);
+  json["real_above_mm"] = number(verdict.real_above_mm);
+  json["margin_mm"] = number(verdict.margin_mm);
+  json["probability"] = number(verdict.probability);
+  json["travel_mm"] = number(verdict.travel_mm);
+  json["normal_travel_mm"] = number(verdict.normal_travel_mm);
+  json["point_mm"] = json_of(verdict.point_W);
+  json["normal"] = json_of(verdict.normal_W);
+  json["area_mm2"] = number(verdict.area_mm2);
+  json["witness_mm"] = verdict.has_witness ? json_of(verdict.witness_W) : Json(nullptr);
+  json["separation"] = {{"translation_mm", json_of(verdict.separation_translation_mm)},
+                        {"rotation_rad", json_of(verdict.separation_rotation_rad)}};
+  json["shape_a"] = name_of(verdict.shape_a);
+  json["shape_b"] = name_of(verdict.shape_b);
+  json["face_a"] = verdict.face_a;
+  json["face_b"] = verdict.face_b;
+  json["grade"] = name_of(verdict.grade);
+  json["explanation"] = verdict.explanation;
+  return json;
+}
+
+Json json_of(const StepCounters& c) {
+  Json json;
+  json["increments"] = json_of_stage(c.increments);
+  for (std::size_t i = 1; i < c.refused.size(); ++i) {
+    if (c.refused[i] == 0) continue;
+    json["increments"]["refused"][std::string(name_of(static_cast<Refusal>(i)))] = c.refused[i];
+  }
+  json["moves"] = json_of_stage(c.moves);
+  json["moves"]["below_rounding"] = c.moves_below_rounding;
+  json["pairs"] = json_of_stage(c.pairs);
+  json["pairs"]["skipped"] = {{"static", c.pairs_static},
+                              {"still", c.pairs_still},
+                              {"excluded", c.pairs_excluded},
+                              {"boxes_apart", c.pairs_boxes_apart},
+                              {"motion_budget", c.pairs_budget}};
+  json["contacts"] = json_of_stage(c.contacts);
+  json["contacts"]["clear"] = c.contacts_clear;
+  json["contacts"]["undecided"] = c.contacts_undecided;
+  json["verdicts"] = json_of_stage(c.verdicts);
+  json["verdicts"]["by_class"] = by_class(c.verdicts_by_class);
+  json["queries"] = {{"first_contact", c.first_contact_queries},
+                     {"distance", c.distance_queries},
+                     {"depth", c.depth_queries}};
+  json["work"] = {{"box_tests", c.box_tests},
+                  {"triangle_tests", c.triangle_tests},
+                  {"depth_evaluations", c.depth_evaluations}};
+  json["stopped_parts"] = c.stopped_parts;
+  json["rounds"] = c.rounds;
+  json["parts_without_inside"] = c.parts_without_inside;
+  json["not_examined"] = c.not_examined;
+  return json;
+}
+
+Json json_of(const ClashEvent& event, const SessionNames& names) {
+  Json json;
+  json["kind"] = name_of(event.kind);
+  json["seq"] = event.seq;
+  json["tick"] = event.tick;
+  json["clash"] = event.clash.value;
+  json["part_a"] = names.part(event.part_a);
+  json["part_b"] = names.part(event.part_b);
+  json["user"] = names.user(event.user);
+  json["t_contact"] = number(event.t_contact);
+  json["begin_tick"] = event.begin_tick;
+  json["worst_class"] = name_of(event.worst_class);
+  json["worst_delta_mm"] = json_of(event.worst_delta_mm);
+  json["verdict"] = json_of(event.verdict);
+  return json;
+}
+
+Json json_of(const PairVerdicts& pair, const SessionNames& names) {
+  Json json;
+  json["part_a"] = names.part(pair.a);
+  json["part_b"] = names.part(pair.b);
+  json["excluded"] = pair.excluded;
+  json["no_inside"] = pair.no_inside;
+  json["distance_mm"] = number(pair.distance_mm);
+  json["verdicts"] = Json::array();
+  for (const Verdict& verdict : pair.verdicts) json["verdicts"].push_back(json_of(verdict));
+  return json;
+}
+
+Json json_of(const ChannelCounters& c) {
+  return {{"received", c.received},       {"malformed", c.malformed},
+          {"foreign", c.foreign},         {"lost", c.lost},
+          {"send_failed", c.send_failed}, {"guard_dropped", c.guard_dropped}};
+}
+
+Json json_of(const SessionStatistics& statistics, const SessionNames& names) {
+  Json json;
+  json["ticks"] = statistics.ticks();
+  for (int c = 3; c >= 1; --c) {
+    const auto klass = static_cast<CollisionClass>(c);
+    json["by_class"][std::string(name_of(klass))] = {{"total", statistics.clashes_total(klass)},
+                                                     {"open", statistics.clashes_open(klass)}};
+  }
+  json["by_pair"] = Json::array();
+  for (const auto& [key, row] : statistics.by_pair()) {
+    Json entry{{"part_a", names.part(key.first)}, {"part_b", names.part(key.second)}};
+    entry.update(json_of_row(row));
+    json["by_pair"].push_back(std::move(entry));
+  }
+  json["by_part"] = Json::array();
+  for (const auto& [part, row] : statistics.by_part()) {
+    Json entry{{"part", names.part(part)}};
+    entry.update(json_of_row(row));
+    json["by_part"].push_back(std::move(entry));
+  }
+  json["by_user"] = Json::array();
+  for (const auto& [user, row] : statistics.by_user()) {
+    Json entry{{"user", names.user(user)}};
+    entry.update(json_of_row(row));
+    json["by_user"].push_back(std::move(entry));
+  }
+  json["clashes"] = Json::array();
+  for (const SessionStatistics::ClashRow& clash : statistics.clashes()) {
+    json["clashes"].push_back({{"clash", clash.clash.value},
+                               {"part_a", names.part(clash.a)},
+                               {"part_b", names.part(clash.b)},
+                               {"user", names.user(clash.user)},
+                               {"begin_tick", clash.begin_tick},
+                               {"end_tick", clash.end_tick},
+                               {"open", clash.end_tick == 0},
+                               {"worst_class", name_of(clash.worst_class)},
+                               {"ticks", by_class(clash.ticks)},
+                               {"worst", json_of(clash.worst)}});
+  }
+  json["stages"] = json_of(statistics.counters());
+  return json;
+}
+
+std::string collision_table(const SessionStatistics& statistics, const SessionNames& names) {
+  const auto total = [&](CollisionClass c) { return statistics.clashes_total(c); };
+  const auto open = [&](CollisionClass c) { return statistics.clashes_open(c); };
+  using enum CollisionClass;
+  std::string text =
+      fmt::format("{:<34}{:>6}{:>11}{:>6}\n  {:<32}{:>6}{:>11}{:>6}\n", "Collisions", "real",
+                  "potential", "fake", "in all", total(kReal), total(kPotential), total(kFake));
+  text += fmt::format("  {:<32}{:>6}{:>11}{:>6}\n", "still open", open(kReal), open(kPotential),
+                      open(kFake));
+  text += rows_table("By pair", statistics.by_pair(),
+                     [&](const auto& key) { return names.pair(key.first, key.second); });
+  text += rows_table("By user", statistics.by_user(), [&](UserId id) { return names.user(id); });
+
+  std::string worst;
+  for (const auto& [key, row] : statistics.by_pair()) {
+    const Verdict& v = row.worst;
+    if (v.collision_class == kNone) continue;
+    worst += fmt::format("  {}, tick {}: {}, overlap {}; fake up to {}, real above {}\n    {}\n",
+                         names.pair(key.first, key.second), row.worst_tick,
+                         name_of(v.collision_class), micrometres(v.delta_mm.lo),
+                         micrometres(v.fake_below_mm), micrometres(v.real_above_mm), v.explanation);
+  }
+  if (!worst.empty()) text += "\nWorst of each pair\n" + worst;
+  return text;
+}
+
+std::string stage_table(const StepCounters& c) {
+  std::string text =
+      fmt::format("  {:<14}{:>12}{:>12}  {}\n", "stage", "in", "out", "skipped because");
+  std::string refused;
+  for (std::size_t i = 1; i < c.refused.size(); ++i) {
+    if (c.refused[i] == 0) continue;
+    refused += fmt::format("{}{} {}", refused.empty() ? "" : ", ", c.refused[i],
+                           name_of(static_cast<Refusal>(i)));
+  }
+  text += fmt::format("  {:<14}{:>12}{:>12}  {}\n", "increments", c.increments.in, c.increments.out,
+                      refused);
+  text += stage_line("moves", c.moves, {{"below rounding", c.moves_below_rounding}});
+  text += stage_line("pairs", c.pairs,
+                     {{"both static", c.pairs_static},
+                      {"both still", c.pairs_still},
+                      {"excluded", c.pairs_excluded},
+                      {"boxes apart", c.pairs_boxes_apart},
+                      {"within the motion budget", c.pairs_budget}});
+  text += stage_line("contacts", c.contacts,
+                     {{"clear", c.contacts_clear}, {"undecided", c.contacts_undecided}});
+  text += fmt::format("  {:<14}{:>12}{:>12}  {} real, {} potential, {} fake\n", "verdicts",
+                      c.verdicts.in, c.verdicts.out, c.verdicts_by_class[3], c.verdicts_by_class[2],
+                      c.verdicts_by_class[1]);
+  if (c.not_examined > 0) {
+    text += fmt::format(
+        "  {} pair(s) were NOT examined to the end (work cap); they are not "
+        "reported as clear\n",
+        c.not_examined);
+  }
+  return text;
+}
+
+}  // namespace mortise

@@ -1,0 +1,349 @@
+#include "server/inbox.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/constants.h"
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+constexpr std::size_t kLongestName = 64;  // a name is shown in tables and on the page
+
+bool printable(const std::string& name) {
+  return !name.empty() && name.size() <= kLongestName &&
+         std::none_of(name.begin(), name.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
+bool waits_for_increments(CommandKind kind) {
+  return kind == CommandKind::kRelease || kind == CommandKind::kUndo || kind == CommandKind::kReset;
+}
+
+}  // namespace
+
+std::uint64_t InboxCounters::refused_in_all() const {
+  std::uint64_t sum = 0;
+  for (std::uint64_t count : refused) sum += count;
+  return sum;
+}
+
+void Intake::clear() {
+  decisions.clear();
+  increments.clear();
+  join_replies.clear();
+  replies.clear();
+  refused.clear();
+  acks.clear();
+  joined = false;
+}
+
+Refusal SequenceWindow::admit(std::uint64_t seq) {
+  if (seq > newest_) {
+    const std::uint64_t step = seq - newest_;
+    seen_ = step < 64 ? (seen_ << step) | 1U : 1U;
+    newest_ = seq;
+    return Refusal::kNone;
+  }
+  const std::uint64_t age = newest_ - seq;
+  if (seq == 0 || age >= 64) return Refusal::kStale;
+  const std::uint64_t bit = std::uint64_t{1} << age;
+  const bool repeated = (seen_ & bit) != 0;
+  seen_ |= bit;
+  return repeated ? Refusal::kDuplicate : Refusal::kStale;
+}
+
+std::uint32_t Inbox::users_present() const {
+  return static_cast<std::uint32_t>(
+      std::count_if(seats_.begin(), seats_.end(), [](const Seat& seat) { return seat.present; }));
+}
+
+Inbox::Seat* Inbox::seat_of(UserId user, const ClientKey& client) {
+  if (!user || user.value > seats_.size()) return nullptr;
+  Seat& seat = seats_[user.value - 1];
+  if (!seat.present) return nullptr;
+  if (seat.client != client) {
+    ++counters_.foreign;
+    return nullptr;
+  }
+  return &seat;
+}
+
+UserId Inbox::first_user_of(const ClientKey& client) const {
+  for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+    if (seats_[i].present && seats_[i].client == client) return UserId{i + 1};
+  }
+  return UserId{};
+}
+
+bool Inbox::take_token(Seat& seat, std::int64_t now_ns) {
+  const double gained = static_cast<double>(now_ns - seat.tokens_at_ns) * 1e-9;
+  seat.tokens = std::min(limits_.messages_per_s, seat.tokens + gained * limits_.messages_per_s);
+  seat.tokens_at_ns = now_ns;
+  if (seat.tokens < 1.0) return false;
+  seat.tokens -= 1.0;
+  return true;
+}
+
+void Inbox::renew(World& world, UserId user, std::int64_t now_ns) {
+  for (const Part& part : world.parts) {
+    if (part.holder == user) renewed_ns_[part.id.value - 1] = now_ns;
+  }
+}
+
+void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake) {
+  intake.clear();
+  renewed_ns_.resize(world.parts.size(), now_ns);
+  for (Seat& seat : seats_) seat.told = 0;
+  told_strangers_ = 0;
+
+  busy_.clear();
+  for (const ReceivedIncrement& r : input.increments) {
+    busy_.emplace_back(r.increment.user, r.increment.part);
+  }
+  std::sort(busy_.begin(), busy_.end());
+
+  // 1. What waited for the increments of the last tick.
+  const std::vector<ReceivedCommand> commands = std::exchange(deferred_, {});
+  for (const ReceivedCommand& command : commands) {
+    admit_command(command, world, now_ns, true, intake);
+  }
+  const std::vector<LostUser> lost = std::exchange(deferred_lost_, {});
+  for (const LostUser& gone : lost) leave(gone.user, gone.said_goodbye, world, intake);
+
+  // 2. Who comes in, and what users ask for.
+  for (const JoinRequest& request : input.joins) admit_join(request, world, now_ns, intake);
+  for (UserId user : input.heartbeats) {
+    if (user && user.value <= seats_.size() && seats_[user.value - 1].present) {
+      renew(world, user, now_ns);
+    }
+  }
+  for (const ReceivedCommand& command : input.commands) {
+    admit_command(command, world, now_ns, false, intake);
+  }
+
+  // 3. Increments, against the holders as they are now.
+  for (const RefusedIncrement& refused : input.refused_at_door) {
+    ++counters_.increments;
+    Increment increment;
+    increment.user = refused.user;
+    increment.part = refused.part;
+    increment.seq = refused.seq;
+    refuse(increment, refused.user, refused.reason, intake);
+  }
+  for (const ReceivedIncrement& r : input.increments) admit_increment(r, world, now_ns, intake);
+
+  // 4. Who goes, and whose lease is over. A user's last increments are still carried out.
+  for (const LostUser& gone : input.lost) {
+    for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+      const UserId user{i + 1};
+      if (!seats_[i].present || (gone.user && gone.user != user)) continue;
+      if (!gone.client.empty() && gone.client != seats_[i].client) {
+        if (gone.user) ++counters_.foreign;
+        continue;
+      }
+      const bool moves_now =
+          std::any_of(intake.increments.begin(), intake.increments.end(),
+                      [&](const Increment& increment) { return increment.user == user; });
+      if (moves_now) {
+        deferred_lost_.push_back({user, seats_[i].client, gone.said_goodbye});
+      } else {
+        leave(user, gone.said_goodbye, world, intake);
+      }
+    }
+  }
+  end_leases(world, now_ns, intake);
+}
+
+void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t now_ns,
+                       Intake& intake) {
+  JoinReply reply{request.client, request.nonce, {}, Refusal::kNone, {}};
+  UserId known;  // a user of that name who left: the same user again
+  for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+    const Seat& seat = seats_[i];
+    if (seat.present && seat.client == request.client && seat.nonce == request.nonce) {
+      reply.user = UserId{i + 1};  // asked again because the answer was lost
+      intake.join_replies.push_back(std::move(reply));
+      intake.joined = true;
+      return;
+    }
+  }
+  for (const User& user : world.users) {
+    if (user.name == request.name) known = user.id;
+  }
+  if (!printable(request.name)) {
+    reply.refusal = Refusal::kNotAllowed;
+    reply.text = "a name has 1 to 64 printable characters";
+  } else if (known && known.value <= seats_.size() && seats_[known.value - 1].present) {
+    reply.refusal = Refusal::kNotAllowed;
+    reply.text = "the name '" + request.name + "' is in use in this session; choose another";
+  } else if (users_present() >= limits_.max_users) {
+    reply.refusal = Refusal::kSessionFull;
+    reply.text = "the session has its " + std::to_string(limits_.max_users) + " users already";
+  }
+  if (reply.refusal != Refusal::kNone) {
+    ++counters_.joins_refused;
+    intake.join_replies.push_back(std::move(reply));
+    return;
+  }
+
+  Decision decision;
+  decision.kind = Decision::Kind::kJoin;
+  decision.user = known ? known : UserId{static_cast<std::uint32_t>(world.users.size()) + 1};
+  decision.user_name = request.name;
+  apply_decision(world, decision);
+  if (decision.user.value > seats_.size()) seats_.resize(decision.user.value);
+  Seat& seat = seats_[decision.user.value - 1];
+  seat = Seat{};
+  seat.client = request.client;
+  seat.nonce = request.nonce;
+  seat.role = request.role;
+  seat.present = true;
+  seat.tokens = limits_.messages_per_s;
+  seat.tokens_at_ns = now_ns;
+  ++counters_.joins;
+  reply.user = decision.user;
+  intake.joined = true;
+  intake.decisions.push_back(std::move(decision));
+  intake.join_replies.push_back(std::move(reply));
+}
+
+void Inbox::admit_command(const ReceivedCommand& received, World& world, std::int64_t now_ns,
+                          bool was_deferred, Intake& intake) {
+  const Command& command = received.command;
+  Reply reply{command.user, command.part, command.seq, Refusal::kNone, {}, {}};
+  if (const Part* part = world.find(command.part)) reply.holder = part->holder;
+
+  if (!was_deferred) {
+    ++counters_.commands;
+    Seat* seat = seat_of(command.user, received.client);
+    if (seat == nullptr) {
+      reply.user = first_user_of(received.client);
+      reply.refusal = Refusal::kUnknownUser;
+      reply.text = "the sender has not joined as this user";
+    } else if (const Refusal order = seat->commands.admit(command.seq); order != Refusal::kNone) {
+      reply.refusal = order;
+      reply.text = std::string(name_of(order));
+    } else if (!take_token(*seat, now_ns)) {
+      reply.refusal = Refusal::kRateTooHigh;
+      reply.text = "more messages a second than the session takes from one user";
+    } else if (command.kind == CommandKind::kGrab && seat->role == "observer") {
+      reply.refusal = Refusal::kNotAllowed;
+      reply.text = "observers do not hold parts";
+    } else {
+      const UserPart key{command.user, command.part};
+      const auto about_same = [&](const ReceivedCommand& r) {
+        return r.command.user == key.first && r.command.part == key.second;
+      };
+      if ((waits_for_increments(command.kind) &&
+           std::binary_search(busy_.begin(), busy_.end(), key)) ||
+          std::any_of(deferred_.begin(), deferred_.end(), about_same)) {
+        ++counters_.commands_deferred;
+        deferred_.push_back(received);
+        return;
+      }
+    }
+  }
+  if (reply.refusal == Refusal::kNone) {
+    Decision decision;
+    reply = apply_command(world, command, decision);
+    if (reply.refusal == Refusal::kNone) {
+      if (command.kind == CommandKind::kGrab) renewed_ns_[command.part.value - 1] = now_ns;
+      intake.decisions.push_back(std::move(decision));
+    }
+  }
+  if (reply.refusal != Refusal::kNone) ++counters_.commands_refused;
+  intake.replies.push_back(std::move(reply));
+}
+
+void Inbox::admit_increment(const ReceivedIncrement& received, const World& world,
+                            std::int64_t now_ns, Intake& intake) {
+  const Increment& increment = received.increment;
+  ++counters_.increments;
+  Seat* seat = seat_of(increment.user, received.client);
+  if (seat == nullptr) {
+    refuse(increment, first_user_of(received.client), Refusal::kUnknownUser, intake);
+    return;
+  }
+  Refusal reason = seat->increments.admit(increment.seq);
+  if (reason == Refusal::kNone) {
+    acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+    if (!take_token(*seat, now_ns)) reason = Refusal::kRateTooHigh;
+  }
+  if (reason == Refusal::kNone) reason = judge(increment, world);
+  if (reason != Refusal::kNone) {
+    refuse(increment, increment.user, reason, intake);
+    return;
+  }
+  renewed_ns_[increment.part.value - 1] = now_ns;
+  ++counters_.accepted;
+  intake.increments.push_back(increment);
+}
+
+Refusal Inbox::judge(const Increment& increment, const World& world) const {
+  if (!increment.translation_mm.allFinite() || !increment.rotation_rad.allFinite()) {
+    return Refusal::kNotFinite;
+  }
+  // stableNorm: the square of a huge finite number must not become infinity unnoticed.
+  if (!(increment.rotation_rad.stableNorm() <= kMaxRotationPerTick_rad)) {
+    return Refusal::kRotationTooLarge;
+  }
+  if (!(increment.translation_mm.stableNorm() <= world.max_jump_mm)) return Refusal::kJumpTooLarge;
+  const Part* part = increment.part ? world.find(increment.part) : nullptr;
+  if (part == nullptr) return Refusal::kUnknownPart;
+  if (!part->moving) return Refusal::kPartIsStatic;
+  if (part->holder != increment.user) return Refusal::kNotHolder;
+  return Refusal::kNone;
+}
+
+void Inbox::refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake) {
+  ++counters_.refused[static_cast<std::size_t>(reason)];
+  const bool known = tell && tell.value <= seats_.size();
+  std::uint32_t& told = known ? seats_[tell.value - 1].told : told_strangers_;
+  if (told >= limits_.refusals_told_per_tick) {
+    ++counters_.refusals_untold;
+    return;
+  }
+  ++told;
+  intake.refused.push_back({tell, increment.part, increment.seq, reason});
+}
+
+void Inbox::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake) {
+  const auto at = std::lower_bound(intake.acks.begin(), intake.acks.end(), user,
+                                   [](const Ack& ack, UserId id) { return ack.user < id; });
+  if (at != intake.acks.end() && at->user == user) {
+    at->seq = seq;
+    at->sent_ns = sent_ns;
+  } else {
+    intake.acks.insert(at, Ack{user, seq, sent_ns});
+  }
+}
+
+void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) {
+  Seat& seat = seats_[user.value - 1];
+  if (!seat.present) return;
+  seat.present = false;
+  ++(said_goodbye ? counters_.leaves : counters_.liveliness_lost);
+  Decision decision;
+  decision.kind = said_goodbye ? Decision::Kind::kLeave : Decision::Kind::kLivelinessLost;
+  decision.user = user;
+  apply_decision(world, decision);
+  intake.decisions.push_back(std::move(decision));
+}
+
+void Inbox::end_leases(World& world, std::int64_t now_ns, Intake& intake) {
+  const auto lease_ns = static_cast<std::int64_t>(world.lease_s * 1e9);
+  for (const Part& part : world.parts) {
+    if (!part.holder || now_ns - renewed_ns_[part.id.value - 1] <= lease_ns) continue;
+    ++counters_.lease_ends;
+    Decision decision;
+    decision.kind = Decision::Kind::kLeaseEnd;
+    decision.user = part.holder;
+    decision.part = part.id;
+    apply_decision(world, decision);
+    intake.decisions.push_back(std::move(decision));
+  }
+}
+
+}  // namespace mortise

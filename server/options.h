@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+
+#include "common/base/result.h"
+
+namespace mortise {
+
+struct ServerOptions {
+  std::string scenario;
+  std::string session = "default";
+  int domain = 0;
+  std::string interface = "127.0.0.1";
+  int port = 0;     ///< 0: the domain's own
+  std::string log;  ///< empty: sessions/<session>-<UTC>.mcap
+  bool no_log = false;
+  int threads = 1;
+  double duration_s = 0.0;  ///< 0: until a signal
+  std::string stats;        ///< file for the closing JSON document
+  bool json = false, quiet = false, live = false;
+  std::string policy;    ///< empty: the scenario's
+  double rate_hz = 0.0;  ///< 0: the scenario's
+};
+
+/// Reads the command line. Empty when the program must go on; else the exit code, with what had to
+/// be said (help, usage error) already said.
+struct CommandLine {
+  ServerOptions options;
+  int exit_code = -1;  ///< -1: go on
+};
+CommandLine read_command_line(int argc, char** argv);
+
+}  // namespace mortise

@@ -1,0 +1,171 @@
+#include "server/tick_loop.h"
+
+#include <set>
+#include <utility>
+
+#include "common/messages/mesh_bytes.h"
+
+namespace mortise {
+namespace {
+
+std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+}  // namespace
+
+TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLogWriter* log,
+                   const TickLoopOptions& options)
+    : world_(world),
+      channel_(channel),
+      clock_(clock),
+      log_(log),
+      options_(options),
+      inbox_(options.inbox),
+      scratch_(options.threads) {
+  for (const Part& part : world_.parts) published_.push_back({part.id, part.holder, part.X_WP});
+}
+
+void TickLoop::open() {
+  now_ns_ = opened_ns_ = pulse_ns_ = clock_.now_ns();
+  std::set<std::string> sent;
+  for (const Part& part : world_.parts) {
+    if (!sent.insert(part.solid->hash()).second) continue;
+    const TriangleMesh& mesh = part.solid->mesh();
+    channel_.publish_mesh(part.solid->hash(), mesh_to_bytes(mesh.points_mm, mesh.triangles));
+  }
+  publish_snapshot();
+}
+
+void TickLoop::tick() {
+  now_ns_ = clock_.now_ns();
+
+  // 0. drain and decide
+  ServerInput input = channel_.take();
+  snapshot_wanted_ |= !input.snapshot_requests.empty();
+  inbox_.admit(std::move(input), world_, now_ns_, intake_);
+
+  // 1-6. the engine
+  const std::int64_t step_start_ns = clock_.now_ns();
+  report_ = step(world_, intake_.increments, scratch_);
+  metrics_.step.add(clock_.now_ns() - step_start_ns);
+  statistics_.add(report_);
+  if (!report_.events.empty()) event_seq_ = report_.events.back().seq;
+
+  // 7. out
+  record();
+  publish();
+  ++metrics_.ticks;
+  metrics_.tick.add(clock_.now_ns() - now_ns_);
+}
+
+void TickLoop::record() {
+  if (log_ == nullptr) return;
+  TickRecord record;
+  record.tick = report_.tick;
+  record.time_ns = clock_.wall_ns();
+  record.decisions = intake_.decisions;
+  record.increments = intake_.increments;
+  record.report = report_;
+  log_->record(std::move(record));
+}
+
+void TickLoop::publish() {
+  for (const JoinReply& reply : intake_.join_replies) channel_.publish_join_reply(reply);
+  if (!intake_.replies.empty()) channel_.publish_replies(intake_.replies);
+  if (!intake_.refused.empty()) channel_.publish_refusals(intake_.refused);
+  if (!report_.refused.empty()) channel_.publish_refusals(report_.refused);
+  if (!report_.events.empty()) channel_.publish_events(report_.events);
+
+  PoseBatch batch;
+  if (!intake_.decisions.empty() || !report_.moved.empty()) {
+    changed_since_snapshot_ = true;
+    for (std::size_t i = 0; i < world_.parts.size(); ++i) {
+      const Part& part = world_.parts[i];
+      PartPose& last = published_[i];
+      if (last.holder == part.holder && identical(last.X_WP, part.X_WP)) continue;
+      last = {part.id, part.holder, part.X_WP};
+      batch.parts.push_back(last);
+    }
+  }
+  changed_since_snapshot_ |= !report_.events.empty();
+  batch.acks = intake_.acks;
+  const bool has_readers = channel_.has_readers();
+  if (has_readers && (!batch.parts.empty() || !batch.acks.empty() || !report_.events.empty())) {
+    batch.tick = report_.tick;
+    batch.event_seq = event_seq_;
+    batch.sent_ns = clock_.now_ns();
+    channel_.publish_poses(batch);
+  }
+  // What was said to nobody is in the snapshot that the first reader finds.
+  snapshot_wanted_ |= has_readers && !had_readers_ && changed_since_snapshot_;
+  had_readers_ = has_readers;
+  publish_snapshot_when_due();
+
+  if (now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
+    pulse_ns_ = now_ns_;
+    if (has_readers) channel_.publish_pulse(pulse());
+  }
+}
+
+void TickLoop::publish_snapshot_when_due() {
+  const std::int64_t age_ns = now_ns_ - snapshot_ns_;
+  const bool keyframe = changed_since_snapshot_ && age_ns >= in_ns(options_.keyframe_s);
+  const bool asked = snapshot_wanted_ && age_ns >= in_ns(options_.snapshot_gap_s);
+  if (intake_.joined || keyframe || asked) publish_snapshot();
+}
+
+void TickLoop::publish_snapshot() {
+  Snapshot snapshot = snapshot_of(world_);
+  snapshot.session = options_.session;
+  snapshot.event_seq = event_seq_;
+  channel_.publish_snapshot(snapshot);
+  snapshot_ns_ = now_ns_;
+  changed_since_snapshot_ = false;
+  snapshot_wanted_ = false;
+}
+
+void TickLoop::run(const std::function<bool()>& stop, const std::function<void()>& after_tick) {
+  const std::int64_t period_ns = in_ns(1.0 / world_.tick_rate_hz);
+  std::int64_t deadline_ns = clock_.now_ns();
+  while (!stop()) {
+    clock_.sleep_until_ns(deadline_ns);
+    const std::int64_t start_ns = clock_.now_ns();
+    if (start_ns < deadline_ns) continue;  // woken by a signal
+    metrics_.lateness.add(start_ns - deadline_ns);
+    tick();
+    if (after_tick) after_tick();
+    deadline_ns += period_ns;
+    const std::int64_t behind_ns = clock_.now_ns() - deadline_ns;
+    if (behind_ns > 0) {
+      ++metrics_.overloads;
+      const std::int64_t passed_over = behind_ns / period_ns;
+      metrics_.missed_deadlines += static_cast<std::uint64_t>(passed_over);
+      deadline_ns += passed_over * period_ns;
+    }
+  }
+}
+
+void TickLoop::close() {
+  now_ns_ = clock_.now_ns();
+  publish_snapshot();
+}
+
+SessionPulse TickLoop::pulse() const {
+  SessionPulse pulse;
+  pulse.tick = report_.tick;
+  for (int c = 1; c < 4; ++c) {
+    pulse.clashes_open[c] = statistics_.clashes_open(static_cast<CollisionClass>(c));
+    pulse.clashes_total[c] = statistics_.clashes_total(static_cast<CollisionClass>(c));
+  }
+  pulse.tick_p50_us = metrics_.tick.percentile_us(0.5);
+  pulse.tick_p99_us = metrics_.tick.percentile_us(0.99);
+  pulse.tick_max_us = metrics_.tick.max_us();
+  pulse.lateness_p99_us = metrics_.lateness.percentile_us(0.99);
+  pulse.overloads = metrics_.missed_deadlines;
+  pulse.refused = inbox_.counters().refused_in_all();
+  for (std::uint64_t count : statistics_.counters().refused) pulse.refused += count;
+  pulse.not_examined = statistics_.counters().not_examined;
+  pulse.users = inbox_.users_present();
+  return pulse;
+}
+
+}  // namespace mortise

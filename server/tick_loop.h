@@ -1,0 +1,86 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/io/session_log.h"
+#include "common/messages/channel.h"
+#include "common/session/statistics.h"
+#include "common/session/step.h"
+#include "common/session/world.h"
+#include "server/clock.h"
+#include "server/inbox.h"
+#include "server/metrics.h"
+
+namespace mortise {
+
+struct TickLoopOptions {
+  std::string session = "default";
+  int threads = 1;
+  InboxLimits inbox;
+  double keyframe_s = 1.0;  ///< a snapshot so often while something changes
+  double pulse_s = 1.0;
+  /// Requested snapshots come no closer than this: a client that asks in a loop costs little.
+  double snapshot_gap_s = 0.1;
+};
+
+/// The beat of a session: at a fixed rate drain the channel, apply decisions, step, record,
+/// publish. Everything that the session knows changes here, on one thread. Does not log;
+/// `after_tick` may.
+class TickLoop {
+ public:
+  /// All references must outlive the loop; `log` may be null.
+  TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLogWriter* log,
+           const TickLoopOptions& options);
+
+  /// Publishes the meshes, once per distinct hash, and the first snapshot.
+  void open();
+
+  /// One tick, now.
+  void tick();
+
+  /// Ticks at world.tick_rate_hz with absolute deadlines until `stop` says so (asked before each
+  /// tick). A tick that runs past the next deadline counts as an overload; the deadlines that it
+  /// ran past wholly are passed over and counted, so that lateness never piles up.
+  void run(const std::function<bool()>& stop, const std::function<void()>& after_tick);
+
+  /// A last snapshot for those who stay.
+  void close();
+
+  const World& world() const { return world_; }
+  const SessionStatistics& statistics() const { return statistics_; }
+  const TickMetrics& metrics() const { return metrics_; }
+  const Inbox& inbox() const { return inbox_; }
+  const StepReport& last_report() const { return report_; }
+  const Intake& last_intake() const { return intake_; }
+  SessionPulse pulse() const;
+  std::uint64_t log_dropped_ticks() const { return log_ != nullptr ? log_->dropped_ticks() : 0; }
+  double seconds() const { return static_cast<double>(now_ns_ - opened_ns_) * 1e-9; }
+
+ private:
+  void record();
+  void publish();
+  void publish_snapshot_when_due();
+  void publish_snapshot();
+
+  World& world_;
+  ServerChannel& channel_;
+  Clock& clock_;
+  SessionLogWriter* log_;
+  TickLoopOptions options_;
+  Inbox inbox_;
+  Scratch scratch_;
+  Intake intake_;
+  StepReport report_;
+  SessionStatistics statistics_;
+  TickMetrics metrics_;
+  std::vector<PartPose> published_;  ///< what the pose stream said last, by part index
+  std::uint64_t event_seq_ = 0;
+  std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0;
+  bool changed_since_snapshot_ = false;
+  bool snapshot_wanted_ = false;
+  bool had_readers_ = false;
+};
+
+}  // namespace mortise
