@@ -17,8 +17,22 @@ struct NearestPoint {
 NearestPoint nearest_point(const Solid& solid, const Vec3& x,
                            double limit_mm = std::numeric_limits<double>::infinity());
 
-/// Is x inside the material? Sign by generalized winding number over the tree (> 1/2), right for
-/// closed meshes and a majority vote for dirty ones.
+/// Nearest point with its side. Part frame, mm.
+struct SurfacePoint {
+  double depth_mm = 0.0;             ///< positive inside the material, -distance outside
+  Vec3 point = Vec3::Zero();         ///< nearest point of the mesh
+  Vec3 outward = Vec3::UnitZ();      ///< unit, away from the material there (pseudonormal at edges)
+  Vec3 face_normal = Vec3::UnitZ();  ///< unit normal of `triangle`; zero without area
+  std::uint32_t triangle = 0;
+};
+
+/// Side by the angle-weighted pseudonormal (Baerentzen and Aanaes 2005), exact for closed meshes of
+/// one shell; several shells and meshes with defects ask inside(). O(log n) typical.
+SurfacePoint nearest_surface(const Solid& solid, const Vec3& x);
+
+/// Is x inside the material? By the winding number > 1/2: closed meshes count signed crossings of a
+/// ray through the tree, O(log n); meshes with defects sum solid angles over all triangles, a
+/// majority vote, O(n).
 bool inside(const Solid& solid, const Vec3& x);
 
 /// Negative inside.

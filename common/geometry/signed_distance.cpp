@@ -1,0 +1,287 @@
+#include "common/geometry/signed_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace mortise {
+namespace {
+
+// Where on a triangle its nearest point lies: face, edge k (corner k to k + 1), or corner k.
+enum class Spot : std::uint8_t { kFace, kEdge0, kEdge1, kEdge2, kCorner0, kCorner1, kCorner2 };
+
+struct Foot {
+  Vec3 point = Vec3::Zero();
+  Spot spot = Spot::kFace;
+};
+
+Spot edge(int k) { return static_cast<Spot>(1 + k); }
+Spot corner(int k) { return static_cast<Spot>(4 + k); }
+
+Foot foot_on_edge(const Vec3& x, const Vec3& a, const Vec3& b, int k) {
+  const Vec3 ab = b - a;
+  const double along = ab.dot(x - a), length2 = ab.squaredNorm();
+  if (!(along > 0.0)) return {a, corner(k)};
+  if (along >= length2) return {b, corner((k + 1) % 3)};
+  return {a + ab * (along / length2), edge(k)};
+}
+
+// Ericson 2005, 5.1.5: by the regions of the plane, without square roots.
+Foot foot_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ax = x - a;
+  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
+  if (d1 <= 0.0 && d2 <= 0.0) return {a, corner(0)};
+  const Vec3 bx = x - b;
+  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
+  if (d3 >= 0.0 && d4 <= d3) return {b, corner(1)};
+  const Vec3 cx = x - c;
+  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
+  if (d6 >= 0.0 && d5 <= d6) return {c, corner(2)};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return {a + ab * (d1 / (d1 - d3)), edge(0)};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return {a + ac * (d2 / (d2 - d6)), edge(2)};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
+    return {b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), edge(1)};
+  const double sum = va + vb + vc;
+  if (sum > 0.0) return {a + ab * (vb / sum) + ac * (vc / sum), Spot::kFace};
+  // Without area: the nearest of its edges.
+  Foot best = foot_on_edge(x, a, b, 0);
+  for (const Foot& other : {foot_on_edge(x, b, c, 1), foot_on_edge(x, c, a, 2)})
+    if ((other.point - x).squaredNorm() < (best.point - x).squaredNorm()) best = other;
+  return best;
+}
+
+struct Found {
+  double distance2 = std::numeric_limits<double>::infinity();
+  Foot foot;
+  std::uint32_t triangle = Topology::kNone;
+
+  void offer(const Foot& f, const Vec3& x, std::uint32_t t) {
+    const double d2 = (f.point - x).squaredNorm();
+    if (d2 > distance2 || (d2 == distance2 && t >= triangle)) return;
+    distance2 = d2;
+    foot = f;
+    triangle = t;
+  }
+};
+
+Vec3 corner_of(const Bvh& bvh, std::uint32_t i, int k) {
+  const std::array<double, 9>& c = bvh.corners[i];
+  return {c[3 * k], c[3 * k + 1], c[3 * k + 2]};
+}
+
+// Nearest first, so that the best found so far discards most of the tree.
+Found find_nearest(const Bvh& bvh, const Vec3& x, double limit_mm) {
+  struct Item {
+    double distance2;
+    std::int32_t child;
+  };
+  std::array<Item, 512> stack;
+  int top = 0;
+  Found found;
+  found.distance2 = limit_mm < 1e150 ? limit_mm * limit_mm : limit_mm;
+  stack[top++] = {0.0, bvh.root};
+  const Vec3 local = x - bvh.origin;
+  while (top > 0) {
+    const Item item = stack[--top];
+    if (item.distance2 > found.distance2) continue;
+    if (item.child < 0) {
+      const Bvh::Leaf& leaf = bvh.leaves[~item.child];
+      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+        found.offer(
+            foot_on_triangle(x, corner_of(bvh, i, 0), corner_of(bvh, i, 1), corner_of(bvh, i, 2)),
+            x, bvh.triangle_order[i]);
+      continue;
+    }
+    const Bvh::Node& node = bvh.nodes[item.child];
+    double distance2[Bvh::kWidth];
+    for (int k = 0; k < Bvh::kWidth; ++k) {
+      double sum = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const double gap =
+            std::max(0.0, std::fabs(local[c] - static_cast<double>(node.local_center[c][k])) -
+                              static_cast<double>(node.half[c][k]));
+        sum += gap * gap;
+      }
+      distance2[k] = sum;
+    }
+    const int begin = top;
+    for (int k = 0; k < node.count; ++k) {
+      if (distance2[k] > found.distance2) continue;
+      int at = top++;
+      while (at > begin && stack[at - 1].distance2 < distance2[k]) {
+        stack[at] = stack[at - 1];
+        --at;
+      }
+      stack[at] = {distance2[k], node.child[k]};
+    }
+  }
+  return found;
+}
+
+Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t t) {
+  const Vec3 n =
+      (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+  const double length = n.norm();
+  return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+}
+
+// Sum over the triangles around a corner of normal times angle there.
+Vec3 corner_pseudonormal(const Solid& solid, std::uint32_t start, int start_corner) {
+  const TriangleMesh& mesh = solid.mesh();
+  const Topology& topology = solid.topology();
+  const std::uint32_t point = mesh.triangles[start][start_corner];
+  Vec3 sum = Vec3::Zero();
+  std::uint32_t t = start;
+  for (std::size_t guard = 0; guard <= mesh.triangles.size(); ++guard) {
+    int k = 0;
+    while (k < 2 && mesh.triangles[t][k] != point) ++k;
+    const Vec3 u = mesh.corner(t, (k + 1) % 3) - mesh.corner(t, k);
+    const Vec3 v = mesh.corner(t, (k + 2) % 3) - mesh.corner(t, k);
+    sum += std::atan2(u.cross(v).norm(), u.dot(v)) * normal_of(mesh, t);
+    t = topology.neighbor[t][k];
+    if (t == start || t == Topology::kNone) break;
+  }
+  return sum;
+}
+
+Vec3 pseudonormal(const Solid& solid, std::uint32_t t, Spot spot) {
+  if (spot == Spot::kFace) return normal_of(solid.mesh(), t);
+  if (spot >= Spot::kCorner0)
+    return corner_pseudonormal(solid, t, static_cast<int>(spot) - static_cast<int>(Spot::kCorner0));
+  const std::uint32_t other = solid.topology().neighbor[t][static_cast<int>(spot) - 1];
+  const Vec3 mine = normal_of(solid.mesh(), t);
+  return other == Topology::kNone ? mine : Vec3(mine + normal_of(solid.mesh(), other));
+}
+
+// Directions without relation to any usual mesh; the next is tried when one grazes an edge.
+const std::array<Vec3, 6>& ray_directions() {
+  static const std::array<Vec3, 6> directions = {Vec3(0.5370861555, 0.7292384129, 0.4237146328),
+                                                 Vec3(-0.3183098862, 0.4342944819, 0.8427007929),
+                                                 Vec3(0.6931471806, -0.5772156649, 0.4314159265),
+                                                 Vec3(0.2078795764, 0.3678794412, -0.9063416971),
+                                                 Vec3(-0.7071170277, -0.6180339887, 0.3436463656),
+                                                 Vec3(0.1234567891, -0.9159655942, -0.3819660113)};
+  return directions;
+}
+
+struct Crossings {
+  int winding = 0;
+  bool grazed = false;
+};
+
+// Signed crossings of the ray from x with one triangle, by the signs of the three volumes that the
+// ray spans with its edges.
+void cross_triangle(const Vec3& x, const Vec3& d, const Vec3& a, const Vec3& b, const Vec3& c,
+                    Crossings& count) {
+  const Vec3 pa = a - x, pb = b - x, pc = c - x;
+  const double u = d.dot(pb.cross(pc)), v = d.dot(pc.cross(pa)), w = d.dot(pa.cross(pb));
+  const double size = std::max({pa.squaredNorm(), pb.squaredNorm(), pc.squaredNorm()});
+  const double epsilon = 1e-14 * size;  // rounding of the volumes: a few ulp of their terms
+  const bool positive = u > epsilon && v > epsilon && w > epsilon;
+  const bool negative = u < -epsilon && v < -epsilon && w < -epsilon;
+  if (!positive && !negative) {
+    const bool outside = (std::min({u, v, w}) < -epsilon && std::max({u, v, w}) > epsilon);
+    if (!outside) count.grazed = true;
+    return;
+  }
+  const Vec3 n = (b - a).cross(c - a);
+  const double height = n.dot(pa);  // along n; d points along n when `positive`
+  if (positive ? height > 0.0 : height < 0.0) count.winding += positive ? 1 : -1;
+}
+
+Crossings cross_all(const Bvh& bvh, const Vec3& x, const Vec3& d) {
+  std::array<std::int32_t, 512> stack;
+  int top = 0;
+  stack[top++] = bvh.root;
+  const Vec3 local = x - bvh.origin;
+  const double slack = 1e-12 * (bvh.radius_mm + local.norm());
+  Crossings count;
+  while (top > 0 && !count.grazed) {
+    const std::int32_t child = stack[--top];
+    if (child < 0) {
+      const Bvh::Leaf& leaf = bvh.leaves[~child];
+      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+        cross_triangle(x, d, corner_of(bvh, i, 0), corner_of(bvh, i, 1), corner_of(bvh, i, 2),
+                       count);
+      continue;
+    }
+    const Bvh::Node& node = bvh.nodes[child];
+    for (int k = 0; k < node.count; ++k) {
+      double enter = 0.0, leave = std::numeric_limits<double>::infinity();
+      for (int c = 0; c < 3; ++c) {
+        const double middle = static_cast<double>(node.local_center[c][k]) - local[c];
+        const double half = static_cast<double>(node.half[c][k]) + slack;
+        const double s0 = (middle - half) / d[c], s1 = (middle + half) / d[c];
+        enter = std::max(enter, std::min(s0, s1));
+        leave = std::min(leave, std::max(s0, s1));
+      }
+      if (enter <= leave) stack[top++] = node.child[k];
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+NearestPoint nearest_point(const Solid& solid, const Vec3& x, double limit_mm) {
+  const Found found = find_nearest(solid.bvh(), x, limit_mm);
+  if (found.triangle == Topology::kNone) return {limit_mm, x, Topology::kNone};
+  return {std::sqrt(found.distance2), found.foot.point, found.triangle};
+}
+
+SurfacePoint nearest_surface(const Solid& solid, const Vec3& x) {
+  const Found found = find_nearest(solid.bvh(), x, std::numeric_limits<double>::infinity());
+  SurfacePoint at;
+  at.triangle = found.triangle;
+  at.point = found.foot.point;
+  at.face_normal = normal_of(solid.mesh(), found.triangle);
+  const double distance = std::sqrt(found.distance2);
+  Vec3 outward = pseudonormal(solid, found.triangle, found.foot.spot);
+  const double length = outward.norm();
+  at.outward = length > 0.0 ? Vec3(outward / length) : at.face_normal;
+  const bool one_shell = solid.topology().closed() && solid.shells().size() == 1;
+  const bool is_inside =
+      one_shell && length > 0.0 ? at.outward.dot(x - at.point) < 0.0 : inside(solid, x);
+  at.depth_mm = is_inside ? distance : -distance;
+  return at;
+}
+
+bool inside(const Solid& solid, const Vec3& x) {
+  if (!solid.topology().closed()) return winding_number_brute_force(solid.mesh(), x) > 0.5;
+  const Box& box = solid.bounds();
+  if ((x.array() < box.lo.array()).any() || (x.array() > box.hi.array()).any()) return false;
+  for (const Vec3& d : ray_directions()) {
+    const Crossings count = cross_all(solid.bvh(), x, d);
+    if (!count.grazed) return count.winding > 0;
+  }
+  return winding_number_brute_force(solid.mesh(), x) > 0.5;
+}
+
+double signed_distance_mm(const Solid& solid, const Vec3& x) {
+  return -nearest_surface(solid, x).depth_mm;
+}
+
+NearestPoint nearest_point_brute_force(const TriangleMesh& mesh, const Vec3& x) {
+  Found found;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    found.offer(foot_on_triangle(x, mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)), x, t);
+  return {std::sqrt(found.distance2), found.foot.point, found.triangle};
+}
+
+// Van Oosterom and Strackee 1983.
+double winding_number_brute_force(const TriangleMesh& mesh, const Vec3& x) {
+  double sum = 0.0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 a = mesh.corner(t, 0) - x, b = mesh.corner(t, 1) - x, c = mesh.corner(t, 2) - x;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum += 2.0 * std::atan2(a.dot(b.cross(c)),
+                            la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (4.0 * std::numbers::pi);
+}
+
+}  // namespace mortise
