@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/geometry/mesh.h"
@@ -22,7 +23,9 @@ struct ImportReport {
   double volume_mm3 = 0.0;
   bool closed = false;
   bool flipped = false;     ///< all triangles were turned: the volume was negative
-  double quantum_mm = 0.0;  ///< coordinates are floats: half an ulp of the largest coordinate
+  double quantum_mm = 0.0;  ///< coordinates are floats: half an ulp of the largest coordinate, plus
+                            ///< what the node transforms of the file add
+  std::vector<std::string> notes;  ///< what a designer should know, one line each; often empty
 };
 
 struct ImportedMesh {
@@ -32,8 +35,10 @@ struct ImportedMesh {
 
 /// Reads STL, OBJ, PLY, glTF/GLB or DAE with assimp in a child process with limits, since a hostile
 /// file can crash it. Node transforms applied, all meshes of the file joined, points welded by
-/// exact position, degenerate triangles dropped and counted. unit_mm: mm per file unit. 3MF is
-/// refused. Never throws; the process lives.
+/// exact position, degenerate triangles dropped and counted; duplicates are counted and stay.
+/// unit_mm: mm per unit of the numbers in the file, the same for every format: a unit or up-axis
+/// that the file states itself (DAE, glTF) is not applied; a note tells when it differs. 3MF and
+/// STEP are refused. Thread safe. Never throws; the process lives, whatever the file.
 Result<ImportedMesh> import_mesh(const std::filesystem::path& file, double unit_mm,
                                  const ImportLimits& limits = {});
 
