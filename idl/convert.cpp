@@ -1,0 +1,188 @@
+#include "idl/convert.h"
+
+#include <algorithm>
+
+#include "common/base/constants.h"
+#include "idl/door.h"
+
+namespace mortise {
+bool text_ok(const std::string& text, std::size_t limit) {
+  return text.size() <= limit && std::none_of(text.begin(), text.end(), [](char c) {
+           const auto byte = static_cast<unsigned char>(c);
+           return byte < 0x20 || byte == 0x7f;
+         });
+}
+
+std::string clip(const std::string& text, std::size_t limit) {
+  std::size_t size = std::min(text.size(), limit);
+  // A byte 10xxxxxx continues a character: step back to its start.
+  while (size > 0 && size < text.size() &&
+         (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) {
+    --size;
+  }
+  std::string out = text.substr(0, size);
+  for (char& c : out) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) c = ' ';
+  }
+  return out;
+}
+
+wire::Increment to_wire(const Increment& increment, std::int64_t sent_ns) {
+  wire::Increment out;
+  out.user(increment.user.value);
+  out.part(increment.part.value);
+  out.seq(increment.seq);
+  out.sent_ns(sent_ns);
+  out.translation_mm(triple(increment.translation_mm));
+  out.rotation_rad(triple(increment.rotation_rad));
+  return out;
+}
+
+Result<DoorIncrement> from_wire(const wire::Increment& in) {
+  if (in.user() == 0) return fail(Code::kInvalidInput, "increment: user is none");
+  DoorIncrement out;
+  out.increment.user = UserId{in.user()};
+  out.increment.part = PartId{in.part()};
+  out.increment.seq = in.seq();
+  const Vec3 translation_mm = vec3(in.translation_mm()), rotation_rad = vec3(in.rotation_rad());
+  if (in.part() == 0) {
+    out.refusal = Refusal::kUnknownPart;
+  } else if (in.seq() == 0) {
+    out.refusal = Refusal::kStale;
+  } else if (!translation_mm.allFinite() || !rotation_rad.allFinite()) {
+    out.refusal = Refusal::kNotFinite;
+  } else if (!(rotation_rad.norm() <= kMaxRotationPerTick_rad)) {
+    out.refusal = Refusal::kRotationTooLarge;
+  } else if (!(translation_mm.norm() <= kMaxCoordinate_mm)) {
+    out.refusal = Refusal::kJumpTooLarge;
+  } else {
+    out.increment.translation_mm = translation_mm;
+    out.increment.rotation_rad = rotation_rad;
+    out.sent_ns = in.sent_ns();
+  }
+  return out;
+}
+
+wire::Request to_wire(const Request& request) {
+  wire::Request out;
+  out.kind(static_cast<std::uint8_t>(request.kind));
+  out.user(request.command.user.value);
+  out.part(request.command.part.value);
+  out.seq(request.command.seq);
+  out.command(static_cast<std::uint8_t>(request.command.kind));
+  out.nonce(request.nonce);
+  out.name(clip(request.name, kMaxName_bytes));
+  out.role(clip(request.role, kMaxName_bytes));
+  return out;
+}
+
+Result<Request> from_wire(const wire::Request& in) {
+  Request request;
+  request.kind = static_cast<Request::Kind>(in.kind());
+  request.nonce = in.nonce();
+  Door door("request");
+  switch (request.kind) {
+    case Request::Kind::kJoin:
+      door.need(!in.name().empty() && text_ok(in.name(), kMaxName_bytes), "name");
+      door.need(in.role() == "designer" || in.role() == "observer" || in.role() == "bot", "role");
+      break;
+    case Request::Kind::kLeave:
+      door.need(in.user() != 0, "user");
+      break;
+    case Request::Kind::kCommand:
+      door.need(in.user() != 0, "user");
+      door.need(in.command() != 0 && in.command() <= static_cast<std::uint8_t>(CommandKind::kReset),
+                "command");
+      break;
+    case Request::Kind::kSnapshot:
+      break;
+    default:
+      door.need(false, "kind");
+  }
+  if (!door.open()) return door.refusal();
+  if (request.kind == Request::Kind::kJoin) {
+    request.name = in.name();
+    request.role = in.role();
+  } else {
+    request.command = {UserId{in.user()}, PartId{in.part()}, in.seq(),
+                       static_cast<CommandKind>(in.command())};
+  }
+  return request;
+}
+
+Result<JoinReply> from_wire(const wire::JoinReply& in) {
+  Door door("join reply");
+  door.need(in.refusal() < kRefusalCount, "refusal");
+  door.need((in.refusal() == 0) == (in.user() != 0), "user");
+  door.name(in.client(), "client");
+  door.text(in.text(), "text");
+  if (!door.open()) return door.refusal();
+  return JoinReply{in.client(), in.nonce(), UserId{in.user()}, static_cast<Refusal>(in.refusal()),
+                   in.text()};
+}
+
+Result<Reply> from_wire(const wire::Reply& in) {
+  Door door("reply");
+  door.need(in.user() != 0, "user");
+  door.need(in.refusal() < kRefusalCount, "refusal");
+  door.text(in.text(), "text");
+  if (!door.open()) return door.refusal();
+  Reply reply;
+  reply.user = UserId{in.user()};
+  reply.part = PartId{in.part()};
+  reply.seq = in.seq();
+  reply.refusal = static_cast<Refusal>(in.refusal());
+  reply.holder = UserId{in.holder()};
+  reply.text = in.text();
+  return reply;
+}
+
+Result<RefusedIncrement> from_wire(const wire::RefusedIncrement& in) {
+  Door door("refused increment");
+  door.need(in.user() != 0, "user");
+  door.need(in.reason() < kRefusalCount && in.reason() != 0, "reason");
+  if (!door.open()) return door.refusal();
+  return RefusedIncrement{UserId{in.user()}, PartId{in.part()}, in.seq(),
+                          static_cast<Refusal>(in.reason())};
+}
+
+wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
+                      std::span<const RefusedIncrement> refused) {
+  wire::Answers out;
+  for (const JoinReply& reply : joins) {
+    wire::JoinReply& entry = out.joins().emplace_back();
+    entry.client(clip(reply.client, kMaxName_bytes));
+    entry.nonce(reply.nonce);
+    entry.user(reply.user.value);
+    entry.refusal(static_cast<std::uint8_t>(reply.refusal));
+    entry.text(clip(reply.text, kMaxText_bytes));
+  }
+  for (const Reply& reply : replies) {
+    wire::Reply& entry = out.replies().emplace_back();
+    entry.user(reply.user.value);
+    entry.part(reply.part.value);
+    entry.seq(reply.seq);
+    entry.refusal(static_cast<std::uint8_t>(reply.refusal));
+    entry.holder(reply.holder.value);
+    entry.text(clip(reply.text, kMaxText_bytes));
+  }
+  for (const RefusedIncrement& refusal : refused) {
+    wire::RefusedIncrement& entry = out.refused().emplace_back();
+    entry.user(refusal.user.value);
+    entry.part(refusal.part.value);
+    entry.seq(refusal.seq);
+    entry.reason(static_cast<std::uint8_t>(refusal.reason));
+  }
+  return out;
+}
+
+Result<Answers> from_wire(const wire::Answers& in) {
+  Answers answers;
+  if (Status read = read_all(in.joins(), answers.joins); !read) return read.error();
+  if (Status read = read_all(in.replies(), answers.replies); !read) return read.error();
+  if (Status read = read_all(in.refused(), answers.refused); !read) return read.error();
+  return answers;
+}
+
+}  // namespace mortise

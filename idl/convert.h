@@ -1,0 +1,97 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/messages/channel.h"
+#include "mortise.h"  // generated from mortise.idl
+
+/// The one door between wire values and ours. All that comes in is checked here and trusted behind:
+/// finite, in range, known enum values, bounded lengths, ids that are not none. What goes out is
+/// clipped to the same bounds (texts) or taken as it is.
+namespace mortise {
+
+/// Nothing that people assemble lies further from the origin of the world, mm (1000 km); beyond, a
+/// double's rounding would pass a tolerance.
+inline constexpr double kMaxCoordinate_mm = 1e9;
+/// A quaternion further from unit length than this was not made by us.
+inline constexpr double kQuaternionNormAllowance = 1e-6;
+inline constexpr std::size_t kMaxName_bytes = 128;   ///< names of parts, users, faces, hashes
+inline constexpr std::size_t kMaxText_bytes = 1024;  ///< sentences
+inline constexpr std::size_t kMaxSequence = 65536;   ///< entries of one sample
+
+// ---- client to server
+
+wire::Increment to_wire(const Increment& increment, std::int64_t sent_ns);
+
+/// user, part and seq are as claimed; the rest only when refusal is kNone.
+struct DoorIncrement {
+  Increment increment;
+  std::int64_t sent_ns = 0;
+  Refusal refusal = Refusal::kNone;
+};
+/// Fails without a user: nobody can be told.
+Result<DoorIncrement> from_wire(const wire::Increment& increment);
+
+struct Request {
+  enum class Kind : std::uint8_t {
+    kUnknown = 0,
+    kJoin = 1,
+    kLeave = 2,
+    kCommand = 3,
+    kSnapshot = 4
+  };
+  Kind kind = Kind::kUnknown;
+  Command command;  ///< kLeave: only the user
+  std::uint64_t nonce = 0;
+  std::string name, role;
+};
+wire::Request to_wire(const Request& request);
+Result<Request> from_wire(const wire::Request& request);
+
+// ---- server to clients
+
+wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
+                      std::span<const RefusedIncrement> refused);
+struct Answers {
+  std::vector<JoinReply> joins;
+  std::vector<Reply> replies;
+  std::vector<RefusedIncrement> refused;
+};
+Result<Answers> from_wire(const wire::Answers& answers);
+Result<JoinReply> from_wire(const wire::JoinReply& reply);
+Result<Reply> from_wire(const wire::Reply& reply);
+Result<RefusedIncrement> from_wire(const wire::RefusedIncrement& refused);
+
+wire::PartPose to_wire(const PartPose& pose);
+Result<PartPose> from_wire(const wire::PartPose& pose);
+wire::Ack to_wire(const Ack& ack);
+Result<Ack> from_wire(const wire::Ack& ack);
+/// One chunk; keyframe is left to the caller, who knows the topic.
+Result<PoseBatch> from_wire(const wire::PoseBatch& batch);
+
+wire::Verdict to_wire(const Verdict& verdict);
+Result<Verdict> from_wire(const wire::Verdict& verdict);
+wire::ClashEvent to_wire(const ClashEvent& event);
+Result<ClashEvent> from_wire(const wire::ClashEvent& event);
+
+wire::PartInfo to_wire(const PartInfo& part);
+Result<PartInfo> from_wire(const wire::PartInfo& part);
+wire::UserInfo to_wire(const UserInfo& user);
+Result<UserInfo> from_wire(const wire::UserInfo& user);
+/// One chunk of a snapshot.
+Result<Snapshot> from_wire(const wire::Snapshot& chunk);
+
+wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial);
+Result<SessionPulse> from_wire(const wire::Pulse& pulse);
+
+/// Whether a text may pass: at most `limit` bytes, no control characters (they would break logs).
+bool text_ok(const std::string& text, std::size_t limit);
+
+/// First `limit` bytes of a text, not cutting a UTF-8 character, control characters as blanks.
+std::string clip(const std::string& text, std::size_t limit);
+
+}  // namespace mortise

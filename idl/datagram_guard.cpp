@@ -1,0 +1,194 @@
+#include "idl/datagram_guard.h"
+
+#include <cstdint>
+#include <cstring>
+
+namespace mortise {
+namespace {
+
+// RTPS 2.3, section 8.3 and 9.4: header of 20 bytes, then submessages with a header of 4.
+constexpr std::size_t kHeaderSize = 20;
+constexpr std::size_t kSubmessageHeaderSize = 4;
+constexpr std::uint8_t kMajorVersion = 2;
+
+enum Submessage : std::uint8_t {
+  kPad = 0x01,
+  kAckNack = 0x06,
+  kHeartbeat = 0x07,
+  kGap = 0x08,
+  kInfoTimestamp = 0x09,
+  kInfoSource = 0x0c,
+  kInfoDestination = 0x0e,
+  kNackFrag = 0x12,
+  kHeartbeatFrag = 0x13,
+  kData = 0x15,
+  kDataFrag = 0x16,
+  kSecureFirst = 0x30,
+  kSecureLast = 0x35,
+  kStatistics = 0x80,  // eProsima's own: an assert() of the reader is reachable behind it
+};
+
+constexpr std::uint16_t kSentinel = 1;                               // ends a parameter list
+constexpr std::uint16_t kTypeIdentifier = 0x69, kTypeObject = 0x72;  // their reader crashes
+constexpr std::uint32_t kMaxBitmapBits = 256;                        // of a number set, 9.4.2.6
+constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;         // no writer gets there
+constexpr std::int64_t kMaxHeartbeatRange = 10'000'000;              // far above any history
+constexpr std::int64_t kMaxGapRange = 100'000;    // a gap is walked number by number
+constexpr std::uint16_t kOctetsToInlineQos = 16;  // of DATA, fixed in RTPS 2.x
+
+/// A submessage's body, or a part of it, in its own byte order. Offsets are checked by the caller
+/// through has().
+struct Bytes {
+  std::span<const std::byte> data;
+  bool little = true;
+
+  bool has(std::size_t size) const { return data.size() >= size; }
+  std::uint8_t u8(std::size_t at) const { return std::to_integer<std::uint8_t>(data[at]); }
+  std::uint16_t u16(std::size_t at) const {
+    const unsigned a = u8(at), b = u8(at + 1);
+    return static_cast<std::uint16_t>(little ? a | b << 8 : b | a << 8);
+  }
+  std::uint32_t u32(std::size_t at) const {
+    const std::uint32_t a = u16(at), b = u16(at + 2);
+    return little ? a | b << 16 : b | a << 16;
+  }
+  /// A sequence number: signed high word, unsigned low word.
+  std::int64_t sequence(std::size_t at) const {
+    const auto high = static_cast<std::int64_t>(static_cast<std::int32_t>(u32(at)));
+    return high * (std::int64_t{1} << 32) + static_cast<std::int64_t>(u32(at + 4));
+  }
+};
+
+/// Length of a parameter list with its sentinel; 0 when it does not end, or holds what must not be
+/// read.
+std::size_t parameter_list_length(const Bytes& list, bool refuse_types) {
+  std::size_t at = 0;
+  while (list.has(at + 4)) {
+    const std::uint16_t id = list.u16(at), length = list.u16(at + 2);
+    at += 4;
+    if (id == kSentinel) return at;
+    if (refuse_types && (id == kTypeIdentifier || id == kTypeObject)) return 0;
+    if (length % 4 != 0 || !list.has(at + length)) return 0;
+    at += length;
+  }
+  return 0;
+}
+
+/// Serialized payload: encapsulation known (CDR or parameter list, XCDR1), parameter lists whole.
+bool payload_ok(const Bytes& payload) {
+  constexpr std::uint8_t kLastKnown = 3, kFirstParameterList = 2;
+  if (!payload.has(4) || payload.u8(0) != 0 || payload.u8(1) > kLastKnown) return false;
+  if (payload.u8(1) < kFirstParameterList) return true;
+  const Bytes list{payload.data.subspan(4), payload.u8(1) == kLastKnown};
+  return parameter_list_length(list, true) != 0;
+}
+
+bool sequence_ok(std::int64_t sequence) { return sequence > 0 && sequence < kMaxSequence; }
+
+bool data_ok(const Bytes& body, std::uint8_t flags) {
+  constexpr std::uint8_t kInlineQos = 2, kDataOrKey = 4 | 8;
+  if (!body.has(20) || body.u16(2) != kOctetsToInlineQos || !sequence_ok(body.sequence(12))) {
+    return false;
+  }
+  std::size_t at = 20;
+  if ((flags & kInlineQos) != 0) {
+    const std::size_t length = parameter_list_length({body.data.subspan(at), body.little}, false);
+    if (length == 0) return false;
+    at += length;
+  }
+  return (flags & kDataOrKey) == 0 || payload_ok({body.data.subspan(at), body.little});
+}
+
+bool data_frag_ok(const Bytes& body) {
+  if (!body.has(32) || body.u16(2) != kOctetsToInlineQos + 12 || !sequence_ok(body.sequence(12))) {
+    return false;
+  }
+  const std::uint32_t first = body.u32(20), sample_size = body.u32(28);
+  const std::uint32_t count = body.u16(24), fragment_size = body.u16(26);
+  // Fragments are numbered from 1 and lie inside the sample.
+  return first >= 1 && count >= 1 && fragment_size >= 1 &&
+         (std::uint64_t{first} + count - 2) * fragment_size < sample_size;
+}
+
+/// Number set of a bitmap that starts at `at` with its base's bit count.
+bool bitmap_ok(const Bytes& body, std::size_t at, std::size_t after) {
+  if (!body.has(at + 4)) return false;
+  const std::uint32_t bits = body.u32(at);
+  return bits <= kMaxBitmapBits && body.has(at + 4 + 4 * ((bits + 31) / 32) + after);
+}
+
+bool heartbeat_ok(const Bytes& body) {
+  if (!body.has(28)) return false;
+  const std::int64_t first = body.sequence(8), last = body.sequence(16);
+  return first > 0 && last >= first - 1 && last < kMaxSequence &&
+         last - first <= kMaxHeartbeatRange;
+}
+
+bool gap_ok(const Bytes& body) {
+  if (!body.has(28)) return false;
+  const std::int64_t start = body.sequence(8), base = body.sequence(16);
+  return sequence_ok(start) && base >= start && base < kMaxSequence &&
+         base - start <= kMaxGapRange && bitmap_ok(body, 24, 0);
+}
+
+bool acknack_ok(const Bytes& body) {
+  if (!body.has(24)) return false;
+  const std::int64_t base = body.sequence(8);
+  return base >= 0 && base < kMaxSequence && bitmap_ok(body, 16, 4);
+}
+
+bool submessage_ok(std::uint8_t id, std::uint8_t flags, const Bytes& body) {
+  constexpr std::uint8_t kInvalidateFlag = 2;
+  switch (id) {
+    case kPad:
+      return true;
+    case kInfoTimestamp:
+      return (flags & kInvalidateFlag) != 0 || body.has(8);
+    case kInfoDestination:
+      return body.has(12);
+    case kInfoSource:
+      return body.has(20);
+    case kData:
+      return data_ok(body, flags);
+    case kDataFrag:
+      return data_frag_ok(body);
+    case kAckNack:
+      return acknack_ok(body);
+    case kHeartbeat:
+      return heartbeat_ok(body);
+    case kGap:
+      return gap_ok(body);
+    case kNackFrag:
+      return body.has(28) && sequence_ok(body.sequence(8)) && bitmap_ok(body, 20, 4);
+    case kHeartbeatFrag:
+      return body.has(24) && sequence_ok(body.sequence(8));
+    default:
+      return id >= kSecureFirst && id <= kSecureLast;
+  }
+}
+
+}  // namespace
+
+std::size_t admissible_length(std::span<const std::byte> datagram) {
+  const Bytes all{datagram, true};
+  if (!all.has(kHeaderSize) || std::memcmp(datagram.data(), "RTPS", 4) != 0 ||
+      all.u8(4) != kMajorVersion) {
+    return 0;
+  }
+  std::size_t at = kHeaderSize;
+  while (all.has(at + kSubmessageHeaderSize)) {
+    const std::uint8_t id = all.u8(at), flags = all.u8(at + 1);
+    if (id == kStatistics) return at > kHeaderSize ? at : 0;
+    const bool little = (flags & 1) != 0;
+    std::size_t length = Bytes{datagram, little}.u16(at + 2);
+    at += kSubmessageHeaderSize;
+    // Length 0 means "to the end", except where an empty body is possible.
+    if (length == 0 && id != kPad && id != kInfoTimestamp) length = datagram.size() - at;
+    if (length % 4 != 0 || !all.has(at + length)) return 0;
+    if (!submessage_ok(id, flags, {datagram.subspan(at, length), little})) return 0;
+    at += length;
+  }
+  return at == datagram.size() ? at : 0;
+}
+
+}  // namespace mortise

@@ -1,0 +1,335 @@
+#include <chrono>
+#include <mutex>
+#include <vector>
+
+#include "idl/chunks.h"
+#include "idl/convert.h"
+#include "idl/dds_channel.h"
+#include "idl/participant.h"
+#include "mortisePubSubTypes.h"
+
+namespace mortise {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+using Clock = std::chrono::steady_clock;
+
+/// Knows whether a server is there, by the match with its answers. A server that was killed and
+/// started again is matched before the old one's lease ends; the newest counts.
+class ServerWatch final : public dds::DataReaderListener {
+ public:
+  void on_subscription_matched(dds::DataReader*,
+                               const dds::SubscriptionMatchedStatus& status) override {
+    const std::lock_guard lock(mutex_);
+    const rtps::GUID_t guid = rtps::iHandle2GUID(status.last_publication_handle);
+    if (status.current_count_change > 0) {
+      lost_ = lost_ || present_;
+      present_ = true;
+      server_ = guid.guidPrefix;
+    } else if (guid.guidPrefix == server_) {
+      lost_ = lost_ || present_;
+      present_ = false;
+    }
+  }
+  struct Answer {
+    bool lost = false, present = false;
+  };
+  Answer take() {
+    const std::lock_guard lock(mutex_);
+    return {std::exchange(lost_, false), present_};
+  }
+
+ private:
+  std::mutex mutex_;
+  bool lost_ = false, present_ = false;
+  rtps::GuidPrefix_t server_;
+};
+
+class DdsClientChannel final : public ClientChannel {
+ public:
+  Status open(const DdsOptions& options) {
+    auto participant = Participant::open(options, Participant::Side::kClient, nullptr);
+    if (!participant) return participant.error();
+    participant_ = std::move(participant.value());
+    key_ = participant_->key();
+    assert_period_ = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(0.25 * options.liveliness_lease_s));
+    Status status = ok();
+    open_reader<wire::PoseBatchPubSubType>(Topic::kPose, nullptr, poses_, status);
+    open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, nullptr, keyframes_, status);
+    open_reader<wire::EventBatchPubSubType>(Topic::kEvent, nullptr, events_, status);
+    open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, nullptr, snapshots_, status);
+    open_reader<wire::PulsePubSubType>(Topic::kPulse, nullptr, pulses_, status);
+    if (options.meshes) {
+      open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, nullptr, meshes_, status);
+    }
+    open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
+    open_writer<wire::IncrementPubSubType>(Topic::kIncrement, increments_, status);
+    open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status);
+    // Last: once the server's answers are matched, everything else is declared.
+    open_reader<wire::AnswersPubSubType>(Topic::kAnswers, &watch_, answers_, status);
+    return status;
+  }
+
+  void join(std::uint64_t nonce, const std::string& name, const std::string& role) override {
+    assert_presence();
+    Request request;
+    request.kind = Request::Kind::kJoin;
+    request.nonce = nonce;
+    request.name = name;
+    request.role = role;
+    write(requests_, to_wire(request));
+  }
+  void leave(UserId user) override {
+    Request request;
+    request.kind = Request::Kind::kLeave;
+    request.command.user = user;
+    write(requests_, to_wire(request));
+  }
+  void heartbeat(UserId user) override {
+    wire::Presence sample;
+    sample.user(user.value);
+    sample.beat(++beat_);
+    write(presence_, sample);
+    asserted_at_ = Clock::now();
+  }
+  void send(const Increment& increment, std::int64_t sent_ns) override {
+    assert_presence();
+    write(increments_, to_wire(increment, sent_ns));
+  }
+  void send(const Command& command) override {
+    assert_presence();
+    Request request;
+    request.kind = Request::Kind::kCommand;
+    request.command = command;
+    write(requests_, to_wire(request));
+  }
+  void request_snapshot() override {
+    Request request;
+    request.kind = Request::Kind::kSnapshot;
+    write(requests_, to_wire(request));
+  }
+
+  ClientInput take() override {
+    ClientInput input;
+    const ServerWatch::Answer watch = watch_.take();
+    input.server_lost = watch.lost;
+    input.server_present = watch.present;
+    take_answers(input);
+    take_snapshots(input);
+    take_poses(input);
+    take_events(input);
+    take_pulses(input);
+    take_meshes(input);
+    return input;
+  }
+
+  ChannelCounters counters() const override {
+    ChannelCounters counters = counters_;
+    counters.malformed += participant_->refused() + mesh_collector_.refused();
+    counters.guard_dropped = participant_->dropped();
+    return counters;
+  }
+
+ private:
+  template <class Generated>
+  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status) {
+    if (!status) return;
+    Result<dds::DataWriter*> opened = participant_->open_writer<Generated>(topic);
+    if (opened) {
+      writer = *opened;
+    } else {
+      status = opened.error();
+    }
+  }
+  template <class Generated>
+  void open_reader(Topic topic, dds::DataReaderListener* listener, dds::DataReader*& reader,
+                   Status& status) {
+    if (!status) return;
+    Result<dds::DataReader*> opened = participant_->open_reader<Generated>(topic, listener);
+    if (opened) {
+      reader = *opened;
+    } else {
+      status = opened.error();
+    }
+  }
+
+  template <class Sample>
+  void write(dds::DataWriter* writer, Sample sample) {
+    if (!writer->write(&sample)) ++counters_.send_failed;
+  }
+
+  /// Says that this process lives, a few times within the lease.
+  void assert_presence() {
+    const Clock::time_point now = Clock::now();
+    if (now - asserted_at_ < assert_period_) return;
+    asserted_at_ = now;
+    presence_->assert_liveliness();
+  }
+
+  /// Hands each valid sample to the action; whoever wrote it is asked for by `writer`.
+  template <class Sample, class Action>
+  void take_all(dds::DataReader* reader, Action action) {
+    if (reader == nullptr) return;
+    Sample sample;
+    dds::SampleInfo info;
+    while (reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      ++counters_.received;
+      const rtps::GuidPrefix_t& from = info.sample_identity.writer_guid().guidPrefix;
+      if (from != server_) {
+        // Another server than before: its numbers start anew.
+        server_ = from;
+        snapshot_collector_.reset();
+        keyframe_collector_.reset();
+        mesh_collector_.reset();
+        pose_serial_ = 0;
+      }
+      action(sample);
+    }
+  }
+
+  void take_answers(ClientInput& input) {
+    take_all<wire::Answers>(answers_, [&](const wire::Answers& sample) {
+      Result<Answers> answers = from_wire(sample);
+      if (!answers) {
+        ++counters_.malformed;
+        return;
+      }
+      for (JoinReply& reply : answers->joins) {
+        if (reply.client == key_) input.join_replies.push_back(std::move(reply));
+      }
+      append(answers->replies, input.replies);
+      append(answers->refused, input.refused);
+    });
+  }
+
+  void take_snapshots(ClientInput& input) {
+    take_all<wire::Snapshot>(snapshots_, [&](const wire::Snapshot& sample) {
+      const auto chunks = snapshot_collector_.add(sample);
+      if (!chunks) return;
+      Snapshot whole;
+      for (std::size_t i = 0; i < chunks->size(); ++i) {
+        Result<Snapshot> part = from_wire((*chunks)[i]);
+        if (!part) {
+          ++counters_.malformed;
+          return;
+        }
+        if (i == 0) {
+          whole = std::move(part.value());
+        } else {
+          append(part->parts, whole.parts);
+          append(part->users, whole.users);
+          append(part->open_clashes, whole.open_clashes);
+        }
+      }
+      input.snapshots.push_back(std::move(whole));
+    });
+  }
+
+  void take_poses(ClientInput& input) {
+    take_all<wire::PoseBatch>(poses_, [&](const wire::PoseBatch& sample) {
+      note_pose_serial(sample.serial(), input);
+      Result<PoseBatch> batch = from_wire(sample);
+      if (batch) {
+        input.poses.push_back(std::move(batch.value()));
+      } else {
+        ++counters_.malformed;
+      }
+    });
+    take_all<wire::PoseBatch>(keyframes_, [&](const wire::PoseBatch& sample) {
+      const auto chunks = keyframe_collector_.add(sample);
+      if (!chunks) return;
+      PoseBatch whole;
+      for (std::size_t i = 0; i < chunks->size(); ++i) {
+        Result<PoseBatch> part = from_wire((*chunks)[i]);
+        if (!part) {
+          ++counters_.malformed;
+          return;
+        }
+        if (i == 0) {
+          whole = std::move(part.value());
+        } else {
+          append(part->parts, whole.parts);
+          append(part->acks, whole.acks);
+        }
+      }
+      whole.keyframe = true;
+      input.poses.push_back(std::move(whole));
+    });
+  }
+
+  void note_pose_serial(std::uint64_t serial, ClientInput& input) {
+    if (pose_serial_ != 0 && serial > pose_serial_ + 1) {
+      input.poses_missed += serial - pose_serial_ - 1;
+      counters_.lost += serial - pose_serial_ - 1;
+    }
+    pose_serial_ = std::max(pose_serial_, serial);
+  }
+
+  void take_events(ClientInput& input) {
+    take_all<wire::EventBatch>(events_, [&](const wire::EventBatch& sample) {
+      for (const wire::ClashEvent& entry : sample.events()) {
+        Result<ClashEvent> event = from_wire(entry);
+        if (event) {
+          input.events.push_back(std::move(event.value()));
+        } else {
+          ++counters_.malformed;  // its seq is now missing, which asks for a snapshot
+        }
+      }
+    });
+  }
+
+  void take_pulses(ClientInput& input) {
+    take_all<wire::Pulse>(pulses_, [&](const wire::Pulse& sample) {
+      Result<SessionPulse> pulse = from_wire(sample);
+      if (!pulse) {
+        ++counters_.malformed;
+        return;
+      }
+      // Shows the loss of a last batch before a silence. One serial of allowance: the last may
+      // still be on its way.
+      if (pose_serial_ != 0 && sample.pose_serial() > pose_serial_ + 1) {
+        note_pose_serial(sample.pose_serial(), input);
+      }
+      input.pulses.push_back(*pulse);
+    });
+  }
+
+  void take_meshes(ClientInput& input) {
+    take_all<wire::MeshChunk>(meshes_, [&](const wire::MeshChunk& sample) {
+      if (auto mesh = mesh_collector_.add(sample)) input.meshes.push_back(std::move(*mesh));
+    });
+  }
+
+  template <class Entry>
+  static void append(std::vector<Entry>& from, std::vector<Entry>& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  }
+
+  ServerWatch watch_;  // before the participant, whose threads call it
+  std::unique_ptr<Participant> participant_;
+  ClientKey key_;
+  dds::DataReader *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
+                  *snapshots_ = nullptr, *pulses_ = nullptr, *meshes_ = nullptr;
+  dds::DataWriter *presence_ = nullptr, *increments_ = nullptr, *requests_ = nullptr;
+  Clock::duration assert_period_{};
+  Clock::time_point asserted_at_{};
+  std::uint64_t beat_ = 0;
+  rtps::GuidPrefix_t server_;
+  ChunkCollector<wire::Snapshot> snapshot_collector_;
+  ChunkCollector<wire::PoseBatch> keyframe_collector_;
+  MeshCollector mesh_collector_;
+  std::uint64_t pose_serial_ = 0;
+  ChannelCounters counters_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ClientChannel>> open_client_channel(const DdsOptions& options) {
+  auto channel = std::make_unique<DdsClientChannel>();
+  if (Status opened = channel->open(options); !opened) return opened.error();
+  return std::unique_ptr<ClientChannel>(std::move(channel));
+}
+
+}  // namespace mortise

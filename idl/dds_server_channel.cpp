@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include "idl/chunks.h"
+#include "idl/convert.h"
+#include "idl/dds_channel.h"
+#include "idl/participant.h"
+#include "mortisePubSubTypes.h"
+
+namespace mortise {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+/// Hears of participants that are gone, in threads of Fast DDS; take() asks what it heard. Also the
+/// listener of the presence reader.
+class Departures final : public dds::DomainParticipantListener {
+ public:
+  void on_participant_discovery(dds::DomainParticipant*,
+                                rtps::ParticipantDiscoveryInfo&& info) override {
+    using Info = rtps::ParticipantDiscoveryInfo;
+    if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
+      add(info.info.m_guid);
+    }
+  }
+  /// MANUAL_BY_TOPIC: also when other clients live, unlike automatic liveliness (Fast DDS #4373).
+  void on_liveliness_changed(dds::DataReader*,
+                             const dds::LivelinessChangedStatus& status) override {
+    if (status.alive_count_change < 0 || status.not_alive_count_change > 0) {
+      add(rtps::iHandle2GUID(status.last_publication_handle));
+    }
+  }
+  std::vector<ClientKey> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(gone_, {});
+  }
+
+ private:
+  void add(const rtps::GUID_t& guid) {
+    const std::lock_guard lock(mutex_);
+    gone_.push_back(client_key(guid));
+  }
+
+  std::mutex mutex_;
+  std::vector<ClientKey> gone_;
+};
+
+class DdsServerChannel final : public ServerChannel {
+ public:
+  Status open(const DdsOptions& options) {
+    auto participant = Participant::open(options, Participant::Side::kServer, &departures_);
+    if (!participant) return participant.error();
+    participant_ = std::move(participant.value());
+    Status status = ok();
+    // The writers first: who is heard can be answered.
+    open_writer<wire::AnswersPubSubType>(Topic::kAnswers, answers_, status);
+    open_writer<wire::PoseBatchPubSubType>(Topic::kPose, poses_, status);
+    open_writer<wire::PoseBatchPubSubType>(Topic::kKeyframe, keyframes_, status);
+    open_writer<wire::EventBatchPubSubType>(Topic::kEvent, events_, status);
+    open_writer<wire::SnapshotPubSubType>(Topic::kSnapshot, snapshots_, status);
+    open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
+    open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
+    open_reader<wire::PresencePubSubType>(Topic::kPresence, &departures_, presence_, status);
+    open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
+    open_reader<wire::IncrementPubSubType>(Topic::kIncrement, nullptr, increments_, status);
+    return status;
+  }
+
+  ServerInput take() override {
+    ServerInput input;
+    take_departures(input);
+    take_requests(input);
+    take_presence(input);
+    take_increments(input);
+    return input;
+  }
+
+  void publish_join_reply(const JoinReply& reply) override {
+    if (reply.refusal == Refusal::kNone && reply.user) joined_[reply.user] = reply.client;
+    write(answers_, to_wire(std::span(&reply, 1), {}, {}));
+  }
+  void publish_replies(std::span<const Reply> replies) override {
+    in_slices(replies, [this](auto slice) { write(answers_, to_wire({}, slice, {})); });
+  }
+  void publish_refusals(std::span<const RefusedIncrement> refused) override {
+    in_slices(refused, [this](auto slice) { write(answers_, to_wire({}, {}, slice)); });
+  }
+  void publish_poses(const PoseBatch& batch) override {
+    if (batch.keyframe) {
+      for (const wire::PoseBatch& chunk : cut(batch, ++keyframe_serial_)) write(keyframes_, chunk);
+      return;
+    }
+    if (!has_readers()) return;
+    for (const wire::PoseBatch& chunk : cut(batch, pose_serial_ + 1)) {
+      pose_serial_ = chunk.serial();
+      write(poses_, chunk);
+    }
+  }
+  void publish_events(std::span<const ClashEvent> events) override {
+    if (events.empty() || !has_readers()) return;
+    for (const wire::EventBatch& chunk : cut(events)) write(events_, chunk);
+  }
+  void publish_snapshot(const Snapshot& snapshot) override {
+    for (const wire::Snapshot& chunk : cut(snapshot, ++snapshot_serial_)) {
+      write(snapshots_, chunk);
+    }
+  }
+  void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    const std::vector<wire::MeshChunk> chunks = cut_mesh(hash, bytes);
+    mesh_chunks_ += chunks.size();
+    if (mesh_chunks_ > static_cast<std::size_t>(row_of(Topic::kMesh).max_keys)) {
+      mesh_chunks_ -= chunks.size();
+      ++counters_.send_failed;  // no room for the whole mesh: none of it
+      return;
+    }
+    for (const wire::MeshChunk& chunk : chunks) write(meshes_, chunk);
+  }
+  void publish_pulse(const SessionPulse& pulse) override {
+    write(pulses_, to_wire(pulse, pose_serial_));
+  }
+
+  bool has_readers() const override {
+    dds::PublicationMatchedStatus status;
+    return poses_->get_publication_matched_status(status) == ReturnCode_t::RETCODE_OK &&
+           status.current_count > 0;
+  }
+  ChannelCounters counters() const override {
+    ChannelCounters counters = counters_;
+    counters.malformed += participant_->refused();
+    counters.guard_dropped = participant_->dropped();
+    return counters;
+  }
+
+ private:
+  template <class Generated>
+  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status) {
+    if (!status) return;
+    Result<dds::DataWriter*> opened = participant_->open_writer<Generated>(topic);
+    if (opened) {
+      writer = *opened;
+    } else {
+      status = opened.error();
+    }
+  }
+  template <class Generated>
+  void open_reader(Topic topic, dds::DataReaderListener* listener, dds::DataReader*& reader,
+                   Status& status) {
+    if (!status) return;
+    Result<dds::DataReader*> opened = participant_->open_reader<Generated>(topic, listener);
+    if (opened) {
+      reader = *opened;
+    } else {
+      status = opened.error();
+    }
+  }
+
+  template <class Sample>
+  void write(dds::DataWriter* writer, Sample sample) {
+    if (!writer->write(&sample)) ++counters_.send_failed;
+  }
+
+  /// Texts are clipped to about 1 kB, so a slice stays below a datagram.
+  template <class Entry, class Action>
+  static void in_slices(std::span<const Entry> entries, Action action) {
+    constexpr std::size_t kSlice = 40;
+    for (std::size_t at = 0; at < entries.size(); at += kSlice) {
+      action(entries.subspan(at, std::min(kSlice, entries.size() - at)));
+    }
+  }
+
+  /// Hands each valid sample and its sender to the action.
+  template <class Sample, class Action>
+  void take_all(dds::DataReader* reader, Action action) {
+    Sample sample;
+    dds::SampleInfo info;
+    while (reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      ++counters_.received;
+      action(sample, client_key(info.sample_identity.writer_guid()));
+    }
+  }
+
+  bool owns(const ClientKey& client, UserId user) {
+    const auto found = joined_.find(user);
+    if (found != joined_.end() && found->second == client) return true;
+    ++counters_.foreign;
+    return false;
+  }
+
+  void take_departures(ServerInput& input) {
+    for (const ClientKey& key : departures_.take()) {
+      // Only who has joined, and once: liveliness ends first, the participant's lease later.
+      if (present_.erase(key) > 0) input.lost.push_back({UserId{}, key, false});
+    }
+  }
+
+  void take_requests(ServerInput& input) {
+    take_all<wire::Request>(requests_, [&](const wire::Request& sample, const ClientKey& key) {
+      Result<Request> request = from_wire(sample);
+      if (!request) {
+        ++counters_.malformed;
+        if (sample.kind() == static_cast<std::uint8_t>(Request::Kind::kJoin)) {
+          publish_join_reply(
+              {key, sample.nonce(), UserId{}, Refusal::kNotAllowed, request.error().text});
+        }
+        return;
+      }
+      switch (request->kind) {
+        case Request::Kind::kJoin:
+          present_.insert(key);
+          input.joins.push_back({key, request->nonce, request->name, request->role});
+          break;
+        case Request::Kind::kLeave:
+          if (owns(key, request->command.user)) {
+            input.lost.push_back({request->command.user, key, true});
+          }
+          break;
+        case Request::Kind::kCommand:
+          input.commands.push_back({key, request->command});
+          break;
+        case Request::Kind::kSnapshot:
+          input.snapshot_requests.push_back(key);
+          break;
+        case Request::Kind::kUnknown:
+          break;
+      }
+    });
+  }
+
+  void take_presence(ServerInput& input) {
+    take_all<wire::Presence>(presence_, [&](const wire::Presence& sample, const ClientKey& key) {
+      const UserId user{sample.user()};
+      if (user && owns(key, user)) input.heartbeats.push_back(user);
+    });
+  }
+
+  void take_increments(ServerInput& input) {
+    take_all<wire::Increment>(increments_, [&](const wire::Increment& sample,
+                                               const ClientKey& key) {
+      const Result<DoorIncrement> read = from_wire(sample);
+      if (!read) {
+        ++counters_.malformed;
+      } else if (read->refusal == Refusal::kNone) {
+        input.increments.push_back({key, read->increment, read->sent_ns});
+      } else {
+        ++counters_.malformed;
+        const Increment& claimed = read->increment;
+        if (owns(key, claimed.user)) {
+          input.refused_at_door.push_back({claimed.user, claimed.part, claimed.seq, read->refusal});
+        }
+      }
+    });
+  }
+
+  Departures departures_;  // before the participant, whose threads call it
+  std::unique_ptr<Participant> participant_;
+  dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
+                  *snapshots_ = nullptr, *meshes_ = nullptr, *pulses_ = nullptr;
+  dds::DataReader *presence_ = nullptr, *requests_ = nullptr, *increments_ = nullptr;
+  std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0;
+  std::size_t mesh_chunks_ = 0;
+  std::map<UserId, ClientKey> joined_;
+  std::set<ClientKey> present_;
+  ChannelCounters counters_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ServerChannel>> open_server_channel(const DdsOptions& options) {
+  auto channel = std::make_unique<DdsServerChannel>();
+  if (Status opened = channel->open(options); !opened) return opened.error();
+  return std::unique_ptr<ServerChannel>(std::move(channel));
+}
+
+}  // namespace mortise

@@ -1,0 +1,305 @@
+#include "idl/participant.h"
+
+#include <arpa/inet.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <cstring>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
+#include <mutex>
+
+#include "idl/guard_transport.h"
+
+namespace mortise {
+namespace {
+
+using eprosima::fastdds::rtps::FlowControllerDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::Duration_t;
+using eprosima::fastrtps::rtps::IPLocator;
+using eprosima::fastrtps::rtps::Locator_t;
+
+constexpr int kMaxDomain = 232;  // 7400 + 250 * 233 is no port any more
+// Well-known ports are 7400 + 250 domain + {0, 1, 10 + 2 i, 11 + 2 i}; 2 and 3 are nobody's.
+constexpr int kPortBase = 7400, kPortsPerDomain = 250, kServerPortOffset = 2;
+constexpr int kMaxPort = 65535;
+// A client asks for the server so often (measured: 67 of 67 joins within 0.6 s; with 3 s 4 of 41
+// took more than 2 s).
+constexpr double kAnnouncementPeriod_s = 0.5;
+// The longest a write may wait for a lock of Fast DDS; never for a reader.
+constexpr double kServerWriteWait_s = 0.01, kClientWriteWait_s = 0.1;
+// A socket's buffer holds a whole scene's burst.
+constexpr std::uint32_t kSocketBuffer_bytes = 1 << 22;
+
+Duration_t duration(double seconds) { return Duration_t(static_cast<long double>(seconds)); }
+
+Error bad(const std::string& text) { return fail(Code::kInvalidInput, text); }
+Error broken(const std::string& text) { return fail(Code::kRuntime, text); }
+
+bool is_ipv4(const std::string& text) {
+  in_addr address{};
+  return inet_pton(AF_INET, text.c_str(), &address) == 1;
+}
+
+bool is_own_address(const std::string& text) {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return false;
+  in_addr wanted{};
+  inet_pton(AF_INET, text.c_str(), &wanted);
+  bool found = false;
+  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
+    sockaddr_in address{};
+    std::memcpy(&address, at->ifa_addr, sizeof address);
+    found = found || address.sin_addr.s_addr == wanted.s_addr;
+  }
+  freeifaddrs(list);
+  return found;
+}
+
+/// Whether a UDP port can be had: Fast DDS would silently live without it.
+bool port_is_free(const std::string& interface, int port) {
+  const int handle = socket(AF_INET, SOCK_DGRAM, 0);
+  if (handle < 0) return false;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  inet_pton(AF_INET, interface.c_str(), &address.sin_addr);
+  sockaddr generic{};
+  static_assert(sizeof generic == sizeof address);
+  std::memcpy(&generic, &address, sizeof address);
+  const bool is_free = bind(handle, &generic, sizeof generic) == 0;
+  close(handle);
+  return is_free;
+}
+
+int server_port(const DdsOptions& options) {
+  return options.discovery_port != 0
+             ? options.discovery_port
+             : kPortBase + kPortsPerDomain * options.domain + kServerPortOffset;
+}
+
+Status check(const DdsOptions& options, Participant::Side side) {
+  if (options.domain < 0 || options.domain > kMaxDomain) {
+    return bad("DDS domain " + std::to_string(options.domain) + " is not in 0..232");
+  }
+  if (options.session.empty() || options.session.size() > 128 ||
+      options.session.find_first_of("*?[]") != std::string::npos) {
+    return bad("session name '" + options.session +
+               "' must have 1 to 128 characters and none of * ? [ ]");
+  }
+  const int port = server_port(options);
+  if (port < 1 || port >= kMaxPort) {
+    return bad("discovery port " + std::to_string(port) + " is not in 1..65534");
+  }
+  if (!is_ipv4(options.interface) || !is_own_address(options.interface)) {
+    return bad("'" + options.interface +
+               "' is not an IPv4 address of this machine: see `ip -4 addr` for those it has");
+  }
+  if (!options.server.empty() && !is_ipv4(options.server)) {
+    return bad("server address '" + options.server + "' is not an IPv4 address");
+  }
+  if (!(options.liveliness_lease_s > 0.0) || !(options.heartbeat_period_s > 0.0)) {
+    return bad("liveliness lease and heartbeat period must be above 0 s");
+  }
+  if (!(options.participant_lease_s > kAnnouncementPeriod_s)) {
+    return bad("participant lease must be longer than the announcement period of 0.5 s");
+  }
+  if (side == Participant::Side::kServer) {
+    for (const int used : {port, port + 1}) {
+      if (port_is_free(options.interface, used)) continue;
+      return broken("UDP port " + std::to_string(used) + " of " + options.interface +
+                    " is in use: another server runs on domain " + std::to_string(options.domain) +
+                    "; choose another domain or port");
+    }
+  }
+  return ok();
+}
+
+Locator_t locator(const std::string& address, int port) {
+  Locator_t result;
+  IPLocator::setIPv4(result, address);
+  IPLocator::setPhysicalPort(result, static_cast<std::uint16_t>(port));
+  return result;
+}
+
+/// A star: clients know the server's fixed port and nobody else, nothing is multicast. So clients
+/// never meet each other, a restarted server is a new participant, and any DDS implementation can
+/// take part.
+dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
+                                 const DropCounter& dropped) {
+  dds::DomainParticipantQos qos;
+  const bool is_server = side == Participant::Side::kServer;
+  qos.name(is_server ? "mortise-server" : "mortise-client");
+  auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList.push_back(options.interface);
+  udp->sendBufferSize = kSocketBuffer_bytes;
+  udp->receiveBufferSize = kSocketBuffer_bytes;
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(std::make_shared<GuardDescriptor>(udp, dropped));
+
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.discovery_config.leaseDuration = duration(options.participant_lease_s);
+  builtin.discovery_config.leaseDuration_announcementperiod = duration(kAnnouncementPeriod_s);
+  const int port = server_port(options);
+  if (is_server) {
+    builtin.metatrafficUnicastLocatorList.push_back(locator(options.interface, port));
+    qos.wire_protocol().default_unicast_locator_list.push_back(
+        locator(options.interface, port + 1));
+    builtin.mutation_tries = 0;  // this port or none
+  } else {
+    const std::string& server = options.server.empty() ? options.interface : options.server;
+    builtin.metatrafficUnicastLocatorList.push_back(locator(options.interface, 0));
+    builtin.initialPeersList.push_back(locator(server, port));
+  }
+  auto flow = std::make_shared<FlowControllerDescriptor>();
+  flow->name = kMeshFlowController;
+  flow->max_bytes_per_period = kMeshBytesPerPeriod;
+  flow->period_ms = kMeshPeriod_ms;
+  qos.flow_controllers().push_back(flow);
+  return qos;
+}
+
+/// Settings of the process, made once: no shortcut between participants of one process, so that a
+/// test meets the same network as a user; no lines of Fast DDS on stdout, which belongs to results.
+void set_up_process() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    eprosima::fastrtps::LibrarySettingsAttributes settings;
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    dds::Log::ClearConsumers();
+  });
+}
+
+template <class Qos>
+void set_common(Qos& qos, const TopicRow& row, const DdsOptions& options, int depth) {
+  qos.reliability().kind =
+      row.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  qos.durability().kind =
+      row.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.history().depth = depth;
+  qos.resource_limits().max_instances = row.max_keys;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().max_samples = row.max_keys * depth;
+  qos.resource_limits().allocated_samples = 0;
+  qos.endpoint().history_memory_policy =
+      row.large ? eprosima::fastrtps::rtps::DYNAMIC_RESERVE_MEMORY_MODE
+                : eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.data_sharing().off();
+  if (row.presence) {
+    qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
+    qos.liveliness().lease_duration = duration(options.liveliness_lease_s);
+  }
+}
+
+}  // namespace
+
+ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  ClientKey key;
+  for (const eprosima::fastrtps::rtps::octet byte : guid.guidPrefix.value) {
+    key += kDigits[byte >> 4];
+    key += kDigits[byte & 15];
+  }
+  return key;
+}
+
+Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options, Side side,
+                                                       dds::DomainParticipantListener* listener) {
+  if (Status checked = check(options, side); !checked) return checked.error();
+  set_up_process();
+  std::unique_ptr<Participant> made(new Participant(options));
+  made->participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, made->dropped_), listener,
+      dds::StatusMask::none());
+  if (made->participant_ == nullptr) {
+    return broken("Fast DDS refused a participant on " + options.interface + ", domain " +
+                  std::to_string(options.domain));
+  }
+  const std::string partition = "session/" + options.session;
+  dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
+  publisher_qos.partition().push_back(partition.c_str());
+  made->publisher_ = made->participant_->create_publisher(publisher_qos);
+  dds::SubscriberQos subscriber_qos = dds::SUBSCRIBER_QOS_DEFAULT;
+  subscriber_qos.partition().push_back(partition.c_str());
+  made->subscriber_ = made->participant_->create_subscriber(subscriber_qos);
+  if (made->publisher_ == nullptr || made->subscriber_ == nullptr) {
+    return broken("Fast DDS refused publisher or subscriber of session " + options.session);
+  }
+  return made;
+}
+
+Participant::~Participant() {
+  if (participant_ == nullptr) return;
+  participant_->set_listener(nullptr);
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+Result<dds::Topic*> Participant::open_topic(const TopicRow& row, dds::TopicDataType* type) {
+  // Type objects in discovery data crash their reader (Fast DDS 2.9.1), and repel other
+  // implementations.
+  type->auto_fill_type_object(false);
+  type->auto_fill_type_information(false);
+  dds::TypeSupport support(type);
+  const std::string type_name = support.get_type_name();
+  // Two topics of one type share it.
+  if (participant_->find_type(type_name).empty() &&
+      support.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
+    return broken(std::string("Fast DDS refused type ") + type_name);
+  }
+  dds::Topic* topic = participant_->create_topic(row.topic, type_name, dds::TOPIC_QOS_DEFAULT);
+  if (topic == nullptr) return broken(std::string("Fast DDS refused topic ") + row.topic);
+  return topic;
+}
+
+Result<dds::DataWriter*> Participant::open_writer(const TopicRow& row, dds::TopicDataType* type) {
+  Result<dds::Topic*> topic = open_topic(row, type);
+  if (!topic) return topic.error();
+  dds::DataWriterQos qos;
+  set_common(qos, row, options_, row.writer_depth);
+  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  qos.reliability().max_blocking_time =
+      duration(row.to_server ? kClientWriteWait_s : kServerWriteWait_s);
+  qos.reliable_writer_qos().times.heartbeatPeriod = duration(options_.heartbeat_period_s);
+  qos.publish_mode().kind =
+      row.asynchronous ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  if (row.throttled) qos.publish_mode().flow_controller_name = kMeshFlowController;
+  if (row.presence) {
+    // Only meaningful for automatic kinds, but must lie below the lease.
+    qos.liveliness().announcement_period = duration(0.5 * options_.liveliness_lease_s);
+  }
+  dds::DataWriter* writer = publisher_->create_datawriter(topic.value(), qos);
+  if (writer == nullptr) {
+    return broken(std::string("Fast DDS refused the writer of topic ") + row.topic);
+  }
+  return writer;
+}
+
+Result<dds::DataReader*> Participant::open_reader(const TopicRow& row, dds::TopicDataType* type,
+                                                  dds::DataReaderListener* listener) {
+  Result<dds::Topic*> topic = open_topic(row, type);
+  if (!topic) return topic.error();
+  dds::DataReaderQos qos;
+  set_common(qos, row, options_, row.reader_depth);
+  qos.history().kind = row.reader == TopicRow::Reader::kKeepAll ? dds::KEEP_ALL_HISTORY_QOS
+                                                                : dds::KEEP_LAST_HISTORY_QOS;
+  const dds::StatusMask mask = listener == nullptr ? dds::StatusMask::none()
+                                                   : dds::StatusMask::liveliness_changed()
+                                                         << dds::StatusMask::subscription_matched();
+  dds::DataReader* reader = subscriber_->create_datareader(topic.value(), qos, listener, mask);
+  if (reader == nullptr) {
+    return broken(std::string("Fast DDS refused the reader of topic ") + row.topic);
+  }
+  return reader;
+}
+
+}  // namespace mortise

@@ -1,0 +1,74 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/messages/channel.h"
+#include "idl/dds_channel.h"
+#include "idl/safe_type.h"
+#include "idl/topics.h"
+
+namespace mortise {
+
+namespace dds = eprosima::fastdds::dds;
+
+/// Hex of the first 12 bytes of a GUID: the participant.
+ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid);
+
+/// One DDS participant in one session: transport, discovery and endpoints after the topic table.
+/// Every creation is checked; each failure is one line.
+class Participant {
+ public:
+  enum class Side { kServer, kClient };
+
+  /// The listener may be null and must outlive the participant.
+  static Result<std::unique_ptr<Participant>> open(const DdsOptions& options, Side side,
+                                                   dds::DomainParticipantListener* listener);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  template <class Generated>
+  Result<dds::DataWriter*> open_writer(Topic topic) {
+    return open_writer(row_of(topic), new SafeType<Generated>(refused_));
+  }
+  template <class Generated>
+  Result<dds::DataReader*> open_reader(Topic topic, dds::DataReaderListener* listener) {
+    return open_reader(row_of(topic), new SafeType<Generated>(refused_), listener);
+  }
+
+  ClientKey key() const { return client_key(participant_->guid()); }
+  std::uint64_t refused() const { return refused_->load(std::memory_order_relaxed); }
+  std::uint64_t dropped() const { return dropped_->load(std::memory_order_relaxed); }
+
+ private:
+  explicit Participant(const DdsOptions& options) : options_(options) {}
+  /// Takes ownership of the type.
+  Result<dds::Topic*> open_topic(const TopicRow& row, dds::TopicDataType* type);
+  Result<dds::DataWriter*> open_writer(const TopicRow& row, dds::TopicDataType* type);
+  Result<dds::DataReader*> open_reader(const TopicRow& row, dds::TopicDataType* type,
+                                       dds::DataReaderListener* listener);
+
+  DdsOptions options_;
+  dds::DomainParticipant* participant_ = nullptr;
+  dds::Publisher* publisher_ = nullptr;
+  dds::Subscriber* subscriber_ = nullptr;
+  std::shared_ptr<std::atomic<std::uint64_t>> refused_ =
+      std::make_shared<std::atomic<std::uint64_t>>(0);
+  std::shared_ptr<std::atomic<std::uint64_t>> dropped_ =
+      std::make_shared<std::atomic<std::uint64_t>>(0);
+};
+
+}  // namespace mortise
