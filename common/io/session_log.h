@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "common/geometry/mesh.h"
+#include "common/io/mesh_import.h"
 #include "common/messages/increment.h"
 #include "common/messages/report.h"
 
@@ -21,6 +22,7 @@ struct LogHeader {
   std::string scenario_yaml;                                        ///< the text as it was played
   std::vector<std::pair<std::string, const TriangleMesh*>> meshes;  ///< distinct meshes by hash
   std::vector<std::string> mesh_of_part;                            ///< hash, by part index
+  std::vector<ImportReport> imports = {};  ///< by part index; empty when not known
 };
 
 /// One tick as it is recorded: what went in and what came out. Decisions were applied before the
@@ -33,29 +35,59 @@ struct TickRecord {
   StepReport report;
 };
 
+struct LogOptions {
+  bool compress = true;            ///< chunks; off: readers without zstd can open the log
+  std::size_t queue_ticks = 4096;  ///< more than a minute of a stuck disk at 60 ticks a second
+  std::size_t chunk_bytes = 1 << 20;
+  double flush_s = 1.0;  ///< longest time between two flushes to disk
+};
+
 /// Writes an MCAP file off the caller's thread. record() only queues (bounded); a full queue drops
 /// nothing silently: the dropped ticks are counted, said in dropped_ticks(), and marked in the log
-/// as a gap. Chunks are flushed each second.
+/// as a gap. Chunks are flushed each second. Ticks must rise; ticks in which nothing went in may be
+/// left out, a replay steps through them. Layout: session_log_format.md.
 class SessionLogWriter {
  public:
   static Result<std::unique_ptr<SessionLogWriter>> create(const std::filesystem::path& file,
-                                                          const LogHeader& header);
+                                                          const LogHeader& header,
+                                                          const LogOptions& options = {});
   virtual ~SessionLogWriter() = default;  ///< closes
   virtual void record(TickRecord record) = 0;
   virtual Status close() = 0;  ///< waits until all is on disk; writes index and summary
   virtual std::uint64_t dropped_ticks() const = 0;
   virtual std::uint64_t bytes_written() const = 0;
+  virtual Status status() const = 0;  ///< fails once the disk did: later ticks count as dropped
 };
 
-/// A log read back. Readable without its tail: `complete` says whether the end was found.
+/// Ticks that are not in the log though they happened.
+struct LogGap {
+  std::uint64_t after_tick = 0;  ///< last tick before it (0: none)
+  std::uint64_t until_tick = 0;  ///< first tick after it (0: none)
+  std::string reason;
+};
+
+/// A log read back. Readable without its tail: `complete` says whether the end was found. Poses of
+/// ticks are rounded, for viewing; a replay computes the exact ones.
 struct SessionLog {
   std::string session, scenario_name, scenario_yaml, engine_version, build_fingerprint;
   std::vector<std::pair<std::string, TriangleMesh>> meshes;
   std::vector<std::string> mesh_of_part;
-  std::vector<TickRecord> ticks;  ///< report holds tick, events, moved, refused and state_hash
+  std::vector<ImportReport> imports;  ///< by part index; may be empty
+  std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
   bool complete = false;
+  std::vector<LogGap> gaps;        ///< in the order of the log
   std::vector<std::string> notes;  ///< what was lost or skipped, in words
 };
 Result<SessionLog> read_session_log(const std::filesystem::path& file);
+
+/// What `recover` did.
+struct Recovery {
+  std::uint64_t ticks = 0, messages = 0, lost_chunks = 0;
+  bool was_complete = false;
+  std::vector<std::string> notes;  ///< what was lost, in words
+};
+/// Copies all that is whole into a new, closed log; holes are marked as gaps.
+Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
+                                     const std::filesystem::path& new_file);
 
 }  // namespace mortise

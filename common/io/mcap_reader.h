@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace mortise {
+
+struct McapSchema {
+  std::uint16_t id = 0;
+  std::string name, encoding;
+  std::span<const std::byte> data;
+};
+struct McapChannel {
+  std::uint16_t id = 0, schema = 0;
+  std::string topic, message_encoding;
+  std::map<std::string, std::string> metadata;
+};
+struct McapMessage {
+  std::uint64_t log_time_ns = 0, publish_time_ns = 0;
+  std::uint32_t sequence = 0;
+  std::span<const std::byte> data;
+};
+struct McapAttachment {
+  std::string name, media_type;
+  std::uint64_t log_time_ns = 0;
+  std::span<const std::byte> data;
+};
+
+/// Called in the order of the file; an empty function skips its kind. Spans live during the call.
+struct McapHandler {
+  std::function<void(const McapSchema&)> on_schema = {};
+  std::function<void(const McapChannel&)> on_channel = {};  ///< first sight of each channel
+  std::function<void(const McapChannel&, const McapMessage&)> on_message = {};
+  std::function<void(const McapAttachment&)> on_attachment = {};
+  std::function<void(const std::string& name, const std::map<std::string, std::string>&)>
+      on_metadata = {};
+  std::function<void(const std::string& what)> on_loss = {};  ///< messages were lost here
+};
+
+/// What a hostile file may cost.
+struct McapLimits {
+  std::uint64_t chunk_bytes = 256ULL << 20;  ///< of one decompressed chunk
+  /// All chunks together, as a multiple of the file's size: records of ours carry hashes and an
+  /// index, which keeps true logs below ten.
+  std::uint64_t expansion = 64;
+  std::uint64_t expansion_floor_bytes = 64ULL << 20;  ///< allowed to the smallest file
+};
+
+struct McapScan {
+  std::string profile, library;
+  bool complete = false;  ///< footer and closing magic were found where they belong
+  std::uint64_t file_bytes = 0, records = 0, chunks = 0, messages = 0, attachments = 0;
+  std::uint64_t lost_chunks = 0, lost_attachments = 0;
+  std::vector<std::string> notes;  ///< what was lost or odd, with its place in the file
+};
+
+/// Reads an MCAP file from front to back without need of its index: a file without its tail, or
+/// with damage in the middle, gives all chunks that are whole. Fails only when the file cannot be
+/// opened or does not begin as MCAP. Never throws on any content; memory is bounded by the limits
+/// and the size of the file.
+Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler& handler,
+                           const McapLimits& limits = {});
+
+}  // namespace mortise
