@@ -15,7 +15,8 @@ enum class ContactState : std::uint8_t {
   kContact,          ///< implies: none for t < t_clear; at t_contact within accuracy, and not yet
                      ///< overlapping
   kUndecided,        ///< work cap: none for t < t_clear, nothing is said beyond
-  kTouchingAtStart,  ///< within accuracy at t = 0, surfaces do not cross
+  kTouchingAtStart,  ///< within separation + accuracy at t = 0; no triangle lies deeper than twice
+                     ///< the accuracy in another
   kOverlappingAtStart,  ///< surfaces cross at t = 0, or one part is inside the other
 };
 
@@ -27,13 +28,21 @@ struct ContactQuery {
   double separation_mm = 0.0;  ///< first time within this distance (0: first touch)
   std::uint64_t work_cap = kCcdWorkCap;
   bool check_contained = true;  ///< ask whether one starts inside the other
+  /// Parts that touch at the start are the normal case in assembly. When set, such a pair is not
+  /// answered with kTouchingAtStart; the answer is the first time at which some triangle lies
+  /// deeper than accuracy_mm in one of the other part (kContact; at once when the touching places
+  /// press on) or that this never happens (kFree: the pair separates, slides or rolls). A pair that
+  /// already lies that deep and only slides may go an eighth of the accuracy deeper.
+  /// touched_at_start tells the case. Pairs that do not touch at the start are answered as ever.
+  bool ignore_touching_at_start = false;
 };
 
 struct CcdWork {
   std::uint64_t box_tests = 0, leaf_tests = 0, triangle_tests = 0, advances = 0;
 };
 
-/// 0 <= t_clear <= t_contact <= 1. World frame, mm.
+/// 0 <= t_clear <= t_contact <= 1. World frame, mm. touching / overlapping at start: both times 0.
+/// accuracy_mm is raised to sixteen times the rounding of the pair's coordinates where it is finer.
 struct FirstContact {
   ContactState state = ContactState::kUnknown;
   double t_clear = 0.0;
@@ -42,6 +51,9 @@ struct FirstContact {
       0.0;  ///< of the meshes at t_contact; at t = 1 a lower bound when free (0: not known)
   std::uint32_t triangle_a = 0, triangle_b = 0;
   Vec3 point_a_W = Vec3::Zero(), point_b_W = Vec3::Zero();
+  bool touched_at_start = false;  ///< with ignore_touching_at_start: and was let go
+  bool contained = false;  ///< kOverlappingAtStart, and no surfaces were found to cross: one starts
+                           ///< inside the other, or they share a skin
   CcdWork work;
 };
 
@@ -73,9 +85,15 @@ DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const 
                         CcdScratch& scratch,
                         double limit_mm = std::numeric_limits<double>::infinity());
 
-/// Do the surfaces cross or touch at these poses? And is one inside the other?
+/// Do the surfaces cross or touch (to rounding) at these poses? One part wholly inside the other
+/// does not count: see contained().
 bool surfaces_cross(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                     CcdScratch& scratch);
+
+/// Does a shell of one part lie inside the other, deeper than margin_mm, at these poses? For
+/// surfaces that do not cross. Open meshes have no inside: never.
+bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+               double margin_mm);
 
 /// The slow twin: sub-steps [0,1] and asks distance at each; never proves freedom, finds contacts
 /// no finer than a step.

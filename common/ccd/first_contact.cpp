@@ -1,0 +1,199 @@
+#include "common/ccd/first_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/check.h"
+#include "common/ccd/leaf_pair.h"
+#include "common/ccd/pair_tree.h"
+#include "common/ccd/start_state.h"
+
+namespace mortise {
+namespace {
+
+using namespace ccd;
+
+// Time is advanced to an eighth of the accuracy, so that quadratic convergence ends well below the
+// accuracy and rounding still lies far below that.
+constexpr double kAim = 0.125;
+constexpr double kRoundingsPerAccuracy = 16.0;
+
+class Query {
+ public:
+  Query(const ContactQuery& query, CcdScratch& scratch)
+      : query_(query),
+        scratch_(scratch),
+        a_(*query.a),
+        b_(*query.b),
+        motion_(a_, query.motion_a, b_, query.motion_b),
+        accuracy_mm_(std::max(query.accuracy_mm, kRoundingsPerAccuracy * motion_.rounding_mm())) {}
+
+  // 1. one inside the other: no surface need ever meet.
+  // 2. spheres too far for the tick.
+  // 3. the trees; a contact at t = 0 is looked at more closely.
+  // 4. those that only touch at the start, if wanted, once more with distances below zero.
+  FirstContact answer() {
+    if (query_.check_contained &&
+        contained(a_, query_.motion_a.X_W0, b_, query_.motion_b.X_W0, accuracy_mm_)) {
+      result_.contained = true;
+      return at_start(ContactState::kOverlappingAtStart, {});
+    }
+    if (spheres_stay_apart()) return result_;
+    Goal goal;
+    goal.contact_mm = query_.separation_mm + accuracy_mm_;
+    goal.target_mm = query_.separation_mm + kAim * accuracy_mm_;
+    run(goal);
+    if (result_.state == ContactState::kContact && result_.t_contact == 0.0) start();
+    return result_;
+  }
+
+ private:
+  bool spheres_stay_apart() {
+    const PairState& s = motion_.at(0.0);
+    const double apart_mm = s.p.norm() - a_.bvh().radius_mm - b_.bvh().radius_mm;
+    const auto travel_mm = [](const Motion& motion, const Bvh& bvh) {
+      return motion.travel_upper_bound_mm(bvh.radius_mm + (bvh.origin - motion.reference_P).norm(),
+                                          0.0, 1.0);
+    };
+    const double left_mm = apart_mm - travel_mm(query_.motion_a, a_.bvh()) -
+                           travel_mm(query_.motion_b, b_.bvh()) - motion_.rounding_mm();
+    if (left_mm <= query_.separation_mm + accuracy_mm_) return false;
+    result_.state = ContactState::kFree;
+    result_.t_clear = result_.t_contact = 1.0;
+    result_.distance_mm = left_mm;
+    return true;
+  }
+
+  FirstContact at_start(ContactState state, const Nearest& nearest) {
+    result_.state = state;
+    result_.t_clear = result_.t_contact = 0.0;
+    if (std::isfinite(nearest.distance_mm)) set(nearest, 0.0);
+    result_.distance_mm =
+        std::isfinite(nearest.distance_mm) ? std::max(0.0, nearest.distance_mm) : 0.0;
+    return result_;
+  }
+
+  void set(const Nearest& nearest, double t) {
+    result_.distance_mm = nearest.distance_mm;
+    result_.triangle_a = nearest.triangle_a;
+    result_.triangle_b = nearest.triangle_b;
+    result_.point_a_W = motion_.to_world(nearest.point_a, t);
+    result_.point_b_W = motion_.to_world(nearest.point_b, t);
+  }
+
+  void start() {
+    motion_.at(0.0);
+    StartQuery start_query;
+    start_query.contact_mm = query_.separation_mm + accuracy_mm_;
+    start_query.accuracy_mm = accuracy_mm_;
+    start_query.deep_mm = query_.separation_mm - (1.0 - kAim) * accuracy_mm_;
+    const StartState start = start_state(motion_, a_, b_, start_query, scratch_, result_.work);
+    if (start.overlapping) {
+      result_.contained = start.skin_shared;
+      at_start(ContactState::kOverlappingAtStart, start.nearest);
+      return;
+    }
+    at_start(ContactState::kTouchingAtStart, start.nearest);
+    if (!query_.ignore_touching_at_start) return;
+    result_.touched_at_start = true;
+    const double start_mm = start.nearest.distance_mm;
+    if (start.pressing) {
+      result_.state = ContactState::kContact;
+      return;
+    }
+    // A pair that already lies near the limit and only slides gets a new limit just below.
+    Goal goal;
+    goal.below_zero = true;
+    goal.exact_below_mm = accuracy_mm_;
+    goal.contact_mm = query_.separation_mm - (1.0 - kAim) * accuracy_mm_;
+    if (start_mm <= goal.contact_mm) goal.contact_mm = start_mm - 0.5 * kAim * accuracy_mm_;
+    goal.target_mm = goal.contact_mm - 0.5 * kAim * accuracy_mm_;
+    run(goal);
+  }
+
+  void run(const Goal& goal) {
+    const Bvh& a = a_.bvh();
+    const Bvh& b = b_.bvh();
+    const BoxKernels& kernels = box_kernels();
+    CcdWork& work = result_.work;
+    std::vector<Item>& heap = scratch_.heap;
+    heap.clear();
+    heap.push_back(root_pair(a, b));
+    while (!heap.empty()) {
+      const Item item = pop(heap);
+      if (work.box_tests + work.leaf_tests >= query_.work_cap) {
+        undecided(item.t);
+        return;
+      }
+      if (is_leaf_pair(item)) {
+        if (!advance_leaf(item, goal)) return;
+        continue;
+      }
+      ++work.box_tests;
+      motion_.at(item.t);
+      open(item, a, b, motion_.frame(goal.target_mm), kernels.advance_a, kernels.advance_b,
+           [&](Item& child, double dt) {
+             child.t = item.t + dt;
+             if (child.t < 1.0) push(heap, child);
+           });
+    }
+    result_.state = ContactState::kFree;
+    result_.t_clear = result_.t_contact = 1.0;
+    result_.distance_mm = 0.0;
+  }
+
+  // Advances while the pair is the earliest of all. False when the query is decided.
+  bool advance_leaf(const Item& item, const Goal& goal) {
+    LeafPair leaves(a_.bvh(), item.a, b_.bvh(), item.b);
+    std::vector<Item>& heap = scratch_.heap;
+    double t = item.t;
+    while (true) {
+      motion_.at(t);
+      ++result_.work.advances;
+      const LeafAdvance advance = leaves.advance(motion_, goal, t == 0.0, result_.work);
+      if (advance.contact) {
+        result_.state = ContactState::kContact;
+        result_.t_clear = result_.t_contact = t;
+        set(advance.nearest, t);
+        return false;
+      }
+      const double next = t + advance.dt;
+      if (next >= 1.0) return true;
+      if (next == t || result_.work.box_tests + result_.work.leaf_tests >= query_.work_cap) {
+        undecided(t);
+        return false;
+      }
+      t = next;
+      if (!heap.empty() && t > heap.front().t) {
+        Item again = item;
+        again.t = t;
+        push(heap, again);
+        return true;
+      }
+    }
+  }
+
+  void undecided(double t) {
+    result_.state = ContactState::kUndecided;
+    result_.t_clear = t;
+    result_.t_contact = 1.0;
+    result_.distance_mm = 0.0;
+  }
+
+  const ContactQuery& query_;
+  CcdScratch& scratch_;
+  const Solid& a_;
+  const Solid& b_;
+  PairMotion motion_;
+  double accuracy_mm_;
+  FirstContact result_;
+};
+
+}  // namespace
+
+FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
+  MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
+  return Query(query, scratch).answer();
+}
+
+}  // namespace mortise

@@ -1,0 +1,105 @@
+#pragma once
+#include <algorithm>
+
+#include "common/ccd/leaf_pair.h"
+
+// Pairs of nodes of two trees, shared by every traversal of this room.
+namespace mortise::ccd {
+
+using Item = CcdScratch::Item;
+
+/// Earliest (or nearest) first; equal keys by the nodes, so that the order is total.
+inline bool later(const Item& x, const Item& y) {
+  if (x.t != y.t) return x.t > y.t;
+  if (x.a != y.a) return x.a > y.a;
+  return x.b > y.b;
+}
+
+inline void push(std::vector<Item>& heap, const Item& item) {
+  heap.push_back(item);
+  std::push_heap(heap.begin(), heap.end(), later);
+}
+
+inline Item pop(std::vector<Item>& heap) {
+  std::pop_heap(heap.begin(), heap.end(), later);
+  const Item item = heap.back();
+  heap.pop_back();
+  return item;
+}
+
+inline Item root_pair(const Bvh& a, const Bvh& b) { return {0.0, a.root, b.root, -1, -1, 0, 0}; }
+
+inline bool is_leaf_pair(const Item& item) { return item.a < 0 && item.b < 0; }
+
+/// Box of a node, as its parent holds it; of the root: all of the mesh.
+inline OneBox box_of(const Bvh& bvh, std::int32_t parent, std::int8_t slot) {
+  OneBox box;
+  for (int c = 0; c < 3; ++c) {
+    if (parent >= 0) {
+      box.center[c] = bvh.nodes[parent].local_center[c][slot];
+      box.half[c] = bvh.nodes[parent].half[c][slot];
+    } else {
+      box.center[c] = 0.0F;
+      // Five ulp up: the conversion to float and the rounding of centre and half extent.
+      box.half[c] = static_cast<float>(0.5 * (bvh.bounds.hi[c] - bvh.bounds.lo[c]) +
+                                       8.0 * kUnitRoundoff * bvh.extent_mm) *
+                    (1.0F + 3e-7F);
+    }
+  }
+  return box;
+}
+
+/// Opens the larger node of a pair and asks the kernel for a value of each child; hands every child
+/// pair to f(child_item, value).
+template <class KernelA, class KernelB, class F>
+void open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, KernelA kernel_a,
+          KernelB kernel_b, F f) {
+  alignas(32) float value[Bvh::kWidth];
+  const bool open_a = item.b < 0 || (item.a >= 0 && a.nodes[item.a].size >= b.nodes[item.b].size);
+  const Bvh::Node& node = open_a ? a.nodes[item.a] : b.nodes[item.b];
+  const EightBoxes eight{node.local_center, node.half};
+  if (open_a)
+    kernel_a(frame, eight, box_of(b, item.parent_b, item.slot_b), value);
+  else
+    kernel_b(frame, box_of(a, item.parent_a, item.slot_a), eight, value);
+  for (int k = 0; k < node.count; ++k) {
+    Item child = item;
+    if (open_a) {
+      child.a = node.child[k];
+      child.parent_a = item.a;
+      child.slot_a = static_cast<std::int8_t>(k);
+    } else {
+      child.b = node.child[k];
+      child.parent_b = item.b;
+      child.slot_b = static_cast<std::int8_t>(k);
+    }
+    f(child, static_cast<double>(value[k]));
+  }
+}
+
+/// Every leaf pair whose boxes are within limit_mm at motion.state(): f(LeafPair&) -> bool, true to
+/// stop. Depth first; uses scratch.heap as a stack.
+template <class F>
+bool each_leaf_pair_within(PairMotion& motion, const Bvh& a, const Bvh& b, double limit_mm,
+                           CcdScratch& scratch, CcdWork& work, F f) {
+  const BoxKernels& kernels = box_kernels();
+  const BoxFrame& frame = motion.frame(0.0);
+  scratch.heap.clear();
+  scratch.heap.push_back(root_pair(a, b));
+  while (!scratch.heap.empty()) {
+    const Item item = scratch.heap.back();
+    scratch.heap.pop_back();
+    if (is_leaf_pair(item)) {
+      LeafPair leaves(a, item.a, b, item.b);
+      if (f(leaves)) return true;
+      continue;
+    }
+    ++work.box_tests;
+    open(item, a, b, frame, kernels.lower_a, kernels.lower_b, [&](const Item& child, double lower) {
+      if (lower <= limit_mm) scratch.heap.push_back(child);
+    });
+  }
+  return false;
+}
+
+}  // namespace mortise::ccd
