@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,11 +91,12 @@ class Client {
   /// Takes what has come, never blocks, sends what is due (joins, heartbeats, snapshot requests).
   ClientUpdate poll();
 
-  bool synced() const { return synced_; }  ///< a snapshot has come and no gap is open
+  bool synced() const { return synced_; }  ///< a snapshot has come and no gap has stood for long
   bool server_present() const { return server_present_; }
   const std::string& session() const { return session_; }
   const std::string& policy() const { return policy_; }
   double tick_rate_hz() const { return tick_rate_hz_; }
+  /// Before the first snapshot a part may be known by its pose alone, without a name.
   const std::map<PartId, KnownPart>& parts() const { return parts_; }
   const std::vector<UserInfo>& users() const { return session_users_; }
   const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
@@ -107,20 +109,27 @@ class Client {
     JoinState state = JoinState::kUnknown;
     UserId id;
     std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
-    std::int64_t joined_at_ns = 0, heartbeat_at_ns = 0;  ///< last sent
+    bool was_joined = false;  ///< joins again by itself, also when refused
+    std::optional<std::int64_t> join_sent_ns;
+    std::int64_t heartbeat_at_ns = 0;
     std::string refusal;
   };
 
   std::uint64_t command(LocalUser user, PartId part, CommandKind kind);
-  void ask_to_join(LocalUserState& user, bool again);
   LocalUserState* own_user(UserId id);
-  void lose_user(UserId id);
-  void apply_joins(const ClientInput& input, ClientUpdate& update);
-  void apply_answers(const ClientInput& input, ClientUpdate& update);
+  void forget_server();
+  void apply_join(const JoinReply& reply, ClientUpdate& update);
+  void apply_reply(const Reply& reply, ClientUpdate& update);
+  void apply_refusal(const RefusedIncrement& refused, ClientUpdate& update);
   void apply_snapshot(const Snapshot& snapshot, ClientUpdate& update);
+  void offer_snapshot(const Snapshot& snapshot, ClientUpdate& update);
+  void apply_scene(const Snapshot& snapshot);
   void apply_poses(const PoseBatch& batch, ClientUpdate& update);
+  void collect_events(const std::vector<ClashEvent>& events);
   void apply_events(ClientUpdate& update);
+  void watch_gap(ClientUpdate& update);
   void send_what_is_due();
+  void set_holder(PartId part, UserId holder);
 
   ClientChannel& channel_;
   ClientOptions options_;
@@ -133,10 +142,14 @@ class Client {
   std::vector<UserInfo> session_users_;
   std::map<ClashId, ClashEvent> open_clashes_;
   std::map<std::uint64_t, ClashEvent> pending_;  ///< events beyond a gap, by seq
+  std::optional<Snapshot> held_snapshot_;        ///< ahead of the events, which may still come
   std::uint64_t event_seq_ = 0;                  ///< applied up to here
   std::uint64_t known_event_seq_ = 0;            ///< the server has said that this one exists
+  std::uint64_t stale_tick_ = 0;                 ///< poses up to here may have been missed
   bool have_snapshot_ = false, synced_ = false, server_present_ = false;
-  std::int64_t gap_since_ns_ = 0, poses_stale_since_ns_ = 0, requested_at_ns_ = 0;  ///< 0: none
+  /// Since when; none: there is no such thing.
+  std::optional<std::int64_t> gap_since_ns_, poses_stale_since_ns_, requested_at_ns_;
+  std::set<PartId> changed_;  ///< in this poll()
   std::int64_t now_ns_ = 0;
   ClientStatistics statistics_;
 };

@@ -1,0 +1,362 @@
+#include "client/client.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace mortise {
+namespace {
+
+/// Events beyond a gap that are kept; more are covered by the snapshot that the gap asks for.
+constexpr std::size_t kMaxPendingEvents = 65536;
+
+std::int64_t steady_now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+}  // namespace
+
+Client::Client(ClientChannel& channel, const ClientOptions& options, Clock clock)
+    : channel_(channel), options_(options), clock_(std::move(clock)) {
+  if (!clock_) clock_ = steady_now_ns;
+  now_ns_ = clock_();
+}
+
+LocalUser Client::add_user(const std::string& name, const std::string& role) {
+  LocalUserState& user = users_.emplace_back();
+  user.name = name;
+  user.role = role;
+  user.state = JoinState::kJoining;
+  // The same nonce for every try: a server that has already said yes says it again.
+  user.nonce = next_nonce_++;
+  return users_.size() - 1;
+}
+
+void Client::leave(LocalUser index) {
+  LocalUserState& user = users_[index];
+  if (user.id) channel_.leave(user.id);
+  user.state = JoinState::kLeft;
+  user.id = UserId{};
+}
+
+JoinState Client::join_state(LocalUser user) const { return users_[user].state; }
+UserId Client::user_id(LocalUser user) const { return users_[user].id; }
+const std::string& Client::refusal_text(LocalUser user) const { return users_[user].refusal; }
+
+std::uint64_t Client::command(LocalUser index, PartId part, CommandKind kind) {
+  LocalUserState& user = users_[index];
+  if (user.state != JoinState::kJoined) {
+    ++statistics_.not_joined;
+    return 0;
+  }
+  channel_.send(Command{user.id, part, ++user.command_seq, kind});
+  return user.command_seq;
+}
+
+std::uint64_t Client::grab(LocalUser user, PartId part) {
+  return command(user, part, CommandKind::kGrab);
+}
+std::uint64_t Client::release(LocalUser user, PartId part) {
+  return command(user, part, CommandKind::kRelease);
+}
+std::uint64_t Client::undo(LocalUser user, PartId part) {
+  return command(user, part, CommandKind::kUndo);
+}
+std::uint64_t Client::reset(LocalUser user, PartId part) {
+  return command(user, part, CommandKind::kReset);
+}
+
+std::uint64_t Client::send(LocalUser index, PartId part, const Vec3& translation_mm,
+                           const Vec3& rotation_rad) {
+  LocalUserState& user = users_[index];
+  if (user.state != JoinState::kJoined) {
+    ++statistics_.not_joined;
+    return 0;
+  }
+  Increment increment;
+  increment.user = user.id;
+  increment.part = part;
+  increment.seq = ++user.increment_seq;
+  increment.translation_mm = translation_mm;
+  increment.rotation_rad = rotation_rad;
+  channel_.send(increment, clock_());
+  ++statistics_.increments_sent;
+  return increment.seq;
+}
+
+PartId Client::find_part(const std::string& name) const {
+  for (const auto& [id, part] : parts_) {
+    if (part.info.name == name) return id;
+  }
+  return {};
+}
+
+ClientUpdate Client::poll() {
+  ClientUpdate update;
+  ClientInput input = channel_.take();
+  now_ns_ = clock_();
+  changed_.clear();
+  server_present_ = input.server_present;
+  if (input.server_lost) {
+    update.server_lost = true;
+    forget_server();
+  }
+  for (const JoinReply& reply : input.join_replies) apply_join(reply, update);
+  for (const Reply& reply : input.replies) apply_reply(reply, update);
+  for (const RefusedIncrement& refused : input.refused) apply_refusal(refused, update);
+  // Events before snapshots: a snapshot that only repeats them must not hide them.
+  collect_events(input.events);
+  apply_events(update);
+  for (const Snapshot& snapshot : input.snapshots) offer_snapshot(snapshot, update);
+  for (const PoseBatch& batch : input.poses) apply_poses(batch, update);
+  if (input.poses_missed > 0) {
+    statistics_.poses_missed += input.poses_missed;
+    stale_tick_ = statistics_.highest_tick;
+    if (!poses_stale_since_ns_) poses_stale_since_ns_ = now_ns_;
+  }
+  apply_events(update);
+  watch_gap(update);
+  if (!input.pulses.empty()) update.pulse = input.pulses.back();
+  update.meshes = std::move(input.meshes);
+  update.changed.assign(changed_.begin(), changed_.end());
+  send_what_is_due();
+  return update;
+}
+
+Client::LocalUserState* Client::own_user(UserId id) {
+  if (!id) return nullptr;
+  const auto found = std::find_if(users_.begin(), users_.end(),
+                                  [id](const LocalUserState& user) { return user.id == id; });
+  return found == users_.end() ? nullptr : &*found;
+}
+
+void Client::forget_server() {
+  ++statistics_.server_losses;
+  for (LocalUserState& user : users_) {
+    if (user.state != JoinState::kJoined) continue;
+    user.state = JoinState::kJoining;
+    user.id = UserId{};
+    user.join_sent_ns.reset();
+  }
+  for (auto& [id, part] : parts_) part.tick = 0;  // another server counts anew
+  pending_.clear();
+  held_snapshot_.reset();
+  event_seq_ = known_event_seq_ = stale_tick_ = 0;
+  have_snapshot_ = synced_ = false;
+  gap_since_ns_.reset();
+  poses_stale_since_ns_.reset();
+  requested_at_ns_.reset();
+}
+
+void Client::apply_join(const JoinReply& reply, ClientUpdate& update) {
+  for (LocalUser index = 0; index < users_.size(); ++index) {
+    LocalUserState& user = users_[index];
+    if (user.nonce != reply.nonce || user.state != JoinState::kJoining) continue;
+    if (reply.refusal == Refusal::kNone) {
+      user.state = JoinState::kJoined;
+      user.id = reply.user;
+      user.was_joined = true;
+      user.refusal.clear();
+      user.heartbeat_at_ns = now_ns_ - in_ns(options_.heartbeat_s);
+      update.joined.push_back(index);
+    } else {
+      user.refusal = reply.text;
+      // Who had joined keeps trying: the server may not have noticed yet that its old self is gone.
+      if (!user.was_joined) user.state = JoinState::kRefused;
+    }
+  }
+}
+
+void Client::set_holder(PartId id, UserId holder) {
+  const auto found = parts_.find(id);
+  if (found == parts_.end() || found->second.info.holder == holder) return;
+  found->second.info.holder = holder;
+  changed_.insert(id);
+}
+
+void Client::apply_reply(const Reply& reply, ClientUpdate& update) {
+  if (reply.part) set_holder(reply.part, reply.holder);
+  LocalUserState* user = own_user(reply.user);
+  if (user == nullptr) return;
+  update.replies.push_back(reply);
+}
+
+void Client::apply_refusal(const RefusedIncrement& refused, ClientUpdate& update) {
+  LocalUserState* user = own_user(refused.user);
+  if (user == nullptr) return;
+  update.refused.push_back(refused);
+  if (refused.reason == Refusal::kUnknownUser) {  // we were taken for gone: join again
+    user->state = JoinState::kJoining;
+    user->id = UserId{};
+    user->join_sent_ns.reset();
+  }
+}
+
+void Client::apply_scene(const Snapshot& snapshot) {
+  session_ = snapshot.session;
+  policy_ = snapshot.policy;
+  tick_rate_hz_ = snapshot.tick_rate_hz;
+  session_users_ = snapshot.users;
+  std::map<PartId, KnownPart> parts;
+  for (const PartInfo& info : snapshot.parts) {
+    KnownPart& part = parts[info.part];
+    part.info = info;
+    part.tick = snapshot.tick;
+    const auto known = parts_.find(info.part);
+    if (known != parts_.end() && known->second.tick > snapshot.tick) {
+      part.info.X_WP = known->second.info.X_WP;
+      part.info.holder = known->second.info.holder;
+      part.tick = known->second.tick;
+    }
+    if (known == parts_.end() || known->second.info.holder != part.info.holder ||
+        !identical(known->second.info.X_WP, part.info.X_WP)) {
+      changed_.insert(info.part);
+    }
+  }
+  parts_ = std::move(parts);
+  if (snapshot.tick >= stale_tick_) poses_stale_since_ns_.reset();
+  statistics_.highest_tick = std::max(statistics_.highest_tick, snapshot.tick);
+}
+
+void Client::apply_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
+  if (have_snapshot_) {
+    statistics_.events_skipped += snapshot.event_seq - event_seq_;
+  }
+  have_snapshot_ = true;
+  event_seq_ = snapshot.event_seq;
+  statistics_.highest_event_seq = event_seq_;
+  known_event_seq_ = std::max(known_event_seq_, event_seq_);
+  open_clashes_.clear();
+  for (const ClashEvent& clash : snapshot.open_clashes) open_clashes_[clash.clash] = clash;
+  // What the snapshot covers is no event any more.
+  pending_.erase(pending_.begin(), pending_.upper_bound(event_seq_));
+  held_snapshot_.reset();
+  update.resynced = true;
+  ++statistics_.snapshots_applied;
+}
+
+void Client::offer_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
+  if (have_snapshot_ && snapshot.event_seq < event_seq_) {
+    ++statistics_.snapshots_stale;  // of its clashes; its poses are compared by tick
+    apply_scene(snapshot);
+    return;
+  }
+  apply_scene(snapshot);
+  if (!have_snapshot_) {
+    apply_snapshot(snapshot, update);
+  } else if (snapshot.event_seq > event_seq_) {
+    // The events in between may still be on their way; watch_gap() decides.
+    known_event_seq_ = std::max(known_event_seq_, snapshot.event_seq);
+    held_snapshot_ = snapshot;
+  }
+}
+
+void Client::apply_poses(const PoseBatch& batch, ClientUpdate& update) {
+  for (const PartPose& pose : batch.parts) {
+    if (have_snapshot_ && !parts_.contains(pose.part)) continue;
+    KnownPart& part = parts_[pose.part];
+    part.info.part = pose.part;
+    if (batch.tick < part.tick) {
+      ++statistics_.poses_stale;
+      continue;
+    }
+    part.tick = batch.tick;
+    part.info.X_WP = pose.X_WP;
+    part.info.holder = pose.holder;
+    changed_.insert(pose.part);
+  }
+  for (const Ack& ack : batch.acks) {
+    LocalUserState* user = own_user(ack.user);
+    if (user == nullptr || ack.seq <= user->acked_seq) continue;
+    user->acked_seq = ack.seq;
+    if (ack.sent_ns != 0) {
+      update.latency_ms.push_back(static_cast<double>(now_ns_ - ack.sent_ns) * 1e-6);
+    }
+  }
+  if (batch.keyframe && batch.tick >= stale_tick_) poses_stale_since_ns_.reset();
+  known_event_seq_ = std::max(known_event_seq_, batch.event_seq);
+  statistics_.highest_tick = std::max(statistics_.highest_tick, batch.tick);
+}
+
+void Client::collect_events(const std::vector<ClashEvent>& events) {
+  for (const ClashEvent& event : events) {
+    if ((have_snapshot_ && event.seq <= event_seq_) || !pending_.emplace(event.seq, event).second) {
+      ++statistics_.events_duplicate;
+    }
+    known_event_seq_ = std::max(known_event_seq_, event.seq);
+  }
+  while (pending_.size() > kMaxPendingEvents) pending_.erase(pending_.begin());
+}
+
+void Client::apply_events(ClientUpdate& update) {
+  if (!have_snapshot_) return;
+  while (!pending_.empty() && pending_.begin()->first == event_seq_ + 1) {
+    ClashEvent event = std::move(pending_.begin()->second);
+    pending_.erase(pending_.begin());
+    event_seq_ = event.seq;
+    if (event.kind == ClashEvent::Kind::kEnd) {
+      open_clashes_.erase(event.clash);
+    } else {
+      open_clashes_[event.clash] = event;
+    }
+    update.events.push_back(std::move(event));
+    ++statistics_.events_applied;
+  }
+  statistics_.highest_event_seq = event_seq_;
+  if (held_snapshot_ && held_snapshot_->event_seq <= event_seq_) held_snapshot_.reset();
+}
+
+void Client::watch_gap(ClientUpdate& update) {
+  const bool open = have_snapshot_ && known_event_seq_ > event_seq_;
+  if (!open) {
+    gap_since_ns_.reset();
+    synced_ = have_snapshot_;
+    return;
+  }
+  if (!gap_since_ns_) gap_since_ns_ = now_ns_;
+  if (now_ns_ - *gap_since_ns_ < in_ns(options_.resync_after_s)) return;
+  if (synced_) ++statistics_.gaps;
+  synced_ = false;
+  if (!held_snapshot_ || held_snapshot_->event_seq <= event_seq_) return;
+  const Snapshot snapshot = std::move(*held_snapshot_);
+  apply_snapshot(snapshot, update);
+  apply_events(update);
+  if (known_event_seq_ == event_seq_) {
+    gap_since_ns_.reset();
+    synced_ = true;
+  }
+}
+
+void Client::send_what_is_due() {
+  if (!server_present_) return;
+  for (LocalUserState& user : users_) {
+    if (user.state == JoinState::kJoining &&
+        (!user.join_sent_ns || now_ns_ - *user.join_sent_ns >= in_ns(options_.join_retry_s))) {
+      user.join_sent_ns = now_ns_;
+      channel_.join(user.nonce, user.name, user.role);
+      ++statistics_.joins_sent;
+    }
+    if (user.state == JoinState::kJoined &&
+        now_ns_ - user.heartbeat_at_ns >= in_ns(options_.heartbeat_s)) {
+      user.heartbeat_at_ns = now_ns_;
+      channel_.heartbeat(user.id);
+    }
+  }
+  const bool gap = !synced_ && have_snapshot_;
+  const bool stale =
+      poses_stale_since_ns_ && now_ns_ - *poses_stale_since_ns_ >= in_ns(options_.pose_resync_s);
+  // A kept snapshot comes by itself soon after the server is found.
+  if (!have_snapshot_ && !requested_at_ns_) requested_at_ns_ = now_ns_;
+  if ((gap || stale || !have_snapshot_) &&
+      (!requested_at_ns_ || now_ns_ - *requested_at_ns_ >= in_ns(options_.resync_retry_s))) {
+    requested_at_ns_ = now_ns_;
+    channel_.request_snapshot();
+    ++statistics_.snapshots_requested;
+  }
+}
+
+}  // namespace mortise
