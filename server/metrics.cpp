@@ -9,7 +9,7 @@ std::size_t DurationHistogram::bucket_of(std::uint64_t ns) {
   // Below 2 * kPerOctave a bucket is a nanosecond; above, the five bits after the leading one
   // choose it.
   if (ns < 2 * kPerOctave) return static_cast<std::size_t>(ns);
-  const int shift = std::bit_width(ns) - 6;
+  const int shift = static_cast<int>(std::bit_width(ns)) - 6;
   const std::size_t bucket = static_cast<std::size_t>(shift) * kPerOctave + (ns >> shift);
   return std::min(bucket, std::size_t{kPerOctave * kOctaves - 1});
 }

@@ -104,6 +104,7 @@ Result<std::unique_ptr<SessionLogWriter>> open_log(const std::string& file,
     header.mesh_of_part.push_back(part.solid->hash());
   }
   header.meshes.assign(meshes.begin(), meshes.end());
+  header.imports = loaded.scene.imports;
   return SessionLogWriter::create(path, header);
 }
 

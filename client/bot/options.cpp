@@ -1,0 +1,65 @@
+#include "client/bot/options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "common/base/result.h"
+
+namespace mortise {
+
+BotCommandLine read_bot_command_line(int argc, char** argv) {
+  BotCommandLine line;
+  BotOptions& o = line.options;
+  CLI::App app{"mortise-bot: designers without hands, for load, tests and demos"};
+  app.add_option("--session", o.session, "Name of the session")->capture_default_str();
+  app.add_option("--domain", o.domain, "DDS domain")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  app.add_option("--interface", o.interface, "IPv4 address of the own interface")
+      ->capture_default_str();
+  app.add_option("--server", o.server, "IPv4 address of the server; default: the own interface");
+  app.add_option("--port", o.port, "Discovery port of the server; 0: the domain's own")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--users", o.users, "So many users in this process")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--names", o.names, "Their names, comma separated")->delimiter(',');
+  app.add_option("--behaviour", o.behaviour, "What they do")
+      ->check(CLI::IsMember({"insert", "wander", "shake", "fight", "script"}))
+      ->capture_default_str();
+  app.add_option("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)");
+  app.add_option("--part", o.part, "Part to begin with (fight: the part that all want)");
+  app.add_option("--seed", o.seed, "Seed of what is random")->capture_default_str();
+  app.add_option("--rate", o.rate_hz, "Increments a second and user")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--duration", o.duration_s, "Act for so many seconds; 0: until the script ends")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wait", o.wait_s, "Wait so long for the server")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--delay", o.delay_s, "Wait so long between joining and the first act")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--linger", o.linger_s, "Listen on for so long after the last act")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_flag("--observer", o.observer, "Only look and count");
+  app.add_flag("--json", o.json, "Report as one JSON document");
+  app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
+  app.add_option("--max-p99-ms", o.max_p99_ms,
+                 "Exit with 5 when the 99th percentile of the latency is above")
+      ->check(CLI::PositiveNumber);
+  app.footer(
+      "Exit codes: 0 ok, 1 no server or refused, 2 usage, 3 bad play file, 5 latency above the "
+      "limit.");
+  try {
+    app.parse(argc, argv);
+    if (o.behaviour == "script" && o.play.empty() && !o.observer) {
+      throw CLI::ValidationError("--behaviour script needs --play FILE");
+    }
+  } catch (const CLI::ParseError& error) {
+    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return line;
+}
+
+}  // namespace mortise

@@ -1,0 +1,154 @@
+#include "client/bot/tally.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/hash.h"
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+void add_verdict(StateHash& hash, const Verdict& verdict) {
+  hash.add(static_cast<std::uint64_t>(verdict.collision_class));
+  hash.add(verdict.delta_mm.lo);
+  hash.add(verdict.delta_mm.hi);
+  hash.add(verdict.fake_below_mm);
+  hash.add(verdict.real_above_mm);
+  for (int i = 0; i < 3; ++i) hash.add(verdict.point_W[i]);
+}
+
+void add_clash(StateHash& hash, const ClashEvent& event) {
+  hash.add(std::uint64_t{event.clash.value});
+  hash.add(std::uint64_t{event.part_a.value});
+  hash.add(std::uint64_t{event.part_b.value});
+  add_verdict(hash, event.verdict);
+}
+
+}  // namespace
+
+void Tally::add(const ClientUpdate& update, const Client& client) {
+  latency_ms_.insert(latency_ms_.end(), update.latency_ms.begin(), update.latency_ms.end());
+  for (const RefusedIncrement& refused : update.refused) {
+    ++refused_[std::min<std::size_t>(static_cast<std::size_t>(refused.reason), kRefusalCount - 1)];
+  }
+  for (const Reply& reply : update.replies) {
+    ++replies_;
+    if (reply.refusal != Refusal::kNone) ++commands_refused_;
+  }
+  for (const ClashEvent& event : update.events) {
+    if (first_seq_ == 0) first_seq_ = event.seq;
+    last_seq_ = event.seq;
+    ++events_;
+    ++events_by_kind_[static_cast<std::size_t>(event.kind) & 3U];
+    CollisionClass& worst = worst_[event.clash];
+    worst = std::max({worst, event.worst_class, event.verdict.collision_class});
+    StateHash hash;
+    hash.add(event_hash_);
+    hash.add(event.seq);
+    hash.add(event.tick);
+    hash.add(static_cast<std::uint64_t>(event.kind));
+    hash.add(std::uint64_t{event.user.value});
+    hash.add(event.t_contact);
+    add_clash(hash, event);
+    event_hash_ = hash.value();
+  }
+  if (update.resynced) {
+    ++resyncs_;
+    for (const auto& [id, clash] : client.open_clashes()) {
+      worst_[id] = std::max(worst_[id], clash.worst_class);
+    }
+  }
+  if (update.server_lost) ++server_losses_;
+  meshes_ += update.meshes.size();
+}
+
+std::uint64_t Tally::refused() const {
+  std::uint64_t sum = 0;
+  for (std::uint64_t count : refused_) sum += count;
+  return sum;
+}
+
+double Tally::latency_percentile_ms(double fraction) const {
+  if (latency_ms_.empty()) return 0.0;
+  std::vector<double> sorted = latency_ms_;
+  const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
+  const auto at = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
+  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
+  return sorted[static_cast<std::size_t>(at)];
+}
+
+std::string Tally::event_hash() const { return hex(event_hash_); }
+
+nlohmann::ordered_json Tally::json() const {
+  nlohmann::ordered_json json;
+  json["latency_ms"] = {{"count", latency_ms_.size()},
+                        {"p50", latency_percentile_ms(0.5)},
+                        {"p90", latency_percentile_ms(0.9)},
+                        {"p99", latency_percentile_ms(0.99)},
+                        {"max", latency_percentile_ms(1.0)}};
+  json["refused"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 1; i < refused_.size(); ++i) {
+    if (refused_[i] == 0) continue;
+    json["refused"][std::string(name_of(static_cast<Refusal>(i)))] = refused_[i];
+  }
+  json["replies"] = replies_;
+  json["commands_refused"] = commands_refused_;
+  json["events"] = {{"count", events_},
+                    {"first_seq", first_seq_},
+                    {"last_seq", last_seq_},
+                    {"begin", events_by_kind_[1]},
+                    {"change", events_by_kind_[2]},
+                    {"end", events_by_kind_[3]},
+                    {"hash", event_hash()}};
+  std::array<std::uint64_t, 4> by_class{};
+  for (const auto& [id, worst] : worst_) ++by_class[static_cast<std::size_t>(worst) & 3U];
+  json["clashes_seen"] = {{"real", by_class[3]}, {"potential", by_class[2]}, {"fake", by_class[1]}};
+  json["resyncs"] = resyncs_;
+  json["server_losses"] = server_losses_;
+  json["meshes"] = meshes_;
+  return json;
+}
+
+std::string pose_hash(const Client& client) {
+  StateHash hash;
+  for (const auto& [id, part] : client.parts()) {
+    hash.add(std::uint64_t{id.value});
+    for (int i = 0; i < 4; ++i) hash.add(part.info.X_WP.q.coeffs()[i]);
+    for (int i = 0; i < 3; ++i) hash.add(part.info.X_WP.p[i]);
+  }
+  return hex(hash.value());
+}
+
+std::string clash_hash(const Client& client) {
+  StateHash hash;
+  for (const auto& [id, clash] : client.open_clashes()) add_clash(hash, clash);
+  return hex(hash.value());
+}
+
+nlohmann::ordered_json state_json(const Client& client) {
+  nlohmann::ordered_json json;
+  json["pose_hash"] = pose_hash(client);
+  json["clash_hash"] = clash_hash(client);
+  json["poses"] = nlohmann::ordered_json::object();
+  for (const auto& [id, part] : client.parts()) {
+    const Pose& X = part.info.X_WP;
+    json["poses"][part.info.name] = {X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(), X.q.z()};
+  }
+  json["open_clashes"] = nlohmann::ordered_json::array();
+  for (const auto& [id, clash] : client.open_clashes()) {
+    json["open_clashes"].push_back(
+        {{"clash", id.value},
+         {"part_a", clash.part_a.value},
+         {"part_b", clash.part_b.value},
+         {"class", name_of(clash.verdict.collision_class)},
+         {"delta_mm", {clash.verdict.delta_mm.lo, clash.verdict.delta_mm.hi}}});
+  }
+  return json;
+}
+
+}  // namespace mortise
