@@ -30,7 +30,8 @@ struct Scenario {
   };
   struct FeatureSpec {
     std::string name;
-    Surface surface;  ///< part frame
+    Surface surface;  ///< part frame; kind kUnknown: the generator's feature of this name
+    std::optional<Interval> along_mm;  ///< extent along the axis from `point`; none: unbounded
     std::optional<Tolerance> tolerance;
     std::string iso_class;    ///< "H7" or "g6"; empty when none
     double nominal_mm = 0.0;  ///< nominal diameter of iso_class; 0: twice the radius

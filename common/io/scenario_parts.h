@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/io/scenario_yaml.h"
+#include "common/session/scenario.h"
+
+/// The parts of a scenario file: meshes, poses, features, tolerances. Private to the reader.
+namespace mortise {
+
+/// Largest number of parts a scenario may have after instances and repeats.
+inline constexpr std::size_t kMaxParts = 100'000;
+
+/// Reads one entry of `parts` and appends it, once per instance or repeat.
+void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario);
+
+/// "±0.05", {plus_minus: 0.05}, {profile: 0.1, unequal: 0.03}, {lower: -0.02, upper: 0.01}.
+std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YAML::Node& node,
+                                                  const std::string& what);
+
+/// The same from the keys plus_minus, profile (with unequal), lower and upper of a mapping; none of
+/// them present is an error.
+std::optional<Scenario::Tolerance> tolerance_of(const YamlMap& map);
+
+/// Splits "Ø20 H7/g6" into its nominal diameter (file unit, 0 when none) and "H7/g6".
+std::pair<double, std::string> split_nominal(const std::string& code);
+
+}  // namespace mortise
