@@ -36,4 +36,21 @@ inline constexpr double kEstimatedDeviationFactor = 1.5;
 /// large rotation.
 inline constexpr std::uint64_t kCcdWorkCap = 2'000'000;
 
+/// A clash ends only when its parts are proven this far from interfering, and its class falls only
+/// when this far beyond the threshold, mm. Twice the width of a depth bracket, so that the search
+/// for the depth cannot make a resting contact flicker; far below any tolerance. Read by session.
+inline constexpr double kClashHysteresis_mm = 2e-4;
+static_assert(kClashHysteresis_mm >= 2.0 * kDepthAccuracyDefault_mm);
+
+/// A clash that only grows deeper is told again when its worst depth grew by this share, and not
+/// sooner than this many ticks after its last event (a quarter of a second at 60 Hz). Read by
+/// session.
+inline constexpr double kClashGrowthShare = 0.1;
+inline constexpr std::uint64_t kClashQuietTicks = 15;
+
+/// How far a part that already interferes may be pressed deeper before policy stop holds it, mm.
+/// Ten depth brackets, so that sliding at constant depth is not held by the search's own width. The
+/// limit is from the least depth seen: repeated pushes cannot add up. Read by session.
+inline constexpr double kDeepeningSlack_mm = 1e-3;
+
 }  // namespace mortise

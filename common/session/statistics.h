@@ -29,6 +29,7 @@ class SessionStatistics {
     CollisionClass worst_class = CollisionClass::kNone;
     Verdict worst;
     std::uint64_t ticks[4] = {0, 0, 0, 0};
+    CollisionClass now = CollisionClass::kNone;  ///< as last told; kNone when it has ended
   };
 
   void add(const StepReport& report);
@@ -50,6 +51,11 @@ class SessionStatistics {
   std::map<UserId, Row> by_user_;
   std::vector<ClashRow> clashes_;
   std::map<ClashId, std::size_t> index_;
+  std::vector<std::size_t> open_;  // into clashes_, by begin
+
+  template <class Change>
+  void for_rows_of(const ClashRow& clash, const Change& change);
+  void take_in(const ClashEvent& event);
 };
 
 /// Adds every count of `from` to `into`.

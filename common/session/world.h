@@ -29,6 +29,7 @@ struct Part {
   UserId holder;
   UserId last_mover;              ///< who moved it last
   std::optional<Pose> undo_X_WP;  ///< pose before the last mover's grab
+  bool moved_since_grab = false;  ///< the present holder has moved it: undo_X_WP is set
 };
 
 /// What a pair of parts has of its own: bands that replace the parts' bands, or an exclusion.
@@ -50,7 +51,9 @@ struct User {
 struct SessionState;  ///< caches and open clashes between ticks, session/session_state.h
 
 /// A session between two ticks: what `step` reads and, at its end, writes. Nothing here knows a
-/// clock or a socket.
+/// clock or a socket. After the first step poses and holders change only by `step`,
+/// `apply_command` and `apply_decision`: caches lean on it. A copy shares `state` and must not be
+/// stepped beside the original.
 struct World {
   std::string name;
   double tick_rate_hz = 60.0;
@@ -85,7 +88,9 @@ Snapshot snapshot_of(const World& world);
 Reply apply_command(World& world, const Command& command, Decision& decision);
 
 /// Applies a decision without asking: join, leave (frees the user's parts), lease end, and, in a
-/// replay, all the others. Returns the parts whose holder or pose changed.
+/// replay, all the others. A join without a user id takes the next one, which is then
+/// users.back().id; with the id of an absent user it brings that user back. Returns the parts whose
+/// holder or pose changed, by id. What cannot apply (unknown user or part) changes nothing.
 std::vector<PartPose> apply_decision(World& world, const Decision& decision);
 
 }  // namespace mortise

@@ -1,0 +1,95 @@
+#include <algorithm>
+
+#include "common/broadphase/pair_filter.h"
+#include "common/broadphase/swept_box.h"
+#include "common/session/tick_work.h"
+
+namespace mortise {
+namespace {
+
+PairWork& next_pair(Scratch::Impl& work) {
+  if (work.pair_count == work.pairs.size()) work.pairs.emplace_back();
+  PairWork& pair = work.pairs[work.pair_count++];
+  std::vector<SeenRegion> seen = std::move(pair.seen);
+  std::vector<char> keeps = std::move(pair.keeps);
+  pair = PairWork{};
+  pair.seen = std::move(seen);
+  pair.keeps = std::move(keeps);
+  pair.seen.clear();
+  pair.keeps.clear();
+  return pair;
+}
+
+void set_up(const World& world, SessionState& state, const Scratch::Impl& work, IndexPair indices,
+            const PairRule* rule, PairWork& pair) {
+  const Part& a = world.parts[indices.a];
+  const Part& b = world.parts[indices.b];
+  pair.a = indices.a;
+  pair.b = indices.b;
+  pair.rule = rule;
+  JudgementQuery bands;
+  bands.a = &a;
+  bands.b = &b;
+  bands.rule = rule;
+  pair.band_a = &band_a_of(bands);
+  pair.band_b = &band_b_of(bands);
+  pair.band_mm = std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
+  pair.memo = &state.memo(pair.a, pair.b);
+  const std::uint64_t placements = state.parts[pair.a].placements + state.parts[pair.b].placements;
+  if (pair.memo->placements != placements) {
+    pair.memo->placements = placements;
+    pair.memo->not_contained = false;
+    pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
+  }
+  const auto open = state.open.find({a.id, b.id});
+  if (open != state.open.end()) pair.open = &open->second;
+  pair.move_a = work.move_of_part[pair.a];
+  pair.move_b = work.move_of_part[pair.b];
+  const auto motion_of = [&](std::int32_t move, const Part& part) {
+    if (move >= 0) return work.moves[static_cast<std::size_t>(move)].motion;
+    Motion still = still_motion(part.X_WP);
+    still.reference_P = part.solid->sphere().center_mm;
+    return still;
+  };
+  pair.motion_a = motion_of(pair.move_a, a);
+  pair.motion_b = motion_of(pair.move_b, b);
+  pair.placed = !pair.motion_a.moves() && !pair.motion_b.moves();
+}
+
+}  // namespace
+
+void find_candidates(const World& world, SessionState& state, Scratch::Impl& work,
+                     StepReport& report) {
+  StepCounters& counters = report.counters;
+  work.pair_count = 0;
+  const PairCensus census = count_pairs(world.parts.size(), state.moving_parts, work.moves.size());
+  counters.pairs.in = census.all;
+  counters.pairs_static = census.both_static;
+  counters.pairs_still = census.both_still;
+  if (work.moves.empty()) return;
+
+  for (const Move& move : work.moves) {
+    const Solid& solid = *world.parts[move.part].solid;
+    const Box box = swept_box({solid.bounds(), solid.sphere()}, move.motion);
+    state.broad_phase->set_box(move.part, box.grown(state.parts[move.part].growth_mm));
+  }
+  state.broad_phase->find_pairs(work.moved_parts, work.candidates);
+  counters.pairs_boxes_apart =
+      census.all - census.both_static - census.both_still - work.candidates.size();
+  for (const IndexPair indices : work.candidates) {
+    const Part& a = world.parts[indices.a];
+    const Part& b = world.parts[indices.b];
+    const PairRule* rule = world.rule(a.id, b.id);
+    const auto filter_part = [&](std::uint32_t i) {
+      return FilterPart{world.parts[i].moving, work.move_of_part[i] >= 0};
+    };
+    if (filter_pair(filter_part(indices.a), filter_part(indices.b), rule && rule->excluded) !=
+        PairSkip::kAsk) {
+      ++counters.pairs_excluded;
+      continue;
+    }
+    set_up(world, state, work, indices, rule, next_pair(work));
+  }
+}
+
+}  // namespace mortise

@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "common/base/constants.h"
+#include "common/session/tick_work.h"
+
+namespace mortise {
+namespace {
+
+double apart(const OpenClash& clash, const SeenRegion& seen) {
+  return std::min((clash.p_A - seen.p_A).norm(), (clash.p_B - seen.p_B).norm());
+}
+
+// Is a region near enough to continue a clash? The deepest point of a flat contact may lie anywhere
+// on it, so the gate grows with the area; a contact line or point may wander a little over the
+// part.
+double gate_mm(const OpenClash& clash, const SeenRegion& seen, double radius_mm) {
+  const double area_mm2 = std::max(clash.now.area_mm2, seen.verdict.area_mm2);
+  return 2.0 * std::sqrt(std::max(0.0, area_mm2)) + 0.2 * radius_mm;
+}
+
+// Nearest first, one region to one clash; ties by clash, then region.
+void pair_up(PairWork& pair, const std::vector<OpenClash>& open, double radius_mm, bool wide) {
+  struct Option {
+    double distance_mm;
+    int clash, region;
+  };
+  std::vector<Option> options;
+  std::vector<char> taken(open.size(), 0);
+  for (const SeenRegion& seen : pair.seen)
+    if (seen.open >= 0) taken[static_cast<std::size_t>(seen.open)] = 1;
+  for (std::size_t c = 0; c < open.size(); ++c)
+    for (std::size_t r = 0; r < pair.seen.size(); ++r) {
+      if (taken[c] || pair.seen[r].open >= 0) continue;
+      const double d = apart(open[c], pair.seen[r]);
+      const double gate = wide ? radius_mm : gate_mm(open[c], pair.seen[r], radius_mm);
+      if (d <= gate) options.push_back({d, static_cast<int>(c), static_cast<int>(r)});
+    }
+  std::sort(options.begin(), options.end(), [](const Option& x, const Option& y) {
+    return std::tie(x.distance_mm, x.clash, x.region) < std::tie(y.distance_mm, y.clash, y.region);
+  });
+  for (const Option& option : options) {
+    SeenRegion& seen = pair.seen[static_cast<std::size_t>(option.region)];
+    char& is_taken = taken[static_cast<std::size_t>(option.clash)];
+    if (is_taken || seen.open >= 0) continue;
+    is_taken = 1;
+    seen.open = option.clash;
+  }
+}
+
+// Worth an event? A worse class always, a better one when it is beyond the threshold for certain, a
+// growing depth now and then.
+bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick) {
+  const CollisionClass told = clash.last.verdict.collision_class;
+  if (verdict.collision_class > told) return true;
+  if (verdict.collision_class < told) return verdict.margin_mm >= kClashHysteresis_mm;
+  if (tick < clash.last.tick + kClashQuietTicks) return false;
+  const double told_mm = clash.last.worst_delta_mm.lo;
+  return verdict.delta_mm.lo - told_mm >
+         std::max(kClashHysteresis_mm, kClashGrowthShare * std::abs(told_mm));
+}
+
+UserId last_mover(const SessionState& state, std::uint32_t a, std::uint32_t b) {
+  const PartState& x = state.parts[a];
+  const PartState& y = state.parts[b];
+  if (x.last_user && (!y.last_user || x.last_tick >= y.last_tick)) return x.last_user;
+  return y.last_user;
+}
+
+bool is_worse(const Verdict& verdict, const OpenClash& clash) {
+  return verdict.collision_class > clash.worst_class ||
+         (verdict.collision_class == clash.worst_class &&
+          verdict.delta_mm.lo > clash.worst_delta_mm.lo);
+}
+
+void take_in(OpenClash& clash, const SeenRegion& seen) {
+  clash.now = seen.verdict;
+  clash.p_A = seen.p_A;
+  clash.p_B = seen.p_B;
+  if (is_worse(seen.verdict, clash)) {
+    clash.worst_class = seen.verdict.collision_class;
+    clash.worst_delta_mm = seen.verdict.delta_mm;
+  }
+}
+
+// Fills in what every event of a clash carries and remembers it as the last one.
+void tell(const World& world, SessionState& state, OpenClash& clash, ClashEvent::Kind kind,
+          double t_contact, StepReport& report) {
+  ClashEvent& event = clash.last;
+  event.kind = kind;
+  event.seq = ++state.event_seq;
+  event.tick = world.tick;
+  event.user = last_mover(state, event.part_a.value - 1, event.part_b.value - 1);
+  event.verdict = clash.now;
+  event.t_contact = t_contact;
+  event.worst_class = clash.worst_class;
+  event.worst_delta_mm = clash.worst_delta_mm;
+  report.events.push_back(event);
+}
+
+void begin(const World& world, SessionState& state, const PairWork& pair, const SeenRegion& seen,
+           double t_contact, StepReport& report) {
+  OpenClash clash;
+  clash.last.clash = ClashId{state.next_clash++};
+  clash.last.part_a = world.parts[pair.a].id;
+  clash.last.part_b = world.parts[pair.b].id;
+  clash.last.begin_tick = world.tick;
+  clash.worst_class = seen.verdict.collision_class;
+  clash.worst_delta_mm = seen.verdict.delta_mm;
+  take_in(clash, seen);
+  tell(world, state, clash, ClashEvent::Kind::kBegin, t_contact, report);
+  if (seen.passing)
+    tell(world, state, clash, ClashEvent::Kind::kEnd, t_contact, report);
+  else
+    state.open[{clash.last.part_a, clash.last.part_b}].push_back(std::move(clash));
+}
+
+double t_contact_of_tick(const PairWork& pair) {
+  if (pair.placed) return 0.0;
+  return pair.meets ? pair.tau + (1.0 - pair.tau) * pair.t_contact : 1.0;
+}
+
+// The clashes of one pair that were open before the tick: change, end, or go on in silence.
+void update(const World& world, SessionState& state, const PairWork* pair,
+            std::vector<OpenClash>& open, StepReport& report) {
+  const bool known = pair && pair->asked;
+  for (std::size_t c = 0; c < open.size(); ++c) {
+    const SeenRegion* seen = nullptr;
+    if (known)
+      for (const SeenRegion& region : pair->seen)
+        if (region.open == static_cast<int>(c)) seen = &region;
+    const double t_contact = known ? t_contact_of_tick(*pair) : 1.0;
+    if (seen) take_in(open[c], *seen);
+    if (seen && !seen->passing) {
+      if (seen->tell) tell(world, state, open[c], ClashEvent::Kind::kChange, t_contact, report);
+      continue;
+    }
+    if (!seen && known && pair->keeps[c]) continue;
+    tell(world, state, open[c], ClashEvent::Kind::kEnd, t_contact, report);
+  }
+  std::erase_if(open,
+                [](const OpenClash& clash) { return clash.last.kind == ClashEvent::Kind::kEnd; });
+}
+
+}  // namespace
+
+void match_clashes(const World& world, PairWork& pair, double distance_mm) {
+  const double radius_mm = std::min(world.parts[pair.a].solid->sphere().radius_mm,
+                                    world.parts[pair.b].solid->sphere().radius_mm);
+  if (!pair.open) {
+    for (SeenRegion& seen : pair.seen) seen.tell = true;
+    return;
+  }
+  const std::vector<OpenClash>& open = *pair.open;
+  // 1. Near the same place; then what is left over, with a wider gate: a clash that jumps over its
+  //    part from tick to tick is still one clash.
+  pair_up(pair, open, radius_mm, false);
+  pair_up(pair, open, radius_mm, true);
+  pair.keeps.assign(open.size(), 0);
+  for (SeenRegion& seen : pair.seen) {
+    if (seen.open < 0) {
+      seen.tell = true;
+    } else {
+      const OpenClash& clash = open[static_cast<std::size_t>(seen.open)];
+      pair.keeps[static_cast<std::size_t>(seen.open)] = 1;
+      seen.tell = change_is_due(clash, seen.verdict, world.tick);
+    }
+  }
+  // 2. Hysteresis: not interfering any more, but by less than can be told for certain.
+  const bool close = distance_mm <= pair.band_mm + kClashHysteresis_mm;
+  const bool barely = std::any_of(
+      pair.judgement.overlap.regions.begin(), pair.judgement.overlap.regions.end(),
+      [](const OverlapRegion& region) {
+        return region.possible_mm.hi <= 0.0 && region.possible_mm.hi > -kClashHysteresis_mm;
+      });
+  if (pair.seen.empty() && (close || barely)) pair.keeps.assign(open.size(), 1);
+}
+
+void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
+                    StepReport& report) {
+  if (work.moves.empty()) return;
+  const auto last = work.pairs.begin() + static_cast<std::ptrdiff_t>(work.pair_count);
+  const auto pair_of = [&](PartId a, PartId b) -> const PairWork* {
+    const IndexPair key{a.value - 1, b.value - 1};
+    const auto it =
+        std::lower_bound(work.pairs.begin(), last, key, [](const PairWork& x, IndexPair y) {
+          return IndexPair{x.a, x.b} < y;
+        });
+    return it != last && it->a == key.a && it->b == key.b ? &*it : nullptr;
+  };
+  const auto is_still = [&](PartId part) { return work.move_of_part[part.value - 1] < 0; };
+
+  // 1. Clashes that were open. Two parts that are both still keep theirs.
+  for (auto it = state.open.begin(); it != state.open.end();) {
+    const auto& [a, b] = it->first;
+    if (!is_still(a) || !is_still(b)) {
+      update(world, state, pair_of(a, b), it->second, report);
+      state.clashes_changed = true;
+    }
+    it = it->second.empty() ? state.open.erase(it) : std::next(it);
+  }
+  // 2. New ones, in the order of pairs.
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    const PairWork& pair = work.pairs[i];
+    if (!pair.asked) continue;
+    for (const SeenRegion& seen : pair.seen)
+      if (seen.open < 0) {
+        begin(world, state, pair, seen, t_contact_of_tick(pair), report);
+        state.clashes_changed = true;
+      }
+  }
+}
+
+}  // namespace mortise

@@ -1,0 +1,27 @@
+#include "common/session/tick_work.h"
+
+namespace mortise {
+
+void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& report) {
+  for (const Move& move : work.moves) {
+    Part& part = world.parts[move.part];
+    PartState& part_state = state.parts[move.part];
+    if (move.motion.moves()) {  // even when held at once: it was this user who pushed
+      part_state.last_tick = world.tick;
+      part_state.last_user = move.user;
+    }
+    if (!identical(part.X_WP, move.X_WP_end)) {
+      // What undo goes back to: where the part stood before its holder's first move.
+      if (!part.moved_since_grab) part.undo_X_WP = part.X_WP;
+      part.moved_since_grab = true;
+      part.last_mover = move.user;
+      part.X_WP = move.X_WP_end;
+      report.moved.push_back({part.id, part.holder, part.X_WP});
+      state.rehash.push_back(move.part);
+    }
+    state.broad_phase->set_box(move.part, resting_box(world, state, move.part));
+  }
+  state.placed.clear();
+}
+
+}  // namespace mortise

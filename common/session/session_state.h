@@ -1,0 +1,91 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "common/broadphase/broad_phase.h"
+#include "common/session/world.h"
+
+namespace mortise {
+
+/// What a pair of parts is known to be, so that it need not be asked again.
+struct PairMemo {
+  /// The surfaces are at least apart_mm from each other when A stands at X_BA as seen from B
+  /// (negative: nothing is known). A statement about poses, true for ever: no teleport can spoil
+  /// it.
+  Pose X_BA;
+  double apart_mm = -1.0;
+  /// Sum of both parts' `placements` when the two entries below were made; another sum voids them.
+  std::uint64_t placements = 0;
+  /// Neither part contained the other, and the surfaces have not met since.
+  bool not_contained = false;
+  /// How many more ticks to ask before the distance is measured again, and how long to wait when
+  /// that measurement turns out useless as well.
+  std::uint8_t pause = 0, next_pause = 1;
+  /// Policy stop, pair real at the start of a tick: least certain overlap seen so far, mm; a motion
+  /// may not go deeper. Infinite: not real.
+  double allowed_depth_mm = std::numeric_limits<double>::infinity();
+};
+
+/// One clash between begin and end.
+struct OpenClash {
+  ClashEvent last;  ///< the last event sent
+  Verdict now;      ///< as of the last tick in which the pair was asked
+  CollisionClass worst_class = CollisionClass::kNone;
+  Interval worst_delta_mm;
+  Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< its place, as a point of either part, mm
+};
+
+/// What the session knows of a part beside the world's own record.
+struct PartState {
+  double growth_mm = 0.0;        ///< of its box: largest outward offset it may have, and slack
+  std::uint64_t placements = 0;  ///< times it was put somewhere without a motion
+  std::uint64_t last_tick = 0;   ///< of its last motion
+  UserId last_user;              ///< whose motion that was
+  std::uint64_t hash = 0;        ///< of pose and holder
+};
+
+using PartPair = std::pair<PartId, PartId>;
+
+/// Caches and open clashes between ticks. Caches only save the asking; what a tick answers depends
+/// on poses, open clashes and allowed_depth_mm alone.
+struct SessionState {
+  std::uint64_t tick = 0;
+  std::uint64_t event_seq = 0;
+  std::uint32_t next_clash = 1;
+  std::uint64_t moving_parts = 0;
+  std::unique_ptr<BroadPhase> broad_phase;
+  std::vector<PartState> parts;
+  std::vector<std::uint32_t> placed;  ///< parts put somewhere since the last tick, no repeats
+  std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
+  std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
+  std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
+  bool clashes_changed = true;
+  std::uint64_t parts_hash = 0, clashes_hash = 0;
+
+  PairMemo& memo(std::uint32_t a, std::uint32_t b) {
+    return memos[(static_cast<std::uint64_t>(a) << 32) | b];
+  }
+};
+
+/// The state of the world, made when there is none yet: then every moving part counts as just
+/// placed, so that the first tick judges how the session begins. `brute_force_pairs` takes the twin
+/// of the broad phase.
+SessionState& session_state(World& world, bool brute_force_pairs = false);
+
+/// Puts part `index` at a pose without a motion. No-op before the first step.
+void note_placed(World& world, std::uint32_t index);
+/// The holder of part `index` changed.
+void note_holder(World& world, std::uint32_t index);
+
+/// World box of a resting part, grown by what may lie outside of its mesh.
+Box resting_box(const World& world, const SessionState& state, std::uint32_t index);
+
+/// Hash over tick, poses, holders, open clashes and their verdicts. Costs only what changed.
+std::uint64_t state_hash(const World& world, SessionState& state);
+
+}  // namespace mortise

@@ -1,0 +1,115 @@
+#include "common/session/statistics.h"
+
+#include <algorithm>
+
+namespace mortise {
+namespace {
+
+std::size_t index_of(CollisionClass c) { return static_cast<std::size_t>(c); }
+
+bool is_worse(const Verdict& x, const Verdict& y) {
+  if (x.collision_class != y.collision_class) return x.collision_class > y.collision_class;
+  return x.delta_mm.lo > y.delta_mm.lo;
+}
+
+void add(StageCount& into, const StageCount& from) {
+  into.in += from.in;
+  into.out += from.out;
+}
+
+}  // namespace
+
+void accumulate(StepCounters& into, const StepCounters& from) {
+  add(into.increments, from.increments);
+  for (std::size_t i = 0; i < into.refused.size(); ++i) into.refused[i] += from.refused[i];
+  add(into.moves, from.moves);
+  into.moves_below_rounding += from.moves_below_rounding;
+  add(into.pairs, from.pairs);
+  into.pairs_static += from.pairs_static;
+  into.pairs_still += from.pairs_still;
+  into.pairs_excluded += from.pairs_excluded;
+  into.pairs_boxes_apart += from.pairs_boxes_apart;
+  into.pairs_budget += from.pairs_budget;
+  add(into.contacts, from.contacts);
+  into.contacts_clear += from.contacts_clear;
+  into.contacts_undecided += from.contacts_undecided;
+  into.first_contact_queries += from.first_contact_queries;
+  into.distance_queries += from.distance_queries;
+  into.depth_queries += from.depth_queries;
+  add(into.verdicts, from.verdicts);
+  for (int i = 0; i < 4; ++i) into.verdicts_by_class[i] += from.verdicts_by_class[i];
+  into.stopped_parts += from.stopped_parts;
+  into.rounds += from.rounds;
+  into.box_tests += from.box_tests;
+  into.triangle_tests += from.triangle_tests;
+  into.depth_evaluations += from.depth_evaluations;
+  into.parts_without_inside += from.parts_without_inside;
+  into.not_examined += from.not_examined;
+}
+
+template <class Change>
+void SessionStatistics::for_rows_of(const ClashRow& clash, const Change& change) {
+  change(by_pair_[{clash.a, clash.b}]);
+  change(by_part_[clash.a]);
+  change(by_part_[clash.b]);
+  if (clash.user) change(by_user_[clash.user]);
+}
+
+void SessionStatistics::take_in(const ClashEvent& event) {
+  if (event.kind == ClashEvent::Kind::kBegin) {
+    index_[event.clash] = clashes_.size();
+    open_.push_back(clashes_.size());
+    ClashRow& row = clashes_.emplace_back();
+    row.clash = event.clash;
+    row.a = event.part_a;
+    row.b = event.part_b;
+    row.user = event.user;  // who caused it: later events may name who moved on
+    row.begin_tick = event.begin_tick;
+    row.worst = event.verdict;
+    for_rows_of(row, [&](Row& sum) { ++sum.clashes[index_of(row.worst_class)]; });
+  }
+  const auto known = index_.find(event.clash);
+  if (known == index_.end()) return;  // its begin was never seen: a report is missing
+  ClashRow& clash = clashes_[known->second];
+  const CollisionClass worst = std::max(clash.worst_class, event.worst_class);
+  if (is_worse(event.verdict, clash.worst)) clash.worst = event.verdict;
+  for_rows_of(clash, [&](Row& row) {
+    --row.clashes[index_of(clash.worst_class)];
+    ++row.clashes[index_of(worst)];
+    if (row.first_tick == 0) row.first_tick = event.tick;
+    row.last_tick = event.tick;
+    if (row.worst_tick != 0 && !is_worse(event.verdict, row.worst)) return;
+    row.worst = event.verdict;
+    row.worst_tick = event.tick;
+  });
+  clash.worst_class = worst;
+  clash.now = event.verdict.collision_class;
+  if (event.kind != ClashEvent::Kind::kEnd) return;
+  clash.end_tick = event.tick;
+  clash.now = CollisionClass::kNone;
+  std::erase(open_, known->second);
+}
+
+void SessionStatistics::add(const StepReport& report) {
+  ++ticks_;
+  accumulate(counters_, report.counters);
+  for (const ClashEvent& event : report.events) take_in(event);
+  for (const std::size_t i : open_) {
+    ClashRow& clash = clashes_[i];
+    ++clash.ticks[index_of(clash.now)];
+    for_rows_of(clash, [&](Row& row) { ++row.ticks[index_of(clash.now)]; });
+  }
+}
+
+std::uint64_t SessionStatistics::clashes_open(CollisionClass c) const {
+  return static_cast<std::uint64_t>(std::count_if(
+      open_.begin(), open_.end(), [&](std::size_t i) { return clashes_[i].now == c; }));
+}
+
+std::uint64_t SessionStatistics::clashes_total(CollisionClass c) const {
+  return static_cast<std::uint64_t>(
+      std::count_if(clashes_.begin(), clashes_.end(),
+                    [&](const ClashRow& clash) { return clash.worst_class == c; }));
+}
+
+}  // namespace mortise

@@ -1,0 +1,65 @@
+#include "common/session/step.h"
+
+#include <algorithm>
+
+#include "common/session/statistics.h"
+#include "common/session/tick_work.h"
+
+namespace mortise {
+namespace {
+
+// Counts of the pairs, added in their order.
+void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters& counters) {
+  std::vector<std::uint32_t> open_parts;
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    const PairWork& pair = work.pairs[i];
+    accumulate(counters, pair.counts);
+    if (!pair.asked) {
+      ++counters.pairs_budget;
+      continue;
+    }
+    ++counters.pairs.out;
+    ++counters.contacts.in;
+    if (pair.undecided) {
+      ++counters.contacts_undecided;
+      ++counters.not_examined;
+    } else if (pair.near) {
+      ++counters.contacts.out;
+    } else {
+      ++counters.contacts_clear;
+    }
+    if (!pair.no_inside && !pair.judgement.overlap.no_inside) continue;
+    for (const std::uint32_t part : {pair.a, pair.b})
+      if (!world.parts[part].solid->topology().closed()) open_parts.push_back(part);
+  }
+  std::sort(open_parts.begin(), open_parts.end());
+  open_parts.erase(std::unique(open_parts.begin(), open_parts.end()), open_parts.end());
+  counters.parts_without_inside += open_parts.size();
+}
+
+}  // namespace
+
+Scratch::Scratch(int threads) : impl_(std::make_unique<Impl>(std::max(1, threads))) {}
+Scratch::~Scratch() = default;
+
+StepReport step(World& world, std::span<const Increment> increments, Scratch& scratch) {
+  Scratch::Impl& work = scratch.impl();
+  SessionState& state = session_state(world, work.switches.brute_force_pairs);
+  state.tick = ++world.tick;
+  StepReport report;
+  report.tick = world.tick;
+  gather(world, increments, work, report);
+  find_candidates(world, state, work, report);
+  if (!work.moves.empty()) {
+    find_contacts(world, work);
+    respond(world, work, report);
+    judge_pairs(world, work);
+    commit(world, state, work, report);
+    report_clashes(world, state, work, report);
+    count_pairs_of(world, work, report.counters);
+  }
+  report.state_hash = state_hash(world, state);
+  return report;
+}
+
+}  // namespace mortise

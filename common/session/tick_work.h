@@ -1,0 +1,118 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/session/judgement.h"
+#include "common/session/session_state.h"
+#include "common/session/step.h"
+#include "common/session/worker_pool.h"
+
+namespace mortise {
+
+/// One part that the tick moves, or that was put somewhere since the last tick (then still).
+struct Move {
+  std::uint32_t part = 0;  ///< index
+  UserId user;
+  Motion motion;            ///< as asked for
+  double turned_rad = 0.0;  ///< sum of the rotations of its increments
+  bool placed = false;      ///< was put somewhere: nothing is known of its pairs
+  double stop = 1.0;        ///< time at which the response ends it
+  bool stopped = false;
+  Pose X_WP_end;  ///< after the response
+};
+
+/// One region of a pair as judged in this tick, and the open clash that it continues.
+struct SeenRegion {
+  Verdict verdict;
+  Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< its place, as a point of either part
+  int open = -1;         ///< index among the open clashes of the pair; -1: a new clash
+  bool tell = false;     ///< begin or change is due
+  bool passing = false;  ///< begins and ends within the tick
+};
+
+/// One candidate pair on its way through the tick; a < b.
+struct PairWork {
+  std::uint32_t a = 0, b = 0;
+  std::int32_t move_a = -1, move_b = -1;  ///< index of the part's Move; -1: still
+  const PairRule* rule = nullptr;
+  const SurfaceBand *band_a = nullptr, *band_b = nullptr;
+  double band_mm = 0.0;  ///< distance at which the pair has to be looked at
+  PairMemo* memo = nullptr;
+  std::vector<OpenClash>* open = nullptr;  ///< null: none
+  bool placed = false;                     ///< neither moves, one was put somewhere
+
+  // Stage 3. Times of the segment [tau, 1] of the tick, in which motion_a and motion_b run from 0
+  // to 1.
+  bool asked = false;    ///< false: the motion budget says that they stay apart
+  bool near = false;     ///< in contact or within the band at some time
+  bool entered = false;  ///< came within the band during the segment
+  bool undecided = false;
+  bool no_inside = false;
+  double tau = 0.0;
+  Motion motion_a, motion_b;
+  ContactState start = ContactState::kUnknown;  ///< how the meshes stand at the segment's start
+  bool meets = false;                           ///< the meshes touch or overlap at some time
+  double t_contact = 1.0;                       ///< of the segment
+  double t_stop = 1.0;           ///< of the tick: the pair is proven not to become real before
+  double apart_at_end_mm = 0.0;  ///< proven when not near
+  bool blocks = false;           ///< the response stopped a part because of this pair
+
+  // Stage 4.
+  Judgement judgement;
+  std::vector<SeenRegion> seen;
+  std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)
+
+  StepCounters counts;  ///< of this pair alone, merged in pair order
+};
+
+/// Ways to do the same with less cleverness, for tests; the report must not change but for
+/// counters.
+struct StepSwitches {
+  bool motion_budget = true;
+  bool brute_force_pairs = false;  ///< at the first step of a world
+};
+
+struct Scratch::Impl {
+  explicit Impl(int threads) : pool(threads), ccd(static_cast<std::size_t>(pool.threads())) {}
+  WorkerPool pool;
+  std::vector<CcdScratch> ccd;  ///< one a thread
+  StepSwitches switches;
+
+  std::vector<Move> moves;                 ///< by part
+  std::vector<std::int32_t> move_of_part;  ///< -1: still
+  std::vector<std::uint32_t> moved_parts;  ///< part index of moves[i]
+  std::vector<IndexPair> candidates;
+  std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
+  std::size_t pair_count = 0;
+  std::vector<std::uint32_t> again;  ///< pairs to ask again in a round of the response
+};
+
+// The stages, in the order of the tick. Each reads what the ones before have written.
+
+/// 1. Increments to moves: checks, composition in order of arrival.
+void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
+            StepReport& report);
+/// 2. Candidate pairs: broad phase, filter.
+void find_candidates(const World& world, SessionState& state, Scratch::Impl& work,
+                     StepReport& report);
+/// 3. First contact of every pair; for policy stop, when it becomes real.
+void find_contacts(const World& world, Scratch::Impl& work);
+/// 3b. Policy: who stops when.
+void respond(const World& world, Scratch::Impl& work, StepReport& report);
+/// 4. Depth, thresholds and verdict of what is near; which clash each region continues.
+void judge_pairs(const World& world, Scratch::Impl& work);
+/// 5. New poses, written once.
+void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& report);
+/// 6. Begin, change and end of clashes.
+void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
+                    StepReport& report);
+
+/// Asks one pair over the segment set in it; used by 3 and by the rounds of 3b.
+void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd);
+
+/// The open clash that each region of pair.seen continues, whether its event is due, and which open
+/// clashes stay although nothing was seen of them. Reads pair.judgement; distance_mm: of the meshes
+/// at the end, infinite when not asked.
+void match_clashes(const World& world, PairWork& pair, double distance_mm);
+
+}  // namespace mortise

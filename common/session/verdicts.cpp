@@ -1,0 +1,265 @@
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "common/base/constants.h"
+#include "common/session/motion_budget.h"
+#include "common/session/tick_work.h"
+
+namespace mortise {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The two motions of a pair over some part of the tick; t_contact counts in them.
+struct PairMotion {
+  Motion a, b;
+  double t_contact = 1.0;
+};
+
+Judgement judge_along(const World& world, PairWork& pair, const PairMotion& motion, bool want_gpd,
+                      CcdScratch& ccd) {
+  JudgementQuery query;
+  query.a = &world.parts[pair.a];
+  query.b = &world.parts[pair.b];
+  query.rule = pair.rule;
+  query.motion_a = motion.a;
+  query.motion_b = motion.b;
+  query.t_contact = motion.t_contact;
+  query.want_gpd = want_gpd;
+  Judgement judgement = judge_pair(query, ccd);
+  StepCounters& counts = pair.counts;
+  ++counts.depth_queries;
+  counts.depth_evaluations += judgement.overlap.evaluations;
+  counts.verdicts.in += judgement.overlap.regions.size();
+  counts.verdicts.out += judgement.verdicts.size();
+  for (const Verdict& verdict : judgement.verdicts)
+    ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
+  return judgement;
+}
+
+// Both motions up to time t of their own.
+PairMotion up_to(const PairMotion& motion, double t) {
+  return {until(motion.a, t), until(motion.b, t),
+          t > 0.0 ? std::min(1.0, motion.t_contact / t) : 1.0};
+}
+
+// What the response left of the segment of one part.
+Motion as_moved(const Scratch::Impl& work, std::int32_t index, const Motion& segment, double tau) {
+  if (index < 0) return segment;
+  const Move& move = work.moves[static_cast<std::size_t>(index)];
+  if (!move.stopped) return segment;
+  Motion cut = until(segment, (move.stop - tau) / (1.0 - tau));
+  if (!cut.moves()) cut.X_W0 = move.X_WP_end;
+  cut.X_W1 = move.X_WP_end;
+  return cut;
+}
+
+PairMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
+  PairMotion motion{as_moved(work, pair.move_a, pair.motion_a, pair.tau),
+                    as_moved(work, pair.move_b, pair.motion_b, pair.tau), 1.0};
+  double end = pair.tau;
+  for (const std::int32_t index : {pair.move_a, pair.move_b})
+    if (index >= 0) end = std::max(end, work.moves[static_cast<std::size_t>(index)].stop);
+  const double local_end = (end - pair.tau) / (1.0 - pair.tau);
+  if (pair.meets && local_end > 0.0) motion.t_contact = std::min(1.0, pair.t_contact / local_end);
+  return motion;
+}
+
+Motion backward(const Motion& motion) {
+  if (!motion.moves()) return motion;
+  return linear_motion(motion.X_W1, motion.X_W0, motion.reference_P);
+}
+
+SeenRegion seen_at(const Verdict& verdict, const Pose& X_WA, const Pose& X_WB) {
+  SeenRegion seen;
+  seen.verdict = verdict;
+  seen.p_A = X_WA.inverse() * verdict.point_W;
+  seen.p_B = X_WB.inverse() * verdict.point_W;
+  return seen;
+}
+
+void prefix(Verdict& verdict, const char* what, double t) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%s at t = %.4f: ", what, t);
+  verdict.explanation.insert(0, text);
+}
+
+// The parts meet within the segment but nothing is seen at its end: they passed each other, through
+// or by. Looks inside the interval between the first and the last contact, whose ends are known to
+// the accuracy of first contact however thin the wall; middle first.
+std::optional<SeenRegion> passing(const World& world, PairWork& pair, bool want_gpd,
+                                  CcdScratch& ccd) {
+  const PairMotion whole{pair.motion_a, pair.motion_b, pair.t_contact};
+  double t_in = pair.meets ? pair.t_contact : 0.0;
+  const bool plain = pair.band_a->trivial && pair.band_b->trivial;
+  double t_real = 2.0;  // none
+  if (plain && !pair.no_inside && !pair.blocks) {
+    // Without a band there is something to report only where the interiors meet.
+    if (world.policy == Policy::kStop) return std::nullopt;  // proven not to
+    SweptQuery query;
+    query.at_target.a = world.parts[pair.a].solid.get();
+    query.at_target.b = world.parts[pair.b].solid.get();
+    query.at_target.band_a = pair.band_a;
+    query.at_target.band_b = pair.band_b;
+    query.motion_a = whole.a;
+    query.motion_b = whole.b;
+    const RealTime real = find_real_time(query, ccd);
+    ++pair.counts.depth_queries;
+    pair.counts.depth_evaluations += real.evaluations;
+    if (real.capped) pair.undecided = true;
+    if (!real.becomes_real) return std::nullopt;
+    t_in = t_real = real.t_real;
+  }
+  ContactQuery back;
+  back.a = world.parts[pair.a].solid.get();
+  back.b = world.parts[pair.b].solid.get();
+  back.motion_a = backward(whole.a);
+  back.motion_b = backward(whole.b);
+  back.separation_mm = pair.band_mm;
+  back.check_contained = false;
+  const FirstContact last = first_contact(back, ccd);
+  ++pair.counts.first_contact_queries;
+  pair.counts.box_tests += last.work.box_tests;
+  pair.counts.triangle_tests += last.work.triangle_tests;
+  const double t_out = std::max(t_in, 1.0 - last.t_clear);
+  for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, -1.0}) {
+    const double t = share < 0.0 ? t_real : t_in + share * (t_out - t_in);
+    if (t > 1.0) continue;
+    const PairMotion there = up_to(whole, t);
+    const Judgement judgement = judge_along(world, pair, there, want_gpd, ccd);
+    if (judgement.verdicts.empty()) continue;
+    SeenRegion region = seen_at(judgement.verdicts.front(), there.a.X_W1, there.b.X_W1);
+    prefix(region.verdict, "worst found", pair.tau + (1.0 - pair.tau) * t);
+    return region;
+  }
+  return std::nullopt;
+}
+
+// The collision that made the response stop this pair, judged where the increments would have led.
+std::optional<SeenRegion> attempted(const World& world, PairWork& pair, bool want_gpd,
+                                    CcdScratch& ccd) {
+  std::optional<SeenRegion> region;
+  const PairMotion asked{pair.motion_a, pair.motion_b, pair.t_contact};
+  const Judgement judgement = judge_along(world, pair, asked, want_gpd, ccd);
+  if (!judgement.verdicts.empty() &&
+      judgement.verdicts.front().collision_class == CollisionClass::kReal)
+    region = seen_at(judgement.verdicts.front(), asked.a.X_W1, asked.b.X_W1);
+  else
+    region = passing(world, pair, want_gpd, ccd);
+  if (region) prefix(region->verdict, "stopped", pair.t_stop);
+  return region;
+}
+
+// Replaces the nearest region of the pair, or adds one.
+void merge_attempt(const World& world, PairWork& pair, SeenRegion region) {
+  const double reach_mm = std::min(world.parts[pair.a].solid->sphere().radius_mm,
+                                   world.parts[pair.b].solid->sphere().radius_mm);
+  SeenRegion* nearest = nullptr;
+  double least_mm = reach_mm;
+  for (SeenRegion& seen : pair.seen) {
+    const double d = std::min((seen.p_A - region.p_A).norm(), (seen.p_B - region.p_B).norm());
+    if (d > least_mm) continue;
+    least_mm = d;
+    nearest = &seen;
+  }
+  if (nearest)
+    *nearest = std::move(region);
+  else
+    pair.seen.push_back(std::move(region));
+}
+
+void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
+                CcdScratch& ccd) {
+  const PairMotion motion = as_moved(work, pair);
+  pair.seen.clear();
+  pair.judgement = judge_along(world, pair, motion, want_gpd, ccd);
+  for (const Verdict& verdict : pair.judgement.verdicts)
+    pair.seen.push_back(seen_at(verdict, motion.a.X_W1, motion.b.X_W1));
+  if (pair.blocks) {
+    if (auto region = attempted(world, pair, want_gpd, ccd))
+      merge_attempt(world, pair, std::move(*region));
+  } else if (pair.seen.empty() && !pair.placed &&
+             (pair.entered ||
+              (pair.meets && !(pair.start == ContactState::kOverlappingAtStart && pair.open)))) {
+    if (auto region = passing(world, pair, want_gpd, ccd)) {
+      region->passing = true;
+      pair.seen.push_back(std::move(*region));
+    }
+  }
+  double distance_mm = kInfinity;
+  if (pair.open && pair.judgement.overlap.regions.empty()) {
+    ++pair.counts.distance_queries;
+    const DistanceResult result =
+        distance(*world.parts[pair.a].solid, motion.a.X_W1, *world.parts[pair.b].solid,
+                 motion.b.X_W1, ccd, 2.0 * (pair.band_mm + kClashHysteresis_mm));
+    if (result.within_limit) distance_mm = result.distance_mm;
+  }
+  match_clashes(world, pair, distance_mm);
+}
+
+// A pair that stayed clear: how far apart is it now, so that it need not be asked next time? Only
+// where an answer is likely to save more than it costs.
+void measure(const World& world, PairWork& pair, CcdScratch& ccd) {
+  const Solid& a = *world.parts[pair.a].solid;
+  const Solid& b = *world.parts[pair.b].solid;
+  const double spent_mm = relative_travel_upper_bound_mm({&a, &b, pair.motion_a, pair.motion_b});
+  const double needed_mm = pair.band_mm + kClashHysteresis_mm;
+  PairMemo& memo = *pair.memo;
+  double apart_mm = pair.apart_at_end_mm;
+  if (apart_mm - needed_mm < 2.0 * spent_mm) {
+    if (memo.pause > 0) {
+      --memo.pause;
+      return;
+    }
+    const double limit_mm = needed_mm + 16.0 * spent_mm;
+    ++pair.counts.distance_queries;
+    const DistanceResult result =
+        distance(a, pair.motion_a.X_W1, b, pair.motion_b.X_W1, ccd, limit_mm);
+    apart_mm = result.distance_mm;
+    if (apart_mm - needed_mm < 4.0 * spent_mm) {
+      memo.pause = memo.next_pause;
+      memo.next_pause = static_cast<std::uint8_t>(std::min(64, 2 * memo.next_pause));
+    } else {
+      memo.next_pause = 1;
+    }
+  }
+  remember_apart(memo, pair.motion_a.X_W1, pair.motion_b.X_W1, apart_mm);
+}
+
+// Clear of the band, but an open clash ends only at some distance.
+void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  pair.seen.clear();
+  pair.judgement = {};
+  const PairMotion motion = as_moved(work, pair);
+  ++pair.counts.distance_queries;
+  const DistanceResult result =
+      distance(*world.parts[pair.a].solid, motion.a.X_W1, *world.parts[pair.b].solid, motion.b.X_W1,
+               ccd, 2.0 * (pair.band_mm + kClashHysteresis_mm));
+  match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
+}
+
+bool anything_to_tell(const PairWork& pair) {
+  return std::any_of(pair.seen.begin(), pair.seen.end(),
+                     [](const SeenRegion& seen) { return seen.tell; });
+}
+
+}  // namespace
+
+void judge_pairs(const World& world, Scratch::Impl& work) {
+  work.pool.for_each(work.pair_count, [&](std::size_t i, int thread) {
+    PairWork& pair = work.pairs[i];
+    CcdScratch& ccd = work.ccd[static_cast<std::size_t>(thread)];
+    if (!pair.asked) return;
+    if (pair.near) {
+      // The separating motion is needed only where somebody is told of it.
+      judge_near(world, work, pair, pair.open == nullptr, ccd);
+      if (pair.open && anything_to_tell(pair)) judge_near(world, work, pair, true, ccd);
+      return;
+    }
+    if (pair.open) judge_clear(world, work, pair, ccd);
+    measure(world, pair, ccd);
+  });
+}
+
+}  // namespace mortise
