@@ -1,0 +1,323 @@
+#include "common/io/scene_rules.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "common/io/scenario_yaml.h"
+
+namespace mortise {
+namespace {
+
+/// Pairs one scenario may have rules for: each costs memory, and a wildcard on both sides of a
+/// large scene is rarely meant.
+constexpr std::size_t kMaxRulePairs = 2'000'000;
+
+using FeaturePair = std::tuple<PartId, std::size_t, PartId, std::size_t>;
+constexpr std::size_t kWholePart = static_cast<std::size_t>(-1);
+
+class RuleBook {
+ public:
+  RuleBook(const Scenario& scenario, const std::vector<StatedPart>& stated, LoadedScene& scene)
+      : scenario_(scenario), stated_(stated), scene_(scene) {}
+
+  void run() {
+    for (const auto& fit : scenario_.fits) apply_fit(fit);
+    make_bands();
+    for (const auto& exclusion : scenario_.exclusions) apply_exclusion(exclusion);
+    for (const auto& user : scenario_.users) check_user(user);
+  }
+
+ private:
+  struct PairStatements {
+    std::vector<std::optional<FaceStatement>> a, b;  // by feature; the last one is the rest
+    std::vector<std::string> fits;
+  };
+
+  void error(SourceLine at, const std::string& text) {
+    scene_.findings.push_back({true, place_of(scenario_, at) + text});
+  }
+
+  Part& part(PartId id) { return scene_.world.parts[id.value - 1]; }
+
+  // 1. names
+
+  std::vector<PartId> parts_matching(const std::string& pattern) {
+    std::vector<PartId> ids;
+    for (const Part& candidate : scene_.world.parts)
+      if (matches_pattern(pattern, candidate.name)) ids.push_back(candidate.id);
+    return ids;
+  }
+
+  std::string no_such_part(const std::string& pattern) {
+    std::vector<std::string> names;
+    for (const Part& candidate : scene_.world.parts) names.push_back(candidate.name);
+    return "no part is called '" + pattern + "'; did you mean '" + nearest_word(pattern, names) +
+           "'?";
+  }
+
+  std::vector<std::size_t> features_matching(PartId id, const std::string& pattern) {
+    if (pattern.empty()) return {kWholePart};
+    std::vector<std::size_t> found;
+    const auto& features = part(id).features;
+    for (std::size_t i = 0; i < features.size(); ++i)
+      if (matches_pattern(pattern, features[i].name)) found.push_back(i);
+    return found;
+  }
+
+  std::string no_such_feature(const std::vector<PartId>& ids, const std::string& pattern) {
+    std::vector<std::string> names;
+    for (const PartId id : ids)
+      for (const Feature& feature : part(id).features) names.push_back(feature.name);
+    if (names.empty())
+      return "part '" + part(ids.front()).name + "' has no features; declare '" + pattern + "'";
+    return "no feature of it is called '" + pattern + "'; did you mean '" +
+           nearest_word(pattern, names) + "'?";
+  }
+
+  // 2. fits
+
+  struct Ends {
+    std::vector<std::pair<PartId, std::size_t>> a, b;
+  };
+
+  std::optional<std::vector<std::pair<PartId, std::size_t>>> ends_of(
+      SourceLine at, const std::string& part_pattern, const std::string& feature_pattern) {
+    const std::vector<PartId> ids = parts_matching(part_pattern);
+    if (ids.empty()) {
+      error(at, "fit: " + no_such_part(part_pattern));
+      return std::nullopt;
+    }
+    std::vector<std::pair<PartId, std::size_t>> ends;
+    for (const PartId id : ids)
+      for (const std::size_t feature : features_matching(id, feature_pattern))
+        ends.emplace_back(id, feature);
+    if (ends.empty()) {
+      error(at, "fit: " + part_pattern + ": " + no_such_feature(ids, feature_pattern));
+      return std::nullopt;
+    }
+    return ends;
+  }
+
+  void apply_fit(const Scenario::FitSpec& fit) {
+    const auto ends_a = ends_of(fit.at, fit.part_a, fit.feature_a);
+    const auto ends_b = ends_of(fit.at, fit.part_b, fit.feature_b);
+    if (!ends_a || !ends_b) return;
+    if (ends_a->size() * ends_b->size() > kMaxRulePairs) {
+      error(fit.at, "fit: matches more than " + std::to_string(kMaxRulePairs) +
+                        " pairs; name parts more closely");
+      return;
+    }
+    std::set<FeaturePair> seen;  // `*` on both sides names every pair twice
+    std::size_t applied = 0;
+    const std::size_t findings_before = scene_.findings.size();
+    for (auto [id_a, feature_a] : *ends_a)
+      for (auto [id_b, feature_b] : *ends_b) {
+        if (id_a == id_b) continue;
+        auto [a, fa, b, fb] = std::tuple(id_a, feature_a, id_b, feature_b);
+        if (b < a) std::swap(a, b), std::swap(fa, fb);
+        if (!seen.insert({a, fa, b, fb}).second) continue;
+        if (state_pair(fit, a, fa, b, fb)) ++applied;
+        if (scene_.findings.size() > findings_before + 20) return;  // the same mistake many times
+      }
+    if (applied == 0 && scene_.findings.size() == findings_before)
+      error(fit.at, "fit: matches no pair of a hole and a shaft of two different parts");
+  }
+
+  FitSide side_of(PartId id, std::size_t feature) {
+    const Feature& f = part(id).features[feature];
+    return {&f.surface, f.residual_mm, part(id).name + "." + f.name};
+  }
+
+  static bool has_wildcard(const std::string& text) { return text.find('*') != std::string::npos; }
+
+  // Returns whether the fit speaks of this pair of features.
+  bool state_pair(const Scenario::FitSpec& fit, PartId a, std::size_t fa, PartId b,
+                  std::size_t fb) {
+    LoadedScene::ResolvedFit resolved;
+    FaceStatement of_a, of_b;
+    std::string text;
+    if (fit.tolerance) {
+      of_a = of_b = FaceStatement{fit.tolerance->offset_mm, fit.tolerance->text};
+      const Interval both = of_a.offset_mm + of_b.offset_mm;
+      resolved.clearance_mm = {-2.0 * both.hi, -2.0 * both.lo};
+      text = fit.tolerance->text;
+    } else {
+      const FitSide side_a = side_of(a, fa), side_b = side_of(b, fb);
+      const bool wide = has_wildcard(fit.feature_a) || has_wildcard(fit.feature_b);
+      if (wide && side_a.surface->inward == side_b.surface->inward) return false;
+      Result<FitStatement> statement = fit_statement(fit.code, fit.nominal_mm, side_a, side_b);
+      if (!statement) {
+        error(fit.at, statement.error().text);
+        return false;
+      }
+      of_a = statement->a, of_b = statement->b;
+      resolved.clearance_mm = statement->fit.clearance_mm;
+      resolved.nominal_mm = statement->nominal_mm;
+      text = statement->text;
+    }
+    const auto [earlier, fresh] = fit_of_.insert({FeaturePair{a, fa, b, fb}, fit.at.line});
+    if (!fresh) {
+      error(fit.at, "fit: " + name_of_end(a, fa) + " and " + name_of_end(b, fb) +
+                        " already have a fit in line " + std::to_string(earlier->second) +
+                        "; keep one");
+      return false;
+    }
+    PairStatements& pair = statements_of(a, b);
+    if (!put(fit, pair.a, a, fa, of_a, b) || !put(fit, pair.b, b, fb, of_b, a)) return false;
+    if (std::find(pair.fits.begin(), pair.fits.end(), text) == pair.fits.end())
+      pair.fits.push_back(text);
+    resolved.part_a = part(a).name, resolved.part_b = part(b).name;
+    if (fa != kWholePart) resolved.feature_a = part(a).features[fa].name;
+    if (fb != kWholePart) resolved.feature_b = part(b).features[fb].name;
+    resolved.code = text;
+    scene_.fits.push_back(std::move(resolved));
+    return true;
+  }
+
+  std::string name_of_end(PartId id, std::size_t feature) {
+    return feature == kWholePart ? part(id).name
+                                 : part(id).name + "." + part(id).features[feature].name;
+  }
+
+  PairStatements& statements_of(PartId a, PartId b) {
+    PairStatements& pair = pairs_[{a, b}];
+    pair.a.resize(part(a).features.size() + 1);
+    pair.b.resize(part(b).features.size() + 1);
+    return pair;
+  }
+
+  // One surface of one pair has one statement; a second one must say the same.
+  bool put(const Scenario::FitSpec& fit, std::vector<std::optional<FaceStatement>>& side, PartId id,
+           std::size_t feature, const FaceStatement& statement, PartId other) {
+    std::optional<FaceStatement>& slot = feature == kWholePart ? side.back() : side[feature];
+    if (slot && !(slot->offset_mm == statement.offset_mm)) {
+      error(fit.at, "fit: " + name_of_end(id, feature) + " is already " + slot->source +
+                        " against " + part(other).name + " and cannot be " + statement.source +
+                        " as well; one surface has one class");
+      return false;
+    }
+    slot = statement;
+    return true;
+  }
+
+  // 3. bands of pairs, shared by pairs that say the same of parts that are alike
+
+  std::shared_ptr<const SurfaceBand> band_of(
+      PartId id, const std::vector<std::optional<FaceStatement>>& side) {
+    if (std::none_of(side.begin(), side.end(), [](auto& s) { return s.has_value(); }))
+      return nullptr;
+    const StatedPart& own = stated_[id.value - 1];
+    const FaceStatement rest = side.back().value_or(own.rest);
+    std::vector<FaceStatement> of_feature = own.of_feature;
+    std::string key = std::to_string(own.kind);
+    const auto add_to_key = [&](const FaceStatement& s) {
+      char bytes[sizeof(Interval)];
+      std::memcpy(bytes, &s.offset_mm, sizeof bytes);
+      key.append(bytes, sizeof bytes).append(s.source).push_back('\n');
+    };
+    for (std::size_t i = 0; i < of_feature.size(); ++i) {
+      if (side[i])
+        of_feature[i] = *side[i];
+      else if (side.back())  // a statement of whole parts holds for every face of the pair
+        of_feature[i] = *side.back();
+      add_to_key(of_feature[i]);
+    }
+    add_to_key(rest);
+    std::shared_ptr<const SurfaceBand>& band = bands_[key];
+    if (!band)
+      band = std::make_shared<const SurfaceBand>(with_statements(part(id).band, rest, of_feature));
+    return band;
+  }
+
+  void make_bands() {
+    for (const auto& [ids, pair] : pairs_) {
+      PairRule& rule = scene_.world.pair_rules[ids];
+      rule.a = ids.first, rule.b = ids.second;
+      rule.band_a = band_of(ids.first, pair.a);
+      rule.band_b = band_of(ids.second, pair.b);
+      for (const std::string& fit : pair.fits) rule.fit += (rule.fit.empty() ? "" : ", ") + fit;
+    }
+  }
+
+  // 4. exclusions and users
+
+  void apply_exclusion(const Scenario::Exclusion& exclusion) {
+    const auto ids_a = parts_matching(exclusion.part_a), ids_b = parts_matching(exclusion.part_b);
+    if (ids_a.empty()) error(exclusion.at, "exclusion: " + no_such_part(exclusion.part_a));
+    if (ids_b.empty()) error(exclusion.at, "exclusion: " + no_such_part(exclusion.part_b));
+    if (ids_a.empty() || ids_b.empty()) return;
+    if (ids_a.size() * ids_b.size() > kMaxRulePairs) {
+      error(exclusion.at, "exclusion: matches more than " + std::to_string(kMaxRulePairs) +
+                              " pairs; name parts more closely");
+      return;
+    }
+    bool any = false;
+    for (const PartId id_a : ids_a)
+      for (const PartId id_b : ids_b) {
+        if (id_a == id_b) continue;
+        const auto key = std::minmax(id_a, id_b);
+        PairRule& rule = scene_.world.pair_rules[{key.first, key.second}];
+        rule.a = key.first, rule.b = key.second;
+        any = true;
+        if (rule.excluded) continue;  // the first reason stands
+        rule.excluded = true;
+        rule.reason = exclusion.reason;
+      }
+    if (!any) error(exclusion.at, "exclusion: names one part only; a pair needs two");
+  }
+
+  void check_user(const Scenario::UserSpec& user) {
+    for (const std::string& pattern : user.may_hold) {
+      const auto ids = parts_matching(pattern);
+      if (ids.empty())
+        error(user.at, "user " + user.name + ": may_hold: " + no_such_part(pattern));
+      else if (std::none_of(ids.begin(), ids.end(), [&](PartId id) { return part(id).moving; }))
+        error(user.at, "user " + user.name + ": may_hold: no part called '" + pattern +
+                           "' has moving: true");
+    }
+  }
+
+  const Scenario& scenario_;
+  const std::vector<StatedPart>& stated_;
+  LoadedScene& scene_;
+  std::map<std::pair<PartId, PartId>, PairStatements> pairs_;
+  std::map<FeaturePair, int> fit_of_;
+  std::map<std::string, std::shared_ptr<const SurfaceBand>> bands_;
+};
+
+}  // namespace
+
+bool matches_pattern(std::string_view pattern, std::string_view name) {
+  // Greedy with one point to come back to: linear for every pattern people write.
+  std::size_t p = 0, n = 0, star = std::string_view::npos, star_n = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      star_n = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p, ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++star_n;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+std::string place_of(const Scenario& scenario, SourceLine at) {
+  const std::string file = scenario.file.empty() ? "scenario" : scenario.file;
+  return at.line > 0 ? file + ":" + std::to_string(at.line) + ": " : file + ": ";
+}
+
+void apply_rules(const Scenario& scenario, const std::vector<StatedPart>& stated,
+                 LoadedScene& scene) {
+  RuleBook(scenario, stated, scene).run();
+}
+
+}  // namespace mortise
