@@ -293,8 +293,7 @@ TEST(Inbox, AFloodOfOneUserIsCutAndTheOthersGoOn) {
 
   ServerInput flood;
   for (std::uint64_t seq = 1; seq <= 500; ++seq) {
-    flood.increments.push_back(
-        {"a", {UserId{1}, kRed, seq, Vec3(0.1, 0, 0), Vec3::Zero()}, 0});
+    flood.increments.push_back({"a", {UserId{1}, kRed, seq, Vec3(0.1, 0, 0), Vec3::Zero()}, 0});
   }
   flood.increments.push_back({"b", {UserId{2}, kBlue, 1, Vec3(1, 0, 0), Vec3::Zero()}, 0});
   inbox.admit(std::move(flood), world, 0, intake);
