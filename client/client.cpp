@@ -83,7 +83,9 @@ std::uint64_t Client::send(LocalUser index, PartId part, const Vec3& translation
   increment.seq = ++user.increment_seq;
   increment.translation_mm = translation_mm;
   increment.rotation_rad = rotation_rad;
-  channel_.send(increment, clock_());
+  const std::int64_t sent_ns = clock_();
+  if (!user.unacked_since_ns) user.unacked_since_ns = sent_ns;
+  channel_.send(increment, sent_ns);
   ++statistics_.increments_sent;
   return increment.seq;
 }
@@ -140,6 +142,7 @@ void Client::forget_server() {
     if (user.state != JoinState::kJoined) continue;
     user.state = JoinState::kJoining;
     user.id = UserId{};
+    user.in_doubt = false;
     user.join_sent_ns.reset();
   }
   for (auto& [id, part] : parts_) part.tick = 0;  // another server counts anew
@@ -155,18 +158,23 @@ void Client::forget_server() {
 void Client::apply_join(const JoinReply& reply, ClientUpdate& update) {
   for (LocalUser index = 0; index < users_.size(); ++index) {
     LocalUserState& user = users_[index];
-    if (user.nonce != reply.nonce || user.state != JoinState::kJoining) continue;
+    const bool asked = user.state == JoinState::kJoining || user.state == JoinState::kJoined;
+    if (user.nonce != reply.nonce || !asked) continue;
     if (reply.refusal == Refusal::kNone) {
+      user.in_doubt = false;
+      if (user.state == JoinState::kJoined && user.id == reply.user) continue;
       user.state = JoinState::kJoined;
       user.id = reply.user;
       user.was_joined = true;
       user.refusal.clear();
+      user.unacked_since_ns.reset();
       user.heartbeat_at_ns = now_ns_ - in_ns(options_.heartbeat_s);
       update.joined.push_back(index);
     } else {
       user.refusal = reply.text;
+      user.id = UserId{};
       // Who had joined keeps trying: the server may not have noticed yet that its old self is gone.
-      if (!user.was_joined) user.state = JoinState::kRefused;
+      user.state = user.was_joined ? JoinState::kJoining : JoinState::kRefused;
     }
   }
 }
@@ -189,11 +197,7 @@ void Client::apply_refusal(const RefusedIncrement& refused, ClientUpdate& update
   LocalUserState* user = own_user(refused.user);
   if (user == nullptr) return;
   update.refused.push_back(refused);
-  if (refused.reason == Refusal::kUnknownUser) {  // we were taken for gone: join again
-    user->state = JoinState::kJoining;
-    user->id = UserId{};
-    user->join_sent_ns.reset();
-  }
+  if (refused.reason == Refusal::kUnknownUser) user->in_doubt = true;
 }
 
 void Client::apply_scene(const Snapshot& snapshot) {
@@ -201,6 +205,10 @@ void Client::apply_scene(const Snapshot& snapshot) {
   policy_ = snapshot.policy;
   tick_rate_hz_ = snapshot.tick_rate_hz;
   session_users_ = snapshot.users;
+  for (const UserInfo& info : snapshot.users) {
+    LocalUserState* user = own_user(info.user);
+    if (user != nullptr && !info.present) user->in_doubt = true;
+  }
   std::map<PartId, KnownPart> parts;
   for (const PartInfo& info : snapshot.parts) {
     KnownPart& part = parts[info.part];
@@ -273,6 +281,8 @@ void Client::apply_poses(const PoseBatch& batch, ClientUpdate& update) {
     LocalUserState* user = own_user(ack.user);
     if (user == nullptr || ack.seq <= user->acked_seq) continue;
     user->acked_seq = ack.seq;
+    user->unacked_since_ns.reset();
+    if (ack.seq < user->increment_seq) user->unacked_since_ns = now_ns_;
     if (ack.sent_ns != 0) {
       update.latency_ms.push_back(static_cast<double>(now_ns_ - ack.sent_ns) * 1e-6);
     }
@@ -334,7 +344,14 @@ void Client::watch_gap(ClientUpdate& update) {
 void Client::send_what_is_due() {
   if (!server_present_) return;
   for (LocalUserState& user : users_) {
-    if (user.state == JoinState::kJoining &&
+    if (user.unacked_since_ns &&
+        now_ns_ - *user.unacked_since_ns >= in_ns(options_.ack_timeout_s)) {
+      user.in_doubt = true;
+      user.unacked_since_ns = now_ns_;
+    }
+    const bool wants =
+        user.state == JoinState::kJoining || (user.state == JoinState::kJoined && user.in_doubt);
+    if (wants &&
         (!user.join_sent_ns || now_ns_ - *user.join_sent_ns >= in_ns(options_.join_retry_s))) {
       user.join_sent_ns = now_ns_;
       channel_.join(user.nonce, user.name, user.role);

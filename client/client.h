@@ -18,6 +18,7 @@ struct ClientOptions {
   double resync_after_s =
       0.2;  ///< so long may a gap of events stand before a snapshot is asked for
   double resync_retry_s = 1.0;  ///< between two requests for a snapshot
+  double ack_timeout_s = 2.0;   ///< increments unanswered for so long: ask to join again
   double pose_resync_s = 2.0;   ///< so long may lost poses wait for a keyframe
 };
 
@@ -110,7 +111,8 @@ class Client {
     UserId id;
     std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
     bool was_joined = false;  ///< joins again by itself, also when refused
-    std::optional<std::int64_t> join_sent_ns;
+    bool in_doubt = false;    ///< the server may have taken us for gone: ask to join again
+    std::optional<std::int64_t> join_sent_ns, unacked_since_ns;
     std::int64_t heartbeat_at_ns = 0;
     std::string refusal;
   };

@@ -114,7 +114,9 @@ class DdsClientChannel final : public ClientChannel {
     ClientInput input;
     const ServerWatch::Answer watch = watch_.take();
     input.server_lost = watch.lost;
-    input.server_present = watch.present;
+    // Answers can be heard; and what is sent from now on will be.
+    input.server_present =
+        watch.present && matched(requests_) && matched(increments_) && matched(presence_);
     take_answers(input);
     take_snapshots(input);
     take_poses(input);
@@ -152,6 +154,12 @@ class DdsClientChannel final : public ClientChannel {
     } else {
       status = opened.error();
     }
+  }
+
+  static bool matched(dds::DataWriter* writer) {
+    dds::PublicationMatchedStatus status;
+    return writer->get_publication_matched_status(status) == ReturnCode_t::RETCODE_OK &&
+           status.current_count > 0;
   }
 
   template <class Sample>

@@ -93,14 +93,14 @@ class DdsServerChannel final : public ServerChannel {
       for (const wire::PoseBatch& chunk : cut(batch, ++keyframe_serial_)) write(keyframes_, chunk);
       return;
     }
-    if (!has_readers()) return;
+    if (!matched(poses_)) return;
     for (const wire::PoseBatch& chunk : cut(batch, pose_serial_ + 1)) {
       pose_serial_ = chunk.serial();
       write(poses_, chunk);
     }
   }
   void publish_events(std::span<const ClashEvent> events) override {
-    if (events.empty() || !has_readers()) return;
+    if (events.empty()) return;
     for (const wire::EventBatch& chunk : cut(events)) write(events_, chunk);
   }
   void publish_snapshot(const Snapshot& snapshot) override {
@@ -122,11 +122,8 @@ class DdsServerChannel final : public ServerChannel {
     write(pulses_, to_wire(pulse, pose_serial_));
   }
 
-  bool has_readers() const override {
-    dds::PublicationMatchedStatus status;
-    return poses_->get_publication_matched_status(status) == ReturnCode_t::RETCODE_OK &&
-           status.current_count > 0;
-  }
+  /// Also a client that is still joining counts, so that nothing said meanwhile is lost.
+  bool has_readers() const override { return matched(poses_) || matched(events_); }
   ChannelCounters counters() const override {
     ChannelCounters counters = counters_;
     counters.malformed += participant_->refused();
@@ -155,6 +152,12 @@ class DdsServerChannel final : public ServerChannel {
     } else {
       status = opened.error();
     }
+  }
+
+  static bool matched(dds::DataWriter* writer) {
+    dds::PublicationMatchedStatus status;
+    return writer->get_publication_matched_status(status) == ReturnCode_t::RETCODE_OK &&
+           status.current_count > 0;
   }
 
   template <class Sample>

@@ -1,0 +1,68 @@
+#pragma once
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "idl/dds_channel.h"
+
+namespace mortise::test {
+
+/// A DDS domain of its own for each test, from its name: 1 to 200.
+int domain_of(const std::string& test_name);
+DdsOptions options_for_this_test(const std::string& session = "test");
+
+/// Seconds of a clock that never goes back.
+double now_s();
+void sleep_s(double seconds);
+
+/// Calls `turn` each few milliseconds until `done` or the time is over; says whether it was done.
+bool until(double limit_s, const std::function<bool()>& done, const std::function<void()>& turn);
+
+/// A server without an engine: admits everybody, moves what it is told to, counts. What a session
+/// needs to know of the wire, and nothing else.
+class SmallServer {
+ public:
+  SmallServer(ServerChannel& channel, const std::string& session, std::uint32_t parts);
+
+  /// One turn: take, answer, publish poses of moved parts, a snapshot when asked for.
+  void turn();
+  void publish_events(std::uint32_t count);
+  Snapshot snapshot() const;
+
+  ServerInput last_input;
+  std::vector<LostUser> lost;
+  std::uint64_t increments = 0, event_seq = 0, tick = 0, commands = 0, refused_at_door = 0;
+  std::map<UserId, std::pair<ClientKey, std::string>> users;
+  std::vector<PartPose> parts;
+  double longest_publish_s = 0.0;
+
+ private:
+  ServerChannel& channel_;
+  std::string session_;
+};
+
+/// A child process of this test; ended with the object, by its id and nobody else's.
+class Child {
+ public:
+  /// Runs `body` in a fork, which must happen before this process opens any channel.
+  explicit Child(const std::function<int()>& body);
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  void signal(int number) const;
+  /// Waits for its end; its exit code, -1 when it was killed or the time is over.
+  int wait(double limit_s);
+
+ private:
+  pid_t pid_ = 0;
+  bool ended_ = false;
+};
+
+ClashEvent some_event(std::uint64_t seq, std::uint64_t tick);
+
+}  // namespace mortise::test
