@@ -35,7 +35,11 @@ class Cutter {
       if (!join_nearest_hole()) return broken("a hole cannot be joined to the outline");
     if (!cut_ears()) return broken("no ear is left to cut");
     double area = 0.0;
-    for (const auto& t : triangles_) area += turn(points_[t[0]], points_[t[1]], points_[t[2]]);
+    for (const auto& t : triangles_) {
+      const double twice = turn(points_[t[0]], points_[t[1]], points_[t[2]]);
+      if (!(twice > 0.0)) return broken("a triangle is turned over");
+      area += twice;
+    }
     if (!(std::abs(area - twice_area_) <= kAreaAgrees * std::abs(twice_area_)))
       return broken("the area does not agree");
     return triangles_;
