@@ -77,10 +77,11 @@ TickRecord& LogAssembler::open(std::uint64_t tick) {
 
 void LogAssembler::end_tick(log_records::TickEnd end, std::uint64_t time_ns) {
   TickRecord& record = open(end.tick);
-  const bool rises = log_.ticks.empty() || log_.ticks.back().tick < end.tick;
-  if (!rises || log_.ticks.size() >= kMostTicks) {
-    open_gap(rises ? "more ticks than a session has"
-                   : "tick " + std::to_string(end.tick) + " comes after a later one");
+  const std::uint64_t before = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
+  if (end.tick <= before || log_.ticks.size() >= kMostTicks) {
+    open_gap(end.tick > before ? "more ticks than a session has"
+                               : "tick " + std::to_string(end.tick) + " does not follow tick " +
+                                     std::to_string(before));
     tick_.reset();
     events_.clear();
     return;

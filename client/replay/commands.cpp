@@ -1,0 +1,174 @@
+#include "client/replay/commands.h"
+
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/io/build_info.h"
+#include "common/io/replay.h"
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+using nlohmann::ordered_json;
+
+int say(const Error& error) {
+  std::cerr << "mortise-replay: " << error.text << '\n';
+  return exit_code_of(error.code);
+}
+
+// A log that cannot be opened or read is bad input, whatever the reason.
+int say_bad_log(const Error& error) {
+  say(error);
+  return kExitBadInput;
+}
+
+void print(const ordered_json& document) {
+  std::cout << document.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+}
+
+void print_notes(const SessionLog& log) {
+  if (!log.complete) std::cerr << "the log was not closed: its tail is missing\n";
+  for (const std::string& note : log.notes) std::cerr << note << '\n';
+}
+
+ordered_json gaps_of(const SessionLog& log) {
+  ordered_json gaps = ordered_json::array();
+  for (const LogGap& gap : log.gaps)
+    gaps.push_back(
+        {{"after_tick", gap.after_tick}, {"until_tick", gap.until_tick}, {"reason", gap.reason}});
+  return gaps;
+}
+
+}  // namespace
+
+int run_verify(const VerifyOptions& options) {
+  const auto log = read_session_log(options.log);
+  if (!log) return say_bad_log(log.error());
+  print_notes(*log);
+  const auto report = verify(*log, options.threads);
+  if (!report)
+    return say_bad_log({report.error().code, options.log.string() + ": " + report.error().text});
+  if (!report->same_build)
+    std::cerr << "recorded by another build (" << log->engine_version
+              << "): agreement to the last bit is not promised\n";
+  const int code = report->difference                ? kExitMismatch
+                   : !report->not_verifiable.empty() ? kExitBadInput
+                                                     : kExitOk;
+  if (options.json) {
+    ordered_json document = {{"log", options.log.string()},
+                             {"verified", code == kExitOk},
+                             {"verified_to_tick", report->verified_to_tick},
+                             {"ticks_logged", report->ticks_logged},
+                             {"ticks_compared", report->ticks_compared},
+                             {"idle_ticks", report->idle_ticks},
+                             {"decisions", report->decisions},
+                             {"increments", report->increments},
+                             {"events_compared", report->events_compared},
+                             {"same_build", report->same_build},
+                             {"complete", log->complete},
+                             {"difference", nullptr},
+                             {"not_verifiable", report->not_verifiable},
+                             {"notes", log->notes}};
+    if (report->difference)
+      document["difference"] = {{"tick", report->difference->tick},
+                                {"what", report->difference->what}};
+    print(document);
+    return code;
+  }
+  if (report->difference)
+    std::cout << "DIFFERENT at tick " << report->difference->tick << ": "
+              << report->difference->what << '\n';
+  else if (!report->not_verifiable.empty())
+    std::cout << "NOT VERIFIABLE after tick " << report->verified_to_tick << ": "
+              << report->not_verifiable << '\n';
+  std::cout << (code == kExitOk ? "verified: " : "agreed before that: ") << "up to tick "
+            << report->verified_to_tick << ", " << report->ticks_compared << " of "
+            << report->ticks_logged << " recorded ticks, " << report->idle_ticks << " idle ticks, "
+            << report->increments << " increments, " << report->events_compared
+            << " clash events\n";
+  return code;
+}
+
+int run_info(const InfoOptions& options) {
+  const auto log = read_session_log(options.log);
+  if (!log) return say_bad_log(log.error());
+  std::uint64_t increments = 0, refused = 0, decisions = 0, events = 0, triangles = 0;
+  std::map<std::string, std::uint64_t> begun;  // by worst class of ended or open clashes
+  std::map<std::uint32_t, CollisionClass> worst;
+  ordered_json users = ordered_json::array();
+  for (const TickRecord& tick : log->ticks) {
+    increments += tick.increments.size();
+    refused += tick.report.refused.size();
+    decisions += tick.decisions.size();
+    events += tick.report.events.size();
+    for (const ClashEvent& event : tick.report.events) worst[event.clash.value] = event.worst_class;
+    for (const Decision& decision : tick.decisions)
+      if (decision.kind == Decision::Kind::kJoin) users.push_back(decision.user_name);
+  }
+  for (const auto& [clash, worst_class] : worst) ++begun[std::string(name_of(worst_class))];
+  for (const auto& [hash, mesh] : log->meshes) triangles += mesh.triangles.size();
+  const TickRecord* first = log->ticks.empty() ? nullptr : &log->ticks.front();
+  const TickRecord* last = log->ticks.empty() ? nullptr : &log->ticks.back();
+  std::error_code ignored;
+  const ordered_json document = {
+      {"log", options.log.string()},
+      {"bytes", std::filesystem::file_size(options.log, ignored)},
+      {"complete", log->complete},
+      {"session", log->session},
+      {"scenario", log->scenario_name},
+      {"engine_version", log->engine_version},
+      {"build_fingerprint", log->build_fingerprint},
+      {"same_build", log->build_fingerprint == build_fingerprint()},
+      {"parts", log->mesh_of_part.size()},
+      {"meshes", log->meshes.size()},
+      {"triangles", triangles},
+      {"users", users},
+      {"ticks", log->ticks.size()},
+      {"first_tick", first != nullptr ? first->tick : 0},
+      {"last_tick", last != nullptr ? last->tick : 0},
+      {"duration_s",
+       first != nullptr ? static_cast<double>(last->time_ns - first->time_ns) * 1e-9 : 0.0},
+      {"decisions", decisions},
+      {"increments", increments},
+      {"refused", refused},
+      {"clash_events", events},
+      {"clashes_by_worst_class", begun},
+      {"gaps", gaps_of(*log)},
+      {"notes", log->notes}};
+  if (options.json) {
+    print(document);
+    return kExitOk;
+  }
+  for (const auto& [key, value] : document.items())
+    std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
+              << '\n';
+  return kExitOk;
+}
+
+int run_recover(const RecoverOptions& options) {
+  const auto recovery = recover_session_log(options.log, options.out);
+  if (!recovery)
+    return recovery.error().code == Code::kRuntime ? say(recovery.error())
+                                                   : say_bad_log(recovery.error());
+  if (options.json) {
+    print({{"log", options.log.string()},
+           {"out", options.out.string()},
+           {"was_complete", recovery->was_complete},
+           {"ticks", recovery->ticks},
+           {"messages", recovery->messages},
+           {"lost_chunks", recovery->lost_chunks},
+           {"notes", recovery->notes}});
+    return kExitOk;
+  }
+  for (const std::string& note : recovery->notes) std::cout << "lost or odd: " << note << '\n';
+  std::cout << options.out.string() << ": " << recovery->ticks << " ticks, " << recovery->messages
+            << " messages; " << recovery->lost_chunks << " chunks lost; "
+            << (recovery->was_complete ? "the log had been closed" : "the log had not been closed")
+            << '\n';
+  return kExitOk;
+}
+
+}  // namespace mortise

@@ -1,0 +1,149 @@
+#include "common/io/replay.h"
+
+#include <cstdio>
+
+#include "common/io/build_info.h"
+#include "common/io/log_json.h"
+#include "common/messages/names.h"
+#include "common/session/step.h"
+
+namespace mortise {
+namespace {
+
+// Ticks without record between two records: a day at 60 a second. A longer pause is a damaged
+// number, which must not keep a replay busy for ever.
+constexpr std::uint64_t kMostIdleTicks = 6'000'000;
+
+// Logged poses are rounded to floats and to 2e-6 rad: a part is called moved away beyond this.
+constexpr double kRoundedPose_mm = 1e-2;
+
+std::string hex(std::uint64_t value) {
+  char text[19];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+std::string describe(const ClashEvent& event) {
+  return std::string(name_of(event.kind)) + " of clash " + std::to_string(event.clash.value) +
+         " between parts " + std::to_string(event.part_a.value) + " and " +
+         std::to_string(event.part_b.value) + " (" + std::string(name_of(event.worst_class)) + ")";
+}
+std::string describe(const RefusedIncrement& refused) {
+  return "increment " + std::to_string(refused.seq) + " of user " +
+         std::to_string(refused.user.value) + " refused: " + std::string(name_of(refused.reason));
+}
+
+bool same(const RefusedIncrement& a, const RefusedIncrement& b) {
+  return a.user == b.user && a.part == b.part && a.seq == b.seq && a.reason == b.reason;
+}
+
+std::string compare_refusals(const StepReport& logged, const StepReport& computed) {
+  const auto &a = logged.refused, &b = computed.refused;
+  for (std::size_t i = 0; i < a.size() || i < b.size(); ++i) {
+    if (i >= b.size()) return describe(a[i]) + ", which the replay accepts";
+    if (i >= a.size()) return describe(b[i]) + ", which the log does not have";
+    if (!same(a[i], b[i])) return "logged " + describe(a[i]) + "; computed " + describe(b[i]);
+  }
+  return {};
+}
+
+std::string compare_events(const StepReport& logged, const StepReport& computed) {
+  const auto &a = logged.events, &b = computed.events;
+  for (std::size_t i = 0; i < a.size() || i < b.size(); ++i) {
+    if (i >= b.size()) return describe(a[i]) + " is in the log only";
+    if (i >= a.size()) return describe(b[i]) + " is in the replay only";
+    if (const std::string difference = log_json::first_difference(a[i], b[i]); !difference.empty())
+      return describe(b[i]) + ": " + difference;
+  }
+  return {};
+}
+
+std::string compare_hash(const StepReport& logged, const StepReport& computed, const World& world) {
+  if (logged.state_hash == computed.state_hash) return {};
+  std::string what =
+      "state hash: logged " + hex(logged.state_hash) + ", computed " + hex(computed.state_hash);
+  for (const PartPose& pose : logged.moved) {
+    const Part* part = world.find(pose.part);
+    if (part == nullptr) continue;
+    const double away_mm = (part->X_WP.p - pose.X_WP.p).norm();
+    if (away_mm > kRoundedPose_mm)
+      what += "; part " + part->name + " is " + std::to_string(away_mm) + " mm away";
+  }
+  return what;
+}
+
+}  // namespace
+
+Result<LoadedScene> scene_of(const SessionLog& log) {
+  auto reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
+  if (!reading) return reading.error();
+  for (const Finding& finding : reading->findings)
+    if (finding.is_error) return fail(Code::kInvalidInput, "scenario of the log: " + finding.text);
+  const MeshProvider from_log = [&log](const Scenario& scenario,
+                                       const Scenario::PartSpec& part) -> Result<ImportedMesh> {
+    std::size_t index = 0;
+    while (index < scenario.parts.size() && scenario.parts[index].name != part.name) ++index;
+    if (index >= log.mesh_of_part.size())
+      return fail(Code::kInvalidInput, "the log names no mesh for part " + part.name);
+    for (const auto& [hash, mesh] : log.meshes)
+      if (hash == log.mesh_of_part[index])
+        return ImportedMesh{mesh, index < log.imports.size() ? log.imports[index] : ImportReport{}};
+    return fail(Code::kInvalidInput, "mesh " + log.mesh_of_part[index] + " of part " + part.name +
+                                         " is missing from the log or damaged");
+  };
+  auto scene = load_scene(reading->scenario, from_log);
+  if (!scene) return scene.error();
+  for (const Finding& finding : scene->findings)
+    if (finding.is_error) return fail(Code::kInvalidInput, "scene of the log: " + finding.text);
+  return scene;
+}
+
+Result<ReplayReport> verify(const SessionLog& log, int threads) {
+  auto scene = scene_of(log);
+  if (!scene) return scene.error();
+  World& world = scene->world;
+  Scratch scratch(threads);
+  ReplayReport report;
+  report.ticks_logged = log.ticks.size();
+  report.same_build = log.build_fingerprint == build_fingerprint();
+  report.verified_to_tick = world.tick;
+
+  auto gap = log.gaps.begin();
+  for (const TickRecord& record : log.ticks) {
+    // 1. What was lost before this tick cannot be computed, nor anything after it.
+    if (gap != log.gaps.end() && gap->until_tick == record.tick) {
+      report.not_verifiable = "ticks between " + std::to_string(gap->after_tick) + " and " +
+                              std::to_string(gap->until_tick) + " are missing: " + gap->reason;
+      return report;
+    }
+    if (record.tick <= world.tick || record.tick - world.tick > kMostIdleTicks)
+      return fail(Code::kInvalidInput, "tick " + std::to_string(record.tick) + " follows tick " +
+                                           std::to_string(world.tick) + ": the log is damaged");
+    const auto differs = [&](std::uint64_t tick, std::string what) {
+      if (what.empty()) return false;
+      report.difference = ReplayDifference{tick, std::move(what)};
+      return true;
+    };
+    // 2. Ticks in between had no input; they still count for how long a clash lasts.
+    while (world.tick + 1 < record.tick) {
+      const StepReport idle = step(world, {}, scratch);
+      ++report.idle_ticks;
+      if (differs(idle.tick, compare_events({}, idle))) return report;
+    }
+    // 3. The tick itself.
+    for (const Decision& decision : record.decisions) apply_decision(world, decision);
+    const StepReport computed = step(world, record.increments, scratch);
+    report.increments += record.increments.size();
+    report.decisions += record.decisions.size();
+    report.events_compared += record.report.events.size();
+    ++report.ticks_compared;
+    if (differs(record.tick, compare_refusals(record.report, computed)) ||
+        differs(record.tick, compare_events(record.report, computed)) ||
+        differs(record.tick, compare_hash(record.report, computed, world)))
+      return report;
+    report.verified_to_tick = record.tick;
+  }
+  return report;
+}
+
+}  // namespace mortise

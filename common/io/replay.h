@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/io/scene_load.h"
+#include "common/io/session_log.h"
+
+namespace mortise {
+
+/// The scene with which a logged session began: scenario and meshes from the log, no other file.
+/// `log` must outlive the call only.
+Result<LoadedScene> scene_of(const SessionLog& log);
+
+/// The first place where a replay and its log disagree.
+struct ReplayDifference {
+  std::uint64_t tick = 0;
+  std::string what;  ///< "state hash: logged ..., computed ...; part shaft is 0.1 mm away"
+};
+
+struct ReplayReport {
+  std::uint64_t ticks_logged = 0;
+  std::uint64_t ticks_compared = 0;  ///< of these
+  std::uint64_t idle_ticks = 0;      ///< computed between them: not logged, since nothing went in
+  std::uint64_t increments = 0, decisions = 0, events_compared = 0;
+  std::uint64_t verified_to_tick = 0;  ///< every tick up to this one agrees
+  std::optional<ReplayDifference> difference;
+  std::string not_verifiable;  ///< why ticks after verified_to_tick could not be compared, or empty
+  bool same_build = false;     ///< bit for bit agreement is promised
+};
+
+/// Computes a session again, tick by tick, and compares refusals, events and state hashes. Stops at
+/// the first difference, and at the first gap: what was lost there cannot be computed. Fails when
+/// the log cannot be replayed at all.
+Result<ReplayReport> verify(const SessionLog& log, int threads);
+
+}  // namespace mortise
