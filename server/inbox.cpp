@@ -112,7 +112,9 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   const std::vector<LostUser> lost = std::exchange(deferred_lost_, {});
   for (const LostUser& gone : lost) leave(gone.user, gone.said_goodbye, world, intake);
 
-  // 2. Who comes in, and what users ask for.
+  // 2. Who is gone without a word (and may be among those who come in), who comes in, and what
+  // users ask for.
+  depart(input.lost, false, world, intake);
   for (const JoinRequest& request : input.joins) admit_join(request, world, now_ns, intake);
   for (UserId user : input.heartbeats) {
     if (user && user.value <= seats_.size() && seats_[user.value - 1].present) {
@@ -134,25 +136,8 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   }
   for (const ReceivedIncrement& r : input.increments) admit_increment(r, world, now_ns, intake);
 
-  // 4. Who goes, and whose lease is over. A user's last increments are still carried out.
-  for (const LostUser& gone : input.lost) {
-    for (std::uint32_t i = 0; i < seats_.size(); ++i) {
-      const UserId user{i + 1};
-      if (!seats_[i].present || (gone.user && gone.user != user)) continue;
-      if (!gone.client.empty() && gone.client != seats_[i].client) {
-        if (gone.user) ++counters_.foreign;
-        continue;
-      }
-      const bool moves_now =
-          std::any_of(intake.increments.begin(), intake.increments.end(),
-                      [&](const Increment& increment) { return increment.user == user; });
-      if (moves_now) {
-        deferred_lost_.push_back({user, seats_[i].client, gone.said_goodbye});
-      } else {
-        leave(user, gone.said_goodbye, world, intake);
-      }
-    }
-  }
+  // 4. Who says goodbye, and whose lease is over. A user's last increments are still carried out.
+  depart(input.lost, true, world, intake);
   end_leases(world, now_ns, intake);
 }
 
@@ -317,6 +302,29 @@ void Inbox::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, In
     at->sent_ns = sent_ns;
   } else {
     intake.acks.insert(at, Ack{user, seq, sent_ns});
+  }
+}
+
+void Inbox::depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world,
+                   Intake& intake) {
+  for (const LostUser& gone : lost) {
+    if (gone.said_goodbye != said_goodbye) continue;
+    for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+      const UserId user{i + 1};
+      if (!seats_[i].present || (gone.user && gone.user != user)) continue;
+      if (!gone.client.empty() && gone.client != seats_[i].client) {
+        if (gone.user) ++counters_.foreign;
+        continue;
+      }
+      const bool moves_now =
+          std::any_of(intake.increments.begin(), intake.increments.end(),
+                      [&](const Increment& increment) { return increment.user == user; });
+      if (moves_now) {
+        deferred_lost_.push_back({user, seats_[i].client, said_goodbye});
+      } else {
+        leave(user, said_goodbye, world, intake);
+      }
+    }
   }
 }
 

@@ -100,6 +100,7 @@ class Inbox {
                        Intake& intake);
   Refusal judge(const Increment& increment, const World& world) const;
   void refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake);
+  void depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world, Intake& intake);
   void leave(UserId user, bool said_goodbye, World& world, Intake& intake);
   void end_leases(World& world, std::int64_t now_ns, Intake& intake);
   void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);

@@ -82,11 +82,18 @@ class Bot {
     return client_.synced();
   }
 
+  bool any_refused() const {
+    for (LocalUser user = 0; user < names_.size(); ++user) {
+      if (client_.join_state(user) == JoinState::kRefused) return true;
+    }
+    return false;
+  }
+
   bool wait_until_joined() {
     const auto start = SteadyClock::now();
     while (!all_joined()) {
       if (stop_asked) return false;
-      if (seconds_since(start) > options_.wait_s) {
+      if (any_refused() || seconds_since(start) > options_.wait_s) {
         say_why_not_joined();
         return false;
       }
