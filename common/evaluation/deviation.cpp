@@ -115,7 +115,8 @@ class Matcher {
         if (candidate.normal_agreement > agrees) near_.push_back(candidate);
         if (candidate.normal_agreement < -agrees) ++turned_;
       } else if (candidate.normal_agreement > (plane_ ? agrees : kRunsAround) &&
-                 candidate.corner_mm.width() <= std::max(near, 1e-3 * size_for_text(candidate))) {
+                 candidate.corner_mm.width() <= std::max(near, 1e-3 * size_for_text(candidate)) &&
+                 std::fabs(candidate.corner_mm.middle()) <= farthest_named_mm(candidate)) {
         same_way_.push_back(candidate);
       }
     }
@@ -123,6 +124,11 @@ class Matcher {
 
   double size_for_text(const Candidate& c) const {
     return plane_ ? mesh_radius_mm_ * 1e-3 : size_of(surface_, mesh_, c);
+  }
+
+  // Farther off, another face is meant; naming its radius would not help.
+  double farthest_named_mm(const Candidate& c) const {
+    return plane_ ? 2.0 * mesh_radius_mm_ : size_of(surface_, mesh_, c);
   }
 
   Interval depth_of(const Candidate& c) const {
@@ -263,6 +269,33 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 Result<FeatureMatch> match_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared) {
   return Matcher(mesh, declared).run();
+}
+
+Result<FeatureMatch> check_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared,
+                                   std::span<const std::uint32_t> triangles) {
+  FeatureMatch match;
+  match.feature.name = declared.name;
+  match.feature.surface = declared.surface;
+  match.feature.triangles.assign(triangles.begin(), triangles.end());
+  double allowed_mm = 0.0;
+  const double of_plane_mm = kNearOfPlane * bounding_sphere(mesh).radius_mm;
+  for (const std::uint32_t t : triangles) {
+    if (t >= mesh.triangles.size())
+      return fail(Code::kMismatch, "its triangles are not those of this mesh; load the mesh again");
+    for (int k = 0; k < 3; ++k)
+      match.feature.residual_mm =
+          std::max(match.feature.residual_mm,
+                   std::fabs(declared.surface.signed_distance_mm(mesh.corner(t, k))));
+    Candidate candidate;
+    candidate.triangle = t;
+    allowed_mm = std::max({allowed_mm, kNearOfRadius * size_of(declared.surface, mesh, candidate),
+                           of_plane_mm, declared.chord_error_mm});
+  }
+  if (declared.surface.kind == SurfaceKind::kPlane) match.feature.grade = DeviationGrade::kPlanar;
+  if (match.feature.residual_mm > allowed_mm)
+    return fail(Code::kMismatch, "its triangles stand " + size_text(match.feature.residual_mm) +
+                                     " mm off the surface they should stand for");
+  return match;
 }
 
 std::vector<FaceShape> face_shapes(const Solid& solid, double chord_error_mm) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,11 @@ struct FeatureMatch {
 /// whose corners lie on the round) are left out and noted. residual_mm: largest distance of a
 /// corner from the surface.
 Result<FeatureMatch> match_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared);
+
+/// The same where it is known which triangles stand for the surface (generated parts): only checks
+/// that their corners lie near it.
+Result<FeatureMatch> check_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared,
+                                   std::span<const std::uint32_t> triangles);
 
 /// Shape of every triangle's face for a declared chord error s: kConvex or kConcave when it meets
 /// neighbours smoothly that way only, kPlanar when no edge of its flat group can be smooth (a

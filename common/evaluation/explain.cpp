@@ -32,12 +32,30 @@ std::string overlap_part(const Interval& delta) {
   return "overlap " + range(std::fmax(delta.lo, 0.0), delta.hi) + " µm";
 }
 
-std::string tolerance_source(const ExplainInput& in) {
-  if (!in.fit.empty()) return in.fit;
-  const std::string a = in.face_a != nullptr ? in.face_a->tolerance_source : "";
-  const std::string b = in.face_b != nullptr ? in.face_b->tolerance_source : "";
-  if (a.empty() || a == b) return b.empty() ? a : (a.empty() ? b : "twice " + b);
-  return b.empty() ? a : a + " and " + b;
+// Who set the tolerances of both faces together, and whether that is a fit.
+struct Source {
+  std::string text;
+  bool fit = false;
+};
+
+// "Ø20 H7" and "Ø20 g6" are "Ø20 H7/g6": the hole, a capital letter, stands first.
+std::string joined_fit(const std::string& a, const std::string& b) {
+  const std::size_t blank = a.find(' ');
+  if (!a.starts_with("Ø") || blank == std::string::npos || blank + 1 >= a.size() ||
+      a.compare(0, blank + 1, b, 0, blank + 1) != 0)
+    return {};
+  const std::string size = a.substr(0, blank + 1), x = a.substr(blank + 1), y = b.substr(blank + 1);
+  const bool a_is_hole = x[0] >= 'A' && x[0] <= 'Z';
+  return a_is_hole ? size + x + "/" + y : size + y + "/" + x;
+}
+
+Source tolerance_source(const ExplainInput& in) {
+  if (in.face_a == nullptr || in.face_b == nullptr) return {in.fit, !in.fit.empty()};
+  const std::string& a = in.face_a->tolerance_source;
+  const std::string& b = in.face_b->tolerance_source;
+  if (const std::string fit = joined_fit(a, b); !fit.empty()) return {fit, true};
+  if (a.empty() || b.empty()) return {a + b, false};
+  return {a == b ? "twice " + a : a + " and " + b, false};
 }
 
 std::string signed_term(const std::string& so_far, bool negative, const std::string& term) {
@@ -68,17 +86,18 @@ std::string made_of(const ExplainInput& in, double deviation_mm, double toleranc
   if (shown(deviation_mm))
     text = signed_term(text, deviation_mm > 0.0,
                        "mesh error " + um(std::fabs(deviation_mm)) + mesh_error_name(in));
-  const std::string source = tolerance_source(in);
-  if (source.empty()) return text;
+  const Source source = tolerance_source(in);
+  if (source.text.empty()) return text;
   const bool interferes = tolerance_mm > 0.0;
   std::string what;
-  if (in.fit.empty())
+  if (!source.fit)
     what = "tolerance";
   else if (interferes)
     what = least ? "largest radial interference" : "least radial interference";
   else
     what = least ? "least radial clearance" : "largest radial clearance";
-  return signed_term(text, interferes, what + " " + um(std::fabs(tolerance_mm)) + " of " + source);
+  return signed_term(text, interferes,
+                     what + " " + um(std::fabs(tolerance_mm)) + " of " + source.text);
 }
 
 std::string thresholds_part(const ExplainInput& in) {

@@ -159,13 +159,16 @@ double Surface::curvature_bound(const Vec3& x) const {
 
 Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const Vec3& c,
                                            double accuracy_mm) const {
-  constexpr int kHalvings = 24;  // 4096 pieces along each side: far below any accuracy asked for
+  constexpr int kHalvings = 24;  // 4096 pieces along each side
   const double da = outside_distance(*this, a), db = outside_distance(*this, b),
                dc = outside_distance(*this, c);
   if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown)
     return {std::min({da, db, dc}), std::max({da, db, dc})};
+  Corners corners{a, b, c};
+  if (kind == SurfaceKind::kCylinder)  // height does not count: a flat figure needs fewer halvings
+    for (Vec3& corner : corners) corner -= (corner - point).dot(axis) * axis;
   LeastSearch search{*this, concave_bend(*this), accuracy_mm, std::min({da, db, dc})};
-  const double least = least_over(search, {a, b, c}, kHalvings);
+  const double least = least_over(search, corners, kHalvings);
   // A convex function is largest at a corner; a torus exceeds that by its inner curvature over the
   // circle around the triangle, whose radius is at most longest edge / sqrt(3).
   double most = std::max({da, db, dc});

@@ -29,8 +29,9 @@ struct Surface {
   Vec3 outward_normal(const Vec3& x) const;
   /// Upper bound of |1/curvature radius| near x: 1/R for a cylinder. 0 for a plane.
   double curvature_bound(const Vec3& x) const;
-  /// Bracket of the signed distance over a whole triangle: contains it, and is wider by no more
-  /// than accuracy_mm (torus: by its curvature over the triangle).
+  /// Bracket of the signed distance over a whole triangle: contains it, and is wider by about
+  /// accuracy_mm (cone of long triangles: by the bend over 1/4096 of its length; torus: by its bend
+  /// over the triangle).
   Interval signed_distance_range_mm(const Vec3& a, const Vec3& b, const Vec3& c,
                                     double accuracy_mm = 1e-7) const;
 };

@@ -217,6 +217,27 @@ class SceneLoader {
     return good && share_out_triangles(spec, kind);
   }
 
+  static Result<FeatureMatch> match_of(const Scenario::PartSpec& spec,
+                                       const Scenario::FeatureSpec& declared,
+                                       const LoadedMesh& mesh) {
+    const FeatureDeclaration declaration{declared.name, declared.surface, declared.along_mm,
+                                         spec.chord_error_mm.value_or(0.0)};
+    const auto own = std::find_if(mesh.generated.begin(), mesh.generated.end(), [&](auto& f) {
+      return f.name == declared.name && f.surface.kind == declared.surface.kind;
+    });
+    if (own == mesh.generated.end() || own->triangles.empty() || declared.along_mm ||
+        declared_in_file(spec, declared.name))
+      return match_feature(mesh.solid->mesh(), declaration);
+    return check_feature(mesh.solid->mesh(), declaration, own->triangles);
+  }
+
+  // Does the file give this feature a surface of its own?
+  static bool declared_in_file(const Scenario::PartSpec& spec, const std::string& name) {
+    return std::any_of(spec.features.begin(), spec.features.end(), [&](auto& f) {
+      return f.name == name && f.surface.kind != SurfaceKind::kUnknown;
+    });
+  }
+
   // The file's features, those without a surface taking the generator's; then the generator's other
   // ones, whose exact surface is known even where nobody speaks of them.
   static std::vector<Scenario::FeatureSpec> with_generated(const Scenario::PartSpec& spec,

@@ -1,0 +1,213 @@
+#include "common/geometry/feature.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "common/math/pose.h"
+#include "common/math/rotation.h"
+
+namespace mortise {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// A point of the true surface at two parameters, about z with `point` at the origin: how the slow
+// twin below knows the surface, by formula instead of by distance.
+Vec3 point_of(const Surface& s, double u, double v) {
+  const Vec3 round(std::cos(u), std::sin(u), 0.0);
+  switch (s.kind) {
+    case SurfaceKind::kPlane:
+      return {u, v, 0.0};
+    case SurfaceKind::kCylinder:
+      return s.radius_mm * round + v * Vec3::UnitZ();
+    case SurfaceKind::kCone:
+      return v * (std::sin(s.half_angle_rad) * round + std::cos(s.half_angle_rad) * Vec3::UnitZ());
+    case SurfaceKind::kSphere:
+      return s.radius_mm * (std::cos(v) * round + std::sin(v) * Vec3::UnitZ());
+    case SurfaceKind::kTorus:
+      return (s.radius_mm + s.tube_radius_mm * std::cos(v)) * round +
+             s.tube_radius_mm * std::sin(v) * Vec3::UnitZ();
+    case SurfaceKind::kUnknown:
+      break;
+  }
+  return Vec3::Zero();
+}
+
+struct Range {
+  double u_lo, u_hi, v_lo, v_hi;
+};
+Range range_of(const Surface& s) {
+  switch (s.kind) {
+    case SurfaceKind::kPlane:
+      return {-8, 8, -8, 8};
+    case SurfaceKind::kCylinder:
+      return {-kPi, kPi, -8, 8};
+    case SurfaceKind::kCone:
+      return {-kPi, kPi, 0, 12};
+    default:
+      return {-kPi, kPi, -kPi, kPi};
+  }
+}
+
+// Nearest distance by a grid that closes in; about 1e-7 at the end.
+double distance_by_sampling(const Surface& s, const Vec3& x) {
+  Range r = range_of(s);
+  const Range whole = r;
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 16; ++round) {
+    constexpr int kGrid = 40;
+    double best_u = 0, best_v = 0;
+    best = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kGrid; ++i)
+      for (int j = 0; j <= kGrid; ++j) {
+        const double u = r.u_lo + (r.u_hi - r.u_lo) * i / kGrid;
+        const double v = r.v_lo + (r.v_hi - r.v_lo) * j / kGrid;
+        const double d = (point_of(s, u, v) - x).norm();
+        if (d < best) best = d, best_u = u, best_v = v;
+      }
+    const double du = (r.u_hi - r.u_lo) / 8, dv = (r.v_hi - r.v_lo) / 8;
+    r = {best_u - du, best_u + du, best_v - dv, best_v + dv};
+    if (s.kind == SurfaceKind::kCone) r.v_lo = std::max(r.v_lo, whole.v_lo);
+  }
+  return best;
+}
+
+std::vector<Surface> surfaces() {
+  std::vector<Surface> all;
+  for (const auto kind : {SurfaceKind::kPlane, SurfaceKind::kCylinder, SurfaceKind::kCone,
+                          SurfaceKind::kSphere, SurfaceKind::kTorus})
+    for (const bool inward : {false, true}) {
+      Surface s;
+      s.kind = kind;
+      s.radius_mm = 4.0;
+      s.tube_radius_mm = 1.5;
+      s.half_angle_rad = 0.4;
+      s.inward = inward;
+      all.push_back(s);
+    }
+  return all;
+}
+
+// Is x inside the material, told from the definition?
+bool in_material(const Surface& s, const Vec3& x) {
+  const double r = std::hypot(x.x(), x.y());
+  bool within = false;
+  switch (s.kind) {
+    case SurfaceKind::kPlane:
+      return x.z() < 0.0;
+    case SurfaceKind::kCylinder:
+      within = r < s.radius_mm;
+      break;
+    case SurfaceKind::kCone:
+      within = x.z() > 0.0 && r < x.z() * std::tan(s.half_angle_rad);
+      break;
+    case SurfaceKind::kSphere:
+      within = x.norm() < s.radius_mm;
+      break;
+    default:
+      within = std::hypot(r - s.radius_mm, x.z()) < s.tube_radius_mm;
+  }
+  return within != s.inward;
+}
+
+TEST(Feature, DistanceAgreesWithSamplingOnBothSidesAndUnderRigidMotion) {
+  std::mt19937 random(20240611);
+  std::uniform_real_distribution<double> coordinate(-6, 6);
+  for (const Surface& s : surfaces()) {
+    for (int i = 0; i < 12; ++i) {
+      const Vec3 x(coordinate(random), coordinate(random), coordinate(random));
+      const double expected = distance_by_sampling(s, x) * (in_material(s, x) ? -1.0 : 1.0);
+      EXPECT_NEAR(s.signed_distance_mm(x), expected, 2e-6)
+          << static_cast<int>(s.kind) << (s.inward ? " inward" : "");
+      Surface moved = s;
+      const Pose X{rotation_exp(Vec3(coordinate(random), coordinate(random), 1) * 0.3),
+                   Vec3(1000, -200, coordinate(random))};
+      moved.point = X * s.point;
+      moved.axis = X.q * s.axis;
+      EXPECT_NEAR(moved.signed_distance_mm(X * x), s.signed_distance_mm(x), 1e-10);
+    }
+  }
+}
+
+TEST(Feature, NormalIsTheSlopeOfTheDistanceAndPointsOut) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-6, 6);
+  for (const Surface& s : surfaces())
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 x(coordinate(random), coordinate(random), coordinate(random));
+      const Vec3 n = s.outward_normal(x);
+      EXPECT_NEAR(n.norm(), 1.0, 1e-12);
+      constexpr double kStep = 1e-6;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 step = kStep * Vec3::Unit(k);
+        const double slope =
+            (s.signed_distance_mm(x + step) - s.signed_distance_mm(x - step)) / (2 * kStep);
+        EXPECT_NEAR(n[k], slope, 2e-5) << static_cast<int>(s.kind) << " at " << x.transpose();
+      }
+      // From any point, its distance along the normal leads to the surface.
+      EXPECT_NEAR(s.signed_distance_mm(x - s.signed_distance_mm(x) * n), 0.0, 1e-9);
+    }
+}
+
+TEST(Feature, NormalExistsOnTheAxisAndAtTheCentre) {
+  for (const Surface& s : surfaces()) EXPECT_NEAR(s.outward_normal(s.point).norm(), 1.0, 1e-12);
+}
+
+TEST(Feature, CurvatureBounds) {
+  Surface s = surfaces()[2];  // cylinder
+  EXPECT_DOUBLE_EQ(s.curvature_bound(Vec3(1, 0, 0)), 0.25);
+  s.kind = SurfaceKind::kPlane;
+  EXPECT_EQ(s.curvature_bound(Vec3(1, 0, 0)), 0.0);
+  s.kind = SurfaceKind::kTorus;
+  EXPECT_DOUBLE_EQ(s.curvature_bound(Vec3::Zero()), 1.0 / 1.5);
+  // Cone: the normal curvature across a generator at distance v from the apex is 1/(v tan(a)).
+  s.kind = SurfaceKind::kCone;
+  EXPECT_NEAR(s.curvature_bound(point_of(s, 0.3, 5.0)), 1.0 / (5.0 * std::tan(0.4)), 1e-12);
+}
+
+TEST(Feature, RangeOverATriangleHoldsEveryPointAndIsTight) {
+  std::mt19937 random(99);
+  std::uniform_real_distribution<double> coordinate(-6, 6), unit(0, 1);
+  for (const Surface& s : surfaces())
+    for (int i = 0; i < 25; ++i) {
+      const auto any = [&] {
+        return Vec3(coordinate(random), coordinate(random), coordinate(random));
+      };
+      const Vec3 a = any(), b = any(), c = i % 2 ? any() : Vec3(a + 1e-3 * any());
+      const Interval range = s.signed_distance_range_mm(a, b, c, 1e-4);
+      double lo = 1e9, hi = -1e9;
+      for (int k = 0; k < 4000; ++k) {
+        double u = unit(random), v = unit(random);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const double d = s.signed_distance_mm(a + u * (b - a) + v * (c - a));
+        lo = std::min(lo, d), hi = std::max(hi, d);
+        ASSERT_GE(d, range.lo - 1e-12);
+        ASSERT_LE(d, range.hi + 1e-12);
+      }
+      if (s.kind == SurfaceKind::kTorus) continue;  // documented to be wide
+      EXPECT_LT(lo - range.lo, 0.4) << static_cast<int>(s.kind);
+      EXPECT_LT(range.hi - hi, 0.4) << static_cast<int>(s.kind);
+    }
+}
+
+TEST(Feature, RangeOverAFacetIsItsSagitta) {
+  Surface s;
+  s.kind = SurfaceKind::kCylinder;
+  s.radius_mm = 10.0;
+  for (const auto& [n, sagitta] :
+       {std::pair{16, 0.192147196}, {32, 0.048152733}, {64, 0.012045438}, {512, 0.000188247}}) {
+    const double a = 2 * kPi / n;
+    const Vec3 p(10, 0, 0), q(10 * std::cos(a), 10 * std::sin(a), 0);
+    const Interval range = s.signed_distance_range_mm(p, q, q + Vec3(0, 0, 100));
+    EXPECT_NEAR(range.lo, -sagitta, 2e-7);
+    EXPECT_NEAR(range.hi, 0.0, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace mortise
