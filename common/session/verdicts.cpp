@@ -212,7 +212,9 @@ void measure(const World& world, PairWork& pair, CcdScratch& ccd) {
       --memo.pause;
       return;
     }
-    const double limit_mm = needed_mm + 16.0 * spent_mm;
+    // Enough for many ticks like this one, and for parts that hardly move.
+    const double limit_mm = 2.0 * needed_mm + 16.0 * spent_mm +
+                            0.01 * std::min(a.sphere().radius_mm, b.sphere().radius_mm);
     ++pair.counts.distance_queries;
     const DistanceResult result =
         distance(a, pair.motion_a.X_W1, b, pair.motion_b.X_W1, ccd, limit_mm);
