@@ -13,10 +13,16 @@ namespace {
 
 using namespace ccd;
 
-// Time is advanced to an eighth of the accuracy, so that quadratic convergence ends well below the
-// accuracy and rounding still lies far below that.
-constexpr double kAim = 0.125;
-constexpr double kRoundingsPerAccuracy = 16.0;
+// In units of the accuracy: contact is said at a quarter of it, so that the time is good even where
+// surfaces meet at a small angle; time is advanced to a 32nd. Convergence is quadratic: the finer
+// end costs a step or none. Rounding still lies below the difference.
+constexpr double kContactAt = 0.25;
+constexpr double kAim = 0.03125;
+constexpr double kRoundingsPerAccuracy = 64.0;
+// Of a pair that touches at the start: how deep its triangles may go, and how much deeper those may
+// that already lie near that depth and only slide.
+constexpr double kMayPress = 0.875;
+constexpr double kMaySlideDeeper = 0.125;
 
 class Query {
  public:
@@ -40,7 +46,7 @@ class Query {
     }
     if (spheres_stay_apart()) return result_;
     Goal goal;
-    goal.contact_mm = query_.separation_mm + accuracy_mm_;
+    goal.contact_mm = query_.separation_mm + kContactAt * accuracy_mm_;
     goal.target_mm = query_.separation_mm + kAim * accuracy_mm_;
     run(goal);
     if (result_.state == ContactState::kContact && result_.t_contact == 0.0) start();
@@ -84,9 +90,9 @@ class Query {
   void start() {
     motion_.at(0.0);
     StartQuery start_query;
-    start_query.contact_mm = query_.separation_mm + accuracy_mm_;
+    start_query.contact_mm = query_.separation_mm + kContactAt * accuracy_mm_;
     start_query.accuracy_mm = accuracy_mm_;
-    start_query.deep_mm = query_.separation_mm - (1.0 - kAim) * accuracy_mm_;
+    start_query.deep_mm = query_.separation_mm - kMayPress * accuracy_mm_;
     const StartState start = start_state(motion_, a_, b_, start_query, scratch_, result_.work);
     if (start.overlapping) {
       result_.contained = start.skin_shared;
@@ -105,9 +111,10 @@ class Query {
     Goal goal;
     goal.below_zero = true;
     goal.exact_below_mm = accuracy_mm_;
-    goal.contact_mm = query_.separation_mm - (1.0 - kAim) * accuracy_mm_;
-    if (start_mm <= goal.contact_mm) goal.contact_mm = start_mm - 0.5 * kAim * accuracy_mm_;
-    goal.target_mm = goal.contact_mm - 0.5 * kAim * accuracy_mm_;
+    goal.contact_mm = query_.separation_mm - kMayPress * accuracy_mm_;
+    if (start_mm <= goal.contact_mm)
+      goal.contact_mm = start_mm - 0.5 * kMaySlideDeeper * accuracy_mm_;
+    goal.target_mm = goal.contact_mm - 0.5 * kMaySlideDeeper * accuracy_mm_;
     run(goal);
   }
 

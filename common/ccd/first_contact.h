@@ -15,8 +15,8 @@ enum class ContactState : std::uint8_t {
   kContact,          ///< implies: none for t < t_clear; at t_contact within accuracy, and not yet
                      ///< overlapping
   kUndecided,        ///< work cap: none for t < t_clear, nothing is said beyond
-  kTouchingAtStart,  ///< within separation + accuracy at t = 0; no triangle lies deeper than twice
-                     ///< the accuracy in another
+  kTouchingAtStart,  ///< within separation + accuracy / 4 at t = 0; no triangle lies deeper than
+                     ///< twice the accuracy in another
   kOverlappingAtStart,  ///< surfaces cross at t = 0, or one part is inside the other
 };
 
@@ -42,7 +42,7 @@ struct CcdWork {
 };
 
 /// 0 <= t_clear <= t_contact <= 1. World frame, mm. touching / overlapping at start: both times 0.
-/// accuracy_mm is raised to sixteen times the rounding of the pair's coordinates where it is finer.
+/// accuracy_mm is raised to 64 times the rounding of the pair's coordinates where it is finer.
 struct FirstContact {
   ContactState state = ContactState::kUnknown;
   double t_clear = 0.0;

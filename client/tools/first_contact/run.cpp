@@ -1,0 +1,147 @@
+#include "client/tools/first_contact/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "client/tools/first_contact/motions_file.h"
+#include "common/ccd/first_contact.h"
+#include "common/io/mesh_import.h"
+#include "common/io/obj_exact.h"
+
+namespace mortise {
+namespace {
+
+const char* name_of(ContactState state) {
+  switch (state) {
+    case ContactState::kFree:
+      return "free";
+    case ContactState::kContact:
+      return "contact";
+    case ContactState::kTouchingAtStart:
+      return "touching_at_start";
+    case ContactState::kOverlappingAtStart:
+      return "overlapping_at_start";
+    case ContactState::kUndecided:
+    case ContactState::kUnknown:
+      break;
+  }
+  return "undecided";
+}
+
+Result<SolidPtr> load(const std::string& file, double unit_mm) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  TriangleMesh mesh;
+  if (extension == ".obj") {
+    Result<CleanMesh> clean = read_obj_exact(file, unit_mm);
+    if (!clean) return clean.error();
+    if (clean->degenerate_dropped > 0)
+      std::fprintf(stderr, "%s: %llu triangles without area were dropped\n", file.c_str(),
+                   static_cast<unsigned long long>(clean->degenerate_dropped));
+    mesh = std::move(clean->mesh);
+  } else {
+    Result<ImportedMesh> imported = import_mesh(file, unit_mm);
+    if (!imported) return imported.error();
+    for (const std::string& note : imported->report.notes)
+      std::fprintf(stderr, "%s: %s\n", file.c_str(), note.c_str());
+    if (imported->report.quantum_mm > 0.0)
+      std::fprintf(stderr, "%s: coordinates are rounded to %.2g mm on import; an OBJ file is not\n",
+                   file.c_str(), imported->report.quantum_mm);
+    mesh = std::move(imported->mesh);
+  }
+  std::fprintf(stderr, "%s: %zu triangles\n", file.c_str(), mesh.triangles.size());
+  return SolidPtr(std::make_shared<Solid>(std::move(mesh)));
+}
+
+struct Row {
+  FirstContact answer;
+  double distance_mm = 0.0;
+  double time_us = 0.0;
+};
+
+Row ask(const ContactQuery& query, CcdScratch& scratch) {
+  Row row;
+  const auto start = std::chrono::steady_clock::now();
+  row.answer = first_contact(query, scratch);
+  row.time_us =
+      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  row.distance_mm = row.answer.distance_mm;
+  const bool free = row.answer.state == ContactState::kFree;
+  if (free || row.answer.state == ContactState::kUndecided)
+    row.distance_mm = distance(*query.a, query.motion_a.pose_at(row.answer.t_clear), *query.b,
+                               query.motion_b.pose_at(row.answer.t_clear), scratch)
+                          .distance_mm;
+  return row;
+}
+
+void summarize(const std::vector<Row>& rows) {
+  int count[6] = {};
+  std::vector<double> time_us;
+  for (const Row& row : rows) {
+    ++count[static_cast<int>(row.answer.state)];
+    time_us.push_back(row.time_us);
+  }
+  std::sort(time_us.begin(), time_us.end());
+  std::printf(
+      "%zu motions: %d free, %d contact, %d undecided, %d touching at start, %d overlapping at "
+      "start; median %.1f us, p99 %.1f us\n",
+      rows.size(), count[static_cast<int>(ContactState::kFree)],
+      count[static_cast<int>(ContactState::kContact)],
+      count[static_cast<int>(ContactState::kUndecided)],
+      count[static_cast<int>(ContactState::kTouchingAtStart)],
+      count[static_cast<int>(ContactState::kOverlappingAtStart)], time_us[time_us.size() / 2],
+      time_us[(99 * (time_us.size() - 1)) / 100]);
+}
+
+Status write(const std::string& file, const std::vector<NamedMotion>& motions,
+             const std::vector<Row>& rows) {
+  std::FILE* out = std::fopen(file.c_str(), "w");
+  if (out == nullptr) return fail(Code::kRuntime, file + ": cannot be written; check the folder");
+  std::fprintf(out, "id,state,t_clear,t_contact,distance_mm,time_us\n");
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    std::fprintf(out, "%s,%s,%.17g,%.17g,%.17g,%.17g\n", motions[i].id.c_str(),
+                 name_of(rows[i].answer.state), rows[i].answer.t_clear, rows[i].answer.t_contact,
+                 rows[i].distance_mm, rows[i].time_us);
+  const bool good = std::ferror(out) == 0;
+  if (std::fclose(out) != 0 || !good)
+    return fail(Code::kRuntime, file + ": writing broke off; check the disk");
+  return ok();
+}
+
+}  // namespace
+
+Status run_first_contact(const FirstContactOptions& options) {
+  const Result<SolidPtr> moving = load(options.moving, options.unit_mm);
+  if (!moving) return moving.error();
+  const Result<SolidPtr> fixed = load(options.fixed, options.unit_mm);
+  if (!fixed) return fixed.error();
+  const Result<std::vector<NamedMotion>> motions = read_motions(options.motions, options.unit_mm);
+  if (!motions) return motions.error();
+  // Trees and topology are made once a mesh; no motion pays for them.
+  for (const SolidPtr& solid : {*moving, *fixed}) {
+    solid->bvh();
+    solid->topology();
+    solid->shells();
+  }
+  CcdScratch scratch;
+  std::vector<Row> rows;
+  for (const NamedMotion& motion : *motions) {
+    ContactQuery query;
+    query.a = moving->get();
+    query.b = fixed->get();
+    query.motion_a = motion.motion;
+    query.motion_b = still_motion({});
+    query.accuracy_mm = options.accuracy_mm;
+    query.work_cap = options.work_cap;
+    rows.push_back(ask(query, scratch));
+    if (rows.size() % 100 == 0)
+      std::fprintf(stderr, "%zu of %zu motions\n", rows.size(), motions->size());
+  }
+  const Status written = write(options.out, *motions, rows);
+  if (written) summarize(rows);
+  return written;
+}
+
+}  // namespace mortise

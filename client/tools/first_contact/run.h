@@ -1,0 +1,11 @@
+#pragma once
+#include "client/tools/first_contact/options.h"
+#include "common/base/result.h"
+
+namespace mortise {
+
+/// Reads the meshes and the motions, asks for the first contact of each, writes the CSV. Progress
+/// goes to stderr, a summary to stdout.
+Status run_first_contact(const FirstContactOptions& options);
+
+}  // namespace mortise
