@@ -9,6 +9,11 @@
 namespace mortise::test {
 namespace {
 
+DdsOptions options_for_this_test(const std::string& session = "test") {
+  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+  return options_for_test(info->name(), session);
+}
+
 /// A server and clients of this test's own domain, turned in this thread.
 struct Session {
   explicit Session(std::uint32_t parts = 3, const std::string& name = "test")

@@ -1,12 +1,13 @@
 #include "tests/network/small_server.h"
 
-#include <gtest/gtest.h>
 #include <signal.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include "common/base/hash.h"
@@ -19,11 +20,10 @@ int domain_of(const std::string& test_name) {
   return 1 + static_cast<int>(hash.value() % 200);
 }
 
-DdsOptions options_for_this_test(const std::string& session) {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+DdsOptions options_for_test(const std::string& test_name, const std::string& session) {
   DdsOptions options;
   options.session = session;
-  options.domain = domain_of(std::string(info->test_suite_name()) + "." + info->name());
+  options.domain = domain_of(test_name);
   return options;
 }
 
@@ -138,9 +138,17 @@ ClashEvent some_event(std::uint64_t seq, std::uint64_t tick) {
   return event;
 }
 
-Child::Child(const std::function<int()>& body) {
-  pid_ = fork();
-  if (pid_ == 0) _exit(body());
+Child::Child(const std::string& role, const DdsOptions& options, const std::string& name,
+             double stay_s) {
+  std::string program = MORTISE_BIN_DIR "/network_peer";
+  std::string words[] = {role, std::to_string(options.domain), options.session, name,
+                         std::to_string(stay_s)};
+  char* arguments[] = {program.data(),  words[0].data(), words[1].data(), words[2].data(),
+                       words[3].data(), words[4].data(), nullptr};
+  if (posix_spawn(&pid_, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
+    std::perror(program.c_str());
+    pid_ = 0;
+  }
 }
 
 Child::~Child() {

@@ -14,7 +14,7 @@ namespace mortise::test {
 
 /// A DDS domain of its own for each test, from its name: 1 to 200.
 int domain_of(const std::string& test_name);
-DdsOptions options_for_this_test(const std::string& session = "test");
+DdsOptions options_for_test(const std::string& test_name, const std::string& session = "test");
 
 /// Seconds of a clock that never goes back.
 double now_s();
@@ -46,11 +46,12 @@ class SmallServer {
   std::string session_;
 };
 
-/// A child process of this test; ended with the object, by its id and nobody else's.
+/// A participant in a process of its own (program network_peer); ended with the object, by its id
+/// and nobody else's.
 class Child {
  public:
-  /// Runs `body` in a fork, which must happen before this process opens any channel.
-  explicit Child(const std::function<int()>& body);
+  /// role: "client" or "server"; lives for stay_s, then says goodbye.
+  Child(const std::string& role, const DdsOptions& options, const std::string& name, double stay_s);
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;

@@ -1,0 +1,157 @@
+// What a session does when processes die, freeze and come back. Children are ended by their id.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "client/client.h"
+#include "tests/network/small_server.h"
+
+namespace mortise::test {
+namespace {
+
+DdsOptions options_for_this_test() {
+  return options_for_test(testing::UnitTest::GetInstance()->current_test_info()->name());
+}
+
+TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
+  const DdsOptions options = options_for_this_test();
+  Child victim("client", options, "victim", 30.0);
+  Child leaver("client", options, "leaver", 4.0);
+  Child other("client", options, "other", 30.0);
+  auto channel = open_server_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  SmallServer server(**channel, options.session, 3);
+  ASSERT_TRUE(until(
+      8.0, [&] { return server.users.size() == 3; }, [&] { server.turn(); }));
+  until(
+      1.0, [] { return false; }, [&] { server.turn(); });  // heartbeats go
+  ASSERT_TRUE(server.lost.empty());
+  ClientKey key;
+  for (const auto& [id, user] : server.users) {
+    if (user.second == "victim") key = user.first;
+  }
+  victim.signal(SIGKILL);
+  const double killed_s = now_s();
+  ASSERT_TRUE(until(
+      5.0, [&] { return !server.lost.empty(); }, [&] { server.turn(); }));
+  const double noticed_s = now_s() - killed_s;
+  std::printf("killed client noticed after %.3f s, lease %.3f s\n", noticed_s,
+              options.liveliness_lease_s);
+  RecordProperty("noticed_ms", static_cast<int>(noticed_s * 1e3));
+  EXPECT_EQ(server.lost[0].client, key);
+  EXPECT_FALSE(server.lost[0].said_goodbye);
+  EXPECT_LT(noticed_s, options.liveliness_lease_s + 0.3);
+  // Once only, though its participant's lease ends later; and the leaver says goodbye.
+  ASSERT_TRUE(until(
+      8.0, [&] { return server.lost.size() >= 2; }, [&] { server.turn(); }));
+  EXPECT_TRUE(server.lost[1].said_goodbye);
+  EXPECT_EQ(leaver.wait(3.0), 0);
+  until(
+      1.0, [] { return false; }, [&] { server.turn(); });
+  std::size_t of_victim = 0;
+  for (const LostUser& lost : server.lost) of_victim += lost.client == key;
+  EXPECT_EQ(of_victim, 1u);
+}
+
+TEST(NetworkFault, FrozenReaderDoesNotHoldUpTheServer) {
+  const DdsOptions options = options_for_this_test();
+  Child frozen("client", options, "frozen", 30.0);
+  auto channel = open_server_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  SmallServer server(**channel, options.session, 100);
+  auto own_channel = open_client_channel(options);
+  ASSERT_TRUE(own_channel) << own_channel.error().text;
+  Client healthy(**own_channel);
+  healthy.add_user("healthy", "designer");
+  std::uint64_t events = 0;
+  const auto turn = [&] {
+    server.turn();
+    events += healthy.poll().events.size();
+  };
+  ASSERT_TRUE(until(
+      8.0, [&] { return server.users.size() == 2 && healthy.synced(); }, turn));
+  healthy.grab(0, PartId{1});
+  until(
+      0.3, [] { return false; }, turn);
+  frozen.signal(SIGSTOP);
+  server.longest_publish_s = 0.0;
+  // 2.5 s at 240 Hz: far more than any history holds.
+  std::uint64_t turns = 0;
+  const double start_s = now_s();
+  while (now_s() - start_s < 2.5) {
+    healthy.send(0, PartId{1}, Vec3(0, 0, 0.01));
+    server.publish_events(4);
+    turn();
+    ++turns;
+    sleep_s(std::max(0.0, start_s + static_cast<double>(turns) / 240.0 - now_s()));
+  }
+  const double longest_ms = server.longest_publish_s * 1e3;
+  std::printf("frozen reader: %llu turns of 600, longest publish %.2f ms, send failures %llu\n",
+              static_cast<unsigned long long>(turns), longest_ms,
+              static_cast<unsigned long long>((*channel)->counters().send_failed));
+  RecordProperty("longest_publish_us", static_cast<int>(longest_ms * 1e3));
+  EXPECT_LT(longest_ms, 50.0);  // a writer that waits for its reader takes 100 ms, again and again
+  EXPECT_GE(turns, 570u);
+  EXPECT_EQ((*channel)->counters().send_failed, 0u);
+  ASSERT_TRUE(until(
+      3.0, [&] { return events == server.event_seq; }, turn));
+  frozen.signal(SIGCONT);
+}
+
+TEST(NetworkFault, KilledServerComesBackAndClientsJoinAgain) {
+  const DdsOptions options = options_for_this_test();
+  auto server = std::make_unique<Child>("server", options, "first", 30.0);
+  auto channel = open_client_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  Client client(**channel);
+  client.add_user("anna", "designer");
+  std::size_t joined = 0, lost = 0;
+  std::uint64_t last_seq = 0, first_seq_after = 0;
+  const auto turn = [&] {
+    const ClientUpdate update = client.poll();
+    joined += update.joined.size();
+    lost += update.server_lost;
+    for (const ClashEvent& event : update.events) {
+      if (lost > 0 && first_seq_after == 0) first_seq_after = event.seq;
+      last_seq = event.seq;
+    }
+  };
+  ASSERT_TRUE(until(
+      8.0, [&] { return joined == 1 && last_seq > 3; }, turn));
+  server->signal(SIGKILL);
+  EXPECT_EQ(server->wait(2.0), -1);  // its port is free again
+  server = std::make_unique<Child>("server", options, "second", 30.0);
+  const double restart_s = now_s();
+  ASSERT_TRUE(until(
+      10.0, [&] { return joined == 2 && first_seq_after > 0; }, turn));
+  std::printf("server restarted: joined again after %.3f s\n", now_s() - restart_s);
+  RecordProperty("rejoin_ms", static_cast<int>((now_s() - restart_s) * 1e3));
+  EXPECT_EQ(lost, 1u);
+  EXPECT_TRUE(client.synced());
+  EXPECT_EQ(client.join_state(0), JoinState::kJoined);
+}
+
+TEST(NetworkFault, SixteenProcessesFindTheServer) {
+  const DdsOptions options = options_for_this_test();
+  std::vector<std::unique_ptr<Child>> children;
+  for (int i = 0; i < 16; ++i) {
+    children.push_back(std::make_unique<Child>("client", options, "bot" + std::to_string(i), 20.0));
+  }
+  auto channel = open_server_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  SmallServer server(**channel, options.session, 3);
+  const double start_s = now_s();
+  ASSERT_TRUE(until(
+      12.0, [&] { return server.users.size() == 16; }, [&] { server.turn(); }))
+      << server.users.size();
+  std::printf("16 client processes joined after %.3f s\n", now_s() - start_s);
+  until(
+      1.5, [] { return false; }, [&] { server.turn(); });
+  EXPECT_TRUE(server.lost.empty());  // nobody was taken for gone
+}
+
+}  // namespace
+}  // namespace mortise::test
