@@ -1,8 +1,5 @@
 #include "common/io/mcap_reader.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -12,6 +9,7 @@
 
 #include "common/io/bytes.h"
 #include "common/io/crc32.h"
+#include "common/io/input_file.h"
 #include "common/io/mcap_format.h"
 
 namespace mortise {
@@ -19,50 +17,6 @@ namespace {
 
 // A damaged file must not fill the report with one line per byte.
 constexpr std::size_t kMostNotes = 50;
-
-class InputFile {
- public:
-  explicit InputFile(const std::filesystem::path& file)
-      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
-    struct stat info {};
-    if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0) return;
-    if (!S_ISREG(info.st_mode)) {
-      errno = EINVAL;
-      return;
-    }
-    size_ = static_cast<std::uint64_t>(info.st_size);
-    open_ = true;
-  }
-  ~InputFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
-
-  bool is_open() const { return open_; }
-  std::uint64_t size() const { return size_; }
-  /// Reads as much of [offset, offset + length) as the file has.
-  std::span<const std::byte> read(std::uint64_t offset, std::uint64_t length,
-                                  std::vector<std::byte>& buffer) const {
-    const std::uint64_t there = offset < size_ ? std::min(length, size_ - offset) : 0;
-    if (buffer.size() < there) buffer.resize(static_cast<std::size_t>(there));
-    std::size_t done = 0;
-    while (done < there) {
-      const ssize_t count =
-          ::pread(descriptor_, buffer.data() + done, static_cast<std::size_t>(there) - done,
-                  static_cast<off_t>(offset + done));
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) break;
-      done += static_cast<std::size_t>(count);
-    }
-    return std::span<const std::byte>(buffer).first(done);
-  }
-
- private:
-  int descriptor_;
-  bool open_ = false;
-  std::uint64_t size_ = 0;
-};
 
 std::map<std::string, std::string> read_map(ByteReader& in) {
   ByteReader entries(in.raw(in.u32()));

@@ -1,0 +1,199 @@
+#include "tests/lint/house_rules.h"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace mortise::lint {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A room may include itself, the rooms named here, and whatever those may include. The longest path
+// that begins the name of a file says in which room it lies.
+struct Room {
+  std::string path;
+  std::vector<std::string> may_use;
+};
+const std::vector<Room> kRooms = {
+    {"common/base/", {}},
+    {"common/math/", {"common/base/"}},
+    {"common/messages/", {"common/math/"}},
+    {"common/geometry/", {"common/messages/"}},
+    {"common/motion/", {"common/math/"}},
+    {"common/broadphase/", {"common/geometry/", "common/motion/"}},
+    {"common/ccd/", {"common/geometry/", "common/motion/"}},
+    {"common/depth/", {"common/ccd/"}},
+    {"common/evaluation/", {"common/geometry/", "common/messages/"}},
+    {"common/session/", {"common/broadphase/", "common/depth/", "common/evaluation/"}},
+    {"scenarios/generators/", {"common/geometry/"}},
+    {"common/io/play_file", {"common/messages/"}},
+    {"common/io/", {"common/io/play_file", "common/session/", "scenarios/generators/"}},
+    {"idl/", {"common/messages/"}},
+    {"server/", {"common/io/", "idl/"}},
+    {"client/", {"common/messages/", "idl/"}},
+    {"client/bot/", {"client/", "common/io/play_file"}},
+    {"client/web/", {"client/"}},
+    {"client/replay/", {"client/", "common/io/"}},
+    {"client/tools/", {"client/", "common/io/"}},
+    {"tests/",
+     {"server/", "client/bot/", "client/web/", "client/replay/", "client/tools/", "tests/"}},
+};
+
+// A library that is named in some places only. Tests may use what they test against.
+struct NamedHere {
+  std::string library;
+  std::regex include;
+  std::vector<std::string> places;
+};
+const std::vector<NamedHere>& named_here() {
+  static const std::vector<NamedHere> rules = {
+      {"FCL", std::regex("fcl/.*"), {"common/broadphase/", "tests/"}},
+      {"assimp", std::regex("assimp/.*"), {"common/io/mesh_import", "common/io/importer/"}},
+      {"yaml-cpp", std::regex("yaml-cpp/.*"), {"common/io/scenario_", "common/io/play_file"}},
+      {"Fast DDS", std::regex("(fastdds|fastrtps|fastcdr)/.*"), {"idl/"}},
+      {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
+      {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
+      {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/"}},
+      {"Boost.Beast", std::regex("boost/(beast|asio).*"), {"client/web/"}},
+      {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
+  };
+  return rules;
+}
+
+// What fastddsgen makes from idl/mortise.idl lies in the folder of the build.
+const std::regex kGenerated("mortise[A-Za-z]*\\.(h|hpp|ipp)");
+
+// A file holds one answer. Tests are lists of cases and may be longer.
+constexpr std::size_t kMostLines = 400, kMostTestLines = 600, kMostMainLines = 60;
+
+const std::set<std::string> kSourceEndings = {".h", ".hpp", ".cpp", ".c", ".mjs", ".js"};
+const std::set<std::string> kTextEndings = {
+    ".h",    ".hpp", ".cpp",   ".c",    ".mjs", ".js",  ".html", ".css", ".md", ".txt",
+    ".yaml", ".yml", ".cmake", ".json", ".idl", ".xml", ".sh",   ".py",  ""};
+
+bool is_left_out(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  return name == ".git" || name == ".cache" || name == "node_modules" || name == "sessions" ||
+         name == "build" || name.starts_with("build-");
+}
+
+const Room* room_of(const std::string& file) {
+  const Room* best = nullptr;
+  for (const Room& room : kRooms)
+    if (file.starts_with(room.path) && (best == nullptr || room.path.size() > best->path.size()))
+      best = &room;
+  return best;
+}
+
+// All rooms that a room may include, itself among them.
+std::set<std::string> reach_of(const Room& from) {
+  std::set<std::string> reach = {from.path};
+  std::vector<std::string> open = from.may_use;
+  while (!open.empty()) {
+    const std::string next = open.back();
+    open.pop_back();
+    if (!reach.insert(next).second) continue;
+    for (const Room& room : kRooms)
+      if (room.path == next) open.insert(open.end(), room.may_use.begin(), room.may_use.end());
+  }
+  return reach;
+}
+
+class HouseCheck {
+ public:
+  explicit HouseCheck(fs::path root) : root_(std::move(root)) {}
+
+  std::vector<std::string> run() {
+    for (auto entry = fs::recursive_directory_iterator(root_);
+         entry != fs::recursive_directory_iterator(); ++entry) {
+      if (entry->is_directory() && is_left_out(entry->path()))
+        entry.disable_recursion_pending();
+      else if (entry->is_regular_file())
+        file(entry->path());
+    }
+    for (const std::string& room : readme_rooms_)
+      if (!fs::exists(root_ / room / "README.md"))
+        broken_.push_back(room + ": the room has no README.md");
+    std::sort(broken_.begin(), broken_.end());
+    return broken_;
+  }
+
+ private:
+  void file(const fs::path& path) {
+    const std::string name = path.lexically_relative(root_).generic_string();
+    const std::string ending = path.extension().string();
+    if (!kTextEndings.contains(ending)) return;
+    const bool is_source = kSourceEndings.contains(ending);
+    const bool is_code = is_source && ending != ".mjs" && ending != ".js";
+    const Room* room = room_of(name);
+    if (room != nullptr && is_code) remember_readme(*room);
+    if (room == nullptr && is_code) broken_.push_back(name + ": lies in no room of the house");
+
+    std::ifstream in(path);
+    std::string line;
+    std::size_t lines = 0;
+    while (std::getline(in, line)) {
+      ++lines;
+      const std::string place = name + ":" + std::to_string(lines);
+      if (is_code && room != nullptr) include_line(*room, name, place, line);
+      machine_path(place, line);
+    }
+    if (is_source) length(path, name, lines);
+  }
+
+  void remember_readme(const Room& room) {
+    const std::string folder = room.path.substr(0, room.path.rfind('/'));
+    readme_rooms_.insert(folder);
+  }
+
+  void length(const fs::path& path, const std::string& name, std::size_t lines) {
+    const std::size_t most = path.filename() == "main.cpp" ? kMostMainLines
+                             : name.starts_with("tests/")  ? kMostTestLines
+                                                           : kMostLines;
+    if (lines > most)
+      broken_.push_back(name + ": " + std::to_string(lines) + " lines, at most " +
+                        std::to_string(most));
+  }
+
+  void include_line(const Room& room, const std::string& name, const std::string& place,
+                    const std::string& line) {
+    static const std::regex kInclude("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
+    std::smatch match;
+    if (!std::regex_match(line, match, kInclude)) return;
+    const std::string target = match[2];
+    for (const NamedHere& rule : named_here())
+      if (std::regex_match(target, rule.include) &&
+          std::none_of(rule.places.begin(), rule.places.end(),
+                       [&](const std::string& where) { return name.starts_with(where); }))
+        broken_.push_back(place + ": " + rule.library + " is not named here (" + target + ")");
+    if (match[1] != "\"") return;
+    if (room.path == "idl/" && std::regex_match(target, kGenerated)) return;
+    const Room* other = room_of(target);
+    if (other == nullptr)
+      broken_.push_back(place + ": \"" + target + "\" does not begin at the root of the tree");
+    else if (!reach_of(room).contains(other->path))
+      broken_.push_back(place + ": " + room.path + " may not include " + other->path + " (" +
+                        target + ")");
+  }
+
+  void machine_path(const std::string& place, const std::string& line) {
+    // Written in two pieces, or this file would break its own rule.
+    static const std::regex kPath(std::string("(^|[^A-Za-z0-9_.])/(") + "work|root" + ")/");
+    if (std::regex_search(line, kPath))
+      broken_.push_back(place + ": names a path of somebody's machine");
+  }
+
+  fs::path root_;
+  std::set<std::string> readme_rooms_;
+  std::vector<std::string> broken_;
+};
+
+}  // namespace
+
+std::vector<std::string> broken_house_rules(const fs::path& root) { return HouseCheck(root).run(); }
+
+}  // namespace mortise::lint

@@ -1,0 +1,133 @@
+#include "tests/lint/house_rules.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+namespace mortise::lint {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(HouseRules, HoldInThisTree) {
+  const auto broken = broken_house_rules(MORTISE_SOURCE_DIR);
+  std::string all;
+  for (const std::string& line : broken) all += line + "\n";
+  EXPECT_TRUE(broken.empty()) << all;
+}
+
+/// A small tree that keeps all rules until something is planted in it.
+class PlantedTree : public testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = fs::temp_directory_path() / ("mortise_lint_" + std::to_string(std::random_device{}()));
+    for (const char* room : {"common/base", "common/math", "common/session", "common/io", "idl",
+                             "common/broadphase", "server", "client", "client/bot"})
+      write(std::string(room) + "/README.md", "What lives here.\n");
+    write("common/base/ids.h", "#pragma once\n#include <cstdint>\n");
+    write("common/math/pose.h", "#pragma once\n#include \"common/base/ids.h\"\n");
+    write("common/session/step.h", "#include \"common/math/pose.h\"\n");
+    write("common/io/play_file.h", "#include <yaml-cpp/yaml.h>\n");
+    write("common/broadphase/tree.cpp", "#include <fcl/fcl.h>\n");
+    write("idl/topics.cpp", "#include <fastdds/dds.hpp>\n#include \"mortisePubSubTypes.h\"\n");
+    write("server/main.cpp", "#include \"common/session/step.h\"\n#include \"idl/topics.h\"\n");
+    write("client/client.h", "#include \"idl/topics.h\"\n");
+    write("client/bot/bot.cpp",
+          "#include \"client/client.h\"\n#include \"common/io/play_file.h\"\n");
+    write("build/generated.cpp", "#include \"nowhere.h\"\n");
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void write(const std::string& file, const std::string& text) {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+  /// Exactly one rule is broken, in `file`, and the line says `what`.
+  void expect_one(const std::string& file, const std::string& what) {
+    const auto broken = broken_house_rules(root_);
+    ASSERT_EQ(broken.size(), 1u) << testing::PrintToString(broken);
+    EXPECT_TRUE(broken[0].starts_with(file)) << broken[0];
+    EXPECT_NE(broken[0].find(what), std::string::npos) << broken[0];
+  }
+
+  fs::path root_;
+};
+
+TEST_F(PlantedTree, IsCleanBeforePlanting) {
+  EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
+}
+TEST_F(PlantedTree, AnIncludeOfAHigherRoom) {
+  write("common/math/pose.h", "\n#include \"common/session/step.h\"\n");
+  expect_one("common/math/pose.h:2", "common/math/ may not include common/session/");
+}
+TEST_F(PlantedTree, ServerAndClientApart) {
+  write("server/main.cpp", "#include \"client/client.h\"\n");
+  expect_one("server/main.cpp:1", "server/ may not include client/");
+}
+TEST_F(PlantedTree, ClientAndServerApart) {
+  write("client/client.h", "#  include \"server/inbox.h\"\n");
+  expect_one("client/client.h:1", "client/ may not include server/");
+}
+TEST_F(PlantedTree, NoEngineInTheBot) {
+  write("client/bot/bot.cpp", "#include \"common/io/session_log.h\"\n");
+  expect_one("client/bot/bot.cpp:1", "client/bot/ may not include common/io/");
+}
+TEST_F(PlantedTree, ThePlayFileReachesNoEngine) {
+  write("common/io/play_file.h", "#include \"common/session/step.h\"\n");
+  expect_one("common/io/play_file.h:1", "may not include common/session/");
+}
+TEST_F(PlantedTree, TheWireKnowsNoEngine) {
+  write("idl/topics.cpp", "#include \"common/session/step.h\"\n");
+  expect_one("idl/topics.cpp:1", "idl/ may not include common/session/");
+}
+TEST_F(PlantedTree, LibrariesInTheirRooms) {
+  const std::vector<std::pair<std::string, std::string>> planted = {
+      {"fcl/fcl.h", "FCL"},
+      {"assimp/Importer.hpp", "assimp"},
+      {"yaml-cpp/yaml.h", "yaml-cpp"},
+      {"fastdds/dds.hpp", "Fast DDS"},
+      {"fastrtps/utils.h", "Fast DDS"},
+      {"spdlog/spdlog.h", "spdlog"}};
+  for (const auto& [header, library] : planted) {
+    write("common/session/step.h", "#include <" + header + ">\n");
+    expect_one("common/session/step.h:1", library + " is not named here");
+  }
+}
+TEST_F(PlantedTree, IncludesBeginAtTheRoot) {
+  write("server/main.cpp", "#include \"inbox.h\"\n");
+  expect_one("server/main.cpp:1", "does not begin at the root");
+}
+TEST_F(PlantedTree, GeneratedCodeIsSeenByTheWireOnly) {
+  write("server/main.cpp", "#include \"mortise.h\"\n");
+  expect_one("server/main.cpp:1", "does not begin at the root");
+}
+TEST_F(PlantedTree, CodeOutsideOfTheRooms) {
+  write("misc/helper.cpp", "int x;\n");
+  expect_one("misc/helper.cpp", "no room");
+}
+TEST_F(PlantedTree, LongFiles) {
+  std::string lines;
+  for (int i = 0; i < 61; ++i) lines += "//\n";
+  write("server/main.cpp", lines);
+  expect_one("server/main.cpp", "61 lines, at most 60");
+  write("server/main.cpp", "");
+  for (int i = 0; i < 340; ++i) lines += "//\n";
+  write("server/inbox.cpp", lines);
+  expect_one("server/inbox.cpp", "401 lines, at most 400");
+}
+TEST_F(PlantedTree, ARoomWithoutReadme) {
+  fs::remove(root_ / "common/math/README.md");
+  expect_one("common/math", "no README.md");
+}
+TEST_F(PlantedTree, PathsOfAMachine) {
+  write("server/README.md", std::string("see /") + "work/main/x\n");
+  expect_one("server/README.md:1", "somebody's machine");
+  write("server/README.md", std::string("frame/") + "work/ is no such path\n");
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+  write("run.sh", std::string("cd \"/") + "root/mortise\"\n");
+  expect_one("run.sh:1", "somebody's machine");
+}
+
+}  // namespace
+}  // namespace mortise::lint
