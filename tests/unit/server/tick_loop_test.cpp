@@ -186,8 +186,10 @@ TEST_F(TickLoopTest, NothingIsSentWhileNothingHappens) {
   anna.take();
   EXPECT_EQ(anna.batches, 0U);
   const std::size_t snapshots = anna.snapshots;
-  for (int i = 0; i < 240; ++i) tick();
-  anna.take();
+  for (int i = 0; i < 240; ++i) {
+    tick();
+    anna.take();
+  }
   EXPECT_LE(anna.snapshots, snapshots + 1) << "at most the one after the join";
   EXPECT_EQ(anna.pulses.size(), 4U);
   EXPECT_EQ(loop_->statistics().counters().first_contact_queries, 0U);
