@@ -1,0 +1,334 @@
+// The door: what we send comes back as it was; what nobody of us sends is refused.
+#include "idl/convert.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "common/base/constants.h"
+#include "common/math/rotation.h"
+#include "tests/unit/idl/samples.h"
+
+namespace mortise {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+TEST(Convert, IncrementGoesRound) {
+  const Increment sent = test::some_increment();
+  const Result<DoorIncrement> got = from_wire(to_wire(sent, 123));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->refusal, Refusal::kNone);
+  EXPECT_EQ(got->sent_ns, 123);
+  EXPECT_EQ(got->increment.user, sent.user);
+  EXPECT_EQ(got->increment.part, sent.part);
+  EXPECT_EQ(got->increment.seq, sent.seq);
+  EXPECT_EQ(got->increment.translation_mm, sent.translation_mm);
+  EXPECT_EQ(got->increment.rotation_rad, sent.rotation_rad);
+}
+
+TEST(Convert, IncrementIsRefusedWithItsReason) {
+  const auto refusal_of = [](auto change) {
+    Increment increment = test::some_increment();
+    change(increment);
+    const Result<DoorIncrement> got = from_wire(to_wire(increment, 1));
+    EXPECT_TRUE(got);
+    EXPECT_EQ(got->increment.user, increment.user);
+    EXPECT_EQ(got->increment.seq, increment.seq);
+    return got->refusal;
+  };
+  for (const double bad : {kNan, kInf, -kInf}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(refusal_of([&](Increment& i) { i.translation_mm[axis] = bad; }),
+                Refusal::kNotFinite);
+      EXPECT_EQ(refusal_of([&](Increment& i) { i.rotation_rad[axis] = bad; }), Refusal::kNotFinite);
+    }
+  }
+  EXPECT_EQ(refusal_of([](Increment& i) { i.rotation_rad = Vec3(0, 3.2, 0); }),
+            Refusal::kRotationTooLarge);
+  EXPECT_EQ(refusal_of([](Increment& i) { i.rotation_rad = Vec3(1e300, 1e300, 0); }),
+            Refusal::kRotationTooLarge);
+  EXPECT_EQ(refusal_of([](Increment& i) { i.rotation_rad = Vec3(0, 0, kMaxRotationPerTick_rad); }),
+            Refusal::kNone);
+  EXPECT_EQ(refusal_of([](Increment& i) { i.translation_mm = Vec3(0, 2e9, 0); }),
+            Refusal::kJumpTooLarge);
+  EXPECT_EQ(refusal_of([](Increment& i) { i.translation_mm = Vec3(1e300, 1e300, 1e300); }),
+            Refusal::kJumpTooLarge);
+  EXPECT_EQ(refusal_of([](Increment& i) { i.part = PartId{}; }), Refusal::kUnknownPart);
+  EXPECT_EQ(refusal_of([](Increment& i) { i.seq = 0; }), Refusal::kStale);
+  Increment nobody = test::some_increment();
+  nobody.user = UserId{};
+  EXPECT_FALSE(from_wire(to_wire(nobody, 1)));
+}
+
+TEST(Convert, RequestsGoRound) {
+  Request join;
+  join.kind = Request::Kind::kJoin;
+  join.nonce = 7;
+  join.name = "Ännchen";
+  join.role = "observer";
+  const Result<Request> got = from_wire(to_wire(join));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->name, join.name);
+  EXPECT_EQ(got->role, join.role);
+  EXPECT_EQ(got->nonce, 7u);
+  Request command;
+  command.kind = Request::Kind::kCommand;
+  command.command = {UserId{3}, PartId{4}, 5, CommandKind::kUndo};
+  const Result<Request> back = from_wire(to_wire(command));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->command.user, UserId{3});
+  EXPECT_EQ(back->command.part, PartId{4});
+  EXPECT_EQ(back->command.seq, 5u);
+  EXPECT_EQ(back->command.kind, CommandKind::kUndo);
+}
+
+TEST(Convert, RequestsAreRefused) {
+  const auto passes = [](auto change) {
+    wire::Request request;
+    request.kind(3);
+    request.user(1);
+    request.command(1);
+    change(request);
+    return static_cast<bool>(from_wire(request));
+  };
+  EXPECT_TRUE(passes([](wire::Request&) {}));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.user(0); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command(0); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command(5); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.kind(0); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.kind(5); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.kind(255); }));
+  const auto joins = [&](const std::string& name, const std::string& role) {
+    return passes([&](wire::Request& r) {
+      r.kind(1);
+      r.name(name);
+      r.role(role);
+    });
+  };
+  EXPECT_TRUE(joins("anna", "designer"));
+  EXPECT_FALSE(joins("", "designer"));
+  EXPECT_FALSE(joins("a\nb", "designer"));
+  EXPECT_FALSE(joins(std::string(kMaxName_bytes + 1, 'a'), "designer"));
+  EXPECT_FALSE(joins("anna", "emperor"));
+  EXPECT_FALSE(joins("anna", ""));
+}
+
+TEST(Convert, AnswersGoRound) {
+  const JoinReply joins[] = {{"00ff", 9, UserId{2}, Refusal::kNone, ""},
+                             {"00ff", 10, UserId{}, Refusal::kSessionFull, "full"}};
+  const Reply replies[] = {
+      {UserId{2}, PartId{3}, 4, Refusal::kHeldByOther, UserId{5}, "held by bert"}};
+  const RefusedIncrement refused[] = {{UserId{2}, PartId{3}, 6, Refusal::kNotHolder}};
+  const Result<Answers> got = from_wire(to_wire(joins, replies, refused));
+  ASSERT_TRUE(got) << got.error().text;
+  ASSERT_EQ(got->joins.size(), 2u);
+  EXPECT_EQ(got->joins[1].refusal, Refusal::kSessionFull);
+  EXPECT_EQ(got->joins[0].user, UserId{2});
+  ASSERT_EQ(got->replies.size(), 1u);
+  EXPECT_EQ(got->replies[0].text, "held by bert");
+  EXPECT_EQ(got->replies[0].holder, UserId{5});
+  ASSERT_EQ(got->refused.size(), 1u);
+  EXPECT_EQ(got->refused[0].reason, Refusal::kNotHolder);
+}
+
+TEST(Convert, AnswersAreRefused) {
+  wire::Answers answers;
+  answers.replies().resize(1);
+  EXPECT_TRUE(from_wire(answers));
+  answers.replies()[0].refusal(kRefusalCount);
+  EXPECT_FALSE(from_wire(answers));
+  answers.replies()[0].refusal(0);
+  answers.replies()[0].text("bell \a");
+  EXPECT_FALSE(from_wire(answers));
+  answers.replies().clear();
+  answers.joins().resize(1);  // says yes without a user
+  EXPECT_FALSE(from_wire(answers));
+  answers.joins().clear();
+  answers.refused().resize(1);  // a refusal without a reason
+  EXPECT_FALSE(from_wire(answers));
+  answers.refused().clear();
+  answers.replies().resize(kMaxSequence + 1);
+  EXPECT_FALSE(from_wire(answers));
+}
+
+TEST(Convert, PosesGoRoundBitwise) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 200; ++i) {
+    const PartPose sent = test::some_pose(random);
+    wire::PoseBatch batch;
+    batch.tick(5);
+    batch.event_seq(6);
+    batch.parts().push_back(to_wire(sent));
+    batch.acks().push_back(to_wire(Ack{UserId{1}, 2, 3}));
+    const Result<PoseBatch> got = from_wire(batch);
+    ASSERT_TRUE(got) << got.error().text;
+    EXPECT_TRUE(identical(got->parts[0].X_WP, sent.X_WP));
+    EXPECT_EQ(got->parts[0].holder, sent.holder);
+    EXPECT_EQ(got->tick, 5u);
+    EXPECT_EQ(got->event_seq, 6u);
+    EXPECT_EQ(got->acks[0].sent_ns, 3);
+  }
+}
+
+TEST(Convert, PosesAreRefused) {
+  std::mt19937_64 random(8);
+  const auto passes = [&](auto change) {
+    wire::PoseBatch batch;
+    batch.parts().push_back(to_wire(test::some_pose(random)));
+    change(batch.parts()[0]);
+    return static_cast<bool>(from_wire(batch));
+  };
+  EXPECT_TRUE(passes([](wire::PartPose&) {}));
+  EXPECT_TRUE(passes([](wire::PartPose& p) { p.q({0, 0, 0, 1.0 + 0.9e-6}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({0, 0, 0, 1.0 + 1.1e-6}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({0, 0, 0, 0}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({kNan, 0, 0, 1}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({kInf, 0, 0, 1}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.p_mm({0, kNan, 0}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.p_mm({0, 0, -1.1e9}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.part(0); }));
+}
+
+TEST(Convert, EventsGoRound) {
+  const ClashEvent sent = test::some_clash();
+  const Result<ClashEvent> got = from_wire(to_wire(sent));
+  ASSERT_TRUE(got) << got.error().text;
+  test::expect_same(*got, sent);
+}
+
+TEST(Convert, EventsAreRefused) {
+  const auto passes = [](auto change) {
+    wire::ClashEvent event = to_wire(test::some_clash());
+    change(event);
+    return static_cast<bool>(from_wire(event));
+  };
+  using E = wire::ClashEvent;
+  EXPECT_TRUE(passes([](E&) {}));
+  EXPECT_FALSE(passes([](E& e) { e.kind(0); }));
+  EXPECT_FALSE(passes([](E& e) { e.kind(4); }));
+  EXPECT_FALSE(passes([](E& e) { e.seq(0); }));
+  EXPECT_FALSE(passes([](E& e) { e.clash(0); }));
+  EXPECT_FALSE(passes([](E& e) { e.part_a(0); }));
+  EXPECT_FALSE(passes([](E& e) { e.part_b(e.part_a()); }));
+  EXPECT_FALSE(passes([](E& e) { e.t_contact(kNan); }));
+  EXPECT_FALSE(passes([](E& e) { e.t_contact(1.5); }));
+  EXPECT_FALSE(passes([](E& e) { e.begin_tick(e.tick() + 1); }));
+  EXPECT_FALSE(passes([](E& e) { e.worst_class(4); }));
+  EXPECT_FALSE(passes([](E& e) { e.worst_delta_lo_mm(kNan); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().collision_class(4); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().delta_and_gpd_mm({2, 1, 0, 0}); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().delta_and_gpd_mm({0, 0, kNan, 0}); }));
+  EXPECT_TRUE(passes([](E& e) { e.verdict().delta_and_gpd_mm({-kInf, kInf, 0, kInf}); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().probability(-0.1); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().probability(kNan); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().fake_below_mm(kNan); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().point_mm({kInf, 0, 0}); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().normal({0, kNan, 0}); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().area_mm2(-1); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().shape_b(6); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().grade(7); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().face_a(std::string(129, 'x')); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().explanation(std::string(1025, 'x')); }));
+}
+
+TEST(Convert, PulseGoesRoundAndIsRefused) {
+  SessionPulse sent;
+  sent.tick = 4;
+  sent.clashes_open[3] = 2;
+  sent.clashes_total[1] = 9;
+  sent.tick_p99_us = 12.5;
+  sent.users = 3;
+  const Result<SessionPulse> got = from_wire(to_wire(sent, 11));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->clashes_open[3], 2u);
+  EXPECT_EQ(got->clashes_total[1], 9u);
+  EXPECT_EQ(got->tick_p99_us, 12.5);
+  EXPECT_EQ(got->users, 3u);
+  wire::Pulse bad = to_wire(sent, 11);
+  EXPECT_EQ(bad.pose_serial(), 11u);
+  bad.tick_max_us(-1.0);
+  EXPECT_FALSE(from_wire(bad));
+  bad.tick_max_us(kNan);
+  EXPECT_FALSE(from_wire(bad));
+}
+
+TEST(Convert, TextsAreClippedAtWholeCharacters) {
+  EXPECT_EQ(clip("abc", 8), "abc");
+  EXPECT_EQ(clip("a\tb", 8), "a b");
+  EXPECT_EQ(clip("ab\xc3\xa4", 3), "ab");  // half of an umlaut is none
+  EXPECT_EQ(clip("ab\xc3\xa4", 4), "ab\xc3\xa4");
+  Verdict verdict;
+  verdict.explanation = std::string(5000, 'x');
+  EXPECT_TRUE(from_wire(to_wire(verdict)));  // what we send passes our own door
+}
+
+// Random values, mostly nasty ones: whatever passes keeps what the door promises, and goes round.
+TEST(Convert, RandomValuesPassOnlyInRange) {
+  std::mt19937_64 random(20240501);
+  const auto number = [&]() -> double {
+    constexpr double kNasty[] = {0.0, -0.0, 1.0, -1.0, 1e-320, 1e300, -1e300, 1e9, 3.2, 0.5};
+    switch (random() % 12) {
+      case 0:
+        return kNan;
+      case 1:
+        return random() % 2 == 0 ? kInf : -kInf;
+      case 2:
+      case 3:
+        return kNasty[random() % std::size(kNasty)];
+      default:
+        return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
+    }
+  };
+  std::size_t passed = 0, refused = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    wire::Increment increment;
+    increment.user(static_cast<std::uint32_t>(random() % 3));
+    increment.part(static_cast<std::uint32_t>(random() % 3));
+    increment.seq(random() % 3);
+    increment.translation_mm({number(), number(), number()});
+    increment.rotation_rad({number(), number(), number()});
+    const Result<DoorIncrement> got = from_wire(increment);
+    if (!got || got->refusal != Refusal::kNone) {
+      ++refused;
+      continue;
+    }
+    ++passed;
+    ASSERT_TRUE(got->increment.user && got->increment.part && got->increment.seq > 0);
+    ASSERT_LE(got->increment.rotation_rad.norm(), kMaxRotationPerTick_rad);
+    ASSERT_LE(got->increment.translation_mm.norm(), kMaxCoordinate_mm);
+    ASSERT_EQ(to_wire(got->increment, 0).translation_mm(), increment.translation_mm());
+  }
+  EXPECT_GT(passed, 1000u);
+  EXPECT_GT(refused, 1000u);
+}
+
+// Mutated bytes of real samples through the reader and the door: nothing leaves but a refusal.
+TEST(Convert, MutatedSamplesNeverThrow) {
+  std::mt19937_64 random(99);
+  const test::Fuzzed events = test::fuzz<wire::EventBatchPubSubType>(
+      test::some_event_batch(), 30'000, random, [](const wire::EventBatch& batch) {
+        for (const wire::ClashEvent& event : batch.events()) {
+          if (!from_wire(event)) return false;
+        }
+        return true;
+      });
+  const test::Fuzzed requests = test::fuzz<wire::RequestPubSubType>(
+      to_wire(test::some_join()), 30'000, random,
+      [](const wire::Request& request) { return static_cast<bool>(from_wire(request)); });
+  const test::Fuzzed snapshots = test::fuzz<wire::SnapshotPubSubType>(
+      test::some_snapshot_chunk(), 30'000, random,
+      [](const wire::Snapshot& chunk) { return static_cast<bool>(from_wire(chunk)); });
+  for (const test::Fuzzed& result : {events, requests, snapshots}) {
+    EXPECT_GT(result.unreadable, 100u);  // refused by SafeType, and counted there
+    EXPECT_EQ(result.unreadable, result.counted);
+    EXPECT_GT(result.refused, 100u);
+    EXPECT_GT(result.passed, 100u);
+  }
+}
+
+}  // namespace
+}  // namespace mortise

@@ -1,0 +1,48 @@
+#include "idl/topics.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace mortise {
+namespace {
+
+std::string readme() {
+  std::ifstream file(MORTISE_SOURCE_DIR "/idl/README.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(Topics, ReadmePrintsTheTable) {
+  EXPECT_NE(readme().find("\n\n" + topic_table_markdown() + "\n"), std::string::npos)
+      << "idl/README.md must hold this table:\n"
+      << topic_table_markdown();
+}
+
+TEST(Topics, ADifferentTableWouldBeNoticed) {
+  std::string other = topic_table_markdown();
+  other.replace(other.find("last 32"), 7, "last 33");
+  EXPECT_EQ(readme().find(other), std::string::npos);
+}
+
+TEST(Topics, TheTableKeepsItsRules) {
+  for (const TopicRow& row : topic_table()) {
+    SCOPED_TRACE(row.topic);
+    EXPECT_GE(row.writer_depth, 1);
+    EXPECT_GE(row.reader_depth, row.writer_depth);
+    EXPECT_GE(row.max_keys, 1);
+    EXPECT_EQ(*row.key == '\0', row.max_keys == 1);
+    EXPECT_EQ(row.asynchronous, !row.to_server);  // the tick never waits for a socket
+    EXPECT_TRUE(row.reliable || !row.transient_local);
+    // A reader that keeps all pushes back, which only a client may be made to feel.
+    EXPECT_TRUE(row.to_server || row.reader == TopicRow::Reader::kKeepLast);
+  }
+  EXPECT_TRUE(row_of(Topic::kPresence).presence);
+  EXPECT_STREQ(row_of(Topic::kPulse).topic, "mortise_pulse");
+}
+
+}  // namespace
+}  // namespace mortise
