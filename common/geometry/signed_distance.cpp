@@ -227,6 +227,10 @@ Crossings cross_all(const Bvh& bvh, const Vec3& x, const Vec3& d) {
 
 }  // namespace
 
+Vec3 nearest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return foot_on_triangle(x, a, b, c).point;
+}
+
 NearestPoint nearest_point(const Solid& solid, const Vec3& x, double limit_mm) {
   const Found found = find_nearest(solid.bvh(), x, limit_mm);
   if (found.triangle == Topology::kNone) return {limit_mm, x, Topology::kNone};

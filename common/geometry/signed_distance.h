@@ -17,6 +17,9 @@ struct NearestPoint {
 NearestPoint nearest_point(const Solid& solid, const Vec3& x,
                            double limit_mm = std::numeric_limits<double>::infinity());
 
+/// Nearest point of one solid triangle to x; of its edges when it has no area.
+Vec3 nearest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Nearest point with its side. Part frame, mm.
 struct SurfacePoint {
   double depth_mm = 0.0;             ///< positive inside the material, -distance outside

@@ -1,0 +1,94 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/signed_distance.h"
+#include "common/geometry/solid.h"
+#include "common/geometry/surface_band.h"
+#include "common/math/pose.h"
+
+namespace mortise {
+
+/// Which surface of a part is meant: the mesh, or the least or the largest real surface that the
+/// band admits.
+enum class Layer : std::uint8_t { kMesh = 0, kLower, kUpper };
+
+/// One part of a depth query with what the search asks of its band again and again. Part frame, mm.
+struct Body {
+  Body(const Solid& solid_of, const SurfaceBand& band_of);
+
+  const Solid* solid;
+  const SurfaceBand* band;
+  const TriangleMesh* mesh;
+  bool has_inside;
+  double largest_offset_mm[3] = {0.0, 0.0, 0.0};  ///< by Layer: largest |offset| of any face
+
+  const SurfaceBand::Face& face(std::uint32_t triangle) const { return band->face_of(triangle); }
+  std::uint16_t face_index(std::uint32_t triangle) const {
+    return band->face_of_triangle.empty() ? std::uint16_t{0} : band->face_of_triangle[triangle];
+  }
+  Vec3 normal(std::uint32_t triangle) const;
+
+  /// The declared surface that stands for a face in a layer; null: its triangles do.
+  static const Surface* surface_of(const SurfaceBand::Face& face, Layer layer);
+  /// Outward offset of the layer from that surface or, without one, from the mesh.
+  static double offset_of(const SurfaceBand::Face& face, Layer layer);
+  /// Bound of the outward offset of the layer from the mesh, anywhere on the face.
+  static Interval offset_range_of(const SurfaceBand::Face& face, Layer layer);
+  /// Outward offset of the layer at mesh point x of a triangle.
+  double offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const;
+
+  /// Depth of x in the layer: exact where offsets vary slowly against the depth; positive inside.
+  double depth_at(const SurfacePoint& nearest, Layer layer) const {
+    return nearest.depth_mm + offset_at(nearest.triangle, nearest.point, layer);
+  }
+  /// A depth that x has in every admissible real part, every face within reach asked; <= 0: not
+  /// proven inside.
+  double certain_depth(const Vec3& x) const;
+};
+
+/// Calls visit(triangle, corners) for every triangle whose box is within the given box (part
+/// frame).
+template <class Visit>
+void for_each_triangle_in(const Bvh& bvh, const Box& box, Visit&& visit) {
+  std::array<std::int32_t, 512> stack;
+  int top = 0;
+  stack[top++] = bvh.root;
+  const Vec3 center = box.center() - bvh.origin, half = box.half();
+  while (top > 0) {
+    const std::int32_t child = stack[--top];
+    if (child < 0) {
+      const Bvh::Leaf& leaf = bvh.leaves[~child];
+      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+        const std::array<double, 9>& c = bvh.corners[i];
+        bool apart = false;
+        for (int k = 0; k < 3; ++k) {
+          const double lo = std::min(c[k], std::min(c[3 + k], c[6 + k]));
+          const double hi = std::max(c[k], std::max(c[3 + k], c[6 + k]));
+          apart |= lo > box.hi[k] || hi < box.lo[k];
+        }
+        if (!apart)
+          visit(bvh.triangle_order[i],
+                std::array<Vec3, 3>{Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5]),
+                                    Vec3(c[6], c[7], c[8])});
+      }
+      continue;
+    }
+    const Bvh::Node& node = bvh.nodes[child];
+    bool near[Bvh::kWidth];
+    for (int k = 0; k < Bvh::kWidth; ++k) {
+      const double gx = std::fabs(center[0] - static_cast<double>(node.local_center[0][k])) -
+                        static_cast<double>(node.half[0][k]) - half[0];
+      const double gy = std::fabs(center[1] - static_cast<double>(node.local_center[1][k])) -
+                        static_cast<double>(node.half[1][k]) - half[1];
+      const double gz = std::fabs(center[2] - static_cast<double>(node.local_center[2][k])) -
+                        static_cast<double>(node.half[2][k]) - half[2];
+      near[k] = std::max(gx, std::max(gy, gz)) <= 0.0;
+    }
+    for (int k = node.count - 1; k >= 0; --k)
+      if (near[k]) stack[top++] = node.child[k];
+  }
+}
+
+}  // namespace mortise

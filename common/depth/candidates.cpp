@@ -1,0 +1,272 @@
+#include "common/depth/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "common/geometry/triangle_distance.h"
+
+namespace mortise {
+namespace {
+
+constexpr std::int32_t kMixed = -1;
+
+// The face of all triangles below each child of each node; kMixed when there are several.
+struct FaceTree {
+  std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;
+
+  explicit FaceTree(const Body& body) {
+    const Bvh& bvh = body.solid->bvh();
+    face_of_child.resize(bvh.nodes.size());
+    fill(body, bvh.root);
+  }
+
+  std::int32_t fill(const Body& body, std::int32_t child) {
+    const Bvh& bvh = body.solid->bvh();
+    std::int32_t common = kMixed;
+    if (child < 0) {
+      const Bvh::Leaf& leaf = bvh.leaves[~child];
+      common = body.face_index(bvh.triangle_order[leaf.first]);
+      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+        if (body.face_index(bvh.triangle_order[i]) != common) return kMixed;
+      return common;
+    }
+    const Bvh::Node& node = bvh.nodes[child];
+    bool mixed = false;
+    for (int k = 0; k < node.count; ++k) {
+      const std::int32_t face = fill(body, node.child[k]);
+      face_of_child[child][k] = face;
+      if (k == 0) common = face;
+      mixed |= face != common;
+    }
+    return mixed ? kMixed : common;
+  }
+};
+
+struct Side {
+  std::int32_t child = 0;
+  std::int32_t face = kMixed;
+  Vec3 center = Vec3::Zero(), half = Vec3::Zero();  // part frame
+};
+
+class Finder {
+ public:
+  explicit Finder(const CandidateQuery& query)
+      : query_(query), pair_(*query.pair), R_(pair_.X_KS[0].rotation()), R_abs_(R_.cwiseAbs()) {
+    for (int i = 0; i < 2; ++i) {
+      marked_[i].assign(pair_.bodies[i].mesh->triangles.size(), 0);
+      if (!pair_.trivial && has_surfaces(pair_.bodies[i])) faces_[i].emplace(pair_.bodies[i]);
+    }
+  }
+
+  Candidates run() {
+    Side a = root(0), b = root(1);
+    visit(a, b);
+    for (int i = 0; i < 2; ++i)
+      for (std::uint32_t t = 0; t < marked_[i].size(); ++t)
+        if (marked_[i][t] != 0) found_.triangles[i].push_back(t);
+    for (auto& [faces, slot] : known_) {
+      if (!slot.known || (slot.nodes[0].empty() && slot.triangles[0].empty())) continue;
+      for (int i = 0; i < 2; ++i) {
+        slot.known->triangles[i] = std::move(slot.triangles[i]);
+        collect(i, slot.nodes[i], slot.known->triangles[i]);
+      }
+      found_.known.push_back(std::move(*slot.known));
+    }
+    return std::move(found_);
+  }
+
+ private:
+  struct Slot {
+    std::optional<KnownFacePair> known;
+    std::vector<std::int32_t> nodes[2];
+    std::vector<std::uint32_t> triangles[2];
+  };
+
+  static bool has_surfaces(const Body& body) {
+    for (const SurfaceBand::Face& face : body.band->faces)
+      if (Body::surface_of(face, Layer::kUpper) != nullptr) return true;
+    return false;
+  }
+
+  Side root(int i) {
+    const Bvh& bvh = pair_.bodies[i].solid->bvh();
+    return {bvh.root, kMixed, bvh.bounds.center(), bvh.bounds.half()};
+  }
+
+  bool apart(const Side& a, const Side& b) const {
+    const Vec3 d_B = pair_.X_KS[0] * a.center - b.center;
+    const double m = query_.margin_mm + pair_.rounding_mm;
+    const Vec3 reach_B = R_abs_ * a.half + b.half;
+    if (((d_B.cwiseAbs() - reach_B).array() > m).any()) return true;
+    const Vec3 reach_A = R_abs_.transpose() * b.half + a.half;
+    return (((R_.transpose() * d_B).cwiseAbs() - reach_A).array() > m).any();
+  }
+
+  void visit(const Side& a, const Side& b) {
+    ++found_.tests;
+    if (apart(a, b) || is_known(a, b)) return;
+    if (a.child < 0 && b.child < 0) {
+      leaves(a.child, b.child);
+      return;
+    }
+    const bool open_a = b.child < 0 || (a.child >= 0 && a.half.sum() >= b.half.sum());
+    const int i = open_a ? 0 : 1;
+    const Bvh& bvh = pair_.bodies[i].solid->bvh();
+    const std::int32_t n = open_a ? a.child : b.child;
+    const Bvh::Node& node = bvh.nodes[n];
+    for (int k = 0; k < node.count; ++k) {
+      Side side;
+      side.child = node.child[k];
+      side.face = faces_[i] ? faces_[i]->face_of_child[n][k] : kMixed;
+      for (int c = 0; c < 3; ++c) {
+        side.center[c] = bvh.origin[c] + static_cast<double>(node.local_center[c][k]);
+        side.half[c] = static_cast<double>(node.half[c][k]);
+      }
+      open_a ? visit(side, b) : visit(a, side);
+    }
+  }
+
+  Slot* known_of(std::int32_t face_a, std::int32_t face_b) {
+    if (face_a == kMixed || face_b == kMixed || !faces_[0] || !faces_[1]) return nullptr;
+    const auto [at, fresh] = known_.try_emplace({face_a, face_b});
+    Slot& slot = at->second;
+    if (fresh) slot.known = closed_form(face_a, face_b);
+    return slot.known ? &slot : nullptr;
+  }
+
+  bool is_known(const Side& a, const Side& b) {
+    Slot* slot = known_of(a.face, b.face);
+    if (slot == nullptr) return false;
+    slot->nodes[0].push_back(a.child);
+    slot->nodes[1].push_back(b.child);
+    return true;
+  }
+
+  std::optional<KnownFacePair> closed_form(std::int32_t face_a, std::int32_t face_b) {
+    const SurfaceBand::Face& fa = pair_.bodies[0].band->faces[face_a];
+    const SurfaceBand::Face& fb = pair_.bodies[1].band->faces[face_b];
+    const Surface* sa = Body::surface_of(fa, Layer::kUpper);
+    const Surface* sb = Body::surface_of(fb, Layer::kUpper);
+    if (sa == nullptr || sb == nullptr) return std::nullopt;
+    KnownFacePair pair;
+    pair.face[0] = static_cast<std::uint16_t>(face_a);
+    pair.face[1] = static_cast<std::uint16_t>(face_b);
+    const auto overlap = face_pair_overlap(*sa, extent_of(pair_.bodies[0], pair.face[0], *sa), *sb,
+                                           extent_of(pair_.bodies[1], pair.face[1], *sb),
+                                           pair_.X_KS[0], query_.margin_mm);
+    if (!overlap) return std::nullopt;
+    pair.overlap = *overlap;
+    const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
+    const bool never = overlap->hi_mm + upper <= pair_.touch_mm;
+    if (!never && !is_tight(pair, *sa, *sb)) return std::nullopt;
+    return pair;
+  }
+
+  // Reached on both faces, and not only on their surfaces continued.
+  bool is_tight(const KnownFacePair& pair, const Surface& sa, const Surface& sb) const {
+    if (pair.overlap.hi_mm - pair.overlap.lo_mm > kDepthAccuracyDefault_mm) return false;
+    const auto on_face = [&](int i, const Vec3& x, const Surface& surface) {
+      const NearestPoint at = nearest_point(*pair_.bodies[i].solid, x);
+      const Interval range =
+          Body::offset_range_of(pair_.bodies[i].band->faces[pair.face[i]], Layer::kMesh);
+      const double deviation = std::fabs(surface.signed_distance_mm(at.point));
+      return pair_.bodies[i].face_index(at.triangle) == pair.face[i] &&
+             at.distance_mm <= deviation + range.hi + std::fabs(pair.overlap.hi_mm) * 1.01 +
+                                   pair_.rounding_mm + kDepthAccuracyDefault_mm;
+    };
+    return on_face(0, pair_.X_KS[1] * pair.overlap.point_B, sa) &&
+           on_face(1, pair.overlap.point_B, sb);
+  }
+
+  void leaves(std::int32_t a, std::int32_t b) {
+    const Bvh& bvh_a = pair_.bodies[0].solid->bvh();
+    const Bvh& bvh_b = pair_.bodies[1].solid->bvh();
+    const Bvh::Leaf& leaf_a = bvh_a.leaves[~a];
+    const Bvh::Leaf& leaf_b = bvh_b.leaves[~b];
+    const double m = query_.margin_mm + pair_.rounding_mm;
+    for (std::uint32_t i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i) {
+      const std::uint32_t ta = bvh_a.triangle_order[i];
+      Triangle ca;
+      Box box;
+      for (int k = 0; k < 3; ++k) {
+        ca[k] = pair_.X_KS[0] * pair_.bodies[0].mesh->corner(ta, k);
+        box.add(ca[k]);
+      }
+      const Box grown = box.grown(m);
+      for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
+        const std::uint32_t tb = bvh_b.triangle_order[j];
+        const bool news = marked_[0][ta] == 0 || marked_[1][tb] == 0;
+        if (!news && !(query_.want_crossing && !found_.cross)) continue;
+        const Triangle cb = {pair_.bodies[1].mesh->corner(tb, 0),
+                             pair_.bodies[1].mesh->corner(tb, 1),
+                             pair_.bodies[1].mesh->corner(tb, 2)};
+        Box box_b;
+        for (const Vec3& x : cb) box_b.add(x);
+        if (!grown.overlaps(box_b)) continue;
+        if (beyond_plane(ca, cb, m) || beyond_plane(cb, ca, m)) continue;
+        if (Slot* slot = known_of(pair_.bodies[0].face_index(ta), pair_.bodies[1].face_index(tb))) {
+          slot->triangles[0].push_back(ta);
+          slot->triangles[1].push_back(tb);
+          continue;
+        }
+        marked_[0][ta] = marked_[1][tb] = 1;
+        if (query_.want_crossing && !found_.cross && triangles_cross(ca, cb)) {
+          found_.cross = true;
+          found_.cross_triangle[0] = ta;
+          found_.cross_triangle[1] = tb;
+          const Box both{box.lo.cwiseMax(box_b.lo), box.hi.cwiseMin(box_b.hi)};
+          found_.cross_point_B = both.center();
+        }
+      }
+    }
+  }
+
+  // All of x on one side of the plane of t, farther than m.
+  static bool beyond_plane(const Triangle& x, const Triangle& t, double m) {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double limit = m * n.norm();
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (const Vec3& p : x) {
+      const double h = n.dot(p - t[0]);
+      lo = std::min(lo, h);
+      hi = std::max(hi, h);
+    }
+    return lo > limit || hi < -limit;
+  }
+
+  void collect(int i, std::vector<std::int32_t>& nodes, std::vector<std::uint32_t>& triangles) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    const Bvh& bvh = pair_.bodies[i].solid->bvh();
+    std::vector<std::int32_t> stack = nodes;
+    while (!stack.empty()) {
+      const std::int32_t child = stack.back();
+      stack.pop_back();
+      if (child < 0) {
+        const Bvh::Leaf& leaf = bvh.leaves[~child];
+        for (std::uint32_t k = leaf.first; k < leaf.first + leaf.count; ++k)
+          triangles.push_back(bvh.triangle_order[k]);
+        continue;
+      }
+      const Bvh::Node& node = bvh.nodes[child];
+      for (int k = 0; k < node.count; ++k) stack.push_back(node.child[k]);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  }
+
+  const CandidateQuery& query_;
+  const PairFrame& pair_;
+  const Mat3 R_, R_abs_;
+  std::optional<FaceTree> faces_[2];
+  std::vector<std::uint8_t> marked_[2];
+  std::map<std::pair<std::int32_t, std::int32_t>, Slot> known_;
+  Candidates found_;
+};
+
+}  // namespace
+
+Candidates find_candidates(const CandidateQuery& query) { return Finder(query).run(); }
+
+}  // namespace mortise

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/depth/face_pair.h"
+#include "common/depth/pair_frame.h"
+
+namespace mortise {
+
+/// Two declared faces whose overlap is known in closed form.
+struct KnownFacePair {
+  std::uint16_t face[2] = {0, 0};
+  FacePairOverlap overlap;
+  std::vector<std::uint32_t> triangles[2];  ///< of the faces, where they are near, ascending
+};
+
+struct Candidates {
+  std::vector<std::uint32_t> triangles[2];  ///< near the other part, ascending
+  std::vector<KnownFacePair> known;         ///< not contained in `triangles` on their account
+  bool cross = false;                       ///< asked for when a part has no inside
+  std::uint32_t cross_triangle[2] = {0, 0};
+  Vec3 cross_point_B = Vec3::Zero();
+  std::uint64_t tests = 0;
+};
+
+struct CandidateQuery {
+  const PairFrame* pair = nullptr;
+  double margin_mm = 0.0;
+  bool want_crossing = false;
+};
+
+/// Triangles of either part that are within the margin of the other part's boxes and planes: a
+/// superset of those within the margin. Pairs of declared faces with a closed form that is tight,
+/// or that shows that they cannot interfere, are not descended into.
+Candidates find_candidates(const CandidateQuery& query);
+
+}  // namespace mortise

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "common/depth/body.h"
+#include "common/math/pose.h"
+
+namespace mortise {
+
+/// Extent of a face along the axis of its surface, from `point`, mm.
+struct FaceExtent {
+  double lo_mm = 0.0, hi_mm = 0.0;
+};
+FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface);
+
+/// Bracket of the overlap of two declared surfaces where their faces are near each other, nominal
+/// surfaces, mm: sup of -(s_a + s_b). Frame B.
+struct FacePairOverlap {
+  double lo_mm = 0.0, hi_mm = 0.0;
+  Vec3 point_B = Vec3::Zero();    ///< on the surface of the convex face, where lo is reached
+  Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
+};
+
+/// Closed form for a shaft in a bore (nearly parallel axes) and a ball in a socket; nothing for
+/// other pairs. `margin_mm` is how far beyond its end a face still counts as near.
+///
+/// The distance from the bore's axis is convex, so that over the shaft it is largest on the end
+/// circles; those reach no farther than their centre's distance plus the shaft's radius.
+std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
+                                                 const Surface& b, const FaceExtent& extent_b,
+                                                 const Pose& X_BA, double margin_mm);
+
+}  // namespace mortise

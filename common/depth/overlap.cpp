@@ -1,0 +1,264 @@
+#include "common/depth/overlap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/depth/candidates.h"
+#include "common/depth/region_report.h"
+#include "common/depth/regions.h"
+
+namespace mortise {
+namespace {
+
+// Triangles of a known pair of faces that are asked how far the meshes overlap.
+constexpr std::size_t kKnownQuestions = 24;
+
+// Corners, middles of edges, centre.
+std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
+  const Vec3 &a = mesh.corner(t, 0), &b = mesh.corner(t, 1), &c = mesh.corner(t, 2);
+  return {a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3.0};
+}
+
+class Overlap {
+ public:
+  explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query) {}
+
+  OverlapResult run() {
+    result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
+    const Candidates candidates = find_candidates({&pair_, pair_.near_mm, result_.no_inside});
+    for (const KnownFacePair& known : candidates.known)
+      known_.rows.push_back({{known.face[0], known.face[1]}, known.overlap.hi_mm});
+    for (const KnownFacePair& known : candidates.known) add_known(known);
+    regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2}, scratch_,
+                            result_.evaluations);
+    if (regions_.count > 0) search_regions();
+    if (result_.regions.empty()) add_shared_inside(candidates);
+    if (result_.no_inside) add_crossing(candidates);
+    for (const OverlapRegion& region : result_.regions)
+      result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
+    result_.contained = result_.meshes_cross && candidates.triangles[0].empty() &&
+                        candidates.triangles[1].empty() && candidates.known.empty();
+    if (candidates.cross) result_.meshes_cross = true;
+    std::stable_sort(result_.regions.begin(), result_.regions.end(),
+                     [](const OverlapRegion& a, const OverlapRegion& b) {
+                       return a.delta_mm.lo > b.delta_mm.lo;
+                     });
+    return std::move(result_);
+  }
+
+ private:
+  std::uint64_t work_left() const {
+    return query_.work_cap - std::min(query_.work_cap, result_.evaluations);
+  }
+
+  std::vector<Bracket> search(Layer layer, bool sign_only) {
+    SearchQuery search;
+    search.pair = &pair_;
+    search.layer = layer;
+    search.known = &known_;
+    search.roots = &regions_.roots;
+    search.regions = regions_.count;
+    search.region_of_triangle = &regions_.region_of_triangle;
+    search.primary = regions_.primary;
+    search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
+    search.sign_only = sign_only;
+    search.work_cap = std::max<std::uint64_t>(work_left(), regions_.roots.size());
+    return search_depth(search, scratch_, result_.evaluations);
+  }
+
+  void search_regions() {
+    const bool lazy = query_.refinement == Refinement::kDecided;
+    const std::vector<Bracket> mesh = search(Layer::kMesh, lazy);
+    std::vector<Bracket> upper, lower;
+    if (!pair_.trivial) {
+      upper = search(Layer::kUpper, lazy);
+      lower = search(Layer::kLower, lazy);
+    }
+    for (std::size_t i = 0; i < regions_.count; ++i) {
+      const Bracket& d = mesh[i];
+      const Bracket& p = pair_.trivial ? d : upper[i];
+      const Bracket& c = pair_.trivial ? d : lower[i];
+      if (d.best.depth_mm <= pair_.touch_mm && p.hi_mm <= pair_.touch_mm) continue;
+      OverlapRegion region;
+      region.delta_mm = bracket_of(d);
+      region.possible_mm = bracket_of(p);
+      region.certain_mm = bracket_of(c);
+      region.certain_mm.hi = std::min(region.certain_mm.hi, region.possible_mm.hi);
+      region.certain_mm.lo = std::min(region.certain_mm.lo, region.certain_mm.hi);
+      region.area_mm2 = d.area_mm2;
+      region.capped = regions_.capped || d.undecided || p.undecided || c.undecided;
+      const Sample& deciding = region.possible_mm.lo > 0.0 ? c.best : p.best;
+      describe(pair_, d.best, deciding, region);
+      for (const Sample& sample : d.samples)
+        region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
+      region.points_W.push_back(region.point_W);
+      if (region.certain_mm.lo > 0.0) set_witness(find_witness(pair_, c.best), region);
+      result_.regions.push_back(std::move(region));
+    }
+  }
+
+  Interval bracket_of(const Bracket& bracket) const {
+    return without_touch({bracket.best.depth_mm, bracket.hi_mm}, pair_.touch_mm);
+  }
+
+  static void set_witness(const std::optional<Vec3>& witness_W, OverlapRegion& region) {
+    region.has_witness = witness_W.has_value();
+    if (witness_W) region.witness_W = *witness_W;
+  }
+
+  // A pair of declared faces whose overlap has a closed form: only the overlap of the meshes is
+  // searched.
+  void add_known(const KnownFacePair& known) {
+    const SurfaceBand::Face& face_a = pair_.bodies[0].band->faces[known.face[0]];
+    const SurfaceBand::Face& face_b = pair_.bodies[1].band->faces[known.face[1]];
+    const auto offsets = [&](Layer layer) {
+      return Body::offset_of(face_a, layer) + Body::offset_of(face_b, layer);
+    };
+    const double lower = offsets(Layer::kLower), upper = offsets(Layer::kUpper);
+    OverlapRegion region;
+    region.possible_mm =
+        without_touch({known.overlap.lo_mm + upper, known.overlap.hi_mm + upper}, pair_.touch_mm);
+    region.certain_mm =
+        without_touch({known.overlap.lo_mm + lower, known.overlap.hi_mm + lower}, pair_.touch_mm);
+    Bracket mesh = mesh_overlap_of(known);
+    // The meshes stand out of the true surfaces by no more than this.
+    const double excess =
+        std::max(0.0, -face_a.deviation_mm.lo) + std::max(0.0, -face_b.deviation_mm.lo);
+    mesh.hi_mm = std::max(mesh.best.depth_mm, std::min(mesh.hi_mm, known.overlap.hi_mm + excess));
+    if (mesh.best.depth_mm <= pair_.touch_mm && region.possible_mm.hi <= 0.0) return;
+    region.delta_mm = bracket_of(mesh);
+    describe(pair_, mesh.best, mesh.best, region);
+    region.area_mm2 = mesh.area_mm2;
+    for (const Sample& sample : mesh.samples)
+      region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
+    region.points_W.push_back(region.point_W);
+    if (region.certain_mm.lo > 0.0) set_witness(known_witness(known, region.certain_mm.lo), region);
+    result_.regions.push_back(std::move(region));
+  }
+
+  std::optional<Vec3> known_witness(const KnownFacePair& known, double depth_mm) const {
+    // The closed form names a point of the convex face, on its nominal surface; frame B.
+    const Surface& surface_a = *pair_.bodies[0].band->faces[known.face[0]].surface;
+    const int role = surface_a.inward ? 1 : 0;
+    const Vec3 out_of_k_B = (role == 0 ? 1.0 : -1.0) * known.overlap.normal_B;
+    const double offset =
+        Body::offset_of(pair_.bodies[role].band->faces[known.face[role]], Layer::kLower);
+    Sample least;
+    least.role = role;
+    const Vec3 point_B = known.overlap.point_B - offset * out_of_k_B;
+    least.point_K = role == 0 ? point_B : Vec3(pair_.X_KS[1] * point_B);
+    least.depth_mm = depth_mm;
+    least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
+    least.triangle =
+        nearest_point(*pair_.s(role).solid, pair_.X_KS[1 - role] * least.point_K).triangle;
+    return find_witness(pair_, least);
+  }
+
+  Bracket mesh_overlap_of(const KnownFacePair& known) {
+    Bracket found;
+    found.hi_mm = std::numeric_limits<double>::infinity();
+    for (int role = 0; role < 2; ++role) {
+      if (!pair_.k(role).has_inside) continue;
+      const std::vector<std::uint32_t>& triangles = known.triangles[role];
+      const double step = std::max(
+          1.0, static_cast<double>(triangles.size()) / static_cast<double>(kKnownQuestions));
+      for (double i = 0.0; i < static_cast<double>(triangles.size()); i += step) {
+        const std::uint32_t t = triangles[static_cast<std::size_t>(i)];
+        for (const Vec3& x : probe_points(*pair_.s(role).mesh, t)) {
+          ++result_.evaluations;
+          const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x);
+          if (sample.depth_mm > found.best.depth_mm) found.best = sample;
+          if (sample.depth_mm > pair_.touch_mm && found.samples.size() < kKnownQuestions)
+            found.samples.push_back(sample);
+        }
+      }
+    }
+    if (query_.refinement != Refinement::kFull) return found;
+    std::vector<Root> roots;
+    for (int role = 0; role < 2; ++role)
+      for (const std::uint32_t t : known.triangles[role])
+        if (pair_.k(role).has_inside) roots.push_back({role, t, 0});
+    SearchQuery search;
+    search.pair = &pair_;
+    search.roots = &roots;
+    search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
+    search.work_cap = work_left() / 2;
+    Bracket full = search_depth(search, scratch_, result_.evaluations).front();
+    if (full.best.depth_mm < found.best.depth_mm) full.best = found.best;
+    return full;
+  }
+
+  // Identical parts in one place: no surface lies inside the other, and yet the parts are one.
+  void add_shared_inside(const Candidates& candidates) {
+    const auto shared = find_shared_inside(pair_, candidates);
+    if (!shared) return;
+    OverlapRegion region;
+    region.delta_mm = {shared->depth_mm, 2.0 * smaller_radius()};
+    const auto reach = [&](Layer layer) {
+      return pair_.bodies[0].largest_offset_mm[static_cast<int>(layer)] +
+             pair_.bodies[1].largest_offset_mm[static_cast<int>(layer)];
+    };
+    region.certain_mm = {shared->depth_mm - reach(Layer::kLower), region.delta_mm.hi};
+    region.possible_mm = {shared->depth_mm - reach(Layer::kUpper),
+                          region.delta_mm.hi + reach(Layer::kUpper)};
+    region.point_W = region.witness_W = shared->point_W;
+    region.has_witness = region.certain_mm.lo > 0.0;
+    region.triangle_a = region.deciding_triangle_a = shared->triangle[0];
+    region.triangle_b = region.deciding_triangle_b = shared->triangle[1];
+    region.normal_W = -(pair_.X_W[0].q * pair_.bodies[0].normal(region.triangle_a));
+    region.shape_a = face_shape(pair_.bodies[0], region.triangle_a);
+    region.shape_b = face_shape(pair_.bodies[1], region.triangle_b);
+    region.points_W = {region.point_W};
+    result_.regions.push_back(std::move(region));
+  }
+
+  double smaller_radius() const {
+    return std::min(query_.a->sphere().radius_mm, query_.b->sphere().radius_mm);
+  }
+
+  // Without an inside there is no depth: the crossing itself is the finding.
+  void add_crossing(const Candidates& candidates) {
+    const bool near = !pair_.trivial && !candidates.triangles[0].empty();
+    if (!candidates.cross && !near) return;
+    for (const OverlapRegion& region : result_.regions)
+      if (region.delta_mm.lo > 0.0) return;  // the closed part of the two found it already
+    if (!result_.regions.empty() && !candidates.cross) return;
+    OverlapRegion region;
+    const double depth = 2.0 * smaller_radius();
+    if (candidates.cross) {
+      region.delta_mm = {0.0, depth};
+      region.possible_mm = {0.0, depth};
+      region.certain_mm = {-depth, 0.0};
+      region.point_W = pair_.X_W[1] * candidates.cross_point_B;
+      region.triangle_a = candidates.cross_triangle[0];
+      region.triangle_b = candidates.cross_triangle[1];
+    } else {
+      region.delta_mm = {-pair_.near_mm, 0.0};
+      region.possible_mm = {0.0, pair_.near_mm};
+      region.certain_mm = {-depth, 0.0};
+      region.triangle_a = candidates.triangles[0].front();
+      region.triangle_b = candidates.triangles[1].front();
+      region.point_W = pair_.X_W[0] * pair_.bodies[0].mesh->corner(region.triangle_a, 0);
+    }
+    region.deciding_triangle_a = region.triangle_a;
+    region.deciding_triangle_b = region.triangle_b;
+    region.normal_W = pair_.X_W[1].q * pair_.bodies[1].normal(region.triangle_b);
+    region.shape_a = face_shape(pair_.bodies[0], region.triangle_a);
+    region.shape_b = face_shape(pair_.bodies[1], region.triangle_b);
+    region.points_W = {region.point_W};
+    result_.regions.push_back(std::move(region));
+  }
+
+  const OverlapQuery& query_;
+  const PairFrame pair_;
+  SearchScratch scratch_;
+  KnownOverlaps known_;
+  Regions regions_;
+  OverlapResult result_;
+};
+
+}  // namespace
+
+OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) { return Overlap(query).run(); }
+
+}  // namespace mortise

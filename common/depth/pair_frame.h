@@ -1,0 +1,42 @@
+#pragma once
+#include <algorithm>
+
+#include "common/base/constants.h"
+#include "common/depth/body.h"
+#include "common/depth/overlap.h"
+
+namespace mortise {
+
+/// Two bodies at fixed poses. Role 0 looks at the surface of A from B, role 1 the other way round:
+/// in role r the surface is that of bodies[r] (S) and the material that of bodies[1 - r] (K).
+struct PairFrame {
+  explicit PairFrame(const OverlapQuery& query)
+      : bodies{Body(*query.a, *query.band_a), Body(*query.b, *query.band_b)},
+        X_W{query.X_WA, query.X_WB} {
+    X_KS[0] = query.X_WB.inverse() * query.X_WA;
+    X_KS[1] = X_KS[0].inverse();
+    rounding_mm = kRoundingFactor * kUnitRoundoff *
+                  (query.a->bvh().extent_mm + query.b->bvh().extent_mm + X_KS[0].p.norm());
+    // Overlaps that first contact calls touching are touching here too.
+    touch_mm = std::max(kAccuracyDefault_mm, rounding_mm);
+    trivial = query.band_a->trivial && query.band_b->trivial;
+    near_mm =
+        trivial ? 0.0
+                : std::max(0.0, query.band_a->largest_offset_mm + query.band_b->largest_offset_mm);
+  }
+
+  const Body& s(int role) const { return bodies[role]; }
+  const Body& k(int role) const { return bodies[1 - role]; }
+  /// A point of frame K of a role in the world.
+  Vec3 in_world(int role, const Vec3& x_K) const { return X_W[1 - role] * x_K; }
+
+  Body bodies[2];
+  Pose X_W[2];
+  Pose X_KS[2];
+  double rounding_mm = 0.0;
+  double touch_mm = 0.0;
+  double near_mm = 0.0;  ///< pairs of faces farther apart cannot interfere
+  bool trivial = true;
+};
+
+}  // namespace mortise

@@ -1,0 +1,50 @@
+#pragma once
+#include <array>
+
+#include "common/depth/body.h"
+
+namespace mortise {
+
+/// Where a part of a body's surface may be, seen from the other body K: the hull of a few points,
+/// thickened. Frame K, mm. In a tick the points are those of both ends of a time interval.
+struct Patch {
+  struct Plus {
+    Vec3 normal = Vec3::Zero();
+    double offset_mm = 0.0;
+  };
+  std::array<Vec3, 6> points;
+  int count = 0;
+  Vec3 normal = Vec3::Zero();  ///< outward normal of the surface
+  double turn_rad = 0.0;       ///< the normal turns by no more than this over the patch
+  double bulge_mm = 0.0;       ///< the surface leaves the hull by no more than this ...
+  bool bulges_outward = true;  ///< ... outward (convex face) or inward (concave)
+  double spread_mm = 0.0;      ///< and in any direction (paths of rotation)
+  std::array<Plus, 4> plus;    ///< outward offsets: of the face, and of sharp neighbours
+  int plus_count = 0;
+  Vec3 center = Vec3::Zero();  ///< a point of the layer's surface (at the start of the interval)
+  double radius_mm = 0.0;      ///< of all points about center, thickness included
+
+  /// How far beyond the hull the patch may reach against a facet of K with this outward normal.
+  double beyond(const Vec3& facet_normal, double facet_turn_rad) const;
+  /// Largest thickness in any direction.
+  double thickness() const;
+};
+
+/// A flat piece of a triangle of S; corners in S.
+struct Piece {
+  std::array<Vec3, 3> corners;
+  std::uint32_t triangle = 0;
+};
+
+/// The patch of a piece of S in a layer, in frame K.
+Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS);
+
+/// The same over a motion from X_KS0 to X_KS1 on which every point of the piece stays within
+/// spread_mm of the straight line between its ends, and normals turn by no more than turn_rad.
+Patch make_swept_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS0,
+                       const Pose& X_KS1, double spread_mm, double turn_rad);
+
+/// Halves a piece across the edge that matters: on a curved face lengths around it weigh more.
+std::array<Piece, 2> split(const Body& s, Layer layer, const Piece& piece);
+
+}  // namespace mortise

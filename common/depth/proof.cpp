@@ -1,0 +1,203 @@
+#include "common/depth/proof.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mortise {
+namespace {
+
+// Walls kept for covering others, and facets left open: more means that the patch is too large for
+// this neighbourhood and is better halved.
+constexpr std::size_t kMostWalls = 24;
+constexpr std::size_t kMostOpen = 96;
+
+using Corners = std::array<Vec3, 3>;
+using Facet = ProofScratch::Facet;
+
+// A coarse bracket of a surface over a triangle is enough to see on which side it lies.
+constexpr double kRangeShare = 0.1;
+
+class Neighbourhood {
+ public:
+  Neighbourhood(const DepthProof& proof, const Patch& patch, ProofScratch& scratch)
+      : proof_(proof),
+        patch_(patch),
+        scratch_(scratch),
+        k_(*proof.k),
+        up_(proof.at_center.face_normal) {
+    scratch_.walls.clear();
+    scratch_.open.clear();
+    scratch_.open_corners.clear();
+  }
+
+  bool holds_off() {
+    const double u = proof_.limit_mm;
+    const double reach = std::fabs(u) + k_.largest_offset_mm[static_cast<int>(proof_.layer)] +
+                         patch_.thickness() + proof_.rounding_mm;
+    Box box;
+    for (int i = 0; i < patch_.count; ++i) box.add(patch_.points[i]);
+    slab_normal_ = patch_.normal;
+    slab_lo_ = std::numeric_limits<double>::infinity();
+    slab_hi_ = -slab_lo_;
+    for (int i = 0; i < patch_.count; ++i) {
+      const double h = slab_normal_.dot(patch_.points[i]);
+      slab_lo_ = std::min(slab_lo_, h - reach);
+      slab_hi_ = std::max(slab_hi_, h + reach);
+    }
+    std::size_t near = 0;
+    bool failed = false;
+    const auto visit = [&](std::uint32_t t, const Corners& c) {
+      if (failed || outside_slab(c)) return;
+      ++near;
+      if (!take(t, c)) failed = true;
+    };
+    const std::uint32_t first = proof_.at_center.triangle;
+    // The facet nearest to the centre first: most others lie below it.
+    const Corners nearest = {k_.mesh->corner(first, 0), k_.mesh->corner(first, 1),
+                             k_.mesh->corner(first, 2)};
+    if (std::fabs(proof_.at_center.depth_mm) <= reach + patch_.radius_mm && !take(first, nearest))
+      return false;
+    for_each_triangle_in(k_.solid->bvh(), box.grown(reach), visit);
+    if (failed) return false;
+    if (near == 0) return true;  // the whole patch is on the centre's side, and not deeper than u
+    for (std::size_t i = 0; i < scratch_.open.size(); ++i)
+      if (!covered(scratch_.open[i], scratch_.open_corners[i])) return false;
+    return u <= 0.0 || void_above_walls();
+  }
+
+ private:
+  bool outside_slab(const Corners& c) const {
+    const double a = slab_normal_.dot(c[0]), b = slab_normal_.dot(c[1]), d = slab_normal_.dot(c[2]);
+    return std::min({a, b, d}) > slab_hi_ || std::max({a, b, d}) < slab_lo_;
+  }
+
+  // False: too much is open.
+  bool take(std::uint32_t t, const Corners& c) {
+    if (covered(t, c)) return true;
+    Facet facet;
+    facet.triangle = t;
+    const SurfaceBand::Face& face = k_.face(t);
+    facet.surface = Body::surface_of(face, proof_.layer);
+    facet.offset_mm = Body::offset_of(face, proof_.layer);
+    const double depth = depth_below(facet, c);
+    if (facet.normal.isZero(0.0)) return true;  // without area: its neighbours are asked
+    const double along = proof_.limit_mm > 0.0 ? facet.normal.dot(up_) : 1.0;
+    facet.slack_mm = proof_.limit_mm * along - depth;
+    if (facet.slack_mm >= 0.0) {
+      if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);
+      return true;
+    }
+    if (scratch_.open.size() >= kMostOpen) return false;
+    scratch_.open.push_back(t);
+    scratch_.open_corners.push_back(c);
+    return true;
+  }
+
+  // Largest depth of the patch below a facet; sets its normal and point.
+  double depth_below(Facet& facet, const Corners& c) const {
+    double deepest = -std::numeric_limits<double>::infinity();
+    double turn = 0.0;
+    if (facet.surface == nullptr) {
+      const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+      const double length = n.norm();
+      if (!(length > 0.0)) return 0.0;
+      facet.normal = n / length;
+      facet.point = c[0];
+    } else {
+      const Surface& surface = *facet.surface;
+      facet.normal = surface.outward_normal(patch_.center);
+      facet.point = patch_.center - surface.signed_distance_mm(patch_.center) * facet.normal;
+      turn = std::min(1.0, surface.curvature_bound(patch_.center) * patch_.radius_mm);
+    }
+    for (int i = 0; i < patch_.count; ++i) {
+      const Vec3& p = patch_.points[i];
+      // A convex solid lies below its tangent planes; the distance to a concave one is convex.
+      const bool exact = facet.surface != nullptr && facet.surface->inward;
+      const double depth =
+          exact ? -facet.surface->signed_distance_mm(p) : -facet.normal.dot(p - facet.point);
+      deepest = std::max(deepest, depth);
+    }
+    deepest += facet.offset_mm + patch_.beyond(facet.normal, turn);
+    if (facet.surface == nullptr || proof_.known == nullptr) return deepest;
+    return std::min(deepest,
+                    proof_.known->of(proof_.role, proof_.face_s, k_.face_index(facet.triangle)) +
+                        proof_.offset_s_mm + facet.offset_mm);
+  }
+
+  bool covered(std::uint32_t t, const Corners& c) const {
+    for (const Facet& wall : scratch_.walls)
+      if (below(t, c, wall)) return true;
+    return false;
+  }
+
+  bool below(std::uint32_t t, const Corners& c, const Facet& wall) const {
+    const SurfaceBand::Face& face = k_.face(t);
+    if (wall.surface != nullptr && Body::surface_of(face, proof_.layer) == wall.surface)
+      return true;
+    double highest = -std::numeric_limits<double>::infinity();
+    double allowed = wall.slack_mm + proof_.rounding_mm;
+    if (wall.surface == nullptr) {
+      for (const Vec3& x : c) highest = std::max(highest, wall.normal.dot(x - wall.point));
+    } else {
+      for (const Vec3& x : c) highest = std::max(highest, wall.surface->signed_distance_mm(x));
+      // Faces that end on a bore end on its true circle; their triangles end on chords of it.
+      const double chord = std::max(0.0, -k_.face(wall.triangle).deviation_mm.lo);
+      allowed += chord;
+      if (wall.surface->inward && highest <= allowed)
+        highest = wall.surface
+                      ->signed_distance_range_mm(c[0], c[1], c[2],
+                                                 kRangeShare * chord + proof_.rounding_mm)
+                      .hi;
+    }
+    if (highest > allowed) return false;
+    if (proof_.layer == Layer::kMesh) return true;
+    const double rise = Body::offset_range_of(face, proof_.layer).hi - wall.offset_mm;
+    if (rise <= 0.0) return true;
+    const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+    const double length = n.norm();
+    const double facing = length > 0.0 ? std::max(0.0, n.dot(wall.normal) / length) : 1.0;
+    return highest + facing * rise <= allowed;
+  }
+
+  // Is the space above all walls empty of k? Its rim at the nearest point is, when no wall rises
+  // there; else one point of the moved patch is asked.
+  bool void_above_walls() const {
+    const double allowance =
+        k_.largest_offset_mm[static_cast<int>(proof_.layer)] + proof_.rounding_mm;
+    bool nearest_is_wall = false, hidden = false;
+    for (const Facet& wall : scratch_.walls) {
+      nearest_is_wall |= wall.triangle == proof_.at_center.triangle;
+      const double height = wall.surface == nullptr
+                                ? wall.normal.dot(proof_.at_center.point - wall.point)
+                                : wall.surface->signed_distance_mm(proof_.at_center.point);
+      hidden |= height < -allowance;
+    }
+    if (nearest_is_wall && !hidden) return true;
+    const Vec3 moved = patch_.center + (proof_.limit_mm + patch_.thickness()) * up_;
+    return nearest_surface(*k_.solid, moved).depth_mm <= allowance + patch_.thickness();
+  }
+
+  const DepthProof& proof_;
+  const Patch& patch_;
+  ProofScratch& scratch_;
+  const Body& k_;
+  const Vec3 up_;
+  Vec3 slab_normal_ = Vec3::Zero();
+  double slab_lo_ = 0.0, slab_hi_ = 0.0;
+};
+
+}  // namespace
+
+double KnownOverlaps::of(int role, std::uint16_t face_s, std::uint16_t face_k) const {
+  for (const Row& row : rows)
+    if (row.face[role] == face_s && row.face[1 - role] == face_k) return row.overlap_mm;
+  return std::numeric_limits<double>::infinity();
+}
+
+bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch) {
+  if (proof.k->depth_at(proof.at_center, proof.layer) > proof.limit_mm + proof.rounding_mm)
+    return false;
+  return Neighbourhood(proof, patch, scratch).holds_off();
+}
+
+}  // namespace mortise

@@ -1,0 +1,58 @@
+#pragma once
+#include "common/depth/patch.h"
+
+namespace mortise {
+
+/// Reused memory of proofs.
+struct ProofScratch {
+  struct Facet {
+    std::uint32_t triangle = 0;
+    const Surface* surface = nullptr;  ///< null: the plane of the triangle
+    Vec3 normal = Vec3::Zero();        ///< outward, at the patch
+    Vec3 point = Vec3::Zero();
+    double offset_mm = 0.0;
+    double slack_mm = 0.0;  ///< how far the facet may rise before it meets the patch
+  };
+  std::vector<Facet> walls;  ///< facets that hold the patch off
+  std::vector<std::array<Vec3, 3>> open_corners;
+  std::vector<std::uint32_t> open;  ///< triangles that nothing covers yet
+};
+
+/// What is already known of a pair of faces (closed forms): nominal overlap, mm.
+struct KnownOverlaps {
+  struct Row {
+    std::uint16_t face[2];
+    double overlap_mm;
+  };
+  std::vector<Row> rows;
+  /// Of face_s of body `role` with face_k of the other; infinity when not known.
+  double of(int role, std::uint16_t face_s, std::uint16_t face_k) const;
+};
+
+struct DepthProof {
+  const KnownOverlaps* known = nullptr;  ///< may be null
+  int role = 0;
+  std::uint16_t face_s = 0;  ///< face of the patch
+  double offset_s_mm = 0.0;  ///< its offset in the layer
+  const Body* k = nullptr;
+  Layer layer = Layer::kMesh;
+  double limit_mm = 0.0;   ///< the claim: no point of the patch is deeper in k than this
+  SurfacePoint at_center;  ///< nearest point of k's mesh to patch.center
+  double rounding_mm = 0.0;
+};
+
+/// True implies: no point of the patch lies deeper than limit_mm in the layer of k (for a negative
+/// limit: none is nearer than -limit_mm). False says nothing. The patch is one connected set and
+/// its centre is not deeper than the limit.
+///
+/// Why it is right. Let m be the outward normal of k's facet nearest to the centre and u the limit.
+/// Each facet f of k near the patch is a wall when the patch moved by u m lies wholly above f. Let
+/// V be the convex set above all walls. If every other facet near the patch lies below some wall,
+/// then no facet of k reaches into V; V is empty of k, as its rim is; the moved patch lies in V; so
+/// no point of the patch is deeper than u. For u < 0 no move is needed: every facet is parted from
+/// the patch by a wall at least -u away. Depth is continuous and the patch connected, so facets
+/// farther than |u| from the patch need not be asked. A facet may be a declared surface whose
+/// distance is convex (bore) or bounded by its tangent plane (shaft): its triangles are one wall.
+bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch);
+
+}  // namespace mortise

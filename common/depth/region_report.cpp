@@ -1,0 +1,123 @@
+#include "common/depth/region_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mortise {
+namespace {
+
+// Triangles that are asked whether they lie on a face of the other part that looks the same way.
+constexpr std::size_t kMostCoincidenceQuestions = 64;
+
+// Two normals look the same way.
+constexpr double kSameWay = 0.99;
+
+}  // namespace
+
+FaceShape face_shape(const Body& body, std::uint32_t triangle) {
+  const SurfaceBand::Face& face = body.face(triangle);
+  if (face.surface) switch (face.surface->kind) {
+      case SurfaceKind::kPlane:
+        return FaceShape::kPlanar;
+      case SurfaceKind::kTorus:
+        return FaceShape::kSaddle;
+      case SurfaceKind::kCylinder:
+      case SurfaceKind::kCone:
+      case SurfaceKind::kSphere:
+        return face.surface->inward ? FaceShape::kConcave : FaceShape::kConvex;
+      case SurfaceKind::kUnknown:
+        break;
+    }
+  const Topology& topology = body.solid->topology();
+  bool convex = false, concave = false;
+  // The triangle and those that share its plane.
+  std::array<std::uint32_t, 4> group = {triangle, Topology::kNone, Topology::kNone,
+                                        Topology::kNone};
+  for (int k = 0; k < 3; ++k)
+    if (topology.edge_kind[triangle][k] == EdgeKind::kFlat)
+      group[1 + k] = topology.neighbor[triangle][k];
+  for (const std::uint32_t t : group) {
+    if (t == Topology::kNone) continue;
+    for (int k = 0; k < 3; ++k) {
+      if (topology.edge_sharp[t][k]) continue;
+      convex |= topology.edge_kind[t][k] == EdgeKind::kConvex;
+      concave |= topology.edge_kind[t][k] == EdgeKind::kConcave;
+    }
+  }
+  if (convex && concave) return FaceShape::kSaddle;
+  if (convex) return FaceShape::kConvex;
+  return concave ? FaceShape::kConcave : FaceShape::kPlanar;
+}
+
+std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
+  const int role = least.role;
+  const Vec3& p = least.point_K;
+  Vec3 out = least.at.outward;
+  const Vec3 to_surface = least.at.point - p;
+  const double distance = to_surface.norm();
+  if (distance > std::max(pair.rounding_mm, 1e-3 * least.depth_mm))
+    out = (least.at.depth_mm > 0.0 ? 1.0 : -1.0) * to_surface / distance;
+  const Vec3 into_s = -(pair.X_KS[role].q * pair.s(role).normal(least.triangle));
+  const Pose X_SK = pair.X_KS[1 - role];
+  for (const double share : {0.5, 0.25, 0.1, 0.02})
+    for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized())}) {
+      const Vec3 w = p + share * least.depth_mm * along;
+      if (pair.k(role).certain_depth(w) > pair.rounding_mm &&
+          pair.s(role).certain_depth(X_SK * w) > pair.rounding_mm)
+        return pair.in_world(role, w);
+    }
+  return std::nullopt;
+}
+
+std::optional<SharedInside> find_shared_inside(const PairFrame& pair,
+                                               const Candidates& candidates) {
+  const Body& a = pair.bodies[0];
+  const Body& b = pair.bodies[1];
+  if (!a.has_inside || !b.has_inside) return std::nullopt;
+  const std::vector<std::uint32_t>& triangles = candidates.triangles[0];
+  const std::size_t step = std::max<std::size_t>(1, triangles.size() / kMostCoincidenceQuestions);
+  for (std::size_t i = 0; i < triangles.size(); i += step) {
+    const std::uint32_t t = triangles[i];
+    const Vec3 x_A = (a.mesh->corner(t, 0) + a.mesh->corner(t, 1) + a.mesh->corner(t, 2)) / 3.0;
+    const SurfacePoint at = nearest_surface(*b.solid, pair.X_KS[0] * x_A);
+    const Vec3 n_A = a.normal(t);
+    if (std::fabs(at.depth_mm) > pair.touch_mm) continue;
+    if ((pair.X_KS[0].q * n_A).dot(at.face_normal) < kSameWay) continue;
+    const double size = (a.mesh->corner(t, 1) - a.mesh->corner(t, 0)).norm();
+    for (const double share : {1.0, 0.3, 0.1, 0.03, 0.01}) {
+      const Vec3 w_A = x_A - share * size * n_A;
+      const double depth_a = nearest_surface(*a.solid, w_A).depth_mm;
+      const double depth_b = nearest_surface(*b.solid, pair.X_KS[0] * w_A).depth_mm;
+      if (depth_a > pair.touch_mm && depth_b > pair.touch_mm)
+        return SharedInside{pair.X_W[0] * w_A, depth_a + depth_b, {t, at.triangle}};
+    }
+  }
+  return std::nullopt;
+}
+
+void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,
+              OverlapRegion& region) {
+  const int role = deepest.role;
+  region.point_W = pair.in_world(role, deepest.point_K);
+  const Vec3 to_surface = deepest.at.point - deepest.point_K;
+  const double distance = to_surface.norm();
+  Vec3 out = deepest.at.outward;
+  if (distance > pair.touch_mm)
+    out = (deepest.at.depth_mm > 0.0 ? 1.0 : -1.0) * to_surface / distance;
+  // Role 0: out of B. Role 1: out of A, that is from A to B.
+  region.normal_W = (role == 0 ? 1.0 : -1.0) * (pair.X_W[1 - role].q * out);
+  region.triangle_a = role == 0 ? deepest.triangle : deepest.at.triangle;
+  region.triangle_b = role == 0 ? deepest.at.triangle : deepest.triangle;
+  region.deciding_triangle_a = deciding.role == 0 ? deciding.triangle : deciding.at.triangle;
+  region.deciding_triangle_b = deciding.role == 0 ? deciding.at.triangle : deciding.triangle;
+  region.shape_a = face_shape(pair.bodies[0], region.deciding_triangle_a);
+  region.shape_b = face_shape(pair.bodies[1], region.deciding_triangle_b);
+}
+
+Interval without_touch(Interval value, double touch_mm) {
+  if (value.hi <= touch_mm) value.hi = std::min(value.hi, 0.0);
+  if (value.lo <= touch_mm) value.lo = std::min(value.lo, 0.0);
+  return {std::min(value.lo, value.hi), value.hi};
+}
+
+}  // namespace mortise

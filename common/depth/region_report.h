@@ -1,0 +1,34 @@
+#pragma once
+#include <optional>
+
+#include "common/depth/candidates.h"
+#include "common/depth/overlap.h"
+#include "common/depth/search.h"
+
+namespace mortise {
+
+/// Shape of the face that a triangle belongs to: from its declared surface, else from the edges
+/// across which it goes on smoothly (concave-convex determination of the paper; ALG 3.6).
+FaceShape face_shape(const Body& body, std::uint32_t triangle);
+
+/// A point inside both real parts, whatever their offsets: tried halfway between the deepest point
+/// of one least surface and the other, and verified in both parts (ALG 3.5c). World frame.
+std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least);
+
+/// A point inside both meshes below two coinciding faces that look the same way; how deep it lies
+/// in both together.
+struct SharedInside {
+  Vec3 point_W = Vec3::Zero();
+  double depth_mm = 0.0;
+  std::uint32_t triangle[2] = {0, 0};
+};
+std::optional<SharedInside> find_shared_inside(const PairFrame& pair, const Candidates& candidates);
+
+/// Where, along what and by which faces: from the deepest sample.
+void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,
+              OverlapRegion& region);
+
+/// Values within touch of zero are zero: rounding and the accuracy of first contact.
+Interval without_touch(Interval value, double touch_mm);
+
+}  // namespace mortise

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/depth/candidates.h"
+#include "common/depth/search.h"
+
+namespace mortise {
+
+/// The triangles of both parts that may interfere, or whose meshes overlap, in connected regions.
+struct Regions {
+  std::vector<Root> roots;
+  std::size_t count = 0;
+  int primary = 0;  ///< the part whose connected triangles make the regions
+  std::vector<std::uint32_t> region_of_triangle;  ///< of the primary part
+  bool capped = false;
+};
+
+struct RegionsQuery {
+  const PairFrame* pair = nullptr;
+  const Candidates* candidates = nullptr;
+  const KnownOverlaps* known = nullptr;
+  std::uint64_t work_cap = 0;
+};
+
+/// Asks every candidate triangle whether it stays out of the other part, floods over neighbours
+/// from those that do not, and groups them.
+Regions find_regions(const RegionsQuery& query, SearchScratch& scratch, std::uint64_t& evaluations);
+
+/// Is a shell of A inside B, or of B inside A, without any crossing? Its first triangle then.
+struct ContainedShell {
+  int role = 0;
+  std::uint32_t triangle = 0;
+};
+std::vector<ContainedShell> contained_shells(const PairFrame& pair, std::uint64_t& evaluations);
+
+}  // namespace mortise

@@ -1,0 +1,268 @@
+#include "common/depth/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mortise {
+namespace {
+
+// Pieces that one root may be cut into before it is passed on undecided.
+constexpr int kRootEvaluations = 24;
+
+// A decided search goes on for this many evaluations per root, so that the numbers in its report
+// are good; the class is known by then.
+constexpr std::uint64_t kPolishPerRoot = 2, kPolishLeast = 200;
+
+// How much of a depth the bracket may leave open when only the class was asked for.
+constexpr double kLooseShare = 0.2;
+
+// Contact points kept for the fitted separating motion.
+constexpr std::size_t kMostSamples = 48;
+
+struct Item {
+  double bound_mm = 0.0;  // no point of the piece is deeper
+  Piece piece;
+  int role = 0;
+  std::uint32_t region = 0;
+  std::uint64_t order = 0;
+  SurfacePoint at;
+};
+
+bool worse(const Item& a, const Item& b) {
+  return a.bound_mm != b.bound_mm ? a.bound_mm < b.bound_mm : a.order > b.order;
+}
+
+Piece whole(const Body& s, std::uint32_t triangle) {
+  return {{s.mesh->corner(triangle, 0), s.mesh->corner(triangle, 1), s.mesh->corner(triangle, 2)},
+          triangle};
+}
+
+struct Looked {
+  Patch patch;
+  Sample sample;
+  double bound_mm;
+};
+
+Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece) {
+  const Body& k = pair.k(role);
+  Looked looked{make_patch(pair.s(role), layer, piece, pair.X_KS[role]), {}, 0.0};
+  looked.sample.role = role;
+  looked.sample.triangle = piece.triangle;
+  looked.sample.point_K = looked.patch.center;
+  looked.sample.at = nearest_surface(*k.solid, looked.patch.center);
+  looked.sample.depth_mm = k.depth_at(looked.sample.at, layer);
+  looked.bound_mm = looked.sample.at.depth_mm + looked.patch.radius_mm +
+                    k.largest_offset_mm[static_cast<int>(layer)];
+  return looked;
+}
+
+DepthProof proof_for(const PairFrame& pair, Layer layer, const KnownOverlaps* known, int role,
+                     std::uint32_t triangle, const SurfacePoint& at, double limit_mm) {
+  DepthProof proof;
+  proof.known = layer == Layer::kMesh ? nullptr : known;
+  proof.role = role;
+  proof.face_s = pair.s(role).face_index(triangle);
+  proof.offset_s_mm = Body::offset_of(pair.s(role).face(triangle), layer);
+  proof.k = &pair.k(role);
+  proof.layer = layer;
+  proof.limit_mm = limit_mm;
+  proof.at_center = at;
+  proof.rounding_mm = pair.rounding_mm;
+  return proof;
+}
+
+class Search {
+ public:
+  Search(const SearchQuery& query, SearchScratch& scratch, std::uint64_t& evaluations)
+      : query_(query),
+        pair_(*query.pair),
+        scratch_(scratch),
+        evaluations_(evaluations),
+        brackets_(query.regions) {}
+
+  std::vector<Bracket> run() {
+    for (const Root& root : *query_.roots) add_root(root);
+    std::make_heap(heap_.begin(), heap_.end(), worse);
+    const std::uint64_t polish =
+        std::max<std::uint64_t>(kPolishLeast, kPolishPerRoot * query_.roots->size());
+    while (!heap_.empty() && work_ < query_.work_cap) {
+      if (query_.sign_only && work_ >= polish && all_decided()) break;
+      std::pop_heap(heap_.begin(), heap_.end(), worse);
+      const Item item = std::move(heap_.back());
+      heap_.pop_back();
+      treat(item);
+    }
+    // What was not reached keeps its bound.
+    for (const Item& item : heap_) {
+      Bracket& bracket = brackets_[item.region];
+      if (bracket.best.depth_mm <= pair_.touch_mm && item.bound_mm > pair_.touch_mm)
+        bracket.undecided = true;
+      bracket.hi_mm = std::max(bracket.hi_mm, item.bound_mm);
+    }
+    for (Bracket& bracket : brackets_)
+      bracket.hi_mm = std::max(bracket.hi_mm, bracket.best.depth_mm);
+    return std::move(brackets_);
+  }
+
+ private:
+  void add_root(const Root& root) {
+    const Body& s = pair_.s(root.role);
+    const Piece piece = whole(s, root.triangle);
+    push(piece, root.role, root.region, std::numeric_limits<double>::infinity());
+    int inside = heap_.back().at.depth_mm > pair_.touch_mm ? 1 : 0;
+    // Depth is often reached at a corner.
+    for (const Vec3& corner : piece.corners) {
+      const Sample sample = sample_at(pair_, query_.layer, root.role, root.triangle, corner);
+      ++work_;
+      ++evaluations_;
+      const std::uint32_t region = region_of(root.role, root.region, sample.at.triangle);
+      take(sample, region);
+      if (sample.depth_mm <= pair_.touch_mm) continue;
+      ++inside;
+      std::vector<Sample>& samples = brackets_[region].samples;
+      if (samples.size() < kMostSamples) samples.push_back(sample);
+    }
+    if (root.role != query_.primary) return;
+    const Vec3 n = (piece.corners[1] - piece.corners[0]).cross(piece.corners[2] - piece.corners[0]);
+    brackets_[root.region].area_mm2 += 0.5 * n.norm() * inside / 4.0;
+  }
+
+  std::uint32_t region_of(int role, std::uint32_t inherited, std::uint32_t met) const {
+    if (query_.region_of_triangle == nullptr || role == query_.primary) return inherited;
+    const std::uint32_t region = (*query_.region_of_triangle)[met];
+    return region == Topology::kNone ? inherited : region;
+  }
+
+  void take(const Sample& sample, std::uint32_t region) {
+    Bracket& bracket = brackets_[region];
+    if (sample.depth_mm > bracket.best.depth_mm) bracket.best = sample;
+  }
+
+  void push(const Piece& piece, int role, std::uint32_t region, double parent_bound) {
+    const Looked looked = look(pair_, query_.layer, role, piece);
+    ++work_;
+    ++evaluations_;
+    Item item;
+    item.bound_mm = std::min(parent_bound, looked.bound_mm);
+    item.piece = piece;
+    item.role = role;
+    item.region = region_of(role, region, looked.sample.at.triangle);
+    item.order = order_++;
+    item.at = looked.sample.at;
+    take(looked.sample, item.region);
+    heap_.push_back(std::move(item));
+    if (started_) std::push_heap(heap_.begin(), heap_.end(), worse);
+  }
+
+  // Below touch only the sign matters: nothing is gained by knowing how far apart to 0.1 um.
+  double tight_limit(const Bracket& bracket) const {
+    const double lo = bracket.best.depth_mm;
+    const double u = lo + query_.accuracy_mm;
+    return lo <= pair_.touch_mm ? std::min(u, pair_.touch_mm) : u;
+  }
+
+  double loose_limit(const Bracket& bracket) const {
+    const double lo = bracket.best.depth_mm;
+    if (lo <= pair_.touch_mm) return pair_.touch_mm;
+    return lo + std::max(query_.accuracy_mm, kLooseShare * lo);
+  }
+
+  void treat(const Item& item) {
+    started_ = true;
+    Bracket& bracket = brackets_[item.region];
+    const double tight = tight_limit(bracket);
+    if (item.bound_mm <= tight) {
+      bracket.hi_mm = std::max(bracket.hi_mm, item.bound_mm);
+      return;
+    }
+    const Patch patch =
+        make_patch(pair_.s(item.role), query_.layer, item.piece, pair_.X_KS[item.role]);
+    const auto below = [&](double limit) {
+      const DepthProof proof = proof_for(pair_, query_.layer, query_.known, item.role,
+                                         item.piece.triangle, item.at, limit);
+      return depth_at_most(proof, patch, scratch_.proof);
+    };
+    ++work_;
+    ++evaluations_;
+    if (below(tight)) {
+      bracket.hi_mm = std::max(bracket.hi_mm, tight);
+      return;
+    }
+    if (query_.sign_only) {
+      const double loose = loose_limit(bracket);
+      if (loose > tight && (item.bound_mm <= loose || below(loose))) {
+        bracket.hi_mm = std::max(bracket.hi_mm, std::min(loose, item.bound_mm));
+        return;
+      }
+    }
+    for (const Piece& half : split(pair_.s(item.role), query_.layer, item.piece))
+      push(half, item.role, item.region, item.bound_mm);
+  }
+
+  bool all_decided() const {
+    for (const Bracket& bracket : brackets_)
+      if (bracket.best.depth_mm <= pair_.touch_mm) return false;
+    return true;
+  }
+
+  const SearchQuery& query_;
+  const PairFrame& pair_;
+  SearchScratch& scratch_;
+  std::uint64_t& evaluations_;
+  std::vector<Bracket> brackets_;
+  std::vector<Item> heap_;
+  std::uint64_t work_ = 0, order_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace
+
+Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t triangle,
+                 const Vec3& x_S) {
+  const Body& s = pair.s(role);
+  const SurfaceBand::Face& face = s.face(triangle);
+  const Surface* surface = Body::surface_of(face, layer);
+  const Vec3 n = surface != nullptr ? surface->outward_normal(x_S) : s.normal(triangle);
+  const double out =
+      Body::offset_of(face, layer) - (surface != nullptr ? surface->signed_distance_mm(x_S) : 0.0);
+  Sample sample;
+  sample.role = role;
+  sample.triangle = triangle;
+  sample.point_K = pair.X_KS[role] * (x_S + out * n);
+  sample.at = nearest_surface(*pair.k(role).solid, sample.point_K);
+  sample.depth_mm = pair.k(role).depth_at(sample.at, layer);
+  return sample;
+}
+
+std::vector<Bracket> search_depth(const SearchQuery& query, SearchScratch& scratch,
+                                  std::uint64_t& evaluations) {
+  return Search(query, scratch, evaluations).run();
+}
+
+RootAnswer ask_root(const RootQuery& query, SearchScratch& scratch, std::uint64_t& evaluations) {
+  const PairFrame& pair = *query.pair;
+  RootAnswer answer;
+  std::array<Piece, kRootEvaluations + 1> stack;
+  int top = 0;
+  stack[top++] = whole(pair.s(query.role), query.triangle);
+  for (int work = 0; top > 0; ++work) {
+    if (work >= kRootEvaluations) return answer;
+    const Piece piece = stack[--top];
+    const Looked looked = look(pair, query.layer, query.role, piece);
+    ++evaluations;
+    if (looked.sample.depth_mm > answer.best.depth_mm) answer.best = looked.sample;
+    if (looked.sample.depth_mm > query.limit_mm) {
+      answer.state = RootState::kAbove;
+      return answer;
+    }
+    if (looked.bound_mm <= query.limit_mm) continue;
+    const DepthProof proof = proof_for(pair, query.layer, query.known, query.role, piece.triangle,
+                                       looked.sample.at, query.limit_mm);
+    if (depth_at_most(proof, looked.patch, scratch.proof)) continue;
+    for (const Piece& half : split(pair.s(query.role), query.layer, piece)) stack[top++] = half;
+  }
+  answer.state = RootState::kBelow;
+  return answer;
+}
+
+}  // namespace mortise
