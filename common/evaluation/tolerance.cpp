@@ -46,9 +46,10 @@ std::string size_text(double mm) {
 }
 
 Interval size_offset_mm(const SizeLimits& limits, double modelled_radius_mm) {
-  const Interval radius_mm{0.5 * (limits.nominal_mm + limits.deviation_mm.lo),
-                           0.5 * (limits.nominal_mm + limits.deviation_mm.hi)};
-  const Interval grown{radius_mm.lo - modelled_radius_mm, radius_mm.hi - modelled_radius_mm};
+  // Sizes first: a part modelled at nominal then has no rounding in its offsets (h6 ends at 0).
+  const double off_nominal_mm = 0.5 * limits.nominal_mm - modelled_radius_mm;
+  const Interval grown{off_nominal_mm + 0.5 * limits.deviation_mm.lo,
+                       off_nominal_mm + 0.5 * limits.deviation_mm.hi};
   return limits.hole ? -grown : grown;
 }
 

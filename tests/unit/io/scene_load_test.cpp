@@ -1,0 +1,204 @@
+#include "common/io/scene_load.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+namespace mortise {
+namespace {
+
+constexpr const char* kPegInHole = R"(name: peg in hole
+units: mm
+parts:
+  - name: plate
+    generator: {kind: ring, bore: 20, outer: 60, width: 20}
+    tolerance: "±0.1"
+    features:
+      bore: {iso: H7}
+  - name: pin
+    generator: {kind: dowel, diameter: 20, length: 40, phase_deg: 5}
+    moving: true
+)";
+
+LoadedScene load(const std::string& yaml) {
+  const auto reading = read_scenario_text(yaml, "s.yaml");
+  EXPECT_TRUE(reading);
+  for (const Finding& f : reading->findings) EXPECT_FALSE(f.is_error) << f.text;
+  auto scene = load_scene(reading->scenario, default_meshes());
+  EXPECT_TRUE(scene);
+  return std::move(scene).value();
+}
+
+void expect_error(const LoadedScene& scene, int line, const std::string& says) {
+  EXPECT_FALSE(scene.usable());
+  const std::string place = "s.yaml:" + std::to_string(line) + ": ";
+  std::string all;
+  for (const Finding& f : scene.findings) {
+    if (f.is_error && f.text.starts_with(place) && f.text.find(says) != std::string::npos) return;
+    all += f.text + "\n";
+  }
+  ADD_FAILURE() << "wanted " << place << says << "\ngot\n" << all;
+}
+
+const SurfaceBand::Face* face_of(const SurfaceBand& band, const std::string& name) {
+  for (const auto& face : band.faces)
+    if (face.name == name) return &face;
+  return nullptr;
+}
+
+TEST(SceneLoad, FillsTheWorld) {
+  const LoadedScene scene = load(kPegInHole);
+  ASSERT_TRUE(scene.usable());
+  const World& world = scene.world;
+  ASSERT_EQ(world.parts.size(), 2U);
+  EXPECT_EQ(world.parts[0].id.value, 1U);
+  EXPECT_EQ(world.parts[1].name, "pin");
+  EXPECT_TRUE(world.parts[1].moving);
+  EXPECT_TRUE(world.evaluates);
+  EXPECT_TRUE(scene.imports[0].closed);
+  // Feature beats part; what is not spoken of follows the part.
+  const auto* bore = face_of(world.parts[0].band, "bore");
+  const auto* outer = face_of(world.parts[0].band, "outer");
+  ASSERT_TRUE(bore && outer);
+  EXPECT_NEAR(bore->tolerance_mm.lo, -0.0105, 1e-12);
+  EXPECT_EQ(bore->tolerance_source, "Ø20 H7");
+  EXPECT_EQ(outer->tolerance_source, "±0.1 mm");
+  EXPECT_EQ(bore->grade, DeviationGrade::kDeclaredFeature);
+  EXPECT_NEAR(bore->deviation_mm.lo, -0.048152733, 2e-7);
+  EXPECT_NEAR(bore->deviation_mm.hi, 0.0, 1e-9);
+  // The generator's faces are known exactly even where the file says nothing.
+  EXPECT_EQ(face_of(world.parts[1].band, "journal")->tolerance_source, "");
+  EXPECT_TRUE(face_of(world.parts[1].band, "journal")->surface.has_value());
+}
+
+TEST(SceneLoad, AFitGivesThePairBandsOfItsOwn) {
+  const LoadedScene scene = load(std::string(kPegInHole) +
+                                 "fits:\n  - {between: [pin.journal, plate.bore], code: H7/g6}\n");
+  ASSERT_TRUE(scene.usable()) << scene.findings.front().text;
+  const PairRule* rule = &scene.world.pair_rules.at({PartId{1}, PartId{2}});
+  ASSERT_TRUE(rule->band_a && rule->band_b);
+  EXPECT_EQ(rule->fit, "Ø20 H7/g6");
+  EXPECT_EQ(face_of(*rule->band_b, "journal")->tolerance_mm, (Interval{-0.01, -0.0035}));
+  EXPECT_EQ(face_of(*rule->band_a, "outer")->tolerance_source, "±0.1 mm");
+  EXPECT_EQ(face_of(scene.world.parts[1].band, "journal")->tolerance_mm, (Interval{}));
+  ASSERT_EQ(scene.fits.size(), 1U);
+  EXPECT_NEAR(scene.fits[0].clearance_mm.lo, 0.007, 1e-12);
+  EXPECT_NEAR(scene.fits[0].clearance_mm.hi, 0.041, 1e-12);
+}
+
+TEST(SceneLoad, AlikePartsShareTheirMeshAndWildcardsReachThemAll) {
+  const LoadedScene scene = load(R"(name: many
+units: mm
+parts:
+  - {name: plate, generator: {kind: ring, bore: 20, outer: 60, width: 20}}
+  - {name: pin, generator: {kind: dowel, diameter: 20, length: 40}, moving: true, repeat: {count: 50, step: [100, 0, 0]}}
+fits:
+  - {between: ["pin_*.journal", plate.bore], code: H7/h6}
+exclusions:
+  - {between: ["pin_*", "pin_*"], reason: pins never meet here}
+)");
+  ASSERT_TRUE(scene.usable());
+  std::set<const Solid*> solids;
+  for (const Part& part : scene.world.parts) solids.insert(part.solid.get());
+  EXPECT_EQ(solids.size(), 2U);
+  EXPECT_EQ(scene.fits.size(), 50U);
+  EXPECT_EQ(scene.world.pair_rules.size(), 50U + 50U * 49U / 2U);
+  std::set<const SurfaceBand*> bands;
+  for (const auto& [ids, rule] : scene.world.pair_rules) bands.insert(rule.band_b.get());
+  EXPECT_EQ(bands.size(), 2U);  // one for all pins, and none where only excluded
+}
+
+TEST(SceneLoad, WithoutAnyKnowledgeNothingIsEvaluated) {
+  const LoadedScene scene = load(R"(name: plain
+units: mm
+parts:
+  - {name: a, generator: {kind: block}, moving: true}
+  - {name: b, generator: {kind: block}}
+)");
+  ASSERT_TRUE(scene.usable());
+  EXPECT_FALSE(scene.world.evaluates);
+}
+
+TEST(SceneLoad, RulesThatMatchNothingOrContradictAreErrors) {
+  const std::string base = kPegInHole;  // 11 lines: rules start in line 13
+  expect_error(load(base + "fits:\n  - {between: [pin.jornal, plate.bore], code: H7/g6}\n"), 13,
+               "did you mean 'journal'");
+  expect_error(load(base + "fits:\n  - {between: [pn.journal, plate.bore], code: H7/g6}\n"), 13,
+               "did you mean 'pin'");
+  expect_error(load(base + "fits:\n  - {between: [pin.journal, plate.outer], code: H7/g6}\n"), 13,
+               "a shaft");
+  expect_error(load(base + "fits:\n  - {between: [pin.journal, plate.bore], code: H7/q6}\n"), 13,
+               "p and r");
+  expect_error(load(base + "fits:\n  - {between: [pin.journal, plate.bore], code: H7/g6}\n"
+                           "  - {between: [plate.bore, pin.journal], code: H7/p6}\n"),
+               14, "already have a fit in line 13");
+  expect_error(load(base + "fits:\n  - {between: [pin.*, pin.*], code: H7/g6}\n"), 13,
+               "matches no pair");
+  expect_error(load(base + "exclusions:\n  - {between: [pin, lid], reason: r}\n"), 13, "no part");
+  expect_error(load(base + "exclusions:\n  - {between: [pin, pin], reason: r}\n"), 13, "needs two");
+  expect_error(load(base + "users:\n  - {name: u, may_hold: [lid]}\n"), 13, "no part");
+  expect_error(load(base + "users:\n  - {name: u, may_hold: [plate]}\n"), 13, "moving: true");
+}
+
+TEST(SceneLoad, FeaturesThatContradictTheMeshAreErrors) {
+  const auto with = [](const std::string& feature) {
+    return load(
+        "name: a\nunits: mm\nparts:\n  - name: plate\n    generator: {kind: ring, bore: "
+        "16.2, outer: 60, width: 20}\n    moving: true\n    features:\n      " +
+        feature + "\n");
+  };
+  expect_error(with("hole: {kind: cylinder, point: [0,0,0], axis: [0,0,1], radius: 8, inward: "
+                    "true}"),
+               8, "the mesh has radius 8.1 mm");
+  expect_error(with("hol: {iso: H7}"), 8, "known: bore");
+  expect_error(with("bore: {iso: g6}"), 8, "is for a shaft");
+  expect_error(with("bore: {iso: H7, nominal: 16}"), 8, "16.2 mm is neither");
+  expect_error(with("lower: {iso: H7}"), 8, "needs a diameter");
+  EXPECT_TRUE(with("bore: {iso: H7}").usable());
+}
+
+TEST(SceneLoad, TwoFeaturesOnOneRoundNeedTheirExtents) {
+  const std::string start =
+      "name: a\nunits: mm\nparts:\n  - name: plate\n    generator: {kind: dowel, diameter: 20, "
+      "length: 40}\n    moving: true\n    features:\n";
+  const std::string round = "{kind: cylinder, point: [0,0,0], axis: [0,0,1], radius: 10";
+  expect_error(load(start + "      one: " + round + "}\n      two: " + round + "}\n"), 9,
+               "along: [from, to]");
+}
+
+TEST(SceneLoad, MissingMeshesAreFindingsWithTheirLine) {
+  expect_error(load("name: a\nunits: mm\nparts:\n  - {name: p, moving: true, mesh: {file: "
+                    "nowhere.stl, unit: mm}}\n"),
+               4, "nowhere.stl");
+  expect_error(load("name: a\nunits: mm\nparts:\n  - {name: p, moving: true, mesh: {file: a.3mf, "
+                    "unit: mm}}\n"),
+               4, "3mf");
+}
+
+TEST(SceneLoad, OpenMeshesAreNamed) {
+  const MeshProvider open = [](const Scenario& scenario, const Scenario::PartSpec& part) {
+    auto mesh = default_meshes()(scenario, part);
+    mesh->mesh.triangles.pop_back();
+    mesh->report.closed = false;
+    mesh->report.boundary_edges = 3;
+    return mesh;
+  };
+  const auto reading = read_scenario_text(
+      "name: a\nunits: mm\nparts:\n  - {name: p, moving: true, generator: {kind: block}}\n",
+      "s.yaml");
+  const auto scene = load_scene(reading->scenario, open);
+  ASSERT_TRUE(scene);
+  EXPECT_TRUE(scene->usable());
+  bool named = false;
+  for (const Finding& f : scene->findings) named |= f.text.find("3 boundary") != std::string::npos;
+  EXPECT_TRUE(named);
+}
+
+TEST(SceneLoad, AScenarioWithoutPartsIsRefused) {
+  EXPECT_FALSE(load_scene(Scenario{}, default_meshes()));
+}
+
+}  // namespace
+}  // namespace mortise
