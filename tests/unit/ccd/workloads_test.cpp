@@ -77,7 +77,8 @@ TEST_P(Workloads, NeitherMissedNorInventedNorLate) {
   const Score s = score(workload, answers, 0.0);
   std::sort(time_us.begin(), time_us.end());
   std::printf(
-      "| %-10s | %zu queries | %d contacts | missed %d | invented %d | late %d | p99 error %.2g mm | "
+      "| %-10s | %zu queries | %d contacts | missed %d | invented %d | late %d | p99 error %.2g mm "
+      "| "
       "median %.3f ms | p99 %.3f ms |\n",
       GetParam().c_str(), answers.size(), s.contacts, s.missed, s.invented, s.late, s.p99_mm(),
       1e-3 * time_us[time_us.size() / 2],
