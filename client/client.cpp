@@ -248,6 +248,7 @@ void Client::apply_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
 }
 
 void Client::offer_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
+  requested_at_ns_.reset();  // answered
   if (have_snapshot_ && snapshot.event_seq < event_seq_) {
     ++statistics_.snapshots_stale;  // of its clashes; its poses are compared by tick
     apply_scene(snapshot);
