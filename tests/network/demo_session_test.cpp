@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "common/io/session_log.h"
+#include "tests/network/program.h"
+
+/// A session as it is demonstrated: a server, four designers, an observer and one who comes late,
+/// each in a process of its own, over DDS on loopback.
+namespace mortise::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kScenario[] = R"(
+name: four blocks
+units: mm
+policy: report
+parts:
+  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
+  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [-20, 0, 20]}, tolerance: {plus_minus: 0.05}}
+  - {name: blue, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [20, 0, 20]}}
+  - {name: green, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [0, 30, 20]}}
+  - {name: pin, generator: {kind: dowel, diameter: 6, length: 20}, moving: true,
+     pose: {position: [0, -30, 30]}}
+)";
+
+/// Red sinks into the base, comes out and ends 0.02 mm above it; blue stays in the base; green and
+/// pin meet in the air and part again.
+constexpr char kPlay[] = R"(
+acts:
+  - user: anna
+    part: red
+    steps:
+      - {by: [0, 0, -12], seconds: 1}
+      - {rotate_deg: [0, 0, 30], seconds: 0.5}
+      - {by: [0, 0, 2.02], seconds: 0.8}
+  - {user: ben, part: blue, steps: [{by: [0, 0, -11], seconds: 1.5}, {by: [3, 0, 0], seconds: 0.5}]}
+  - user: carla
+    part: green
+    steps: [{by: [0, -30, 10], seconds: 1}, {seconds: 1}, {by: [0, 20, 0], seconds: 0.5}]
+  - {user: dora, part: pin, steps: [{by: [0, 28, 0], seconds: 1.2}, {seconds: 1}]}
+)";
+
+Json json_of(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  EXPECT_FALSE(json.is_discarded()) << text;
+  return json;
+}
+
+TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
+  TestFolder folder;
+  const std::string domain = "206";
+  const std::string scenario = folder.write("blocks.yaml", kScenario);
+  const std::string play = folder.write("blocks.play.yaml", kPlay);
+  const std::string log = (folder.path() / "blocks.mcap").string();
+
+  Program server(folder.path(), "mortise-server",
+                 {scenario, "--domain", domain, "--session", "demo", "--log", log, "--duration",
+                  "9.5", "--json", "--live"});
+  const auto participant = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(),
+                     {"--domain", domain, "--session", "demo", "--wait", "10", "--json"});
+    return std::make_unique<Program>(folder.path(), "mortise-bot", arguments);
+  };
+  auto observer = participant({"--observer", "--duration", "6.5"});
+  std::vector<std::unique_ptr<Program>> designers;
+  for (const char* name : {"anna", "ben", "carla", "dora"}) {
+    designers.push_back(participant({"--behaviour", "script", "--play", play, "--names", name,
+                                     "--delay", "1.5", "--linger", "2"}));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(3200));  // the blocks are on their way
+  auto late = participant({"--observer", "--names", "eve", "--duration", "3"});
+
+  for (auto& designer : designers) ASSERT_EQ(designer->wait(15), 0) << designer->errors();
+  ASSERT_EQ(observer->wait(15), 0) << observer->errors();
+  ASSERT_EQ(late->wait(15), 0) << late->errors();
+  ASSERT_EQ(server.wait(15), 0) << server.errors();
+
+  // 1. All who were there from the start saw the same events; all know the same poses and clashes.
+  const Json seen = json_of(observer->out());
+  const Json closing = json_of(server.out());
+  EXPECT_GE(seen["events"]["count"].get<int>(), 5) << seen.dump(1);
+  EXPECT_EQ(seen["events"]["first_seq"], 1);
+  EXPECT_EQ(seen["state"]["open_clashes"].size(), 2U) << seen["state"].dump(1);
+  std::set<std::string> classes;
+  for (const Json& clash : seen["state"]["open_clashes"]) classes.insert(clash["class"]);
+  EXPECT_EQ(classes, (std::set<std::string>{"potential", "real"}));
+  std::uint64_t sent = 0;
+  for (auto& designer : designers) {
+    const Json own = json_of(designer->out());
+    EXPECT_EQ(own["events"], seen["events"]) << own["names"];
+    EXPECT_EQ(own["state"], seen["state"]) << own["names"];
+    EXPECT_EQ(own["troubles"].size(), 0U) << own["troubles"];
+    EXPECT_TRUE(own["refused"].empty()) << own["refused"];
+    EXPECT_GT(own["latency_ms"]["count"].get<int>(), 50);
+    EXPECT_LT(own["latency_ms"]["p50"].get<double>(), 100.0);
+    sent += own["sent"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(json_of(late->out())["state"], seen["state"]);
+
+  // 2. The server's books agree with theirs.
+  EXPECT_EQ(closing["inbox"]["accepted"].get<std::uint64_t>(), sent);
+  EXPECT_EQ(closing["inbox"]["liveliness_lost"], 0) << server.errors();
+  EXPECT_EQ(closing["inbox"]["leaves"], 6);
+  const Json& by_class = closing["statistics"]["by_class"];
+  for (const char* name : {"real", "potential", "fake"}) {
+    EXPECT_EQ(by_class[name]["total"], seen["clashes_seen"][name]) << name;
+  }
+  EXPECT_EQ(by_class["real"]["open"], 1);
+  EXPECT_GE(by_class["real"]["total"].get<int>(), 3);
+  EXPECT_NE(server.errors().find("users"), std::string::npos) << "the live line is missing";
+
+  // 3. The poses are those that the play asks for: the policy lets everything pass.
+  const Json& poses = seen["state"]["poses"];
+  EXPECT_NEAR(poses["red"][2].get<double>(), 10.02, 1e-9);
+  EXPECT_NEAR(poses["blue"][0].get<double>(), 23.0, 1e-9);
+  EXPECT_NEAR(poses["pin"][1].get<double>(), -2.0, 1e-9);
+
+  // 4. The log holds every tick, and the same session can be computed from it again.
+  const auto read = read_session_log(log);
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_TRUE(read->complete);
+  EXPECT_EQ(read->ticks.size(), closing["statistics"]["ticks"].get<std::size_t>());
+  EXPECT_NE(read->scenario_yaml.find("four blocks"), std::string::npos);
+  if (std::filesystem::exists(program_path("mortise-replay"))) {
+    Program replay(folder.path(), "mortise-replay", {"verify", log});
+    EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+  }
+}
+
+}  // namespace
+}  // namespace mortise::test

@@ -1,0 +1,157 @@
+// Noise on the wire: mutated datagrams sent to a living server's ports. It must go on, and count.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <random>
+
+#include "client/client.h"
+#include "tests/network/small_server.h"
+
+namespace mortise::test {
+namespace {
+
+using Datagram = std::vector<std::uint8_t>;
+
+/// Listens where a client believes the server to be, and keeps what it hears: real discovery
+/// traffic as the seed of the mutations.
+class Socket {
+ public:
+  explicit Socket(int port) : handle_(socket(AF_INET, SOCK_DGRAM, 0)) {
+    if (port != 0) {
+      const sockaddr own = address(port);
+      bound_ = bind(handle_, &own, sizeof own) == 0;
+    }
+    const timeval limit{0, 100'000};
+    setsockopt(handle_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  }
+  ~Socket() { close(handle_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  bool bound() const { return bound_; }
+  Datagram receive() {
+    Datagram datagram(65536);
+    const ssize_t size = recv(handle_, datagram.data(), datagram.size(), 0);
+    datagram.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+    return datagram;
+  }
+  void send(const Datagram& datagram, int port) {
+    const sockaddr to = address(port);
+    sendto(handle_, datagram.data(), datagram.size(), 0, &to, sizeof to);
+  }
+
+ private:
+  static sockaddr address(int port) {
+    sockaddr_in in{};
+    in.sin_family = AF_INET;
+    in.sin_port = htons(static_cast<std::uint16_t>(port));
+    in.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    sockaddr out{};
+    std::memcpy(&out, &in, sizeof in);
+    return out;
+  }
+  int handle_;
+  bool bound_ = false;
+};
+
+/// A DATA submessage to the reader of increments with a body of the caller's.
+Datagram data_datagram(std::mt19937_64& random) {
+  Datagram out = {'R', 'T', 'P', 'S', 2, 2,  1,    15, 1,  15, 1, 15, 1,  15,
+                  1,   15,  1,   15,  1, 15, 0x15, 5,  60, 0,  0, 0,  16, 0};
+  for (int i = 0; i < 8; ++i) out.push_back(static_cast<std::uint8_t>(random() % 8));  // entities
+  for (const int byte : {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}) {
+    out.push_back(static_cast<std::uint8_t>(byte));
+  }
+  while (out.size() < 84) out.push_back(static_cast<std::uint8_t>(random()));
+  return out;
+}
+
+Datagram mutate(Datagram datagram, std::mt19937_64& random) {
+  for (std::uint64_t change = 1 + random() % 4; change-- > 0 && datagram.size() > 24;) {
+    const std::size_t at = 20 + random() % (datagram.size() - 20);
+    switch (random() % 4) {
+      case 0:
+        datagram[at] = static_cast<std::uint8_t>(random());
+        break;
+      case 1:
+        datagram[at] = static_cast<std::uint8_t>(datagram[at] ^ (1u << random() % 8));
+        break;
+      case 2:
+        datagram.resize(at);
+        break;
+      default:
+        std::memset(datagram.data() + (at & ~std::size_t{3}), 0xff,
+                    std::min<std::size_t>(4, datagram.size() - (at & ~std::size_t{3})));
+    }
+  }
+  return datagram;
+}
+
+TEST(NetworkNoise, ServerOutlivesMutatedDatagrams) {
+  const DdsOptions options = options_for_test("ServerOutlivesMutatedDatagrams");
+  const int port = 7402 + 250 * options.domain;
+  std::mt19937_64 random(31337);
+  std::vector<Datagram> seeds;
+  {  // What a client really says to a server that it looks for.
+    Socket ear(port);
+    ASSERT_TRUE(ear.bound());
+    auto channel = open_client_channel(options);
+    ASSERT_TRUE(channel) << channel.error().text;
+    for (int i = 0; i < 8; ++i) {
+      Datagram heard = ear.receive();
+      if (!heard.empty()) seeds.push_back(std::move(heard));
+    }
+  }
+  ASSERT_FALSE(seeds.empty());
+  for (int i = 0; i < 4; ++i) seeds.push_back(data_datagram(random));
+
+  // The server is a child: were it to die, this test says so and does not die with it.
+  Child server("server", options, "noisy", 60.0);
+  auto channel = open_client_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  Client client(**channel);
+  client.add_user("anna", "designer");
+  std::uint64_t events = 0;
+  const auto turn = [&] { events += client.poll().events.size(); };
+  ASSERT_TRUE(until(
+      8.0, [&] { return client.join_state(0) == JoinState::kJoined; }, turn));
+  Socket mouth(0);
+  constexpr int kDatagrams = 20'000;
+  for (int i = 0; i < kDatagrams; ++i) {
+    mouth.send(mutate(seeds[random() % seeds.size()], random),
+               port + static_cast<int>(random() % 2));
+    if (i % 200 == 0) {
+      turn();
+      sleep_s(0.01);  // or the socket's buffer overflows, and nothing is tested
+    }
+  }
+  const std::uint64_t before = events;
+  ASSERT_TRUE(until(
+      5.0, [&] { return events > before + 3; }, turn))
+      << "the server is gone";
+  EXPECT_EQ(server.wait(0.1), -1);  // still running
+  client.add_user("bert", "designer");
+  EXPECT_TRUE(until(
+      5.0, [&] { return client.join_state(1) == JoinState::kJoined; }, turn));
+}
+
+TEST(NetworkNoise, DroppedDatagramsAreCounted) {
+  const DdsOptions options = options_for_test("DroppedDatagramsAreCounted");
+  auto channel = open_server_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  Socket mouth(0);
+  for (int i = 0; i < 100; ++i) {
+    mouth.send(Datagram(64, static_cast<std::uint8_t>(i)), 7402 + 250 * options.domain);
+  }
+  EXPECT_TRUE(until(
+      3.0, [&] { return (*channel)->counters().guard_dropped == 100; },
+      [&] { (*channel)->take(); }))
+      << (*channel)->counters().guard_dropped;
+}
+
+}  // namespace
+}  // namespace mortise::test

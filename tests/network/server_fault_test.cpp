@@ -1,0 +1,245 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "client/client.h"
+#include "common/io/session_log.h"
+#include "idl/dds_channel.h"
+#include "tests/network/program.h"
+
+/// The real server under bad luck and bad company, over DDS on loopback.
+namespace mortise::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kScenario[] = R"(
+name: two blocks
+units: mm
+lease_s: 1
+parts:
+  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
+  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [0, 0, 60]}}
+  - {name: blue, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [500, 0, 20]}}
+)";
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A participant in this process.
+struct Guest {
+  explicit Guest(int domain, const std::string& name) {
+    DdsOptions options;
+    options.domain = domain;
+    auto opened = open_client_channel(options);
+    if (!opened) return;
+    channel = std::move(*opened);
+    client = std::make_unique<Client>(*channel);
+    user = client->add_user(name, "designer");
+  }
+  bool until(double limit_s, const std::function<bool()>& done) {
+    for (const double end_s = now_s() + limit_s; now_s() < end_s;) {
+      const ClientUpdate update = client->poll();
+      for (const RefusedIncrement& r : update.refused) refused.push_back(r);
+      for (const Reply& r : update.replies) replies.push_back(r);
+      if (done()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  }
+  bool joined() {
+    return until(10, [&] { return client->user_id(user) && client->synced(); });
+  }
+  UserId holder(const char* part) const {
+    return client->parts().at(client->find_part(part)).info.holder;
+  }
+  double x(const char* part) const {
+    return client->parts().at(client->find_part(part)).info.X_WP.p.x();
+  }
+  bool grab(const char* part) {
+    client->grab(user, client->find_part(part));
+    return until(3, [&] { return holder(part) == client->user_id(user); });
+  }
+
+  std::unique_ptr<ClientChannel> channel;
+  std::unique_ptr<Client> client;
+  LocalUser user = 0;
+  std::vector<RefusedIncrement> refused;
+  std::vector<Reply> replies;
+};
+
+class ServerFault : public ::testing::Test {
+ protected:
+  std::unique_ptr<Program> serve(int domain, std::vector<std::string> arguments = {"--no-log"}) {
+    const std::string scenario = folder_.write("blocks.yaml", kScenario);
+    arguments.insert(arguments.begin(), {scenario, "--domain", std::to_string(domain), "--json"});
+    return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
+  }
+  static std::size_t lines(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+  TestFolder folder_;
+};
+
+TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
+  auto server = serve(210);
+  Program bot(folder_.path(), "mortise-bot",
+              {"--domain", "210", "--wait", "10", "--part", "red", "--behaviour", "wander"});
+  Guest ben(210, "ben");
+  ASSERT_TRUE(ben.joined()) << server->errors();
+  ASSERT_TRUE(ben.until(5, [&] { return bool(ben.holder("red")) && ben.x("red") != 0.0; }));
+  EXPECT_FALSE(ben.grab("red")) << "it is in other hands";
+  ASSERT_FALSE(ben.replies.empty());
+  EXPECT_EQ(ben.replies.back().refusal, Refusal::kHeldByOther);
+  EXPECT_NE(ben.replies.back().text.find("bot1-1"), std::string::npos) << ben.replies.back().text;
+
+  bot.signal(SIGKILL);
+  const double killed_s = now_s();
+  ASSERT_TRUE(ben.until(4, [&] { return !ben.holder("red"); }));
+  // Liveliness lease 0.8 s; its check, a tick and the way back on a busy machine.
+  EXPECT_LT(now_s() - killed_s, 2.0);
+  EXPECT_TRUE(ben.grab("red"));
+  server->signal(SIGTERM);
+  EXPECT_EQ(server->wait(5), 0);
+  EXPECT_EQ(Json::parse(server->out())["inbox"]["liveliness_lost"], 1);
+}
+
+TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
+  auto server = serve(211);
+  Guest anna(211, "anna"), ben(211, "ben");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(ben.joined());
+  ASSERT_TRUE(anna.grab("red"));
+  ASSERT_TRUE(ben.grab("blue"));
+  const UserId id = anna.client->user_id(anna.user);
+  const PartId red = anna.client->find_part("red"), blue = anna.client->find_part("blue");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+
+  anna.client->send(anna.user, red, {1, 0, 0});                             // seq 1, good
+  anna.client->send(anna.user, red, {nan, 0, 0});                           // 2 not finite
+  anna.client->send(anna.user, red, {1e12, 0, 0});                          // 3 huge
+  anna.client->send(anna.user, red, {0, 0, 0}, {0, 0, 4});                  // 4 turns too far
+  anna.client->send(anna.user, blue, {1, 0, 0});                            // 5 foreign part
+  anna.client->send(anna.user, PartId{99}, {1, 0, 0});                      // 6 no such part
+  anna.client->send(anna.user, red, {1, 0, 0});                             // 7 good
+  anna.channel->send(Increment{id, red, 7, {9, 0, 0}, Vec3::Zero()}, 0);    // replayed
+  anna.channel->send(Increment{id, red, 20, {1, 0, 0}, Vec3::Zero()}, 0);   // 20 good
+  anna.channel->send(Increment{id, red, 15, {9, 0, 0}, Vec3::Zero()}, 0);   // out of order
+  ben.channel->send(Increment{id, red, 1000, {9, 0, 0}, Vec3::Zero()}, 0);  // foreign user
+  EXPECT_TRUE(anna.until(5, [&] { return anna.refused.size() >= 7 && anna.x("red") == 3.0; }));
+  anna.channel->send(Increment{id, red, 21, {1, 0, 0}, Vec3::Zero()}, 0);
+  EXPECT_TRUE(anna.until(3, [&] { return anna.x("red") == 4.0; })) << "the session goes on";
+
+  std::map<Refusal, int> reasons;
+  for (const RefusedIncrement& r : anna.refused) ++reasons[r.reason];
+  const std::map<Refusal, int> expected = {
+      {Refusal::kNotFinite, 1}, {Refusal::kJumpTooLarge, 1}, {Refusal::kRotationTooLarge, 1},
+      {Refusal::kNotHolder, 1}, {Refusal::kUnknownPart, 1},  {Refusal::kDuplicate, 1},
+      {Refusal::kStale, 1}};
+  EXPECT_EQ(reasons, expected);
+  EXPECT_EQ(ben.refused.size(), 1U) << "told to who sent it";
+  server->signal(SIGINT);
+  EXPECT_EQ(server->wait(5), 0);
+  const Json inbox = Json::parse(server->out())["inbox"];
+  EXPECT_EQ(inbox["accepted"], 4);
+  EXPECT_EQ(inbox["foreign"], 1);
+  int counted = 0;
+  for (const auto& [reason, count] : inbox["refused"].items()) counted += count.get<int>();
+  EXPECT_EQ(counted, 8) << inbox.dump(1);
+}
+
+TEST_F(ServerFault, ASilentHandLosesTheLease) {
+  auto server = serve(212);
+  Guest anna(212, "anna"), ben(212, "ben");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(ben.joined());
+  ASSERT_TRUE(anna.grab("red"));
+  // Heartbeats alone keep it.
+  EXPECT_FALSE(anna.until(1.6, [&] {
+    ben.client->poll();
+    return !anna.holder("red");
+  }));
+  // Without them it is free after the lease of 1 s (or liveliness, 0.8 s), and anna is told later.
+  ASSERT_TRUE(ben.until(4, [&] { return !ben.holder("red"); }));
+  EXPECT_TRUE(ben.grab("red"));
+}
+
+TEST_F(ServerFault, ATermSignalEndsInOrder) {
+  const std::string log = (folder_.path() / "term.mcap").string();
+  auto server = serve(213, {"--log", log, "--policy", "report"});
+  Guest anna(213, "anna");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(anna.grab("red"));
+  anna.client->send(anna.user, anna.client->find_part("red"), {1, 0, 0});
+  ASSERT_TRUE(anna.until(3, [&] { return anna.x("red") == 1.0; }));
+  EXPECT_EQ(anna.client->policy(), "report");
+  server->signal(SIGTERM);
+  ASSERT_EQ(server->wait(5), 0);
+  const auto read = read_session_log(log);
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_TRUE(read->complete);
+  EXPECT_NE(read->scenario_yaml.find("policy: report"), std::string::npos)
+      << "the log must hold the scenario as it was played";
+  EXPECT_EQ(Json::parse(server->out())["policy"], "report");
+}
+
+TEST_F(ServerFault, WhatCannotStartSaysSoInOneLine) {
+  const std::string scenario = folder_.write("blocks.yaml", kScenario);
+  auto first = serve(214);
+  Guest anna(214, "anna");
+  ASSERT_TRUE(anna.joined()) << first->errors();
+  const struct {
+    std::vector<std::string> arguments;
+    int code;
+    const char* says;
+  } cases[] = {
+      {{scenario, "--domain", "214", "--no-log"}, 1, "in use"},
+      {{scenario, "--domain", "215", "--log", "/proc/none/x.mcap"}, 1, "/proc/none"},
+      {{folder_.write("bad.yaml", "name: x\nunits: mm\nparts: 3\n"), "--domain", "215"},
+       3,
+       "parts"},
+      {{(folder_.path() / "missing.yaml").string(), "--domain", "215"}, 3, "missing.yaml"},
+  };
+  for (const auto& [arguments, code, says] : cases) {
+    Program server(folder_.path(), "mortise-server", arguments);
+    EXPECT_EQ(server.wait(10), code) << arguments.back();
+    EXPECT_NE(server.errors().find(says), std::string::npos) << server.errors();
+    EXPECT_LE(lines(server.errors()), code == 3 ? 3U : 1U) << server.errors();
+  }
+  Program bot(folder_.path(), "mortise-bot", {"--domain", "216", "--wait", "0.5"});
+  EXPECT_EQ(bot.wait(10), 1);
+  EXPECT_EQ(lines(bot.errors()), 1U) << bot.errors();
+  Program script(folder_.path(), "mortise-bot",
+                 {"--behaviour", "script", "--play", folder_.write("p.yaml", "acts: 3\n")});
+  EXPECT_EQ(script.wait(10), 3);
+}
+
+TEST_F(ServerFault, AnIdleSessionCostsNextToNothing) {
+  auto server = serve(217);
+  Guest anna(217, "anna");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  anna.until(0.5, [] { return false; });
+  const double start_s = now_s(), cpu_start_s = server->cpu_s();
+  anna.until(4.0, [] { return false; });
+  const double share = (server->cpu_s() - cpu_start_s) / (now_s() - start_s);
+  RecordProperty("idle_cpu_percent", std::to_string(share * 100));
+  std::printf("idle server at 60 Hz with one participant: %.2f %% of one core\n", share * 100);
+  EXPECT_LE(share, 0.03);
+  server->signal(SIGTERM);
+  ASSERT_EQ(server->wait(5), 0);
+  const Json stages = Json::parse(server->out())["statistics"]["stages"];
+  EXPECT_EQ(stages["queries"]["first_contact"], 0);
+  EXPECT_EQ(stages["queries"]["depth"], 0);
+}
+
+}  // namespace
+}  // namespace mortise::test
