@@ -1,0 +1,140 @@
+// Recorded sessions whose answers are kept in this folder: who changes an answer sees it here. With
+// MORTISE_GOLDEN=write in the environment the files are written anew instead; the difference is
+// then to be read like any other change.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "common/base/hash.h"
+#include "common/io/build_info.h"
+#include "common/io/replay.h"
+#include "common/messages/names.h"
+#include "tests/golden/played_session.h"
+
+namespace mortise {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kSource = MORTISE_SOURCE_DIR;
+const fs::path kGolden = kSource / "tests" / "golden";
+
+bool is_writing() {
+  const char* mode = std::getenv("MORTISE_GOLDEN");
+  return mode != nullptr && std::string(mode) == "write";
+}
+
+std::string rounded(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.6f", value + 0.0);
+  return text.data();
+}
+
+// What a session answers, for people to read in a comparison.
+std::string answers_of(const test::PlayedSession& session) {
+  std::ostringstream out;
+  const auto name = [&](PartId part) { return session.scene.world.find(part)->name; };
+  out << "ticks " << session.ticks.size() << '\n';
+  for (const TickRecord& record : session.ticks) {
+    for (const RefusedIncrement& refused : record.report.refused)
+      out << "tick " << record.tick << " refused: " << name_of(refused.reason) << '\n';
+    for (const ClashEvent& event : record.report.events)
+      out << "tick " << event.tick << ' ' << name_of(event.kind) << ' ' << name(event.part_a)
+          << " - " << name(event.part_b) << ": " << name_of(event.verdict.collision_class)
+          << ", overlap " << rounded(event.verdict.delta_mm.lo) << " mm, worst "
+          << name_of(event.worst_class) << '\n';
+  }
+  for (const Part& part : session.scene.world.parts)
+    if (part.moving)
+      out << "end " << part.name << ' ' << rounded(part.X_WP.p.x()) << ' '
+          << rounded(part.X_WP.p.y()) << ' ' << rounded(part.X_WP.p.z()) << '\n';
+  return out.str();
+}
+
+// Every state of the session in one number; promised for one build only.
+std::string bits_of(const test::PlayedSession& session) {
+  StateHash hash;
+  for (const TickRecord& record : session.ticks) hash.add(record.report.state_hash);
+  std::ostringstream out;
+  out << "bits " << build_fingerprint() << ' ' << std::hex << hash.value() << '\n';
+  return out.str();
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+class Golden : public testing::TestWithParam<const char*> {};
+
+TEST_P(Golden, AnswersStayAsTheyAre) {
+  const std::string name = GetParam();
+  const auto session = test::play_session(kSource / "scenarios" / (name + ".yaml"),
+                                          kSource / "scenarios" / (name + ".play.yaml"));
+  ASSERT_TRUE(session) << session.error().text;
+  const std::string answers = answers_of(*session), bits = bits_of(*session);
+  const fs::path file = kGolden / (name + ".txt");
+  if (is_writing()) {
+    std::ofstream(file) << answers << bits;
+    return;
+  }
+  const std::string golden = text_of(file);
+  ASSERT_FALSE(golden.empty()) << file << " is missing; write it with MORTISE_GOLDEN=write";
+  const std::size_t bits_at = golden.rfind("bits ");
+  ASSERT_NE(bits_at, std::string::npos);
+  EXPECT_EQ(answers, golden.substr(0, bits_at));
+  const bool same_build = golden.find(build_fingerprint(), bits_at) != std::string::npos;
+  if (same_build)
+    EXPECT_EQ(bits, golden.substr(bits_at));
+  else
+    std::printf("another build than the golden one: its bits are not compared\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(, Golden, testing::Values("thin_wall", "peg_in_hole", "blocks_profile"),
+                         [](const auto& scenario) { return std::string(scenario.param); });
+
+// The comparison must be able to fail: one answer changed by a micrometre.
+TEST(GoldenCheck, SeesAPlantedChange) {
+  auto session = test::play_session(kSource / "scenarios" / "thin_wall.yaml",
+                                    kSource / "scenarios" / "thin_wall.play.yaml");
+  ASSERT_TRUE(session) << session.error().text;
+  const std::string answers = answers_of(*session), bits = bits_of(*session);
+  session->scene.world.parts.back().X_WP.p.x() += 1e-3;
+  EXPECT_NE(answers_of(*session), answers);
+  session->ticks.front().report.state_hash ^= 1;
+  EXPECT_NE(bits_of(*session), bits);
+}
+
+// A log of this format stays readable, and the same build computes it again bit for bit.
+TEST(GoldenLog, ReadsAndReplays) {
+  const fs::path file = kGolden / "thin_wall.mcap";
+  if (is_writing()) {
+    const auto session = test::play_session(kSource / "scenarios" / "thin_wall.yaml",
+                                            kSource / "scenarios" / "thin_wall.play.yaml");
+    ASSERT_TRUE(session) << session.error().text;
+    fs::remove(file);
+    ASSERT_TRUE(test::write_log(*session, file));
+    return;
+  }
+  const auto log = read_session_log(file);
+  ASSERT_TRUE(log) << log.error().text;
+  EXPECT_TRUE(log->complete);
+  EXPECT_TRUE(log->notes.empty());
+  EXPECT_GT(log->ticks.size(), 10u);
+  const auto report = verify(*log, 2);
+  ASSERT_TRUE(report) << report.error().text;
+  if (report->same_build)
+    EXPECT_FALSE(report->difference)
+        << "tick " << report->difference->tick << ": " << report->difference->what;
+  else
+    std::printf("another build than the golden one: %s\n",
+                report->difference ? report->difference->what.c_str() : "agrees all the same");
+}
+
+}  // namespace
+}  // namespace mortise

@@ -1,0 +1,29 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/io/play_file.h"
+#include "common/io/scene_load.h"
+#include "common/io/session_log.h"
+
+namespace mortise::test {
+
+/// A session played without server and network: the acts of a play, cut into one increment a tick.
+/// The same scenario and play always give the same session.
+struct PlayedSession {
+  LogHeader header;  ///< its meshes live in `scene`
+  LoadedScene scene;
+  std::vector<TickRecord> ticks;
+};
+
+Result<PlayedSession> play_session(const std::string& scenario_name, const std::string& yaml,
+                                   const Play& play, int threads = 1);
+Result<PlayedSession> play_session(const std::filesystem::path& scenario,
+                                   const std::filesystem::path& play, int threads = 1);
+
+/// Writes a session to a log as the server does.
+Status write_log(const PlayedSession& session, const std::filesystem::path& file);
+
+}  // namespace mortise::test

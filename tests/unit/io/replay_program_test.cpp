@@ -1,0 +1,117 @@
+// The program mortise-replay from outside: exit codes, text and JSON.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/golden/played_session.h"
+#include "tests/unit/io/log_samples.h"
+
+namespace mortise {
+namespace {
+
+using nlohmann::json;
+using test::TemporaryFile;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  json document() const { return json::parse(out, nullptr, false); }
+};
+
+Outcome run(const std::string& arguments) {
+  const std::string command =
+      std::string(MORTISE_BIN_DIR) + "/mortise-replay " + arguments + " 2>/dev/null";
+  Outcome outcome;
+  FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer;
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.out.append(buffer.data(), count);
+  outcome.exit_code = WEXITSTATUS(::pclose(pipe));
+  return outcome;
+}
+
+std::string quoted(const TemporaryFile& file) { return "'" + file.path().string() + "'"; }
+
+class ReplayProgram : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const std::string folder = std::string(MORTISE_SOURCE_DIR) + "/scenarios/thin_wall";
+    auto session = test::play_session(folder + ".yaml", folder + ".play.yaml");
+    ASSERT_TRUE(session) << session.error().text;
+    session_ = std::make_unique<test::PlayedSession>(std::move(*session));
+  }
+  static void TearDownTestSuite() { session_.reset(); }
+  void SetUp() override { ASSERT_NE(session_, nullptr); }
+  static inline std::unique_ptr<test::PlayedSession> session_;
+};
+
+TEST_F(ReplayProgram, VerifiesATrueLog) {
+  const TemporaryFile file("program.mcap");
+  ASSERT_TRUE(test::write_log(*session_, file.path()));
+  for (const char* threads : {"1", "2"}) {
+    const Outcome outcome =
+        run("verify --json --threads " + std::string(threads) + " " + quoted(file));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+    EXPECT_EQ(outcome.document()["verified"], true);
+    EXPECT_EQ(outcome.document()["ticks_compared"], session_->ticks.size());
+  }
+  const Outcome info = run("info --json " + quoted(file));
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_EQ(info.document()["ticks"], session_->ticks.size());
+  EXPECT_EQ(info.document()["complete"], true);
+  EXPECT_NE(run("verify " + quoted(file)).out.find("verified: up to tick"), std::string::npos);
+}
+
+TEST_F(ReplayProgram, FourAtTheTickOfAChangedIncrement) {
+  auto ticks = session_->ticks;
+  std::uint64_t changed = 0;
+  for (TickRecord& record : session_->ticks) {
+    if (record.increments.empty()) continue;
+    record.increments.front().translation_mm.y() += 1e-12;
+    changed = record.tick;
+    break;
+  }
+  const TemporaryFile file("program_changed.mcap");
+  ASSERT_TRUE(test::write_log(*session_, file.path()));
+  session_->ticks = std::move(ticks);
+  const Outcome outcome = run("verify --json " + quoted(file));
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_EQ(outcome.document()["difference"]["tick"], changed) << outcome.out;
+  EXPECT_EQ(run("verify " + quoted(file)).out.find("DIFFERENT at tick " + std::to_string(changed)),
+            0u);
+}
+
+TEST_F(ReplayProgram, ThreeForABadLogAndTwoForBadUse) {
+  const TemporaryFile file("program_bad.mcap"), missing("program_missing.mcap");
+  std::ofstream(file.path()) << "no log";
+  EXPECT_EQ(run("verify " + quoted(file)).exit_code, 3);
+  EXPECT_EQ(run("info " + quoted(file)).exit_code, 3);
+  EXPECT_EQ(run("recover " + quoted(file) + " --out " + quoted(missing)).exit_code, 3);
+  EXPECT_EQ(run("verify " + quoted(missing)).exit_code, 3);
+  EXPECT_EQ(run("verify").exit_code, 2);
+  EXPECT_EQ(run("nonsense").exit_code, 2);
+  EXPECT_EQ(run("--help").exit_code, 0);
+}
+
+TEST_F(ReplayProgram, RecoversALogWithoutTail) {
+  const TemporaryFile file("program_cut.mcap"), whole("program_recovered.mcap");
+  ASSERT_TRUE(test::write_log(*session_, file.path()));
+  std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - 100);
+  EXPECT_EQ(run("info --json " + quoted(file)).document()["complete"], false);
+  const Outcome outcome = run("recover --json " + quoted(file) + " --out " + quoted(whole));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_EQ(outcome.document()["was_complete"], false);
+  EXPECT_FALSE(outcome.document()["notes"].empty());
+  EXPECT_EQ(run("info --json " + quoted(whole)).document()["complete"], true);
+  EXPECT_EQ(run("verify " + quoted(whole)).exit_code, 0);
+  EXPECT_EQ(run("recover " + quoted(file) + " --out " + quoted(whole)).exit_code, 1)
+      << "an existing file is never overwritten";
+}
+
+}  // namespace
+}  // namespace mortise
