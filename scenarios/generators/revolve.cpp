@@ -147,7 +147,7 @@ Result<GeneratedPart> make_turned(const std::string& kind, const Turned& turned)
       add_keyed_wall(shape, turned, section, seat, slotted, z_lower, z_start, z_upper);
     else
       shape.strip(shape.ring(loop, z_lower), shape.ring(loop, z_upper), seat);
-    below = shape.ring(loop, z_end);
+    if (!is_last) below = shape.ring(loop, z_end);
     z = z_end;
 
     // 3. The upper end.

@@ -1,0 +1,47 @@
+#include "client/tools/generate/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace mortise {
+
+GenerateCommandLine read_generate_command_line(int argc, char** argv) {
+  GenerateCommandLine line;
+  GenerateOptions& o = line.options;
+  CLI::App app{"mortise-generate: writes a generated part as a mesh, in mm"};
+  app.add_flag("--list", o.list, "Say which kinds there are and what parameters they have");
+  app.add_option("kind", o.kind, "Kind of part, e.g. shaft");
+  std::vector<std::string> words;
+  app.add_option("parameters", words, "name=value, e.g. d1_mm=20 facets=48 phase_rad=0.1");
+  app.add_option("-o,--out", o.out, "File to write: .obj (all digits) or .stl (floats)");
+  app.footer("Exit codes: 0 ok, 1 cannot write, 2 usage, 3 the part cannot be made.");
+  const auto wrong = [&](const std::string& text) {
+    std::fprintf(stderr, "mortise-generate: %s; see mortise-generate --help\n", text.c_str());
+    line.exit_code = kExitUsage;
+    return line;
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    return line;
+  }
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) return wrong("'" + word + "' is not name=value");
+    char* end = nullptr;
+    const std::string value = word.substr(equals + 1);
+    o.parameters[word.substr(0, equals)] = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0') return wrong("'" + word + "' does not end in a number");
+  }
+  if (o.list) return line;
+  if (o.kind.empty()) return wrong("name a kind of part, or --list");
+  if (!o.out.ends_with(".obj") && !o.out.ends_with(".stl"))
+    return wrong("say where to write with --out FILE.obj or --out FILE.stl");
+  return line;
+}
+
+}  // namespace mortise
