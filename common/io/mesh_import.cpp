@@ -110,6 +110,7 @@ Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, doubl
   CleanMesh clean = weld(soup.coordinates, unit_mm);
   imported.mesh = std::move(clean.mesh);
   report.degenerate_dropped = clean.degenerate_dropped;
+  report.triangles_split = clean.triangles_split;
   report.duplicate_triangles = clean.duplicate_triangles;
   report.points = imported.mesh.points_mm.size();
   report.triangles = imported.mesh.triangles.size();

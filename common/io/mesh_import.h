@@ -19,6 +19,7 @@ struct ImportReport {
   std::string file, format;
   std::uint64_t raw_vertices = 0, points = 0, raw_triangles = 0, triangles = 0;
   std::uint64_t degenerate_dropped = 0, duplicate_triangles = 0, points_and_lines_dropped = 0;
+  std::uint64_t triangles_split = 0;  ///< so that no dropped triangle left an open edge
   std::uint64_t boundary_edges = 0, non_manifold_edges = 0, misoriented_edges = 0, components = 0;
   double volume_mm3 = 0.0;
   bool closed = false;
@@ -35,7 +36,8 @@ struct ImportedMesh {
 
 /// Reads STL, OBJ, PLY, glTF/GLB or DAE with assimp in a child process with limits, since a hostile
 /// file can crash it. Node transforms applied, all meshes of the file joined, points welded by
-/// exact position, degenerate triangles dropped and counted; duplicates are counted and stay.
+/// exact position, degenerate triangles dropped and counted
+/// (their neighbours split, so that nothing opens); duplicates are counted and stay.
 /// unit_mm: mm per unit of the numbers in the file, the same for every format: a unit or up-axis
 /// that the file states itself (DAE, glTF) is not applied; a note tells when it differs. 3MF and
 /// STEP are refused. Thread safe. Never throws; the process lives, whatever the file.
