@@ -51,7 +51,7 @@ struct SessionBuilder {
     SurfaceBand& band = world.find(part)->band;
     band = nominal_band();
     band.faces[0].tolerance_mm = {-t_mm, t_mm};
-    band.faces[0].tolerance_source = "+-" + std::to_string(t_mm);
+    band.faces[0].tolerance_source = "profile";
     band.largest_offset_mm = t_mm;
     band.trivial = false;
     world.evaluates = true;

@@ -184,8 +184,8 @@ TEST_F(StopPolicy, OrderOfPartsAndIncrementsDoesNotMatter) {
     std::vector<PartId> id(5);
     for (int k = 0; k < 5; ++k) {
       const int i = reversed ? 4 - k : k;
-      id[static_cast<std::size_t>(i)] =
-          s.add("p" + std::to_string(i), cube_mesh(2), at(4.0 * i, 0.3 * i, 0), true);
+      id[static_cast<std::size_t>(i)] = s.add(std::string("p").append(std::to_string(i)),
+                                              cube_mesh(2), at(4.0 * i, 0.3 * i, 0), true);
     }
     const UserId user = s.join("ada");
     for (const PartId part : id) s.grab(user, part);

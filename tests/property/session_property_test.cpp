@@ -1,0 +1,124 @@
+// What holds for every session of policy stop, whatever users do. The judge of it here is the
+// separating-axis test of boxes, written for this test and unknown to the engine.
+#include <gtest/gtest.h>
+
+#include "tests/unit/session/random_play.h"
+
+namespace mortise {
+namespace {
+
+// Depth by which two solid boxes overlap, mm: the least overlap over the 15 axes; <= 0 when apart.
+double box_overlap_mm(const Part& a, const Part& b) {
+  const Mat3 A = a.X_WP.rotation(), B = b.X_WP.rotation();
+  const Vec3 half_a = a.solid->bounds().half(), half_b = b.solid->bounds().half();
+  const Vec3 d = a.X_WP * a.solid->bounds().center() - b.X_WP * b.solid->bounds().center();
+  double least = 1e300;
+  const auto look_along = [&](const Vec3& axis) {
+    const double length = axis.norm();
+    if (length < 1e-9) return;
+    const Vec3 n = axis / length;
+    const double reach =
+        half_a.dot((A.transpose() * n).cwiseAbs()) + half_b.dot((B.transpose() * n).cwiseAbs());
+    least = std::min(least, reach - std::abs(d.dot(n)));
+  };
+  for (int i = 0; i < 3; ++i) {
+    look_along(A.col(i));
+    look_along(B.col(i));
+    for (int j = 0; j < 3; ++j) look_along(A.col(i).cross(B.col(j)));
+  }
+  return least;
+}
+
+constexpr std::uint32_t kFrame = 4;  // id of the part that is not one box
+
+double deepest_overlap_mm(const World& world) {
+  double deepest = -1e300;
+  for (const Part& a : world.parts)
+    for (const Part& b : world.parts) {
+      if (a.id >= b.id || (!a.moving && !b.moving)) continue;
+      if (a.id.value == kFrame || b.id.value == kFrame) continue;
+      deepest = std::max(deepest, box_overlap_mm(a, b));
+    }
+  return deepest;
+}
+
+TEST(StopProperty, NothingIsEverLeftOverlapping) {
+  std::uint64_t stopped = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    RandomPlay play(Policy::kStop, seed, 6, false);
+    ASSERT_LT(deepest_overlap_mm(play.session.world), 0.0);
+    Scratch scratch;
+    for (int i = 0; i < 40; ++i) {
+      stopped += play.tick(scratch).counters.stopped_parts;
+      // 1e-9 mm: rounding of the poses and of this test.
+      ASSERT_LT(deepest_overlap_mm(play.session.world), 1e-9) << "seed " << seed << " tick " << i;
+    }
+  }
+  EXPECT_GT(stopped, 100U);
+}
+
+// The same play without a policy does overlap: the property above is not empty.
+TEST(StopProperty, WithoutThePolicyPartsDoOverlap) {
+  RandomPlay play(Policy::kReport, 1, 6, false);
+  Scratch scratch;
+  double deepest = -1e300;
+  for (int i = 0; i < 40; ++i) {
+    play.tick(scratch);
+    deepest = std::max(deepest, deepest_overlap_mm(play.session.world));
+  }
+  EXPECT_GT(deepest, 0.1);
+}
+
+// Whoever was stopped can go back the way it came.
+TEST(StopProperty, TheWayBackIsFree) {
+  std::uint64_t stopped = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomPlay play(Policy::kStop, seed, 1, false);
+    const PartId part = play.movers[0];
+    Scratch scratch;
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 before = play.session.pose(part).p;
+      const StepReport there = play_tick(
+          play.session.world,
+          {play.session.push(play.user_of(part), part, 6.0 * play.any() - Vec3(0, 0, 2))}, scratch);
+      if (there.counters.stopped_parts == 0) continue;
+      ++stopped;
+      const Vec3 back = before - play.session.pose(part).p;
+      const StepReport report = play_tick(
+          play.session.world, {play.session.push(play.user_of(part), part, back)}, scratch);
+      ASSERT_EQ(report.counters.stopped_parts, 0U) << "seed " << seed << " tick " << i;
+      ASSERT_LT((play.session.pose(part).p - before).norm(), 1e-9);
+    }
+  }
+  EXPECT_GT(stopped, 20U);
+}
+
+// The clashes that a session reports as open are the pairs that overlap, and no others.
+TEST(ReportProperty, OpenClashesAreThePairsThatOverlap) {
+  std::uint64_t overlapping = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    RandomPlay play(Policy::kReport, seed, 6, false);
+    Scratch scratch;
+    for (int i = 0; i < 40; ++i) {
+      play.tick(scratch);
+      const Snapshot snapshot = snapshot_of(play.session.world);
+      for (const Part& a : play.session.world.parts)
+        for (const Part& b : play.session.world.parts) {
+          if (a.id >= b.id || (!a.moving && !b.moving)) continue;
+          if (a.id.value == kFrame || b.id.value == kFrame) continue;
+          const double depth = box_overlap_mm(a, b);
+          if (std::abs(depth) < 1e-3) continue;  // within hysteresis either is right
+          const bool open = std::any_of(
+              snapshot.open_clashes.begin(), snapshot.open_clashes.end(),
+              [&](const ClashEvent& e) { return e.part_a == a.id && e.part_b == b.id; });
+          ASSERT_EQ(open, depth > 0.0) << "seed " << seed << " tick " << i << " " << a.name << " "
+                                       << b.name << " depth " << depth;
+          overlapping += open;
+        }
+    }
+  }
+  EXPECT_GT(overlapping, 50U);
+}
+
+}  // namespace
+}  // namespace mortise
