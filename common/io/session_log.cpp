@@ -47,6 +47,7 @@ class FileWriter final : public SessionLogWriter {
   void message(std::uint16_t channel, std::span<const std::byte> data);
   void message(std::uint16_t channel, const std::string& text);
   void remember_error();
+  void settle_chunk();
 
   // Written by the writer thread alone once it runs.
   std::unique_ptr<McapWriter> mcap_;
@@ -56,6 +57,7 @@ class FileWriter final : public SessionLogWriter {
   std::uint64_t time_ns_ = 0, statistics_time_ns_ = 0;
   bool has_time_ = false;
   log_json::CounterSums sums_;
+  std::uint64_t ticks_in_chunk_ = 0;  ///< written, but not yet in the file
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
@@ -148,6 +150,7 @@ void FileWriter::run() {
     items.clear();
     if (unflushed && Clock::now() >= next_flush) {
       static_cast<void>(mcap_->sync());  // an error sticks and is taken below
+      settle_chunk();
       unflushed = false;
       next_flush = Clock::now() + period;
     }
@@ -177,7 +180,17 @@ void FileWriter::write(const Item& item) {
   if (item.gap_before.ticks > 0) write_gap(item.gap_before);
   write(item.tick);
   if (time_ns_ - statistics_time_ns_ >= kStatisticsPeriod_ns) write_statistics();
-  if (mcap_->chunk_is_full()) mcap_->end_chunk();
+  ++ticks_in_chunk_;
+  if (mcap_->chunk_is_full()) {
+    mcap_->end_chunk();
+    settle_chunk();
+  }
+}
+
+// The ticks of a chunk that the disk did not take are lost with it.
+void FileWriter::settle_chunk() {
+  if (mcap_->error()) dropped_.fetch_add(ticks_in_chunk_);
+  ticks_in_chunk_ = 0;
 }
 
 void FileWriter::write(const TickRecord& tick) {
@@ -219,6 +232,7 @@ Status FileWriter::close() {
     if (gap_.ticks > 0) write_gap(gap_);
     write_statistics();
     if (Status closed = mcap_->close(); !closed) error_ = closed.error();
+    settle_chunk();
   }
   return status();
 }
