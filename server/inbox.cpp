@@ -126,15 +126,20 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   }
 
   // 3. Increments, against the holders as they are now.
+  for (const ReceivedIncrement& r : input.increments) admit_increment(r, world, now_ns, intake);
   for (const RefusedIncrement& refused : input.refused_at_door) {
     ++counters_.increments;
     Increment increment;
     increment.user = refused.user;
     increment.part = refused.part;
     increment.seq = refused.seq;
+    const bool seated = refused.user && refused.user.value <= seats_.size() &&
+                        seats_[refused.user.value - 1].present;
+    if (seated && seats_[refused.user.value - 1].increments.admit(refused.seq) == Refusal::kNone) {
+      acknowledge(refused.user, refused.seq, 0, intake);
+    }
     refuse(increment, refused.user, refused.reason, intake);
   }
-  for (const ReceivedIncrement& r : input.increments) admit_increment(r, world, now_ns, intake);
 
   // 4. Who says goodbye, and whose lease is over. A user's last increments are still carried out.
   depart(input.lost, true, world, intake);
@@ -299,7 +304,7 @@ void Inbox::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, In
                                    [](const Ack& ack, UserId id) { return ack.user < id; });
   if (at != intake.acks.end() && at->user == user) {
     at->seq = seq;
-    at->sent_ns = sent_ns;
+    if (sent_ns != 0) at->sent_ns = sent_ns;
   } else {
     intake.acks.insert(at, Ack{user, seq, sent_ns});
   }

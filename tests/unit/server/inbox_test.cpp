@@ -158,6 +158,20 @@ TEST_F(InboxTest, RefusesAForeignCommandAndAForeignGoodbye) {
   EXPECT_EQ(inbox_.counters().foreign, 2U);
 }
 
+TEST_F(InboxTest, WhatTheDoorRefusedIsToldCountedAndAcknowledgedOutOfNobodysWay) {
+  ServerInput input;
+  input.refused_at_door.push_back({anna_, kRed, 2, Refusal::kNotFinite});
+  input.increments.push_back(increment("a", anna_, kRed, 1));
+  admit(std::move(input));
+  EXPECT_EQ(intake_.increments.size(), 1U) << "a later refusal must not make the first one late";
+  ASSERT_EQ(intake_.refused.size(), 1U);
+  EXPECT_EQ(intake_.refused[0].reason, Refusal::kNotFinite);
+  ASSERT_EQ(intake_.acks.size(), 1U);
+  EXPECT_EQ(intake_.acks[0].seq, 2U);
+  EXPECT_EQ(intake_.acks[0].sent_ns, 10) << "the latency figure is of the accepted one";
+  EXPECT_EQ(refused(Refusal::kNotFinite), 1U);
+}
+
 TEST_F(InboxTest, GrabOfAHeldPartNamesTheHolder) {
   const Reply reply = command("b", ben_, kRed, CommandKind::kGrab);
   EXPECT_EQ(reply.refusal, Refusal::kHeldByOther);
