@@ -196,9 +196,7 @@ class SceneLoader {
         good = false;
         continue;
       }
-      Result<FeatureMatch> match = match_feature(
-          mesh.solid->mesh(),
-          {declared.name, declared.surface, declared.along_mm, spec.chord_error_mm.value_or(0.0)});
+      Result<FeatureMatch> match = match_of(spec, declared, mesh);
       if (!match) {
         finding(true, declared.at, who + match.error().text);
         good = false;
