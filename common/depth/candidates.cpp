@@ -66,7 +66,9 @@ class Finder {
       for (std::uint32_t t = 0; t < marked_[i].size(); ++t)
         if (marked_[i][t] != 0) found_.triangles[i].push_back(t);
     for (auto& [faces, slot] : known_) {
-      if (!slot.known || (slot.nodes[0].empty() && slot.triangles[0].empty())) continue;
+      if (query_.skip != nullptr || !slot.known ||
+          (slot.nodes[0].empty() && slot.triangles[0].empty()))
+        continue;
       for (int i = 0; i < 2; ++i) {
         slot.known->triangles[i] = std::move(slot.triangles[i]);
         collect(i, slot.nodes[i], slot.known->triangles[i]);
@@ -131,7 +133,8 @@ class Finder {
     if (face_a == kMixed || face_b == kMixed || !faces_[0] || !faces_[1]) return nullptr;
     const auto [at, fresh] = known_.try_emplace({face_a, face_b});
     Slot& slot = at->second;
-    if (fresh) slot.known = closed_form(face_a, face_b);
+    if (fresh)
+      slot.known = query_.skip != nullptr ? skipped(face_a, face_b) : closed_form(face_a, face_b);
     return slot.known ? &slot : nullptr;
   }
 
@@ -141,6 +144,12 @@ class Finder {
     slot->nodes[0].push_back(a.child);
     slot->nodes[1].push_back(b.child);
     return true;
+  }
+
+  std::optional<KnownFacePair> skipped(std::int32_t face_a, std::int32_t face_b) const {
+    for (const KnownOverlaps::Row& row : query_.skip->rows)
+      if (row.face[0] == face_a && row.face[1] == face_b) return KnownFacePair{};
+    return std::nullopt;
   }
 
   std::optional<KnownFacePair> closed_form(std::int32_t face_a, std::int32_t face_b) {

@@ -5,6 +5,7 @@
 
 #include "common/depth/face_pair.h"
 #include "common/depth/pair_frame.h"
+#include "common/depth/proof.h"
 
 namespace mortise {
 
@@ -28,6 +29,8 @@ struct CandidateQuery {
   const PairFrame* pair = nullptr;
   double margin_mm = 0.0;
   bool want_crossing = false;
+  /// Set: just these pairs of faces are not descended into, and no closed form is formed.
+  const KnownOverlaps* skip = nullptr;
 };
 
 /// Triangles of either part that are within the margin of the other part's boxes and planes: a

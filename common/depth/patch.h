@@ -12,7 +12,8 @@ struct Patch {
     Vec3 normal = Vec3::Zero();
     double offset_mm = 0.0;
   };
-  std::array<Vec3, 6> points;
+  static constexpr int kMost = 32;
+  std::array<Vec3, kMost> points;
   int count = 0;
   Vec3 normal = Vec3::Zero();  ///< outward normal of the surface
   double turn_rad = 0.0;       ///< the normal turns by no more than this over the patch

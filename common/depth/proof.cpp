@@ -11,6 +11,9 @@ namespace {
 constexpr std::size_t kMostWalls = 24;
 constexpr std::size_t kMostOpen = 96;
 
+// Facets of one hollow corner: normals within 60 degrees of each other.
+constexpr double kSameSide = 0.5;
+
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
@@ -27,7 +30,7 @@ class Neighbourhood {
         up_(proof.at_center.face_normal) {
     scratch_.walls.clear();
     scratch_.open.clear();
-    scratch_.open_corners.clear();
+    scratch_.near.clear();
   }
 
   bool holds_off() {
@@ -44,31 +47,53 @@ class Neighbourhood {
       slab_lo_ = std::min(slab_lo_, h - reach);
       slab_hi_ = std::max(slab_hi_, h + reach);
     }
-    std::size_t near = 0;
     bool failed = false;
     const auto visit = [&](std::uint32_t t, const Corners& c) {
       if (failed || outside_slab(c)) return;
-      ++near;
+      if (scratch_.near.size() <= kMostOpen) scratch_.near.push_back({t, c});
       if (!take(t, c)) failed = true;
     };
     const std::uint32_t first = proof_.at_center.triangle;
     // The facet nearest to the centre first: most others lie below it.
-    const Corners nearest = {k_.mesh->corner(first, 0), k_.mesh->corner(first, 1),
-                             k_.mesh->corner(first, 2)};
-    if (std::fabs(proof_.at_center.depth_mm) <= reach + patch_.radius_mm && !take(first, nearest))
-      return false;
+    nearest_ = {k_.mesh->corner(first, 0), k_.mesh->corner(first, 1), k_.mesh->corner(first, 2)};
+    const bool nearest_counts = std::fabs(proof_.at_center.depth_mm) <= reach + patch_.radius_mm;
+    if (nearest_counts && !take(first, nearest_)) return false;
     for_each_triangle_in(k_.solid->bvh(), box.grown(reach), visit);
     if (failed) return false;
-    if (near == 0) return true;  // the whole patch is on the centre's side, and not deeper than u
-    for (std::size_t i = 0; i < scratch_.open.size(); ++i)
-      if (!covered(scratch_.open[i], scratch_.open_corners[i])) return false;
-    return u <= 0.0 || void_above_walls();
+    // The whole patch is on the centre's side, and not deeper than u.
+    if (scratch_.near.empty()) return true;
+    if (all_covered() && (u <= 0.0 || void_above_walls())) return true;
+    if (u > 0.0 && leave_between_open_facets()) return true;
+    return nearest_counts && below_two_planes();
   }
 
  private:
   bool outside_slab(const Corners& c) const {
     const double a = slab_normal_.dot(c[0]), b = slab_normal_.dot(c[1]), d = slab_normal_.dot(c[2]);
     return std::min({a, b, d}) > slab_hi_ || std::max({a, b, d}) < slab_lo_;
+  }
+
+  bool all_covered() const {
+    for (const ProofScratch::Near& open : scratch_.open)
+      if (!covered(open.triangle, open.corners)) return false;
+    return true;
+  }
+
+  // In a hollow corner the way out leads between its facets: the same proof with m their mean.
+  bool leave_between_open_facets() {
+    if (scratch_.near.size() > kMostOpen) return false;
+    Vec3 sum = up_;
+    for (const ProofScratch::Near& open : scratch_.open) {
+      const Vec3 n = k_.normal(open.triangle);
+      if (n.dot(up_) > kSameSide && n.dot(up_) < 1.0 - 1e-9) sum += n;
+    }
+    if (sum.isApprox(up_)) return false;
+    up_ = sum.normalized();
+    scratch_.walls.clear();
+    scratch_.open.clear();
+    for (const ProofScratch::Near& near : scratch_.near)
+      if (!take(near.triangle, near.corners)) return false;
+    return all_covered() && void_above_walls();
   }
 
   // False: too much is open.
@@ -88,8 +113,7 @@ class Neighbourhood {
       return true;
     }
     if (scratch_.open.size() >= kMostOpen) return false;
-    scratch_.open.push_back(t);
-    scratch_.open_corners.push_back(c);
+    scratch_.open.push_back({t, c});
     return true;
   }
 
@@ -159,6 +183,47 @@ class Neighbourhood {
     return highest + facing * rise <= allowed;
   }
 
+  // Depths of the patch's points below the plane of a triangle, when all near facets lie below it.
+  bool depths_below_plane(std::uint32_t t, const Corners& c,
+                          std::array<double, Patch::kMost>& depths) const {
+    Facet plane;
+    plane.triangle = t;
+    const SurfaceBand::Face& face = k_.face(t);
+    if (Body::surface_of(face, proof_.layer) != nullptr) return false;
+    plane.offset_mm = Body::offset_of(face, proof_.layer);
+    if (depth_below(plane, c) <= -std::numeric_limits<double>::infinity()) return false;
+    if (plane.normal.isZero(0.0)) return false;
+    for (const ProofScratch::Near& near : scratch_.near)
+      if (!below(near.triangle, near.corners, plane)) return false;
+    const double more = plane.offset_mm + patch_.beyond(plane.normal, 0.0);
+    for (int i = 0; i < patch_.count; ++i)
+      depths[i] = more - plane.normal.dot(patch_.points[i] - plane.point);
+    return true;
+  }
+
+  bool below_two_planes() const {
+    if (scratch_.near.size() > kMostOpen) return false;
+    std::array<double, Patch::kMost> first, second;
+    if (!depths_below_plane(proof_.at_center.triangle, nearest_, first)) return false;
+    for (const ProofScratch::Near& near : scratch_.near) {
+      if (near.triangle == proof_.at_center.triangle) continue;
+      if (!depths_below_plane(near.triangle, near.corners, second)) continue;
+      // Some share s in [0, 1] with (1 - s) first + s second <= u at every point?
+      double lo = 0.0, hi = 1.0;
+      for (int i = 0; i < patch_.count && lo <= hi; ++i) {
+        const double at0 = first[i] - proof_.limit_mm, slope = second[i] - first[i];
+        if (slope > 0.0)
+          hi = std::min(hi, -at0 / slope);
+        else if (slope < 0.0)
+          lo = std::max(lo, -at0 / slope);
+        else if (at0 > 0.0)
+          lo = 2.0;
+      }
+      if (lo <= hi) return true;
+    }
+    return false;
+  }
+
   // Is the space above all walls empty of k? Its rim at the nearest point is, when no wall rises
   // there; else one point of the moved patch is asked.
   bool void_above_walls() const {
@@ -181,7 +246,8 @@ class Neighbourhood {
   const Patch& patch_;
   ProofScratch& scratch_;
   const Body& k_;
-  const Vec3 up_;
+  Vec3 up_;
+  Corners nearest_;
   Vec3 slab_normal_ = Vec3::Zero();
   double slab_lo_ = 0.0, slab_hi_ = 0.0;
 };

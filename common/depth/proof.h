@@ -14,8 +14,12 @@ struct ProofScratch {
     double slack_mm = 0.0;  ///< how far the facet may rise before it meets the patch
   };
   std::vector<Facet> walls;  ///< facets that hold the patch off
-  std::vector<std::array<Vec3, 3>> open_corners;
-  std::vector<std::uint32_t> open;  ///< triangles that nothing covers yet
+  struct Near {
+    std::uint32_t triangle = 0;
+    std::array<Vec3, 3> corners;
+  };
+  std::vector<Near> near;  ///< all facets near the patch, while there are few
+  std::vector<Near> open;  ///< those that nothing covers yet
 };
 
 /// What is already known of a pair of faces (closed forms): nominal overlap, mm.
@@ -51,7 +55,9 @@ struct DepthProof {
 /// then no facet of k reaches into V; V is empty of k, as its rim is; the moved patch lies in V; so
 /// no point of the patch is deeper than u. For u < 0 no move is needed: every facet is parted from
 /// the patch by a wall at least -u away. Depth is continuous and the patch connected, so facets
-/// farther than |u| from the patch need not be asked. A facet may be a declared surface whose
+/// farther than |u| from the patch need not be asked. Where k is convex, so that all facets near
+/// the patch lie below two planes, any mean of the depths below both bounds the depth: this is what
+/// makes the ridge along an edge of k converge. A facet may be a declared surface whose
 /// distance is convex (bore) or bounded by its tangent plane (shaft): its triangles are one wall.
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch);
 
