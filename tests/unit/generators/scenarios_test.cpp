@@ -1,0 +1,91 @@
+// Every scenario of the house can be played: it loads without a finding, and its play names users
+// and parts that are there. A new scenario appears here by itself.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "common/io/play_file.h"
+#include "common/io/scenario_file.h"
+#include "common/io/scene_load.h"
+
+namespace mortise {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_play(const fs::path& file) { return file.stem().extension() == ".play"; }
+
+std::vector<fs::path> files(bool plays) {
+  std::vector<fs::path> list;
+  for (const auto& entry : fs::directory_iterator(fs::path(MORTISE_SOURCE_DIR) / "scenarios"))
+    if (entry.path().extension() == ".yaml" && is_play(entry.path()) == plays)
+      list.push_back(entry.path());
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+LoadedScene loaded(const fs::path& file) {
+  const auto reading = read_scenario(file);
+  EXPECT_TRUE(reading) << reading.error().text;
+  if (!reading) return {};
+  for (const Finding& finding : reading->findings) ADD_FAILURE() << finding.text;
+  auto scene = load_scene(reading->scenario, default_meshes());
+  EXPECT_TRUE(scene) << scene.error().text;
+  if (!scene) return {};
+  for (const Finding& finding : scene->findings) ADD_FAILURE() << finding.text;
+  return std::move(*scene);
+}
+
+TEST(Scenarios, EveryOneLoadsWithoutAFinding) {
+  ASSERT_GE(files(false).size(), 7U);
+  for (const fs::path& file : files(false)) {
+    const LoadedScene scene = loaded(file);
+    EXPECT_EQ(scene.world.name, file.stem()) << "a scenario is named like its file";
+    for (const Part& part : scene.world.parts)
+      EXPECT_TRUE(part.solid->topology().closed()) << file << " " << part.name;
+  }
+}
+
+TEST(Scenarios, EveryPlayFitsItsScenario) {
+  ASSERT_GE(files(true).size(), 5U);
+  for (const fs::path& file : files(true)) {
+    const auto play = read_play(file);
+    ASSERT_TRUE(play) << play.error().text;
+    const fs::path scenario = file.parent_path() / (file.stem().stem().string() + ".yaml");
+    LoadedScene scene = loaded(scenario);
+    const std::vector<std::string> users = play->users();
+    for (std::uint32_t i = 0; i < users.size(); ++i)
+      apply_decision(scene.world, {Decision::Kind::kJoin, UserId{i + 1}, PartId{}, users[i]});
+    for (const Play::Act& act : play->acts) {
+      const Part* part = scene.world.find_part(act.part);
+      ASSERT_NE(part, nullptr) << file << ":" << act.line << ": " << act.part;
+      const auto user = std::find(users.begin(), users.end(), act.user) - users.begin();
+      Decision decision;
+      const Command grab{UserId{static_cast<std::uint32_t>(user + 1)}, part->id, 1,
+                         CommandKind::kGrab};
+      const Reply reply = apply_command(scene.world, grab, decision);
+      EXPECT_EQ(reply.refusal, Refusal::kNone) << file << ":" << act.line << ": " << reply.text;
+      for (const Play::Step& step : act.steps) {
+        const double ticks = step.seconds * scene.world.tick_rate_hz;
+        EXPECT_LE(step.by_mm.norm() / ticks, scene.world.max_jump_mm) << file << ":" << act.line;
+      }
+    }
+  }
+}
+
+TEST(Scenarios, GearboxStartsApart) {
+  const LoadedScene scene = loaded(fs::path(MORTISE_SOURCE_DIR) / "scenarios" / "gearbox.yaml");
+  EXPECT_GE(scene.world.parts.size(), 12U);
+  for (const Part& a : scene.world.parts)
+    for (const Part& b : scene.world.parts) {
+      if (!(a.id < b.id) || (!a.moving && !b.moving)) continue;
+      const Box box_a = bounds_of(transformed(a.solid->mesh(), a.X_WP));
+      const Box box_b = bounds_of(transformed(b.solid->mesh(), b.X_WP));
+      EXPECT_FALSE(box_a.overlaps(box_b)) << a.name << " and " << b.name;
+    }
+}
+
+}  // namespace
+}  // namespace mortise
