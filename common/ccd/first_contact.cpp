@@ -110,7 +110,7 @@ class Query {
     // A pair that already lies near the limit and only slides gets a new limit just below.
     Goal goal;
     goal.below_zero = true;
-    goal.exact_below_mm = accuracy_mm_;
+    goal.exact_below_mm = query_.separation_mm + 2.0 * accuracy_mm_;
     goal.contact_mm = query_.separation_mm - kMayPress * accuracy_mm_;
     if (start_mm <= goal.contact_mm)
       goal.contact_mm = start_mm - 0.5 * kMaySlideDeeper * accuracy_mm_;
@@ -159,14 +159,18 @@ class Query {
       ++result_.work.advances;
       const LeafAdvance advance = leaves.advance(motion_, goal, t == 0.0, result_.work);
       if (advance.contact) {
-        result_.state = ContactState::kContact;
-        result_.t_clear = result_.t_contact = t;
-        set(advance.nearest, t);
+        contact(advance.nearest, t);
         return false;
       }
       const double next = t + advance.dt;
       if (next >= 1.0) return true;
-      if (next == t || result_.work.box_tests + result_.work.leaf_tests >= query_.work_cap) {
+      const bool stuck = next == t;  // rounding leaves no step that is proven free
+      if (stuck && !goal.below_zero &&
+          advance.nearest.distance_mm <= query_.separation_mm + accuracy_mm_) {
+        contact(advance.nearest, t);
+        return false;
+      }
+      if (stuck || result_.work.box_tests + result_.work.leaf_tests >= query_.work_cap) {
         undecided(t);
         return false;
       }
@@ -178,6 +182,12 @@ class Query {
         return true;
       }
     }
+  }
+
+  void contact(const Nearest& nearest, double t) {
+    result_.state = ContactState::kContact;
+    result_.t_clear = result_.t_contact = t;
+    set(nearest, t);
   }
 
   void undecided(double t) {

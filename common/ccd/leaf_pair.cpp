@@ -6,6 +6,10 @@
 namespace mortise::ccd {
 namespace {
 
+// Along the direction between their feet two triangles are as far apart as the feet. Less than this
+// part of it: the direction is wrong by rounding.
+constexpr double kTrustNormal = 0.9;
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Triangle corners_of(const Bvh& bvh, std::uint32_t i) {
@@ -145,8 +149,9 @@ LeafAdvance LeafPair::advance(const PairMotion& motion, const Goal& goal, bool m
   const auto settle = [&](int i, int j, Vec3& n) {
     Nearest found = exact(i, j, may_cross || goal.below_zero, work);
     double gap = found.distance_mm;
-    if (goal.below_zero && gap <= goal.exact_below_mm) {
-      const TriangleSeparation separation = triangle_separation(x_[i], y_[j]);
+    const bool signed_gap = goal.below_zero && gap <= goal.exact_below_mm;
+    if (signed_gap) {
+      const TriangleSeparation separation = triangle_separation_outside(x_[i], y_[j]);
       n = separation.normal;
       found.distance_mm = gap = separation.distance_mm;
     } else if (gap > 0.0) {
@@ -156,8 +161,22 @@ LeafAdvance LeafPair::advance(const PairMotion& motion, const Goal& goal, bool m
       result = {0.0, true, found};
       return true;
     }
-    const Direction d(motion, n);
-    const double dt = free_time(motion, along_a(d, i), along_b(d, j), goal.target_mm);
+    double dt = 0.0;
+    const auto free_along = [&](const Vec3& direction) {
+      const Direction d(motion, direction);
+      const Along a = along_a(d, i), b = along_b(d, j);
+      dt = std::max(dt, free_time(motion, a, b, goal.target_mm));
+      return std::min({b.place[0], b.place[1], b.place[2]}) -
+             std::max({a.place[0], a.place[1], a.place[2]});
+    };
+    if (free_along(n) < kTrustNormal * gap && !signed_gap) {
+      // The feet are so near that rounding has turned the direction between them. Normals of faces
+      // and of pairs of edges do not know the distance.
+      const Vec3 by_features = triangle_separation(x_[i], y_[j]).normal;
+      const double before = dt;
+      free_along(by_features);
+      if (dt > before) n = by_features;
+    }
     if (dt < result.dt) {
       result.dt = dt;
       result.nearest = found;

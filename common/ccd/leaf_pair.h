@@ -11,7 +11,8 @@ struct Goal {
   double contact_mm = 0.0;  ///< at or below this distance: contact
   double target_mm = 0.0;   ///< time is advanced to this distance, below contact_mm
   /// Distances go below zero: a pair of triangles that cross counts as minus the translation that
-  /// takes them apart. Off, crossing counts as 0.
+  /// takes them apart, and one right behind the other's back as minus its depth. Off, crossing
+  /// counts as 0.
   bool below_zero = false;
   double exact_below_mm = 0.0;  ///< with below_zero: where the signed distance is asked for
 };

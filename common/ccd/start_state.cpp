@@ -19,11 +19,15 @@ constexpr double kBehindSkin = 8.0;
 // everywhere.
 constexpr int kSkinProbes = 16;
 
-// Part in whose material a point of the other part's own material lies.
+// Beyond the limit nothing is found.
+bool near_skin(const Solid& solid, const Vec3& x, double margin_mm) {
+  return nearest_point(solid, x, margin_mm).triangle != Topology::kNone;
+}
+
 bool inside_deeper(const Solid& solid, const Vec3& x, double margin_mm) {
   const Box& box = solid.bounds();
   if ((x.array() < box.lo.array()).any() || (x.array() > box.hi.array()).any()) return false;
-  return inside(solid, x) && !(nearest_point(solid, x, margin_mm).distance_mm <= margin_mm);
+  return inside(solid, x) && !near_skin(solid, x, margin_mm);
 }
 
 // Does a shell of `inner` start inside `outer`? Of each shell some corner is asked that does not
@@ -40,7 +44,7 @@ bool shell_inside(const Solid& inner, const Solid& outer, const Pose& X_OuterInn
                                   3.0);
       const Vec3 y = X_OuterInner * x;
       if ((y.array() < box.lo.array()).any() || (y.array() > box.hi.array()).any()) break;
-      if (nearest_point(outer, y, margin_mm).distance_mm <= margin_mm) continue;
+      if (near_skin(outer, y, margin_mm)) continue;
       if (!outer.topology().closed()) return false;
       if (inside(outer, y)) return true;
       break;

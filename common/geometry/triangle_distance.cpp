@@ -151,9 +151,21 @@ bool triangles_cross(const Triangle& a, const Triangle& b) {
   return cross(a, sa, sa.normal(), b, sb, sb.normal());
 }
 
-TriangleSeparation triangle_separation(const Triangle& a, const Triangle& b) {
+namespace {
+
+// Cosine of how near the back of a triangle a direction must point to be "behind it" (25 degrees).
+// Faces that pass through each other at a larger angle cross on the way. Only across an edge
+// sharper than that could such a direction still part two parts.
+constexpr double kBehind = 0.9;
+
+TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outside_only) {
   const Sides sa(a), sb(b);
   const Vec3 na = sa.normal(), nb = sb.normal();
+  const Vec3 out_a = na.isZero(0.0) ? na : Vec3(na.normalized());
+  const Vec3 out_b = nb.isZero(0.0) ? nb : Vec3(nb.normalized());
+  const auto allowed = [&](const Vec3& from_a_to_b) {
+    return !outside_only || (from_a_to_b.dot(out_a) > -kBehind && from_a_to_b.dot(out_b) < kBehind);
+  };
   TriangleSeparation best{-std::numeric_limits<double>::infinity(), Vec3::Zero()};
   const auto along = [&](const Vec3& direction) {
     const double length = direction.norm();
@@ -168,8 +180,8 @@ TriangleSeparation triangle_separation(const Triangle& a, const Triangle& b) {
       b_lo = std::min(b_lo, y);
       b_hi = std::max(b_hi, y);
     }
-    if (b_lo - a_hi > best.distance_mm) best = {b_lo - a_hi, n};
-    if (a_lo - b_hi > best.distance_mm) best = {a_lo - b_hi, -n};
+    if (b_lo - a_hi > best.distance_mm && allowed(n)) best = {b_lo - a_hi, n};
+    if (a_lo - b_hi > best.distance_mm && allowed(-n)) best = {a_lo - b_hi, -n};
   };
   along(na);
   along(nb);
@@ -181,6 +193,16 @@ TriangleSeparation triangle_separation(const Triangle& a, const Triangle& b) {
   if (best.normal.isZero(0.0))  // both without area, and parallel
     for (int c = 0; c < 3; ++c) along(Vec3::Unit(c));
   return best;
+}
+
+}  // namespace
+
+TriangleSeparation triangle_separation(const Triangle& a, const Triangle& b) {
+  return separation_of(a, b, false);
+}
+
+TriangleSeparation triangle_separation_outside(const Triangle& a, const Triangle& b) {
+  return separation_of(a, b, true);
 }
 
 }  // namespace mortise
