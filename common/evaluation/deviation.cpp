@@ -18,6 +18,9 @@ constexpr double kNearOfPlane = 2e-5;
 // whose rim lies on the cylinder stands at 90.
 constexpr double kNormalAgrees = 0.5;
 constexpr double kPlaneNormalAgrees = 0.999;
+// Facets of a round are inclined to its axis as the round is, within a few degrees however coarse
+// they are; the cap at the end of a chamfer, whose rim lies on the cone, is not. 12 degrees.
+constexpr double kInclinationAgrees_rad = 0.21;
 // A facet sixteen times as deep as the middle one is four times as wide: not of the same round.
 constexpr double kDeepFacet = 16.0;
 // For the measured radius: facets that plainly run around the axis.
@@ -108,7 +111,9 @@ class Matcher {
       const Vec3 normal = (b - a).cross(c - a);
       const double length = normal.norm();
       if (!(length > 0.0)) continue;
-      candidate.normal_agreement = normal.dot(surface_.outward_normal((a + b + c) / 3.0)) / length;
+      const Vec3 true_normal = surface_.outward_normal((a + b + c) / 3.0);
+      if (!inclined_alike(normal / length, true_normal)) continue;
+      candidate.normal_agreement = normal.dot(true_normal) / length;
       const double near = near_mm(candidate);
       const double agrees = plane_ ? kPlaneNormalAgrees : kNormalAgrees;
       if (candidate.corner_mm.lo >= -near && candidate.corner_mm.hi <= near) {
@@ -120,6 +125,14 @@ class Matcher {
         same_way_.push_back(candidate);
       }
     }
+  }
+
+  bool inclined_alike(const Vec3& normal, const Vec3& true_normal) const {
+    if (surface_.kind != SurfaceKind::kCylinder && surface_.kind != SurfaceKind::kCone) return true;
+    const auto inclination = [&](const Vec3& n) {
+      return std::asin(std::clamp(std::fabs(n.dot(surface_.axis)), 0.0, 1.0));
+    };
+    return std::fabs(inclination(normal) - inclination(true_normal)) < kInclinationAgrees_rad;
   }
 
   double size_for_text(const Candidate& c) const {

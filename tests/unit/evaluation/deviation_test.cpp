@@ -50,6 +50,22 @@ TEST(Deviation, FindsTheWallAndNotTheCaps) {
   EXPECT_EQ(wall->feature.triangles.size(), 12U);
 }
 
+TEST(Deviation, TheCapAtTheEndOfAChamferIsNotTheChamfer) {
+  // A frustum of 45 degrees: the corners of its caps lie on the cone too.
+  TriangleMesh mesh = shapes::turned(10.0, 0.0, 2.0, 32);
+  for (Vec3& p : mesh.points_mm)
+    if (p.z() > 1.0) p.head<2>() *= 0.8;
+  Surface cone;
+  cone.kind = SurfaceKind::kCone;
+  cone.point = Vec3(0, 0, 10);
+  cone.axis = -Vec3::UnitZ();
+  cone.half_angle_rad = std::numbers::pi / 4;
+  const auto match = match_feature(mesh, declared("chamfer", cone));
+  ASSERT_TRUE(match) << match.error().text;
+  EXPECT_EQ(match->feature.triangles.size(), 64U);
+  EXPECT_EQ(match->note, "");
+}
+
 TEST(Deviation, RealTessellationsAreOffByMicrometresAndAreCarried) {
   TriangleMesh tube = shapes::turned(10.0, 4.05, 9.0, 48);
   std::mt19937 random(5);

@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+
+#include "common/io/open_scene.h"
+#include "common/io/report_json.h"
+#include "common/session/step.h"
+
+namespace mortise {
+
+/// Verdicts of all pairs for people: per region class, overlap and separation brackets, thresholds,
+/// what they rest on, and the sentence that explains them.
+std::string judge_text(const OpenedScene& opened, const JudgeReport& report, bool color);
+
+/// The same as one document.
+Json judge_json(const OpenedScene& opened, const JudgeReport& report);
+
+/// Is there a region of this class or a worse one?
+bool finds(const JudgeReport& report, CollisionClass at_least);
+
+}  // namespace mortise

@@ -1,0 +1,31 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+
+#include "client/tools/lint/lint.h"
+
+int main(int argc, char** argv) {
+  std::string file;
+  bool json = false;
+  CLI::App app("mortise-lint: checks a scenario and prints its tolerances in micrometres");
+  app.add_option("scenario", file, "scenario file (.yaml)")->required();
+  app.add_flag("--json", json, "one JSON document on stdout");
+  app.footer("Exit codes: 0 ok (warnings allowed), 2 usage, 3 the scenario has errors.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? mortise::kExitOk : mortise::kExitUsage;
+  }
+  const auto opened = mortise::open_scene(file);
+  if (!opened) {
+    std::fprintf(stderr, "mortise-lint: %s\n", opened.error().text.c_str());
+    return mortise::kExitBadInput;
+  }
+  const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  const std::string text =
+      json ? mortise::lint_json(*opened).dump(2) + "\n" : mortise::lint_text(*opened, color);
+  std::fputs(text.c_str(), stdout);
+  return opened->usable() ? mortise::kExitOk : mortise::kExitBadInput;
+}
