@@ -71,10 +71,10 @@ class DdsServerChannel final : public ServerChannel {
 
   ServerInput take() override {
     ServerInput input;
-    take_departures(input);
     take_requests(input);
     take_presence(input);
     take_increments(input);
+    take_departures(input);
     return input;
   }
 
@@ -193,10 +193,14 @@ class DdsServerChannel final : public ServerChannel {
     return false;
   }
 
+  /// Last: who asked to join and is gone already does not get in, or would stay for ever. (One that
+  /// lives after all asks again.)
   void take_departures(ServerInput& input) {
     for (const ClientKey& key : departures_.take()) {
       // Only who has joined, and once: liveliness ends first, the participant's lease later.
-      if (present_.erase(key) > 0) input.lost.push_back({UserId{}, key, false});
+      if (present_.erase(key) == 0) continue;
+      std::erase_if(input.joins, [&](const JoinRequest& join) { return join.client == key; });
+      input.lost.push_back({UserId{}, key, false});
     }
   }
 

@@ -266,6 +266,35 @@ TEST(Network, RefusesAtTheDoorAndForForeignUsers) {
   EXPECT_EQ(refusals, 1u);
 }
 
+TEST(Network, WhoClosesIsGoneAtOnce) {
+  Session session;
+  session.add_client("anna");
+  session.add_client("bert");
+  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  const ClientKey key = session.server->users.at(session.clients[1]->user_id(0)).first;
+  session.clients.pop_back();
+  session.channels.pop_back();  // without a goodbye
+  const double start_s = now_s();
+  ASSERT_TRUE(session.wait(3.0, [&] { return !session.server->lost.empty(); }));
+  EXPECT_EQ(session.server->lost[0].client, key);
+  EXPECT_LT(now_s() - start_s, 0.5);  // no lease has to run out
+}
+
+TEST(Network, WhoIsGoneBeforeItsJoinIsReadDoesNotGetIn) {
+  Session session;
+  auto channel = open_client_channel(session.options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  ASSERT_TRUE(until(
+      5.0, [&] { return (*channel)->take().server_present; }, [] {}));
+  (*channel)->join(1, "hasty", "bot");
+  sleep_s(0.3);
+  channel->reset();
+  sleep_s(0.3);
+  until(
+      1.0, [] { return false; }, [&] { session.turn(); });
+  EXPECT_TRUE(session.server->users.empty());
+}
+
 TEST(Network, OpeningFailsInOneLine) {
   DdsOptions options = options_for_this_test();
   auto first = open_server_channel(options);
