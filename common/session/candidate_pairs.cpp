@@ -26,6 +26,8 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
   const Part& b = world.parts[indices.b];
   pair.a = indices.a;
   pair.b = indices.b;
+  pair.solid_a = a.solid.get();
+  pair.solid_b = b.solid.get();
   pair.rule = rule;
   JudgementQuery bands;
   bands.a = &a;

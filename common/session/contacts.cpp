@@ -7,8 +7,6 @@
 namespace mortise {
 namespace {
 
-bool trivial(const PairWork& pair) { return pair.band_a->trivial && pair.band_b->trivial; }
-
 // Upper bound of the lower outward offset of any face: what the real surface has at least.
 double largest_lower_offset_mm(const SurfaceBand& band) {
   double largest = 0.0;
@@ -22,14 +20,17 @@ double largest_lower_offset_mm(const SurfaceBand& band) {
   return largest;
 }
 
-FirstContact ask_first_contact(const World& world, PairWork& pair, double separation_mm,
+enum class AtStart { kSay, kIgnoreTouching };
+
+FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_start,
                                CcdScratch& ccd) {
   ContactQuery query;
-  query.a = world.parts[pair.a].solid.get();
-  query.b = world.parts[pair.b].solid.get();
+  query.a = pair.solid_a;
+  query.b = pair.solid_b;
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
   query.separation_mm = separation_mm;
+  query.ignore_touching_at_start = at_start == AtStart::kIgnoreTouching;
   query.check_contained = !pair.memo->not_contained;
   const FirstContact contact = first_contact(query, ccd);
   ++pair.counts.first_contact_queries;
@@ -38,22 +39,22 @@ FirstContact ask_first_contact(const World& world, PairWork& pair, double separa
   return contact;
 }
 
-OverlapQuery overlap_query(const World& world, const PairWork& pair) {
+OverlapQuery overlap_query(const PairWork& pair) {
   OverlapQuery query;
-  query.a = world.parts[pair.a].solid.get();
-  query.b = world.parts[pair.b].solid.get();
+  query.a = pair.solid_a;
+  query.b = pair.solid_b;
   query.band_a = pair.band_a;
   query.band_b = pair.band_b;
   return query;
 }
 
 // Deepest overlap that is certain at one time of the segment, mm; <= 0 when none is.
-double certain_depth_mm(const World& world, PairWork& pair, double t, CcdScratch& ccd) {
-  OverlapQuery query = overlap_query(world, pair);
+double certain_depth_mm(PairWork& pair, double t, CcdScratch& ccd) {
+  OverlapQuery query = overlap_query(pair);
   query.X_WA = pair.motion_a.pose_at(t);
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = Refinement::kFull;
-  query.accuracy_mm = kDeepeningSlack_mm;
+  query.accuracy_mm = kDepthAccuracyDefault_mm;
   query.work_cap = 20'000;  // lower ends are found early; the upper ones are not needed
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
@@ -65,89 +66,114 @@ double certain_depth_mm(const World& world, PairWork& pair, double t, CcdScratch
 }
 
 // How far a pair that already interferes may move: as long as it gets no deeper. Looked at in
-// quarters of the segment; between them it is not looked at.
-double withdrawal_time(const World& world, PairWork& pair, CcdScratch& ccd) {
+// quarters of the segment; between them it is not looked at. The less it interferes, the less it
+// may gain: what is left of one tick must not be the licence of the next.
+double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
   constexpr int kLooks = 4;
   double& allowed_mm = pair.memo->allowed_depth_mm;
-  allowed_mm = std::min(allowed_mm, certain_depth_mm(world, pair, 0.0, ccd));
+  allowed_mm = std::min(allowed_mm, certain_depth_mm(pair, 0.0, ccd));
+  const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
   for (int i = 1; i <= kLooks; ++i)
-    if (certain_depth_mm(world, pair, static_cast<double>(i) / kLooks, ccd) >
-        allowed_mm + kDeepeningSlack_mm)
+    if (certain_depth_mm(pair, static_cast<double>(i) / kLooks, ccd) > allowed_mm + slack_mm)
       return static_cast<double>(i - 1) / kLooks;
   return 1.0;
 }
 
-// Time of the segment up to which the pair is proven not to be real (policy stop).
-double stop_time(const World& world, PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
-  // Without an inside there is no depth and so no real verdict: the crossing is reported as
-  // potential and stops nobody.
-  if (pair.no_inside) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
-  const bool may_be_real_apart =
-      largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) > 0.0;
-  if (!may_be_real_apart) {
+// Without a band the parts are their meshes: real is where interiors meet, and first contact says
+// when. Touching at the start is no reason to stop anybody; it asks on until the touching places
+// press in.
+void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
+  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kIgnoreTouching, ccd);
+  pair.memo->not_contained = touch.state == ContactState::kFree;
+  if (touch.state == ContactState::kFree) {
+    pair.touching = touch.touched_at_start;
+    pair.apart_at_end_mm = touch.distance_mm;
+    return;
+  }
+  pair.near = true;
+  pair.undecided = touch.state == ContactState::kUndecided;
+  pair.meets = !pair.undecided;
+  pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
+  pair.t_contact = touch.touched_at_start ? 0.0 : touch.t_contact;
+  pair.t_enter = pair.undecided ? touch.t_clear : touch.t_contact;
+  if (world.policy != Policy::kStop) return;
+  double t_stop = pair.t_enter;
+  if (pair.no_inside())
+    t_stop = pair.undecided ? touch.t_clear : 1.0;
+  else if (pair.overlaps_at_start)
+    t_stop = withdrawal_time(pair, ccd);
+  if (!pair.overlaps_at_start)
+    pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * t_stop;
+}
+
+// Time of the segment up to which a pair with bands is proven not to be real.
+double stop_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
+  if (pair.no_inside()) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
+  if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
+    // Real needs an overlap of the meshes.
     if (touch.state == ContactState::kFree) return 1.0;
     if (touch.state == ContactState::kUndecided) return touch.t_clear;
-    if (trivial(pair) && touch.state == ContactState::kContact) return touch.t_contact;
   }
   SweptQuery query;
-  query.at_target = overlap_query(world, pair);
+  query.at_target = overlap_query(pair);
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
   const RealTime real = find_real_time(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += real.evaluations;
-  if (real.real_at_start) return withdrawal_time(world, pair, ccd);
+  if (real.real_at_start) return withdrawal_time(pair, ccd);
   pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
   if (real.capped) pair.undecided = true;
   return real.becomes_real || real.capped ? real.t_free : 1.0;
+}
+
+// With a band there are two questions: when do they come so near that the real surfaces could meet,
+// and when do the meshes meet.
+void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
+  const FirstContact near = ask_first_contact(pair, pair.band_mm, AtStart::kSay, ccd);
+  if (near.state == ContactState::kFree) {
+    pair.memo->not_contained = true;
+    pair.apart_at_end_mm = std::max(near.distance_mm, pair.band_mm);
+    return;
+  }
+  pair.near = true;
+  pair.entered = near.state == ContactState::kContact;
+  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, ccd);
+  pair.memo->not_contained = touch.state == ContactState::kFree;
+  pair.undecided =
+      near.state == ContactState::kUndecided || touch.state == ContactState::kUndecided;
+  pair.meets = touch.state != ContactState::kFree && touch.state != ContactState::kUndecided;
+  pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
+  if (pair.meets) pair.t_contact = touch.t_contact;
+  pair.t_enter = pair.entered ? near.t_contact : 0.0;
+  if (world.policy == Policy::kStop)
+    pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time(pair, touch, ccd);
 }
 
 }  // namespace
 
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {
   pair.asked = true;
-  pair.near = pair.entered = pair.undecided = pair.no_inside = pair.meets = pair.blocks = false;
-  pair.start = ContactState::kUnknown;
+  pair.near = pair.touching = pair.entered = pair.undecided = false;
+  pair.meets = pair.overlaps_at_start = pair.blocks = false;
   pair.t_contact = pair.t_stop = 1.0;
-  pair.apart_at_end_mm = 0.0;
+  pair.t_enter = pair.apart_at_end_mm = 0.0;
   if (pair.placed) {  // no motion: only how it stands
     pair.near = true;
     return;
   }
-  const Solid& a = *world.parts[pair.a].solid;
-  const Solid& b = *world.parts[pair.b].solid;
-
-  // 1. Does an earlier distance still suffice?
-  const BudgetQuery budget{&a, &b, pair.motion_a, pair.motion_b};
+  // Does an earlier distance still suffice?
+  const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
   if (switches.motion_budget &&
       apart_lower_bound_mm(*pair.memo, budget) > pair.band_mm + kClashHysteresis_mm) {
     pair.asked = false;
     return;
   }
-
-  // 2. Do they come within the band, and do the meshes meet?
-  FirstContact touch = ask_first_contact(world, pair, pair.band_mm, ccd);
-  if (touch.state == ContactState::kFree) {
-    pair.memo->not_contained = true;
-    pair.apart_at_end_mm = std::max(touch.distance_mm, pair.band_mm);
-    return;
-  }
-  pair.near = true;
-  pair.entered = touch.state == ContactState::kContact;
-  pair.undecided = touch.state == ContactState::kUndecided;
-  if (pair.band_mm > 0.0) {
-    touch = ask_first_contact(world, pair, 0.0, ccd);
-    pair.undecided = pair.undecided || touch.state == ContactState::kUndecided;
-  }
-  pair.memo->not_contained = touch.state == ContactState::kFree;
-  pair.no_inside = !a.topology().closed() || !b.topology().closed();
-  pair.start = touch.state;
-  pair.meets = touch.state != ContactState::kFree && touch.state != ContactState::kUndecided;
-  if (pair.meets) pair.t_contact = touch.t_contact;
-
-  // 3. When would it become real?
-  if (world.policy == Policy::kStop)
-    pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time(world, pair, touch, ccd);
+  if (pair.plain())
+    ask_plain(world, pair, ccd);
+  else
+    ask_banded(world, pair, ccd);
 }
 
 void find_contacts(const World& world, Scratch::Impl& work) {

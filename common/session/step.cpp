@@ -23,12 +23,12 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters&
     if (pair.undecided) {
       ++counters.contacts_undecided;
       ++counters.not_examined;
-    } else if (pair.near) {
+    } else if (pair.near || pair.touching) {
       ++counters.contacts.out;
     } else {
       ++counters.contacts_clear;
     }
-    if (!pair.no_inside && !pair.judgement.overlap.no_inside) continue;
+    if (!pair.near || !pair.judgement.overlap.no_inside) continue;
     for (const std::uint32_t part : {pair.a, pair.b})
       if (!world.parts[part].solid->topology().closed()) open_parts.push_back(part);
   }

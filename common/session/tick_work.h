@@ -34,6 +34,7 @@ struct SeenRegion {
 struct PairWork {
   std::uint32_t a = 0, b = 0;
   std::int32_t move_a = -1, move_b = -1;  ///< index of the part's Move; -1: still
+  const Solid *solid_a = nullptr, *solid_b = nullptr;
   const PairRule* rule = nullptr;
   const SurfaceBand *band_a = nullptr, *band_b = nullptr;
   double band_mm = 0.0;  ///< distance at which the pair has to be looked at
@@ -41,20 +42,21 @@ struct PairWork {
   std::vector<OpenClash>* open = nullptr;  ///< null: none
   bool placed = false;                     ///< neither moves, one was put somewhere
 
-  // Stage 3. Times of the segment [tau, 1] of the tick, in which motion_a and motion_b run from 0
-  // to 1.
-  bool asked = false;    ///< false: the motion budget says that they stay apart
-  bool near = false;     ///< in contact or within the band at some time
-  bool entered = false;  ///< came within the band during the segment
-  bool undecided = false;
-  bool no_inside = false;
+  // Stage 3, over the segment [tau, 1] of the tick in which motion_a and motion_b run from 0 to 1;
+  // times are of the segment, but for t_stop.
   double tau = 0.0;
   Motion motion_a, motion_b;
-  ContactState start = ContactState::kUnknown;  ///< how the meshes stand at the segment's start
-  bool meets = false;                           ///< the meshes touch or overlap at some time
-  double t_contact = 1.0;                       ///< of the segment
-  double t_stop = 1.0;           ///< of the tick: the pair is proven not to become real before
-  double apart_at_end_mm = 0.0;  ///< proven when not near
+  bool asked = false;      ///< false: the motion budget says that they stay apart
+  bool near = false;       ///< overlapping or within the band at some time: to be judged
+  bool touching = false;   ///< touched at the start and got no deeper: nothing to judge
+  bool entered = false;    ///< came within the band during the segment
+  bool undecided = false;  ///< a work cap was reached
+  bool meets = false;      ///< the meshes touch or overlap at some time, first at t_contact
+  bool overlaps_at_start = false;
+  double t_contact = 1.0;
+  double t_enter = 0.0;  ///< nothing to judge before: plain pairs do not overlap, others stay clear
+  double t_stop = 1.0;   ///< of the tick: the pair is proven not to become real before
+  double apart_at_end_mm = 0.0;  ///< lower bound, when neither near nor touching
   bool blocks = false;           ///< the response stopped a part because of this pair
 
   // Stage 4.
@@ -63,6 +65,11 @@ struct PairWork {
   std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)
 
   StepCounters counts;  ///< of this pair alone, merged in pair order
+
+  /// The meshes are the parts: nothing is known of deviation or tolerance.
+  bool plain() const { return band_a->trivial && band_b->trivial; }
+  /// A part without an inside is potential at best, so that it stops nobody.
+  bool no_inside() const { return !solid_a->topology().closed() || !solid_b->topology().closed(); }
 };
 
 /// Ways to do the same with less cleverness, for tests; the report must not change but for

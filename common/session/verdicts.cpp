@@ -91,41 +91,22 @@ void prefix(Verdict& verdict, const char* what, double t) {
 std::optional<SeenRegion> passing(const World& world, PairWork& pair, bool want_gpd,
                                   CcdScratch& ccd) {
   const PairMotion whole{pair.motion_a, pair.motion_b, pair.t_contact};
-  double t_in = pair.meets ? pair.t_contact : 0.0;
-  const bool plain = pair.band_a->trivial && pair.band_b->trivial;
-  double t_real = 2.0;  // none
-  if (plain && !pair.no_inside && !pair.blocks) {
-    // Without a band there is something to report only where the interiors meet.
-    if (world.policy == Policy::kStop) return std::nullopt;  // proven not to
-    SweptQuery query;
-    query.at_target.a = world.parts[pair.a].solid.get();
-    query.at_target.b = world.parts[pair.b].solid.get();
-    query.at_target.band_a = pair.band_a;
-    query.at_target.band_b = pair.band_b;
-    query.motion_a = whole.a;
-    query.motion_b = whole.b;
-    const RealTime real = find_real_time(query, ccd);
-    ++pair.counts.depth_queries;
-    pair.counts.depth_evaluations += real.evaluations;
-    if (real.capped) pair.undecided = true;
-    if (!real.becomes_real) return std::nullopt;
-    t_in = t_real = real.t_real;
-  }
   ContactQuery back;
-  back.a = world.parts[pair.a].solid.get();
-  back.b = world.parts[pair.b].solid.get();
+  back.a = pair.solid_a;
+  back.b = pair.solid_b;
   back.motion_a = backward(whole.a);
   back.motion_b = backward(whole.b);
   back.separation_mm = pair.band_mm;
   back.check_contained = false;
+  back.ignore_touching_at_start = pair.plain();
   const FirstContact last = first_contact(back, ccd);
   ++pair.counts.first_contact_queries;
   pair.counts.box_tests += last.work.box_tests;
   pair.counts.triangle_tests += last.work.triangle_tests;
-  const double t_out = std::max(t_in, 1.0 - last.t_clear);
-  for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, -1.0}) {
-    const double t = share < 0.0 ? t_real : t_in + share * (t_out - t_in);
-    if (t > 1.0) continue;
+  if (last.state == ContactState::kUndecided) pair.undecided = true;
+  const double t_out = std::max(pair.t_enter, 1.0 - last.t_clear);
+  for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
+    const double t = pair.t_enter + share * (t_out - pair.t_enter);
     const PairMotion there = up_to(whole, t);
     const Judgement judgement = judge_along(world, pair, there, want_gpd, ccd);
     if (judgement.verdicts.empty()) continue;
@@ -179,9 +160,7 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
   if (pair.blocks) {
     if (auto region = attempted(world, pair, want_gpd, ccd))
       merge_attempt(world, pair, std::move(*region));
-  } else if (pair.seen.empty() && !pair.placed &&
-             (pair.entered ||
-              (pair.meets && !(pair.start == ContactState::kOverlappingAtStart && pair.open)))) {
+  } else if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start))) {
     if (auto region = passing(world, pair, want_gpd, ccd)) {
       region->passing = true;
       pair.seen.push_back(std::move(*region));
@@ -191,8 +170,8 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
   if (pair.open && pair.judgement.overlap.regions.empty()) {
     ++pair.counts.distance_queries;
     const DistanceResult result =
-        distance(*world.parts[pair.a].solid, motion.a.X_W1, *world.parts[pair.b].solid,
-                 motion.b.X_W1, ccd, 2.0 * (pair.band_mm + kClashHysteresis_mm));
+        distance(*pair.solid_a, motion.a.X_W1, *pair.solid_b, motion.b.X_W1, ccd,
+                 2.0 * (pair.band_mm + kClashHysteresis_mm));
     if (result.within_limit) distance_mm = result.distance_mm;
   }
   match_clashes(world, pair, distance_mm);
@@ -200,9 +179,9 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
 
 // A pair that stayed clear: how far apart is it now, so that it need not be asked next time? Only
 // where an answer is likely to save more than it costs.
-void measure(const World& world, PairWork& pair, CcdScratch& ccd) {
-  const Solid& a = *world.parts[pair.a].solid;
-  const Solid& b = *world.parts[pair.b].solid;
+void measure(PairWork& pair, CcdScratch& ccd) {
+  const Solid& a = *pair.solid_a;
+  const Solid& b = *pair.solid_b;
   const double spent_mm = relative_travel_upper_bound_mm({&a, &b, pair.motion_a, pair.motion_b});
   const double needed_mm = pair.band_mm + kClashHysteresis_mm;
   PairMemo& memo = *pair.memo;
@@ -235,9 +214,8 @@ void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, 
   pair.judgement = {};
   const PairMotion motion = as_moved(work, pair);
   ++pair.counts.distance_queries;
-  const DistanceResult result =
-      distance(*world.parts[pair.a].solid, motion.a.X_W1, *world.parts[pair.b].solid, motion.b.X_W1,
-               ccd, 2.0 * (pair.band_mm + kClashHysteresis_mm));
+  const DistanceResult result = distance(*pair.solid_a, motion.a.X_W1, *pair.solid_b, motion.b.X_W1,
+                                         ccd, 2.0 * (pair.band_mm + kClashHysteresis_mm));
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
 }
 
@@ -260,7 +238,7 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
       return;
     }
     if (pair.open) judge_clear(world, work, pair, ccd);
-    measure(world, pair, ccd);
+    if (!pair.touching) measure(pair, ccd);
   });
 }
 
