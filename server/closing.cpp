@@ -34,6 +34,7 @@ Json json_of(const InboxCounters& c) {
     }
   }
   json["refusals_untold"] = c.refusals_untold;
+  json["longest_backlog"] = c.longest_backlog;
   return json;
 }
 
@@ -47,6 +48,9 @@ std::string inbox_lines(const InboxCounters& c) {
   for (std::size_t i = 1; i < c.refused.size(); ++i) {
     if (c.refused[i] == 0) continue;
     text += fmt::format(", {} {}", c.refused[i], name_of(static_cast<Refusal>(i)));
+  }
+  if (c.longest_backlog > 0) {
+    text += fmt::format("; up to {} had to wait for a later tick", c.longest_backlog);
   }
   text += fmt::format(
       "\n  commands {} (refused {}, deferred {}); joined {} (refused {}), left {}, lost {}, leases "

@@ -1,7 +1,7 @@
 #include "server/inbox.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "common/base/constants.h"
 #include "common/messages/names.h"
@@ -37,21 +37,6 @@ void Intake::clear() {
   refused.clear();
   acks.clear();
   joined = false;
-}
-
-Refusal SequenceWindow::admit(std::uint64_t seq) {
-  if (seq > newest_) {
-    const std::uint64_t step = seq - newest_;
-    seen_ = step < 64 ? (seen_ << step) | 1U : 1U;
-    newest_ = seq;
-    return Refusal::kNone;
-  }
-  const std::uint64_t age = newest_ - seq;
-  if (seq == 0 || age >= 64) return Refusal::kStale;
-  const std::uint64_t bit = std::uint64_t{1} << age;
-  const bool repeated = (seen_ & bit) != 0;
-  seen_ |= bit;
-  return repeated ? Refusal::kDuplicate : Refusal::kStale;
 }
 
 std::uint32_t Inbox::users_present() const {
@@ -98,52 +83,60 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   for (Seat& seat : seats_) seat.told = 0;
   told_strangers_ = 0;
 
-  busy_.clear();
-  for (const ReceivedIncrement& r : input.increments) {
-    busy_.emplace_back(r.increment.user, r.increment.part);
-  }
-  std::sort(busy_.begin(), busy_.end());
+  // 1. What waited for increments of earlier ticks.
+  carry_out_deferred(world, now_ns, intake);
 
-  // 1. What waited for the increments of the last tick.
-  const std::vector<ReceivedCommand> commands = std::exchange(deferred_, {});
-  for (const ReceivedCommand& command : commands) {
-    admit_command(command, world, now_ns, true, intake);
-  }
-  const std::vector<LostUser> lost = std::exchange(deferred_lost_, {});
-  for (const LostUser& gone : lost) leave(gone.user, gone.said_goodbye, world, intake);
-
-  // 2. Who is gone without a word (and may be among those who come in), who comes in, and what
-  // users ask for.
+  // 2. Who is gone without a word (and may be among those who come in), and who comes in.
   depart(input.lost, false, world, intake);
   for (const JoinRequest& request : input.joins) admit_join(request, world, now_ns, intake);
+
+  // 3. What came from users: increments into the backlog first, so that a command knows what was
+  // sent before it.
   for (UserId user : input.heartbeats) {
     if (user && user.value <= seats_.size() && seats_[user.value - 1].present) {
       renew(world, user, now_ns);
     }
   }
+  for (const ReceivedIncrement& r : input.increments) receive_increment(r, now_ns, intake);
+  for (const RefusedIncrement& refused : input.refused_at_door) receive_refused(refused, intake);
   for (const ReceivedCommand& command : input.commands) {
-    admit_command(command, world, now_ns, false, intake);
+    admit_command(command, world, now_ns, intake);
   }
+  take_increments(world, now_ns, intake);
 
-  // 3. Increments, against the holders as they are now.
-  for (const ReceivedIncrement& r : input.increments) admit_increment(r, world, now_ns, intake);
-  for (const RefusedIncrement& refused : input.refused_at_door) {
-    ++counters_.increments;
-    Increment increment;
-    increment.user = refused.user;
-    increment.part = refused.part;
-    increment.seq = refused.seq;
-    const bool seated = refused.user && refused.user.value <= seats_.size() &&
-                        seats_[refused.user.value - 1].present;
-    if (seated && seats_[refused.user.value - 1].increments.admit(refused.seq) == Refusal::kNone) {
-      acknowledge(refused.user, refused.seq, 0, intake);
-    }
-    refuse(increment, refused.user, refused.reason, intake);
-  }
-
-  // 4. Who says goodbye, and whose lease is over. A user's last increments are still carried out.
+  // 4. Who says goodbye, and whose lease is over.
   depart(input.lost, true, world, intake);
   end_leases(world, now_ns, intake);
+}
+
+bool Inbox::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
+  return std::any_of(backlog_.begin(), backlog_.end(), [&](const ReceivedIncrement& r) {
+    return r.increment.user == user && (!part || r.increment.part == part) &&
+           r.increment.seq <= up_to_seq;
+  });
+}
+
+void Inbox::carry_out_deferred(World& world, std::int64_t now_ns, Intake& intake) {
+  std::vector<DeferredCommand> still_waiting;
+  for (DeferredCommand& d : std::exchange(deferred_, {})) {
+    const Command& command = d.received.command;
+    const bool behind_another =
+        std::any_of(still_waiting.begin(), still_waiting.end(), [&](const DeferredCommand& other) {
+          return other.received.command.user == command.user &&
+                 other.received.command.part == command.part;
+        });
+    if (behind_another || waits(command.user, command.part, d.after)) {
+      still_waiting.push_back(std::move(d));
+    } else {
+      carry_out(command, world, now_ns, intake);
+    }
+  }
+  deferred_ = std::move(still_waiting);
+  std::erase_if(goodbyes_, [&](const DeferredGoodbye& goodbye) {
+    if (waits(goodbye.user, PartId{}, goodbye.after)) return false;
+    leave(goodbye.user, true, world, intake);
+    return true;
+  });
 }
 
 void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t now_ns,
@@ -200,55 +193,60 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
 }
 
 void Inbox::admit_command(const ReceivedCommand& received, World& world, std::int64_t now_ns,
-                          bool was_deferred, Intake& intake) {
+                          Intake& intake) {
   const Command& command = received.command;
+  ++counters_.commands;
   Reply reply{command.user, command.part, command.seq, Refusal::kNone, {}, {}};
   if (const Part* part = world.find(command.part)) reply.holder = part->holder;
+  Seat* seat = seat_of(command.user, received.client);
+  if (seat == nullptr) {
+    reply.user = first_user_of(received.client);
+    reply.refusal = Refusal::kUnknownUser;
+    reply.text = "the sender has not joined as this user";
+  } else if (const Refusal order = seat->commands.admit(command.seq); order != Refusal::kNone) {
+    reply.refusal = order;
+    reply.text = std::string(name_of(order));
+  } else if (!take_token(*seat, now_ns)) {
+    reply.refusal = Refusal::kRateTooHigh;
+    reply.text = "more messages a second than the session takes from one user";
+  } else if (command.kind == CommandKind::kGrab && seat->role == "observer") {
+    reply.refusal = Refusal::kNotAllowed;
+    reply.text = "observers do not hold parts";
+  }
+  if (reply.refusal != Refusal::kNone) {
+    ++counters_.commands_refused;
+    intake.replies.push_back(std::move(reply));
+    return;
+  }
+  const bool behind_another =
+      std::any_of(deferred_.begin(), deferred_.end(), [&](const DeferredCommand& other) {
+        return other.received.command.user == command.user &&
+               other.received.command.part == command.part;
+      });
+  const std::uint64_t newest = seat->increments.newest();
+  if (behind_another ||
+      (waits_for_increments(command.kind) && waits(command.user, command.part, newest))) {
+    ++counters_.commands_deferred;
+    deferred_.push_back({received, newest});
+  } else {
+    carry_out(command, world, now_ns, intake);
+  }
+}
 
-  if (!was_deferred) {
-    ++counters_.commands;
-    Seat* seat = seat_of(command.user, received.client);
-    if (seat == nullptr) {
-      reply.user = first_user_of(received.client);
-      reply.refusal = Refusal::kUnknownUser;
-      reply.text = "the sender has not joined as this user";
-    } else if (const Refusal order = seat->commands.admit(command.seq); order != Refusal::kNone) {
-      reply.refusal = order;
-      reply.text = std::string(name_of(order));
-    } else if (!take_token(*seat, now_ns)) {
-      reply.refusal = Refusal::kRateTooHigh;
-      reply.text = "more messages a second than the session takes from one user";
-    } else if (command.kind == CommandKind::kGrab && seat->role == "observer") {
-      reply.refusal = Refusal::kNotAllowed;
-      reply.text = "observers do not hold parts";
-    } else {
-      const UserPart key{command.user, command.part};
-      const auto about_same = [&](const ReceivedCommand& r) {
-        return r.command.user == key.first && r.command.part == key.second;
-      };
-      if ((waits_for_increments(command.kind) &&
-           std::binary_search(busy_.begin(), busy_.end(), key)) ||
-          std::any_of(deferred_.begin(), deferred_.end(), about_same)) {
-        ++counters_.commands_deferred;
-        deferred_.push_back(received);
-        return;
-      }
-    }
+void Inbox::carry_out(const Command& command, World& world, std::int64_t now_ns, Intake& intake) {
+  Decision decision;
+  Reply reply = apply_command(world, command, decision);
+  if (reply.refusal != Refusal::kNone) {
+    ++counters_.commands_refused;
+  } else {
+    if (command.kind == CommandKind::kGrab) renewed_ns_[command.part.value - 1] = now_ns;
+    intake.decisions.push_back(std::move(decision));
   }
-  if (reply.refusal == Refusal::kNone) {
-    Decision decision;
-    reply = apply_command(world, command, decision);
-    if (reply.refusal == Refusal::kNone) {
-      if (command.kind == CommandKind::kGrab) renewed_ns_[command.part.value - 1] = now_ns;
-      intake.decisions.push_back(std::move(decision));
-    }
-  }
-  if (reply.refusal != Refusal::kNone) ++counters_.commands_refused;
   intake.replies.push_back(std::move(reply));
 }
 
-void Inbox::admit_increment(const ReceivedIncrement& received, const World& world,
-                            std::int64_t now_ns, Intake& intake) {
+void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t now_ns,
+                              Intake& intake) {
   const Increment& increment = received.increment;
   ++counters_.increments;
   Seat* seat = seat_of(increment.user, received.client);
@@ -257,18 +255,55 @@ void Inbox::admit_increment(const ReceivedIncrement& received, const World& worl
     return;
   }
   Refusal reason = seat->increments.admit(increment.seq);
-  if (reason == Refusal::kNone) {
+  if (reason == Refusal::kNone && !take_token(*seat, now_ns)) {
     acknowledge(increment.user, increment.seq, received.sent_ns, intake);
-    if (!take_token(*seat, now_ns)) reason = Refusal::kRateTooHigh;
+    reason = Refusal::kRateTooHigh;
   }
-  if (reason == Refusal::kNone) reason = judge(increment, world);
   if (reason != Refusal::kNone) {
     refuse(increment, increment.user, reason, intake);
     return;
   }
-  renewed_ns_[increment.part.value - 1] = now_ns;
-  ++counters_.accepted;
-  intake.increments.push_back(increment);
+  backlog_.push_back(received);
+}
+
+void Inbox::receive_refused(const RefusedIncrement& refused, Intake& intake) {
+  ++counters_.increments;
+  const bool seated =
+      refused.user && refused.user.value <= seats_.size() && seats_[refused.user.value - 1].present;
+  if (seated && seats_[refused.user.value - 1].increments.admit(refused.seq) == Refusal::kNone) {
+    acknowledge(refused.user, refused.seq, 0, intake);
+  }
+  Increment increment;
+  increment.user = refused.user;
+  increment.part = refused.part;
+  increment.seq = refused.seq;
+  refuse(increment, refused.user, refused.reason, intake);
+}
+
+void Inbox::take_increments(const World& world, std::int64_t now_ns, Intake& intake) {
+  taken_.assign(world.parts.size(), 0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < backlog_.size(); ++i) {
+    const Increment& increment = backlog_[i].increment;
+    Refusal reason = judge(increment, world);
+    if (!seats_[increment.user.value - 1].present) reason = Refusal::kUnknownUser;
+    if (reason == Refusal::kNone) {
+      const std::size_t part = increment.part.value - 1;
+      renewed_ns_[part] = now_ns;  // a hand that waits for the server is not silent
+      if (taken_[part] >= limits_.increments_per_part) {
+        if (kept != i) backlog_[kept] = backlog_[i];
+        ++kept;
+        continue;
+      }
+      ++taken_[part];
+      ++counters_.accepted;
+      intake.increments.push_back(increment);
+    }
+    acknowledge(increment.user, increment.seq, backlog_[i].sent_ns, intake);
+    if (reason != Refusal::kNone) refuse(increment, increment.user, reason, intake);
+  }
+  backlog_.resize(kept);
+  counters_.longest_backlog = std::max<std::uint64_t>(counters_.longest_backlog, kept);
 }
 
 Refusal Inbox::judge(const Increment& increment, const World& world) const {
@@ -302,16 +337,24 @@ void Inbox::refuse(const Increment& increment, UserId tell, Refusal reason, Inta
 void Inbox::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake) {
   const auto at = std::lower_bound(intake.acks.begin(), intake.acks.end(), user,
                                    [](const Ack& ack, UserId id) { return ack.user < id; });
-  if (at != intake.acks.end() && at->user == user) {
-    at->seq = seq;
-    if (sent_ns != 0) at->sent_ns = sent_ns;
-  } else {
+  if (at == intake.acks.end() || at->user != user) {
     intake.acks.insert(at, Ack{user, seq, sent_ns});
+    return;
   }
+  if (seq > at->seq && sent_ns != 0) at->sent_ns = sent_ns;
+  if (at->sent_ns == 0) at->sent_ns = sent_ns;
+  at->seq = std::max(at->seq, seq);
 }
 
 void Inbox::depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world,
                    Intake& intake) {
+  const auto says_goodbye = [&](UserId user) {
+    return std::any_of(
+               lost.begin(), lost.end(),
+               [&](const LostUser& other) { return other.said_goodbye && other.user == user; }) ||
+           std::any_of(goodbyes_.begin(), goodbyes_.end(),
+                       [&](const DeferredGoodbye& other) { return other.user == user; });
+  };
   for (const LostUser& gone : lost) {
     if (gone.said_goodbye != said_goodbye) continue;
     for (std::uint32_t i = 0; i < seats_.size(); ++i) {
@@ -321,13 +364,15 @@ void Inbox::depart(const std::vector<LostUser>& lost, bool said_goodbye, World& 
         if (gone.user) ++counters_.foreign;
         continue;
       }
-      const bool moves_now =
-          std::any_of(intake.increments.begin(), intake.increments.end(),
-                      [&](const Increment& increment) { return increment.user == user; });
-      if (moves_now) {
-        deferred_lost_.push_back({user, seats_[i].client, said_goodbye});
+      if (!said_goodbye) {
+        // Who said goodbye before closing the door leaves in order.
+        if (!says_goodbye(user)) leave(user, false, world, intake);
+      } else if (std::any_of(intake.increments.begin(), intake.increments.end(),
+                             [&](const Increment& r) { return r.user == user; }) ||
+                 waits(user, PartId{}, seats_[i].increments.newest())) {
+        goodbyes_.push_back({user, seats_[i].increments.newest()});
       } else {
-        leave(user, said_goodbye, world, intake);
+        leave(user, true, world, intake);
       }
     }
   }

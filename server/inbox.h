@@ -2,11 +2,11 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/messages/channel.h"
 #include "common/session/world.h"
+#include "server/sequence_window.h"
 
 namespace mortise {
 
@@ -19,6 +19,11 @@ struct InboxLimits {
   /// Refusals told to one user in one tick; the rest is only counted, so that nonsense is not
   /// amplified.
   std::uint32_t refusals_told_per_tick = 8;
+  /// Increments of one part in one tick; more wait for the next ticks, in order. A device of 240 Hz
+  /// sends 4 in a tick of 60 Hz, so a backlog shrinks at twice the speed at which it grew. Without
+  /// it the increments that piled up in one slow tick would make the next one a single long leap,
+  /// slower still.
+  std::uint32_t increments_per_part = 8;
 };
 
 struct InboxCounters {
@@ -28,6 +33,7 @@ struct InboxCounters {
   std::uint64_t foreign = 0;  ///< sent for a user that another participant joined as
   std::array<std::uint64_t, kRefusalCount> refused{};  ///< increments, by Refusal
   std::uint64_t refusals_untold = 0;
+  std::uint64_t longest_backlog = 0;  ///< increments that waited for a later tick, at most
 
   std::uint64_t refused_in_all() const;
 };
@@ -45,19 +51,6 @@ struct Intake {
   void clear();
 };
 
-/// Sequence numbers seen, with a memory of 64: tells a repeat from one that comes too late.
-class SequenceWindow {
- public:
-  /// kNone: new and newest. kDuplicate: seen. kStale: older than the newest, whether lost before or
-  /// not; also 0.
-  Refusal admit(std::uint64_t seq);
-  std::uint64_t newest() const { return newest_; }
-
- private:
-  std::uint64_t newest_ = 0;
-  std::uint64_t seen_ = 0;  ///< bit k: newest - k was seen
-};
-
 /// The door between what users send and what the tick works on: who may speak for whom, in which
 /// order, how fast, about which part, and for how long a part is theirs. Many senders, read by the
 /// tick thread only. Knows no clock: the time comes in.
@@ -68,8 +61,8 @@ class Inbox {
   /// Checks `input`, applies joins, commands, leaves and lease ends to `world`, and puts the rest
   /// into `intake` (cleared first). now_ns never goes back.
   ///
-  /// A release, undo or reset of a part for which the same drain holds increments of the same user
-  /// waits for the next tick: it was sent after them, and decisions are applied before increments.
+  /// A release, undo or reset waits until the increments of the same user and part that came before
+  /// it were carried out: decisions are applied before the increments of a tick.
   void admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake);
 
   const InboxCounters& counters() const { return counters_; }
@@ -86,7 +79,15 @@ class Inbox {
     std::int64_t tokens_at_ns = 0;
     std::uint32_t told = 0;  ///< refusals in this drain
   };
-  using UserPart = std::pair<UserId, PartId>;
+  /// A command or goodbye that waits for increments with a sequence up to `after`.
+  struct DeferredCommand {
+    ReceivedCommand received;
+    std::uint64_t after = 0;
+  };
+  struct DeferredGoodbye {
+    UserId user;
+    std::uint64_t after = 0;
+  };
 
   Seat* seat_of(UserId user, const ClientKey& client);
   UserId first_user_of(const ClientKey& client) const;
@@ -95,23 +96,30 @@ class Inbox {
 
   void admit_join(const JoinRequest& request, World& world, std::int64_t now_ns, Intake& intake);
   void admit_command(const ReceivedCommand& received, World& world, std::int64_t now_ns,
-                     bool was_deferred, Intake& intake);
-  void admit_increment(const ReceivedIncrement& received, const World& world, std::int64_t now_ns,
-                       Intake& intake);
+                     Intake& intake);
+  void carry_out(const Command& command, World& world, std::int64_t now_ns, Intake& intake);
+  void carry_out_deferred(World& world, std::int64_t now_ns, Intake& intake);
+  /// Who sent it, in which order, how fast: what can be said on arrival.
+  void receive_increment(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
+  void receive_refused(const RefusedIncrement& refused, Intake& intake);
+  /// Takes this tick's share from the backlog, against the holders as they are now.
+  void take_increments(const World& world, std::int64_t now_ns, Intake& intake);
+  bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
   Refusal judge(const Increment& increment, const World& world) const;
   void refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake);
   void depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world, Intake& intake);
   void leave(UserId user, bool said_goodbye, World& world, Intake& intake);
   void end_leases(World& world, std::int64_t now_ns, Intake& intake);
-  void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);
+  static void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);
 
   InboxLimits limits_;
   InboxCounters counters_;
   std::vector<Seat> seats_;
-  std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
-  std::vector<ReceivedCommand> deferred_;
-  std::vector<LostUser> deferred_lost_;
-  std::vector<UserPart> busy_;  ///< sorted: (user, part) with increments in this drain
+  std::vector<std::int64_t> renewed_ns_;    ///< by part index: when its lease was last renewed
+  std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
+  std::vector<std::uint32_t> taken_;        ///< by part index, in this tick
+  std::vector<DeferredCommand> deferred_;   ///< in order of arrival
+  std::vector<DeferredGoodbye> goodbyes_;
   std::uint32_t told_strangers_ = 0;
 };
 

@@ -202,7 +202,8 @@ Wish Script::beat(const View& view) {
     next_act();
     return wish;
   }
-  if (!view.holds(part)) {
+  // Each act asks anew: what the view says may be older than the release of the act before.
+  if (!view.holds(part) || first_asked_s_ < 0.0) {
     if (first_asked_s_ < 0.0) first_asked_s_ = view.time_s;
     if (view.time_s - first_asked_s_ > kGiveUpAct_s) {
       troubles_.push_back("'" + act.part + "' was not given to " + act.user);

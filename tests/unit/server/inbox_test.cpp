@@ -206,6 +206,61 @@ TEST_F(InboxTest, AReleaseWaitsForTheIncrementsBeforeIt) {
   EXPECT_EQ(intake_.replies[0].refusal, Refusal::kNone);
 }
 
+TEST_F(InboxTest, ABacklogIsWorkedOffInOrderAndWhatWasSentAfterItWaits) {
+  const std::uint32_t share = InboxLimits{}.increments_per_part;
+  ServerInput pile;  // what a slow tick leaves behind: a drag, its release, and a goodbye
+  const std::uint64_t sent = 2 * share + 3;
+  for (std::uint64_t seq = 1; seq <= sent; ++seq) {
+    pile.increments.push_back(increment("a", anna_, kRed, seq));
+  }
+  pile.commands.push_back({"a", {anna_, kRed, ++command_seq_, CommandKind::kRelease}});
+  pile.lost.push_back({anna_, "a", true});
+  admit(std::move(pile));
+  std::uint64_t next = 1;
+  for (std::size_t expected : {std::size_t{share}, std::size_t{share}, std::size_t{3}}) {
+    ASSERT_EQ(intake_.increments.size(), expected);
+    for (const Increment& taken : intake_.increments) EXPECT_EQ(taken.seq, next++);
+    EXPECT_EQ(intake_.acks.at(0).seq, next - 1) << "acknowledged when carried out";
+    EXPECT_EQ(world_.find(kRed)->holder, anna_);
+    EXPECT_TRUE(intake_.decisions.empty());
+    ServerInput gone;  // the process has ended meanwhile: still in order
+    gone.lost.push_back({UserId{}, "a", false});
+    admit(std::move(gone));
+  }
+  ASSERT_EQ(intake_.decisions.size(), 2U);
+  EXPECT_EQ(intake_.decisions[0].kind, Decision::Kind::kRelease);
+  EXPECT_EQ(intake_.decisions[1].kind, Decision::Kind::kLeave);
+  EXPECT_EQ(inbox_.counters().accepted, sent);
+  EXPECT_EQ(inbox_.counters().longest_backlog, sent - share);
+  EXPECT_EQ(inbox_.counters().liveliness_lost, 0U);
+}
+
+TEST_F(InboxTest, AReleaseAndANewGrabInOneGoKeepThePartInHand) {
+  ServerInput input;
+  input.increments.push_back(increment("a", anna_, kRed, 1));
+  input.commands.push_back({"a", {anna_, kRed, ++command_seq_, CommandKind::kRelease}});
+  input.commands.push_back({"a", {anna_, kRed, ++command_seq_, CommandKind::kGrab}});
+  input.increments.push_back(increment("a", anna_, kRed, 2));
+  admit(std::move(input));
+  EXPECT_EQ(intake_.increments.size(), 2U);
+  ServerInput more;
+  more.increments.push_back(increment("a", anna_, kRed, 3));
+  admit(std::move(more));
+  EXPECT_EQ(intake_.decisions.size(), 2U);
+  EXPECT_EQ(intake_.increments.size(), 1U);
+  EXPECT_EQ(world_.find(kRed)->holder, anna_);
+}
+
+TEST_F(InboxTest, AGoodbyeInTheSameDrainAsTheClosedDoorIsAGoodbye) {
+  ServerInput input;
+  input.lost.push_back({UserId{}, "a", false});
+  input.lost.push_back({anna_, "a", true});
+  admit(std::move(input));
+  EXPECT_EQ(inbox_.counters().leaves, 1U);
+  EXPECT_EQ(inbox_.counters().liveliness_lost, 0U);
+  EXPECT_FALSE(world_.find(anna_)->present);
+}
+
 TEST_F(InboxTest, ALeaseEndsWithoutASignOfLifeAndIsRenewedByOne) {
   now_ns_ += kSecond_ns + kSecond_ns / 2;
   ServerInput beat;
@@ -294,7 +349,7 @@ TEST(Inbox, AFullSessionSaysSo) {
 
 TEST(Inbox, AFloodOfOneUserIsCutAndTheOthersGoOn) {
   World world = small_world();
-  Inbox inbox({.messages_per_s = 100.0});
+  Inbox inbox({.messages_per_s = 100.0, .increments_per_part = 1000});
   Intake intake;
   ServerInput input;
   input.joins.push_back({"a", 1, "anna", "designer"});
