@@ -1,5 +1,6 @@
 #include "client/replay/commands.h"
 
+#include <functional>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -7,7 +8,9 @@
 
 #include "common/io/build_info.h"
 #include "common/io/replay.h"
+#include "common/io/report_json.h"
 #include "common/messages/names.h"
+#include "common/session/statistics.h"
 
 namespace mortise {
 namespace {
@@ -42,54 +45,97 @@ ordered_json gaps_of(const SessionLog& log) {
   return gaps;
 }
 
-}  // namespace
-
-int run_verify(const VerifyOptions& options) {
-  const auto log = read_session_log(options.log);
-  if (!log) return say_bad_log(log.error());
+// One computation for verify and report; `on_tick` may be empty.
+struct Verification {
+  SessionLog log;
+  ReplayReport report;
+  int exit_code = kExitOk;
+};
+Result<Verification> verification_of(
+    const VerifyOptions& options,
+    const std::function<void(const World&, const StepReport&)>& on_tick) {
+  auto log = read_session_log(options.log);
+  if (!log) return log.error();
   print_notes(*log);
-  const auto report = verify(*log, options.threads);
-  if (!report)
-    return say_bad_log({report.error().code, options.log.string() + ": " + report.error().text});
+  auto report = verify(*log, options.threads, on_tick);
+  if (!report) return fail(report.error().code, options.log.string() + ": " + report.error().text);
   if (!report->same_build)
     std::cerr << "recorded by another build (" << log->engine_version
               << "): agreement to the last bit is not promised\n";
   const int code = report->difference                ? kExitMismatch
                    : !report->not_verifiable.empty() ? kExitBadInput
                                                      : kExitOk;
+  return Verification{std::move(*log), std::move(*report), code};
+}
+
+ordered_json json_of(const VerifyOptions& options, const Verification& verification) {
+  const ReplayReport& report = verification.report;
+  ordered_json document = {{"log", options.log.string()},
+                           {"verified", verification.exit_code == kExitOk},
+                           {"verified_to_tick", report.verified_to_tick},
+                           {"ticks_logged", report.ticks_logged},
+                           {"ticks_compared", report.ticks_compared},
+                           {"idle_ticks", report.idle_ticks},
+                           {"decisions", report.decisions},
+                           {"increments", report.increments},
+                           {"events_compared", report.events_compared},
+                           {"same_build", report.same_build},
+                           {"complete", verification.log.complete},
+                           {"difference", nullptr},
+                           {"not_verifiable", report.not_verifiable},
+                           {"notes", verification.log.notes}};
+  if (report.difference)
+    document["difference"] = {{"tick", report.difference->tick}, {"what", report.difference->what}};
+  return document;
+}
+
+void print_text(const Verification& verification) {
+  const ReplayReport& report = verification.report;
+  if (report.difference)
+    std::cout << "DIFFERENT at tick " << report.difference->tick << ": " << report.difference->what
+              << '\n';
+  else if (!report.not_verifiable.empty())
+    std::cout << "NOT VERIFIABLE after tick " << report.verified_to_tick << ": "
+              << report.not_verifiable << '\n';
+  std::cout << (verification.exit_code == kExitOk ? "verified: " : "agreed before that: ")
+            << "up to tick " << report.verified_to_tick << ", " << report.ticks_compared << " of "
+            << report.ticks_logged << " recorded ticks, " << report.idle_ticks << " idle ticks, "
+            << report.increments << " increments, " << report.events_compared << " clash events\n";
+}
+
+}  // namespace
+
+int run_verify(const VerifyOptions& options) {
+  const auto verification = verification_of(options, {});
+  if (!verification) return say_bad_log(verification.error());
+  if (options.json)
+    print(json_of(options, *verification));
+  else
+    print_text(*verification);
+  return verification->exit_code;
+}
+
+int run_report(const VerifyOptions& options) {
+  SessionStatistics statistics;
+  SessionNames names;
+  const auto verification =
+      verification_of(options, [&](const World& world, const StepReport& report) {
+        statistics.add(report);
+        if (names.users.size() != world.users.size() || names.parts.empty())
+          names = names_of(world);
+      });
+  if (!verification) return say_bad_log(verification.error());
   if (options.json) {
-    ordered_json document = {{"log", options.log.string()},
-                             {"verified", code == kExitOk},
-                             {"verified_to_tick", report->verified_to_tick},
-                             {"ticks_logged", report->ticks_logged},
-                             {"ticks_compared", report->ticks_compared},
-                             {"idle_ticks", report->idle_ticks},
-                             {"decisions", report->decisions},
-                             {"increments", report->increments},
-                             {"events_compared", report->events_compared},
-                             {"same_build", report->same_build},
-                             {"complete", log->complete},
-                             {"difference", nullptr},
-                             {"not_verifiable", report->not_verifiable},
-                             {"notes", log->notes}};
-    if (report->difference)
-      document["difference"] = {{"tick", report->difference->tick},
-                                {"what", report->difference->what}};
+    ordered_json document = json_of(options, *verification);
+    document["statistics"] = mortise::json_of(statistics, names);
     print(document);
-    return code;
+  } else {
+    print_text(*verification);
+    std::cout << '\n'
+              << collision_table(statistics, names) << '\n'
+              << stage_table(statistics.counters());
   }
-  if (report->difference)
-    std::cout << "DIFFERENT at tick " << report->difference->tick << ": "
-              << report->difference->what << '\n';
-  else if (!report->not_verifiable.empty())
-    std::cout << "NOT VERIFIABLE after tick " << report->verified_to_tick << ": "
-              << report->not_verifiable << '\n';
-  std::cout << (code == kExitOk ? "verified: " : "agreed before that: ") << "up to tick "
-            << report->verified_to_tick << ", " << report->ticks_compared << " of "
-            << report->ticks_logged << " recorded ticks, " << report->idle_ticks << " idle ticks, "
-            << report->increments << " increments, " << report->events_compared
-            << " clash events\n";
-  return code;
+  return verification->exit_code;
 }
 
 int run_info(const InfoOptions& options) {

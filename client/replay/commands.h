@@ -12,6 +12,9 @@ struct VerifyOptions {
 };
 int run_verify(const VerifyOptions& options);
 
+/// Statistics of a session, computed again from its log; fails like verify when they do not agree.
+int run_report(const VerifyOptions& options);
+
 struct InfoOptions {
   std::filesystem::path log;
   bool json = false;

@@ -16,6 +16,14 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 256));
   verify_command->add_flag("--json", verify.json, "one JSON document on stdout");
 
+  mortise::VerifyOptions report;
+  CLI::App* report_command = app.add_subcommand(
+      "report", "verify, and print the statistics of the session: collisions by pair and user");
+  report_command->add_option("log", report.log, "session log (.mcap)")->required();
+  report_command->add_option("--threads", report.threads, "as with verify")
+      ->check(CLI::Range(1, 256));
+  report_command->add_flag("--json", report.json, "one JSON document on stdout");
+
   mortise::InfoOptions info;
   CLI::App* info_command = app.add_subcommand("info", "what a log holds, and what it lost");
   info_command->add_option("log", info.log, "session log (.mcap)")->required();
@@ -34,6 +42,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? mortise::kExitOk : mortise::kExitUsage;
   }
   if (verify_command->parsed()) return mortise::run_verify(verify);
+  if (report_command->parsed()) return mortise::run_report(report);
   if (info_command->parsed()) return mortise::run_info(info);
   return mortise::run_recover(recover);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/messages/names.h"
+#include "common/session/statistics.h"
 
 namespace mortise::log_json {
 namespace {
@@ -174,44 +175,44 @@ std::string titled_schema(const char* title, const ordered_json& example) {
   return dump(schema);
 }
 
-// Calls visit(name, count of into, count of from) for every counter.
+// Calls visit(name, count) for every counter.
 template <class Visit>
-void each_counter(StepCounters& into, const StepCounters& from, const Visit& visit) {
-  visit("increments_in", into.increments.in, from.increments.in);
-  visit("increments_applied", into.increments.out, from.increments.out);
+void each_counter(const StepCounters& counters, const Visit& visit) {
+  visit("increments_in", counters.increments.in);
+  visit("increments_applied", counters.increments.out);
   for (std::size_t i = 1; i < kRefusalCount; ++i) {
     std::string name = "refused: " + std::string(name_of(static_cast<Refusal>(i)));
-    visit(name.c_str(), into.refused[i], from.refused[i]);
+    visit(name.c_str(), counters.refused[i]);
   }
-  visit("moves_in", into.moves.in, from.moves.in);
-  visit("moves_out", into.moves.out, from.moves.out);
-  visit("moves_below_rounding", into.moves_below_rounding, from.moves_below_rounding);
-  visit("pairs_in", into.pairs.in, from.pairs.in);
-  visit("pairs_out", into.pairs.out, from.pairs.out);
-  visit("pairs_static", into.pairs_static, from.pairs_static);
-  visit("pairs_still", into.pairs_still, from.pairs_still);
-  visit("pairs_excluded", into.pairs_excluded, from.pairs_excluded);
-  visit("pairs_boxes_apart", into.pairs_boxes_apart, from.pairs_boxes_apart);
-  visit("pairs_budget", into.pairs_budget, from.pairs_budget);
-  visit("contacts_in", into.contacts.in, from.contacts.in);
-  visit("contacts_out", into.contacts.out, from.contacts.out);
-  visit("contacts_clear", into.contacts_clear, from.contacts_clear);
-  visit("contacts_undecided", into.contacts_undecided, from.contacts_undecided);
-  visit("first_contact_queries", into.first_contact_queries, from.first_contact_queries);
-  visit("distance_queries", into.distance_queries, from.distance_queries);
-  visit("depth_queries", into.depth_queries, from.depth_queries);
-  visit("verdicts_in", into.verdicts.in, from.verdicts.in);
-  visit("verdicts_out", into.verdicts.out, from.verdicts.out);
-  visit("verdicts_fake", into.verdicts_by_class[1], from.verdicts_by_class[1]);
-  visit("verdicts_potential", into.verdicts_by_class[2], from.verdicts_by_class[2]);
-  visit("verdicts_real", into.verdicts_by_class[3], from.verdicts_by_class[3]);
-  visit("stopped_parts", into.stopped_parts, from.stopped_parts);
-  visit("rounds", into.rounds, from.rounds);
-  visit("box_tests", into.box_tests, from.box_tests);
-  visit("triangle_tests", into.triangle_tests, from.triangle_tests);
-  visit("depth_evaluations", into.depth_evaluations, from.depth_evaluations);
-  visit("parts_without_inside", into.parts_without_inside, from.parts_without_inside);
-  visit("not_examined", into.not_examined, from.not_examined);
+  visit("moves_in", counters.moves.in);
+  visit("moves_out", counters.moves.out);
+  visit("moves_below_rounding", counters.moves_below_rounding);
+  visit("pairs_in", counters.pairs.in);
+  visit("pairs_out", counters.pairs.out);
+  visit("pairs_static", counters.pairs_static);
+  visit("pairs_still", counters.pairs_still);
+  visit("pairs_excluded", counters.pairs_excluded);
+  visit("pairs_boxes_apart", counters.pairs_boxes_apart);
+  visit("pairs_budget", counters.pairs_budget);
+  visit("contacts_in", counters.contacts.in);
+  visit("contacts_out", counters.contacts.out);
+  visit("contacts_clear", counters.contacts_clear);
+  visit("contacts_undecided", counters.contacts_undecided);
+  visit("first_contact_queries", counters.first_contact_queries);
+  visit("distance_queries", counters.distance_queries);
+  visit("depth_queries", counters.depth_queries);
+  visit("verdicts_in", counters.verdicts.in);
+  visit("verdicts_out", counters.verdicts.out);
+  visit("verdicts_fake", counters.verdicts_by_class[1]);
+  visit("verdicts_potential", counters.verdicts_by_class[2]);
+  visit("verdicts_real", counters.verdicts_by_class[3]);
+  visit("stopped_parts", counters.stopped_parts);
+  visit("rounds", counters.rounds);
+  visit("box_tests", counters.box_tests);
+  visit("triangle_tests", counters.triangle_tests);
+  visit("depth_evaluations", counters.depth_evaluations);
+  visit("parts_without_inside", counters.parts_without_inside);
+  visit("not_examined", counters.not_examined);
 }
 
 ordered_json json_of(const Gap& gap) {
@@ -276,8 +277,7 @@ void CounterSums::add(const StepReport& report) {
   if (ticks_++ == 0) first_tick_ = report.tick;
   last_tick_ = report.tick;
   events_ += report.events.size();
-  each_counter(sums_, report.counters,
-               [](const char*, std::uint64_t& into, std::uint64_t from) { into += from; });
+  accumulate(sums_, report.counters);
 }
 
 std::string CounterSums::encode() const {
@@ -285,10 +285,7 @@ std::string CounterSums::encode() const {
                          {"last_tick", last_tick_},
                          {"ticks", ticks_},
                          {"events", events_}};
-  StepCounters copy = sums_;
-  each_counter(copy, sums_, [&](const char* name, std::uint64_t&, std::uint64_t count) {
-    object[name] = count;
-  });
+  each_counter(sums_, [&](const char* name, std::uint64_t count) { object[name] = count; });
   return dump(object);
 }
 

@@ -98,7 +98,8 @@ Result<LoadedScene> scene_of(const SessionLog& log) {
   return scene;
 }
 
-Result<ReplayReport> verify(const SessionLog& log, int threads) {
+Result<ReplayReport> verify(const SessionLog& log, int threads,
+                            const std::function<void(const World&, const StepReport&)>& on_tick) {
   auto scene = scene_of(log);
   if (!scene) return scene.error();
   World& world = scene->world;
@@ -128,6 +129,7 @@ Result<ReplayReport> verify(const SessionLog& log, int threads) {
     while (world.tick + 1 < record.tick) {
       const StepReport idle = step(world, {}, scratch);
       ++report.idle_ticks;
+      if (on_tick) on_tick(world, idle);
       if (differs(idle.tick, compare_events({}, idle))) return report;
     }
     // 3. The tick itself.
@@ -137,6 +139,7 @@ Result<ReplayReport> verify(const SessionLog& log, int threads) {
     report.decisions += record.decisions.size();
     report.events_compared += record.report.events.size();
     ++report.ticks_compared;
+    if (on_tick) on_tick(world, computed);
     if (differs(record.tick, compare_refusals(record.report, computed)) ||
         differs(record.tick, compare_events(record.report, computed)) ||
         differs(record.tick, compare_hash(record.report, computed, world)))

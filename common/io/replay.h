@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,10 @@ struct ReplayReport {
 
 /// Computes a session again, tick by tick, and compares refusals, events and state hashes. Stops at
 /// the first difference, and at the first gap: what was lost there cannot be computed. Fails when
-/// the log cannot be replayed at all.
-Result<ReplayReport> verify(const SessionLog& log, int threads);
+/// the log cannot be replayed at all. `on_tick` sees every computed tick, idle ones included, and
+/// the world after it.
+Result<ReplayReport> verify(
+    const SessionLog& log, int threads,
+    const std::function<void(const World&, const StepReport&)>& on_tick = {});
 
 }  // namespace mortise

@@ -35,7 +35,9 @@ Outcome run(const std::string& arguments) {
   return outcome;
 }
 
-std::string quoted(const TemporaryFile& file) { return "'" + file.path().string() + "'"; }
+std::string quoted(const TemporaryFile& file) {
+  return std::string("'").append(file.path().string()).append("'");
+}
 
 class ReplayProgram : public testing::Test {
  protected:
@@ -60,6 +62,10 @@ TEST_F(ReplayProgram, VerifiesATrueLog) {
     EXPECT_EQ(outcome.document()["verified"], true);
     EXPECT_EQ(outcome.document()["ticks_compared"], session_->ticks.size());
   }
+  const Outcome report = run("report --json " + quoted(file));
+  EXPECT_EQ(report.exit_code, 0);
+  EXPECT_TRUE(report.document().contains("statistics")) << report.out;
+  EXPECT_NE(run("report " + quoted(file)).out.find("wall × cube"), std::string::npos);
   const Outcome info = run("info --json " + quoted(file));
   EXPECT_EQ(info.exit_code, 0);
   EXPECT_EQ(info.document()["ticks"], session_->ticks.size());
