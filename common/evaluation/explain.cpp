@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kUmPerMm = 1e3;
 constexpr double kShown_um = 0.05;  // sentences show tenths: less is nothing
+// A bracket as narrow as depth refines it (0.1 um) reads as one number.
+constexpr double kBracketShown_um = 0.11;
 
 std::string um(double mm) {
   char text[32];
@@ -22,7 +24,8 @@ bool shown(double mm) { return std::fabs(mm) * kUmPerMm >= kShown_um; }
 
 std::string range(double lo_mm, double hi_mm) {
   if (!std::isfinite(hi_mm)) return "at least " + um(lo_mm);
-  return shown(hi_mm - lo_mm) ? um(lo_mm) + " to " + um(hi_mm) : um(lo_mm);
+  return (hi_mm - lo_mm) * kUmPerMm > kBracketShown_um ? um(lo_mm) + " to " + um(hi_mm)
+                                                       : um(0.5 * (lo_mm + hi_mm));
 }
 
 std::string overlap_part(const Interval& delta) {
@@ -68,7 +71,9 @@ std::string mesh_error_name(const ExplainInput& in) {
     case DeviationGrade::kPlanar:
     case DeviationGrade::kDeclaredFeature:
     case DeviationGrade::kRecognizedFeature:
-      return shown(in.deviation_mm.width()) ? " within " + um(in.deviation_mm.width()) : " exact";
+      return in.deviation_mm.width() * kUmPerMm > kBracketShown_um
+                 ? " within " + um(in.deviation_mm.width())
+                 : " exact";
     case DeviationGrade::kDeclaredChord:
       return " by declared chord error";
     case DeviationGrade::kEstimated:
