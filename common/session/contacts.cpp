@@ -7,6 +7,11 @@
 namespace mortise {
 namespace {
 
+// Evaluations of one search for the time at which a pair becomes real, some 50 ms of work. Where it
+// ends the search the mover is left at the time proven so far and the pair is counted as not
+// examined; larger holds up everybody for one pair.
+constexpr std::uint64_t kRealTimeWorkCap = 20'000;
+
 // Upper bound of the lower outward offset of any face: what the real surface has at least.
 double largest_lower_offset_mm(const SurfaceBand& band) {
   double largest = 0.0;
@@ -55,7 +60,7 @@ double certain_depth_mm(PairWork& pair, double t, CcdScratch& ccd) {
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = Refinement::kFull;
   query.accuracy_mm = kDepthAccuracyDefault_mm;
-  query.work_cap = 20'000;  // lower ends are found early; the upper ones are not needed
+  query.work_cap = kRealTimeWorkCap;  // lower ends are found early; the upper are not needed
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += overlap.evaluations;
@@ -119,6 +124,7 @@ double stop_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
   query.at_target = overlap_query(pair);
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
+  query.at_target.work_cap = kRealTimeWorkCap;
   const RealTime real = find_real_time(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += real.evaluations;

@@ -11,11 +11,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The two motions of a pair over some part of the tick; t_contact counts in them.
+// The two motions of a pair over some part of the tick; t_contact and t_enter (see PairWork) count
+// in them, 1: not within them.
 struct PairMotion {
   Motion a, b;
-  double t_contact = 1.0;
+  double t_contact = 1.0, t_enter = 0.0;
 };
+
+PairMotion as_asked(const PairWork& pair) {
+  return {pair.motion_a, pair.motion_b, pair.t_contact, pair.t_enter};
+}
 
 Judgement judge_along(const World& world, PairWork& pair, const PairMotion& motion, bool want_gpd,
                       CcdScratch& ccd) {
@@ -38,10 +43,12 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
   return judgement;
 }
 
+double share_of(double t, double end) { return end > 0.0 ? std::min(1.0, t / end) : 1.0; }
+
 // Both motions up to time t of their own.
 PairMotion up_to(const PairMotion& motion, double t) {
-  return {until(motion.a, t), until(motion.b, t),
-          t > 0.0 ? std::min(1.0, motion.t_contact / t) : 1.0};
+  return {until(motion.a, t), until(motion.b, t), share_of(motion.t_contact, t),
+          share_of(motion.t_enter, t)};
 }
 
 // What the response left of the segment of one part.
@@ -56,13 +63,15 @@ Motion as_moved(const Scratch::Impl& work, std::int32_t index, const Motion& seg
 }
 
 PairMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
-  PairMotion motion{as_moved(work, pair.move_a, pair.motion_a, pair.tau),
-                    as_moved(work, pair.move_b, pair.motion_b, pair.tau), 1.0};
+  PairMotion motion = as_asked(pair);
+  motion.a = as_moved(work, pair.move_a, pair.motion_a, pair.tau);
+  motion.b = as_moved(work, pair.move_b, pair.motion_b, pair.tau);
   double end = pair.tau;
   for (const std::int32_t index : {pair.move_a, pair.move_b})
     if (index >= 0) end = std::max(end, work.moves[static_cast<std::size_t>(index)].stop);
   const double local_end = (end - pair.tau) / (1.0 - pair.tau);
-  if (pair.meets && local_end > 0.0) motion.t_contact = std::min(1.0, pair.t_contact / local_end);
+  motion.t_contact = share_of(pair.t_contact, local_end);
+  motion.t_enter = pair.t_enter > 0.0 ? share_of(pair.t_enter, local_end) : 0.0;
   return motion;
 }
 
@@ -88,9 +97,8 @@ void prefix(Verdict& verdict, const char* what, double t) {
 // The parts meet within the segment but nothing is seen at its end: they passed each other, through
 // or by. Looks inside the interval between the first and the last contact, whose ends are known to
 // the accuracy of first contact however thin the wall; middle first.
-std::optional<SeenRegion> passing(const World& world, PairWork& pair, bool want_gpd,
-                                  CcdScratch& ccd) {
-  const PairMotion whole{pair.motion_a, pair.motion_b, pair.t_contact};
+std::optional<SeenRegion> passing(const World& world, PairWork& pair, const PairMotion& whole,
+                                  bool want_gpd, CcdScratch& ccd) {
   ContactQuery back;
   back.a = pair.solid_a;
   back.b = pair.solid_b;
@@ -104,9 +112,9 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, bool want_
   pair.counts.box_tests += last.work.box_tests;
   pair.counts.triangle_tests += last.work.triangle_tests;
   if (last.state == ContactState::kUndecided) pair.undecided = true;
-  const double t_out = std::max(pair.t_enter, 1.0 - last.t_clear);
+  const double t_out = std::max(whole.t_enter, 1.0 - last.t_clear);
   for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
-    const double t = pair.t_enter + share * (t_out - pair.t_enter);
+    const double t = whole.t_enter + share * (t_out - whole.t_enter);
     const PairMotion there = up_to(whole, t);
     const Judgement judgement = judge_along(world, pair, there, want_gpd, ccd);
     if (judgement.verdicts.empty()) continue;
@@ -121,13 +129,13 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, bool want_
 std::optional<SeenRegion> attempted(const World& world, PairWork& pair, bool want_gpd,
                                     CcdScratch& ccd) {
   std::optional<SeenRegion> region;
-  const PairMotion asked{pair.motion_a, pair.motion_b, pair.t_contact};
+  const PairMotion asked = as_asked(pair);
   const Judgement judgement = judge_along(world, pair, asked, want_gpd, ccd);
   if (!judgement.verdicts.empty() &&
       judgement.verdicts.front().collision_class == CollisionClass::kReal)
     region = seen_at(judgement.verdicts.front(), asked.a.X_W1, asked.b.X_W1);
   else
-    region = passing(world, pair, want_gpd, ccd);
+    region = passing(world, pair, asked, want_gpd, ccd);
   if (region) prefix(region->verdict, "stopped", pair.t_stop);
   return region;
 }
@@ -161,7 +169,7 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
     if (auto region = attempted(world, pair, want_gpd, ccd))
       merge_attempt(world, pair, std::move(*region));
   } else if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start))) {
-    if (auto region = passing(world, pair, want_gpd, ccd)) {
+    if (auto region = passing(world, pair, motion, want_gpd, ccd)) {
       region->passing = true;
       pair.seen.push_back(std::move(*region));
     }
@@ -232,6 +240,11 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
     CcdScratch& ccd = work.ccd[static_cast<std::size_t>(thread)];
     if (!pair.asked) return;
     if (pair.near) {
+      // A part that was stopped before this pair came near is clear of it.
+      if (!pair.placed && !pair.blocks && as_moved(work, pair).t_enter >= 1.0) {
+        if (pair.open) judge_clear(world, work, pair, ccd);
+        return;
+      }
       // The separating motion is needed only where somebody is told of it.
       judge_near(world, work, pair, pair.open == nullptr, ccd);
       if (pair.open && anything_to_tell(pair)) judge_near(world, work, pair, true, ccd);

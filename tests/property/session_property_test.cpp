@@ -50,8 +50,9 @@ TEST(StopProperty, NothingIsEverLeftOverlapping) {
     Scratch scratch;
     for (int i = 0; i < 40; ++i) {
       stopped += play.tick(scratch).counters.stopped_parts;
-      // 1e-9 mm: rounding of the poses and of this test.
-      ASSERT_LT(deepest_overlap_mm(play.session.world), 1e-9) << "seed " << seed << " tick " << i;
+      // Up to the accuracy of first contact is touching; twice that is where it says overlapping.
+      ASSERT_LT(deepest_overlap_mm(play.session.world), 2.0 * kAccuracyDefault_mm)
+          << "seed " << seed << " tick " << i;
     }
   }
   EXPECT_GT(stopped, 100U);
