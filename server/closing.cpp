@@ -108,8 +108,8 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
   text += "\nMessages\n" + inbox_lines(loop.inbox().counters());
   const ChannelCounters& c = closing.channel;
   text += fmt::format(
-      "  at the door: received {}, malformed {}, foreign {}, lost {}, not sent {}, dropped by the "
-      "guard {}\n",
+      "  at the door: received {}, malformed {}, foreign {}, lost {}, not sent {}; datagrams cut "
+      "by the guard {} (Fast DDS adds a trailer to each)\n",
       c.received, c.malformed, c.foreign, c.lost, c.send_failed, c.guard_dropped);
   if (!closing.parts_without_inside.empty()) {
     text += "\nParts without an inside (open or non-manifold: crossing is found, depth is not)\n";

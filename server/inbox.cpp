@@ -9,12 +9,9 @@
 namespace mortise {
 namespace {
 
-constexpr std::size_t kLongestName = 64;  // a name is shown in tables and on the page
-
 bool printable(const std::string& name) {
-  return !name.empty() && name.size() <= kLongestName &&
-         std::none_of(name.begin(), name.end(),
-                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  return !name.empty() && name.size() <= 64 && std::none_of(name.begin(), name.end(), control);
 }
 
 bool waits_for_increments(CommandKind kind) {
@@ -116,16 +113,18 @@ bool Inbox::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
   });
 }
 
+bool Inbox::is_behind(const std::vector<DeferredCommand>& waiting, const Command& command) {
+  return std::any_of(waiting.begin(), waiting.end(), [&](const DeferredCommand& other) {
+    return other.received.command.user == command.user &&
+           other.received.command.part == command.part;
+  });
+}
+
 void Inbox::carry_out_deferred(World& world, std::int64_t now_ns, Intake& intake) {
   std::vector<DeferredCommand> still_waiting;
   for (DeferredCommand& d : std::exchange(deferred_, {})) {
     const Command& command = d.received.command;
-    const bool behind_another =
-        std::any_of(still_waiting.begin(), still_waiting.end(), [&](const DeferredCommand& other) {
-          return other.received.command.user == command.user &&
-                 other.received.command.part == command.part;
-        });
-    if (behind_another || waits(command.user, command.part, d.after)) {
+    if (is_behind(still_waiting, command) || waits(command.user, command.part, d.after)) {
       still_waiting.push_back(std::move(d));
     } else {
       carry_out(command, world, now_ns, intake);
@@ -218,13 +217,8 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
     intake.replies.push_back(std::move(reply));
     return;
   }
-  const bool behind_another =
-      std::any_of(deferred_.begin(), deferred_.end(), [&](const DeferredCommand& other) {
-        return other.received.command.user == command.user &&
-               other.received.command.part == command.part;
-      });
   const std::uint64_t newest = seat->increments.newest();
-  if (behind_another ||
+  if (is_behind(deferred_, command) ||
       (waits_for_increments(command.kind) && waits(command.user, command.part, newest))) {
     ++counters_.commands_deferred;
     deferred_.push_back({received, newest});

@@ -105,6 +105,8 @@ class Inbox {
   /// Takes this tick's share from the backlog, against the holders as they are now.
   void take_increments(const World& world, std::int64_t now_ns, Intake& intake);
   bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
+  /// Does one about the same part wait already? Then this one waits behind it.
+  static bool is_behind(const std::vector<DeferredCommand>& waiting, const Command& command);
   Refusal judge(const Increment& increment, const World& world) const;
   void refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake);
   void depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world, Intake& intake);
