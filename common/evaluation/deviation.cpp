@@ -70,6 +70,8 @@ class Matcher {
     match.feature.surface = surface_;
     match.feature.grade = plane_ ? DeviationGrade::kPlanar : DeviationGrade::kDeclaredFeature;
     if (!plane_) match.note = drop_deep_facets();
+    if (const std::string beside = just_missed(); !beside.empty())
+      match.note += (match.note.empty() ? "" : "; ") + beside;
     if (const std::string contradiction = contradicts(); !contradiction.empty())
       return fail(Code::kInvalidInput, contradiction);
     for (const Candidate& c : near_) {
@@ -175,6 +177,23 @@ class Matcher {
            size_text(deepest_mm) +
            " mm inside it, far more than the others; taken for a flat cut, " +
            "not for this feature";
+  }
+
+  // Triangles that look like the feature but stand a little too far off: said, since they fall to
+  // the rest of the part.
+  std::string just_missed() const {
+    constexpr double kALittle = 10.0;
+    std::size_t count = 0;
+    double most_mm = 0.0;
+    for (const Candidate& c : same_way_) {
+      const double off_mm = std::max(std::fabs(c.corner_mm.lo), std::fabs(c.corner_mm.hi));
+      if (off_mm > kALittle * near_mm(c)) continue;
+      ++count;
+      most_mm = std::max(most_mm, off_mm);
+    }
+    if (count == 0) return {};
+    return std::to_string(count) + " more triangles run the same way up to " + size_text(most_mm) +
+           " mm off, farther than counts as near; declare a chord_error if they belong to it";
   }
 
   // 3. corners may stand off by the chord error, but then the facets must reach the surface

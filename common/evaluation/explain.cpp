@@ -129,7 +129,7 @@ std::string conclusion(const ExplainInput& in) {
     case CollisionClass::kFake:
       return name + ", " + um(in.margin_mm) + " µm to spare";
     case CollisionClass::kPotential: {
-      if (in.no_inside) return name + ", a part is open: crossing is known, depth is not";
+      if (in.no_inside) return name + ", a part is open and has no inside";
       char text[48];
       std::snprintf(text, sizeof text, ", P(interference) %.3g %%", 100.0 * in.probability);
       return name + text;
@@ -143,6 +143,9 @@ std::string conclusion(const ExplainInput& in) {
 }  // namespace
 
 std::string explain(const ExplainInput& in) {
+  if (in.no_inside && in.delta_mm.hi > 0.0)
+    return "the surfaces cross, but a part is open and has no inside, so the depth is not known: " +
+           std::string(name_of(in.collision_class));
   std::string text = overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
   if (in.capped) text += "; work limit reached, brackets are wide";
   return text;

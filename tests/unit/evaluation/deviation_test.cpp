@@ -83,6 +83,22 @@ TEST(Deviation, RealTessellationsAreOffByMicrometresAndAreCarried) {
   EXPECT_LT(bore->feature.residual_mm, 0.6e-3 + 1e-9);
 }
 
+TEST(Deviation, TrianglesThatJustMissAreSaid) {
+  TriangleMesh tube = shapes::turned(10.0, 5.0, 9.0, 48);
+  for (Vec3& p : tube.points_mm)
+    if (std::hypot(p.x(), p.y()) < 6.0 && p.x() > 4.999) p.x() -= 2e-3;
+  const auto bore = match_feature(tube, declared("bore", cylinder(5.0, true)));
+  ASSERT_TRUE(bore);
+  EXPECT_EQ(bore->feature.triangles.size(), 92U);
+  EXPECT_NE(bore->note.find("4 more triangles"), std::string::npos) << bore->note;
+  FeatureDeclaration generous = declared("bore", cylinder(5.0, true));
+  generous.chord_error_mm = 2.1e-3;
+  const auto all = match_feature(tube, generous);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->feature.triangles.size(), 96U);
+  EXPECT_NEAR(all->feature.residual_mm, 2e-3, 1e-9);
+}
+
 TEST(Deviation, AWrongRadiusIsRefusedWithTheOneTheMeshHas) {
   const TriangleMesh tube = shapes::turned(12.0, 8.1, 20.0, 64);
   expect_refused(match_feature(tube, declared("bore", cylinder(8.0, true))),

@@ -263,6 +263,11 @@ TEST(Explain, OtherSentences) {
             "above 100.0 µm: potential, P(interference) 25 %");
   in.no_inside = true;
   EXPECT_NE(explain(in).find("a part is open"), std::string::npos);
+  in.delta_mm = {0.05, 1.0};
+  EXPECT_EQ(explain(in),
+            "the surfaces cross, but a part is open and has no inside, so the depth is not known: "
+            "potential");
+  in.no_inside = false;
   in.capped = true;
   EXPECT_NE(explain(in).find("work limit"), std::string::npos);
   in.delta_mm = {0.01, std::numeric_limits<double>::infinity()};

@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+};
+
+// Runs a program of the house as a user would; stderr is left out.
+Outcome run(const std::string& program, const std::string& arguments) {
+  const std::string command =
+      std::string(MORTISE_BIN_DIR) + "/" + program + " " + arguments + " 2>/dev/null";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    outcome.out.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+class ScenarioTools : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("mortise_scenario_tools_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name, const std::string& text) const {
+    const auto path = folder_ / name;
+    std::ofstream(path) << text;
+    return path.string();
+  }
+
+  std::filesystem::path folder_;
+};
+
+// Two blocks with their top and bottom faces this far apart (negative: overlapping).
+std::string blocks(const std::string& gap) {
+  return "name: blocks\nunits: mm\nparts:\n"
+         "  - {name: low, generator: {kind: block, x: 20, y: 20, z: 10}, tolerance: \"±0.05\"}\n"
+         "  - {name: high, generator: {kind: block, x: 10, y: 10, z: 10}, tolerance: \"±0.05\", "
+         "moving: true, pose: {position: [0, 0, " +
+         gap + "]}}\n";
+}
+
+TEST_F(ScenarioTools, LintSaysWhatIsRightAndWhatIsWrong) {
+  const std::string good = file("good.yaml", blocks("10.2"));
+  const Outcome ok = run("mortise-lint", good + " --json");
+  EXPECT_EQ(ok.exit_code, 0);
+  const auto json = nlohmann::json::parse(ok.out);
+  EXPECT_EQ(json.at("parts").size(), 2U);
+  EXPECT_TRUE(json.at("usable").get<bool>());
+  EXPECT_TRUE(json.at("parts").at(0).at("closed").get<bool>());
+  EXPECT_EQ(run("mortise-lint", good).out.find('\033'), std::string::npos);  // no colours in a pipe
+
+  const std::string bad = file("bad.yaml", "name: a\nunits: mm\npolcy: stop\nparts: []\n");
+  const Outcome refused = run("mortise-lint", bad);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.out.find("bad.yaml:3: "), std::string::npos) << refused.out;
+  EXPECT_NE(refused.out.find("bad.yaml:4: "), std::string::npos) << refused.out;
+  EXPECT_EQ(run("mortise-lint", "/nowhere.yaml").exit_code, 3);
+  EXPECT_EQ(run("mortise-lint", "").exit_code, 2);
+}
+
+TEST_F(ScenarioTools, JudgeGivesTheClassesOfTheProfileZones) {
+  struct Case {
+    const char* z;
+    const char* expected;
+    int exit_real, exit_potential;
+  };
+  // The blocks touch at z = 10.
+  for (const Case& c : {Case{"9.8", "real", 6, 6}, Case{"9.95", "potential", 0, 6},
+                        Case{"10.05", "potential", 0, 6}, Case{"10.2", "", 0, 0}}) {
+    const std::string scenario = file("blocks.yaml", blocks(c.z));
+    const Outcome judged = run("mortise-judge", scenario + " --json --full --fail-on real");
+    EXPECT_EQ(judged.exit_code, c.exit_real) << c.z;
+    EXPECT_EQ(run("mortise-judge", scenario + " --fail-on potential").exit_code, c.exit_potential)
+        << c.z;
+    const auto json = nlohmann::json::parse(judged.out);
+    if (std::string(c.expected).empty()) {
+      EXPECT_TRUE(json.at("pairs").empty()) << c.z;
+      continue;
+    }
+    ASSERT_EQ(json.at("pairs").size(), 1U) << c.z;
+    const auto& verdict = json.at("pairs").at(0).at("verdicts").at(0);
+    EXPECT_EQ(verdict.at("class"), c.expected) << c.z;
+    EXPECT_NEAR(verdict.at("delta_mm").at(0).get<double>(), 10.0 - std::atof(c.z), 2e-4);
+    EXPECT_NEAR(verdict.at("real_above_mm").get<double>(), 0.1, 2e-4);
+    EXPECT_NEAR(verdict.at("fake_below_mm").get<double>(), -0.1, 2e-4);
+  }
+}
+
+TEST_F(ScenarioTools, JudgeRefusesABadScenarioAndABadOption) {
+  EXPECT_EQ(run("mortise-judge", file("bad.yaml", "name: a\n")).exit_code, 3);
+  EXPECT_EQ(run("mortise-judge", file("a.yaml", blocks("10")) + " --fail-on fake").exit_code, 2);
+}
+
+}  // namespace
