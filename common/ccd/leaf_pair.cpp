@@ -123,9 +123,10 @@ Nearest LeafPair::exact(int i, int j, bool may_cross, CcdWork& work) const {
           d.crossing};
 }
 
-// 1. the pair that decided last time (at first: the pair whose centres are nearest), exactly;
+// 1. the pair that decided last time (at first: the pair whose centres are nearest);
 // 2. every other pair first along the normal of that one: on a convex place it is freed by it;
-// 3. what is left, exactly.
+// 3. along the normals of its own faces: a sliding patch is freed by them;
+// 4. what is left, by the exact distance.
 LeafAdvance LeafPair::advance(const PairMotion& motion, const Goal& goal, bool may_cross,
                               CcdWork& work) {
   ++work.leaf_tests;
@@ -185,10 +186,32 @@ LeafAdvance LeafPair::advance(const PairMotion& motion, const Goal& goal, bool m
     }
     return false;
   };
+  // Free for the whole tick, or for longer than what is known already, along the normal of either
+  // face: all of a patch that touches and slides. The corners decide; no distance is needed. Pairs
+  // that do not start in touch are seldom freed so.
+  const auto free_by_normals = [&](int i, int j) {
+    if (!goal.below_zero) return false;
+    const double enough = std::min(result.dt, 1.0);
+    for (const bool of_a : {false, true}) {
+      const Triangle& t = of_a ? x_[i] : y_[j];
+      const Vec3 outward = (t[1] - t[0]).cross(t[2] - t[0]);
+      const double length = outward.norm();
+      if (!(length > 0.0)) continue;
+      const Direction d(motion, outward * ((of_a ? 1.0 : -1.0) / length));
+      const double dt = free_time(motion, along_a(d, i), along_b(d, j), goal.contact_mm);
+      if (dt < enough) continue;
+      result.dt = std::min(result.dt, dt);
+      return true;
+    }
+    return false;
+  };
   const int first_i = try_i_, first_j = try_j_;
   Vec3 n = Vec3::Zero();
-  if (settle(first_i, first_j, n)) return result;
+  const bool first_free = free_by_normals(first_i, first_j);
+  if (!first_free && settle(first_i, first_j, n)) return result;
   if (count_a_ == 1 && count_b_ == 1) return result;
+  // At the start a pair within contact_mm must be seen, later it must not come within target_mm.
+  const double kept_mm = may_cross ? goal.contact_mm : goal.target_mm;
   const Direction d(motion, n);
   Along b[kMost];
   for (int j = 0; j < count_b_; ++j) b[j] = along_b(d, j);
@@ -196,7 +219,8 @@ LeafAdvance LeafPair::advance(const PairMotion& motion, const Goal& goal, bool m
     const Along a = along_a(d, i);
     for (int j = 0; j < count_b_; ++j) {
       if (i == first_i && j == first_j) continue;
-      if (free_time(motion, a, b[j], goal.target_mm) >= result.dt && result.dt > 0.0) continue;
+      if (!first_free && free_time(motion, a, b[j], kept_mm) >= result.dt) continue;
+      if (free_by_normals(i, j)) continue;
       Vec3 own;
       if (settle(i, j, own)) return result;
     }
