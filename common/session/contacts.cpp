@@ -59,7 +59,7 @@ double certain_depth_mm(PairWork& pair, double t, CcdScratch& ccd) {
   query.X_WA = pair.motion_a.pose_at(t);
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = Refinement::kFull;
-  query.accuracy_mm = kDepthAccuracyDefault_mm;
+  query.accuracy_mm = kDeepeningSlack_mm;
   query.work_cap = kRealTimeWorkCap;  // lower ends are found early; the upper are not needed
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
@@ -131,7 +131,7 @@ double stop_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
   if (real.real_at_start) return withdrawal_time(pair, ccd);
   pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
   if (real.capped) pair.undecided = true;
-  return real.becomes_real || real.capped ? real.t_free : 1.0;
+  return real.t_free;  // 1 when it never becomes real; nothing beyond is proven
 }
 
 // With a band there are two questions: when do they come so near that the real surfaces could meet,
