@@ -74,7 +74,8 @@ Json closing_json(const Closing& closing, const TickLoop& loop) {
   json["statistics"] = mortise::json_of(loop.statistics(), names_of(loop.world()));
   json["times_us"] = {{"tick", json_of(metrics.tick)},
                       {"step", json_of(metrics.step)},
-                      {"lateness", json_of(metrics.lateness)}};
+                      {"lateness", json_of(metrics.lateness)},
+                      {"delay", json_of(metrics.delay)}};
   json["overloads"] = metrics.overloads;
   json["missed_deadlines"] = metrics.missed_deadlines;
   json["inbox"] = json_of(loop.inbox().counters());
@@ -98,7 +99,8 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
   text += "\nWhat the ticks did and did not do\n" + stage_table(loop.statistics().counters());
   text += fmt::format("\nTimes, µs      {:>13}{:>12}{:>12}\n", "p50", "p99", "max");
   text += times_line("tick", metrics.tick) + times_line("of it, engine", metrics.step) +
-          times_line("lateness", metrics.lateness);
+          times_line("lateness", metrics.lateness) + times_line("delay", metrics.delay);
+  text += "  (delay: from send to tick, beyond the fastest increment of the same user)\n";
   text += fmt::format(
       "  deadlines held {:.2f} % ({} ticks ran over, {} deadlines missed)\n",
       ticks > 0 ? 100.0 * (1.0 - static_cast<double>(metrics.missed_deadlines) /

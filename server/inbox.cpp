@@ -87,8 +87,7 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   depart(input.lost, false, world, intake);
   for (const JoinRequest& request : input.joins) admit_join(request, world, now_ns, intake);
 
-  // 3. What came from users: increments into the backlog first, so that a command knows what was
-  // sent before it.
+  // 3. What came from users: increments first, so that a command knows what was sent before it.
   for (UserId user : input.heartbeats) {
     if (user && user.value <= seats_.size() && seats_[user.value - 1].present) {
       renew(world, user, now_ns);

@@ -31,6 +31,9 @@ struct TickMetrics {
   DurationHistogram tick;      ///< drain to publish
   DurationHistogram step;      ///< the engine's part
   DurationHistogram lateness;  ///< start of a tick after its deadline
+  /// From send to the tick, beyond the fastest increment of the same sender so far: clocks of two
+  /// machines cannot be compared, the spread can. One sample a user and tick.
+  DurationHistogram delay;
   std::uint64_t ticks = 0;
   std::uint64_t overloads = 0;         ///< ticks that ran past the next deadline
   std::uint64_t missed_deadlines = 0;  ///< deadlines passed over because of them

@@ -42,6 +42,7 @@ void TickLoop::tick() {
   ServerInput input = channel_.take();
   snapshot_wanted_ |= !input.snapshot_requests.empty();
   inbox_.admit(std::move(input), world_, now_ns_, intake_);
+  measure_delay();
 
   // 1-6. the engine
   const std::int64_t step_start_ns = clock_.now_ns();
@@ -66,6 +67,19 @@ void TickLoop::record() {
   record.increments = intake_.increments;
   record.report = report_;
   log_->record(std::move(record));
+}
+
+void TickLoop::measure_delay() {
+  for (const Ack& ack : intake_.acks) {
+    if (ack.sent_ns == 0) continue;
+    const std::int64_t took_ns = now_ns_ - ack.sent_ns;
+    const auto [fastest, is_first] = fastest_ns_.emplace(ack.user, took_ns);
+    if (took_ns < fastest->second) fastest->second = took_ns;
+    if (!is_first) metrics_.delay.add(took_ns - fastest->second);
+  }
+  for (const Decision& decision : intake_.decisions) {
+    if (decision.kind == Decision::Kind::kJoin) fastest_ns_.erase(decision.user);  // another clock
+  }
 }
 
 void TickLoop::publish() {

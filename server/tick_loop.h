@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,7 @@ class TickLoop {
 
  private:
   void record();
+  void measure_delay();
   void publish();
   void publish_snapshot_when_due();
   void publish_snapshot();
@@ -75,7 +77,8 @@ class TickLoop {
   StepReport report_;
   SessionStatistics statistics_;
   TickMetrics metrics_;
-  std::vector<PartPose> published_;  ///< what the pose stream said last, by part index
+  std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
+  std::vector<PartPose> published_;            ///< what the pose stream said last, by part index
   std::uint64_t event_seq_ = 0;
   std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0;
   bool changed_since_snapshot_ = false;
