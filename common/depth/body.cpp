@@ -3,8 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/constants.h"
+
 namespace mortise {
 namespace {
+
+// Sharp neighbours kept of one triangle; a corner of a machine part has two or three.
+constexpr std::size_t kMostSharp = 8;
+
+// Deeper than this many times the largest offset the nearest face less that offset is good enough.
+constexpr double kDeepReaches = 20.0;
+
+// Share of a face's deviation by which two ways to measure it may differ over the face.
+constexpr double kSecondOrder = 0.1;
+
+// Planes that differ by less than this share of a triangle's size are one plane.
+constexpr double kFlatShare = 1e-9;
 
 // Torus faces are bounded by their triangles and the band's deviation: the distance to a torus is
 // not convex.
@@ -35,6 +49,52 @@ Vec3 Body::normal(std::uint32_t triangle) const {
   return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
 }
 
+std::span<const std::uint32_t> Body::sharp_neighbours(std::uint32_t triangle) const {
+  if (sharp_range_.empty()) sharp_range_.resize(mesh->triangles.size());
+  if (sharp_range_[triangle].first == Topology::kNone) find_sharp_neighbours(triangle);
+  const Range& range = sharp_range_[triangle];
+  return {sharp_.data() + range.first, range.count};
+}
+
+void Body::find_sharp_neighbours(std::uint32_t triangle) const {
+  const Topology& topology = solid->topology();
+  const Vec3 n = normal(triangle);
+  const double size = (mesh->corner(triangle, 1) - mesh->corner(triangle, 0)).norm();
+  const auto first = static_cast<std::uint32_t>(sharp_.size());
+  const auto bounds = [&](std::uint32_t t, const Vec3& normal_t) {
+    for (int k = 0; k < 3; ++k)
+      if (normal_t.dot(mesh->corner(triangle, k) - mesh->corner(t, 0)) > kFlatShare * size)
+        return false;
+    return true;
+  };
+  const auto known = [&](std::uint32_t t, const Vec3& normal_t) {
+    const Surface* surface = surface_of(face(t), Layer::kUpper);
+    for (std::size_t i = first; i < sharp_.size(); ++i) {
+      const Surface* other = surface_of(face(sharp_[i]), Layer::kUpper);
+      if (surface != nullptr ? surface == other
+                             : other == nullptr && face_index(t) == face_index(sharp_[i]) &&
+                                   normal(sharp_[i]).dot(normal_t) > 1.0 - kFlatShare)
+        return true;
+    }
+    return false;
+  };
+  for (int corner = 0; corner < 3; ++corner) {
+    const std::uint32_t point = mesh->triangles[triangle][corner];
+    std::uint32_t t = triangle;
+    for (std::size_t guard = 0; guard < mesh->triangles.size(); ++guard) {
+      int k = 0;
+      while (k < 2 && mesh->triangles[t][k] != point) ++k;
+      t = topology.neighbor[t][k];
+      if (t == triangle || t == Topology::kNone) break;
+      const Vec3 normal_t = normal(t);
+      if (normal_t.dot(n) > std::cos(kSharpEdge_rad) || normal_t.isZero(0.0)) continue;
+      if (sharp_.size() - first < kMostSharp && bounds(t, normal_t) && !known(t, normal_t))
+        sharp_.push_back(t);
+    }
+  }
+  sharp_range_[triangle] = {first, static_cast<std::uint32_t>(sharp_.size() - first)};
+}
+
 const Surface* Body::surface_of(const SurfaceBand::Face& face, Layer layer) {
   if (layer == Layer::kMesh || !face.surface || !has_convex_distance(*face.surface)) return nullptr;
   return &*face.surface;
@@ -60,19 +120,27 @@ double Body::offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const
   return offset_of(f, layer) - (surface != nullptr ? surface->signed_distance_mm(x) : 0.0);
 }
 
-double Body::certain_depth(const Vec3& x) const {
-  const SurfacePoint nearest = nearest_surface(*solid, x);
-  const double at_nearest = depth_at(nearest, Layer::kLower);
-  if (nearest.depth_mm <= 0.0 || at_nearest <= 0.0) return at_nearest;
-  // Inside the mesh: a face farther away may come nearer by its own lower offset.
-  const double reach = largest_offset_mm[static_cast<int>(Layer::kLower)];
-  if (nearest.depth_mm > 2.0 * reach) return nearest.depth_mm - reach;
-  double least = at_nearest;
+double Body::depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const {
+  if (layer == Layer::kMesh) return nearest.depth_mm;
+  double least = nearest.depth_mm + offset_at(nearest.triangle, nearest.point, layer);
+  // Over a declared face its own distance is exact; the mesh point's deviation differs from it in
+  // second order. Where they differ by more, x lies beyond the face's end.
+  const SurfaceBand::Face& at_face = face(nearest.triangle);
+  if (const Surface* surface = surface_of(at_face, layer)) {
+    const double exact = offset_of(at_face, layer) - surface->signed_distance_mm(x);
+    if (std::fabs(exact - least) <= kSecondOrder * at_face.deviation_mm.width())
+      least = std::min(least, exact);
+  }
+  const double reach = largest_offset_mm[static_cast<int>(layer)];
+  // Outside the mesh the nearest face decides; deep inside no face comes nearer than the nearest
+  // one less the offsets of both.
+  if (nearest.depth_mm <= 0.0 || least <= 0.0 || reach == 0.0) return least;
   const double range = nearest.depth_mm + 2.0 * reach;
+  if (nearest.depth_mm > kDeepReaches * reach) return std::min(least, nearest.depth_mm - reach);
   const Box box{x.array() - range, x.array() + range};
   for_each_triangle_in(solid->bvh(), box, [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
     const Vec3 foot = nearest_on_triangle(x, c[0], c[1], c[2]);
-    least = std::min(least, (foot - x).norm() + offset_at(t, foot, Layer::kLower));
+    least = std::min(least, (foot - x).norm() + offset_at(t, foot, layer));
   });
   return least;
 }

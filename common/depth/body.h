@@ -1,6 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/geometry/signed_distance.h"
@@ -30,6 +33,11 @@ struct Body {
   }
   Vec3 normal(std::uint32_t triangle) const;
 
+  /// Triangles around the corners of one that meet its plane at a sharp convex angle and have all
+  /// of it on their material side: where they move inward they cut it, where outward they extend
+  /// it. One of each declared surface or plane.
+  std::span<const std::uint32_t> sharp_neighbours(std::uint32_t triangle) const;
+
   /// The declared surface that stands for a face in a layer; null: its triangles do.
   static const Surface* surface_of(const SurfaceBand::Face& face, Layer layer);
   /// Outward offset of the layer from that surface or, without one, from the mesh.
@@ -39,13 +47,17 @@ struct Body {
   /// Outward offset of the layer at mesh point x of a triangle.
   double offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const;
 
-  /// Depth of x in the layer: exact where offsets vary slowly against the depth; positive inside.
-  double depth_at(const SurfacePoint& nearest, Layer layer) const {
-    return nearest.depth_mm + offset_at(nearest.triangle, nearest.point, layer);
-  }
-  /// A depth that x has in every admissible real part, every face within reach asked; <= 0: not
-  /// proven inside.
-  double certain_depth(const Vec3& x) const;
+  /// Depth of x in the layer, positive inside, given its nearest mesh point. Inside the mesh every
+  /// face within reach is asked, since one farther away may come nearer by its own offset.
+  double depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const;
+
+ private:
+  void find_sharp_neighbours(std::uint32_t triangle) const;
+  struct Range {
+    std::uint32_t first = Topology::kNone, count = 0;
+  };
+  mutable std::vector<Range> sharp_range_;  // by triangle, filled when asked for
+  mutable std::vector<std::uint32_t> sharp_;
 };
 
 /// Calls visit(triangle, corners) for every triangle whose box is within the given box (part

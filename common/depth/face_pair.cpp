@@ -10,6 +10,9 @@ namespace {
 // Axes farther apart in angle are no sliding fit: the closed form would be far from tight.
 constexpr double kLeastCosine = 0.95;
 
+// Where along the common length the overlap at an end is taken.
+constexpr double kEndShare = 0.002;
+
 struct Line {
   Vec3 point, direction;
   Vec3 at(double z) const { return point + z * direction; }
@@ -54,7 +57,11 @@ std::optional<InHole> shaft_in_hole(const Shaft& shaft, const Shaft& hole, doubl
   in.hi_mm += shaft.radius_mm - hole.radius_mm;
   in.lo_mm = -std::numeric_limits<double>::infinity();
   if (narrow.lo_mm > narrow.hi_mm) return in;
-  for (const double z : {narrow.lo_mm, 0.5 * (narrow.lo_mm + narrow.hi_mm), narrow.hi_mm}) {
+  // The middle first: at the ends other faces are as near. A little inside of them, for the same
+  // reason.
+  const double length = narrow.hi_mm - narrow.lo_mm;
+  for (const double share : {0.5, kEndShare, 1.0 - kEndShare}) {
+    const double z = narrow.lo_mm + share * length;
     const Vec3 center = shaft.axis.at(z);
     const Vec3 away = hole.axis.across(center);
     Vec3 out = away - away.dot(shaft.axis.direction) * shaft.axis.direction;
@@ -63,7 +70,7 @@ std::optional<InHole> shaft_in_hole(const Shaft& shaft, const Shaft& hole, doubl
     const Vec3 point = center + shaft.radius_mm * out.normalized();
     const Vec3 from_axis = hole.axis.across(point);
     const double overlap = from_axis.norm() - hole.radius_mm;
-    if (overlap <= in.lo_mm) continue;
+    if (overlap <= in.lo_mm + 1e-9 * shaft.radius_mm) continue;
     in.lo_mm = overlap;
     in.point = point;
     in.outward = -from_axis.normalized();

@@ -70,14 +70,20 @@ class Overlap {
     const bool lazy = query_.refinement == Refinement::kDecided;
     const std::vector<Bracket> mesh = search(Layer::kMesh, lazy);
     std::vector<Bracket> upper, lower;
-    if (!pair_.trivial) {
+    bool any_open = false;
+    for (const bool open : regions_.may_interfere) any_open |= open;
+    if (!pair_.trivial && (any_open || !lazy)) {
       upper = search(Layer::kUpper, lazy);
       lower = search(Layer::kLower, lazy);
     }
     for (std::size_t i = 0; i < regions_.count; ++i) {
       const Bracket& d = mesh[i];
-      const Bracket& p = pair_.trivial ? d : upper[i];
-      const Bracket& c = pair_.trivial ? d : lower[i];
+      const Bracket p = pair_.trivial   ? d
+                        : upper.empty() ? proven_apart(d, Layer::kUpper)
+                                        : upper[i];
+      const Bracket c = pair_.trivial   ? d
+                        : lower.empty() ? proven_apart(d, Layer::kLower)
+                                        : lower[i];
       if (d.best.depth_mm <= pair_.touch_mm && p.hi_mm <= pair_.touch_mm) continue;
       OverlapRegion region;
       region.delta_mm = bracket_of(d);
@@ -95,6 +101,19 @@ class Overlap {
       if (region.certain_mm.lo > 0.0) set_witness(find_witness(pair_, c.best), region);
       result_.regions.push_back(std::move(region));
     }
+  }
+
+  // No admissible surfaces of the region interfere; how far from it at the deepest point of the
+  // mesh.
+  Bracket proven_apart(const Bracket& mesh, Layer layer) const {
+    Bracket apart;
+    apart.hi_mm = 0.0;
+    apart.best = mesh.best;
+    if (std::isfinite(mesh.best.depth_mm))
+      apart.best = sample_at(pair_, layer, mesh.best.role, mesh.best.triangle,
+                             pair_.X_KS[1 - mesh.best.role] * mesh.best.point_K);
+    apart.best.depth_mm = std::min(apart.best.depth_mm, 0.0);
+    return apart;
   }
 
   Interval bracket_of(const Bracket& bracket) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace mortise {
 namespace {
@@ -32,15 +33,120 @@ void finish(Patch& patch) {
   patch.radius_mm += patch.thickness();
 }
 
-// All but the points: in frame K.
-Patch shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS) {
+// What a sharp neighbour leaves of a face: the points that are not outside of it. Part frame.
+struct Cut {
+  const Surface* surface = nullptr;  // null: plane
+  Vec3 normal = Vec3::Zero(), point = Vec3::Zero();
+  double offset_mm = 0.0;
+
+  double outside(const Vec3& x) const {
+    return (surface != nullptr ? surface->signed_distance_mm(x) : normal.dot(x - point)) -
+           offset_mm;
+  }
+  Vec3 outward(const Vec3& x) const {
+    return surface != nullptr ? surface->outward_normal(x) : normal;
+  }
+};
+
+std::vector<Cut> cuts_of(const Body& s, Layer layer, std::uint32_t triangle) {
+  std::vector<Cut> cuts;
+  if (layer == Layer::kMesh) return cuts;
+  for (const std::uint32_t t : s.sharp_neighbours(triangle)) {
+    const SurfaceBand::Face& face = s.face(t);
+    const Cut cut{Body::surface_of(face, layer), s.normal(t), s.mesh->corner(t, 0),
+                  Body::offset_of(face, layer)};
+    if (cut.offset_mm < 0.0 || (cut.surface != nullptr && cut.surface->inward)) cuts.push_back(cut);
+  }
+  return cuts;
+}
+
+// A corner moved to the layer's surface; outward offsets are left to Patch::plus, which also covers
+// the wedge between two faces at a sharp edge.
+Vec3 lifted(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& corner) {
+  if (layer == Layer::kMesh) return corner;
+  const SurfaceBand::Face& face = s.face(triangle);
+  const double inward = std::min(0.0, Body::offset_of(face, layer));
+  const Surface* surface = Body::surface_of(face, layer);
+  if (surface == nullptr) return corner + inward * s.normal(triangle);
+  const Vec3 n = surface->outward_normal(corner);
+  return corner + (inward - surface->signed_distance_mm(corner)) * n;
+}
+
+using Polygon = std::vector<Vec3>;
+
+// Where the segment from a kept point to a cut one leaves the cut's inside, no earlier.
+Vec3 crossing(const Cut& cut, Vec3 kept, Vec3 gone) {
+  constexpr int kHalvings = 30;
+  for (int i = 0; i < kHalvings; ++i) {
+    const Vec3 middle = 0.5 * (kept + gone);
+    (cut.outside(middle) <= 0.0 ? kept : gone) = middle;
+  }
+  return gone;
+}
+
+// The hull of the result contains what the cut leaves. A bore's inside is round and leaves a hollow
+// rim, whose hull is spanned by its ends; a shaft or a plane cuts along the tangent plane below
+// each point that is outside.
+Polygon cut_by(const Cut& cut, const Polygon& polygon) {
+  Polygon left;
+  const auto clip = [&](const Cut& by, const Polygon& from) {
+    Polygon to;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Vec3 &a = from[i], &b = from[(i + 1) % from.size()];
+      const bool in_a = by.outside(a) <= 0.0, in_b = by.outside(b) <= 0.0;
+      if (in_a) to.push_back(a);
+      if (in_a != in_b) to.push_back(in_a ? crossing(by, a, b) : crossing(by, b, a));
+    }
+    return to;
+  };
+  if (cut.surface == nullptr || cut.surface->inward) return clip(cut, polygon);
+  left = polygon;
+  for (const Vec3& x : polygon) {
+    const double outside = cut.outside(x);
+    if (outside <= 0.0) continue;
+    const Vec3 n = cut.outward(x);
+    left = clip({nullptr, n, x - outside * n, 0.0}, left);
+  }
+  return left;
+}
+
+struct Shape {
   Patch patch;
+  Polygon polygon;  // of S
+};
+
+// All but the points of the patch: in frame K.
+Shape shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS) {
+  Shape shape;
+  Patch& patch = shape.patch;
   const SurfaceBand::Face& face = s.face(piece.triangle);
   const Surface* surface = Body::surface_of(face, layer);
   const double offset = Body::offset_of(face, layer);
-  const Vec3 middle = (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0;
-  Vec3 normal_S = surface != nullptr ? surface->outward_normal(middle) : s.normal(piece.triangle);
-  Vec3 center_S = middle;
+  Vec3 middle = (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0;
+  for (const Vec3& corner : piece.corners)
+    shape.polygon.push_back(lifted(s, layer, piece.triangle, corner));
+  const std::vector<Cut> cuts = cuts_of(s, layer, piece.triangle);
+  bool was_cut = false;
+  for (const Cut& cut : cuts) {
+    bool any = false;
+    for (const Vec3& x : shape.polygon) any |= cut.outside(x) > 0.0;
+    if (!any) continue;
+    was_cut = true;
+    shape.polygon = cut_by(cut, shape.polygon);
+    if (shape.polygon.empty()) return shape;
+  }
+  if (was_cut) {
+    middle = Vec3::Zero();
+    for (const Vec3& x : shape.polygon) middle += x;
+    middle /= static_cast<double>(shape.polygon.size());
+    // The hull over a hollow rim is wider than the face.
+    for (const Cut& cut : cuts) {
+      const double outside = cut.outside(middle);
+      if (outside > 0.0) middle -= outside * cut.outward(middle);
+    }
+  }
+  const Vec3 normal_S =
+      surface != nullptr ? surface->outward_normal(middle) : s.normal(piece.triangle);
   if (surface != nullptr) {
     const double width = width_around(*surface, piece);
     const double bend = surface->curvature_bound(middle);
@@ -50,37 +156,19 @@ Patch shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS)
     const bool line = surface->kind == SurfaceKind::kCylinder;
     patch.bulge_mm = (line ? 1.05 / 8.0 : 1.1 / 6.0) * bend * width * width;
     patch.bulges_outward = !surface->inward;
-    center_S -= surface->signed_distance_mm(middle) * normal_S;
   }
-  patch.center = X_KS * (center_S + offset * normal_S);
+  const Vec3 center_S =
+      was_cut && surface == nullptr ? middle : lifted(s, layer, piece.triangle, middle);
+  patch.center = X_KS * (center_S + std::max(0.0, offset) * normal_S);
   patch.normal = X_KS.q * normal_S;
   const auto add_plus = [&](const Vec3& normal_K, double offset_mm) {
     if (offset_mm > 0.0) patch.plus[patch.plus_count++] = {normal_K, offset_mm};
   };
   add_plus(patch.normal, offset);
-  if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0) {
-    const Topology& topology = s.solid->topology();
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t other = topology.neighbor[piece.triangle][k];
-      if (other == Topology::kNone || !topology.edge_sharp[piece.triangle][k] ||
-          topology.edge_kind[piece.triangle][k] != EdgeKind::kConvex)
-        continue;
-      add_plus(X_KS.q * s.normal(other), Body::offset_of(s.face(other), layer));
-    }
-  }
-  return patch;
-}
-
-// A corner moved to the layer's surface; outward offsets are left to Patch::plus, which also covers
-// the wedge between two faces at a sharp edge.
-Vec3 lifted(const Body& s, Layer layer, const Piece& piece, const Vec3& corner) {
-  if (layer == Layer::kMesh) return corner;
-  const SurfaceBand::Face& face = s.face(piece.triangle);
-  const double inward = std::min(0.0, Body::offset_of(face, layer));
-  const Surface* surface = Body::surface_of(face, layer);
-  if (surface == nullptr) return corner + inward * s.normal(piece.triangle);
-  const Vec3 n = surface->outward_normal(corner);
-  return corner + (inward - surface->signed_distance_mm(corner)) * n;
+  if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0)
+    for (const std::uint32_t t : s.sharp_neighbours(piece.triangle))
+      add_plus(X_KS.q * s.normal(t), Body::offset_of(s.face(t), layer));
+  return shape;
 }
 
 }  // namespace
@@ -100,19 +188,33 @@ double Patch::thickness() const {
   return sum;
 }
 
+Vec3 on_layer(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& x) {
+  if (layer == Layer::kMesh) return x;
+  Vec3 y = lifted(s, layer, triangle, x);
+  for (const Cut& cut : cuts_of(s, layer, triangle)) {
+    const double outside = cut.outside(y);
+    if (outside > 0.0) y -= outside * cut.outward(y);
+  }
+  const SurfaceBand::Face& face = s.face(triangle);
+  const Surface* surface = Body::surface_of(face, layer);
+  const Vec3 n = surface != nullptr ? surface->outward_normal(y) : s.normal(triangle);
+  return y + std::max(0.0, Body::offset_of(face, layer)) * n;
+}
+
 Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS) {
-  Patch patch = shape_of(s, layer, piece, X_KS);
-  for (const Vec3& corner : piece.corners)
-    patch.points[patch.count++] = X_KS * lifted(s, layer, piece, corner);
-  finish(patch);
-  return patch;
+  Shape shape = shape_of(s, layer, piece, X_KS);
+  for (const Vec3& x : shape.polygon)
+    if (shape.patch.count < Patch::kMost) shape.patch.points[shape.patch.count++] = X_KS * x;
+  finish(shape.patch);
+  return shape.patch;
 }
 
 Patch make_swept_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS0,
                        const Pose& X_KS1, double spread_mm, double turn_rad) {
-  Patch patch = shape_of(s, layer, piece, X_KS0);
-  for (const Vec3& corner : piece.corners) {
-    const Vec3 x = lifted(s, layer, piece, corner);
+  Shape shape = shape_of(s, layer, piece, X_KS0);
+  Patch& patch = shape.patch;
+  for (const Vec3& x : shape.polygon) {
+    if (patch.count + 2 > Patch::kMost) break;
     patch.points[patch.count++] = X_KS0 * x;
     patch.points[patch.count++] = X_KS1 * x;
   }

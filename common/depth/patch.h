@@ -20,7 +20,7 @@ struct Patch {
   double bulge_mm = 0.0;       ///< the surface leaves the hull by no more than this ...
   bool bulges_outward = true;  ///< ... outward (convex face) or inward (concave)
   double spread_mm = 0.0;      ///< and in any direction (paths of rotation)
-  std::array<Plus, 4> plus;    ///< outward offsets: of the face, and of sharp neighbours
+  std::array<Plus, 9> plus;    ///< outward offsets: of the face, and of sharp neighbours
   int plus_count = 0;
   Vec3 center = Vec3::Zero();  ///< a point of the layer's surface (at the start of the interval)
   double radius_mm = 0.0;      ///< of all points about center, thickness included
@@ -37,7 +37,12 @@ struct Piece {
   std::uint32_t triangle = 0;
 };
 
-/// The patch of a piece of S in a layer, in frame K.
+/// A point of the layer's surface over a mesh point of a triangle; cut back where a sharp neighbour
+/// moves inward. Part frame.
+Vec3 on_layer(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& x);
+
+/// The patch of a piece of S in a layer, in frame K. Without points when the neighbours' surfaces
+/// cut all of it away.
 Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS);
 
 /// The same over a motion from X_KS0 to X_KS1 on which every point of the piece stays within

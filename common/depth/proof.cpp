@@ -17,8 +17,8 @@ constexpr double kSameSide = 0.5;
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
-// A coarse bracket of a surface over a triangle is enough to see on which side it lies.
-constexpr double kRangeShare = 0.1;
+// On which side of a surface a triangle lies: a coarse bracket first, in shares of the chord error.
+constexpr double kRangeShares[2] = {0.1, 1e-3};
 
 class Neighbourhood {
  public:
@@ -142,10 +142,24 @@ class Neighbourhood {
       deepest = std::max(deepest, depth);
     }
     deepest += facet.offset_mm + patch_.beyond(facet.normal, turn);
-    if (facet.surface == nullptr || proof_.known == nullptr) return deepest;
-    return std::min(deepest,
-                    proof_.known->of(proof_.role, proof_.face_s, k_.face_index(facet.triangle)) +
-                        proof_.offset_s_mm + facet.offset_mm);
+    if (facet.surface == nullptr || proof_.known == nullptr || proof_.known->rows.empty())
+      return deepest;
+    return std::min(deepest, known_depth(facet));
+  }
+
+  // By closed form. What holds for a declared face holds for its sharp neighbours too, which end on
+  // it: no point of theirs is outside of it.
+  double known_depth(const Facet& facet) const {
+    const Body& s = *proof_.s;
+    const std::uint16_t face_k = k_.face_index(facet.triangle);
+    const auto of = [&](std::uint32_t t) {
+      return proof_.known->of(proof_.role, s.face_index(t), face_k) +
+             Body::offset_of(s.face(t), proof_.layer);
+    };
+    double least = of(proof_.triangle_s);
+    for (const std::uint32_t t : s.sharp_neighbours(proof_.triangle_s))
+      least = std::min(least, of(t));
+    return least + facet.offset_mm;
   }
 
   bool covered(std::uint32_t t, const Corners& c) const {
@@ -167,11 +181,18 @@ class Neighbourhood {
       // Faces that end on a bore end on its true circle; their triangles end on chords of it.
       const double chord = std::max(0.0, -k_.face(wall.triangle).deviation_mm.lo);
       allowed += chord;
-      if (wall.surface->inward && highest <= allowed)
-        highest = wall.surface
-                      ->signed_distance_range_mm(c[0], c[1], c[2],
-                                                 kRangeShare * chord + proof_.rounding_mm)
-                      .hi;
+      if (wall.surface->inward)
+        for (const double share : kRangeShares) {
+          if (highest > allowed) return false;
+          const double over =
+              wall.surface
+                  ->signed_distance_range_mm(c[0], c[1], c[2], share * chord + proof_.rounding_mm)
+                  .hi;
+          if (over <= allowed || share == kRangeShares[1]) {
+            highest = over;
+            break;
+          }
+        }
     }
     if (highest > allowed) return false;
     if (proof_.layer == Layer::kMesh) return true;
@@ -261,7 +282,8 @@ double KnownOverlaps::of(int role, std::uint16_t face_s, std::uint16_t face_k) c
 }
 
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch) {
-  if (proof.k->depth_at(proof.at_center, proof.layer) > proof.limit_mm + proof.rounding_mm)
+  if (proof.k->depth_in(patch.center, proof.at_center, proof.layer) >
+      proof.limit_mm + proof.rounding_mm)
     return false;
   return Neighbourhood(proof, patch, scratch).holds_off();
 }

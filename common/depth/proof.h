@@ -36,8 +36,8 @@ struct KnownOverlaps {
 struct DepthProof {
   const KnownOverlaps* known = nullptr;  ///< may be null
   int role = 0;
-  std::uint16_t face_s = 0;  ///< face of the patch
-  double offset_s_mm = 0.0;  ///< its offset in the layer
+  const Body* s = nullptr;
+  std::uint32_t triangle_s = 0;  ///< triangle of the patch
   const Body* k = nullptr;
   Layer layer = Layer::kMesh;
   double limit_mm = 0.0;   ///< the claim: no point of the patch is deeper in k than this

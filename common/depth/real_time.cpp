@@ -185,7 +185,7 @@ class RealTimeSearch {
         make_swept_patch(s, layer_, item.piece, X0, X1, spread(item.role, span), turn(span));
     if (patch.count == 0) return true;
     const SurfacePoint at = nearest_surface(*k.solid, patch.center);
-    if (k.depth_at(at, layer_) > touch_mm_ && is_certain(item, at, patch.center)) {
+    if (k.depth_in(patch.center, at, layer_) > touch_mm_ && is_certain(item, at, patch.center)) {
       if (span.t0 < t_real_) t_real_ = span.t0;
       return true;
     }
@@ -196,8 +196,8 @@ class RealTimeSearch {
     proof.layer = layer_;
     proof.known = trivial_ ? nullptr : &known_;
     proof.role = item.role;
-    proof.face_s = s.face_index(item.piece.triangle);
-    proof.offset_s_mm = Body::offset_of(s.face(item.piece.triangle), layer_);
+    proof.s = &s;
+    proof.triangle_s = item.piece.triangle;
     proof.limit_mm = touch_mm_;
     proof.at_center = at;
     proof.rounding_mm = rounding_mm_;
@@ -215,7 +215,7 @@ class RealTimeSearch {
     sample.triangle = item.piece.triangle;
     sample.point_K = point_K;
     sample.at = at;
-    sample.depth_mm = bodies_[1 - item.role].depth_at(at, layer_);
+    sample.depth_mm = bodies_[1 - item.role].depth_in(point_K, at, layer_);
     return find_witness(pair, sample).has_value();
   }
 

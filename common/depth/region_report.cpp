@@ -12,6 +12,11 @@ constexpr std::size_t kMostCoincidenceQuestions = 64;
 // Two normals look the same way.
 constexpr double kSameWay = 0.99;
 
+// Depth of x in the least real part.
+double least_depth(const Body& body, const Vec3& x) {
+  return body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower);
+}
+
 }  // namespace
 
 FaceShape face_shape(const Body& body, std::uint32_t triangle) {
@@ -62,8 +67,8 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
   for (const double share : {0.5, 0.25, 0.1, 0.02})
     for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized())}) {
       const Vec3 w = p + share * least.depth_mm * along;
-      if (pair.k(role).certain_depth(w) > pair.rounding_mm &&
-          pair.s(role).certain_depth(X_SK * w) > pair.rounding_mm)
+      if (least_depth(pair.k(role), w) > pair.rounding_mm &&
+          least_depth(pair.s(role), X_SK * w) > pair.rounding_mm)
         return pair.in_world(role, w);
     }
   return std::nullopt;

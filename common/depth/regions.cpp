@@ -44,6 +44,7 @@ class Grouping {
     for (int role = 0; role < 2; ++role) {
       state_[role].assign(pair_.s(role).mesh->triangles.size(), State::kUnseen);
       met_[role].assign(state_[role].size(), Topology::kNone);
+      may_interfere_[role].assign(state_[role].size(), 0);
       if (!pair_.k(role).has_inside) continue;
       prepare_limits(role);
       std::deque<std::uint32_t> queue;
@@ -61,6 +62,7 @@ class Grouping {
         queue.pop_front();
         const bool capped = evaluations_ - begin > query_.work_cap;
         regions_.capped |= capped;
+        if (capped) may_interfere_[role][t] = 1;
         const bool keep = capped || may_interfere(role, t);
         state_[role][t] = keep ? State::kKept : State::kDropped;
         if (!keep || capped) continue;
@@ -96,8 +98,25 @@ class Grouping {
 
   bool may_interfere(int role, std::uint32_t t) {
     const std::uint16_t face = pair_.s(role).face_index(t);
-    if (asked(role, t, widest(), limit_[face])) return true;
-    return !pair_.trivial && !known_face_[face] && asked(role, t, Layer::kMesh, pair_.touch_mm);
+    double limit = limit_[face];
+    if (!query_.known->rows.empty())
+      for (const std::uint32_t n : pair_.s(role).sharp_neighbours(t))
+        limit = std::max(limit, limit_[pair_.s(role).face_index(n)]);
+    if (asked(role, t, widest(), limit)) {
+      may_interfere_[role][t] = 1;
+      return true;
+    }
+    return !pair_.trivial && !beside_known(role, t) && asked(role, t, Layer::kMesh, pair_.touch_mm);
+  }
+
+  // On a face with a closed form or at its rim: the overlap of the meshes is told there.
+  bool beside_known(int role, std::uint32_t t) const {
+    const Body& s = pair_.s(role);
+    if (known_face_[s.face_index(t)]) return true;
+    if (query_.known->rows.empty()) return false;
+    for (const std::uint32_t n : s.sharp_neighbours(t))
+      if (known_face_[s.face_index(n)]) return true;
+    return false;
   }
 
   bool asked(int role, std::uint32_t t, Layer layer, double limit) {
@@ -170,6 +189,9 @@ class Grouping {
                                     : region_of_leader(sets.find(first[other] + t));
       regions_.roots.push_back({other, t, region});
     }
+    regions_.may_interfere.assign(regions_.count, false);
+    for (const Root& root : regions_.roots)
+      if (may_interfere_[root.role][root.triangle] != 0) regions_.may_interfere[root.region] = true;
   }
 
   // Of the first triangle of the primary part that is nearest to a triangle of the other.
@@ -197,6 +219,7 @@ class Grouping {
   std::uint64_t& evaluations_;
   std::vector<State> state_[2];
   std::vector<std::uint32_t> met_[2];
+  std::vector<std::uint8_t> may_interfere_[2];
   std::vector<double> limit_;
   std::vector<bool> known_face_;
   Regions regions_;

@@ -13,6 +13,7 @@ struct Regions {
   std::size_t count = 0;
   int primary = 0;  ///< the part whose connected triangles make the regions
   std::vector<std::uint32_t> region_of_triangle;  ///< of the primary part
+  std::vector<bool> may_interfere;  ///< by region: false: only the meshes overlap, proven
   bool capped = false;
 };
 

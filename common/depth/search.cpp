@@ -19,6 +19,9 @@ constexpr double kLooseShare = 0.2;
 // Contact points kept for the fitted separating motion.
 constexpr std::size_t kMostSamples = 48;
 
+// Roots whose corners are asked too when only the class is wanted.
+constexpr std::size_t kMostCornerRoots = 512;
+
 struct Item {
   double bound_mm = 0.0;  // no point of the piece is deeper
   Piece piece;
@@ -48,9 +51,11 @@ Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece) {
   Looked looked{make_patch(pair.s(role), layer, piece, pair.X_KS[role]), {}, 0.0};
   looked.sample.role = role;
   looked.sample.triangle = piece.triangle;
+  looked.bound_mm = -std::numeric_limits<double>::infinity();
+  if (looked.patch.count == 0) return looked;  // cut away by its neighbours
   looked.sample.point_K = looked.patch.center;
   looked.sample.at = nearest_surface(*k.solid, looked.patch.center);
-  looked.sample.depth_mm = k.depth_at(looked.sample.at, layer);
+  looked.sample.depth_mm = k.depth_in(looked.patch.center, looked.sample.at, layer);
   looked.bound_mm = looked.sample.at.depth_mm + looked.patch.radius_mm +
                     k.largest_offset_mm[static_cast<int>(layer)];
   return looked;
@@ -61,8 +66,8 @@ DepthProof proof_for(const PairFrame& pair, Layer layer, const KnownOverlaps* kn
   DepthProof proof;
   proof.known = layer == Layer::kMesh ? nullptr : known;
   proof.role = role;
-  proof.face_s = pair.s(role).face_index(triangle);
-  proof.offset_s_mm = Body::offset_of(pair.s(role).face(triangle), layer);
+  proof.s = &pair.s(role);
+  proof.triangle_s = triangle;
   proof.k = &pair.k(role);
   proof.layer = layer;
   proof.limit_mm = limit_mm;
@@ -109,9 +114,12 @@ class Search {
     const Body& s = pair_.s(root.role);
     const Piece piece = whole(s, root.triangle);
     push(piece, root.role, root.region, std::numeric_limits<double>::infinity());
-    int inside = heap_.back().at.depth_mm > pair_.touch_mm ? 1 : 0;
-    // Depth is often reached at a corner.
+    int inside = !heap_.empty() && heap_.back().at.depth_mm > pair_.touch_mm ? 1 : 0;
+    // Depth is often reached at a corner. Where there are many, some are enough to know the class.
+    const bool skip_corners =
+        query_.sign_only && roots_seen_++ % (1 + query_.roots->size() / kMostCornerRoots) != 0;
     for (const Vec3& corner : piece.corners) {
+      if (skip_corners) break;
       const Sample sample = sample_at(pair_, query_.layer, root.role, root.triangle, corner);
       ++work_;
       ++evaluations_;
@@ -124,7 +132,7 @@ class Search {
     }
     if (root.role != query_.primary) return;
     const Vec3 n = (piece.corners[1] - piece.corners[0]).cross(piece.corners[2] - piece.corners[0]);
-    brackets_[root.region].area_mm2 += 0.5 * n.norm() * inside / 4.0;
+    brackets_[root.region].area_mm2 += 0.5 * n.norm() * inside / (skip_corners ? 1.0 : 4.0);
   }
 
   std::uint32_t region_of(int role, std::uint32_t inherited, std::uint32_t met) const {
@@ -142,6 +150,7 @@ class Search {
     const Looked looked = look(pair_, query_.layer, role, piece);
     ++work_;
     ++evaluations_;
+    if (looked.patch.count == 0) return;
     Item item;
     item.bound_mm = std::min(parent_bound, looked.bound_mm);
     item.piece = piece;
@@ -212,6 +221,7 @@ class Search {
   std::vector<Bracket> brackets_;
   std::vector<Item> heap_;
   std::uint64_t work_ = 0, order_ = 0;
+  std::uint64_t roots_seen_ = 0;
   bool started_ = false;
 };
 
@@ -219,18 +229,12 @@ class Search {
 
 Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t triangle,
                  const Vec3& x_S) {
-  const Body& s = pair.s(role);
-  const SurfaceBand::Face& face = s.face(triangle);
-  const Surface* surface = Body::surface_of(face, layer);
-  const Vec3 n = surface != nullptr ? surface->outward_normal(x_S) : s.normal(triangle);
-  const double out =
-      Body::offset_of(face, layer) - (surface != nullptr ? surface->signed_distance_mm(x_S) : 0.0);
   Sample sample;
   sample.role = role;
   sample.triangle = triangle;
-  sample.point_K = pair.X_KS[role] * (x_S + out * n);
+  sample.point_K = pair.X_KS[role] * on_layer(pair.s(role), layer, triangle, x_S);
   sample.at = nearest_surface(*pair.k(role).solid, sample.point_K);
-  sample.depth_mm = pair.k(role).depth_at(sample.at, layer);
+  sample.depth_mm = pair.k(role).depth_in(sample.point_K, sample.at, layer);
   return sample;
 }
 
@@ -255,7 +259,7 @@ RootAnswer ask_root(const RootQuery& query, SearchScratch& scratch, std::uint64_
       answer.state = RootState::kAbove;
       return answer;
     }
-    if (looked.bound_mm <= query.limit_mm) continue;
+    if (looked.patch.count == 0 || looked.bound_mm <= query.limit_mm) continue;
     const DepthProof proof = proof_for(pair, query.layer, query.known, query.role, piece.triangle,
                                        looked.sample.at, query.limit_mm);
     if (depth_at_most(proof, looked.patch, scratch.proof)) continue;
