@@ -1,8 +1,10 @@
 #include "server/announcer.h"
 
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "common/messages/names.h"
@@ -17,12 +19,13 @@ constexpr double kLineEveryWithoutTty_s = 5;  // in a file, a line is kept for g
 }  // namespace
 
 std::string live_line(const SessionPulse& pulse, double seconds) {
-  return fmt::format(
-      "{:6.1f} s  tick {:>7}  users {:>2}  open: {} real, {} potential, {} fake  in all: {}/{}/{}  "
-      "tick p50 {:.2f} ms, p99 {:.2f} ms  refused {}  missed deadlines {}",
+  std::string line = fmt::format(
+      "{:.1f} s, tick {}, {} users | open: {} real, {} potential, {} fake | tick p99 {:.1f} ms",
       seconds, pulse.tick, pulse.users, pulse.clashes_open[3], pulse.clashes_open[2],
-      pulse.clashes_open[1], pulse.clashes_total[3], pulse.clashes_total[2], pulse.clashes_total[1],
-      pulse.tick_p50_us * 1e-3, pulse.tick_p99_us * 1e-3, pulse.refused, pulse.overloads);
+      pulse.clashes_open[1], pulse.tick_p99_us * 1e-3);
+  if (pulse.refused > 0) line += fmt::format(" | {} refused", pulse.refused);
+  if (pulse.overloads > 0) line += fmt::format(" | {} deadlines missed", pulse.overloads);
+  return line;
 }
 
 Announcer::Announcer(bool live, bool quiet)
@@ -129,8 +132,13 @@ void Announcer::say_live(const TickLoop& loop) {
   const double every_s = terminal_ ? kTerminalRefresh_s : kLineEveryWithoutTty_s;
   if (loop.seconds() - live_at_s_ < every_s) return;
   live_at_s_ = loop.seconds();
-  const std::string line = live_line(loop.pulse(), loop.seconds());
+  std::string line = live_line(loop.pulse(), loop.seconds());
   if (terminal_) {
+    // A line that wraps could not be overwritten.
+    winsize window{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) {
+      line.resize(std::min<std::size_t>(line.size(), window.ws_col - 1));
+    }
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     line_open_ = true;
   } else {
