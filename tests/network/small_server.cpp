@@ -113,7 +113,7 @@ void SmallServer::turn() {
   if (!last_input.refused_at_door.empty()) channel_.publish_refusals(last_input.refused_at_door);
   if (!batch.parts.empty()) channel_.publish_poses(batch);
   if (wanted) channel_.publish_snapshot(snapshot());
-  longest_publish_s = std::max(longest_publish_s, now_s() - start_s);
+  note_publish(start_s);
 }
 
 void SmallServer::publish_events(std::uint32_t count) {
@@ -121,7 +121,14 @@ void SmallServer::publish_events(std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) events.push_back(some_event(++event_seq, tick));
   const double start_s = now_s();
   channel_.publish_events(events);
-  longest_publish_s = std::max(longest_publish_s, now_s() - start_s);
+  note_publish(start_s);
+}
+
+void SmallServer::note_publish(double start_s) {
+  constexpr double kSlow_s = 0.008;
+  const double took_s = now_s() - start_s;
+  longest_publish_s = std::max(longest_publish_s, took_s);
+  slow_publishes += took_s > kSlow_s;
 }
 
 ClashEvent some_event(std::uint64_t seq, std::uint64_t tick) {

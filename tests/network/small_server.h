@@ -40,8 +40,11 @@ class SmallServer {
   std::map<UserId, std::pair<ClientKey, std::string>> users;
   std::vector<PartPose> parts;
   double longest_publish_s = 0.0;
+  std::uint64_t slow_publishes = 0;  ///< longer than a writer may wait for a lock
 
  private:
+  void note_publish(double start_s);
+
   ServerChannel& channel_;
   std::string session_;
 };
