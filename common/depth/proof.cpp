@@ -18,7 +18,7 @@ using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
 // On which side of a surface a triangle lies: a coarse bracket first, in shares of the chord error.
-constexpr double kRangeShares[2] = {0.1, 1e-3};
+constexpr double kRangeShares[3] = {0.1, 1e-3, 1e-5};
 
 class Neighbourhood {
  public:
@@ -108,7 +108,7 @@ class Neighbourhood {
     if (facet.normal.isZero(0.0)) return true;  // without area: its neighbours are asked
     const double along = proof_.limit_mm > 0.0 ? facet.normal.dot(up_) : 1.0;
     facet.slack_mm = proof_.limit_mm * along - depth;
-    if (facet.slack_mm >= 0.0) {
+    if (facet.slack_mm >= -proof_.rounding_mm) {
       if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);
       return true;
     }
@@ -188,7 +188,7 @@ class Neighbourhood {
               wall.surface
                   ->signed_distance_range_mm(c[0], c[1], c[2], share * chord + proof_.rounding_mm)
                   .hi;
-          if (over <= allowed || share == kRangeShares[1]) {
+          if (over <= allowed || share == kRangeShares[2]) {
             highest = over;
             break;
           }

@@ -64,8 +64,17 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
     out = (least.at.depth_mm > 0.0 ? 1.0 : -1.0) * to_surface / distance;
   const Vec3 into_s = -(pair.X_KS[role].q * pair.s(role).normal(least.triangle));
   const Pose X_SK = pair.X_KS[1 - role];
+  // At a corner or edge of S a move along a face normal stays on the next face; from the middle of
+  // the triangle it goes inside.
+  const TriangleMesh& mesh_s = *pair.s(role).mesh;
+  const Vec3 middle_K =
+      pair.X_KS[role] * Vec3((mesh_s.corner(least.triangle, 0) + mesh_s.corner(least.triangle, 1) +
+                              mesh_s.corner(least.triangle, 2)) /
+                             3.0);
+  const Vec3 inwards = ((middle_K - p).stableNormalized() + into_s).stableNormalized();
   for (const double share : {0.5, 0.25, 0.1, 0.02})
-    for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized())}) {
+    for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized()), inwards,
+                              Vec3((out + inwards).stableNormalized())}) {
       const Vec3 w = p + share * least.depth_mm * along;
       if (least_depth(pair.k(role), w) > pair.rounding_mm &&
           least_depth(pair.s(role), X_SK * w) > pair.rounding_mm)

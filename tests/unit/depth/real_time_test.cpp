@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "common/depth/overlap.h"
+#include "common/evaluation/verdict.h"
+#include "tests/unit/depth/depth_bands.h"
+
+namespace mortise {
+namespace {
+
+using namespace shapes;
+
+struct Sweep {
+  SolidPtr a, b;
+  SurfaceBand band_a = nominal_band(), band_b = nominal_band();
+  Motion motion_a, motion_b = still_motion(Pose());
+  double accuracy_mm = 1e-4;
+};
+
+Motion slide(const Vec3& from, const Vec3& to) {
+  return linear_motion(Pose::translation(from), Pose::translation(to), Vec3::Zero());
+}
+
+RealTime real_time_of(const Sweep& s) {
+  SweptQuery query;
+  query.at_target.a = s.a.get();
+  query.at_target.b = s.b.get();
+  query.at_target.band_a = &s.band_a;
+  query.at_target.band_b = &s.band_b;
+  query.motion_a = s.motion_a;
+  query.motion_b = s.motion_b;
+  query.accuracy_mm = s.accuracy_mm;
+  CcdScratch scratch;
+  return find_real_time(query, scratch);
+}
+
+double certain_at(const Sweep& s, double t) {
+  OverlapQuery query;
+  query.a = s.a.get();
+  query.b = s.b.get();
+  query.band_a = &s.band_a;
+  query.band_b = &s.band_b;
+  query.X_WA = s.motion_a.pose_at(t);
+  query.X_WB = s.motion_b.pose_at(t);
+  CcdScratch scratch;
+  double most = -1e9;
+  for (const OverlapRegion& region : find_overlap(query, scratch).regions)
+    most = std::max(most, region.certain_mm.lo);
+  return most;
+}
+
+TEST(RealTime, CubeMeetsCube) {
+  Sweep s{solid(box({.5, .5, .5}, Vec3::Zero(), 2)), solid(box({.5, .5, .5}, {5, .2, .1}, 2))};
+  s.motion_a = slide(Vec3::Zero(), {10, 0, 0});
+  const RealTime real = real_time_of(s);
+  EXPECT_TRUE(real.becomes_real);
+  EXPECT_NEAR(real.t_real, 0.4, 2e-5);
+  EXPECT_LE(real.t_free, real.t_real);
+  EXPECT_NEAR(real.t_free, 0.4, 2e-5);
+  EXPECT_FALSE(real.real_at_start);
+}
+
+TEST(RealTime, ToleranceDelaysIt) {
+  Sweep s{solid(box({.5, .5, .5}, Vec3::Zero(), 2)), solid(box({.5, .5, .5}, {5, .2, .1}, 2))};
+  s.band_a = s.band_b = uniform_band({}, {-.05, .05});
+  s.motion_a = slide(Vec3::Zero(), {10, 0, 0});
+  const RealTime real = real_time_of(s);
+  EXPECT_TRUE(real.becomes_real);
+  EXPECT_NEAR(real.t_free, 0.41, 2e-5);
+  EXPECT_NEAR(real.t_real, 0.41, 2e-5);
+}
+
+// The disease and the cure: both ends of the tick are free, the wall is in between.
+TEST(RealTime, ThinWallIsNotPassed) {
+  Sweep s{solid(box({.5, .5, .5})), solid(box({.0005, 5, 5}, {10, 0, 0}))};
+  s.motion_a = slide(Vec3::Zero(), {20, 0, 0});
+  EXPECT_LT(certain_at(s, 0.0), 0.0);
+  EXPECT_LT(certain_at(s, 1.0), 0.0);
+  const RealTime real = real_time_of(s);
+  EXPECT_TRUE(real.becomes_real);
+  EXPECT_NEAR(real.t_free, 9.4995 / 20.0, 2e-5);
+  EXPECT_LE(real.t_free, real.t_real);
+}
+
+// Meshes that overlap before: a peg with a fake overlap slides, and runs into the end of a blind
+// hole.
+TEST(RealTime, BlindHoleBehindAFakeOverlap) {
+  const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
+  Sweep s;
+  s.a = solid(peg({10, 0, 15, 32, 1, std::numbers::pi / 32}));
+  s.b = solid(together(ring({10, 0, 20, 32, 1, 0}, 20), box({15, 15, 1}, {0, 0, -2})));
+  s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
+  s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
+  s.motion_a = slide({0, 0, 2}, {0, 0, -3});
+  const RealTime real = real_time_of(s);
+  EXPECT_TRUE(real.becomes_real);
+  EXPECT_NEAR(real.t_free, 0.6, 1e-4);
+  s.motion_a = slide({0, 0, 2}, {0, 0, -0.9});
+  EXPECT_FALSE(real_time_of(s).becomes_real);
+  EXPECT_EQ(real_time_of(s).t_free, 1.0);
+}
+
+TEST(RealTime, SlidingPegIsFreeAndCheap) {
+  const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
+  Sweep s;
+  s.a = solid(peg({10, 0, 30, 32, 8, std::numbers::pi / 32}));
+  s.b = solid(ring({10, 0, 20, 32, 8, 0}, 20));
+  s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
+  s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
+  s.motion_a = slide({0, 0, 5}, {0, 0, 4});
+  const RealTime slid = real_time_of(s);
+  EXPECT_FALSE(slid.becomes_real);
+  EXPECT_EQ(slid.t_free, 1.0);
+  EXPECT_LT(slid.evaluations, 5000U);
+  // Pushed aside by 30 um it bites: 20.5 um of certain clearance at most.
+  s.motion_a = slide({0, 0, 5}, {0.03, 0, 5});
+  const RealTime pushed = real_time_of(s);
+  EXPECT_TRUE(pushed.becomes_real);
+  EXPECT_NEAR(pushed.t_free * 0.03, 0.0205, 2e-4);
+}
+
+TEST(RealTime, TurningBarMeetsCube) {
+  // collision.md section 7: bar 4 x 0.2 x 0.2 turning 90 degrees against a 0.2 cube at (0, 1.5).
+  Sweep s{solid(box({2, .1, .1})), solid(box({.1, .1, .1}, {0, 1.5, 0}))};
+  s.motion_a = linear_motion(Pose(), Pose{rotation_exp({0, 0, std::numbers::pi / 2}), Vec3::Zero()},
+                             Vec3::Zero());
+  const RealTime real = real_time_of(s);
+  EXPECT_TRUE(real.becomes_real);
+  EXPECT_NEAR(real.t_free, 0.9092085160, 1e-4);
+  EXPECT_NEAR(real.t_real, 0.9092085160, 1e-3);
+}
+
+TEST(RealTime, TwoMovers) {
+  Sweep s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}))};
+  s.motion_a = slide(Vec3::Zero(), {2, 0, 0});
+  s.motion_b = slide({4, .1, .2}, {2, .1, .2});
+  const RealTime real = real_time_of(s);
+  EXPECT_TRUE(real.becomes_real);
+  EXPECT_NEAR(real.t_free, 0.75, 1e-4);
+  // Both with the same velocity: nothing happens.
+  s.motion_b = slide({4, .1, .2}, {6, .1, .2});
+  EXPECT_FALSE(real_time_of(s).becomes_real);
+}
+
+TEST(RealTime, StartsRealOrTouching) {
+  Sweep s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}, {.9, .1, .2}))};
+  s.motion_a = slide(Vec3::Zero(), {-1, 0, 0});
+  EXPECT_TRUE(real_time_of(s).real_at_start);
+  EXPECT_EQ(real_time_of(s).t_free, 0.0);
+  s.b = solid(box({.5, .5, .5}, {1, .1, .2}));
+  s.motion_a = slide(Vec3::Zero(), {0, 3, 0});  // along the touching faces
+  EXPECT_FALSE(real_time_of(s).becomes_real);
+}
+
+// Random motions: never real before t_free, by an independent query at many times; and the check
+// itself sees a planted fault.
+TEST(RealTime, NeverRealBeforeFree) {
+  std::mt19937_64 random(21);
+  int became = 0, planted = 0;
+  for (int i = 0; i < 12; ++i) {
+    Sweep s{solid(box({1, .3, .2})), solid(box({.4, .6, .5}))};
+    s.band_a = uniform_band({}, {-.01, .01});
+    s.band_b = uniform_band({}, {-.01, .01});
+    s.accuracy_mm = 1e-3;
+    Pose from = random_pose(random, 1.0), to = random_pose(random, 1.0);
+    from.p.x() -= 2.5;
+    to.p.x() += 0.5;
+    to.q = (rotation_exp(0.5 * rotation_log((to.q * from.q.conjugate()).normalized())) * from.q)
+               .normalized();
+    s.motion_a = linear_motion(from, to, Vec3::Zero());
+    const RealTime real = real_time_of(s);
+    EXPECT_FALSE(real.capped);
+    became += real.becomes_real;
+    for (int k = 0; k <= 20; ++k) EXPECT_LE(certain_at(s, real.t_free * k / 20.0), 0.0) << i;
+    if (real.becomes_real) {
+      EXPECT_LT((real.t_real - real.t_free) * 6.0, 0.1) << i;
+      planted += certain_at(s, std::min(1.0, real.t_free + 0.02)) > 0.0;
+    }
+  }
+  EXPECT_GT(became, 4);
+  EXPECT_GT(planted, 2);
+}
+
+}  // namespace
+}  // namespace mortise
