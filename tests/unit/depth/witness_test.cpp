@@ -49,8 +49,7 @@ TEST(Witness, IsFoundWhereTheDeepestPointIsACorner) {
     const OverlapRegion& region = result.regions.front();
     EXPECT_GT(region.certain_mm.lo, 0.9 * depth_mm) << i;
     ASSERT_TRUE(region.has_witness) << i;
-    for (const auto& [solid, X_WP] :
-         {std::pair(base.get(), query.X_WA), {small.get(), query.X_WB}}) {
+    for (const auto& [solid, X_WP] : {std::pair(base, query.X_WA), std::pair(small, query.X_WB)}) {
       EXPECT_LT(signed_distance_mm(*solid, X_WP.inverse() * region.witness_W), 0.0) << i;
     }
   }
