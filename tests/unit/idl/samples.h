@@ -7,7 +7,7 @@
 #include "common/messages/channel.h"
 #include "idl/convert.h"
 #include "idl/safe_type.h"
-#include "mortisePubSubTypes.h"
+#include "idl/wire_types.h"
 
 namespace mortise::test {
 
