@@ -274,21 +274,21 @@ void Inbox::receive_refused(const RefusedIncrement& refused, Intake& intake) {
 }
 
 void Inbox::take_increments(const World& world, std::int64_t now_ns, Intake& intake) {
-  taken_.assign(world.parts.size(), 0);
+  taken_.assign(seats_.size(), 0);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < backlog_.size(); ++i) {
     const Increment& increment = backlog_[i].increment;
-    Refusal reason = judge(increment, world);
-    if (!seats_[increment.user.value - 1].present) reason = Refusal::kUnknownUser;
+    const std::size_t user = increment.user.value - 1;
+    Refusal reason = seats_[user].present ? judge(increment, world) : Refusal::kUnknownUser;
+    if (reason == Refusal::kNone) renewed_ns_[increment.part.value - 1] = now_ns;
+    // Also what would be refused waits its turn: the sequence of a user never goes back.
+    if (seats_[user].present && taken_[user] >= limits_.increments_per_tick) {
+      if (kept != i) backlog_[kept] = backlog_[i];
+      ++kept;
+      continue;
+    }
     if (reason == Refusal::kNone) {
-      const std::size_t part = increment.part.value - 1;
-      renewed_ns_[part] = now_ns;  // a hand that waits for the server is not silent
-      if (taken_[part] >= limits_.increments_per_part) {
-        if (kept != i) backlog_[kept] = backlog_[i];
-        ++kept;
-        continue;
-      }
-      ++taken_[part];
+      ++taken_[user];
       ++counters_.accepted;
       intake.increments.push_back(increment);
     }

@@ -19,11 +19,11 @@ struct InboxLimits {
   /// Refusals told to one user in one tick; the rest is only counted, so that nonsense is not
   /// amplified.
   std::uint32_t refusals_told_per_tick = 8;
-  /// Increments of one part in one tick; more wait for the next ticks, in order. A device of 240 Hz
+  /// Increments of one user in one tick; more wait for the next ticks, in order. A device of 240 Hz
   /// sends 4 in a tick of 60 Hz, so a backlog shrinks at twice the speed at which it grew. Without
   /// it the increments that piled up in one slow tick would make the next one a single long leap,
   /// slower still.
-  std::uint32_t increments_per_part = 8;
+  std::uint32_t increments_per_tick = 8;
 };
 
 struct InboxCounters {
@@ -119,7 +119,7 @@ class Inbox {
   std::vector<Seat> seats_;
   std::vector<std::int64_t> renewed_ns_;    ///< by part index: when its lease was last renewed
   std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
-  std::vector<std::uint32_t> taken_;        ///< by part index, in this tick
+  std::vector<std::uint32_t> taken_;        ///< by user index, in this tick
   std::vector<DeferredCommand> deferred_;   ///< in order of arrival
   std::vector<DeferredGoodbye> goodbyes_;
   std::uint32_t told_strangers_ = 0;

@@ -207,7 +207,7 @@ TEST_F(InboxTest, AReleaseWaitsForTheIncrementsBeforeIt) {
 }
 
 TEST_F(InboxTest, ABacklogIsWorkedOffInOrderAndWhatWasSentAfterItWaits) {
-  const std::uint32_t share = InboxLimits{}.increments_per_part;
+  const std::uint32_t share = InboxLimits{}.increments_per_tick;
   ServerInput pile;  // what a slow tick leaves behind: a drag, its release, and a goodbye
   const std::uint64_t sent = 2 * share + 3;
   for (std::uint64_t seq = 1; seq <= sent; ++seq) {
@@ -233,6 +233,21 @@ TEST_F(InboxTest, ABacklogIsWorkedOffInOrderAndWhatWasSentAfterItWaits) {
   EXPECT_EQ(inbox_.counters().accepted, sent);
   EXPECT_EQ(inbox_.counters().longest_backlog, sent - share);
   EXPECT_EQ(inbox_.counters().liveliness_lost, 0U);
+}
+
+TEST_F(InboxTest, ABacklogKeepsTheOrderOfAUserWithTwoParts) {
+  ASSERT_EQ(command("a", anna_, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
+  ServerInput pile;  // many of red, then one of blue: blue must not overtake
+  for (std::uint64_t seq = 1; seq <= 20; ++seq) {
+    pile.increments.push_back(increment("a", anna_, seq < 20 ? kRed : kBlue, seq));
+  }
+  admit(std::move(pile));
+  std::uint64_t next = 1;
+  for (int tick = 0; tick < 3; ++tick) {
+    for (const Increment& taken : intake_.increments) EXPECT_EQ(taken.seq, next++);
+    admit({});
+  }
+  EXPECT_EQ(next, 21U);
 }
 
 TEST_F(InboxTest, AReleaseAndANewGrabInOneGoKeepThePartInHand) {
@@ -349,7 +364,7 @@ TEST(Inbox, AFullSessionSaysSo) {
 
 TEST(Inbox, AFloodOfOneUserIsCutAndTheOthersGoOn) {
   World world = small_world();
-  Inbox inbox({.messages_per_s = 100.0, .increments_per_part = 1000});
+  Inbox inbox({.messages_per_s = 100.0, .increments_per_tick = 1000});
   Intake intake;
   ServerInput input;
   input.joins.push_back({"a", 1, "anna", "designer"});
