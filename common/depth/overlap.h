@@ -71,8 +71,8 @@ struct SweptQuery {
 /// When the overlap becomes certain (real) in the tick.
 struct RealTime {
   bool becomes_real = false;
-  double t_free =
-      1.0;  ///< not real at any t <= t_free, proven; the pose at which `stop` leaves the part
+  double t_free = 1.0;  ///< at no t <= t_free is anything certain deeper than accuracy_mm, proven;
+                        ///< the pose at which `stop` leaves the part
   double t_real = 1.0;  ///< real at t_real, when becomes_real
   bool capped = false;  ///< t_free is still proven; beyond it nothing is said
   bool real_at_start = false;

@@ -15,14 +15,23 @@ namespace {
 // the least surfaces:
 //   1. triangles of either part that the path may bring near the other part: the first items;
 //   2. an item that is proven outside for its whole interval is dropped;
-//   3. an item whose centre is inside at the interval's start gives a time at which the overlap is
+//   3. an item whose centre is inside at an end of its interval gives a time at which the overlap
+//   is
 //      certain: nothing later matters any more;
-//   4. else it is halved, in time while the path is longer than the piece is wide, else in space.
-// An item that becomes smaller than the accuracy ends its branch: the time before it is free.
+//   4. else it is halved, in time when it stands clear at its start, else in space;
+//   5. the first item that is as brief as the accuracy and ends in a certain overlap is the answer.
 
-// Thinner overlaps than the accuracy asked for end here as "not proven": pieces are not cut below
-// this share of it.
+// Items are cut down to this share of the accuracy.
 constexpr double kSmallestShare = 0.25;
+
+// Paths longer than this many widths are cut in time without asking.
+constexpr double kLongPath = 4.0;
+
+// A closed form that stops excluding an overlap is followed this many doublings of the accuracy on.
+constexpr int kSoon = 8;
+
+// Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
+constexpr int kBackOff = 12;
 
 struct Span {
   double t0 = 0.0, t1 = 1.0;
@@ -62,20 +71,19 @@ class RealTimeSearch {
     find_known();
     add_roots(start);
     std::make_heap(heap_.begin(), heap_.end(), later);
-    double free_until = std::numeric_limits<double>::infinity();
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), later);
       const Item item = std::move(heap_.back());
       heap_.pop_back();
-      if (item.span.t0 >= t_real_ || item.span.t0 >= free_until) break;
+      if (item.span.t0 >= std::min(t_real_, free_until_)) break;
       if (answer_.evaluations >= at_.work_cap) {
         answer_.capped = true;
-        free_until = std::min(free_until, item.span.t0);
+        free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
-      if (!treat(item)) free_until = std::min(free_until, item.span.t0);
+      treat(item);
     }
-    return finish(free_until);
+    return finish();
   }
 
  private:
@@ -114,14 +122,12 @@ class RealTimeSearch {
     return (motions_[0].w_W.norm() + motions_[1].w_W.norm()) * (span.t1 - span.t0);
   }
 
-  // Pairs of declared faces with a closed form: its bound over the tick. The distance of the axes
-  // is a convex function of the pose's displacement, so its largest value is at an end of the path,
-  // up to the path's own curvature.
+  // Pairs of declared faces with a closed form. The distance of the axes is a convex function of
+  // the displacement, so that over an interval it is largest at an end, up to the path's own
+  // curvature. Until the first time that this does not exclude, the pair needs no search; that time
+  // ends the search when the pair is really certain there.
   void find_known() {
     if (trivial_) return;
-    const double bend = spread(0, {0.0, 1.0}) + spread(1, {0.0, 1.0});
-    const Pose X_BA[2] = {pose(0, 0.0), pose(0, 1.0)};
-    const double margin = speed_upper_bound();
     for (std::uint16_t i = 0; i < bodies_[0].band->faces.size(); ++i)
       for (std::uint16_t j = 0; j < bodies_[1].band->faces.size(); ++j) {
         const SurfaceBand::Face& fa = bodies_[0].band->faces[i];
@@ -131,15 +137,62 @@ class RealTimeSearch {
         if (sa == nullptr || sb == nullptr || sa->kind != sb->kind || sa->inward == sb->inward)
           continue;
         const FaceExtent ea = extent_of(bodies_[0], i, *sa), eb = extent_of(bodies_[1], j, *sb);
-        double worst = -std::numeric_limits<double>::infinity();
-        bool known = true;
-        for (const Pose& X : X_BA) {
-          const auto overlap = face_pair_overlap(*sa, ea, *sb, eb, X, margin);
-          known &= overlap.has_value();
-          if (overlap) worst = std::max(worst, overlap->hi_mm);
-        }
-        if (known) known_.rows.push_back({{i, j}, worst + bend});
+        const double offsets = Body::offset_of(fa, layer_) + Body::offset_of(fb, layer_);
+        const double margin = speed_upper_bound();
+        const auto overlap_at = [&](double t) {
+          const auto overlap = face_pair_overlap(*sa, ea, *sb, eb, pose(0, t), margin);
+          return overlap ? overlap->hi_mm + offsets : std::numeric_limits<double>::infinity();
+        };
+        const Span first =
+            first_not_excluded(overlap_at, {0.0, 1.0}, overlap_at(0.0), overlap_at(1.0));
+        if (first.t0 >= 1.0 || ends_at(first)) known_.rows.push_back({{i, j}, touch_mm_ - offsets});
       }
+  }
+
+  // The first interval, as brief as the accuracy, over which a closed form exceeds touch; [1, 1]:
+  // none.
+  template <class OverlapAt>
+  Span first_not_excluded(const OverlapAt& overlap_at, const Span& span, double at0,
+                          double at1) const {
+    const double bend = spread(0, span) + spread(1, span);
+    if (std::max(at0, at1) + bend <= touch_mm_) return {1.0, 1.0};
+    const double middle = 0.5 * (span.t0 + span.t1);
+    const bool brief =
+        speed_upper_bound() * (span.t1 - span.t0) <= kSmallestShare * query_.accuracy_mm;
+    if (brief || !(middle > span.t0) || !(middle < span.t1) || at0 > touch_mm_) return span;
+    const double at = overlap_at(middle);
+    const Span early = first_not_excluded(overlap_at, {span.t0, middle}, at0, at);
+    return early.t0 < 1.0 ? early : first_not_excluded(overlap_at, {middle, span.t1}, at, at1);
+  }
+
+  // Is the overlap certain soon after the interval? Then the search ends there.
+  bool ends_at(const Span& span) {
+    const double step = std::max(
+        1e-12, kSmallestShare * query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300));
+    double t = span.t0 <= 0.0 ? 0.0 : span.t1;
+    for (int i = 0; i < kSoon && t <= 1.0; ++i) {
+      if (is_real_at(t)) {
+        t_real_ = std::min(t_real_, t);
+        free_until_ = std::min(free_until_, span.t0);
+        return true;
+      }
+      t = std::min(1.0, std::max(t, span.t0) + step * std::ldexp(1.0, i));
+    }
+    return false;
+  }
+
+  // By the search at fixed poses, whose word is what a verdict rests on.
+  bool is_real_at(double t) {
+    OverlapQuery query = query_.at_target;
+    query.X_WA = motions_[0].pose_at(t);
+    query.X_WB = motions_[1].pose_at(t);
+    query.refinement = Refinement::kDecided;
+    CcdScratch scratch;
+    const OverlapResult result = find_overlap(query, scratch);
+    answer_.evaluations += result.evaluations;
+    for (const OverlapRegion& region : result.regions)
+      if (region.certain_mm.lo > 0.0 && region.has_witness) return true;
+    return false;
   }
 
   // Triangles that the path may bring near the other part, and shells that start inside it.
@@ -173,71 +226,94 @@ class RealTimeSearch {
                      order_++});
   }
 
-  // False: the item cannot be decided at the accuracy asked for.
-  bool treat(const Item& item) {
+  void treat(const Item& item) {
     ++answer_.evaluations;
     Span span = item.span;
     const Body& s = bodies_[item.role];
     const Body& k = bodies_[1 - item.role];
-    span.t1 = std::min(span.t1, t_real_);
+    span.t1 = std::min({span.t1, t_real_, free_until_});
     const Pose X0 = pose(item.role, span.t0), X1 = pose(item.role, span.t1);
-    const Patch patch =
+    const Patch swept =
         make_swept_patch(s, layer_, item.piece, X0, X1, spread(item.role, span), turn(span));
-    if (patch.count == 0) return true;
-    const SurfacePoint at = nearest_surface(*k.solid, patch.center);
-    if (k.depth_in(patch.center, at, layer_) > touch_mm_ && is_certain(item, at, patch.center)) {
-      if (span.t0 < t_real_) t_real_ = span.t0;
-      return true;
+    if (swept.count == 0) return;
+    const SurfacePoint at = nearest_surface(*k.solid, swept.center);
+    if (is_certain(item, span.t0, swept.center, at)) {
+      t_real_ = std::min(t_real_, span.t0);
+      free_until_ = std::min(free_until_, span.t0);
+      return;
     }
-    if (at.depth_mm + patch.radius_mm + k.largest_offset_mm[static_cast<int>(layer_)] <= touch_mm_)
-      return true;
+    if (at.depth_mm + swept.radius_mm + k.largest_offset_mm[static_cast<int>(layer_)] <= touch_mm_)
+      return;
+    if (stays_out(item, swept, at, touch_mm_)) return;
+    if (certain_at_end(item, span, X1)) t_real_ = std::min(t_real_, span.t1);
+    cut(item, span, X0, X1, swept, at);
+  }
+
+  bool stays_out(const Item& item, const Patch& patch, const SurfacePoint& at, double limit_mm) {
     DepthProof proof;
-    proof.k = &k;
+    proof.k = &bodies_[1 - item.role];
     proof.layer = layer_;
     proof.known = trivial_ ? nullptr : &known_;
     proof.role = item.role;
-    proof.s = &s;
+    proof.s = &bodies_[item.role];
     proof.triangle_s = item.piece.triangle;
-    proof.limit_mm = touch_mm_;
+    proof.limit_mm = limit_mm;
     proof.at_center = at;
     proof.rounding_mm = rounding_mm_;
-    if (depth_at_most(proof, patch, scratch_.proof)) return true;
-    return cut(item, span, X0, X1);
+    return depth_at_most(proof, patch, scratch_.proof);
+  }
+
+  bool certain_at_end(const Item& item, const Span& span, const Pose& X1) {
+    const Patch patch = make_patch(bodies_[item.role], layer_, item.piece, X1);
+    if (patch.count == 0) return false;
+    ++answer_.evaluations;
+    return is_certain(item, span.t1, patch.center,
+                      nearest_surface(*bodies_[1 - item.role].solid, patch.center));
   }
 
   // The overlap is certain only with a point in both parts.
-  bool is_certain(const Item& item, const SurfacePoint& at, const Vec3& point_K) {
-    at_.X_WA = motions_[0].pose_at(item.span.t0);
-    at_.X_WB = motions_[1].pose_at(item.span.t0);
-    const PairFrame pair(at_);
+  bool is_certain(const Item& item, double t, const Vec3& point_K, const SurfacePoint& at) {
     Sample sample;
+    sample.depth_mm = bodies_[1 - item.role].depth_in(point_K, at, layer_);
+    if (sample.depth_mm <= touch_mm_) return false;
+    at_.X_WA = motions_[0].pose_at(t);
+    at_.X_WB = motions_[1].pose_at(t);
     sample.role = item.role;
     sample.triangle = item.piece.triangle;
     sample.point_K = point_K;
     sample.at = at;
-    sample.depth_mm = bodies_[1 - item.role].depth_in(point_K, at, layer_);
-    return find_witness(pair, sample).has_value();
+    return find_witness(PairFrame(at_), sample).has_value();
   }
 
-  bool cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1) {
-    double path = 0.0, width = 0.0;
+  // In time when the piece stands clear at the start, else in space. What is small in time and not
+  // deeper than the accuracy, or small in both, is free within the accuracy.
+  void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1, const Patch& swept,
+           const SurfacePoint& at) {
+    double path = spread(item.role, span), width = 0.0;
     for (int c = 0; c < 3; ++c) {
-      path = std::max(path, (X1 * item.piece.corners[c] - X0 * item.piece.corners[c]).norm());
+      path = std::max(path, (X1 * item.piece.corners[c] - X0 * item.piece.corners[c]).norm() +
+                                spread(item.role, span));
       width = std::max(width, (item.piece.corners[(c + 1) % 3] - item.piece.corners[c]).norm());
     }
-    path += spread(item.role, span);
     const double smallest = kSmallestShare * query_.accuracy_mm;
-    if (path <= smallest && width <= smallest) return false;
-    if (path > width || width <= smallest) {
-      const double middle = 0.5 * (span.t0 + span.t1);
-      if (!(middle > span.t0) || !(middle < span.t1)) return false;
+    const double middle = 0.5 * (span.t0 + span.t1);
+    const bool brief = path <= smallest || !(middle > span.t0) || !(middle < span.t1);
+    if (brief) {
+      if (t_real_ <= span.t1) {
+        free_until_ = std::min(free_until_, span.t0);
+        return;
+      }
+      if (width <= smallest || stays_out(item, swept, at, touch_mm_ + query_.accuracy_mm)) return;
+    }
+    const Patch start = make_patch(bodies_[item.role], layer_, item.piece, X0);
+    if (!brief &&
+        (width <= smallest || path > kLongPath * width || stays_out(item, start, at, touch_mm_))) {
       push({{span.t0, middle}, item.piece, item.role, order_++});
       push({{middle, span.t1}, item.piece, item.role, order_++});
-      return true;
+      return;
     }
     for (const Piece& half : split(bodies_[item.role], layer_, item.piece))
       push({span, half, item.role, order_++});
-    return true;
   }
 
   void push(Item item) {
@@ -245,11 +321,19 @@ class RealTimeSearch {
     std::push_heap(heap_.begin(), heap_.end(), later);
   }
 
-  RealTime finish(double free_until) {
+  RealTime finish() {
     answer_.becomes_real = t_real_ <= 1.0;
     answer_.t_real = answer_.becomes_real ? t_real_ : 1.0;
-    answer_.real_at_start = answer_.becomes_real && t_real_ <= 0.0;
-    answer_.t_free = std::min({1.0, free_until, answer_.becomes_real ? t_real_ : 1.0});
+    answer_.t_free = std::min({1.0, free_until_, answer_.t_real});
+    // Within the accuracy something may be certain already: back off until nothing is.
+    double step = query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300);
+    for (int i = 0; i < kBackOff && answer_.becomes_real && answer_.t_free > 0.0; ++i) {
+      if (!is_real_at(answer_.t_free)) break;
+      answer_.t_real = std::min(answer_.t_real, answer_.t_free);
+      answer_.t_free = i + 1 < kBackOff ? std::max(0.0, answer_.t_free - step) : 0.0;
+      step *= 2.0;
+    }
+    answer_.real_at_start = answer_.becomes_real && answer_.t_real <= 0.0;
     return answer_;
   }
 
@@ -266,6 +350,7 @@ class RealTimeSearch {
   std::vector<Item> heap_;
   std::uint64_t order_ = 0;
   double t_real_ = std::numeric_limits<double>::infinity();
+  double free_until_ = std::numeric_limits<double>::infinity();
   RealTime answer_;
 };
 
