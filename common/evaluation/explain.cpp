@@ -12,6 +12,9 @@ constexpr double kUmPerMm = 1e3;
 constexpr double kShown_um = 0.05;  // sentences show tenths: less is nothing
 // A bracket as narrow as depth refines it (0.1 um) reads as one number.
 constexpr double kBracketShown_um = 0.11;
+// A bracket wider than this was left open because the class was decided; what the thresholds are
+// made of is then not known, only that they were passed.
+constexpr double kBracketOpen_mm = 2e-3;
 
 std::string um(double mm) {
   char text[32];
@@ -140,13 +143,30 @@ std::string conclusion(const ExplainInput& in) {
   return name;
 }
 
+// The lazy answer: on which side of which threshold, no more.
+std::string explain_open_bracket(const ExplainInput& in) {
+  const Source source = tolerance_source(in);
+  const std::string of = source.text.empty() ? "" : " (" + source.text + ")";
+  const Interval& delta = in.delta_mm;
+  if (in.collision_class == CollisionClass::kFake)
+    return "overlap at most " + um(delta.hi) + " µm; fake up to " +
+           um(in.thresholds.fake_below_mm) + " µm" + of + ": " + conclusion(in);
+  const std::string least =
+      delta.lo >= 0.0 ? "overlap at least " + um(delta.lo) : "gap at most " + um(-delta.lo);
+  return least + " µm; real above " + um(in.thresholds.real_above_mm) + " µm" + of + ": " +
+         conclusion(in);
+}
+
 }  // namespace
 
 std::string explain(const ExplainInput& in) {
   if (in.no_inside && in.delta_mm.hi > 0.0)
     return "the surfaces cross, but a part is open and has no inside, so the depth is not known: " +
            std::string(name_of(in.collision_class));
-  std::string text = overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
+  std::string text =
+      in.delta_mm.width() > kBracketOpen_mm
+          ? explain_open_bracket(in)
+          : overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
   if (in.capped) text += "; work limit reached, brackets are wide";
   return text;
 }

@@ -39,8 +39,9 @@ CollisionClass classify(const ClassifyInput& input) {
 
 double interference_probability(Interval certain_mm, Interval possible_mm, Interval tolerance_a_mm,
                                 Interval tolerance_b_mm) {
-  const double lo = certain_mm.middle();
-  const double hi = std::max(possible_mm.middle(), lo);
+  // Lower ends are reached at a point, whereas upper ends may stay wide once the class is decided.
+  const double lo = certain_mm.lo;
+  const double hi = std::max(possible_mm.lo, lo);
   // What the tolerances do not explain is doubt about the mesh; it counts as one more such part.
   const double doubt = std::max(0.0, hi - lo - tolerance_a_mm.width() - tolerance_b_mm.width());
   const double sigma =

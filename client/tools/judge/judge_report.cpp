@@ -10,6 +10,9 @@
 namespace mortise {
 namespace {
 
+// A round fit touches at every facet; the worst few say it. --json has them all.
+constexpr std::size_t kMostRegions = 4;
+
 std::string um(double mm) { return std::isfinite(mm) ? fmt::format("{:.1f}", mm * 1e3) : "inf"; }
 std::string um(const Interval& mm) { return fmt::format("[{}, {}]", um(mm.lo), um(mm.hi)); }
 
@@ -62,7 +65,11 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
     if (rule != nullptr && !rule->fit.empty()) text += "  " + rule->fit;
     if (pair.no_inside) text += "  (a part is open: depth unknown)";
     text += "\n";
-    for (const Verdict& v : pair.verdicts) text += region_text(v, color);
+    const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
+    for (std::size_t i = 0; i < shown; ++i) text += region_text(pair.verdicts[i], color);
+    if (shown < pair.verdicts.size())
+      text += fmt::format("  ... {} more regions, none worse; --json lists all\n",
+                          pair.verdicts.size() - shown);
   }
   const StepCounters& c = report.counters;
   text += fmt::format("{}: {} pairs, {} asked; {} real, {} potential, {} fake; {} excluded",
