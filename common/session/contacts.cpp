@@ -2,28 +2,11 @@
 
 #include "common/base/constants.h"
 #include "common/session/motion_budget.h"
+#include "common/session/stop_time.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
 namespace {
-
-// Evaluations of one search for the time at which a pair becomes real, some 50 ms of work. Where it
-// ends the search the mover is left at the time proven so far and the pair is counted as not
-// examined; larger holds up everybody for one pair.
-constexpr std::uint64_t kRealTimeWorkCap = 20'000;
-
-// Upper bound of the lower outward offset of any face: what the real surface has at least.
-double largest_lower_offset_mm(const SurfaceBand& band) {
-  double largest = 0.0;
-  for (const SurfaceBand::Face& face : band.faces) {
-    // With a surface the deviation is e(x) +- residual, and e + residual + tolerance.hi is at most
-    // the largest offset of the band.
-    const double lower = face.surface ? band.largest_offset_mm - face.tolerance_mm.width()
-                                      : face.deviation_mm.lo + face.tolerance_mm.lo;
-    largest = std::max(largest, lower);
-  }
-  return largest;
-}
 
 enum class AtStart { kSay, kIgnoreTouching };
 
@@ -42,46 +25,6 @@ FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_
   pair.counts.box_tests += contact.work.box_tests;
   pair.counts.triangle_tests += contact.work.triangle_tests;
   return contact;
-}
-
-OverlapQuery overlap_query(const PairWork& pair) {
-  OverlapQuery query;
-  query.a = pair.solid_a;
-  query.b = pair.solid_b;
-  query.band_a = pair.band_a;
-  query.band_b = pair.band_b;
-  return query;
-}
-
-// Deepest overlap that is certain at one time of the segment, mm; <= 0 when none is.
-double certain_depth_mm(PairWork& pair, double t, CcdScratch& ccd) {
-  OverlapQuery query = overlap_query(pair);
-  query.X_WA = pair.motion_a.pose_at(t);
-  query.X_WB = pair.motion_b.pose_at(t);
-  query.refinement = Refinement::kFull;
-  query.accuracy_mm = kDeepeningSlack_mm;
-  query.work_cap = kRealTimeWorkCap;  // lower ends are found early; the upper are not needed
-  const OverlapResult overlap = find_overlap(query, ccd);
-  ++pair.counts.depth_queries;
-  pair.counts.depth_evaluations += overlap.evaluations;
-  double deepest = 0.0;
-  for (const OverlapRegion& region : overlap.regions)
-    deepest = std::max(deepest, region.certain_mm.lo);
-  return deepest;
-}
-
-// How far a pair that already interferes may move: as long as it gets no deeper. Looked at in
-// quarters of the segment; between them it is not looked at. The less it interferes, the less it
-// may gain: what is left of one tick must not be the licence of the next.
-double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
-  constexpr int kLooks = 4;
-  double& allowed_mm = pair.memo->allowed_depth_mm;
-  allowed_mm = std::min(allowed_mm, certain_depth_mm(pair, 0.0, ccd));
-  const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
-  for (int i = 1; i <= kLooks; ++i)
-    if (certain_depth_mm(pair, static_cast<double>(i) / kLooks, ccd) > allowed_mm + slack_mm)
-      return static_cast<double>(i - 1) / kLooks;
-  return 1.0;
 }
 
 // Without a band the parts are their meshes: real is where interiors meet, and first contact says
@@ -112,28 +55,6 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t_stop;
 }
 
-// Time of the segment up to which a pair with bands is proven not to be real.
-double stop_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
-  if (pair.no_inside()) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
-  if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
-    // Real needs an overlap of the meshes.
-    if (touch.state == ContactState::kFree) return 1.0;
-    if (touch.state == ContactState::kUndecided) return touch.t_clear;
-  }
-  SweptQuery query;
-  query.at_target = overlap_query(pair);
-  query.motion_a = pair.motion_a;
-  query.motion_b = pair.motion_b;
-  query.at_target.work_cap = kRealTimeWorkCap;
-  const RealTime real = find_real_time(query, ccd);
-  ++pair.counts.depth_queries;
-  pair.counts.depth_evaluations += real.evaluations;
-  if (real.real_at_start) return withdrawal_time(pair, ccd);
-  pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
-  if (real.capped) pair.undecided = true;
-  return real.t_free;  // 1 when it never becomes real; nothing beyond is proven
-}
-
 // With a band there are two questions: when do they come so near that the real surfaces could meet,
 // and when do the meshes meet.
 void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
@@ -154,7 +75,7 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   if (pair.meets) pair.t_contact = touch.t_contact;
   pair.t_enter = pair.entered ? near.t_contact : 0.0;
   if (world.policy == Policy::kStop)
-    pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time(pair, touch, ccd);
+    pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time_with_bands(pair, touch, ccd);
 }
 
 }  // namespace

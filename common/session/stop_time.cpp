@@ -1,0 +1,163 @@
+#include "common/session/stop_time.h"
+
+#include <algorithm>
+
+#include "common/base/constants.h"
+#include "common/session/motion_budget.h"
+
+namespace mortise {
+namespace {
+
+// Evaluations of one search for the time at which a pair becomes real, some 50 ms of work. Where it
+// ends the search the mover is left at the time proven so far and the pair is counted as not
+// examined; larger holds up everybody for one pair.
+constexpr std::uint64_t kRealTimeWorkCap = 20'000;
+
+// How closely the advance approaches the time at which the pair becomes real, mm of depth, and the
+// steps it may take: head-on it needs two or three; a part that slides along at constant depth
+// needs many and is left to the search.
+constexpr double kAdvanceAccuracy_mm = 0.5 * kDepthAccuracyDefault_mm;
+constexpr int kAdvanceSteps = 12;
+static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
+
+// Upper bound of the lower outward offset of any face: what the real surface has at least.
+double largest_lower_offset_mm(const SurfaceBand& band) {
+  double largest = 0.0;
+  for (const SurfaceBand::Face& face : band.faces) {
+    // With a surface the deviation is e(x) +- residual, and e + residual + tolerance.hi is at most
+    // the largest offset of the band.
+    const double lower = face.surface ? band.largest_offset_mm - face.tolerance_mm.width()
+                                      : face.deviation_mm.lo + face.tolerance_mm.lo;
+    largest = std::max(largest, lower);
+  }
+  return largest;
+}
+
+// Lower bound of what any face may have at most beyond what it has at least.
+double narrowest_mm(const SurfaceBand& band) {
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (const SurfaceBand::Face& face : band.faces)
+    narrowest = std::min(
+        narrowest, face.tolerance_mm.width() + (face.surface ? 0.0 : face.deviation_mm.width()));
+  return std::max(0.0, narrowest);
+}
+
+OverlapQuery overlap_query(const PairWork& pair) {
+  OverlapQuery query;
+  query.a = pair.solid_a;
+  query.b = pair.solid_b;
+  query.band_a = pair.band_a;
+  query.band_b = pair.band_b;
+  return query;
+}
+
+// Bracket of the deepest overlap that is certain at one time of the segment, mm. A place that the
+// overlap does not speak of is not even possible, and so at least the width of the bands away.
+Interval certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
+                       CcdScratch& ccd) {
+  OverlapQuery query = overlap_query(pair);
+  query.X_WA = pair.motion_a.pose_at(t);
+  query.X_WB = pair.motion_b.pose_at(t);
+  query.refinement = refinement;
+  query.accuracy_mm = accuracy_mm;
+  query.work_cap = kRealTimeWorkCap;
+  const OverlapResult overlap = find_overlap(query, ccd);
+  ++pair.counts.depth_queries;
+  pair.counts.depth_evaluations += overlap.evaluations;
+  const double elsewhere_mm = -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
+  Interval depth_mm{elsewhere_mm, elsewhere_mm};
+  for (const OverlapRegion& region : overlap.regions) {
+    depth_mm.lo = std::max(depth_mm.lo, region.certain_mm.lo);
+    depth_mm.hi = std::max(depth_mm.hi, region.certain_mm.hi);
+  }
+  return depth_mm;
+}
+
+enum class Advanced { kDone, kRealAtStart, kUnsure };
+
+struct Advance {
+  Advanced state = Advanced::kUnsure;
+  double t_free = 0.0;
+};
+
+// The depth that is certain changes no faster than the parts move against each other: where it
+// lacks g, no motion of less than g makes it real (collision.md section 5).
+//   1. depth at t; not below zero for certain: the last t was the last one proven.
+//   2. go on by as much time as the parts need for that depth.
+Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  Advance advance;
+  double t = advance.t_free = t_start;
+  for (int i = 0; i < kAdvanceSteps; ++i) {
+    const Interval depth_mm =
+        certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, ccd);
+    if (depth_mm.lo > 0.0 && t == 0.0) {
+      advance.state = Advanced::kRealAtStart;
+      return advance;
+    }
+    if (depth_mm.hi > 0.0) return advance;
+    advance.t_free = t;
+    const double lacking_mm = -depth_mm.hi;
+    if (lacking_mm <= kAdvanceAccuracy_mm) {
+      // Reached it, when the bracket is tight as well; whether a part may slide along at the limit
+      // is for the search to say.
+      if (i > 0 && depth_mm.lo >= -4.0 * kAdvanceAccuracy_mm) advance.state = Advanced::kDone;
+      return advance;
+    }
+    t += lacking_mm / speed_mm;
+    if (!(t < 1.0)) {
+      advance = {Advanced::kDone, 1.0};
+      return advance;
+    }
+  }
+  return advance;
+}
+
+}  // namespace
+
+double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
+  constexpr int kLooks = 4;
+  const auto depth_mm = [&](double t) {
+    return std::max(0.0, certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd).lo);
+  };
+  double& allowed_mm = pair.memo->allowed_depth_mm;
+  allowed_mm = std::min(allowed_mm, depth_mm(0.0));
+  // The less it interferes, the less it may gain: what one tick grants must not be the licence of
+  // the next.
+  const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
+  for (int i = 1; i <= kLooks; ++i)
+    if (depth_mm(static_cast<double>(i) / kLooks) > allowed_mm + slack_mm)
+      return static_cast<double>(i - 1) / kLooks;
+  return 1.0;
+}
+
+double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
+  // Without an inside there is no depth and so no real verdict: nobody is stopped.
+  if (pair.no_inside()) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
+  double t_start = pair.t_enter;
+  if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
+    // Real needs an overlap of the meshes.
+    if (touch.state == ContactState::kFree) return 1.0;
+    if (touch.state == ContactState::kUndecided) return touch.t_clear;
+    if (touch.state == ContactState::kContact) t_start = touch.t_contact;
+  }
+  const Advance advance = advance_to_real(pair, t_start, ccd);
+  if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
+  pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
+  if (advance.state == Advanced::kDone) return advance.t_free;
+
+  SweptQuery query;
+  query.at_target = overlap_query(pair);
+  query.motion_a = pair.motion_a;
+  query.motion_b = pair.motion_b;
+  query.at_target.work_cap = kRealTimeWorkCap;
+  const RealTime real = find_real_time(query, ccd);
+  ++pair.counts.depth_queries;
+  pair.counts.depth_evaluations += real.evaluations;
+  if (real.real_at_start) return withdrawal_time(pair, ccd);
+  if (real.capped) pair.undecided = true;
+  return std::max(advance.t_free, real.t_free);
+}
+
+}  // namespace mortise
