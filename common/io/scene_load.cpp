@@ -177,7 +177,12 @@ class SceneLoader {
                   "for more than potential");
     if (!spec.mesh.generator.empty()) {
       Result<GeneratedPart> generated = generate(spec.mesh.generator, spec.mesh.parameters);
-      if (generated) mesh.generated = std::move(generated->features);
+      if (generated) {
+        // A mesh from elsewhere (a log) may be another one: then its faces are found, not known.
+        if (mesh_hash(generated->mesh) != mesh.solid->hash())
+          for (Feature& feature : generated->features) feature.triangles.clear();
+        mesh.generated = std::move(generated->features);
+      }
     }
     return mesh;
   }
