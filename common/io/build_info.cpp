@@ -8,6 +8,9 @@
 #endif
 
 namespace mortise {
+
+extern const char* const kEngineSources;  // written by hash_sources.cmake
+
 namespace {
 
 std::string architecture() {
@@ -37,12 +40,18 @@ std::string engine_version() { return MORTISE_VERSION; }
 std::map<std::string, std::string> build_info() {
   return {{"engine_version", engine_version()}, {"compiler", compiler()},
           {"build_type", MORTISE_BUILD_TYPE},   {"flags", MORTISE_COMPILE_FLAGS},
-          {"architecture", architecture()},     {"fingerprint", build_fingerprint()}};
+          {"architecture", architecture()},     {"sources", kEngineSources},
+          {"fingerprint", build_fingerprint()}};
+}
+
+std::string toolchain_fingerprint() {
+  const std::string all =
+      compiler() + '\n' + MORTISE_BUILD_TYPE + '\n' + MORTISE_COMPILE_FLAGS + '\n' + architecture();
+  return content_hash(std::as_bytes(std::span(all)));
 }
 
 std::string build_fingerprint() {
-  const std::string all = engine_version() + '\n' + compiler() + '\n' + MORTISE_BUILD_TYPE + '\n' +
-                          MORTISE_COMPILE_FLAGS + '\n' + architecture();
+  const std::string all = engine_version() + '\n' + kEngineSources + '\n' + toolchain_fingerprint();
   return content_hash(std::as_bytes(std::span(all)));
 }
 

@@ -7,9 +7,12 @@ namespace mortise {
 /// Version of the project, e.g. "0.1.0".
 std::string engine_version();
 
-/// What decides the bits of a result beside the sources: compiler, its version and flags, kind of
-/// build, processor family. A replay is promised to agree bit for bit where this is the same.
+/// What decides the bits of a result: sources of the engine, compiler, its version and flags, kind
+/// of build, processor family. A replay is promised to agree bit for bit where this is the same.
 std::string build_fingerprint();
+
+/// The same without the sources: where this is the same, only a change of the engine changes bits.
+std::string toolchain_fingerprint();
 
 /// The same by name, for the metadata of a log.
 std::map<std::string, std::string> build_info();
