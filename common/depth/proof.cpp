@@ -106,7 +106,9 @@ class Neighbourhood {
     facet.offset_mm = Body::offset_of(face, proof_.layer);
     const double depth = depth_below(facet, c);
     if (facet.normal.isZero(0.0)) return true;  // without area: its neighbours are asked
-    const double along = proof_.limit_mm > 0.0 ? facet.normal.dot(up_) : 1.0;
+    // The depth below a declared surface is a distance already: by itself it needs no direction.
+    const bool moved = proof_.limit_mm > 0.0 && facet.surface == nullptr;
+    const double along = moved ? facet.normal.dot(up_) : 1.0;
     facet.slack_mm = proof_.limit_mm * along - depth;
     if (facet.slack_mm >= -proof_.rounding_mm) {
       if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);

@@ -58,7 +58,8 @@ struct DepthProof {
 /// farther than |u| from the patch need not be asked. Where k is convex, so that all facets near
 /// the patch lie below two planes, any mean of the depths below both bounds the depth: this is what
 /// makes the ridge along an edge of k converge. A facet may be a declared surface whose
-/// distance is convex (bore) or bounded by its tangent plane (shaft): its triangles are one wall.
+/// distance is convex (bore) or bounded by its tangent plane (shaft): its triangles are one wall,
+/// and the depth below it is a distance, which needs no m.
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch);
 
 }  // namespace mortise
