@@ -7,10 +7,16 @@
 namespace mortise {
 namespace {
 
+// The box of a part, with every face where its band has it at least.
+Vec3 least_half(const Part& part, bool with_band) {
+  const double inward_mm = with_band ? -part.band.faces[0].tolerance_mm.lo : 0.0;
+  return part.solid->bounds().half() - Vec3::Constant(inward_mm);
+}
+
 // Depth by which two solid boxes overlap, mm: the least overlap over the 15 axes; <= 0 when apart.
-double box_overlap_mm(const Part& a, const Part& b) {
+double box_overlap_mm(const Part& a, const Part& b, bool with_band = false) {
   const Mat3 A = a.X_WP.rotation(), B = b.X_WP.rotation();
-  const Vec3 half_a = a.solid->bounds().half(), half_b = b.solid->bounds().half();
+  const Vec3 half_a = least_half(a, with_band), half_b = least_half(b, with_band);
   const Vec3 d = a.X_WP * a.solid->bounds().center() - b.X_WP * b.solid->bounds().center();
   double least = 1e300;
   const auto look_along = [&](const Vec3& axis) {
@@ -31,13 +37,13 @@ double box_overlap_mm(const Part& a, const Part& b) {
 
 constexpr std::uint32_t kFrame = 4;  // id of the part that is not one box
 
-double deepest_overlap_mm(const World& world) {
+double deepest_overlap_mm(const World& world, bool with_bands = false) {
   double deepest = -1e300;
   for (const Part& a : world.parts)
     for (const Part& b : world.parts) {
       if (a.id >= b.id || (!a.moving && !b.moving)) continue;
       if (a.id.value == kFrame || b.id.value == kFrame) continue;
-      deepest = std::max(deepest, box_overlap_mm(a, b));
+      deepest = std::max(deepest, box_overlap_mm(a, b, with_bands));
     }
   return deepest;
 }
@@ -56,6 +62,24 @@ TEST(StopProperty, NothingIsEverLeftOverlapping) {
     }
   }
   EXPECT_GT(stopped, 100U);
+}
+
+// With tolerances: nothing is left where even the least real parts overlap.
+TEST(StopProperty, NothingIsEverLeftInterferingForCertain) {
+  std::uint64_t stopped = 0;
+  double deepest = -1e300;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    RandomPlay play(Policy::kStop, seed, 6, true);
+    Scratch scratch(2);
+    for (int i = 0; i < 30; ++i) {
+      stopped += play.tick(scratch).counters.stopped_parts;
+      ASSERT_LT(deepest_overlap_mm(play.session.world, true), 2.0 * kAccuracyDefault_mm)
+          << "seed " << seed << " tick " << i;
+      deepest = std::max(deepest, deepest_overlap_mm(play.session.world));
+    }
+  }
+  EXPECT_GT(stopped, 20U);
+  EXPECT_GT(deepest, 0.01);  // the meshes themselves may overlap, and do
 }
 
 // The same play without a policy does overlap: the property above is not empty.
