@@ -1,0 +1,94 @@
+#include "common/session/judgement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/depth/depth_bands.h"
+
+namespace mortise {
+namespace {
+
+using namespace shapes;
+
+Part part_of(std::uint32_t id, const SolidPtr& solid, const SurfaceBand& band) {
+  Part part;
+  part.id = PartId{id};
+  part.solid = solid;
+  part.band = band;
+  return part;
+}
+
+struct FitPair {
+  explicit FitPair(const std::string& code) {
+    const FitOffsets offsets = fit_offsets(code, 10.0);
+    const SolidPtr shaft = solid(peg({10, -5, 15, 32, 1, std::numbers::pi / 32}));
+    const SolidPtr plate = solid(ring({10, 0, 20, 32, 1, 0}, 20));
+    a = part_of(1, shaft,
+                cylinder_band(shaft, 10, false, offsets.shaft_mm, "Ø20 " + code.substr(3)));
+    b = part_of(2, plate,
+                cylinder_band(plate, 10, true, offsets.hole_mm, "Ø20 " + code.substr(0, 2)));
+  }
+  Judgement judge(bool want_gpd = true) const {
+    JudgementQuery query;
+    query.a = &a;
+    query.b = &b;
+    query.motion_a = query.motion_b = still_motion(Pose());
+    query.want_gpd = want_gpd;
+    CcdScratch scratch;
+    return judge_pair(query, scratch);
+  }
+  Part a, b;
+};
+
+TEST(Judgement, FakeFitInOneSentence) {
+  const Judgement judgement = FitPair("H7/g6").judge();
+  ASSERT_EQ(judgement.verdicts.size(), 1U);
+  const Verdict& v = judgement.verdicts[0];
+  EXPECT_EQ(v.collision_class, CollisionClass::kFake);
+  EXPECT_NEAR(v.delta_mm.lo, 0.048152733, 1e-9);
+  EXPECT_NEAR(v.fake_below_mm, 0.051652733, 1e-6);
+  EXPECT_NEAR(v.real_above_mm, 0.068652733, 1e-6);
+  EXPECT_NEAR(v.margin_mm, 0.0035, 1e-6);
+  EXPECT_EQ(v.probability, 0.0);
+  EXPECT_EQ(v.grade, DeviationGrade::kDeclaredFeature);
+  EXPECT_EQ(v.face_a, "shaft");
+  EXPECT_EQ(v.face_b, "bore");
+  EXPECT_EQ(v.shape_a, FaceShape::kConvex);
+  EXPECT_EQ(v.shape_b, FaceShape::kConcave);
+  EXPECT_EQ(v.gpd_mm, Interval{});  // fake: nobody needs a way out
+  for (const char* part : {"48.2", "51.7", "68.7", "Ø20 H7/g6", "fake", "3.5"})
+    EXPECT_NE(v.explanation.find(part), std::string::npos) << part << " in: " << v.explanation;
+}
+
+TEST(Judgement, PotentialAndRealFits) {
+  const Judgement k6 = FitPair("H7/k6").judge();
+  ASSERT_FALSE(k6.verdicts.empty());
+  EXPECT_EQ(k6.verdicts[0].collision_class, CollisionClass::kPotential);
+  EXPECT_NEAR(k6.verdicts[0].probability, 0.31353, 0.02);
+  const Judgement p6 = FitPair("H7/p6").judge();
+  ASSERT_FALSE(p6.verdicts.empty());
+  const Verdict& v = p6.verdicts[0];
+  EXPECT_EQ(v.collision_class, CollisionClass::kReal);
+  EXPECT_TRUE(v.has_witness);
+  EXPECT_EQ(v.probability, 1.0);
+  EXPECT_GT(v.gpd_mm.lo, 0.0);
+  EXPECT_GE(v.gpd_mm.hi, v.gpd_mm.lo);
+}
+
+TEST(Judgement, NominalBlocksHaveGpdOnlyWhenAsked) {
+  FitPair pair("H7/g6");
+  const SolidPtr cube = solid(box({.5, .5, .5}));
+  pair.a = part_of(1, cube, nominal_band());
+  pair.b = part_of(2, solid(box({.5, .5, .5}, {.9, .13, .07})), nominal_band());
+  const Judgement with = pair.judge(true), without = pair.judge(false);
+  ASSERT_EQ(with.verdicts.size(), 1U);
+  EXPECT_EQ(with.verdicts[0].collision_class, CollisionClass::kReal);
+  EXPECT_EQ(with.verdicts[0].grade, DeviationGrade::kNominal);
+  EXPECT_NEAR(with.verdicts[0].gpd_mm.lo, 0.1, 1e-9);
+  EXPECT_NEAR(with.verdicts[0].gpd_mm.hi, 0.1, 0.003);
+  EXPECT_EQ(without.verdicts[0].gpd_mm, Interval{});
+}
+
+}  // namespace
+}  // namespace mortise
