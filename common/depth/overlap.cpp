@@ -29,8 +29,9 @@ class Overlap {
     for (const KnownFacePair& known : candidates.known)
       known_.rows.push_back({{known.face[0], known.face[1]}, known.overlap.hi_mm});
     for (const KnownFacePair& known : candidates.known) add_known(known);
-    regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2}, scratch_,
-                            result_.evaluations);
+    regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
+                             query_.refinement == Refinement::kDecided},
+                            scratch_, result_.evaluations);
     if (regions_.count > 0) search_regions();
     if (result_.regions.empty()) add_shared_inside(candidates);
     if (result_.no_inside) add_crossing(candidates);

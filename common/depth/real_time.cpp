@@ -143,19 +143,23 @@ class RealTimeSearch {
           const auto overlap = face_pair_overlap(*sa, ea, *sb, eb, pose(0, t), margin);
           return overlap ? overlap->hi_mm + offsets : std::numeric_limits<double>::infinity();
         };
+        most_excluded_mm_ = -std::numeric_limits<double>::infinity();
         const Span first =
             first_not_excluded(overlap_at, {0.0, 1.0}, overlap_at(0.0), overlap_at(1.0));
-        if (first.t0 >= 1.0 || ends_at(first)) known_.rows.push_back({{i, j}, touch_mm_ - offsets});
+        if (first.t0 >= 1.0 || ends_at(first))
+          known_.rows.push_back({{i, j}, most_excluded_mm_ - offsets});
       }
   }
 
   // The first interval, as brief as the accuracy, over which a closed form exceeds touch; [1, 1]:
   // none.
   template <class OverlapAt>
-  Span first_not_excluded(const OverlapAt& overlap_at, const Span& span, double at0,
-                          double at1) const {
-    const double bend = spread(0, span) + spread(1, span);
-    if (std::max(at0, at1) + bend <= touch_mm_) return {1.0, 1.0};
+  Span first_not_excluded(const OverlapAt& overlap_at, const Span& span, double at0, double at1) {
+    const double most = std::max(at0, at1) + spread(0, span) + spread(1, span);
+    if (most <= touch_mm_) {
+      most_excluded_mm_ = std::max(most_excluded_mm_, most);
+      return {1.0, 1.0};
+    }
     const double middle = 0.5 * (span.t0 + span.t1);
     const bool brief =
         speed_upper_bound() * (span.t1 - span.t0) <= kSmallestShare * query_.accuracy_mm;
@@ -345,6 +349,8 @@ class RealTimeSearch {
   bool trivial_ = true;
   Layer layer_ = Layer::kMesh;
   double rounding_mm_ = 0.0, touch_mm_ = 0.0;
+  double most_excluded_mm_ =
+      0.0;  // by the closed form at hand, over the intervals that it excludes
   KnownOverlaps known_;
   SearchScratch scratch_;
   std::vector<Item> heap_;

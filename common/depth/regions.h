@@ -22,6 +22,8 @@ struct RegionsQuery {
   const Candidates* candidates = nullptr;
   const KnownOverlaps* known = nullptr;
   std::uint64_t work_cap = 0;
+  /// Where no real surfaces can interfere, look only briefly whether the meshes overlap.
+  bool brief = false;
 };
 
 /// Asks every candidate triangle whether it stays out of the other part, floods over neighbours
