@@ -149,6 +149,8 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
   const double radius_mm = std::min(world.parts[pair.a].solid->sphere().radius_mm,
                                     world.parts[pair.b].solid->sphere().radius_mm);
   if (!pair.open) {
+    // What stopped the pair is the worst of what it would have met, and one clash.
+    if (pair.blocks && pair.seen.size() > 1) pair.seen.resize(1);
     for (SeenRegion& seen : pair.seen) seen.tell = true;
     return;
   }
@@ -158,6 +160,17 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
   pair_up(pair, open, radius_mm, false);
   pair_up(pair, open, radius_mm, true);
   pair.keeps.assign(open.size(), 0);
+  if (pair.blocks) {
+    // The same; and where the part was stopped nobody looked: what was open there stays.
+    pair.keeps.assign(open.size(), 1);
+    std::size_t kept = 0;
+    for (std::size_t r = 0; r < pair.seen.size(); ++r)
+      if (r == 0 || pair.seen[r].open >= 0) {
+        if (kept != r) pair.seen[kept] = std::move(pair.seen[r]);
+        ++kept;
+      }
+    pair.seen.resize(kept);
+  }
   for (SeenRegion& seen : pair.seen) {
     if (seen.open < 0) {
       seen.tell = true;

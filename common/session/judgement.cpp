@@ -41,6 +41,7 @@ OverlapQuery overlap_query(const JudgementQuery& query) {
   overlap.X_WA = query.motion_a.X_W1;
   overlap.X_WB = query.motion_b.X_W1;
   overlap.refinement = query.refinement;
+  overlap.work_cap = query.work_cap;
   return overlap;
 }
 

@@ -18,6 +18,7 @@ struct JudgementQuery {
   double t_contact = 1.0;
   Refinement refinement = Refinement::kDecided;
   bool want_gpd = true;
+  std::uint64_t work_cap = 200'000;  ///< of the overlap, see OverlapQuery
 };
 
 struct Judgement {

@@ -8,10 +8,14 @@
 namespace mortise {
 namespace {
 
-// Evaluations of one search for the time at which a pair becomes real, some 50 ms of work. Where it
+// Evaluations of one search for the time at which a pair becomes real, some 30 ms of work. Where it
 // ends the search the mover is left at the time proven so far and the pair is counted as not
 // examined; larger holds up everybody for one pair.
-constexpr std::uint64_t kRealTimeWorkCap = 20'000;
+constexpr std::uint64_t kRealTimeWorkCap = 10'000;
+
+// Evaluations of one look at the depth on the way; where it ends, the bracket is wide and the look
+// is worth nothing.
+constexpr std::uint64_t kLookWorkCap = 2'000;
 
 // How closely the advance approaches the time at which the pair becomes real, mm of depth, and the
 // steps it may take: head-on it needs two or three; a part that slides along at constant depth
@@ -60,7 +64,7 @@ Interval certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement 
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
-  query.work_cap = kRealTimeWorkCap;
+  query.work_cap = kLookWorkCap;
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += overlap.evaluations;

@@ -9,6 +9,11 @@
 namespace mortise {
 namespace {
 
+// Evaluations of one overlap within a tick, some 30 ms of work. A pair at the very brink of a
+// threshold can take any number; where it ends, brackets stay wide, the verdict is potential and
+// the pair is counted as not examined to the end.
+constexpr std::uint64_t kTickOverlapCap = 10'000;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The two motions of a pair over some part of the tick; t_contact and t_enter (see PairWork) count
@@ -32,6 +37,7 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
   query.motion_b = motion.b;
   query.t_contact = motion.t_contact;
   query.want_gpd = want_gpd;
+  query.work_cap = kTickOverlapCap;
   Judgement judgement = judge_pair(query, ccd);
   StepCounters& counts = pair.counts;
   ++counts.depth_queries;
@@ -40,6 +46,8 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
   counts.verdicts.out += judgement.verdicts.size();
   for (const Verdict& verdict : judgement.verdicts)
     ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
+  for (const OverlapRegion& region : judgement.overlap.regions)
+    if (region.capped) pair.undecided = true;
   return judgement;
 }
 
@@ -126,53 +134,36 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Pair
 }
 
 // The collision that made the response stop this pair, judged where the increments would have led.
-std::optional<SeenRegion> attempted(const World& world, PairWork& pair, bool want_gpd,
-                                    CcdScratch& ccd) {
-  std::optional<SeenRegion> region;
+// Where the part was stopped it stands at the very brink of being real: nothing is to be learned
+// there.
+void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch& ccd) {
   const PairMotion asked = as_asked(pair);
-  const Judgement judgement = judge_along(world, pair, asked, want_gpd, ccd);
-  if (!judgement.verdicts.empty() &&
-      judgement.verdicts.front().collision_class == CollisionClass::kReal)
-    region = seen_at(judgement.verdicts.front(), asked.a.X_W1, asked.b.X_W1);
-  else
-    region = passing(world, pair, asked, want_gpd, ccd);
-  if (region) prefix(region->verdict, "stopped", pair.t_stop);
-  return region;
-}
-
-// Replaces the nearest region of the pair, or adds one.
-void merge_attempt(const World& world, PairWork& pair, SeenRegion region) {
-  const double reach_mm = std::min(world.parts[pair.a].solid->sphere().radius_mm,
-                                   world.parts[pair.b].solid->sphere().radius_mm);
-  SeenRegion* nearest = nullptr;
-  double least_mm = reach_mm;
-  for (SeenRegion& seen : pair.seen) {
-    const double d = std::min((seen.p_A - region.p_A).norm(), (seen.p_B - region.p_B).norm());
-    if (d > least_mm) continue;
-    least_mm = d;
-    nearest = &seen;
+  pair.judgement = judge_along(world, pair, asked, want_gpd, ccd);
+  for (const Verdict& verdict : pair.judgement.verdicts)
+    pair.seen.push_back(seen_at(verdict, asked.a.X_W1, asked.b.X_W1));
+  if (pair.seen.empty() || pair.seen.front().verdict.collision_class != CollisionClass::kReal) {
+    pair.seen.clear();
+    if (auto region = passing(world, pair, asked, want_gpd, ccd))
+      pair.seen.push_back(std::move(*region));
   }
-  if (nearest)
-    *nearest = std::move(region);
-  else
-    pair.seen.push_back(std::move(region));
+  for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
 }
 
 void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
                 CcdScratch& ccd) {
   const PairMotion motion = as_moved(work, pair);
   pair.seen.clear();
-  pair.judgement = judge_along(world, pair, motion, want_gpd, ccd);
-  for (const Verdict& verdict : pair.judgement.verdicts)
-    pair.seen.push_back(seen_at(verdict, motion.a.X_W1, motion.b.X_W1));
   if (pair.blocks) {
-    if (auto region = attempted(world, pair, want_gpd, ccd))
-      merge_attempt(world, pair, std::move(*region));
-  } else if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start))) {
-    if (auto region = passing(world, pair, motion, want_gpd, ccd)) {
-      region->passing = true;
-      pair.seen.push_back(std::move(*region));
-    }
+    judge_attempt(world, pair, want_gpd, ccd);
+  } else {
+    pair.judgement = judge_along(world, pair, motion, want_gpd, ccd);
+    for (const Verdict& verdict : pair.judgement.verdicts)
+      pair.seen.push_back(seen_at(verdict, motion.a.X_W1, motion.b.X_W1));
+    if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start)))
+      if (auto region = passing(world, pair, motion, want_gpd, ccd)) {
+        region->passing = true;
+        pair.seen.push_back(std::move(*region));
+      }
   }
   double distance_mm = kInfinity;
   if (pair.open && pair.judgement.overlap.regions.empty()) {

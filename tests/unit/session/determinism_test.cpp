@@ -18,13 +18,13 @@ struct Record {
   std::uint64_t events = 0;
 };
 
-Record record(Policy policy, std::uint64_t seed, bool bands, const Way& way, int ticks = 60) {
+Record record(Policy policy, std::uint64_t seed, bool bands, const Way& way) {
   RandomPlay play(policy, seed, 8, bands);
   Scratch scratch(way.threads);
   scratch.impl().switches.motion_budget = way.motion_budget;
   scratch.impl().switches.brute_force_pairs = way.brute_force_pairs;
   Record result;
-  for (int i = 0; i < ticks; ++i) {
+  for (int i = 0; i < 30; ++i) {
     const StepReport report = play.tick(scratch);
     result.digests.push_back(digest(report));
     result.events += report.events.size();
