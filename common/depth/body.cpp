@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/base/constants.h"
 
@@ -47,6 +48,24 @@ Vec3 Body::normal(std::uint32_t triangle) const {
                      .cross(mesh->corner(triangle, 2) - mesh->corner(triangle, 0));
   const double length = n.norm();
   return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+}
+
+const Interval& Body::extent_of(std::uint16_t face) const {
+  if (extents_.empty()) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    extents_.assign(band->faces.size(), Interval{kInfinity, -kInfinity});
+    for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
+      const std::uint16_t f = face_index(t);
+      const auto& surface = band->faces[f].surface;
+      if (!surface) continue;
+      for (int k = 0; k < 3; ++k) {
+        const double z = (mesh->corner(t, k) - surface->point).dot(surface->axis);
+        extents_[f].lo = std::min(extents_[f].lo, z);
+        extents_[f].hi = std::max(extents_[f].hi, z);
+      }
+    }
+  }
+  return extents_[face];
 }
 
 std::span<const std::uint32_t> Body::sharp_neighbours(std::uint32_t triangle) const {

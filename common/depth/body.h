@@ -9,6 +9,7 @@
 #include "common/geometry/signed_distance.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
+#include "common/math/interval.h"
 #include "common/math/pose.h"
 
 namespace mortise {
@@ -32,6 +33,8 @@ struct Body {
     return band->face_of_triangle.empty() ? std::uint16_t{0} : band->face_of_triangle[triangle];
   }
   Vec3 normal(std::uint32_t triangle) const;
+  /// Extent of a face along the axis of its declared surface, from the surface's point, mm.
+  const Interval& extent_of(std::uint16_t face) const;
 
   /// Triangles around the corners of one that meet its plane at a sharp convex angle and have all
   /// of it on their material side: where they move inward they cut it, where outward they extend
@@ -58,6 +61,7 @@ struct Body {
   };
   mutable std::vector<Range> sharp_range_;  // by triangle, filled when asked for
   mutable std::vector<std::uint32_t> sharp_;
+  mutable std::vector<Interval> extents_;  // by face, filled when asked for
 };
 
 /// Calls visit(triangle, corners) for every triangle whose box is within the given box (part

@@ -164,11 +164,25 @@ class Finder {
     const auto overlap = face_pair_overlap(*sa, extent_of(pair_.bodies[0], pair.face[0], *sa), *sb,
                                            extent_of(pair_.bodies[1], pair.face[1], *sb),
                                            pair_.X_KS[0], query_.margin_mm);
-    if (!overlap) return std::nullopt;
+    if (!overlap) return cone_in_bore(pair);
     pair.overlap = *overlap;
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
     const bool never = overlap->hi_mm + upper <= pair_.touch_mm;
     if (!never && !is_tight(pair, *sa, *sb)) return std::nullopt;
+    return pair;
+  }
+
+  // A chamfer or taper in a bore that it cannot touch.
+  std::optional<KnownFacePair> cone_in_bore(KnownFacePair pair) const {
+    const SurfaceBand::Face& fa = pair_.bodies[0].band->faces[pair.face[0]];
+    const SurfaceBand::Face& fb = pair_.bodies[1].band->faces[pair.face[1]];
+    if (fa.surface->kind != SurfaceKind::kCone && fb.surface->kind != SurfaceKind::kCone)
+      return std::nullopt;
+    const InBoreBound bound = in_bore_bound(pair_, pair.face[0], pair.face[1], query_.margin_mm);
+    const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
+    if (!(bound.face_mm + upper <= pair_.touch_mm)) return std::nullopt;
+    pair.overlap.hi_mm = bound.face_mm;
+    pair.overlap.lo_mm = -std::numeric_limits<double>::infinity();
     return pair;
   }
 
@@ -275,6 +289,43 @@ class Finder {
 };
 
 }  // namespace
+
+InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint16_t face_b,
+                          double margin_mm) {
+  InBoreQuery query;
+  const SurfaceBand::Face& fa = pair.bodies[0].band->faces[face_a];
+  const SurfaceBand::Face& fb = pair.bodies[1].band->faces[face_b];
+  query.a = Body::surface_of(fa, Layer::kUpper);
+  query.b = Body::surface_of(fb, Layer::kUpper);
+  if (query.a == nullptr || query.b == nullptr || !is_round_in_bore(*query.a, *query.b)) return {};
+  query.extent_a = extent_of(pair.bodies[0], face_a, *query.a);
+  query.extent_b = extent_of(pair.bodies[1], face_b, *query.b);
+  query.most_inward_mm = std::max(0.0, -Body::offset_of(query.a->inward ? fb : fa, Layer::kLower));
+  query.margin_mm = margin_mm;
+  return in_bore_bound(query, pair.X_KS[0]);
+}
+
+void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known) {
+  if (pair.trivial) return;
+  const auto& faces_a = pair.bodies[0].band->faces;
+  const auto& faces_b = pair.bodies[1].band->faces;
+  for (std::uint16_t i = 0; i < faces_a.size(); ++i)
+    for (std::uint16_t j = 0; j < faces_b.size(); ++j) {
+      const InBoreBound bound = in_bore_bound(pair, i, j, pair.near_mm);
+      if (!std::isfinite(bound.face_mm)) continue;
+      const auto row = std::find_if(known.rows.begin(), known.rows.end(), [&](const auto& r) {
+        return r.face[0] == i && r.face[1] == j;
+      });
+      if (row != known.rows.end()) {
+        row->within_mm = bound.within_mm;
+        continue;
+      }
+      const double upper =
+          Body::offset_of(faces_a[i], Layer::kUpper) + Body::offset_of(faces_b[j], Layer::kUpper);
+      if (bound.face_mm + upper <= pair.touch_mm)
+        known.rows.push_back({{i, j}, bound.face_mm, bound.within_mm, false});
+    }
+}
 
 Candidates find_candidates(const CandidateQuery& query) { return Finder(query).run(); }
 

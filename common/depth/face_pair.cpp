@@ -81,17 +81,9 @@ std::optional<InHole> shaft_in_hole(const Shaft& shaft, const Shaft& hole, doubl
 }  // namespace
 
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface) {
-  FaceExtent extent{std::numeric_limits<double>::infinity(),
-                    -std::numeric_limits<double>::infinity()};
-  for (std::uint32_t t = 0; t < body.mesh->triangles.size(); ++t) {
-    if (body.face_index(t) != face) continue;
-    for (int k = 0; k < 3; ++k) {
-      const double z = (body.mesh->corner(t, k) - surface.point).dot(surface.axis);
-      extent.lo_mm = std::min(extent.lo_mm, z);
-      extent.hi_mm = std::max(extent.hi_mm, z);
-    }
-  }
-  return extent;
+  (void)surface;
+  const Interval& extent = body.extent_of(face);
+  return {extent.lo, extent.hi};
 }
 
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
@@ -120,6 +112,48 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
     return FacePairOverlap{overlap, overlap, ball + ball_radius * out, a.inward ? out : Vec3(-out)};
   }
   return std::nullopt;
+}
+
+bool is_round_in_bore(const Surface& a, const Surface& b) {
+  if (a.inward == b.inward) return false;
+  const Surface& bore = a.inward ? a : b;
+  const Surface& round = a.inward ? b : a;
+  return bore.kind == SurfaceKind::kCylinder &&
+         (round.kind == SurfaceKind::kCylinder || round.kind == SurfaceKind::kCone);
+}
+
+InBoreBound in_bore_bound(const InBoreQuery& query, const Pose& X_BA) {
+  InBoreBound bound;
+  const Surface &a = *query.a, &b = *query.b;
+  if (!is_round_in_bore(a, b)) return bound;
+  const Line axis_a{X_BA * a.point, X_BA.q * a.axis}, axis_b{b.point, b.axis};
+  const Line &bore = a.inward ? axis_a : axis_b, &round = a.inward ? axis_b : axis_a;
+  const double bore_radius = a.inward ? a.radius_mm : b.radius_mm;
+  const Surface& surface = a.inward ? b : a;
+  const FaceExtent& extent = a.inward ? query.extent_b : query.extent_a;
+  const FaceExtent& bore_extent = a.inward ? query.extent_a : query.extent_b;
+  const double slope = round.direction.dot(bore.direction);
+  if (std::fabs(slope) < kLeastCosine) return bound;
+  const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
+  if (surface.kind == SurfaceKind::kCylinder) {
+    // The circles around the axis that may be near the bore, wherever the face ends.
+    const double beyond = query.margin_mm + surface.radius_mm * tilt;
+    const double z0 = (round.point - bore.point).dot(bore.direction);
+    double farthest = 0.0;
+    for (const double z : {bore_extent.lo_mm - beyond, bore_extent.hi_mm + beyond})
+      farthest = std::max(farthest, bore.across(round.at((z - z0) / slope)).norm());
+    bound.face_mm = bound.within_mm = farthest + surface.radius_mm - bore_radius;
+    return bound;
+  }
+  if (!(extent.lo_mm >= 0.0)) return bound;
+  const double widening = std::tan(surface.half_angle_rad);
+  bound.face_mm = -std::numeric_limits<double>::infinity();
+  for (const double z : {extent.lo_mm, extent.hi_mm})
+    bound.face_mm =
+        std::max(bound.face_mm, bore.across(round.at(z)).norm() + z * widening - bore_radius);
+  bound.face_mm += query.most_inward_mm * (1.0 - std::cos(surface.half_angle_rad) +
+                                           tilt * std::sin(surface.half_angle_rad));
+  return bound;
 }
 
 }  // namespace mortise

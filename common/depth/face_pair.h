@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "common/depth/body.h"
@@ -29,5 +30,28 @@ struct FacePairOverlap {
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm);
+
+/// Upper bounds for a convex round face in a bore with a nearly parallel axis, mm: how far the
+/// surface of its face (`face_mm`), and any point that is not outside of its surface continued
+/// (`within_mm`), may lie beyond the bore's wall, where the bore is near. Infinity: nothing is
+/// known. Over time each is convex in the displacement.
+///
+/// A cone (chamfer, taper) is bounded by its end circles: the distance from the bore's axis is
+/// convex. `most_inward_mm` >= 0 is how far the layers may move the round face inward; along a
+/// cone's normal that is less in radius.
+struct InBoreBound {
+  double face_mm = std::numeric_limits<double>::infinity();
+  double within_mm = std::numeric_limits<double>::infinity();
+};
+struct InBoreQuery {
+  const Surface* a = nullptr;
+  const Surface* b = nullptr;
+  FaceExtent extent_a, extent_b;
+  double most_inward_mm = 0.0;
+  double margin_mm = 0.0;
+};
+InBoreBound in_bore_bound(const InBoreQuery& query, const Pose& X_BA);
+/// May the pair have such a bound at all?
+bool is_round_in_bore(const Surface& a, const Surface& b);
 
 }  // namespace mortise

@@ -26,8 +26,7 @@ class Overlap {
   OverlapResult run() {
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     const Candidates candidates = find_candidates({&pair_, pair_.near_mm, result_.no_inside});
-    for (const KnownFacePair& known : candidates.known)
-      known_.rows.push_back({{known.face[0], known.face[1]}, known.overlap.hi_mm});
+    find_known(candidates);
     for (const KnownFacePair& known : candidates.known) add_known(known);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
                              query_.refinement == Refinement::kDecided},
@@ -48,6 +47,12 @@ class Overlap {
   }
 
  private:
+  void find_known(const Candidates& candidates) {
+    for (const KnownFacePair& known : candidates.known)
+      known_.rows.push_back({{known.face[0], known.face[1]}, known.overlap.hi_mm});
+    add_in_bore_rows(pair_, known_);
+  }
+
   std::uint64_t work_left() const {
     return query_.work_cap - std::min(query_.work_cap, result_.evaluations);
   }

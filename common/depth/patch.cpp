@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace mortise {
@@ -112,8 +113,49 @@ Polygon cut_by(const Cut& cut, const Polygon& polygon) {
 
 struct Shape {
   Patch patch;
-  Polygon polygon;  // of S
+  Polygon polygon;                       // of S
+  std::array<Patch::Circle, 2> circles;  // of S
+  int circle_count = 0;
 };
+
+// The surface over the piece, moved inward by a negative offset, between two circles. Its foot
+// points leave the heights of the corners by no more than the bulge and their own distance.
+void add_circles(const Surface& surface, double offset, const Piece& piece, Shape& shape) {
+  const double inward = std::min(0.0, offset);
+  if (surface.kind == SurfaceKind::kSphere) {
+    shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + inward,
+                                           true};
+    return;
+  }
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo, off = 0.0;
+  for (const Vec3& x : piece.corners) {
+    const double z = (x - surface.point).dot(surface.axis);
+    lo = std::min(lo, z);
+    hi = std::max(hi, z);
+    off = std::max(off, std::fabs(surface.signed_distance_mm(x)));
+  }
+  if (surface.kind == SurfaceKind::kCylinder) {
+    for (const double z : {lo, hi})
+      shape.circles[shape.circle_count++] = {surface.point + z * surface.axis, surface.axis,
+                                             surface.radius_mm + inward, false};
+    return;
+  }
+  const double sine = std::sin(surface.half_angle_rad), cosine = std::cos(surface.half_angle_rad);
+  const double grown = off + shape.patch.bulge_mm;
+  if (!(lo - grown > 0.0)) return;  // around the apex
+  for (const double z : {lo - grown, hi + grown})
+    shape.circles[shape.circle_count++] = {
+        surface.point + (z - inward * sine) * surface.axis, surface.axis,
+        std::max(0.0, z * sine / cosine + inward * cosine), false};
+}
+
+void add_circles(const Shape& shape, const Pose& X_KS, Patch& patch) {
+  for (int i = 0; i < shape.circle_count; ++i) {
+    const Patch::Circle& circle = shape.circles[i];
+    patch.circles[patch.circle_count++] = {X_KS * circle.center, X_KS.q * circle.axis,
+                                           circle.radius_mm, circle.ball};
+  }
+}
 
 // All but the points of the patch: in frame K.
 Shape shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS) {
@@ -165,6 +207,7 @@ Shape shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS)
     if (offset_mm > 0.0) patch.plus[patch.plus_count++] = {normal_K, offset_mm};
   };
   add_plus(patch.normal, offset);
+  if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, shape);
   if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0)
     for (const std::uint32_t t : s.sharp_neighbours(piece.triangle))
       add_plus(X_KS.q * s.normal(t), Body::offset_of(s.face(t), layer));
@@ -180,6 +223,29 @@ double Patch::beyond(const Vec3& facet_normal, double facet_turn_rad) const {
   for (int i = 0; i < plus_count; ++i)
     sum += plus[i].offset_mm * clamp01(-plus[i].normal.dot(facet_normal) + turn);
   return sum;
+}
+
+double Patch::depth_below_plane(const Vec3& facet_normal, const Vec3& point,
+                                double facet_turn_rad) const {
+  double by_points = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < count; ++i)
+    by_points = std::max(by_points, -facet_normal.dot(points[i] - point));
+  const double more = beyond(facet_normal, facet_turn_rad);
+  if (circle_count == 0) return by_points + more;
+  double by_circles = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < circle_count; ++i) {
+    const Circle& circle = circles[i];
+    const double along = facet_normal.dot(circle.axis);
+    const double reach = circle.ball ? 1.0 : std::sqrt(std::max(0.0, 1.0 - along * along));
+    by_circles =
+        std::max(by_circles, circle.radius_mm * reach - facet_normal.dot(circle.center - point));
+  }
+  // The hull of the points bulges; the circles do not.
+  double outward = spread_mm;
+  for (int i = 0; i < plus_count; ++i)
+    outward +=
+        plus[i].offset_mm * clamp01(-plus[i].normal.dot(facet_normal) + turn_rad + facet_turn_rad);
+  return std::min(by_points + more, by_circles + outward);
 }
 
 double Patch::thickness() const {
@@ -205,6 +271,7 @@ Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_K
   Shape shape = shape_of(s, layer, piece, X_KS);
   for (const Vec3& x : shape.polygon)
     if (shape.patch.count < Patch::kMost) shape.patch.points[shape.patch.count++] = X_KS * x;
+  add_circles(shape, X_KS, shape.patch);
   finish(shape.patch);
   return shape.patch;
 }
@@ -218,6 +285,8 @@ Patch make_swept_patch(const Body& s, Layer layer, const Piece& piece, const Pos
     patch.points[patch.count++] = X_KS0 * x;
     patch.points[patch.count++] = X_KS1 * x;
   }
+  add_circles(shape, X_KS0, patch);
+  add_circles(shape, X_KS1, patch);
   patch.spread_mm = spread_mm;
   patch.turn_rad += turn_rad;
   finish(patch);

@@ -22,11 +22,23 @@ struct Patch {
   double spread_mm = 0.0;      ///< and in any direction (paths of rotation)
   std::array<Plus, 9> plus;    ///< outward offsets: of the face, and of sharp neighbours
   int plus_count = 0;
+  /// On a convex round face: circles whose hull contains all of the patch but its outward offsets
+  /// and spread, so that its extreme in any direction is known. At both ends of an interval.
+  struct Circle {
+    Vec3 center = Vec3::Zero(), axis = Vec3::UnitZ();
+    double radius_mm = 0.0;  ///< about the axis; of a ball when `ball`
+    bool ball = false;
+  };
+  std::array<Circle, 4> circles;
+  int circle_count = 0;
   Vec3 center = Vec3::Zero();  ///< a point of the layer's surface (at the start of the interval)
   double radius_mm = 0.0;      ///< of all points about center, thickness included
 
   /// How far beyond the hull the patch may reach against a facet of K with this outward normal.
   double beyond(const Vec3& facet_normal, double facet_turn_rad) const;
+  /// How far the patch may reach below the plane through `point`, by its points or by its circles.
+  double depth_below_plane(const Vec3& facet_normal, const Vec3& point,
+                           double facet_turn_rad) const;
   /// Largest thickness in any direction.
   double thickness() const;
 };

@@ -14,6 +14,9 @@ constexpr std::size_t kMostOpen = 96;
 // Facets of one hollow corner: normals within 60 degrees of each other.
 constexpr double kSameSide = 0.5;
 
+// Seen more steeply than this along the axis, no tangent plane of a round face faces the patch.
+constexpr double kLeastFacing = 1e-3;
+
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
@@ -121,32 +124,47 @@ class Neighbourhood {
 
   // Largest depth of the patch below a facet; sets its normal and point.
   double depth_below(Facet& facet, const Corners& c) const {
-    double deepest = -std::numeric_limits<double>::infinity();
-    double turn = 0.0;
     if (facet.surface == nullptr) {
       const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
       const double length = n.norm();
       if (!(length > 0.0)) return 0.0;
       facet.normal = n / length;
       facet.point = c[0];
-    } else {
-      const Surface& surface = *facet.surface;
-      facet.normal = surface.outward_normal(patch_.center);
-      facet.point = patch_.center - surface.signed_distance_mm(patch_.center) * facet.normal;
-      turn = std::min(1.0, surface.curvature_bound(patch_.center) * patch_.radius_mm);
+      return facet.offset_mm + patch_.depth_below_plane(facet.normal, facet.point, 0.0);
     }
-    for (int i = 0; i < patch_.count; ++i) {
-      const Vec3& p = patch_.points[i];
-      // A convex solid lies below its tangent planes; the distance to a concave one is convex.
-      const bool exact = facet.surface != nullptr && facet.surface->inward;
-      const double depth =
-          exact ? -facet.surface->signed_distance_mm(p) : -facet.normal.dot(p - facet.point);
-      deepest = std::max(deepest, depth);
+    const Surface& surface = *facet.surface;
+    facet.normal = surface.outward_normal(patch_.center);
+    facet.point = patch_.center - surface.signed_distance_mm(patch_.center) * facet.normal;
+    double deepest = -std::numeric_limits<double>::infinity();
+    if (surface.inward) {  // the distance is convex
+      const double turn = std::min(1.0, surface.curvature_bound(patch_.center) * patch_.radius_mm);
+      for (int i = 0; i < patch_.count; ++i)
+        deepest = std::max(deepest, -surface.signed_distance_mm(patch_.points[i]));
+      deepest += patch_.beyond(facet.normal, turn);
+    } else {  // it lies below each of its tangent planes
+      deepest = patch_.depth_below_plane(facet.normal, facet.point, 0.0);
+      if (deepest + facet.offset_mm > std::min(0.0, proof_.limit_mm))
+        deepest = std::min(deepest, depth_below_facing_tangent(surface));
     }
-    deepest += facet.offset_mm + patch_.beyond(facet.normal, turn);
-    if (facet.surface == nullptr || proof_.known == nullptr || proof_.known->rows.empty())
-      return deepest;
+    deepest += facet.offset_mm;
+    if (proof_.known == nullptr || proof_.known->rows.empty()) return deepest;
     return std::min(deepest, known_depth(facet));
+  }
+
+  // The tangent plane that faces the patch most squarely: for a flat patch the one parallel to it.
+  double depth_below_facing_tangent(const Surface& surface) const {
+    Vec3 out = -patch_.normal;
+    if (surface.kind != SurfaceKind::kSphere) out -= out.dot(surface.axis) * surface.axis;
+    const double length = out.norm();
+    if (!(length > kLeastFacing)) return std::numeric_limits<double>::infinity();
+    out /= length;
+    Vec3 normal = out, point = surface.point + surface.radius_mm * out;
+    if (surface.kind == SurfaceKind::kCone) {
+      normal =
+          std::cos(surface.half_angle_rad) * out - std::sin(surface.half_angle_rad) * surface.axis;
+      point = surface.point;  // all tangent planes meet in the apex
+    }
+    return patch_.depth_below_plane(normal, point, 0.0);
   }
 
   // By closed form. What holds for a declared face holds for its sharp neighbours too, which end on
@@ -154,13 +172,15 @@ class Neighbourhood {
   double known_depth(const Facet& facet) const {
     const Body& s = *proof_.s;
     const std::uint16_t face_k = k_.face_index(facet.triangle);
-    const auto of = [&](std::uint32_t t) {
-      return proof_.known->of(proof_.role, s.face_index(t), face_k) +
-             Body::offset_of(s.face(t), proof_.layer);
+    double least = std::numeric_limits<double>::infinity();
+    const auto bound = [&](std::uint32_t t, bool itself) {
+      const KnownOverlaps::Row* row = proof_.known->find(proof_.role, s.face_index(t), face_k);
+      if (row == nullptr) return;
+      const double overlap = itself ? std::min(row->overlap_mm, row->within_mm) : row->within_mm;
+      least = std::min(least, overlap + Body::offset_of(s.face(t), proof_.layer));
     };
-    double least = of(proof_.triangle_s);
-    for (const std::uint32_t t : s.sharp_neighbours(proof_.triangle_s))
-      least = std::min(least, of(t));
+    bound(proof_.triangle_s, true);
+    for (const std::uint32_t t : s.sharp_neighbours(proof_.triangle_s)) bound(t, false);
     return least + facet.offset_mm;
   }
 
@@ -218,7 +238,7 @@ class Neighbourhood {
     if (plane.normal.isZero(0.0)) return false;
     for (const ProofScratch::Near& near : scratch_.near)
       if (!below(near.triangle, near.corners, plane)) return false;
-    const double more = plane.offset_mm + patch_.beyond(plane.normal, 0.0);
+    const double more = plane.offset_mm + patch_.beyond(plane.normal, 0.0);  // points of the hull
     for (int i = 0; i < patch_.count; ++i)
       depths[i] = more - plane.normal.dot(patch_.points[i] - plane.point);
     return true;
@@ -277,10 +297,11 @@ class Neighbourhood {
 
 }  // namespace
 
-double KnownOverlaps::of(int role, std::uint16_t face_s, std::uint16_t face_k) const {
+const KnownOverlaps::Row* KnownOverlaps::find(int role, std::uint16_t face_s,
+                                              std::uint16_t face_k) const {
   for (const Row& row : rows)
-    if (row.face[role] == face_s && row.face[1 - role] == face_k) return row.overlap_mm;
-  return std::numeric_limits<double>::infinity();
+    if (row.face[role] == face_s && row.face[1 - role] == face_k) return &row;
+  return nullptr;
 }
 
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch) {

@@ -22,15 +22,20 @@ struct ProofScratch {
   std::vector<Near> open;  ///< those that nothing covers yet
 };
 
-/// What is already known of a pair of faces (closed forms): nominal overlap, mm.
+/// What is already known of a pair of faces (closed forms): upper bounds of the nominal overlap,
+/// mm.
 struct KnownOverlaps {
   struct Row {
     std::uint16_t face[2];
-    double overlap_mm;
+    double overlap_mm;  ///< of the two faces
+    /// Of any point not outside of the convex face's surface; faces that end on it keep to it.
+    double within_mm = std::numeric_limits<double>::infinity();
+    /// The pair is reported by its closed form. Else the row only serves proofs.
+    bool told = true;
   };
   std::vector<Row> rows;
-  /// Of face_s of body `role` with face_k of the other; infinity when not known.
-  double of(int role, std::uint16_t face_s, std::uint16_t face_k) const;
+  /// Of face_s of body `role` with face_k of the other; null when not known.
+  const Row* find(int role, std::uint16_t face_s, std::uint16_t face_k) const;
 };
 
 struct DepthProof {

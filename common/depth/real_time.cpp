@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -134,27 +135,54 @@ class RealTimeSearch {
         const SurfaceBand::Face& fb = bodies_[1].band->faces[j];
         const Surface* sa = Body::surface_of(fa, layer_);
         const Surface* sb = Body::surface_of(fb, layer_);
-        if (sa == nullptr || sb == nullptr || sa->kind != sb->kind || sa->inward == sb->inward)
-          continue;
-        const FaceExtent ea = extent_of(bodies_[0], i, *sa), eb = extent_of(bodies_[1], j, *sb);
-        const double offsets = Body::offset_of(fa, layer_) + Body::offset_of(fb, layer_);
-        const double margin = speed_upper_bound();
-        const auto overlap_at = [&](double t) {
-          const auto overlap = face_pair_overlap(*sa, ea, *sb, eb, pose(0, t), margin);
-          return overlap ? overlap->hi_mm + offsets : std::numeric_limits<double>::infinity();
-        };
-        most_excluded_mm_ = -std::numeric_limits<double>::infinity();
-        const Span first =
-            first_not_excluded(overlap_at, {0.0, 1.0}, overlap_at(0.0), overlap_at(1.0));
-        if (first.t0 >= 1.0 || ends_at(first))
-          known_.rows.push_back({{i, j}, most_excluded_mm_ - offsets});
+        if (sa == nullptr || sb == nullptr || sa->inward == sb->inward) continue;
+        if (sa->kind != sb->kind && !is_round_in_bore(*sa, *sb)) continue;
+        add_known({i, j}, *sa, *sb);
       }
+  }
+
+  void add_known(std::array<std::uint16_t, 2> faces, const Surface& sa, const Surface& sb) {
+    const SurfaceBand::Face& fa = bodies_[0].band->faces[faces[0]];
+    const SurfaceBand::Face& fb = bodies_[1].band->faces[faces[1]];
+    const FaceExtent ea = extent_of(bodies_[0], faces[0], sa);
+    const FaceExtent eb = extent_of(bodies_[1], faces[1], sb);
+    const double offsets = Body::offset_of(fa, layer_) + Body::offset_of(fb, layer_);
+    const double margin = speed_upper_bound();
+    const InBoreQuery in_bore{
+        &sa, &sb, ea, eb, std::max(0.0, -Body::offset_of(sa.inward ? fb : fa, layer_)), margin};
+    const auto within_at = [&](double t) {
+      return in_bore_bound(in_bore, pose(0, t)).within_mm + offsets;
+    };
+    const auto overlap_at = [&](double t) {
+      const Pose X_BA = pose(0, t);
+      const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, margin);
+      return (overlap ? overlap->hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
+    };
+    KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
+    if (const double at0 = within_at(0.0), at1 = within_at(1.0);
+        first_not_excluded(within_at, {0.0, 1.0}, at0, at1).t0 >= 1.0)
+      row.within_mm = most_excluded_mm_ - offsets;
+    const Span first = first_not_excluded(overlap_at, {0.0, 1.0}, overlap_at(0.0), overlap_at(1.0));
+    row.overlap_mm = most_excluded_mm_ - offsets;
+    // Only where the faces do meet is it worth while to ask whether the overlap is certain.
+    const auto meet_at = [&](double t) {
+      const auto overlap = face_pair_overlap(sa, ea, sb, eb, pose(0, t), margin);
+      return overlap && overlap->lo_mm + offsets > 0.0;
+    };
+    if (first.t0 >= 1.0 ||
+        ((meet_at(first.t0) || meet_at(std::min(1.0, first.t1))) && ends_at(first)))
+      known_.rows.push_back(row);
   }
 
   // The first interval, as brief as the accuracy, over which a closed form exceeds touch; [1, 1]:
   // none.
   template <class OverlapAt>
   Span first_not_excluded(const OverlapAt& overlap_at, const Span& span, double at0, double at1) {
+    most_excluded_mm_ = -std::numeric_limits<double>::infinity();
+    return exclude(overlap_at, span, at0, at1);
+  }
+  template <class OverlapAt>
+  Span exclude(const OverlapAt& overlap_at, const Span& span, double at0, double at1) {
     const double most = std::max(at0, at1) + spread(0, span) + spread(1, span);
     if (most <= touch_mm_) {
       most_excluded_mm_ = std::max(most_excluded_mm_, most);
@@ -165,8 +193,8 @@ class RealTimeSearch {
         speed_upper_bound() * (span.t1 - span.t0) <= kSmallestShare * query_.accuracy_mm;
     if (brief || !(middle > span.t0) || !(middle < span.t1) || at0 > touch_mm_) return span;
     const double at = overlap_at(middle);
-    const Span early = first_not_excluded(overlap_at, {span.t0, middle}, at0, at);
-    return early.t0 < 1.0 ? early : first_not_excluded(overlap_at, {middle, span.t1}, at, at1);
+    const Span early = exclude(overlap_at, {span.t0, middle}, at0, at);
+    return early.t0 < 1.0 ? early : exclude(overlap_at, {middle, span.t1}, at, at1);
   }
 
   // Is the overlap certain soon after the interval? Then the search ends there.

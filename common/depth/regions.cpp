@@ -91,6 +91,7 @@ class Grouping {
     limit_.assign(s.band->faces.size(), pair_.touch_mm);
     known_face_.assign(s.band->faces.size(), false);
     for (const KnownOverlaps::Row& row : query_.known->rows) {
+      if (!row.told) continue;
       const std::uint16_t fs = row.face[role], fk = row.face[1 - role];
       known_face_[fs] = true;
       limit_[fs] = std::max(limit_[fs],
