@@ -55,19 +55,21 @@ class DdsClientChannel final : public ClientChannel {
     assert_period_ = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(0.25 * options.liveliness_lease_s));
     Status status = ok();
-    open_reader<wire::PoseBatchPubSubType>(Topic::kPose, nullptr, poses_, status);
-    open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, nullptr, keyframes_, status);
-    open_reader<wire::EventBatchPubSubType>(Topic::kEvent, nullptr, events_, status);
-    open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, nullptr, snapshots_, status);
-    open_reader<wire::PulsePubSubType>(Topic::kPulse, nullptr, pulses_, status);
+    participant_->open_reader<wire::PoseBatchPubSubType>(Topic::kPose, nullptr, poses_, status);
+    participant_->open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, nullptr, keyframes_,
+                                                         status);
+    participant_->open_reader<wire::EventBatchPubSubType>(Topic::kEvent, nullptr, events_, status);
+    participant_->open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, nullptr, snapshots_,
+                                                        status);
+    participant_->open_reader<wire::PulsePubSubType>(Topic::kPulse, nullptr, pulses_, status);
     if (options.meshes) {
-      open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, nullptr, meshes_, status);
+      participant_->open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, nullptr, meshes_, status);
     }
-    open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
-    open_writer<wire::IncrementPubSubType>(Topic::kIncrement, increments_, status);
-    open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status);
+    participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
+    participant_->open_writer<wire::IncrementPubSubType>(Topic::kIncrement, increments_, status);
+    participant_->open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status);
     // Last: once the server's answers are matched, everything else is declared.
-    open_reader<wire::AnswersPubSubType>(Topic::kAnswers, &watch_, answers_, status);
+    participant_->open_reader<wire::AnswersPubSubType>(Topic::kAnswers, &watch_, answers_, status);
     return status;
   }
 
@@ -134,34 +136,6 @@ class DdsClientChannel final : public ClientChannel {
   }
 
  private:
-  template <class Generated>
-  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status) {
-    if (!status) return;
-    Result<dds::DataWriter*> opened = participant_->open_writer<Generated>(topic);
-    if (opened) {
-      writer = *opened;
-    } else {
-      status = opened.error();
-    }
-  }
-  template <class Generated>
-  void open_reader(Topic topic, dds::DataReaderListener* listener, dds::DataReader*& reader,
-                   Status& status) {
-    if (!status) return;
-    Result<dds::DataReader*> opened = participant_->open_reader<Generated>(topic, listener);
-    if (opened) {
-      reader = *opened;
-    } else {
-      status = opened.error();
-    }
-  }
-
-  static bool matched(dds::DataWriter* writer) {
-    dds::PublicationMatchedStatus status;
-    return writer->get_publication_matched_status(status) == ReturnCode_t::RETCODE_OK &&
-           status.current_count > 0;
-  }
-
   template <class Sample>
   void write(dds::DataWriter* writer, Sample sample) {
     if (!writer->write(&sample)) ++counters_.send_failed;

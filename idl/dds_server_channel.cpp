@@ -56,16 +56,18 @@ class DdsServerChannel final : public ServerChannel {
     participant_ = std::move(participant.value());
     Status status = ok();
     // The writers first: who is heard can be answered.
-    open_writer<wire::AnswersPubSubType>(Topic::kAnswers, answers_, status);
-    open_writer<wire::PoseBatchPubSubType>(Topic::kPose, poses_, status);
-    open_writer<wire::PoseBatchPubSubType>(Topic::kKeyframe, keyframes_, status);
-    open_writer<wire::EventBatchPubSubType>(Topic::kEvent, events_, status);
-    open_writer<wire::SnapshotPubSubType>(Topic::kSnapshot, snapshots_, status);
-    open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
-    open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
-    open_reader<wire::PresencePubSubType>(Topic::kPresence, &departures_, presence_, status);
-    open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
-    open_reader<wire::IncrementPubSubType>(Topic::kIncrement, nullptr, increments_, status);
+    participant_->open_writer<wire::AnswersPubSubType>(Topic::kAnswers, answers_, status);
+    participant_->open_writer<wire::PoseBatchPubSubType>(Topic::kPose, poses_, status);
+    participant_->open_writer<wire::PoseBatchPubSubType>(Topic::kKeyframe, keyframes_, status);
+    participant_->open_writer<wire::EventBatchPubSubType>(Topic::kEvent, events_, status);
+    participant_->open_writer<wire::SnapshotPubSubType>(Topic::kSnapshot, snapshots_, status);
+    participant_->open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
+    participant_->open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
+    participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &departures_, presence_,
+                                                        status);
+    participant_->open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
+    participant_->open_reader<wire::IncrementPubSubType>(Topic::kIncrement, nullptr, increments_,
+                                                         status);
     return status;
   }
 
@@ -132,34 +134,6 @@ class DdsServerChannel final : public ServerChannel {
   }
 
  private:
-  template <class Generated>
-  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status) {
-    if (!status) return;
-    Result<dds::DataWriter*> opened = participant_->open_writer<Generated>(topic);
-    if (opened) {
-      writer = *opened;
-    } else {
-      status = opened.error();
-    }
-  }
-  template <class Generated>
-  void open_reader(Topic topic, dds::DataReaderListener* listener, dds::DataReader*& reader,
-                   Status& status) {
-    if (!status) return;
-    Result<dds::DataReader*> opened = participant_->open_reader<Generated>(topic, listener);
-    if (opened) {
-      reader = *opened;
-    } else {
-      status = opened.error();
-    }
-  }
-
-  static bool matched(dds::DataWriter* writer) {
-    dds::PublicationMatchedStatus status;
-    return writer->get_publication_matched_status(status) == ReturnCode_t::RETCODE_OK &&
-           status.current_count > 0;
-  }
-
   template <class Sample>
   void write(dds::DataWriter* writer, Sample sample) {
     if (!writer->write(&sample)) ++counters_.send_failed;

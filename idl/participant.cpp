@@ -202,6 +202,13 @@ void set_common(Qos& qos, const TopicRow& row, const DdsOptions& options, int de
 
 }  // namespace
 
+bool matched(dds::DataWriter* writer) {
+  dds::PublicationMatchedStatus status;
+  return writer->get_publication_matched_status(status) ==
+             eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK &&
+         status.current_count > 0;
+}
+
 ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
   constexpr char kDigits[] = "0123456789abcdef";
   ClientKey key;

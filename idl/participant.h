@@ -27,6 +27,9 @@ namespace dds = eprosima::fastdds::dds;
 /// Hex of the first 12 bytes of a GUID: the participant.
 ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid);
 
+/// Does anybody listen?
+bool matched(dds::DataWriter* writer);
+
 /// One DDS participant in one session: transport, discovery and endpoints after the topic table.
 /// Every creation is checked; each failure is one line.
 class Participant {
@@ -40,13 +43,16 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
+  /// Opens an endpoint unless an earlier one failed; the first failure stays in status.
   template <class Generated>
-  Result<dds::DataWriter*> open_writer(Topic topic) {
-    return open_writer(row_of(topic), new SafeType<Generated>(refused_));
+  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status) {
+    if (status) keep(open_writer(row_of(topic), new SafeType<Generated>(refused_)), writer, status);
   }
   template <class Generated>
-  Result<dds::DataReader*> open_reader(Topic topic, dds::DataReaderListener* listener) {
-    return open_reader(row_of(topic), new SafeType<Generated>(refused_), listener);
+  void open_reader(Topic topic, dds::DataReaderListener* listener, dds::DataReader*& reader,
+                   Status& status) {
+    if (status)
+      keep(open_reader(row_of(topic), new SafeType<Generated>(refused_), listener), reader, status);
   }
 
   ClientKey key() const { return client_key(participant_->guid()); }
@@ -55,6 +61,14 @@ class Participant {
 
  private:
   explicit Participant(const DdsOptions& options) : options_(options) {}
+  template <class Endpoint>
+  static void keep(Result<Endpoint*> opened, Endpoint*& endpoint, Status& status) {
+    if (opened) {
+      endpoint = *opened;
+    } else {
+      status = opened.error();
+    }
+  }
   /// Takes ownership of the type.
   Result<dds::Topic*> open_topic(const TopicRow& row, dds::TopicDataType* type);
   Result<dds::DataWriter*> open_writer(const TopicRow& row, dds::TopicDataType* type);
