@@ -11,11 +11,14 @@ namespace mortise {
 GenerateCommandLine read_generate_command_line(int argc, char** argv) {
   GenerateCommandLine line;
   GenerateOptions& o = line.options;
-  CLI::App app{"mortise-generate: writes a generated part as a mesh, in mm"};
+  CLI::App app{
+      "mortise-generate: writes a generated part, or the parts of a scenario, as a mesh, in mm"};
   app.add_flag("--list", o.list, "Say which kinds there are and what parameters they have");
   app.add_option("kind", o.kind, "Kind of part, e.g. shaft");
   std::vector<std::string> words;
   app.add_option("parameters", words, "name=value, e.g. d1_mm=20 facets=48 phase_rad=0.1");
+  app.add_option("--scene", o.scene,
+                 "Scenario file: all its parts at their poses, as .obj and .mtl");
   app.add_option("-o,--out", o.out, "File to write: .obj (all digits) or .stl (floats)");
   app.footer("Exit codes: 0 ok, 1 cannot write, 2 usage, 3 the part cannot be made.");
   const auto wrong = [&](const std::string& text) {
@@ -38,7 +41,10 @@ GenerateCommandLine read_generate_command_line(int argc, char** argv) {
     if (value.empty() || *end != '\0') return wrong("'" + word + "' does not end in a number");
   }
   if (o.list) return line;
-  if (o.kind.empty()) return wrong("name a kind of part, or --list");
+  if (!o.scene.empty() && (!o.kind.empty() || !o.out.ends_with(".obj")))
+    return wrong("--scene takes no kind of part and writes to --out FILE.obj");
+  if (o.scene.empty() && o.kind.empty())
+    return wrong("name a kind of part, --scene FILE or --list");
   if (!o.out.ends_with(".obj") && !o.out.ends_with(".stl"))
     return wrong("say where to write with --out FILE.obj or --out FILE.stl");
   return line;

@@ -9,6 +9,7 @@ struct GenerateOptions {
   bool list = false;
   std::string kind;
   std::map<std::string, double> parameters;
+  std::string scene;  ///< scenario file: all its parts instead of one
   std::string out;
 };
 
