@@ -168,7 +168,7 @@ class Finder {
     pair.overlap = *overlap;
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
     const bool never = overlap->hi_mm + upper <= pair_.touch_mm;
-    if (!never && !is_tight(pair, *sa, *sb)) return std::nullopt;
+    if (!never && !is_tight(pair_, pair)) return std::nullopt;
     return pair;
   }
 
@@ -184,22 +184,6 @@ class Finder {
     pair.overlap.hi_mm = bound.face_mm;
     pair.overlap.lo_mm = -std::numeric_limits<double>::infinity();
     return pair;
-  }
-
-  // Reached on both faces, and not only on their surfaces continued.
-  bool is_tight(const KnownFacePair& pair, const Surface& sa, const Surface& sb) const {
-    if (pair.overlap.hi_mm - pair.overlap.lo_mm > kDepthAccuracyDefault_mm) return false;
-    const auto on_face = [&](int i, const Vec3& x, const Surface& surface) {
-      const NearestPoint at = nearest_point(*pair_.bodies[i].solid, x);
-      const Interval range =
-          Body::offset_range_of(pair_.bodies[i].band->faces[pair.face[i]], Layer::kMesh);
-      const double deviation = std::fabs(surface.signed_distance_mm(at.point));
-      return pair_.bodies[i].face_index(at.triangle) == pair.face[i] &&
-             at.distance_mm <= deviation + range.hi + std::fabs(pair.overlap.hi_mm) * 1.01 +
-                                   pair_.rounding_mm + kDepthAccuracyDefault_mm;
-    };
-    return on_face(0, pair_.X_KS[1] * pair.overlap.point_B, sa) &&
-           on_face(1, pair.overlap.point_B, sb);
   }
 
   void leaves(std::int32_t a, std::int32_t b) {
@@ -289,6 +273,20 @@ class Finder {
 };
 
 }  // namespace
+
+bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
+  if (pair.overlap.hi_mm - pair.overlap.lo_mm > kDepthAccuracyDefault_mm) return false;
+  const auto on_face = [&](int i, const Vec3& x) {
+    const SurfaceBand::Face& face = frame.bodies[i].band->faces[pair.face[i]];
+    const NearestPoint at = nearest_point(*frame.bodies[i].solid, x);
+    const Interval range = Body::offset_range_of(face, Layer::kMesh);
+    const double deviation = std::fabs(face.surface->signed_distance_mm(at.point));
+    return frame.bodies[i].face_index(at.triangle) == pair.face[i] &&
+           at.distance_mm <= deviation + range.hi + std::fabs(pair.overlap.hi_mm) * 1.01 +
+                                 frame.rounding_mm + kDepthAccuracyDefault_mm;
+  };
+  return on_face(0, frame.X_KS[1] * pair.overlap.point_B) && on_face(1, pair.overlap.point_B);
+}
 
 InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint16_t face_b,
                           double margin_mm) {

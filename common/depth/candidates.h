@@ -33,6 +33,9 @@ struct CandidateQuery {
   const KnownOverlaps* skip = nullptr;
 };
 
+/// Is the closed form narrow, and reached on both faces, not only on their surfaces continued?
+bool is_tight(const PairFrame& frame, const KnownFacePair& pair);
+
 /// Bound of a round face in a bore over all layers; infinity for other pairs.
 InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint16_t face_b,
                           double margin_mm);

@@ -14,7 +14,7 @@ constexpr std::size_t kMostOpen = 96;
 // Facets of one hollow corner: normals within 60 degrees of each other.
 constexpr double kSameSide = 0.5;
 
-// Seen more steeply than this along the axis, no tangent plane of a round face faces the patch.
+// A patch whose hull comes nearer to the axis than this share of the radius goes through it.
 constexpr double kLeastFacing = 1e-3;
 
 using Corners = std::array<Vec3, 3>;
@@ -151,13 +151,27 @@ class Neighbourhood {
     return std::min(deepest, known_depth(facet));
   }
 
-  // The tangent plane that faces the patch most squarely: for a flat patch the one parallel to it.
+  // The tangent plane where the hull of the patch comes nearest to the axis: for a flat patch that
+  // is the least depth of all tangent planes. On a cone its direction around the axis only.
   double depth_below_facing_tangent(const Surface& surface) const {
-    Vec3 out = -patch_.normal;
-    if (surface.kind != SurfaceKind::kSphere) out -= out.dot(surface.axis) * surface.axis;
-    const double length = out.norm();
-    if (!(length > kLeastFacing)) return std::numeric_limits<double>::infinity();
-    out /= length;
+    const auto across = [&](int i) -> Vec3 {
+      const Vec3 d = patch_.points[i] - surface.point;
+      return surface.kind == SurfaceKind::kSphere ? d : d - d.dot(surface.axis) * surface.axis;
+    };
+    if (patch_.count == 0) return std::numeric_limits<double>::infinity();
+    Vec3 nearest = across(0);
+    for (int i = 0; i < patch_.count; ++i)
+      for (int j = i + 1; j < patch_.count; ++j) {
+        const Vec3 from = across(i), edge = across(j) - from;
+        const double length2 = edge.squaredNorm();
+        const double share = length2 > 0.0 ? std::clamp(-from.dot(edge) / length2, 0.0, 1.0) : 0.0;
+        const Vec3 foot = from + share * edge;
+        if (foot.squaredNorm() < nearest.squaredNorm()) nearest = foot;
+      }
+    const double length = nearest.norm();
+    if (!(length > kLeastFacing * surface.radius_mm) || !(length > 0.0))
+      return std::numeric_limits<double>::infinity();
+    const Vec3 out = nearest / length;
     Vec3 normal = out, point = surface.point + surface.radius_mm * out;
     if (surface.kind == SurfaceKind::kCone) {
       normal =

@@ -166,8 +166,14 @@ class RealTimeSearch {
     row.overlap_mm = most_excluded_mm_ - offsets;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
+      KnownFacePair pair;
       const auto overlap = face_pair_overlap(sa, ea, sb, eb, pose(0, t), margin);
-      return overlap && overlap->lo_mm + offsets > 0.0;
+      if (!overlap || overlap->lo_mm + offsets <= -query_.accuracy_mm) return false;
+      pair.overlap = *overlap;
+      std::copy(faces.begin(), faces.end(), pair.face);
+      at_.X_WA = motions_[0].pose_at(t);
+      at_.X_WB = motions_[1].pose_at(t);
+      return is_tight(PairFrame(at_), pair);
     };
     if (first.t0 >= 1.0 ||
         ((meet_at(first.t0) || meet_at(std::min(1.0, first.t1))) && ends_at(first)))
