@@ -205,6 +205,39 @@ class Neighbourhood {
   }
 
   bool below(std::uint32_t t, const Corners& c, const Facet& wall) const {
+    return triangle_below(t, c, wall) || round_face_below(t, wall);
+  }
+
+  // A round face lies within the hull of its end circles: its true surface is below a plane or a
+  // shaft when they are.
+  bool round_face_below(std::uint32_t t, const Facet& wall) const {
+    const SurfaceBand::Face& face = k_.face(t);
+    const Surface* round = Body::surface_of(face, proof_.layer);
+    if (round == nullptr || round->inward || round->kind == SurfaceKind::kSphere) return false;
+    const Surface* shaft = wall.surface;
+    if (shaft != nullptr && (shaft->inward || shaft->kind != SurfaceKind::kCylinder)) return false;
+    const Interval& extent = k_.extent_of(k_.face_index(t));
+    if (round->kind == SurfaceKind::kCone && !(extent.lo >= 0.0)) return false;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const double z : {extent.lo, extent.hi}) {
+      const Vec3 center = round->point + z * round->axis;
+      const double radius = round->kind == SurfaceKind::kCone ? z * std::tan(round->half_angle_rad)
+                                                              : round->radius_mm;
+      if (shaft == nullptr) {
+        const double along = wall.normal.dot(round->axis);
+        highest = std::max(highest, wall.normal.dot(center - wall.point) +
+                                        radius * std::sqrt(std::max(0.0, 1.0 - along * along)));
+      } else {
+        const Vec3 d = center - shaft->point;
+        highest = std::max(
+            highest, (d - d.dot(shaft->axis) * shaft->axis).norm() + radius - shaft->radius_mm);
+      }
+    }
+    const double rise = std::max(0.0, Body::offset_of(face, proof_.layer) - wall.offset_mm);
+    return highest + rise <= wall.slack_mm + proof_.rounding_mm;
+  }
+
+  bool triangle_below(std::uint32_t t, const Corners& c, const Facet& wall) const {
     const SurfaceBand::Face& face = k_.face(t);
     if (wall.surface != nullptr && Body::surface_of(face, proof_.layer) == wall.surface)
       return true;
