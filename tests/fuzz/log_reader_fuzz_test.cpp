@@ -12,6 +12,7 @@
 #include "common/io/mcap_format.h"
 #include "common/io/mcap_reader.h"
 #include "common/io/mcap_writer.h"
+#include "tests/support/effort.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {
@@ -119,7 +120,7 @@ Outcome run(const std::string& seed_log, std::uint64_t seed, int count, bool che
 }
 
 TEST(LogReaderFuzz, CompressedLogs) {
-  const Outcome outcome = run(sample_log(true), 20'260'801, 2000, true);
+  const Outcome outcome = run(sample_log(true), 20'260'801, test::effort(2000), true);
   EXPECT_GT(outcome.read, 500u);
   EXPECT_GT(outcome.refused, 50u);
   EXPECT_GT(outcome.lost_ticks, 100u);
@@ -127,7 +128,7 @@ TEST(LogReaderFuzz, CompressedLogs) {
 
 TEST(LogReaderFuzz, DecodersWithoutChecksums) {
   const std::string log = without_checksums(sample_log(false));
-  const Outcome outcome = run(log, 77, 2500, false);
+  const Outcome outcome = run(log, 77, test::effort(2500), false);
   EXPECT_GT(outcome.read, 500u);
   EXPECT_GT(outcome.refused, 50u);
 }

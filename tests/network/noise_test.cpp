@@ -10,6 +10,7 @@
 
 #include "client/client.h"
 #include "tests/network/small_server.h"
+#include "tests/support/effort.h"
 
 namespace mortise::test {
 namespace {
@@ -110,7 +111,7 @@ TEST(NetworkNoise, ServerOutlivesMutatedDatagrams) {
   for (int i = 0; i < 4; ++i) seeds.push_back(data_datagram(random));
 
   // The server is a child: were it to die, this test says so and does not die with it.
-  Child server("server", options, "noisy", 60.0);
+  Child server("server", options, "noisy", effort(60));
   auto channel = open_client_channel(options);
   ASSERT_TRUE(channel) << channel.error().text;
   Client client(**channel);
@@ -120,7 +121,7 @@ TEST(NetworkNoise, ServerOutlivesMutatedDatagrams) {
   ASSERT_TRUE(until(
       8.0, [&] { return client.join_state(0) == JoinState::kJoined; }, turn));
   Socket mouth(0);
-  constexpr int kDatagrams = 20'000;
+  const int kDatagrams = effort(20'000);
   for (int i = 0; i < kDatagrams; ++i) {
     mouth.send(mutate(seeds[random() % seeds.size()], random),
                port + static_cast<int>(random() % 2));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/oracle/fcl_model.h"
+#include "tests/support/effort.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {
@@ -88,7 +89,7 @@ Tally compare(int cases, int looks, double late_by) {
 }
 
 TEST(FclOracle, NothingMissedLateOrInvented) {
-  const Tally t = compare(1500, 100, 0.0);
+  const Tally t = compare(test::effort(1500), 100, 0.0);
   std::printf("%d contacts (%d of two movers), %d free, %d from the start\n", t.contacts, t.movers,
               t.free, t.start);
   EXPECT_EQ(t.missed, 0);
@@ -109,7 +110,7 @@ TEST(FclOracle, Distances) {
   std::mt19937_64 random(62);
   CcdScratch scratch;
   int apart = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::effort(300); ++i) {
     const Pair s = random_pair(random, i);
     const Pose Xa = s.ma.pose_at(0.0), Xb = s.mb.pose_at(0.0);
     const double ours = distance(*s.a, Xa, *s.b, Xb, scratch).distance_mm;

@@ -9,6 +9,7 @@
 #include "common/depth/overlap.h"
 #include "common/evaluation/verdict.h"
 #include "common/geometry/signed_distance.h"
+#include "tests/support/effort.h"
 #include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {
@@ -116,14 +117,14 @@ Tally play(std::uint64_t seed, int rounds, bool exact_features, double planted_m
 }
 
 TEST(DepthSoundness, NoAdmissibleFitContradictsAVerdict) {
-  const Tally exact = play(101, 60, true, 0.0);
+  const Tally exact = play(101, test::effort(60), true, 0.0);
   EXPECT_EQ(exact.contradictions, 0);
   EXPECT_GT(exact.real, 2);
   EXPECT_GT(exact.fake, 5);
   EXPECT_GT(exact.potential, 5);
   // Exact features leave nothing open that the zones do not.
   EXPECT_LE(exact.potential_in_vain, 3);
-  const Tally chord = play(102, 12, false, 0.0);
+  const Tally chord = play(102, test::effort(12), false, 0.0);
   EXPECT_EQ(chord.contradictions, 0);
 }
 

@@ -2,6 +2,7 @@
 // separating-axis test of boxes, written for this test and unknown to the engine.
 #include <gtest/gtest.h>
 
+#include "tests/support/effort.h"
 #include "tests/unit/session/random_play.h"
 
 namespace mortise {
@@ -50,7 +51,7 @@ double deepest_overlap_mm(const World& world, bool with_bands = false) {
 
 TEST(StopProperty, NothingIsEverLeftOverlapping) {
   std::uint64_t stopped = 0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(12)); ++seed) {
     RandomPlay play(Policy::kStop, seed, 6, false);
     ASSERT_LT(deepest_overlap_mm(play.session.world), 0.0);
     Scratch scratch;
@@ -97,7 +98,7 @@ TEST(StopProperty, WithoutThePolicyPartsDoOverlap) {
 // Whoever was stopped can go back the way it came.
 TEST(StopProperty, TheWayBackIsFree) {
   std::uint64_t stopped = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(20)); ++seed) {
     RandomPlay play(Policy::kStop, seed, 1, false);
     const PartId part = play.movers[0];
     Scratch scratch;
@@ -121,7 +122,7 @@ TEST(StopProperty, TheWayBackIsFree) {
 // The clashes that a session reports as open are the pairs that overlap, and no others.
 TEST(ReportProperty, OpenClashesAreThePairsThatOverlap) {
   std::uint64_t overlapping = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(6)); ++seed) {
     RandomPlay play(Policy::kReport, seed, 6, false);
     Scratch scratch;
     for (int i = 0; i < 40; ++i) {

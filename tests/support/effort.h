@@ -1,0 +1,15 @@
+#pragma once
+#include <cstdlib>
+
+namespace mortise::test {
+
+/// How often a random test repeats itself: `normal` times, or MORTISE_EFFORT times as often in a
+/// soak
+/// (`./mortise test --soak`).
+inline int effort(int normal) {
+  const char* times = std::getenv("MORTISE_EFFORT");
+  const int factor = times != nullptr ? std::atoi(times) : 1;
+  return normal * (factor > 0 ? factor : 1);
+}
+
+}  // namespace mortise::test
