@@ -18,6 +18,9 @@ constexpr double kDeepReaches = 20.0;
 // Share of a face's deviation by which two ways to measure it may differ over the face.
 constexpr double kSecondOrder = 0.1;
 
+// Two chords of one circle differ by no more than this; and how closely that is asked.
+constexpr double kChordMargin = 1.1;
+
 // Planes that differ by less than this share of a triangle's size are one plane.
 constexpr double kFlatShare = 1e-9;
 
@@ -81,6 +84,18 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
   const double size = (mesh->corner(triangle, 1) - mesh->corner(triangle, 0)).norm();
   const auto first = static_cast<std::uint32_t>(sharp_.size());
   const auto bounds = [&](std::uint32_t t, const Vec3& normal_t) {
+    // A declared surface itself: corners of a face around a bore may lie above the planes of its
+    // triangles.
+    if (const Surface* surface = surface_of(face(t), Layer::kUpper)) {
+      const double chord = std::max(0.0, -face(t).deviation_mm.lo);
+      const double allowed = face(t).residual_mm + kChordMargin * chord + kFlatShare * size;
+      return surface
+                 ->signed_distance_range_mm(
+                     mesh->corner(triangle, 0), mesh->corner(triangle, 1),
+                     mesh->corner(triangle, 2),
+                     std::max(kFlatShare * size, (kChordMargin - 1.0) * chord))
+                 .hi <= allowed;
+    }
     for (int k = 0; k < 3; ++k)
       if (normal_t.dot(mesh->corner(triangle, k) - mesh->corner(t, 0)) > kFlatShare * size)
         return false;

@@ -118,12 +118,11 @@ struct Shape {
   int circle_count = 0;
 };
 
-// The surface over the piece, moved inward by a negative offset, between two circles. Its foot
+// The surface over the piece, moved by its offset, between two circles. Its foot
 // points leave the heights of the corners by no more than the bulge and their own distance.
 void add_circles(const Surface& surface, double offset, const Piece& piece, Shape& shape) {
-  const double inward = std::min(0.0, offset);
   if (surface.kind == SurfaceKind::kSphere) {
-    shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + inward,
+    shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + offset,
                                            true};
     return;
   }
@@ -137,7 +136,7 @@ void add_circles(const Surface& surface, double offset, const Piece& piece, Shap
   if (surface.kind == SurfaceKind::kCylinder) {
     for (const double z : {lo, hi})
       shape.circles[shape.circle_count++] = {surface.point + z * surface.axis, surface.axis,
-                                             surface.radius_mm + inward, false};
+                                             surface.radius_mm + offset, false};
     return;
   }
   const double sine = std::sin(surface.half_angle_rad), cosine = std::cos(surface.half_angle_rad);
@@ -145,8 +144,8 @@ void add_circles(const Surface& surface, double offset, const Piece& piece, Shap
   if (!(lo - grown > 0.0)) return;  // around the apex
   for (const double z : {lo - grown, hi + grown})
     shape.circles[shape.circle_count++] = {
-        surface.point + (z - inward * sine) * surface.axis, surface.axis,
-        std::max(0.0, z * sine / cosine + inward * cosine), false};
+        surface.point + (z - offset * sine) * surface.axis, surface.axis,
+        std::max(0.0, z * sine / cosine + offset * cosine), false};
 }
 
 void add_circles(const Shape& shape, const Pose& X_KS, Patch& patch) {
@@ -203,25 +202,45 @@ Shape shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS)
       was_cut && surface == nullptr ? middle : lifted(s, layer, piece.triangle, middle);
   patch.center = X_KS * (center_S + std::max(0.0, offset) * normal_S);
   patch.normal = X_KS.q * normal_S;
-  const auto add_plus = [&](const Vec3& normal_K, double offset_mm) {
-    if (offset_mm > 0.0) patch.plus[patch.plus_count++] = {normal_K, offset_mm};
+  const auto add_plus = [&](const Vec3& normal_K, double offset_mm, bool flat) {
+    if (offset_mm > 0.0) patch.plus[patch.plus_count++] = {normal_K, offset_mm, flat};
   };
-  add_plus(patch.normal, offset);
-  if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, shape);
+  add_plus(patch.normal, offset, surface == nullptr);
+  patch.plus_is_own = patch.plus_count > 0;
+  if (surface != nullptr && surface->kind == SurfaceKind::kCylinder)
+    patch.axis = X_KS.q * surface->axis;
   if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0)
     for (const std::uint32_t t : s.sharp_neighbours(piece.triangle))
-      add_plus(X_KS.q * s.normal(t), Body::offset_of(s.face(t), layer));
+      add_plus(X_KS.q * s.normal(t), Body::offset_of(s.face(t), layer),
+               Body::surface_of(s.face(t), layer) == nullptr);
+  if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, shape);
   return shape;
 }
 
 }  // namespace
 
+double Patch::across(const Vec3& facet_normal, double facet_turn_rad) const {
+  if (axis.isZero(0.0)) return 1.0;
+  const double along = facet_normal.dot(axis);
+  return clamp01(std::sqrt(std::max(0.0, 1.0 - along * along)) + motion_turn_rad + facet_turn_rad);
+}
+
+double Patch::neighbours_beyond(const Vec3& facet_normal, double facet_turn_rad) const {
+  double sum = 0.0;
+  for (int i = plus_is_own ? 1 : 0; i < plus_count; ++i)
+    sum +=
+        plus[i].offset_mm * clamp01(-plus[i].normal.dot(facet_normal) +
+                                    (plus[i].flat ? motion_turn_rad : turn_rad) + facet_turn_rad);
+  return sum;
+}
+
 double Patch::beyond(const Vec3& facet_normal, double facet_turn_rad) const {
   const double turn = turn_rad + facet_turn_rad;
-  const double facing = -normal.dot(facet_normal);
-  double sum = spread_mm + bulge_mm * clamp01((bulges_outward ? facing : -facing) + turn);
-  for (int i = 0; i < plus_count; ++i)
-    sum += plus[i].offset_mm * clamp01(-plus[i].normal.dot(facet_normal) + turn);
+  const double facing = -normal.dot(facet_normal), most = across(facet_normal, facet_turn_rad);
+  double sum = spread_mm + neighbours_beyond(facet_normal, facet_turn_rad) +
+               bulge_mm * std::min(most, clamp01((bulges_outward ? facing : -facing) + turn));
+  if (plus_is_own)
+    sum += plus[0].offset_mm * std::min(most, clamp01(-plus[0].normal.dot(facet_normal) + turn));
   return sum;
 }
 
@@ -241,10 +260,7 @@ double Patch::depth_below_plane(const Vec3& facet_normal, const Vec3& point,
         std::max(by_circles, circle.radius_mm * reach - facet_normal.dot(circle.center - point));
   }
   // The hull of the points bulges; the circles do not.
-  double outward = spread_mm;
-  for (int i = 0; i < plus_count; ++i)
-    outward +=
-        plus[i].offset_mm * clamp01(-plus[i].normal.dot(facet_normal) + turn_rad + facet_turn_rad);
+  const double outward = spread_mm + neighbours_beyond(facet_normal, facet_turn_rad);
   return std::min(by_points + more, by_circles + outward);
 }
 
@@ -289,6 +305,7 @@ Patch make_swept_patch(const Body& s, Layer layer, const Piece& piece, const Pos
   add_circles(shape, X_KS1, patch);
   patch.spread_mm = spread_mm;
   patch.turn_rad += turn_rad;
+  patch.motion_turn_rad = turn_rad;
   finish(patch);
   return patch;
 }

@@ -11,6 +11,7 @@ struct Patch {
   struct Plus {
     Vec3 normal = Vec3::Zero();
     double offset_mm = 0.0;
+    bool flat = false;  ///< of a plane: its normal does not turn over the patch
   };
   static constexpr int kMost = 32;
   std::array<Vec3, kMost> points;
@@ -22,8 +23,13 @@ struct Patch {
   double spread_mm = 0.0;      ///< and in any direction (paths of rotation)
   std::array<Plus, 9> plus;    ///< outward offsets: of the face, and of sharp neighbours
   int plus_count = 0;
-  /// On a convex round face: circles whose hull contains all of the patch but its outward offsets
-  /// and spread, so that its extreme in any direction is known. At both ends of an interval.
+  bool plus_is_own = false;      ///< plus[0] is of the face itself
+  double motion_turn_rad = 0.0;  ///< part of turn_rad that is owed to a motion
+  /// A cylinder bulges and is offset only across its axis. Zero: no cylinder.
+  Vec3 axis = Vec3::Zero();
+  /// On a convex round face: circles whose hull contains all of the patch, its own offset included,
+  /// but its neighbours' offsets and spread, so that its extreme in any direction is known. At both
+  /// ends of an interval.
   struct Circle {
     Vec3 center = Vec3::Zero(), axis = Vec3::UnitZ();
     double radius_mm = 0.0;  ///< about the axis; of a ball when `ball`
@@ -34,6 +40,10 @@ struct Patch {
   Vec3 center = Vec3::Zero();  ///< a point of the layer's surface (at the start of the interval)
   double radius_mm = 0.0;      ///< of all points about center, thickness included
 
+  /// Largest share of an offset or bulge of the face itself that counts against a facet.
+  double across(const Vec3& facet_normal, double facet_turn_rad) const;
+  /// What the offsets of sharp neighbours add.
+  double neighbours_beyond(const Vec3& facet_normal, double facet_turn_rad) const;
   /// How far beyond the hull the patch may reach against a facet of K with this outward normal.
   double beyond(const Vec3& facet_normal, double facet_turn_rad) const;
   /// How far the patch may reach below the plane through `point`, by its points or by its circles.
