@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/session/merge_regions.h"
+
 namespace mortise {
 namespace {
 
@@ -130,6 +132,8 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
   Judgement judgement;
   const OverlapQuery overlap = overlap_query(query);
   judgement.overlap = find_overlap(overlap, scratch);
+  judgement.overlap.regions =
+      merge_regions(judgement.overlap.regions, *overlap.band_a, *overlap.band_b);
   for (const OverlapRegion& region : judgement.overlap.regions) {
     Verdict verdict = judge_region(query, region, judgement.overlap.no_inside);
     if (verdict.collision_class == CollisionClass::kNone) continue;
