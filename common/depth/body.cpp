@@ -89,12 +89,15 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
     if (const Surface* surface = surface_of(face(t), Layer::kUpper)) {
       const double chord = std::max(0.0, -face(t).deviation_mm.lo);
       const double allowed = face(t).residual_mm + kChordMargin * chord + kFlatShare * size;
-      return surface
-                 ->signed_distance_range_mm(
-                     mesh->corner(triangle, 0), mesh->corner(triangle, 1),
-                     mesh->corner(triangle, 2),
-                     std::max(kFlatShare * size, (kChordMargin - 1.0) * chord))
-                 .hi <= allowed;
+      const Vec3 &a = mesh->corner(triangle, 0), &b = mesh->corner(triangle, 1),
+                 &c = mesh->corner(triangle, 2);
+      const double highest_at_corner =
+          std::max({surface->signed_distance_mm(a), surface->signed_distance_mm(b),
+                    surface->signed_distance_mm(c)});
+      if (highest_at_corner > allowed) return false;
+      // Outside of a shaft the distance is convex: corners are enough.
+      return !surface->inward ||
+             surface->signed_distance_range_mm(a, b, c, (kChordMargin - 1.0) * chord).hi <= allowed;
     }
     for (int k = 0; k < 3; ++k)
       if (normal_t.dot(mesh->corner(triangle, k) - mesh->corner(t, 0)) > kFlatShare * size)

@@ -89,7 +89,27 @@ double concave_bend(const Surface& s) {
   return inner > 0.0 ? 1.0 / inner : std::numeric_limits<double>::infinity();
 }
 
+// Rounding of a distance, as a share of it.
+constexpr double kRoundingShare = 1e-15;
+
 using Corners = std::array<Vec3, 3>;
+
+// Distance of a point from a triangle of its own plane, whose normal is given; the triangle may be
+// as thin as a line.
+double distance_to_flat_triangle(const Vec3& x, const Vec3& normal, const Corners& c) {
+  double least = std::numeric_limits<double>::infinity();
+  bool left = true, right = true;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 from = c[k] - x, edge = c[(k + 1) % 3] - c[k];
+    const double side = from.cross(edge).dot(normal);
+    left &= side >= 0.0;
+    right &= side <= 0.0;
+    const double length2 = edge.squaredNorm();
+    const double share = length2 > 0.0 ? std::clamp(-from.dot(edge) / length2, 0.0, 1.0) : 0.0;
+    least = std::min(least, (from + share * edge).norm());
+  }
+  return left || right ? 0.0 : least;
+}
 
 struct LeastSearch {
   const Surface& surface;
@@ -167,8 +187,14 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
   Corners corners{a, b, c};
   if (kind == SurfaceKind::kCylinder)  // height does not count: a flat figure needs fewer halvings
     for (Vec3& corner : corners) corner -= (corner - point).dot(axis) * axis;
-  LeastSearch search{*this, concave_bend(*this), accuracy_mm, std::min({da, db, dc})};
-  const double least = least_over(search, corners, kHalvings);
+  double least = 0.0;
+  if (kind == SurfaceKind::kCylinder) {
+    least = distance_to_flat_triangle(point, axis, corners) * (1.0 - kRoundingShare) -
+            radius_mm * (1.0 + kRoundingShare);
+  } else {
+    LeastSearch search{*this, concave_bend(*this), accuracy_mm, std::min({da, db, dc})};
+    least = least_over(search, corners, kHalvings);
+  }
   // A convex function is largest at a corner; a torus exceeds that by its inner curvature over the
   // circle around the triangle, whose radius is at most longest edge / sqrt(3).
   double most = std::max({da, db, dc});
