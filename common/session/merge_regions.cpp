@@ -57,7 +57,8 @@ std::vector<OverlapRegion> merge_regions(const std::vector<OverlapRegion>& regio
     std::size_t at = 0;
     for (; at < merged.size(); ++at) {
       if (!(faces[at] == pair)) continue;
-      if (both_declared || (merged[at].point_W - region.point_W).norm() <= circle) break;
+      const double apart = (merged[at].point_W - region.point_W).norm();
+      if (both_declared || (circle > 0.0 && apart <= circle)) break;
     }
     if (at < merged.size()) {
       merge(merged[at], region);
