@@ -16,8 +16,8 @@ constexpr double kLengthsTried[] = {1.0, 1.02, 1.1, 1.3, 2.0, 4.0};
 // Steps of the fit of a small motion to the contact points; each is linear least squares.
 constexpr int kFitSteps = 3;
 
-// Work of one proof that a pose is free.
-constexpr std::uint64_t kFreeWorkCap = 20'000;
+// Work of one proof that a pose is free, and of all of them together.
+constexpr std::uint64_t kFreeWorkCap = 4'000, kAllFreeWorkCap = 10'000;
 
 struct Attempt {
   Vec3 translation = Vec3::Zero();  // of A's reference point
@@ -88,12 +88,23 @@ class Separation {
 
   // Do the meshes stay out of each other with A displaced by X (world)?
   bool is_free(const Pose& X) {
+    // Most attempts that fall short are seen to by the contact points themselves.
+    const Pose X_BW = query_.overlap.X_WB.inverse();
+    for (const Vec3& x : region_.points_W) {
+      const Vec3 x_A = query_.overlap.X_WA.inverse() * x;
+      const double in_b = nearest_surface(*query_.overlap.b, X_BW * (X * x)).depth_mm;
+      if (in_b > query_.overlap.accuracy_mm &&
+          in_b + nearest_surface(*query_.overlap.a, x_A).depth_mm > query_.overlap.accuracy_mm)
+        return false;
+    }
+    if (work_ >= kAllFreeWorkCap) return false;
     OverlapQuery query = query_.overlap;
     query.band_a = query.band_b = &nominal_;
     query.X_WA = X * query.X_WA;
     query.refinement = Refinement::kDecided;
-    query.work_cap = kFreeWorkCap;
+    query.work_cap = std::min(kFreeWorkCap, kAllFreeWorkCap - work_);
     const OverlapResult result = find_overlap(query, scratch_);
+    work_ += result.evaluations;
     for (const OverlapRegion& region : result.regions)
       if (region.delta_mm.hi > query_.overlap.accuracy_mm) return false;
     return !result.meshes_cross || !result.regions.empty();
@@ -203,6 +214,7 @@ class Separation {
   const SurfaceBand nominal_;
   const Vec3 center_A_;
   const double radius_mm_;
+  std::uint64_t work_ = 0;
   GeneralizedDepth best_;
 };
 
