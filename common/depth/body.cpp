@@ -125,6 +125,9 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       if (t == triangle || t == Topology::kNone) break;
       const Vec3 normal_t = normal(t);
       if (normal_t.dot(n) > std::cos(kSharpEdge_rad) || normal_t.isZero(0.0)) continue;
+      // However few triangles stand for it, a declared surface is smooth.
+      if (face_index(t) == face_index(triangle) && surface_of(face(t), Layer::kUpper) != nullptr)
+        continue;
       if (sharp_.size() - first < kMostSharp && bounds(t, normal_t) && !known(t, normal_t))
         sharp_.push_back(t);
     }

@@ -31,6 +31,10 @@ constexpr double kLongPath = 4.0;
 // A closed form that stops excluding an overlap is followed this many doublings of the accuracy on.
 constexpr int kSoon = 8;
 
+// After so many evaluations, and again when they have doubled, it is asked whether the parts are
+// about to interfere.
+constexpr std::uint64_t kFirstLook = 600;
+
 // Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
 constexpr int kBackOff = 12;
 
@@ -72,6 +76,7 @@ class RealTimeSearch {
     find_known();
     add_roots(start);
     std::make_heap(heap_.begin(), heap_.end(), later);
+    std::uint64_t next_look = answer_.evaluations + kFirstLook;
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), later);
       const Item item = std::move(heap_.back());
@@ -82,6 +87,8 @@ class RealTimeSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
+      if (answer_.evaluations >= next_look && real_soon_after(item.span.t0)) break;
+      if (answer_.evaluations >= next_look) next_look = 2 * answer_.evaluations;
       treat(item);
     }
     return finish();
@@ -217,6 +224,16 @@ class RealTimeSearch {
       t = std::min(1.0, std::max(t, span.t0) + step * std::ldexp(1.0, i));
     }
     return false;
+  }
+
+  // Everything before t is proven free. A part that rests against another and is pushed on is real
+  // at once: then nothing is gained by parting the surfaces that touch.
+  bool real_soon_after(double t) {
+    const double soon = t + query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300);
+    if (soon > std::min(1.0, t_real_) || !is_real_at(soon)) return false;
+    t_real_ = soon;
+    free_until_ = std::min(free_until_, t);
+    return true;
   }
 
   // By the search at fixed poses, whose word is what a verdict rests on.
