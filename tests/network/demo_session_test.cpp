@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -132,6 +133,52 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
   if (std::filesystem::exists(program_path("mortise-replay"))) {
     Program replay(folder.path(), "mortise-replay", {"verify", log});
     EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+  }
+}
+
+// The demo itself, with a process a designer: 18 parts, three kinds of fits, policy stop.
+TEST(DemoSession, TheGearboxIsTheSameForAll) {
+  TestFolder folder;
+  const std::string domain = "207";
+  const std::filesystem::path scenarios = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
+  const std::string log = (folder.path() / "gearbox.mcap").string();
+  Program server(folder.path(), "mortise-server",
+                 {(scenarios / "gearbox.yaml").string(), "--domain", domain, "--session", "demo",
+                  "--log", log, "--json"});
+  const auto participant = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(),
+                     {"--domain", domain, "--session", "demo", "--wait", "10", "--json"});
+    return std::make_unique<Program>(folder.path(), "mortise-bot", arguments);
+  };
+  auto observer = participant({"--observer", "--duration", "34"});
+  std::vector<std::unique_ptr<Program>> designers;
+  for (const char* name : {"ann", "bob", "cid", "dee"}) {
+    designers.push_back(
+        participant({"--behaviour", "script", "--play", (scenarios / "gearbox.play.yaml").string(),
+                     "--names", name, "--delay", "1.5", "--linger", "12"}));
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(15));
+  auto late = participant({"--observer", "--names", "eve", "--duration", "19"});
+
+  for (auto& designer : designers) ASSERT_EQ(designer->wait(60), 0) << designer->errors();
+  ASSERT_EQ(observer->wait(30), 0) << observer->errors();
+  ASSERT_EQ(late->wait(30), 0) << late->errors();
+  server.signal(SIGTERM);
+  ASSERT_EQ(server.wait(15), 0) << server.errors();
+
+  const Json seen = json_of(observer->out());
+  EXPECT_EQ(seen["events"]["first_seq"], 1);
+  for (auto& designer : designers) EXPECT_EQ(json_of(designer->out())["events"], seen["events"]);
+  for (const char* name : {"real", "potential", "fake"})
+    EXPECT_GE(seen["clashes_seen"][name].get<int>(), 2) << name << seen["clashes_seen"].dump(1);
+  EXPECT_EQ(json_of(late->out())["state"], seen["state"]);
+  // The press fit stands at the mouth of its seat, the free bearing is home.
+  const Json& poses = seen["state"]["poses"];
+  EXPECT_GT(poses["bearing_out_upper"][2].get<double>(),
+            poses["bearing_in_upper"][2].get<double>() + 1.0);
+  for (const char* threads : {"1", "2"}) {
+    Program replay(folder.path(), "mortise-replay", {"verify", log, "--threads", threads});
+    EXPECT_EQ(replay.wait(90), 0) << threads << replay.out() << replay.errors();
   }
 }
 
