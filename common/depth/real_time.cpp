@@ -33,7 +33,7 @@ constexpr int kSoon = 8;
 
 // After so many evaluations, and again when they have doubled, it is asked whether the parts are
 // about to interfere.
-constexpr std::uint64_t kFirstLook = 600;
+constexpr std::uint64_t kFirstLook = 600, kLookWorkCap = 2'000;
 
 // Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
 constexpr int kBackOff = 12;
@@ -87,8 +87,10 @@ class RealTimeSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
-      if (answer_.evaluations >= next_look && real_soon_after(item.span.t0)) break;
-      if (answer_.evaluations >= next_look) next_look = 2 * answer_.evaluations;
+      if (item.span.t0 <= 0.0 && answer_.evaluations >= next_look) {
+        if (real_soon_after(item.span.t0)) break;
+        next_look = 2 * answer_.evaluations;
+      }
       treat(item);
     }
     return finish();
@@ -230,15 +232,17 @@ class RealTimeSearch {
   // at once: then nothing is gained by parting the surfaces that touch.
   bool real_soon_after(double t) {
     const double soon = t + query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300);
-    if (soon > std::min(1.0, t_real_) || !is_real_at(soon)) return false;
+    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, kLookWorkCap)) return false;
     t_real_ = soon;
     free_until_ = std::min(free_until_, t);
     return true;
   }
 
   // By the search at fixed poses, whose word is what a verdict rests on.
-  bool is_real_at(double t) {
+  bool is_real_at(double t) { return is_real_at(t, query_.at_target.work_cap); }
+  bool is_real_at(double t, std::uint64_t work_cap) {
     OverlapQuery query = query_.at_target;
+    query.work_cap = std::min(query.work_cap, work_cap);
     query.X_WA = motions_[0].pose_at(t);
     query.X_WB = motions_[1].pose_at(t);
     query.refinement = Refinement::kDecided;
