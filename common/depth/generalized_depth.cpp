@@ -17,7 +17,7 @@ constexpr double kLengthsTried[] = {1.0, 1.02, 1.1, 1.3, 2.0, 4.0};
 constexpr int kFitSteps = 3;
 
 // Work of one proof that a pose is free, and of all of them together.
-constexpr std::uint64_t kFreeWorkCap = 4'000, kAllFreeWorkCap = 10'000;
+constexpr std::uint64_t kFreeWorkCap = 2'000, kAllFreeWorkCap = 4'000;
 
 struct Attempt {
   Vec3 translation = Vec3::Zero();  // of A's reference point
