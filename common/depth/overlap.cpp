@@ -27,7 +27,8 @@ class Overlap {
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     const Candidates candidates = find_candidates({&pair_, pair_.near_mm, result_.no_inside});
     find_known(candidates);
-    for (const KnownFacePair& known : candidates.known) add_known(known);
+    for (const KnownFacePair& known : candidates.known)
+      if (!told_by_another(known, candidates)) add_known(known);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
                              query_.refinement == Refinement::kDecided},
                             scratch_, result_.evaluations);
@@ -47,6 +48,16 @@ class Overlap {
   }
 
  private:
+  // A chamfer that keeps clear of the bore in which its shaft sits: one contact, told of the shaft.
+  static bool told_by_another(const KnownFacePair& known, const Candidates& candidates) {
+    if (std::isfinite(known.overlap.lo_mm)) return false;
+    for (const KnownFacePair& other : candidates.known)
+      if (std::isfinite(other.overlap.lo_mm) &&
+          (other.face[0] == known.face[0] || other.face[1] == known.face[1]))
+        return true;
+    return false;
+  }
+
   void find_known(const Candidates& candidates) {
     for (const KnownFacePair& known : candidates.known)
       known_.rows.push_back({{known.face[0], known.face[1]}, known.overlap.hi_mm});
