@@ -1,5 +1,6 @@
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "idl/chunks.h"
@@ -186,26 +187,31 @@ class DdsClientChannel final : public ClientChannel {
     });
   }
 
+  /// The value of all chunks of a set; nothing, and counted, when one of them is malformed.
+  template <class Value, class Chunk, class Add>
+  std::optional<Value> joined(const std::vector<Chunk>& chunks, Add add) {
+    std::optional<Value> whole;
+    for (const Chunk& chunk : chunks) {
+      Result<Value> part = from_wire(chunk);
+      if (!part) {
+        ++counters_.malformed;
+        return std::nullopt;
+      }
+      whole ? add(part.value(), *whole) : void(whole = std::move(part.value()));
+    }
+    return whole;
+  }
+
   void take_snapshots(ClientInput& input) {
     take_all<wire::Snapshot>(snapshots_, [&](const wire::Snapshot& sample) {
       const auto chunks = snapshot_collector_.add(sample);
       if (!chunks) return;
-      Snapshot whole;
-      for (std::size_t i = 0; i < chunks->size(); ++i) {
-        Result<Snapshot> part = from_wire((*chunks)[i]);
-        if (!part) {
-          ++counters_.malformed;
-          return;
-        }
-        if (i == 0) {
-          whole = std::move(part.value());
-        } else {
-          append(part->parts, whole.parts);
-          append(part->users, whole.users);
-          append(part->open_clashes, whole.open_clashes);
-        }
-      }
-      input.snapshots.push_back(std::move(whole));
+      auto whole = joined<Snapshot>(*chunks, [](Snapshot& part, Snapshot& into) {
+        append(part.parts, into.parts);
+        append(part.users, into.users);
+        append(part.open_clashes, into.open_clashes);
+      });
+      if (whole) input.snapshots.push_back(std::move(*whole));
     });
   }
 
@@ -222,22 +228,13 @@ class DdsClientChannel final : public ClientChannel {
     take_all<wire::PoseBatch>(keyframes_, [&](const wire::PoseBatch& sample) {
       const auto chunks = keyframe_collector_.add(sample);
       if (!chunks) return;
-      PoseBatch whole;
-      for (std::size_t i = 0; i < chunks->size(); ++i) {
-        Result<PoseBatch> part = from_wire((*chunks)[i]);
-        if (!part) {
-          ++counters_.malformed;
-          return;
-        }
-        if (i == 0) {
-          whole = std::move(part.value());
-        } else {
-          append(part->parts, whole.parts);
-          append(part->acks, whole.acks);
-        }
-      }
-      whole.keyframe = true;
-      input.poses.push_back(std::move(whole));
+      auto whole = joined<PoseBatch>(*chunks, [](PoseBatch& part, PoseBatch& into) {
+        append(part.parts, into.parts);
+        append(part.acks, into.acks);
+      });
+      if (!whole) return;
+      whole->keyframe = true;
+      input.poses.push_back(std::move(*whole));
     });
   }
 
