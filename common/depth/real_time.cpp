@@ -5,6 +5,7 @@
 
 #include "common/depth/candidates.h"
 #include "common/depth/overlap.h"
+#include "common/depth/pair_path.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
 #include "common/depth/search.h"
@@ -38,10 +39,6 @@ constexpr std::uint64_t kFirstLook = 600, kLookWorkCap = 2'000;
 // Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
 constexpr int kBackOff = 12;
 
-struct Span {
-  double t0 = 0.0, t1 = 1.0;
-};
-
 struct Item {
   Span span;
   Piece piece;
@@ -60,12 +57,12 @@ class RealTimeSearch {
       : query_(query),
         at_(query.at_target),
         bodies_{Body(*at_.a, *at_.band_a), Body(*at_.b, *at_.band_b)},
-        motions_{query.motion_a, query.motion_b},
-        radius_{at_.a->sphere().radius_mm, at_.b->sphere().radius_mm} {
+        path_{{query.motion_a, query.motion_b},
+              {at_.a->sphere().radius_mm, at_.b->sphere().radius_mm}} {
     trivial_ = at_.band_a->trivial && at_.band_b->trivial;
     layer_ = trivial_ ? Layer::kMesh : Layer::kLower;
-    at_.X_WA = motions_[0].pose_at(0.0);
-    at_.X_WB = motions_[1].pose_at(0.0);
+    at_.X_WA = path_.motions[0].pose_at(0.0);
+    at_.X_WB = path_.motions[1].pose_at(0.0);
   }
 
   RealTime run() {
@@ -97,41 +94,6 @@ class RealTimeSearch {
   }
 
  private:
-  // Relative pose X_KS at t.
-  Pose pose(int role, double t) const {
-    return motions_[1 - role].pose_at(t).inverse() * motions_[role].pose_at(t);
-  }
-
-  double speed_upper_bound() const {
-    return motions_[0].travel_upper_bound_mm(radius_[0], 0.0, 1.0) +
-           motions_[1].travel_upper_bound_mm(radius_[0] + radius_[1] + gap_upper_bound(), 0.0, 1.0);
-  }
-
-  // Distance of the parts' reference points is at most this when they are near each other.
-  double gap_upper_bound() const { return radius_[0] + radius_[1]; }
-
-  // A point of S seen from K: |x''| <= |x_S''| + 2 |w_K| |v| + |w_K|^2 d, all points within both
-  // spheres of each other.
-  double acceleration_upper_bound(int role) const {
-    const Motion &s = motions_[role], &k = motions_[1 - role];
-    const double ws = s.w_W.norm(), wk = k.w_W.norm();
-    const double rs = 2.0 * radius_[role] + s.turn_radius_mm();
-    const double d = 2.0 * (radius_[0] + radius_[1]) + k.turn_radius_mm();
-    const double vs = s.travel_upper_bound_mm(2.0 * radius_[role], 0.0, 1.0);
-    const double vk = k.travel_upper_bound_mm(d, 0.0, 1.0);
-    if (ws == 0.0 && wk == 0.0) return 0.0;
-    return ws * ws * rs + 2.0 * wk * (vs + vk) + wk * wk * d;
-  }
-
-  double spread(int role, const Span& span) const {
-    const double dt = span.t1 - span.t0;
-    return acceleration_upper_bound(role) * dt * dt / 8.0;
-  }
-
-  double turn(const Span& span) const {
-    return (motions_[0].w_W.norm() + motions_[1].w_W.norm()) * (span.t1 - span.t0);
-  }
-
   // Pairs of declared faces with a closed form. The distance of the axes is a convex function of
   // the displacement, so that over an interval it is largest at an end, up to the path's own
   // curvature. Until the first time that this does not exclude, the pair needs no search; that time
@@ -156,14 +118,14 @@ class RealTimeSearch {
     const FaceExtent ea = extent_of(bodies_[0], faces[0], sa);
     const FaceExtent eb = extent_of(bodies_[1], faces[1], sb);
     const double offsets = Body::offset_of(fa, layer_) + Body::offset_of(fb, layer_);
-    const double margin = speed_upper_bound();
+    const double margin = path_.speed_upper_bound();
     const InBoreQuery in_bore{
         &sa, &sb, ea, eb, std::max(0.0, -Body::offset_of(sa.inward ? fb : fa, layer_)), margin};
     const auto within_at = [&](double t) {
-      return in_bore_bound(in_bore, pose(0, t)).within_mm + offsets;
+      return in_bore_bound(in_bore, path_.pose(0, t)).within_mm + offsets;
     };
     const auto overlap_at = [&](double t) {
-      const Pose X_BA = pose(0, t);
+      const Pose X_BA = path_.pose(0, t);
       const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, margin);
       return (overlap ? overlap->hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
     };
@@ -176,12 +138,12 @@ class RealTimeSearch {
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
-      const auto overlap = face_pair_overlap(sa, ea, sb, eb, pose(0, t), margin);
+      const auto overlap = face_pair_overlap(sa, ea, sb, eb, path_.pose(0, t), margin);
       if (!overlap || overlap->lo_mm + offsets <= -query_.accuracy_mm) return false;
       pair.overlap = *overlap;
       std::copy(faces.begin(), faces.end(), pair.face);
-      at_.X_WA = motions_[0].pose_at(t);
-      at_.X_WB = motions_[1].pose_at(t);
+      at_.X_WA = path_.motions[0].pose_at(t);
+      at_.X_WB = path_.motions[1].pose_at(t);
       return is_tight(PairFrame(at_), pair);
     };
     if (first.t0 >= 1.0 ||
@@ -198,14 +160,14 @@ class RealTimeSearch {
   }
   template <class OverlapAt>
   Span exclude(const OverlapAt& overlap_at, const Span& span, double at0, double at1) {
-    const double most = std::max(at0, at1) + spread(0, span) + spread(1, span);
+    const double most = std::max(at0, at1) + path_.spread(0, span) + path_.spread(1, span);
     if (most <= touch_mm_) {
       most_excluded_mm_ = std::max(most_excluded_mm_, most);
       return {1.0, 1.0};
     }
     const double middle = 0.5 * (span.t0 + span.t1);
     const bool brief =
-        speed_upper_bound() * (span.t1 - span.t0) <= kSmallestShare * query_.accuracy_mm;
+        path_.speed_upper_bound() * (span.t1 - span.t0) <= kSmallestShare * query_.accuracy_mm;
     if (brief || !(middle > span.t0) || !(middle < span.t1) || at0 > touch_mm_) return span;
     const double at = overlap_at(middle);
     const Span early = exclude(overlap_at, {span.t0, middle}, at0, at);
@@ -215,7 +177,7 @@ class RealTimeSearch {
   // Is the overlap certain soon after the interval? Then the search ends there.
   bool ends_at(const Span& span) {
     const double step = std::max(
-        1e-12, kSmallestShare * query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300));
+        1e-12, kSmallestShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300));
     double t = span.t0 <= 0.0 ? 0.0 : span.t1;
     for (int i = 0; i < kSoon && t <= 1.0; ++i) {
       if (is_real_at(t)) {
@@ -231,7 +193,7 @@ class RealTimeSearch {
   // Everything before t is proven free. A part that rests against another and is pushed on is real
   // at once: then nothing is gained by parting the surfaces that touch.
   bool real_soon_after(double t) {
-    const double soon = t + query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300);
+    const double soon = t + query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
     if (soon > std::min(1.0, t_real_) || !is_real_at(soon, kLookWorkCap)) return false;
     t_real_ = soon;
     free_until_ = std::min(free_until_, t);
@@ -243,8 +205,8 @@ class RealTimeSearch {
   bool is_real_at(double t, std::uint64_t work_cap) {
     OverlapQuery query = query_.at_target;
     query.work_cap = std::min(query.work_cap, work_cap);
-    query.X_WA = motions_[0].pose_at(t);
-    query.X_WB = motions_[1].pose_at(t);
+    query.X_WA = path_.motions[0].pose_at(t);
+    query.X_WB = path_.motions[1].pose_at(t);
     query.refinement = Refinement::kDecided;
     CcdScratch scratch;
     const OverlapResult result = find_overlap(query, scratch);
@@ -265,7 +227,7 @@ class RealTimeSearch {
     }
     CandidateQuery query;
     query.pair = &start;
-    query.margin_mm = speed_upper_bound();
+    query.margin_mm = path_.speed_upper_bound();
     for (const Body& body : bodies_)
       query.margin_mm += body.largest_offset_mm[static_cast<int>(layer_)];
     query.skip = &never;
@@ -291,9 +253,9 @@ class RealTimeSearch {
     const Body& s = bodies_[item.role];
     const Body& k = bodies_[1 - item.role];
     span.t1 = std::min({span.t1, t_real_, free_until_});
-    const Pose X0 = pose(item.role, span.t0), X1 = pose(item.role, span.t1);
-    const Patch swept =
-        make_swept_patch(s, layer_, item.piece, X0, X1, spread(item.role, span), turn(span));
+    const Pose X0 = path_.pose(item.role, span.t0), X1 = path_.pose(item.role, span.t1);
+    const Patch swept = make_swept_patch(s, layer_, item.piece, X0, X1,
+                                         path_.spread(item.role, span), path_.turn(span));
     if (swept.count == 0) return;
     const SurfacePoint at = nearest_surface(*k.solid, swept.center);
     if (is_certain(item, span.t0, swept.center, at)) {
@@ -335,8 +297,8 @@ class RealTimeSearch {
     Sample sample;
     sample.depth_mm = bodies_[1 - item.role].depth_in(point_K, at, layer_);
     if (sample.depth_mm <= touch_mm_) return false;
-    at_.X_WA = motions_[0].pose_at(t);
-    at_.X_WB = motions_[1].pose_at(t);
+    at_.X_WA = path_.motions[0].pose_at(t);
+    at_.X_WB = path_.motions[1].pose_at(t);
     sample.role = item.role;
     sample.triangle = item.piece.triangle;
     sample.point_K = point_K;
@@ -348,10 +310,10 @@ class RealTimeSearch {
   // deeper than the accuracy, or small in both, is free within the accuracy.
   void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1, const Patch& swept,
            const SurfacePoint& at) {
-    double path = spread(item.role, span), width = 0.0;
+    double path = path_.spread(item.role, span), width = 0.0;
     for (int c = 0; c < 3; ++c) {
       path = std::max(path, (X1 * item.piece.corners[c] - X0 * item.piece.corners[c]).norm() +
-                                spread(item.role, span));
+                                path_.spread(item.role, span));
       width = std::max(width, (item.piece.corners[(c + 1) % 3] - item.piece.corners[c]).norm());
     }
     const double smallest = kSmallestShare * query_.accuracy_mm;
@@ -385,7 +347,7 @@ class RealTimeSearch {
     answer_.t_real = answer_.becomes_real ? t_real_ : 1.0;
     answer_.t_free = std::min({1.0, free_until_, answer_.t_real});
     // Within the accuracy something may be certain already: back off until nothing is.
-    double step = query_.accuracy_mm / std::max(speed_upper_bound(), 1e-300);
+    double step = query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
     for (int i = 0; i < kBackOff && answer_.becomes_real && answer_.t_free > 0.0; ++i) {
       if (!is_real_at(answer_.t_free)) break;
       answer_.t_real = std::min(answer_.t_real, answer_.t_free);
@@ -399,8 +361,7 @@ class RealTimeSearch {
   const SweptQuery& query_;
   OverlapQuery at_;
   Body bodies_[2];
-  Motion motions_[2];
-  double radius_[2];
+  const PairPath path_;
   bool trivial_ = true;
   Layer layer_ = Layer::kMesh;
   double rounding_mm_ = 0.0, touch_mm_ = 0.0;
