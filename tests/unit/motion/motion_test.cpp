@@ -24,8 +24,8 @@ Pose random_pose(std::mt19937_64& random, double largest_angle) {
 }
 
 double difference(const Pose& a, const Pose& b) {
-  return (a.p - b.p).norm() + std::min((a.q.coeffs() - b.q.coeffs()).norm(),
-                                       (a.q.coeffs() + b.q.coeffs()).norm());
+  return (a.p - b.p).norm() +
+         std::min((a.q.coeffs() - b.q.coeffs()).norm(), (a.q.coeffs() + b.q.coeffs()).norm());
 }
 
 TEST(Motion, EndsAreExactToTheLastBit) {
@@ -111,8 +111,7 @@ TEST(Motion, VelocityIsTheDerivativeOfThePath) {
     const Vec3 reference(1, -2, 0.5);
     for (const Motion& m : {linear_motion(a, b, reference), screw_motion(a, b, reference)}) {
       const double t = 0.4, h = 1e-5;
-      const Vec3 slope =
-          (m.pose_at(t + h) * reference - m.pose_at(t - h) * reference) / (2.0 * h);
+      const Vec3 slope = (m.pose_at(t + h) * reference - m.pose_at(t - h) * reference) / (2.0 * h);
       EXPECT_LT((m.velocity_at(t) - slope).norm(), 1e-5 * (1.0 + slope.norm()));
     }
   }

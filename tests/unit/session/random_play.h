@@ -28,12 +28,14 @@ struct RandomPlay {
     for (const auto& t : other.triangles) frame.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
     frame.points_mm.insert(frame.points_mm.end(), other.points_mm.begin(), other.points_mm.end());
     session.add("frame", frame, at(0, 0, 0), false);
-    for (int i = 0; i < 3; ++i) users.push_back(session.join(std::string("user").append(std::to_string(i))));
+    for (int i = 0; i < 3; ++i)
+      users.push_back(session.join(std::string("user").append(std::to_string(i))));
     for (int i = 0; i < mover_count; ++i) {
       const Vec3 half(size(), size(), size());
       const Pose X_WP{rotation_exp(0.5 * any()),
                       Vec3(6.0 * (i % 4) - 9.0, 7.0 * (i / 4) - 7.0, 6.0)};
-      movers.push_back(session.add(std::string("box").append(std::to_string(i)), box_mesh(-half, half), X_WP, true));
+      movers.push_back(session.add(std::string("box").append(std::to_string(i)),
+                                   box_mesh(-half, half), X_WP, true));
       if (bands) session.set_tolerance(movers.back(), 0.02);
       session.grab(user_of(movers.back()), movers.back());
     }
