@@ -209,5 +209,17 @@ TEST(Feature, RangeOverAFacetIsItsSagitta) {
   }
 }
 
+// A facet with corners on a sphere of 10 whose circle has radius 1 lies 0.050125629 below it.
+TEST(Surface, FacetOfASphere) {
+  Surface s;
+  s.kind = SurfaceKind::kSphere;
+  s.radius_mm = 10.0;
+  const double h = std::sqrt(99.0);
+  const Interval range = s.signed_distance_range_mm({1, 0, h}, {-0.5, std::sqrt(0.75), h},
+                                                    {-0.5, -std::sqrt(0.75), h});
+  EXPECT_NEAR(range.lo, -0.050125629, 1e-9);
+  EXPECT_NEAR(range.hi, 0.0, 1e-14);
+}
+
 }  // namespace
 }  // namespace mortise

@@ -104,6 +104,16 @@ TEST(Motion, TravelBoundHoldsAlongTheWholePath) {
   }
 }
 
+// A turn of 0.1 rad at 10 mm: the arc is 1, its chord shorter; with a lift of 1 the arc is sqrt(2).
+TEST(Motion, ArcsAndChords) {
+  const Vec3 far_point(10, 0, 0);
+  const Motion turn = linear_motion(Pose{}, pose({0, 0, 0.1}, Vec3::Zero()), Vec3::Zero());
+  EXPECT_NEAR(turn.travel_upper_bound_mm(10.0, 0.0, 1.0), 1.0, 1e-15);
+  EXPECT_NEAR((turn.X_W1 * far_point - turn.X_W0 * far_point).norm(), 0.999583385, 1e-9);
+  const Motion lifted = screw_motion(Pose{}, pose({0, 0, 0.1}, {0, 0, 1}), Vec3::Zero());
+  EXPECT_NEAR(lifted.travel_upper_bound_mm(10.0, 0.0, 1.0), std::numbers::sqrt2, 1e-12);
+}
+
 TEST(Motion, VelocityIsTheDerivativeOfThePath) {
   std::mt19937_64 random(13);
   for (int i = 0; i < 50; ++i) {
