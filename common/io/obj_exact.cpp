@@ -7,17 +7,11 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/quoted.h"
 #include "common/io/raw_soup.h"
 
 namespace mortise {
 namespace {
-
-std::string quoted(std::string_view text) {
-  std::string text_in(1, '\'');
-  text_in.append(text);
-  text_in.push_back('\'');
-  return text_in;
-}
 
 constexpr std::array<std::string_view, 12> kPassedOver = {
     "vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib", "l", "p", "cstype", "end"};

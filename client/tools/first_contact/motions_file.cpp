@@ -7,15 +7,10 @@
 #include <set>
 #include <string_view>
 
+#include "common/base/quoted.h"
+
 namespace mortise {
 namespace {
-
-std::string quoted(std::string_view text) {
-  std::string text_in(1, '\'');
-  text_in.append(text);
-  text_in.push_back('\'');
-  return text_in;
-}
 
 constexpr std::array<std::string_view, 19> kColumns = {
     "id",      "path",     "ref_x",    "ref_y",    "ref_z",    "start_x", "start_y",
