@@ -1,0 +1,188 @@
+#include "tests/stress/exact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mortise::stress {
+namespace {
+
+constexpr int next(int k) { return k == 2 ? 0 : k + 1; }
+
+Real clamp01(Real x) { return std::clamp<Real>(x, 0, 1); }
+
+Real square(const Point& p) { return dot(p, p); }
+
+struct Nearest {
+  Real mm2 = std::numeric_limits<Real>::infinity();
+  Point on_a, on_b;
+
+  void take(const Point& p, const Point& q) {
+    const Real d2 = square(q - p);
+    if (d2 >= mm2) return;
+    mm2 = d2;
+    on_a = p;
+    on_b = q;
+  }
+};
+
+Point on_edge(const Point& p, const Point& from, const Point& to) {
+  const Point e = to - from;
+  const Real length2 = square(e);
+  return length2 > 0 ? from + clamp01(dot(p - from, e) / length2) * e : from;
+}
+
+// Foot of p on the plane of t when it lies over the face.
+bool over_face(const Point& p, const Corners& t, Point& foot) {
+  const Point n = cross(t[1] - t[0], t[2] - t[0]);
+  const Real nn = square(n);
+  if (!(nn > 0)) return false;
+  foot = p - (dot(p - t[0], n) / nn) * n;
+  for (int k = 0; k < 3; ++k)
+    if (dot(cross(t[next(k)] - t[k], foot - t[k]), n) < 0) return false;
+  return true;
+}
+
+// Where the common perpendicular of two lines meets both within the edges.
+void inner_points(const Corners& a, int i, const Corners& b, int j, Nearest& nearest) {
+  const Point u = a[next(i)] - a[i], v = b[next(j)] - b[j], r = b[j] - a[i];
+  const Point n = cross(u, v);
+  const Real nn = square(n);
+  if (!(nn > 0)) return;
+  const Real s = dot(cross(r, v), n) / nn, t = dot(cross(r, u), n) / nn;
+  if (s > 0 && s < 1 && t > 0 && t < 1) nearest.take(a[i] + s * u, b[j] + t * v);
+}
+
+Real volume(const Point& p, const Point& q, const Point& r, const Point& s) {
+  return dot(q - p, cross(r - p, s - p));
+}
+
+bool edge_passes(const Point& p, const Point& q, const Corners& t) {
+  const Real above = volume(t[0], t[1], t[2], p), below = volume(t[0], t[1], t[2], q);
+  if (!((above > 0 && below < 0) || (above < 0 && below > 0))) return false;
+  const Real x = volume(p, q, t[0], t[1]), y = volume(p, q, t[1], t[2]),
+             z = volume(p, q, t[2], t[0]);
+  return (x > 0 && y > 0 && z > 0) || (x < 0 && y < 0 && z < 0);
+}
+
+}  // namespace
+
+Real norm(const Point& a) { return std::sqrt(square(a)); }
+
+Placement placement_of(const Pose& X) {
+  const Real w = X.q.w(), x = X.q.x(), y = X.q.y(), z = X.q.z();
+  const Real s = 2 / (w * w + x * x + y * y + z * z);  // divides by the norm: a rotation always
+  Placement P;
+  P.row[0] = {1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)};
+  P.row[1] = {s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)};
+  P.row[2] = {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)};
+  P.shift = point_of(X.p);
+  return P;
+}
+
+Placement inverse(const Placement& X) {
+  Placement P;
+  P.row[0] = {X.row[0].x, X.row[1].x, X.row[2].x};
+  P.row[1] = {X.row[0].y, X.row[1].y, X.row[2].y};
+  P.row[2] = {X.row[0].z, X.row[1].z, X.row[2].z};
+  P.shift = Real(-1) * P.turned(X.shift);
+  return P;
+}
+
+Placement compose(const Placement& X, const Placement& Y) {
+  Placement P;
+  const Placement back = inverse(Y);  // rows of the inverse are columns of Y
+  for (int i = 0; i < 3; ++i)
+    P.row[i] = {dot(X.row[i], back.row[0]), dot(X.row[i], back.row[1]), dot(X.row[i], back.row[2])};
+  P.shift = X(Y.shift);
+  return P;
+}
+
+Placement rotation_by(const Point& w) {
+  const Real angle = norm(w);
+  Placement P;
+  if (!(angle > 0)) return P;
+  const Point k = (1 / angle) * w;
+  const Real s = std::sin(angle), half = std::sin(angle / 2), c = 2 * half * half;
+  P.row[0] = {1 - c * (k.y * k.y + k.z * k.z), c * k.x * k.y - s * k.z, c * k.x * k.z + s * k.y};
+  P.row[1] = {c * k.x * k.y + s * k.z, 1 - c * (k.x * k.x + k.z * k.z), c * k.y * k.z - s * k.x};
+  P.row[2] = {c * k.x * k.z - s * k.y, c * k.y * k.z + s * k.x, 1 - c * (k.x * k.x + k.y * k.y)};
+  return P;
+}
+
+Placement place_at(const Motion& motion, Real t) {
+  const Placement start = placement_of(motion.X_W0);
+  if (motion.kind == PathKind::kStill) return start;
+  const Point v = t * point_of(motion.v_W);
+  const Placement turn = rotation_by(t * point_of(motion.w_W));
+  // The point about which the part turns: the reference point, carried along, or a point of the
+  // screw's axis.
+  const Point center = motion.kind == PathKind::kScrew ? point_of(motion.axis_W)
+                                                       : start(point_of(motion.reference_P));
+  Placement P = compose(turn, start);
+  P.shift = turn.turned(start.shift - center) + center + v;
+  return P;
+}
+
+Point turn_between(const Quat& q0, const Quat& q1) {
+  const Point a{q0.x(), q0.y(), q0.z()}, b{q1.x(), q1.y(), q1.z()};
+  const Real wa = q0.w(), wb = q1.w();
+  // q1 times the conjugate of q0.
+  Real w = wb * wa + dot(b, a);
+  Point v = wa * b - wb * a - cross(b, a);
+  if (w < 0) {
+    w = -w;
+    v = Real(-1) * v;
+  }
+  const Real sine = norm(v);
+  return sine > 0 ? (2 * std::atan2(sine, w) / sine) * v : Point{};
+}
+
+bool passes_through(const Corners& a, const Corners& b) {
+  for (int k = 0; k < 3; ++k)
+    if (edge_passes(a[k], a[next(k)], b) || edge_passes(b[k], b[next(k)], a)) return true;
+  return false;
+}
+
+Gap distance_of(const Corners& a, const Corners& b) {
+  Nearest nearest;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      nearest.take(a[i], on_edge(a[i], b[j], b[next(j)]));
+      nearest.take(on_edge(b[j], a[i], a[next(i)]), b[j]);
+      inner_points(a, i, b, j, nearest);
+    }
+  Point foot;
+  for (int k = 0; k < 3; ++k) {
+    if (over_face(a[k], b, foot)) nearest.take(a[k], foot);
+    if (over_face(b[k], a, foot)) nearest.take(foot, b[k]);
+  }
+  return {std::sqrt(nearest.mm2), nearest.on_a, nearest.on_b};
+}
+
+Real distance_to(const Point& p, const Corners& t) {
+  Nearest nearest;
+  for (int k = 0; k < 3; ++k) nearest.take(p, on_edge(p, t[k], t[next(k)]));
+  Point foot;
+  if (over_face(p, t, foot)) nearest.take(p, foot);
+  return std::sqrt(nearest.mm2);
+}
+
+Real winding(const Point& p, const TriangleMesh& mesh) {
+  Real sum = 0;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    Point r[3];
+    Real length[3];
+    for (int k = 0; k < 3; ++k) {
+      r[k] = point_of(mesh.corner(i, k)) - p;
+      length[k] = norm(r[k]);
+    }
+    const Real up = dot(r[0], cross(r[1], r[2]));
+    const Real down = length[0] * length[1] * length[2] + dot(r[0], r[1]) * length[2] +
+                      dot(r[1], r[2]) * length[0] + dot(r[2], r[0]) * length[1];
+    sum += 2 * std::atan2(up, down);
+  }
+  return sum / (4 * std::acos(Real(-1)));
+}
+
+}  // namespace mortise::stress
