@@ -52,6 +52,7 @@ struct NamedHere {
 const std::vector<NamedHere>& named_here() {
   static const std::vector<NamedHere> rules = {
       {"FCL", std::regex("fcl/.*"), {"common/broadphase/", "tests/"}},
+      {"Bullet", std::regex("(Bullet.*|LinearMath)/.*"), {"tests/"}},
       {"assimp", std::regex("assimp/.*"), {"common/io/mesh_import", "common/io/importer/"}},
       {"yaml-cpp", std::regex("yaml-cpp/.*"), {"common/io/scenario_", "common/io/play_file"}},
       {"Fast DDS", std::regex("(fastdds|fastrtps|fastcdr)/.*"), {"idl/"}},

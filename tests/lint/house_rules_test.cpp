@@ -84,6 +84,7 @@ TEST_F(PlantedTree, TheWireKnowsNoEngine) {
 TEST_F(PlantedTree, LibrariesInTheirRooms) {
   const std::vector<std::pair<std::string, std::string>> planted = {
       {"fcl/fcl.h", "FCL"},
+      {"BulletCollision/CollisionShapes/btBoxShape.h", "Bullet"},
       {"assimp/Importer.hpp", "assimp"},
       {"yaml-cpp/yaml.h", "yaml-cpp"},
       {"fastdds/dds.hpp", "Fast DDS"},
