@@ -119,8 +119,18 @@ Placement place_at(const Motion& motion, Real t) {
   // screw's axis.
   const Point center = motion.kind == PathKind::kScrew ? point_of(motion.axis_W)
                                                        : start(point_of(motion.reference_P));
+  // The turn shifts the part's origin by (R - 1) r = s k x r + (1 - c) k x (k x r); r is huge on a
+  // screw that hardly turns, and R r - r would cancel.
+  const Point w = t * point_of(motion.w_W), r = start.shift - center;
+  const Real angle = norm(w);
+  Point shift = v;
+  if (angle > 0) {
+    const Point k = (1 / angle) * w, side = cross(k, r);
+    const Real half = std::sin(angle / 2);
+    shift = shift + std::sin(angle) * side + (2 * half * half) * cross(k, side);
+  }
   Placement P = compose(turn, start);
-  P.shift = turn.turned(start.shift - center) + center + v;
+  P.shift = start.shift + shift;
   return P;
 }
 

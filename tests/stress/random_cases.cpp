@@ -8,6 +8,55 @@ double uniform(std::mt19937_64& random, double lo, double hi) {
   return std::uniform_real_distribution<double>(lo, hi)(random);
 }
 
+Motion same_path(const Motion& like, const Pose& X_W0, const Pose& X_W1, const Vec3& reference_P) {
+  if (like.kind == PathKind::kStill) return still_motion(X_W0);
+  return like.kind == PathKind::kScrew ? screw_motion(X_W0, X_W1, reference_P)
+                                       : linear_motion(X_W0, X_W1, reference_P);
+}
+
+Case scaled(const Case& c, double factor) {
+  Case s = c;
+  const auto part = [&](const SolidPtr& solid) {
+    return testing::solid(testing::scaled(solid->mesh(), factor));
+  };
+  const auto path = [&](const Motion& m) {
+    return same_path(m, {m.X_W0.q, factor * m.X_W0.p}, {m.X_W1.q, factor * m.X_W1.p},
+                     factor * m.reference_P);
+  };
+  s.a = part(c.a);
+  s.b = part(c.b);
+  s.motion_a = path(c.motion_a);
+  s.motion_b = path(c.motion_b);
+  s.accuracy_mm *= factor;
+  s.separation_mm *= factor;
+  return s;
+}
+
+Case moved(const Case& c, const Pose& G) {
+  Case s = c;
+  const auto path = [&](const Motion& m) {
+    // Bit for bit the same turn stays none.
+    const Quat q0 = (G.q * m.X_W0.q).normalized();
+    const bool turns = !(m.X_W0.q.coeffs().array() == m.X_W1.q.coeffs().array()).all();
+    const Quat q1 = turns ? (G.q * m.X_W1.q).normalized() : q0;
+    return same_path(m, {q0, G * m.X_W0.p}, {q1, G * m.X_W1.p}, m.reference_P);
+  };
+  s.motion_a = path(c.motion_a);
+  s.motion_b = path(c.motion_b);
+  return s;
+}
+
+Case with_far_mesh(const Case& c, const Vec3& away_mm) {
+  Case s = c;
+  TriangleMesh mesh = c.a->mesh();
+  for (Vec3& p : mesh.points_mm) p += away_mm;
+  s.a = testing::solid(mesh);
+  const Motion& m = c.motion_a;
+  const auto back = [&](const Pose& X) { return Pose{X.q, X.p - X.q * away_mm}; };
+  s.motion_a = same_path(m, back(m.X_W0), back(m.X_W1), m.reference_P + away_mm);
+  return s;
+}
+
 Case random_case(std::uint64_t seed) {
   constexpr double kPi = std::numbers::pi;
   std::mt19937_64 random(seed);
