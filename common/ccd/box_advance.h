@@ -5,17 +5,28 @@
 // for different instruction sets, and no inline function of a library may come out of them.
 namespace mortise::ccd {
 
+/// How a body moves along a direction n: a point at u from the origin of its tree has the speed
+/// turn . u + turn_0 by turning, and the acceleration bend . u + bend_0. A corner of a box exceeds
+/// its centre by reach and bend_reach times its half extents (A: in axes of A; B: absolute values).
+struct TurnAlong {
+  float turn[3], turn_0;
+  float bend[3], bend_0;
+  float reach[3], bend_reach[3];
+};
+
 /// One separating direction n that is the same for all lanes, axes of B at time t. The instruction
 /// sets must agree bit for bit: every expression is evaluated as written, never contracted.
 struct DirectionTerms {
   float n[3];
-  float v;          ///< n . (velocity of A's origin - velocity of B's origin)
-  float turn_a[3];  ///< n x w_A: n . (w_A x u) = turn_a . u
-  float
-      reach_a[3];  ///< |turn_a . axis j of A|: how much faster a corner of a box is than its centre
-  float bend_a;    ///< |n x w_A| |w_A|: bound of n . acceleration, per mm from the axis
-  float turn_b[3];
-  float bend_b;
+  float v;  ///< n . (velocity of A's axis - velocity of B's axis)
+  TurnAlong a, b;
+};
+
+/// Of one body: see TurnTerms in leaf_kernel.h.
+struct BoxTurn {
+  float w[3], arm[3], speed;
+  float keep, bow;
+  bool turns;
 };
 
 /// Two bodies at one time, in axes of B, relative to the origin of B's tree, mm and mm per tick.
@@ -23,14 +34,12 @@ struct BoxFrame {
   float r[3][3], abs_r[3][3];   ///< axes of A's boxes, by row
   float p[3];                   ///< origin of A's tree
   DirectionTerms direction[6];  ///< axes of B, axes of A
-  float v[3], w_a[3], w_b[3];   ///< relative velocity of the origins, rotation vectors
-  float speed_a, speed_b;       ///< |w_A|, |w_B|
-  float axis_a[3], axis_b[3];   ///< unit, of the rotations
-  float arm_a[3], arm_b[3];     ///< from the rotation axis to the origin of the tree
-  float gap_allowance;          ///< target distance and rounding, taken off every gap
-  float speed_allowance;        ///< rounding of a speed
-  float arm_allowance;          ///< rounding of a distance from an axis
-  bool turns_a, turns_b;
+  float v[3];                   ///< relative velocity of the axes of rotation
+  BoxTurn a, b;
+  float horizon;          ///< ticks: no answer is longer
+  float gap_allowance;    ///< target distance and rounding, taken off every gap
+  float speed_allowance;  ///< rounding of a speed
+  float bend_allowance;   ///< rounding of an acceleration
 };
 
 /// One box against which eight others are held.

@@ -13,6 +13,7 @@ inline Lanes load(const float* x) {
 }
 inline Lanes magnitude(Lanes x) { return (Lanes)((Mask)x & 0x7fffffff); }
 inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
+inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes root(Lanes x) {
   Lanes y;
   for (int k = 0; k < 8; ++k) y[k] = __builtin_sqrtf(x[k]);
@@ -46,29 +47,50 @@ inline Lanes dot(const float* a, const Lanes* b) {
 }
 inline Lanes dot(const Lanes* a, const Lanes* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// |axis x r|, the distance from the axis of rotation. By the cross product: the difference of
-// squares would lose half the digits near the axis.
-inline Lanes distance_from_axis(const float* axis, const Lanes* r) {
-  const Lanes x = all(axis[1]) * r[2] - all(axis[2]) * r[1];
-  const Lanes y = all(axis[2]) * r[0] - all(axis[0]) * r[2];
-  const Lanes z = all(axis[0]) * r[1] - all(axis[1]) * r[0];
-  return root(x * x + y * y + z * z);
+inline void cross(const Lanes* n, const float* w, Lanes* out) {
+  out[0] = n[1] * all(w[2]) - n[2] * all(w[1]);
+  out[1] = n[2] * all(w[0]) - n[0] * all(w[2]);
+  out[2] = n[0] * all(w[1]) - n[1] * all(w[0]);
 }
+
+constexpr float kNever = __builtin_inff();
 
 // The relative errors of the float operations of one step add up to less than 2e-6 (thirty of
 // 6e-8).
 constexpr float kShorter = 1.0F - 4e-6F;
-constexpr float kLonger = 1.0F + 4e-6F;
 
-// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0; 0 where the gap is not positive. Of the two
-// forms of the root each is used where nothing cancels.
-inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend) {
+// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0; 0 where the gap is not positive, the horizon
+// where the parabola turns before. Of the two forms of the root each is used where nothing cancels.
+inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
   const Lanes zero = all(0.0F);
-  const Lanes disc = root(s * s + all(2.0F) * bend * larger(gap, zero));
+  const Lanes square = s * s + all(2.0F) * bend * larger(gap, zero);
+  const Lanes disc = root(larger(square, zero));
   const Mask closing = s >= zero;
   const Lanes numerator = closing ? all(2.0F) * gap : disc - s;
   const Lanes denominator = closing ? s + disc : bend;
-  return gap > zero ? numerator / larger(denominator, all(1e-30F)) : zero;
+  // Beyond 2^20 ticks is never. A root that cancelled away in the square is nobody's proof.
+  const Mask ever =
+      (denominator > numerator * all(0x1p-20F)) & (square >= all(-8e-6F) * s * s);
+  const Lanes dt = ever ? numerator / (ever ? denominator : all(1.0F)) : horizon;
+  return gap > zero ? smaller(dt, horizon) : zero;
+}
+
+// Upper bounds of the speed and the acceleration of any point of a box along a direction; a
+// negative speed by turning and a negative acceleration hold in part only (see TurnTerms).
+struct Going {
+  Lanes s, bend;
+};
+
+inline void add(Going& going, Lanes s, Lanes bend, const BoxTurn& turn) {
+  going.s += larger(s, s * all(turn.keep));
+  going.bend += larger(bend, bend * all(turn.bow));
+}
+
+// Whichever way the body will have turned: |n x w| |w x e| (ALG 2.1 B3'), m = n x w.
+inline Lanes any_bend(const Lanes* m, const Lanes* e, const Boxes& box, const BoxTurn& turn) {
+  Lanes speed[3];
+  cross(e, turn.w, speed);
+  return root(dot(m, m)) * (root(dot(speed, speed)) + all(turn.speed) * root(dot(box.half, box.half)));
 }
 
 template <bool kTurnsA, bool kTurnsB>
@@ -80,34 +102,25 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     d[i] = b.center[i] - (u[i] + all(f.p[i]));
     extent_a[i] = dot(f.abs_r[i], a.half);
   }
-  Lanes rho_a = zero, rho_b = zero;
-  if constexpr (kTurnsA) {
-    const Lanes r[3] = {u[0] + all(f.arm_a[0]), u[1] + all(f.arm_a[1]), u[2] + all(f.arm_a[2])};
-    rho_a = distance_from_axis(f.axis_a, r) + root(dot(a.half, a.half)) + all(f.arm_allowance);
-  }
-  if constexpr (kTurnsB) {
-    const Lanes r[3] = {b.center[0] + all(f.arm_b[0]), b.center[1] + all(f.arm_b[1]),
-                        b.center[2] + all(f.arm_b[2])};
-    rho_b = distance_from_axis(f.axis_b, r) + root(dot(b.half, b.half)) + all(f.arm_allowance);
-  }
   Lanes best = zero;
   Lanes gap[3];
   const auto try_direction = [&](const DirectionTerms& n, Lanes along, Lanes free_gap) {
-    Lanes s = all(n.v), reach = all(f.speed_allowance), bend = zero;
+    const Mask forward = along > zero;
+    Going going{(forward ? all(n.v) : all(-n.v)) + all(f.speed_allowance),
+                all(f.bend_allowance)};
     if constexpr (kTurnsA) {
-      s += dot(n.turn_a, u);
-      reach += dot(n.reach_a, a.half);
-      bend += all(n.bend_a) * rho_a;
+      const Lanes s = dot(n.a.turn, u) + all(n.a.turn_0);
+      const Lanes bend = dot(n.a.bend, u) + all(n.a.bend_0);
+      add(going, (forward ? s : -s) + dot(n.a.reach, a.half),
+          (forward ? bend : -bend) + dot(n.a.bend_reach, a.half), f.a);
     }
     if constexpr (kTurnsB) {
-      s -= dot(n.turn_b, b.center);
-      reach += all(__builtin_fabsf(n.turn_b[0])) * b.half[0] +
-               all(__builtin_fabsf(n.turn_b[1])) * b.half[1] +
-               all(__builtin_fabsf(n.turn_b[2])) * b.half[2];
-      bend += all(n.bend_b) * rho_b;
+      const Lanes s = dot(n.b.turn, b.center) + all(n.b.turn_0);
+      const Lanes bend = dot(n.b.bend, b.center) + all(n.b.bend_0);
+      add(going, (forward ? -s : s) + dot(n.b.reach, b.half),
+          (forward ? -bend : bend) + dot(n.b.bend_reach, b.half), f.b);
     }
-    s = (along > zero ? s : -s) + reach;
-    best = larger(best, time_to_close(free_gap, s, bend * all(kLonger)));
+    best = larger(best, time_to_close(free_gap, going.s, going.bend, all(f.horizon)));
   };
   for (int k = 0; k < 3; ++k) {
     const Lanes free_gap = magnitude(d[k]) - b.half[k] - extent_a[k] - all(f.gap_allowance);
@@ -127,39 +140,55 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     const Lanes inverse = all(1.0F) / larger(length, all(1e-30F));
     Lanes n[3];
     for (int k = 0; k < 3; ++k) n[k] = (d[k] > zero ? gap[k] : -gap[k]) * inverse;
-    Lanes s = dot(f.v, n) + all(f.speed_allowance), bend = zero;
+    Going going{dot(f.v, n) + all(f.speed_allowance), all(f.bend_allowance)};
+    Lanes largest_bend = all(f.bend_allowance);
     if constexpr (kTurnsA) {
-      const Lanes m[3] = {n[1] * all(f.w_a[2]) - n[2] * all(f.w_a[1]),
-                          n[2] * all(f.w_a[0]) - n[0] * all(f.w_a[2]),
-                          n[0] * all(f.w_a[1]) - n[1] * all(f.w_a[0])};
-      s += dot(m, u);
-      for (int j = 0; j < 3; ++j)
-        s += magnitude(m[0] * all(f.r[0][j]) + m[1] * all(f.r[1][j]) + m[2] * all(f.r[2][j])) *
-             a.half[j];
-      bend += root(dot(m, m)) * all(f.speed_a) * rho_a;
+      Lanes m[3], g[3];
+      cross(n, f.a.w, m);
+      cross(m, f.a.w, g);
+      const Lanes e[3] = {u[0] + all(f.a.arm[0]), u[1] + all(f.a.arm[1]), u[2] + all(f.a.arm[2])};
+      Lanes reach = zero, bend_reach = zero;
+      for (int j = 0; j < 3; ++j) {
+        const auto in_axis_of_a = [&](const Lanes* x) {
+          return magnitude(x[0] * all(f.r[0][j]) + x[1] * all(f.r[1][j]) + x[2] * all(f.r[2][j]));
+        };
+        reach += in_axis_of_a(m) * a.half[j];
+        bend_reach += in_axis_of_a(g) * a.half[j];
+      }
+      add(going, dot(m, e) + reach, dot(g, e) + bend_reach, f.a);
+      largest_bend += any_bend(m, e, a, f.a);
     }
     if constexpr (kTurnsB) {
-      const Lanes m[3] = {n[1] * all(f.w_b[2]) - n[2] * all(f.w_b[1]),
-                          n[2] * all(f.w_b[0]) - n[0] * all(f.w_b[2]),
-                          n[0] * all(f.w_b[1]) - n[1] * all(f.w_b[0])};
-      s -= dot(m, b.center);
-      for (int j = 0; j < 3; ++j) s += magnitude(m[j]) * b.half[j];
-      bend += root(dot(m, m)) * all(f.speed_b) * rho_b;
+      Lanes m[3], g[3];
+      cross(n, f.b.w, m);
+      cross(m, f.b.w, g);
+      const Lanes e[3] = {b.center[0] + all(f.b.arm[0]), b.center[1] + all(f.b.arm[1]),
+                          b.center[2] + all(f.b.arm[2])};
+      Lanes reach = zero, bend_reach = zero;
+      for (int j = 0; j < 3; ++j) {
+        reach += magnitude(m[j]) * b.half[j];
+        bend_reach += magnitude(g[j]) * b.half[j];
+      }
+      add(going, reach - dot(m, e), bend_reach - dot(g, e), f.b);
+      largest_bend += any_bend(m, e, b, f.b);
     }
-    best = larger(best, time_to_close(length, s, bend * all(kLonger)));
+    // Far from each other, beyond the horizon of what bends away.
+    if ((kTurnsA || kTurnsB) && f.horizon < 1.0F)
+      best = larger(best, time_to_close(length, going.s, largest_bend, all(kNever)));
+    best = larger(best, time_to_close(length, going.s, going.bend, all(f.horizon)));
   }
   best *= all(kShorter);
   __builtin_memcpy(out, &best, sizeof best);
 }
 
 inline void advance_any(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
-  if (f.turns_b) {
-    if (f.turns_a)
+  if (f.b.turns) {
+    if (f.a.turns)
       advance<true, true>(f, a, b, out);
     else
       advance<false, true>(f, a, b, out);
   } else {
-    if (f.turns_a)
+    if (f.a.turns)
       advance<true, false>(f, a, b, out);
     else
       advance<false, false>(f, a, b, out);

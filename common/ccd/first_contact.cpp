@@ -19,6 +19,8 @@ using namespace ccd;
 constexpr double kContactAt = 0.25;
 constexpr double kAim = 0.03125;
 constexpr double kRoundingsPerAccuracy = 64.0;
+// Ticks: for less than this a pair is not put back, but looked at by its exact distance.
+constexpr double kWorthWhile = 0.01;
 // Of a pair that touches at the start: how deep its triangles may go, and how much deeper those may
 // that already lie near that depth and only slide.
 constexpr double kMayPress = 0.875;
@@ -157,7 +159,9 @@ class Query {
     while (true) {
       motion_.at(t);
       ++result_.work.advances;
-      const LeafAdvance advance = leaves.advance(motion_, goal, t == 0.0, result_.work);
+      const double next_pair = heap.empty() ? 1.0 : heap.front().t;
+      const LeafAdvance advance = leaves.advance(motion_, goal, t == 0.0,
+                                                 std::max(kWorthWhile, next_pair - t), result_.work);
       if (advance.contact) {
         contact(advance.nearest, t);
         return false;

@@ -12,18 +12,49 @@ constexpr double kTrustNormal = 0.9;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-Triangle corners_of(const Bvh& bvh, std::uint32_t i) {
-  const auto& c = bvh.corners[i];
-  return {Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5]), Vec3(c[6], c[7], c[8])};
+// Least dt with gap - s dt - bend dt^2 / 2 = 0; never where the parabola turns before. Of the two
+// forms of the root the one in which nothing cancels.
+double time_to_close(double gap, double s, double bend, double horizon) {
+  if (!(gap > 0.0)) return 0.0;
+  const double square = s * s + 2.0 * bend * gap;
+  if (square < 0.0) return horizon;
+  const double disc = std::sqrt(square);
+  const double numerator = s >= 0.0 ? 2.0 * gap : disc - s;
+  const double denominator = s >= 0.0 ? s + disc : bend;
+  // Beyond 2^20 ticks is never.
+  if (!(denominator > numerator * 0x1p-20)) return horizon;
+  return std::min(numerator / denominator, horizon);
 }
 
-// Least dt with gap - s dt - bend dt^2 / 2 = 0; of the two forms of the root the one in which
-// nothing cancels.
-double time_to_close(double gap, double s, double bend) {
-  if (gap <= 0.0) return 0.0;
-  const double disc = std::sqrt(s * s + 2.0 * bend * gap);
-  if (s >= 0.0) return s + disc > 0.0 ? 2.0 * gap / (s + disc) : kNever;
-  return bend > 0.0 ? (disc - s) / bend : kNever;
+void load(const Bvh& bvh, std::uint32_t first, LeafCorners& corners) {
+  for (int i = 0; i < Bvh::kLeafSize; ++i) {
+    const auto& c = bvh.corners[first + (i < corners.count ? i : 0)];
+    for (int k = 0; k < 3; ++k)
+      for (int x = 0; x < 3; ++x) corners.at[k][x][i] = c[3 * k + x] - bvh.origin[x];
+  }
+}
+
+Vec3 corner(const LeafCorners& corners, int i, int k) {
+  return {corners.at[k][0][i], corners.at[k][1][i], corners.at[k][2][i]};
+}
+
+Vec3 vec(const double* x) { return {x[0], x[1], x[2]}; }
+
+// Where a point is along n, and how it goes (see TurnTerms); `sign` -1 for what n points at.
+struct Along {
+  double place, s = 0.0, bend = 0.0;
+};
+
+Along along(const TurnTerms& terms, const Vec3& n, const Vec3& x, const Vec3& x_to_axis,
+            double sign) {
+  Along result{n.dot(x)};
+  if (!terms.turns) return result;
+  const Vec3 w = vec(terms.w);
+  const Vec3 turn = w.cross(x + x_to_axis);
+  const double s = sign * n.dot(turn), bend = sign * n.dot(w.cross(turn));
+  result.s = std::max(s, s * terms.keep);
+  result.bend = std::max(bend, bend * terms.bow);
+  return result;
 }
 
 }  // namespace
@@ -32,82 +63,38 @@ LeafPair::LeafPair(const Bvh& a, std::int32_t leaf_a, const Bvh& b, std::int32_t
     : bvh_a_(a),
       bvh_b_(b),
       first_a_(a.leaves[~leaf_a].first),
-      first_b_(b.leaves[~leaf_b].first),
-      count_a_(static_cast<int>(a.leaves[~leaf_a].count)),
-      count_b_(static_cast<int>(b.leaves[~leaf_b].count)) {
-  for (int j = 0; j < count_b_; ++j) {
-    const Triangle corners = corners_of(b, first_b_ + j);
-    for (int k = 0; k < 3; ++k) y_[j][k] = corners[k] - b.origin;
-  }
+      first_b_(b.leaves[~leaf_b].first) {
+  a_.count = static_cast<int>(a.leaves[~leaf_a].count);
+  b_.count = static_cast<int>(b.leaves[~leaf_b].count);
+  load(a, first_a_, a_);
+  load(b, first_b_, b_);
 }
 
 void LeafPair::place(const PairMotion& motion) {
   const PairState& s = motion.state();
-  for (int i = 0; i < count_a_; ++i) {
-    const Triangle corners = corners_of(bvh_a_, first_a_ + i);
-    for (int k = 0; k < 3; ++k) {
-      u_[i][k] = s.R * (corners[k] - bvh_a_.origin);
-      x_[i][k] = u_[i][k] + s.p;
-      rho_a_[i][k] = motion.turns_a() ? s.a.axis.cross(u_[i][k] + s.a.arm).norm() : 0.0;
-    }
-  }
-  for (int j = 0; j < count_b_; ++j)
-    for (int k = 0; k < 3; ++k)
-      rho_b_[j][k] = motion.turns_b() ? s.b.axis.cross(y_[j][k] + s.b.arm).norm() : 0.0;
-}
-
-LeafPair::Direction::Direction(const PairMotion& motion, const Vec3& n_B) : n(n_B) {
-  const PairState& s = motion.state();
-  turn_a = n.cross(s.a.w);
-  turn_b = n.cross(s.b.w);
-  speed_a = n.dot(s.a.v);
-  speed_b = n.dot(s.b.v);
-  bend_a = turn_a.norm() * motion.speed_a();
-  bend_b = turn_b.norm() * motion.speed_b();
-}
-
-LeafPair::Along LeafPair::along_a(const Direction& d, int i) const {
-  Along along;
+  if (placed_at_ == s.t) return;
   for (int k = 0; k < 3; ++k) {
-    along.place[k] = d.n.dot(x_[i][k]);
-    along.speed[k] = d.speed_a + d.turn_a.dot(u_[i][k]);
-    along.bend[k] = d.bend_a * rho_a_[i][k];
+    for (int i = 0; i < a_.count; ++i) x_[i][k] = s.R * corner(a_, i, k) + s.p;
+    for (int j = 0; j < b_.count; ++j) y_[j][k] = corner(b_, j, k);
   }
-  return along;
+  placed_at_ = s.t;
 }
 
-LeafPair::Along LeafPair::along_b(const Direction& d, int j) const {
-  Along along;
+// For a given dt the gap left is linear in (place, speed, bend), and all three are linear in the
+// point, bounds from above of them convex: the corners decide.
+double LeafPair::free_time(const LeafFrame& frame, const Vec3& n, int i, int j,
+                           double taken_mm) const {
+  const double v = n.dot(vec(frame.v)) + frame.speed_slack;
+  Along a[3], b[3];
   for (int k = 0; k < 3; ++k) {
-    along.place[k] = d.n.dot(y_[j][k]);
-    along.speed[k] = -(d.speed_b + d.turn_b.dot(y_[j][k]));
-    along.bend[k] = d.bend_b * rho_b_[j][k];
+    a[k] = along(frame.a, n, x_[i][k], vec(frame.a.arm) - vec(frame.p), 1.0);
+    b[k] = along(frame.b, n, y_[j][k], vec(frame.b.arm), -1.0);
   }
-  return along;
-}
-
-// For a given dt the gap left is linear in (place, speed, bend), and bend is convex over a triangle
-// from above: the corners decide.
-double LeafPair::free_time(const PairMotion& motion, const Along& a, const Along& b,
-                           double target_mm) const {
-  const double taken = target_mm + motion.rounding_mm();
-  const double slack = motion.speed_rounding_mm();
-  if (!motion.turns_b()) {
-    const double wall = std::min({b.place[0], b.place[1], b.place[2]}) - taken;
-    if (!motion.turns_a())
-      return time_to_close(wall - std::max({a.place[0], a.place[1], a.place[2]}),
-                           a.speed[0] + b.speed[0] + slack, 0.0);
-    double dt = kNever;
-    for (int k = 0; k < 3; ++k)
-      dt = std::min(dt,
-                    time_to_close(wall - a.place[k], a.speed[k] + b.speed[0] + slack, a.bend[k]));
-    return dt;
-  }
-  double dt = kNever;
-  for (int k = 0; k < 3; ++k)
-    for (int m = 0; m < 3; ++m)
-      dt = std::min(dt, time_to_close(b.place[m] - a.place[k] - taken,
-                                      a.speed[k] + b.speed[m] + slack, a.bend[k] + b.bend[m]));
+  double dt = frame.horizon;
+  for (const Along& x : a)
+    for (const Along& y : b)
+      dt = std::min(dt, time_to_close(y.place - x.place - taken_mm, v + x.s + y.s,
+                                      x.bend + y.bend + frame.bend_slack, frame.horizon));
   return dt;
 }
 
@@ -123,108 +110,98 @@ Nearest LeafPair::exact(int i, int j, bool may_cross, CcdWork& work) const {
           d.crossing};
 }
 
-// 1. the pair that decided last time (at first: the pair whose centres are nearest);
-// 2. every other pair first along the normal of that one: on a convex place it is freed by it;
-// 3. along the normals of its own faces: a sliding patch is freed by them;
-// 4. what is left, by the exact distance.
-LeafAdvance LeafPair::advance(const PairMotion& motion, const Goal& goal, bool may_cross,
+// By the direction between the feet; by normals where that is noise.
+bool LeafPair::settle(const PairMotion& motion, const LeafFrame& frame, const Goal& goal,
+                      bool may_cross, int i, int j, LeafAdvance& result, CcdWork& work) const {
+  Nearest found = exact(i, j, may_cross || goal.below_zero, work);
+  double gap = found.distance_mm;
+  Vec3 n = Vec3::Zero();
+  const bool signed_gap = goal.below_zero && gap <= goal.exact_below_mm;
+  if (signed_gap) {
+    const TriangleSeparation separation = triangle_separation_outside(x_[i], y_[j]);
+    n = separation.normal;
+    found.distance_mm = gap = separation.distance_mm;
+  } else if (gap > 0.0) {
+    n = (found.point_b - found.point_a) / gap;
+  }
+  if (gap <= goal.contact_mm) {
+    result = {0.0, true, found};
+    return false;
+  }
+  const double taken = goal.target_mm + motion.rounding_mm();
+  double dt = free_time(frame, n, i, j, taken);
+  const auto gap_along = [&](const Vec3& direction) {
+    double a = -kNever, b = kNever;
+    for (int k = 0; k < 3; ++k) {
+      a = std::max(a, direction.dot(x_[i][k]));
+      b = std::min(b, direction.dot(y_[j][k]));
+    }
+    return b - a;
+  };
+  if (!signed_gap && gap_along(n) < kTrustNormal * gap)
+    // The feet are so near that rounding has turned the direction between them. Normals of faces
+    // and of pairs of edges do not know the distance.
+    dt = std::max(
+        dt, free_time(frame, triangle_separation(x_[i], y_[j]).normal, i, j, taken));
+  if (dt < result.dt) {
+    result.dt = dt;
+    result.nearest = found;
+  }
+  return true;
+}
+
+// 1. the kernel frees what it can, and names the suspects;
+// 2. those that touch at the start along the normals of their own faces: a sliding patch is freed
+//    by them, the corners decide, no distance is needed;
+// 3. what is left, by the exact distance.
+LeafAdvance LeafPair::advance(PairMotion& motion, const Goal& goal, bool may_cross, double enough,
                               CcdWork& work) {
   ++work.leaf_tests;
-  place(motion);
-  if (try_i_ < 0) {
-    double nearest2 = kNever;
-    for (int i = 0; i < count_a_; ++i)
-      for (int j = 0; j < count_b_; ++j) {
-        const double d2 =
-            (x_[i][0] + x_[i][1] + x_[i][2] - y_[j][0] - y_[j][1] - y_[j][2]).squaredNorm();
-        if (d2 < nearest2) {
-          nearest2 = d2;
-          try_i_ = i;
-          try_j_ = j;
-        }
-      }
-  }
+  // At the start a pair within contact_mm must be seen, later it must not come within target_mm.
+  const double suspect_mm =
+      goal.below_zero ? std::max(goal.contact_mm, goal.exact_below_mm) : goal.contact_mm;
+  const LeafFrame& frame =
+      motion.leaf_frame(may_cross && !goal.below_zero ? goal.contact_mm : goal.target_mm,
+                        suspect_mm);
+  const LeafAnswer answer = leaf_kernel()(frame, a_, b_, enough);
   LeafAdvance result;
-  result.dt = kNever;
-  // True when the pair is in contact.
-  const auto settle = [&](int i, int j, Vec3& n) {
-    Nearest found = exact(i, j, may_cross || goal.below_zero, work);
-    double gap = found.distance_mm;
-    const bool signed_gap = goal.below_zero && gap <= goal.exact_below_mm;
-    if (signed_gap) {
-      const TriangleSeparation separation = triangle_separation_outside(x_[i], y_[j]);
-      n = separation.normal;
-      found.distance_mm = gap = separation.distance_mm;
-    } else if (gap > 0.0) {
-      n = (found.point_b - found.point_a) / gap;
-    }
-    if (gap <= goal.contact_mm) {
-      result = {0.0, true, found};
-      return true;
-    }
-    double dt = 0.0;
-    const auto free_along = [&](const Vec3& direction) {
-      const Direction d(motion, direction);
-      const Along a = along_a(d, i), b = along_b(d, j);
-      dt = std::max(dt, free_time(motion, a, b, goal.target_mm));
-      return std::min({b.place[0], b.place[1], b.place[2]}) -
-             std::max({a.place[0], a.place[1], a.place[2]});
-    };
-    if (free_along(n) < kTrustNormal * gap && !signed_gap) {
-      // The feet are so near that rounding has turned the direction between them. Normals of faces
-      // and of pairs of edges do not know the distance.
-      const Vec3 by_features = triangle_separation(x_[i], y_[j]).normal;
-      const double before = dt;
-      free_along(by_features);
-      if (dt > before) n = by_features;
-    }
-    if (dt < result.dt) {
-      result.dt = dt;
-      result.nearest = found;
-      try_i_ = i;
-      try_j_ = j;
-    }
-    return false;
-  };
-  // Free for the whole tick, or for longer than what is known already, along the normal of either
-  // face: all of a patch that touches and slides. The corners decide; no distance is needed. Pairs
-  // that do not start in touch are seldom freed so.
+  result.dt = answer.dt;
+  if (answer.suspects == 0) return result;
+  place(motion);
   const auto free_by_normals = [&](int i, int j) {
     if (!goal.below_zero) return false;
-    const double enough = std::min(result.dt, 1.0);
+    const double last = std::min(result.dt, 1.0);
     for (const bool of_a : {false, true}) {
       const Triangle& t = of_a ? x_[i] : y_[j];
       const Vec3 outward = (t[1] - t[0]).cross(t[2] - t[0]);
       const double length = outward.norm();
       if (!(length > 0.0)) continue;
-      const Direction d(motion, outward * ((of_a ? 1.0 : -1.0) / length));
-      const double dt = free_time(motion, along_a(d, i), along_b(d, j), goal.contact_mm);
-      if (dt < enough) continue;
+      const double dt = free_time(frame, outward * ((of_a ? 1.0 : -1.0) / length), i, j,
+                                  goal.contact_mm + motion.rounding_mm());
+      if (dt < last) continue;
       result.dt = std::min(result.dt, dt);
       return true;
     }
     return false;
   };
-  const int first_i = try_i_, first_j = try_j_;
-  Vec3 n = Vec3::Zero();
-  const bool first_free = free_by_normals(first_i, first_j);
-  if (!first_free && settle(first_i, first_j, n)) return result;
-  if (count_a_ == 1 && count_b_ == 1) return result;
-  // At the start a pair within contact_mm must be seen, later it must not come within target_mm.
-  const double kept_mm = may_cross ? goal.contact_mm : goal.target_mm;
-  const Direction d(motion, n);
-  Along b[kMost];
-  for (int j = 0; j < count_b_; ++j) b[j] = along_b(d, j);
-  for (int i = 0; i < count_a_; ++i) {
-    const Along a = along_a(d, i);
-    for (int j = 0; j < count_b_; ++j) {
-      if (i == first_i && j == first_j) continue;
-      if (!first_free && free_time(motion, a, b[j], kept_mm) >= result.dt) continue;
-      if (free_by_normals(i, j)) continue;
-      Vec3 own;
-      if (settle(i, j, own)) return result;
+  for (int i = 0; i < a_.count; ++i)
+    for (int j = 0; j < b_.count; ++j) {
+      if ((answer.suspects >> (4 * i + j) & 1U) == 0 || free_by_normals(i, j)) continue;
+      if (!settle(motion, frame, goal, may_cross, i, j, result, work)) return result;
     }
-  }
+  return result;
+}
+
+LeafAdvance LeafPair::advance_slowly(PairMotion& motion, const Goal& goal, bool may_cross,
+                                     CcdWork& work) {
+  ++work.leaf_tests;
+  place(motion);
+  const LeafFrame& frame = motion.leaf_frame(goal.target_mm, goal.contact_mm);
+  LeafAdvance result;
+  result.dt = kNever;
+  for (int i = 0; i < a_.count; ++i)
+    for (int j = 0; j < b_.count; ++j)
+      if (!settle(motion, frame, goal, may_cross, i, j, result, work)) return result;
   return result;
 }
 
@@ -247,8 +224,8 @@ Nearest LeafPair::nearest(const PairMotion& motion, double limit_mm, CcdWork& wo
   place(motion);
   Nearest best;
   best.distance_mm = kNever;
-  for (int i = 0; i < count_a_; ++i)
-    for (int j = 0; j < count_b_; ++j) {
+  for (int i = 0; i < a_.count; ++i)
+    for (int j = 0; j < b_.count; ++j) {
       if (boxes_apart(i, j, std::min(limit_mm, best.distance_mm))) continue;
       const Nearest found = exact(i, j, true, work);
       if (found.distance_mm < best.distance_mm && found.distance_mm <= limit_mm) best = found;
@@ -258,14 +235,13 @@ Nearest LeafPair::nearest(const PairMotion& motion, double limit_mm, CcdWork& wo
 
 double LeafPair::closing_speed(const PairMotion& motion, const Vec3& n, const Triangle& a,
                                const Triangle& b) const {
-  const Direction d(motion, n);
-  const Vec3& p = motion.state().p;
+  const PairState& s = motion.state();
   double fastest_a = -kNever, fastest_b = -kNever;
   for (int k = 0; k < 3; ++k) {
-    fastest_a = std::max(fastest_a, d.speed_a + d.turn_a.dot(a[k] - p));
-    fastest_b = std::max(fastest_b, -(d.speed_b + d.turn_b.dot(b[k])));
+    fastest_a = std::max(fastest_a, n.dot(s.a.w.cross(a[k] - s.p + s.a.arm)));
+    fastest_b = std::max(fastest_b, -n.dot(s.b.w.cross(b[k] + s.b.arm)));
   }
-  return fastest_a + fastest_b;
+  return n.dot(s.a.v - s.b.v) + fastest_a + fastest_b;
 }
 
 }  // namespace mortise::ccd

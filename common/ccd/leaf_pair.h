@@ -36,7 +36,11 @@ class LeafPair {
   LeafPair(const Bvh& a, std::int32_t leaf_a, const Bvh& b, std::int32_t leaf_b);
 
   /// At the time of motion.state(). `may_cross`: the pair is not known to be apart (t = 0).
-  LeafAdvance advance(const PairMotion& motion, const Goal& goal, bool may_cross, CcdWork& work);
+  /// A time longer than `enough` is of no use to the caller.
+  LeafAdvance advance(PairMotion& motion, const Goal& goal, bool may_cross, double enough,
+                      CcdWork& work);
+  /// The slow twin: every pair by its exact distance, without the vector kernel.
+  LeafAdvance advance_slowly(PairMotion& motion, const Goal& goal, bool may_cross, CcdWork& work);
 
   /// Nearest pair below `limit_mm`; distance_mm is infinite when there is none. 0 when they cross.
   Nearest nearest(const PairMotion& motion, double limit_mm, CcdWork& work);
@@ -45,8 +49,8 @@ class LeafPair {
   template <class F>
   bool each_within(const PairMotion& motion, double limit_mm, CcdWork& work, F f) {
     place(motion);
-    for (int i = 0; i < count_a_; ++i)
-      for (int j = 0; j < count_b_; ++j) {
+    for (int i = 0; i < a_.count; ++i)
+      for (int j = 0; j < b_.count; ++j) {
         if (boxes_apart(i, j, limit_mm)) continue;
         const Nearest found = exact(i, j, true, work);
         if (found.distance_mm <= limit_mm && f(found, x_[i], y_[j])) return true;
@@ -61,33 +65,22 @@ class LeafPair {
  private:
   static constexpr int kMost = Bvh::kLeafSize;
 
-  // Along one direction, per corner: where it is, how fast it goes, how its path may bend.
-  struct Along {
-    double place[3], speed[3], bend[3];
-  };
-  struct Direction {
-    Vec3 n, turn_a, turn_b;
-    double speed_a, speed_b, bend_a, bend_b;
-    Direction(const PairMotion& motion, const Vec3& n_B);
-  };
-
   void place(const PairMotion& motion);
   bool boxes_apart(int i, int j, double limit_mm) const;
   Nearest exact(int i, int j, bool may_cross, CcdWork& work) const;
-  Along along_a(const Direction& d, int i) const;
-  Along along_b(const Direction& d, int j) const;
-  double free_time(const PairMotion& motion, const Along& a, const Along& b,
-                   double target_mm) const;
+  /// For how long triangles i and j stay apart by more than taken_mm along n.
+  double free_time(const LeafFrame& frame, const Vec3& n, int i, int j, double taken_mm) const;
+  /// False when the pair is in contact; else result.dt is not longer than the pair is free.
+  bool settle(const PairMotion& motion, const LeafFrame& frame, const Goal& goal, bool may_cross,
+              int i, int j, LeafAdvance& result, CcdWork& work) const;
 
   const Bvh& bvh_a_;
   const Bvh& bvh_b_;
   std::uint32_t first_a_, first_b_;
-  int count_a_, count_b_;
-  int try_i_ = -1, try_j_ = 0;                // the pair that decided last time
-  Triangle u_[kMost];                         // A, turned, from the origin of A's tree
-  Triangle x_[kMost];                         // A, from the origin of B's tree
-  Triangle y_[kMost];                         // B
-  double rho_a_[kMost][3], rho_b_[kMost][3];  // corners from the axes of rotation
+  LeafCorners a_, b_;
+  double placed_at_ = -1.0;
+  Triangle x_[kMost];  // A, from the origin of B's tree, at the time placed_at_
+  Triangle y_[kMost];  // B
 };
 
 }  // namespace mortise::ccd

@@ -11,6 +11,10 @@ namespace {
 // extent.
 constexpr double kFloatRounding = 2e-6;
 
+// A bound along a direction holds while a body turns by no more than this (see TurnTerms): what it
+// gives away at the end is a 25th of the speed by turning. Ticks seldom turn as far.
+constexpr double kHorizon_rad = 0.5;
+
 float rounded_up(double x) {
   const float f = static_cast<float>(x);
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
@@ -20,29 +24,8 @@ void copy(const Vec3& from, float* to) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
 }
 
-BodyState body_state(const Motion& motion, const Pose& X_WP, const Vec3& origin_P, double t) {
-  BodyState state;
-  if (!motion.moves()) return state;
-  const Vec3 reference_to_origin = X_WP.q * (origin_P - motion.reference_P);
-  state.v = motion.velocity_at(t);
-  const double speed = motion.w_W.norm();
-  if (speed == 0.0) return state;
-  state.w = motion.w_W;
-  state.axis = motion.w_W / speed;
-  state.v += state.w.cross(reference_to_origin);
-  const Vec3 axis_point =
-      motion.kind == PathKind::kScrew ? motion.axis_W : Vec3(motion.axis_W + t * motion.v_W);
-  const Vec3 arm =
-      motion.kind == PathKind::kScrew ? Vec3(X_WP * origin_P - axis_point) : reference_to_origin;
-  state.arm = arm - arm.dot(state.axis) * state.axis;
-  return state;
-}
-
-void rotate(BodyState& state, const Mat3& R) {
-  state.v = R * state.v;
-  state.w = R * state.w;
-  state.axis = R * state.axis;
-  state.arm = R * state.arm;
+void copy(const Vec3& from, double* to) {
+  for (int c = 0; c < 3; ++c) to[c] = from[c];
 }
 
 double largest_speed(const Motion& motion, double radius, const Vec3& origin_P) {
@@ -51,57 +34,167 @@ double largest_speed(const Motion& motion, double radius, const Vec3& origin_P) 
 
 }  // namespace
 
+BodyPath::BodyPath(const Motion& motion, const Vec3& origin, const Vec3& from_reference)
+    : R0_(motion.X_W0.rotation()), origin0_(origin) {
+  if (!motion.moves()) return;
+  v_ = motion.v_W;
+  speed_ = motion.w_W.norm();
+  if (speed_ == 0.0) return;
+  w_ = motion.w_W;
+  const Vec3 axis = w_ / speed_;
+  const Vec3 r = motion.kind == PathKind::kScrew
+                     ? Vec3(motion.X_W0 * motion.reference_P - motion.axis_W + from_reference)
+                     : from_reference;
+  for (int c = 0; c < 3; ++c) {
+    KR0_.col(c) = axis.cross(R0_.col(c));
+    KKR0_.col(c) = axis.cross(KR0_.col(c));
+  }
+  side_ = axis.cross(r);
+  inward_ = axis.cross(side_);
+}
+
+// R(t) = (1 + sin K + (1 - cos) K^2) R0 (Rodrigues).
+void BodyPath::at(double t, Mat3& R, Vec3& origin, Vec3& arm) const {
+  origin = origin0_ + t * v_;
+  if (speed_ == 0.0) {
+    R = R0_;
+    arm.setZero();
+    return;
+  }
+  const double half = 0.5 * speed_ * t;
+  const double sine = std::sin(half), cosine = std::cos(half);
+  const double s = 2.0 * sine * cosine, c = 2.0 * sine * sine;
+  R = R0_ + s * KR0_ + c * KKR0_;
+  const Vec3 turned = s * side_ + c * inward_;
+  origin += turned;
+  arm = turned - inward_;
+}
+
 PairMotion::PairMotion(const Solid& a, const Motion& motion_a, const Solid& b,
                        const Motion& motion_b)
-    : solid_a_(a),
-      solid_b_(b),
+    : solid_b_(b),
       world_b_(motion_b),
-      motion_a_(motion_a),
-      motion_b_(motion_b),
       b_still_(!motion_b.moves()),
-      speed_a_(motion_a.w_W.norm()),
-      speed_b_(motion_b.w_W.norm()),
-      origin_a_(a.bvh().origin),
-      origin_b_(b.bvh().origin),
       radius_a_(a.bvh().radius_mm),
       radius_b_(b.bvh().radius_mm) {
-  // Nothing that a body never does costs anything later.
-  if (!motion_a.moves()) speed_a_ = 0.0;
+  const Vec3& origin_a = a.bvh().origin;
+  const Vec3& origin_b = b.bvh().origin;
+  const auto from_reference = [](const Motion& motion, const Vec3& origin_P) {
+    return Vec3(motion.X_W0.q * (origin_P - motion.reference_P));
+  };
+  // The translations are subtracted first: far from the world's origin nothing else is lost.
   if (b_still_) {
-    speed_b_ = 0.0;
-    motion_a_ = seen_from(motion_a, motion_b.X_W0);
-    motion_b_ = still_motion(Pose{});
+    const Motion seen = seen_from(motion_a, motion_b.X_W0);
+    path_a_ = BodyPath(seen, seen.X_W0 * origin_a - origin_b, from_reference(seen, origin_a));
+  } else {
+    const Vec3 apart = motion_a.X_W0.p - motion_b.X_W0.p;
+    path_a_ = BodyPath(motion_a, apart + motion_a.X_W0.q * origin_a,
+                       from_reference(motion_a, origin_a));
+    path_b_ =
+        BodyPath(motion_b, motion_b.X_W0.q * origin_b, from_reference(motion_b, origin_b));
   }
   const auto size = [](const Motion& motion) {
     return std::max(motion.X_W0.p.norm(), motion.X_W1.p.norm());
   };
   const double extent = a.bvh().extent_mm + b.bvh().extent_mm + size(motion_a) + size(motion_b);
   rounding_mm_ = kRoundingFactor * kUnitRoundoff * extent;
-  largest_speed_mm_ = largest_speed(motion_a_, radius_a_, origin_a_) +
-                      largest_speed(motion_b_, radius_b_, origin_b_);
-  speed_rounding_mm_ =
-      kRoundingFactor * kUnitRoundoff * (largest_speed_mm_ + extent * (speed_a_ + speed_b_));
+  const double largest_speed_mm =
+      largest_speed(motion_a, radius_a_, origin_a) + largest_speed(motion_b, radius_b_, origin_b);
+  speed_rounding_mm_ = kRoundingFactor * kUnitRoundoff *
+                       (largest_speed_mm + extent * (path_a_.speed() + path_b_.speed()));
 }
 
 const PairState& PairMotion::at(double t) {
   if (state_.t == t) return state_;
   state_.t = t;
-  const Pose X_WA = motion_a_.pose_at(t);
-  state_.a = body_state(motion_a_, X_WA, origin_a_, t);
-  if (b_still_) {
-    state_.R = X_WA.rotation();
-    state_.p = X_WA * origin_a_ - origin_b_;
-    return state_;
-  }
-  const Pose X_WB = motion_b_.pose_at(t);
-  state_.b = body_state(motion_b_, X_WB, origin_b_, t);
-  const Mat3 R_BW = X_WB.rotation().transpose();
-  state_.R = R_BW * X_WA.rotation();
-  // The translations are subtracted first: far from the world's origin nothing else is lost.
-  state_.p = R_BW * ((X_WA.p - X_WB.p) + X_WA.q * origin_a_) - origin_b_;
-  rotate(state_.a, R_BW);
-  rotate(state_.b, R_BW);
+  state_.a.v = path_a_.v();
+  state_.a.w = path_a_.w();
+  path_a_.at(t, state_.R, state_.p, state_.a.arm);
+  if (b_still_) return state_;
+  Mat3 R_WB;
+  Vec3 origin_b;
+  path_b_.at(t, R_WB, origin_b, state_.b.arm);
+  const Mat3 R_BW = R_WB.transpose();
+  state_.R = R_BW * state_.R;
+  state_.p = R_BW * (state_.p - origin_b);
+  state_.b.v = R_BW * path_b_.v();
+  state_.b.w = R_BW * path_b_.w();
+  state_.b.arm = R_BW * state_.b.arm;
+  state_.a.v = R_BW * state_.a.v;
+  state_.a.w = R_BW * state_.a.w;
+  state_.a.arm = R_BW * state_.a.arm;
   return state_;
+}
+
+// The rest of the tick needs no horizon where neither body turns farther in it.
+double PairMotion::horizon() const {
+  const double speed = std::max(path_a_.speed(), path_b_.speed());
+  return speed * (1.0 - state_.t) <= kHorizon_rad ? std::numeric_limits<double>::infinity()
+                                                   : kHorizon_rad / speed;
+}
+
+void PairMotion::set_terms(TurnTerms& terms, const BodyState& body, double speed,
+                           double horizon) const {
+  terms.turns = speed > 0.0;
+  copy(body.w, terms.w);
+  copy(body.arm, terms.arm);
+  const double phi = speed * std::min(horizon, 1.0 - state_.t);
+  terms.keep = 1.0 - phi * phi / 6.0;
+  terms.bow = 1.0 - phi * phi / 12.0;
+}
+
+const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
+  leaf_.taken_mm = taken_mm + rounding_mm_;
+  leaf_.suspect_mm = suspect_mm + 2.0 * rounding_mm_;
+  if (leaf_t_ == state_.t) return leaf_;
+  leaf_t_ = state_.t;
+  const PairState& s = state_;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) leaf_.r[i][j] = s.R(i, j);
+  copy(s.p, leaf_.p);
+  copy(Vec3(s.a.v - s.b.v), leaf_.v);
+  leaf_.horizon = horizon();
+  leaf_.speed_slack = speed_rounding_mm_;
+  leaf_.bend_slack = 0.0;
+  leaf_.sweep = 0.0;
+  if (turns_a()) {
+    set_terms(leaf_.a, s.a, path_a_.speed(), leaf_.horizon);
+    const double along = s.a.v.dot(s.a.w) / path_a_.speed();
+    leaf_.sweep = 2.0 * path_a_.speed() *
+                  std::sqrt(std::max(0.0, s.a.v.squaredNorm() - along * along));
+  }
+  if (turns_b()) set_terms(leaf_.b, s.b, path_b_.speed(), leaf_.horizon);
+  // Whatever the place is wrong by, the acceleration is wrong by |w|^2 times as much.
+  const auto bend_rounding = [](double speed, const Vec3& arm, double radius) {
+    return kRoundingFactor * kUnitRoundoff * speed * speed * (arm.norm() + radius);
+  };
+  leaf_.bend_slack = bend_rounding(path_a_.speed(), s.a.arm, radius_a_ + radius_b_ + s.p.norm()) +
+                     bend_rounding(path_b_.speed(), s.b.arm, radius_b_);
+  return leaf_;
+}
+
+void PairMotion::set_direction(DirectionTerms& d, const Vec3& n) const {
+  const PairState& s = state_;
+  copy(n, d.n);
+  d.v = static_cast<float>(n.dot(s.a.v - s.b.v));
+  const auto set = [&](TurnAlong& along, const BodyState& body) {
+    const Vec3 turn = n.cross(body.w), bend = turn.cross(body.w);
+    copy(turn, along.turn);
+    copy(bend, along.bend);
+    along.turn_0 = static_cast<float>(turn.dot(body.arm));
+    along.bend_0 = static_cast<float>(bend.dot(body.arm));
+    return std::pair<Vec3, Vec3>(turn, bend);
+  };
+  if (turns_a()) {
+    const auto [turn, bend] = set(d.a, s.a);
+    copy((s.R.transpose() * turn).cwiseAbs(), d.a.reach);
+    copy((s.R.transpose() * bend).cwiseAbs(), d.a.bend_reach);
+  }
+  if (turns_b()) {
+    const auto [turn, bend] = set(d.b, s.b);
+    copy(turn.cwiseAbs(), d.b.reach);
+    copy(bend.cwiseAbs(), d.b.bend_reach);
+  }
 }
 
 const BoxFrame& PairMotion::frame(double target_mm) {
@@ -110,8 +203,6 @@ const BoxFrame& PairMotion::frame(double target_mm) {
   frame_target_ = target_mm;
   BoxFrame& f = frame_;
   const PairState& s = state_;
-  f.turns_a = turns_a();
-  f.turns_b = turns_b();
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       f.r[i][j] = static_cast<float>(s.R(i, j));
@@ -120,43 +211,38 @@ const BoxFrame& PairMotion::frame(double target_mm) {
   copy(s.p, f.p);
   const Vec3 v = s.a.v - s.b.v;
   copy(v, f.v);
-  copy(s.a.w, f.w_a);
-  copy(s.b.w, f.w_b);
-  copy(s.a.axis, f.axis_a);
-  copy(s.b.axis, f.axis_b);
-  copy(s.a.arm, f.arm_a);
-  copy(s.b.arm, f.arm_b);
-  f.speed_a = rounded_up(speed_a_);
-  f.speed_b = rounded_up(speed_b_);
+  const double ends = horizon();
+  f.horizon = static_cast<float>(ends);
+  const auto set_turn = [&](BoxTurn& turn, const BodyState& body, double speed) {
+    TurnTerms terms;
+    set_terms(terms, body, speed, ends);
+    copy(body.w, turn.w);
+    copy(body.arm, turn.arm);
+    turn.speed = rounded_up(speed);
+    // Half an ulp of float more than what the rounding to nearest may lose.
+    turn.keep = static_cast<float>(terms.keep) * (1.0F - 1.2e-7F);
+    turn.bow = static_cast<float>(terms.bow) * (1.0F - 1.2e-7F);
+    turn.turns = terms.turns;
+  };
+  set_turn(f.a, s.a, path_a_.speed());
+  set_turn(f.b, s.b, path_b_.speed());
   const double extent = radius_a_ + radius_b_ + s.p.norm();
   f.gap_allowance = rounded_up(std::max(target_mm, 0.0) + rounding_mm_ + kFloatRounding * extent);
-  f.speed_allowance =
-      rounded_up(speed_rounding_mm_ +
-                 kFloatRounding * (v.norm() + speed_a_ * radius_a_ + speed_b_ * radius_b_));
-  f.arm_allowance =
-      rounded_up(kFloatRounding * (radius_a_ + radius_b_ + s.a.arm.norm() + s.b.arm.norm()));
-  for (int k = 0; k < 6; ++k) {
-    const Vec3 n = k < 3 ? Vec3(Vec3::Unit(k)) : Vec3(s.R.col(k - 3));
-    DirectionTerms& d = f.direction[k];
-    copy(n, d.n);
-    d.v = static_cast<float>(n.dot(v));
-    if (f.turns_a) {
-      const Vec3 turn = n.cross(s.a.w);
-      copy(turn, d.turn_a);
-      copy((s.R.transpose() * turn).cwiseAbs(), d.reach_a);
-      d.bend_a = rounded_up(turn.norm() * speed_a_);
-    }
-    if (f.turns_b) {
-      const Vec3 turn = n.cross(s.b.w);
-      copy(turn, d.turn_b);
-      d.bend_b = rounded_up(turn.norm() * speed_b_);
-    }
+  const double wide_a = radius_a_ + s.a.arm.norm(), wide_b = radius_b_ + s.b.arm.norm();
+  const double speed_a = path_a_.speed(), speed_b = path_b_.speed();
+  f.speed_allowance = rounded_up(
+      speed_rounding_mm_ + kFloatRounding * (v.norm() + speed_a * wide_a + speed_b * wide_b));
+  f.bend_allowance =
+      rounded_up(kFloatRounding * (speed_a * speed_a * wide_a + speed_b * speed_b * wide_b));
+  for (int k = 0; k < 3; ++k) {
+    set_direction(f.direction[k], Vec3::Unit(k));
+    set_direction(f.direction[3 + k], s.R.col(k));
   }
   return f;
 }
 
 Vec3 PairMotion::to_world(const Vec3& x_local_b, double t) const {
-  return world_b_.pose_at(t) * (x_local_b + origin_b_);
+  return world_b_.pose_at(t) * (x_local_b + solid_b_.bvh().origin);
 }
 
 }  // namespace mortise::ccd

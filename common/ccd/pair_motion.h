@@ -1,22 +1,43 @@
 #pragma once
 #include "common/ccd/box_advance.h"
 #include "common/ccd/first_contact.h"
+#include "common/ccd/leaf_kernel.h"
 
 // Two bodies during one tick, seen from B.
 namespace mortise::ccd {
 
+/// The path of one body, in closed form from what does not change during the tick (ALG A1); places
+/// are those of the origin of the body's tree, axes those in which the path was given.
+class BodyPath {
+ public:
+  BodyPath() = default;
+  /// `origin`: where the origin of the tree is at t = 0.
+  BodyPath(const Motion& motion, const Vec3& origin, const Vec3& from_reference);
+
+  void at(double t, Mat3& R, Vec3& origin, Vec3& arm) const;
+
+  const Vec3& v() const { return v_; }  ///< velocity of the axis of rotation, mm per tick
+  const Vec3& w() const { return w_; }  ///< rotation vector, rad per tick
+  double speed() const { return speed_; }  ///< |w|
+
+ private:
+  Mat3 R0_ = Mat3::Identity(), KR0_ = Mat3::Zero(), KKR0_ = Mat3::Zero();
+  Vec3 origin0_ = Vec3::Zero(), v_ = Vec3::Zero(), w_ = Vec3::Zero();
+  Vec3 side_ = Vec3::Zero(), inward_ = Vec3::Zero();  // axis x r, axis x (axis x r)
+  double speed_ = 0.0;
+};
+
 /// One body of the pair at a time t, in axes of B, relative to the origin of B's tree.
 struct BodyState {
-  Vec3 v = Vec3::Zero();     ///< velocity of the origin of the body's tree, world, mm per tick
-  Vec3 w = Vec3::Zero();     ///< rotation vector, rad per tick
-  Vec3 axis = Vec3::Zero();  ///< unit
-  Vec3 arm = Vec3::Zero();   ///< from the axis of rotation to the origin of the tree, across it
+  Vec3 v = Vec3::Zero();    ///< velocity of the axis of rotation, world, mm per tick
+  Vec3 w = Vec3::Zero();    ///< rotation vector, rad per tick
+  Vec3 arm = Vec3::Zero();  ///< from the axis of rotation to the origin of the tree, across it
 };
 
 /// Both bodies at time t. A point u of A (relative to the origin of A's tree, part axes) is at
 /// R u + p; points of B are taken relative to the origin of B's tree. Velocities are those of the
-/// world, only written in axes of B: a direction n that is kept fixed in the world while time
-/// advances gives gap(t + dt) >= gap - s dt - bend dt^2 / 2 (ALG 2.1 B3', both bodies: A2).
+/// world, only written in axes of B: a direction n is kept fixed in the world while time advances
+/// (both bodies: ALG A2; the bound: TurnTerms in leaf_kernel.h).
 struct PairState {
   double t = -1.0;
   Mat3 R = Mat3::Identity();
@@ -32,12 +53,12 @@ class PairMotion {
   const PairState& at(double t);
   /// What the box kernels need at state.t.
   const BoxFrame& frame(double target_mm);
+  /// What the leaf kernel needs at state.t. Gaps are measured from taken_mm + rounding.
+  const LeafFrame& leaf_frame(double taken_mm, double suspect_mm);
 
   const PairState& state() const { return state_; }
-  bool turns_a() const { return speed_a_ > 0.0; }
-  bool turns_b() const { return speed_b_ > 0.0; }
-  double speed_a() const { return speed_a_; }  ///< |w|
-  double speed_b() const { return speed_b_; }
+  bool turns_a() const { return path_a_.speed() > 0.0; }
+  bool turns_b() const { return path_b_.speed() > 0.0; }
   /// Rounding of any coordinate or distance of the pair, mm: 32 u (L + D) (ALG 2.12).
   double rounding_mm() const { return rounding_mm_; }
   /// Rounding of a speed along a direction, mm per tick.
@@ -45,18 +66,21 @@ class PairMotion {
   Vec3 to_world(const Vec3& x_local_b, double t) const;
 
  private:
-  const Solid& solid_a_;
+  void set_terms(TurnTerms& terms, const BodyState& body, double speed, double horizon) const;
+  void set_direction(DirectionTerms& d, const Vec3& n) const;
+  double horizon() const;
+
   const Solid& solid_b_;
   Motion world_b_;
-  Motion motion_a_, motion_b_;  // A seen from B when B is still, else both in the world
   bool b_still_;
-  double speed_a_, speed_b_;
-  double rounding_mm_, speed_rounding_mm_, largest_speed_mm_;
-  Vec3 origin_a_, origin_b_;
+  BodyPath path_a_, path_b_;
+  double rounding_mm_, speed_rounding_mm_;
   double radius_a_, radius_b_;
   PairState state_;
   BoxFrame frame_{};
   double frame_t_ = -1.0, frame_target_ = 0.0;
+  LeafFrame leaf_{};
+  double leaf_t_ = -1.0;
 };
 
 }  // namespace mortise::ccd

@@ -9,19 +9,21 @@ namespace mortise::ccd {
 using Item = CcdScratch::Item;
 
 /// Earliest (or nearest) first; equal keys by the nodes, so that the order is total.
-inline bool later(const Item& x, const Item& y) {
-  if (x.t != y.t) return x.t > y.t;
-  if (x.a != y.a) return x.a > y.a;
-  return x.b > y.b;
-}
+struct Later {
+  bool operator()(const Item& x, const Item& y) const {
+    if (x.t != y.t) return x.t > y.t;
+    if (x.a != y.a) return x.a > y.a;
+    return x.b > y.b;
+  }
+};
 
 inline void push(std::vector<Item>& heap, const Item& item) {
   heap.push_back(item);
-  std::push_heap(heap.begin(), heap.end(), later);
+  std::push_heap(heap.begin(), heap.end(), Later{});
 }
 
 inline Item pop(std::vector<Item>& heap) {
-  std::pop_heap(heap.begin(), heap.end(), later);
+  std::pop_heap(heap.begin(), heap.end(), Later{});
   const Item item = heap.back();
   heap.pop_back();
   return item;

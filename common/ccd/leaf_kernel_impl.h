@@ -1,0 +1,347 @@
+// Included once by every leaf_kernel_<instructions>.cpp, inside an unnamed namespace.
+// Four doubles a vector (GCC vector extension); the compiler splits them where registers are
+// narrower. Comparisons give masks, `mask ? a : b` selects. No operation here may raise invalid,
+// overflow or division by zero: divisors are chosen before dividing.
+
+typedef double Lanes __attribute__((vector_size(32)));
+typedef long long Mask __attribute__((vector_size(32)));
+
+constexpr double kNever = __builtin_inf();
+
+inline Lanes all(double x) { return Lanes{x, x, x, x}; }
+inline Lanes load(const double* x) {
+  Lanes lanes;
+  __builtin_memcpy(&lanes, x, sizeof lanes);
+  return lanes;
+}
+inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
+inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
+inline Lanes clamp01(Lanes x) { return smaller(larger(x, all(0.0)), all(1.0)); }
+inline Lanes root(Lanes x) {
+  Lanes y;
+  for (int k = 0; k < 4; ++k) y[k] = __builtin_sqrt(x[k]);
+  return y;
+}
+inline double least(Lanes x) {
+  const double a = x[0] < x[1] ? x[0] : x[1], b = x[2] < x[3] ? x[2] : x[3];
+  return a < b ? a : b;
+}
+inline double most(Lanes x) { return -least(-x); }
+
+struct Vec {
+  Lanes x[3];
+  Lanes& operator[](int c) { return x[c]; }
+  const Lanes& operator[](int c) const { return x[c]; }
+};
+
+inline Vec all(const double* v) { return {{all(v[0]), all(v[1]), all(v[2])}}; }
+inline Vec operator+(const Vec& a, const Vec& b) {
+  return {{a[0] + b[0], a[1] + b[1], a[2] + b[2]}};
+}
+inline Vec operator-(const Vec& a, const Vec& b) {
+  return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
+}
+inline Vec operator*(Lanes k, const Vec& a) { return {{k * a[0], k * a[1], k * a[2]}}; }
+inline Lanes dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vec cross(const Vec& a, const Vec& b) {
+  return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+}
+inline Vec one_lane(const Vec& v, int i) {
+  return {{all(v[0][i]), all(v[1][i]), all(v[2][i])}};
+}
+
+// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0: 0 where the gap is not positive, never where
+// the parabola turns before. Of the two forms of the root each is used where nothing cancels.
+inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
+  const Lanes zero = all(0.0);
+  const Lanes square = s * s + all(2.0) * bend * larger(gap, zero);
+  const Lanes disc = root(larger(square, zero));
+  const Mask closing = s >= zero;
+  const Lanes numerator = closing ? all(2.0) * gap : disc - s;
+  const Lanes denominator = closing ? s + disc : bend;
+  // Beyond 2^20 ticks is never; so is a parabola without a root.
+  const Mask ever = (denominator > numerator * all(0x1p-20)) & (square >= zero);
+  const Lanes dt = ever ? numerator / (ever ? denominator : all(1.0)) : horizon;
+  return gap > zero ? smaller(dt, horizon) : zero;
+}
+
+// Where the corners of four triangles are and how they go: speed and acceleration by turning.
+struct Side {
+  Vec x[3], turn[3], bend[3];
+  bool goes = false;
+  Lanes keep, bow;
+};
+
+inline void set_turning(Side& side, const double* x_to_axis, const TurnTerms& terms,
+                        bool backwards) {
+  const Vec w = all(terms.w), to_axis = all(x_to_axis);
+  side.goes = true;
+  side.keep = all(terms.keep);
+  side.bow = all(terms.bow);
+  for (int k = 0; k < 3; ++k) {
+    const Vec turn = cross(w, side.x[k] + to_axis);
+    side.bend[k] = cross(w, turn);
+    side.turn[k] = backwards ? cross(side.x[k] + to_axis, w) : turn;
+  }
+}
+
+// Places, speeds and accelerations along n of the corners of one side. A side that does not go
+// is its nearest corner.
+struct Along {
+  Lanes place[3], s[3], bend[3];
+  int count;
+};
+
+inline Lanes most_of(const Lanes* x, int count) {
+  return count == 1 ? x[0] : larger(larger(x[0], x[1]), x[2]);
+}
+inline Lanes least_of(const Lanes* x, int count) {
+  return count == 1 ? x[0] : smaller(smaller(x[0], x[1]), x[2]);
+}
+
+// The side from which n points away (A).
+inline Along along_a(const Side& side, const Vec& n) {
+  Along result;
+  for (int k = 0; k < 3; ++k) result.place[k] = dot(n, side.x[k]);
+  result.count = side.goes ? 3 : 1;
+  if (!side.goes) {
+    result.place[0] = most_of(result.place, 3);
+    result.s[0] = result.bend[0] = all(0.0);
+    return result;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Lanes s = dot(n, side.turn[k]), bend = dot(n, side.bend[k]);
+    result.s[k] = larger(s, s * side.keep);
+    result.bend[k] = larger(bend, bend * side.bow);
+  }
+  return result;
+}
+
+// The side towards which n points (B).
+inline Along along_b(const Side& side, const Vec& n) {
+  Along result;
+  for (int k = 0; k < 3; ++k) result.place[k] = dot(n, side.x[k]);
+  result.count = side.goes ? 3 : 1;
+  if (!side.goes) {
+    result.place[0] = least_of(result.place, 3);
+    result.s[0] = result.bend[0] = all(0.0);
+    return result;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Lanes s = -dot(n, side.turn[k]), bend = -dot(n, side.bend[k]);
+    result.s[k] = larger(s, s * side.keep);
+    result.bend[k] = larger(bend, bend * side.bow);
+  }
+  return result;
+}
+
+struct Common {
+  Vec v;
+  Lanes taken, speed_slack, bend_slack, horizon;
+};
+
+// For how long every corner of a stays below every corner of b, each lane its own.
+inline Lanes free_time(const Common& common, const Vec& n, const Along& a, const Along& b) {
+  const Lanes v = dot(n, common.v) + common.speed_slack;
+  Lanes dt = common.horizon;
+  for (int k = 0; k < a.count; ++k)
+    for (int m = 0; m < b.count; ++m)
+      dt = smaller(dt, time_to_close(b.place[m] - a.place[k] - common.taken, v + a.s[k] + b.s[m],
+                                     a.bend[k] + b.bend[m] + common.bend_slack, common.horizon));
+  return dt;
+}
+
+// The lanes of one side together, as one corner that is as near, as fast and as bent as any.
+inline Along together(const Along& x, bool of_a) {
+  Along one;
+  one.count = 1;
+  one.place[0] = all(of_a ? most(most_of(x.place, x.count)) : least(least_of(x.place, x.count)));
+  one.s[0] = all(most(most_of(x.s, x.count)));
+  one.bend[0] = all(most(most_of(x.bend, x.count)));
+  return one;
+}
+
+inline Side one_triangle(const Side& side, int i) {
+  Side one;
+  one.goes = side.goes;
+  one.keep = side.keep;
+  one.bow = side.bow;
+  for (int k = 0; k < 3; ++k) {
+    one.x[k] = one_lane(side.x[k], i);
+    if (!side.goes) continue;
+    one.turn[k] = one_lane(side.turn[k], i);
+    one.bend[k] = one_lane(side.bend[k], i);
+  }
+  return one;
+}
+
+// What the four triangles of a side know of themselves.
+struct Faces {
+  Vec edge[3], normal;  // not unit
+  Lanes length2[3], area2;
+};
+
+inline Faces faces_of(const Vec* x) {
+  Faces f;
+  for (int k = 0; k < 3; ++k) {
+    f.edge[k] = x[k == 2 ? 0 : k + 1] - x[k];
+    f.length2[k] = dot(f.edge[k], f.edge[k]);
+  }
+  f.normal = cross(f.edge[0], f.edge[1]);
+  f.area2 = dot(f.normal, f.normal);
+  return f;
+}
+
+inline Lanes divide(Lanes x, Lanes y) {
+  const Mask safe = y > all(0.0);
+  return safe ? x / (safe ? y : all(1.0)) : all(0.0);
+}
+
+// The shortest way from triangle a (the same in every lane) to each of the triangles b. It only
+// proposes a direction: whoever uses it measures the gap along it.
+inline Vec shortest_way(const Vec* a, const Faces& fa, const Vec* b, const Faces& fb) {
+  Lanes best = all(1e300);
+  Vec way{{all(0.0), all(0.0), all(0.0)}};
+  const auto take = [&](Lanes d2, const Vec& d, Mask allowed) {
+    const Mask nearer = (d2 < best) & allowed;
+    best = nearer ? d2 : best;
+    for (int c = 0; c < 3; ++c) way[c] = nearer ? d[c] : way[c];
+  };
+  const Mask always = best == best;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Vec r = b[j] - a[i];
+      const Lanes ab = dot(fa.edge[i], fb.edge[j]), ar = dot(fa.edge[i], r),
+                  br = dot(fb.edge[j], r);
+      const Lanes aa = fa.length2[i], bb = fb.length2[j];
+      const Lanes sine2 = aa * bb - ab * ab;
+      const Mask askew = sine2 > aa * bb * all(1e-14);
+      Lanes s = askew ? clamp01(divide(ar * bb - ab * br, sine2)) : all(0.0);
+      const Lanes t = clamp01(divide(ab * s - br, bb));
+      s = clamp01(divide(ab * t + ar, aa));
+      const Vec d = r + t * fb.edge[j] - s * fa.edge[i];
+      take(dot(d, d), d, always);
+    }
+  // Corners over the inside of a face.
+  const auto over = [&](const Vec& x, const Vec* t, const Faces& f) {
+    Mask in = f.area2 > all(0.0);
+    for (int k = 0; k < 3; ++k) in &= dot(cross(f.normal, f.edge[k]), x - t[k]) >= all(0.0);
+    return in;
+  };
+  for (int k = 0; k < 3; ++k) {
+    const Lanes height_b = dot(b[k] - a[0], fa.normal), height_a = dot(a[k] - b[0], fb.normal);
+    take(divide(height_b * height_b, fa.area2), divide(height_b, fa.area2) * fa.normal,
+         over(b[k], a, fa));
+    take(divide(height_a * height_a, fb.area2), divide(-height_a, fb.area2) * fb.normal,
+         over(a[k], b, fb));
+  }
+  return way;
+}
+
+inline Vec unit(const Vec& v) { return divide(all(1.0), root(dot(v, v))) * v; }
+
+// The sum of the normals, each as long as its area, in every lane.
+inline Vec normal_of_leaf(const Faces& f, int count) {
+  Vec sum{{all(0.0), all(0.0), all(0.0)}};
+  for (int i = 0; i < count; ++i) sum = sum + one_lane(f.normal, i);
+  return unit(sum);
+}
+
+struct Pairs {
+  Lanes dt[4];  // row i: triangle i of A against the four of B
+  bool exact[4] = {false, false, false, false};
+};
+
+LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafCorners& corners_b,
+                   double enough) {
+  Side a, b;
+  for (int k = 0; k < 3; ++k) {
+    const Vec u{{load(corners_a.at[k][0]), load(corners_a.at[k][1]), load(corners_a.at[k][2])}};
+    for (int c = 0; c < 3; ++c) {
+      a.x[k][c] = all(f.r[c][0]) * u[0] + all(f.r[c][1]) * u[1] + all(f.r[c][2]) * u[2] +
+                  all(f.p[c]);
+      b.x[k][c] = load(corners_b.at[k][c]);
+    }
+  }
+  const Faces faces_a = faces_of(a.x), faces_b = faces_of(b.x);
+  const Vec normal_a = normal_of_leaf(faces_a, corners_a.count);
+  const Vec normal_b = Vec{{all(0.0), all(0.0), all(0.0)}} - normal_of_leaf(faces_b, corners_b.count);
+  Common common{all(f.v), all(f.taken_mm), all(f.speed_slack), all(f.bend_slack), all(f.horizon)};
+  if (f.a.turns) {
+    double a_to_axis[3];
+    for (int c = 0; c < 3; ++c) a_to_axis[c] = f.a.arm[c] - f.p[c];
+    // n . acceleration of the first corner: does A turn away from what lies before it?
+    const Vec w = all(f.a.w);
+    const bool towards =
+        dot(normal_a, cross(w, cross(w, a.x[0] + all(a_to_axis))))[0] > 0.0;
+    if (towards && !f.b.turns) {
+      set_turning(b, a_to_axis, f.a, true);
+      common.bend_slack += all(f.sweep);
+    } else {
+      set_turning(a, a_to_axis, f.a, false);
+    }
+  }
+  if (f.b.turns) set_turning(b, f.b.arm, f.b, false);
+
+  Pairs pairs;
+  LeafAnswer answer;
+  double whole[2];
+  for (int d = 0; d < 2; ++d) {
+    const Vec& n = d == 0 ? normal_a : normal_b;
+    const Along of_a = along_a(a, n), of_b = along_b(b, n);
+    whole[d] = least(b.goes && !a.goes ? free_time(common, n, together(of_a, true), of_b)
+                                       : free_time(common, n, of_a, together(of_b, false)));
+    if (whole[d] > 0.0 && whole[d] >= enough) {
+      answer.dt = whole[d];
+      return answer;
+    }
+  }
+  for (int i = 0; i < 4; ++i) pairs.dt[i] = all(whole[0] > whole[1] ? whole[0] : whole[1]);
+  const auto free_along = [&](const Vec& n) {
+    const Along of_b = along_b(b, n);
+    for (int i = 0; i < corners_a.count; ++i) {
+      if (pairs.exact[i]) continue;
+      pairs.dt[i] = larger(pairs.dt[i],
+                           free_time(common, n, along_a(one_triangle(a, i), n), of_b));
+    }
+  };
+  free_along(whole[0] > whole[1] ? normal_a : normal_b);
+  double best = enough;
+  while (true) {
+    int row = -1;
+    double earliest = best;
+    for (int i = 0; i < corners_a.count; ++i) {
+      if (pairs.exact[i]) continue;
+      const double dt = least(pairs.dt[i]);
+      if (dt < earliest || (dt <= 0.0 && row < 0)) {
+        earliest = dt;
+        row = i;
+      }
+    }
+    if (row < 0) break;
+    const Side one = one_triangle(a, row);
+    const Faces faces_one = faces_of(one.x);
+    const Vec n = unit(shortest_way(one.x, faces_one, b.x, faces_b));
+    const Along of_a = along_a(one, n), of_b = along_b(b, n);
+    const Lanes gap = least_of(of_b.place, of_b.count) - most_of(of_a.place, of_a.count);
+    Lanes dt = larger(pairs.dt[row], free_time(common, n, of_a, of_b));
+    const Mask suspect = (gap <= all(f.suspect_mm)) | (dt <= all(0.0));
+    int decides = 0;
+    for (int j = 0; j < corners_b.count; ++j) {
+      if (suspect[j]) answer.suspects |= 1U << (4 * row + j);
+      if (dt[j] < dt[decides]) decides = j;
+    }
+    dt = suspect ? all(kNever) : dt;
+    pairs.dt[row] = dt;
+    pairs.exact[row] = true;
+    const double dt_row = least(dt);
+    if (dt_row < best) best = dt_row;
+    if (suspect[decides] == 0) free_along(one_lane(n, decides));
+  }
+  answer.dt = kNever;
+  for (int i = 0; i < corners_a.count; ++i) {
+    const double dt_row = least(pairs.dt[i]);
+    if (dt_row < answer.dt) answer.dt = dt_row;
+  }
+  return answer;
+}
