@@ -126,10 +126,12 @@ class Query {
     const BoxKernels& kernels = box_kernels();
     CcdWork& work = result_.work;
     std::vector<Item>& heap = scratch_.heap;
+    std::vector<Item>& now = scratch_.now;
     heap.clear();
-    heap.push_back(root_pair(a, b));
-    while (!heap.empty()) {
-      const Item item = pop(heap);
+    now.clear();
+    now.push_back(root_pair(a, b));
+    while (!now.empty() || !heap.empty()) {
+      const Item item = next(now, heap);
       if (work.box_tests + work.leaf_tests >= query_.work_cap) {
         undecided(item.t);
         return;
@@ -143,12 +145,23 @@ class Query {
       open(item, a, b, motion_.frame(goal.target_mm), kernels.advance_a, kernels.advance_b,
            [&](Item& child, double dt) {
              child.t = item.t + dt;
-             if (child.t < 1.0) push(heap, child);
+             if (child.t == item.t)
+               now.push_back(child);
+             else if (child.t < 1.0)
+               push(heap, child);
            });
     }
     result_.state = ContactState::kFree;
     result_.t_clear = result_.t_contact = 1.0;
     result_.distance_mm = 0.0;
+  }
+
+  // Those of the time that is looked at already come first, in the order of the trees.
+  static Item next(std::vector<Item>& now, std::vector<Item>& heap) {
+    if (now.empty()) return pop(heap);
+    const Item item = now.back();
+    now.pop_back();
+    return item;
   }
 
   // Advances while the pair is the earliest of all. False when the query is decided.
@@ -159,7 +172,7 @@ class Query {
     while (true) {
       motion_.at(t);
       ++result_.work.advances;
-      const double next_pair = heap.empty() ? 1.0 : heap.front().t;
+      const double next_pair = !scratch_.now.empty() ? t : heap.empty() ? 1.0 : heap.front().t;
       const LeafAdvance advance = leaves.advance(motion_, goal, t == 0.0,
                                                  std::max(kWorthWhile, next_pair - t), result_.work);
       if (advance.contact) {
@@ -179,7 +192,7 @@ class Query {
         return false;
       }
       t = next;
-      if (!heap.empty() && t > heap.front().t) {
+      if (t > next_pair) {
         Item again = item;
         again.t = t;
         push(heap, again);

@@ -64,7 +64,7 @@ struct CcdScratch {
     std::int32_t a, b, parent_a, parent_b;
     std::int8_t slot_a, slot_b;
   };
-  std::vector<Item> heap;
+  std::vector<Item> heap, now;
 };
 
 /// First contact of two rigid meshes in one tick. Guarantee: never a miss, never late; see

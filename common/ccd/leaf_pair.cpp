@@ -158,11 +158,10 @@ LeafAdvance LeafPair::advance(PairMotion& motion, const Goal& goal, bool may_cro
                               CcdWork& work) {
   ++work.leaf_tests;
   // At the start a pair within contact_mm must be seen, later it must not come within target_mm.
-  const double suspect_mm =
-      goal.below_zero ? std::max(goal.contact_mm, goal.exact_below_mm) : goal.contact_mm;
+  // Where distances go below zero nothing is discarded that lies where they are asked for.
+  const double near_mm = goal.below_zero ? goal.exact_below_mm : goal.contact_mm;
   const LeafFrame& frame =
-      motion.leaf_frame(may_cross && !goal.below_zero ? goal.contact_mm : goal.target_mm,
-                        suspect_mm);
+      motion.leaf_frame(may_cross || goal.below_zero ? near_mm : goal.target_mm, near_mm);
   const LeafAnswer answer = leaf_kernel()(frame, a_, b_, enough);
   LeafAdvance result;
   result.dt = answer.dt;
