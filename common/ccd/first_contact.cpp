@@ -5,7 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/ccd/leaf_pair.h"
-#include "common/ccd/pair_tree.h"
+#include "common/ccd/pair_queue.h"
 #include "common/ccd/start_state.h"
 
 namespace mortise {
@@ -125,56 +125,40 @@ class Query {
     const Bvh& b = b_.bvh();
     const BoxKernels& kernels = box_kernels();
     CcdWork& work = result_.work;
-    std::vector<Item>& heap = scratch_.heap;
-    std::vector<Item>& now = scratch_.now;
-    heap.clear();
-    now.clear();
-    now.push_back(root_pair(a, b));
-    while (!now.empty() || !heap.empty()) {
-      const Item item = next(now, heap);
+    PairQueue queue(a, b, scratch_);
+    queue.push_now(root_pair(a, b));
+    while (!queue.empty()) {
+      const Item item = queue.pop();
       if (work.box_tests + work.leaf_tests >= query_.work_cap) {
         undecided(item.t);
         return;
       }
       if (is_leaf_pair(item)) {
-        if (!advance_leaf(item, goal)) return;
+        if (!advance_leaf(item, goal, queue)) return;
         continue;
       }
       ++work.box_tests;
       motion_.at(item.t);
-      open(item, a, b, motion_.frame(goal.target_mm), kernels.advance_a, kernels.advance_b,
-           [&](Item& child, double dt) {
-             child.t = item.t + dt;
-             if (child.t == item.t)
-               now.push_back(child);
-             else if (child.t < 1.0)
-               push(heap, child);
-           });
+      alignas(32) float dt[Bvh::kWidth];
+      const bool opened_a = open(item, a, b, motion_.frame(goal.target_mm), kernels.advance_a,
+                                 kernels.advance_b, static_cast<float*>(dt));
+      queue.push_children(item, opened_a, dt);
     }
     result_.state = ContactState::kFree;
     result_.t_clear = result_.t_contact = 1.0;
     result_.distance_mm = 0.0;
   }
 
-  // Those of the time that is looked at already come first, in the order of the trees.
-  static Item next(std::vector<Item>& now, std::vector<Item>& heap) {
-    if (now.empty()) return pop(heap);
-    const Item item = now.back();
-    now.pop_back();
-    return item;
-  }
-
   // Advances while the pair is the earliest of all. False when the query is decided.
-  bool advance_leaf(const Item& item, const Goal& goal) {
+  bool advance_leaf(const Item& item, const Goal& goal, PairQueue& queue) {
     LeafPair leaves(a_.bvh(), item.a, b_.bvh(), item.b);
-    std::vector<Item>& heap = scratch_.heap;
     double t = item.t;
     while (true) {
       motion_.at(t);
       ++result_.work.advances;
-      const double next_pair = !scratch_.now.empty() ? t : heap.empty() ? 1.0 : heap.front().t;
-      const LeafAdvance advance = leaves.advance(motion_, goal, t == 0.0,
-                                                 std::max(kWorthWhile, next_pair - t), result_.work);
+      const double next_pair = queue.next_time(t);
+      const LeafAdvance advance = leaves.advance(
+          motion_, goal, t == 0.0, std::max(kWorthWhile, next_pair - t), result_.work);
       if (advance.contact) {
         contact(advance.nearest, t);
         return false;
@@ -195,7 +179,7 @@ class Query {
       if (t > next_pair) {
         Item again = item;
         again.t = t;
-        push(heap, again);
+        queue.push(again);
         return true;
       }
     }

@@ -64,7 +64,19 @@ struct CcdScratch {
     std::int32_t a, b, parent_a, parent_b;
     std::int8_t slot_a, slot_b;
   };
-  std::vector<Item> heap, now;
+  std::vector<Item> heap;
+  // first_contact: see PairQueue.
+  struct Entry {
+    std::uint64_t t_bits, member;
+  };
+  struct Family {
+    Item parent;
+    std::int32_t opened;
+    float dt[8];
+  };
+  std::vector<Item> now;
+  std::vector<Entry> entries;
+  std::vector<Family> families;
 };
 
 /// First contact of two rigid meshes in one tick. Guarantee: never a miss, never late; see

@@ -51,12 +51,10 @@ inline OneBox box_of(const Bvh& bvh, std::int32_t parent, std::int8_t slot) {
   return box;
 }
 
-/// Opens the larger node of a pair and asks the kernel for a value of each child; hands every child
-/// pair to f(child_item, value).
-template <class KernelA, class KernelB, class F>
-void open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, KernelA kernel_a,
-          KernelB kernel_b, F f) {
-  alignas(32) float value[Bvh::kWidth];
+/// Opens the larger node of a pair and asks the kernel for a value of each child. True: opened A.
+template <class KernelA, class KernelB>
+bool open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, KernelA kernel_a,
+          KernelB kernel_b, float* value) {
   const bool open_a = item.b < 0 || (item.a >= 0 && a.nodes[item.a].size >= b.nodes[item.b].size);
   const Bvh::Node& node = open_a ? a.nodes[item.a] : b.nodes[item.b];
   const EightBoxes eight{node.local_center, node.half};
@@ -64,6 +62,16 @@ void open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, K
     kernel_a(frame, eight, box_of(b, item.parent_b, item.slot_b), value);
   else
     kernel_b(frame, box_of(a, item.parent_a, item.slot_a), eight, value);
+  return open_a;
+}
+
+/// The same, handing every child pair to f(child_item, value).
+template <class KernelA, class KernelB, class F>
+void open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, KernelA kernel_a,
+          KernelB kernel_b, F f) {
+  alignas(32) float value[Bvh::kWidth];
+  const bool open_a = open(item, a, b, frame, kernel_a, kernel_b, static_cast<float*>(value));
+  const Bvh::Node& node = open_a ? a.nodes[item.a] : b.nodes[item.b];
   for (int k = 0; k < node.count; ++k) {
     Item child = item;
     if (open_a) {
