@@ -69,8 +69,7 @@ inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
   const Lanes numerator = closing ? all(2.0F) * gap : disc - s;
   const Lanes denominator = closing ? s + disc : bend;
   // Beyond 2^20 ticks is never. A root that cancelled away in the square is nobody's proof.
-  const Mask ever =
-      (denominator > numerator * all(0x1p-20F)) & (square >= all(-8e-6F) * s * s);
+  const Mask ever = (denominator > numerator * all(0x1p-20F)) & (square >= all(-8e-6F) * s * s);
   const Lanes dt = ever ? numerator / (ever ? denominator : all(1.0F)) : horizon;
   return gap > zero ? smaller(dt, horizon) : zero;
 }
@@ -90,7 +89,8 @@ inline void add(Going& going, Lanes s, Lanes bend, const BoxTurn& turn) {
 inline Lanes any_bend(const Lanes* m, const Lanes* e, const Boxes& box, const BoxTurn& turn) {
   Lanes speed[3];
   cross(e, turn.w, speed);
-  return root(dot(m, m)) * (root(dot(speed, speed)) + all(turn.speed) * root(dot(box.half, box.half)));
+  return root(dot(m, m)) *
+         (root(dot(speed, speed)) + all(turn.speed) * root(dot(box.half, box.half)));
 }
 
 template <bool kTurnsA, bool kTurnsB>
@@ -106,8 +106,7 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
   Lanes gap[3];
   const auto try_direction = [&](const DirectionTerms& n, Lanes along, Lanes free_gap) {
     const Mask forward = along > zero;
-    Going going{(forward ? all(n.v) : all(-n.v)) + all(f.speed_allowance),
-                all(f.bend_allowance)};
+    Going going{(forward ? all(n.v) : all(-n.v)) + all(f.speed_allowance), all(f.bend_allowance)};
     if constexpr (kTurnsA) {
       const Lanes s = dot(n.a.turn, u) + all(n.a.turn_0);
       const Lanes bend = dot(n.a.bend, u) + all(n.a.bend_0);

@@ -34,7 +34,8 @@ class Query {
         a_(*query.a),
         b_(*query.b),
         motion_(a_, query.motion_a, b_, query.motion_b),
-        accuracy_mm_(std::max(query.accuracy_mm, kRoundingsPerAccuracy * motion_.rounding_mm())) {}
+        accuracy_mm_(std::max(query.accuracy_mm, kRoundingsPerAccuracy * motion_.rounding_mm())),
+        kernel_(query.portable ? portable_leaf_kernel() : leaf_kernel()) {}
 
   // 1. one inside the other: no surface need ever meet.
   // 2. spheres too far for the tick.
@@ -123,7 +124,7 @@ class Query {
   void run(const Goal& goal) {
     const Bvh& a = a_.bvh();
     const Bvh& b = b_.bvh();
-    const BoxKernels& kernels = box_kernels();
+    const BoxKernels& kernels = query_.portable ? portable_box_kernels() : box_kernels();
     CcdWork& work = result_.work;
     PairQueue queue(a, b, scratch_);
     queue.push_now(root_pair(a, b));
@@ -158,7 +159,7 @@ class Query {
       ++result_.work.advances;
       const double next_pair = queue.next_time(t);
       const LeafAdvance advance = leaves.advance(
-          motion_, goal, t == 0.0, std::max(kWorthWhile, next_pair - t), result_.work);
+          motion_, goal, t == 0.0, std::max(kWorthWhile, next_pair - t), kernel_, result_.work);
       if (advance.contact) {
         contact(advance.nearest, t);
         return false;
@@ -204,6 +205,7 @@ class Query {
   const Solid& b_;
   PairMotion motion_;
   double accuracy_mm_;
+  LeafKernel kernel_;
   FirstContact result_;
 };
 

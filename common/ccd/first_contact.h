@@ -35,6 +35,7 @@ struct ContactQuery {
   /// already lies that deep and only slides may go an eighth of the accuracy deeper.
   /// touched_at_start tells the case. Pairs that do not touch at the start are answered as ever.
   bool ignore_touching_at_start = false;
+  bool portable = false;  ///< baseline instructions only: the same answer to the last bit, slower
 };
 
 struct CcdWork {

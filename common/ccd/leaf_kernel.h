@@ -30,28 +30,28 @@ struct TurnTerms {
 };
 
 struct LeafFrame {
-  double r[3][3], p[3];     ///< a point u of A is at r u + p
-  double v[3];              ///< velocity of A's axis less that of B's
+  double r[3][3], p[3];  ///< a point u of A is at r u + p
+  double v[3];           ///< velocity of A's axis less that of B's
   TurnTerms a, b;
-  double horizon;           ///< ticks; the bounds hold for no longer
-  double speed_slack;       ///< rounding of a speed, mm per tick
-  double bend_slack;        ///< rounding of an acceleration, mm per tick^2
-  double sweep;             ///< 2 |w_A| |part of v across the axis|: see LeafKernel
-  double taken_mm;          ///< target and rounding, taken off every gap
-  double suspect_mm;        ///< at or below this gap a pair of triangles is suspect
+  double horizon;      ///< ticks; the bounds hold for no longer
+  double speed_slack;  ///< rounding of a speed, mm per tick
+  double bend_slack;   ///< rounding of an acceleration, mm per tick^2
+  double sweep;        ///< 2 |w_A| |part of v across the axis|: see LeafKernel
+  double taken_mm;     ///< target and rounding, taken off every gap
+  double suspect_mm;   ///< at or below this gap a pair of triangles is suspect
 };
 
 struct LeafAnswer {
-  double dt = 0.0;           ///< all pairs but the suspect ones stay above the target for so long
-  unsigned suspects = 0;     ///< bit 4 i + j: triangle i of A and j of B
+  double dt = 0.0;        ///< all pairs but the suspect ones stay above the target for so long
+  unsigned suspects = 0;  ///< bit 4 i + j: triangle i of A and j of B
 };
 
 /// `enough`: a longer time is of no use, the kernel may stop there.
 ///
 /// Where B does not turn the directions may as well turn with A: seen from there the points of B
 /// move, by the inverse motion, and bend the other way. Of v only the part along the axis is the
-/// same in every direction; the other turns with the frame, |n| |v_across| |w| dt^2 = sweep dt^2 / 2
-/// at most. The kernel takes the view from which the leaf of A turns away.
+/// same in every direction; the other turns with the frame, |n| |v_across| |w| dt^2 = sweep dt^2 /
+/// 2 at most. The kernel takes the view from which the leaf of A turns away.
 using LeafKernel = LeafAnswer (*)(const LeafFrame& frame, const LeafCorners& a,
                                   const LeafCorners& b, double enough);
 

@@ -46,9 +46,7 @@ inline Lanes dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] 
 inline Vec cross(const Vec& a, const Vec& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
-inline Vec one_lane(const Vec& v, int i) {
-  return {{all(v[0][i]), all(v[1][i]), all(v[2][i])}};
-}
+inline Vec one_lane(const Vec& v, int i) { return {{all(v[0][i]), all(v[1][i]), all(v[2][i])}}; }
 
 // Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0: 0 where the gap is not positive, never where
 // the parabola turns before. Of the two forms of the root each is used where nothing cancels.
@@ -258,22 +256,22 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
   for (int k = 0; k < 3; ++k) {
     const Vec u{{load(corners_a.at[k][0]), load(corners_a.at[k][1]), load(corners_a.at[k][2])}};
     for (int c = 0; c < 3; ++c) {
-      a.x[k][c] = all(f.r[c][0]) * u[0] + all(f.r[c][1]) * u[1] + all(f.r[c][2]) * u[2] +
-                  all(f.p[c]);
+      a.x[k][c] =
+          all(f.r[c][0]) * u[0] + all(f.r[c][1]) * u[1] + all(f.r[c][2]) * u[2] + all(f.p[c]);
       b.x[k][c] = load(corners_b.at[k][c]);
     }
   }
   const Faces faces_a = faces_of(a.x), faces_b = faces_of(b.x);
   const Vec normal_a = normal_of_leaf(faces_a, corners_a.count);
-  const Vec normal_b = Vec{{all(0.0), all(0.0), all(0.0)}} - normal_of_leaf(faces_b, corners_b.count);
+  const Vec normal_b =
+      Vec{{all(0.0), all(0.0), all(0.0)}} - normal_of_leaf(faces_b, corners_b.count);
   Common common{all(f.v), all(f.taken_mm), all(f.speed_slack), all(f.bend_slack), all(f.horizon)};
   if (f.a.turns) {
     double a_to_axis[3];
     for (int c = 0; c < 3; ++c) a_to_axis[c] = f.a.arm[c] - f.p[c];
     // n . acceleration of the first corner: does A turn away from what lies before it?
     const Vec w = all(f.a.w);
-    const bool towards =
-        dot(normal_a, cross(w, cross(w, a.x[0] + all(a_to_axis))))[0] > 0.0;
+    const bool towards = dot(normal_a, cross(w, cross(w, a.x[0] + all(a_to_axis))))[0] > 0.0;
     if (towards && !f.b.turns) {
       set_turning(b, a_to_axis, f.a, true);
       common.bend_slack += all(f.sweep);
@@ -301,8 +299,7 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
     const Along of_b = along_b(b, n);
     for (int i = 0; i < corners_a.count; ++i) {
       if (pairs.exact[i]) continue;
-      pairs.dt[i] = larger(pairs.dt[i],
-                           free_time(common, n, along_a(one_triangle(a, i), n), of_b));
+      pairs.dt[i] = larger(pairs.dt[i], free_time(common, n, along_a(one_triangle(a, i), n), of_b));
     }
   };
   free_along(whole[0] > whole[1] ? normal_a : normal_b);

@@ -60,10 +60,7 @@ Along along(const TurnTerms& terms, const Vec3& n, const Vec3& x, const Vec3& x_
 }  // namespace
 
 LeafPair::LeafPair(const Bvh& a, std::int32_t leaf_a, const Bvh& b, std::int32_t leaf_b)
-    : bvh_a_(a),
-      bvh_b_(b),
-      first_a_(a.leaves[~leaf_a].first),
-      first_b_(b.leaves[~leaf_b].first) {
+    : bvh_a_(a), bvh_b_(b), first_a_(a.leaves[~leaf_a].first), first_b_(b.leaves[~leaf_b].first) {
   a_.count = static_cast<int>(a.leaves[~leaf_a].count);
   b_.count = static_cast<int>(b.leaves[~leaf_b].count);
   load(a, first_a_, a_);
@@ -141,8 +138,7 @@ bool LeafPair::settle(const PairMotion& motion, const LeafFrame& frame, const Go
   if (!signed_gap && gap_along(n) < kTrustNormal * gap)
     // The feet are so near that rounding has turned the direction between them. Normals of faces
     // and of pairs of edges do not know the distance.
-    dt = std::max(
-        dt, free_time(frame, triangle_separation(x_[i], y_[j]).normal, i, j, taken));
+    dt = std::max(dt, free_time(frame, triangle_separation(x_[i], y_[j]).normal, i, j, taken));
   if (dt < result.dt) {
     result.dt = dt;
     result.nearest = found;
@@ -155,14 +151,14 @@ bool LeafPair::settle(const PairMotion& motion, const LeafFrame& frame, const Go
 //    by them, the corners decide, no distance is needed;
 // 3. what is left, by the exact distance.
 LeafAdvance LeafPair::advance(PairMotion& motion, const Goal& goal, bool may_cross, double enough,
-                              CcdWork& work) {
+                              LeafKernel kernel, CcdWork& work) {
   ++work.leaf_tests;
   // At the start a pair within contact_mm must be seen, later it must not come within target_mm.
   // Where distances go below zero nothing is discarded that lies where they are asked for.
   const double near_mm = goal.below_zero ? goal.exact_below_mm : goal.contact_mm;
   const LeafFrame& frame =
       motion.leaf_frame(may_cross || goal.below_zero ? near_mm : goal.target_mm, near_mm);
-  const LeafAnswer answer = leaf_kernel()(frame, a_, b_, enough);
+  const LeafAnswer answer = kernel(frame, a_, b_, enough);
   LeafAdvance result;
   result.dt = answer.dt;
   if (answer.suspects == 0) return result;
@@ -188,19 +184,6 @@ LeafAdvance LeafPair::advance(PairMotion& motion, const Goal& goal, bool may_cro
       if ((answer.suspects >> (4 * i + j) & 1U) == 0 || free_by_normals(i, j)) continue;
       if (!settle(motion, frame, goal, may_cross, i, j, result, work)) return result;
     }
-  return result;
-}
-
-LeafAdvance LeafPair::advance_slowly(PairMotion& motion, const Goal& goal, bool may_cross,
-                                     CcdWork& work) {
-  ++work.leaf_tests;
-  place(motion);
-  const LeafFrame& frame = motion.leaf_frame(goal.target_mm, goal.contact_mm);
-  LeafAdvance result;
-  result.dt = kNever;
-  for (int i = 0; i < a_.count; ++i)
-    for (int j = 0; j < b_.count; ++j)
-      if (!settle(motion, frame, goal, may_cross, i, j, result, work)) return result;
   return result;
 }
 

@@ -38,9 +38,7 @@ class LeafPair {
   /// At the time of motion.state(). `may_cross`: the pair is not known to be apart (t = 0).
   /// A time longer than `enough` is of no use to the caller.
   LeafAdvance advance(PairMotion& motion, const Goal& goal, bool may_cross, double enough,
-                      CcdWork& work);
-  /// The slow twin: every pair by its exact distance, without the vector kernel.
-  LeafAdvance advance_slowly(PairMotion& motion, const Goal& goal, bool may_cross, CcdWork& work);
+                      LeafKernel kernel, CcdWork& work);
 
   /// Nearest pair below `limit_mm`; distance_mm is infinite when there is none. 0 when they cross.
   Nearest nearest(const PairMotion& motion, double limit_mm, CcdWork& work);

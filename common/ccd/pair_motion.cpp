@@ -20,7 +20,8 @@ float rounded_up(double x) {
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-void copy(const Vec3& from, float* to) {
+template <class Vector>
+void copy(const Vector& from, float* to) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
 }
 
@@ -30,6 +31,13 @@ void copy(const Vec3& from, double* to) {
 
 double largest_speed(const Motion& motion, double radius, const Vec3& origin_P) {
   return motion.travel_upper_bound_mm(radius + (origin_P - motion.reference_P).norm(), 0.0, 1.0);
+}
+
+// A group that is moved as one: nothing changes between its parts.
+bool moves_as_one(const Motion& a, const Motion& b) {
+  return a.moves() && a.kind == b.kind && (a.v_W.array() == b.v_W.array()).all() &&
+         (a.w_W.array() == b.w_W.array()).all() &&
+         (a.w_W.isZero(0.0) || (a.axis_W.array() == b.axis_W.array()).all());
 }
 
 }  // namespace
@@ -74,7 +82,7 @@ PairMotion::PairMotion(const Solid& a, const Motion& motion_a, const Solid& b,
                        const Motion& motion_b)
     : solid_b_(b),
       world_b_(motion_b),
-      b_still_(!motion_b.moves()),
+      b_still_(!motion_b.moves() || moves_as_one(motion_a, motion_b)),
       radius_a_(a.bvh().radius_mm),
       radius_b_(b.bvh().radius_mm) {
   const Vec3& origin_a = a.bvh().origin;
@@ -84,14 +92,14 @@ PairMotion::PairMotion(const Solid& a, const Motion& motion_a, const Solid& b,
   };
   // The translations are subtracted first: far from the world's origin nothing else is lost.
   if (b_still_) {
-    const Motion seen = seen_from(motion_a, motion_b.X_W0);
+    const Motion seen =
+        seen_from(motion_b.moves() ? still_motion(motion_a.X_W0) : motion_a, motion_b.X_W0);
     path_a_ = BodyPath(seen, seen.X_W0 * origin_a - origin_b, from_reference(seen, origin_a));
   } else {
     const Vec3 apart = motion_a.X_W0.p - motion_b.X_W0.p;
-    path_a_ = BodyPath(motion_a, apart + motion_a.X_W0.q * origin_a,
-                       from_reference(motion_a, origin_a));
-    path_b_ =
-        BodyPath(motion_b, motion_b.X_W0.q * origin_b, from_reference(motion_b, origin_b));
+    path_a_ =
+        BodyPath(motion_a, apart + motion_a.X_W0.q * origin_a, from_reference(motion_a, origin_a));
+    path_b_ = BodyPath(motion_b, motion_b.X_W0.q * origin_b, from_reference(motion_b, origin_b));
   }
   const auto size = [](const Motion& motion) {
     return std::max(motion.X_W0.p.norm(), motion.X_W1.p.norm());
@@ -130,7 +138,7 @@ const PairState& PairMotion::at(double t) {
 double PairMotion::horizon() const {
   const double speed = std::max(path_a_.speed(), path_b_.speed());
   return speed * (1.0 - state_.t) <= kHorizon_rad ? std::numeric_limits<double>::infinity()
-                                                   : kHorizon_rad / speed;
+                                                  : kHorizon_rad / speed;
 }
 
 void PairMotion::set_terms(TurnTerms& terms, const BodyState& body, double speed,
@@ -160,8 +168,8 @@ const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
   if (turns_a()) {
     set_terms(leaf_.a, s.a, path_a_.speed(), leaf_.horizon);
     const double along = s.a.v.dot(s.a.w) / path_a_.speed();
-    leaf_.sweep = 2.0 * path_a_.speed() *
-                  std::sqrt(std::max(0.0, s.a.v.squaredNorm() - along * along));
+    leaf_.sweep =
+        2.0 * path_a_.speed() * std::sqrt(std::max(0.0, s.a.v.squaredNorm() - along * along));
   }
   if (turns_b()) set_terms(leaf_.b, s.b, path_b_.speed(), leaf_.horizon);
   // Whatever the place is wrong by, the acceleration is wrong by |w|^2 times as much.
@@ -173,28 +181,34 @@ const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
   return leaf_;
 }
 
-void PairMotion::set_direction(DirectionTerms& d, const Vec3& n) const {
-  const PairState& s = state_;
-  copy(n, d.n);
-  d.v = static_cast<float>(n.dot(s.a.v - s.b.v));
-  const auto set = [&](TurnAlong& along, const BodyState& body) {
-    const Vec3 turn = n.cross(body.w), bend = turn.cross(body.w);
-    copy(turn, along.turn);
-    copy(bend, along.bend);
-    along.turn_0 = static_cast<float>(turn.dot(body.arm));
-    along.bend_0 = static_cast<float>(bend.dot(body.arm));
-    return std::pair<Vec3, Vec3>(turn, bend);
+// For the axes e_k of B and r_k of A as directions n, of a point x from the axis of a body that
+// turns with w:  n . (w x x) = (n x w) . x  and  n . (w x (w x x)) = (w x (w x n)) . x.
+void PairMotion::set_turns(const BodyState& body, TurnAlong DirectionTerms::*side,
+                           const Mat3& R_BBody) {
+  const auto cross_columns = [&](const Mat3& m) {
+    Mat3 out;
+    for (int k = 0; k < 3; ++k) out.col(k) = body.w.cross(m.col(k));
+    return out;
   };
-  if (turns_a()) {
-    const auto [turn, bend] = set(d.a, s.a);
-    copy((s.R.transpose() * turn).cwiseAbs(), d.a.reach);
-    copy((s.R.transpose() * bend).cwiseAbs(), d.a.bend_reach);
-  }
-  if (turns_b()) {
-    const auto [turn, bend] = set(d.b, s.b);
-    copy(turn.cwiseAbs(), d.b.reach);
-    copy(bend.cwiseAbs(), d.b.bend_reach);
-  }
+  const Vec3 arm_turn = body.w.cross(body.arm), arm_bend = body.w.cross(arm_turn);
+  const auto set = [&](int first, const Mat3& n, const Mat3& w_n, const Mat3& w_w_n) {
+    const Mat3 reach = (R_BBody.transpose() * w_n).cwiseAbs();
+    const Mat3 bend_reach = (R_BBody.transpose() * w_w_n).cwiseAbs();
+    const Vec3 turn_0 = n.transpose() * arm_turn, bend_0 = n.transpose() * arm_bend;
+    for (int k = 0; k < 3; ++k) {
+      TurnAlong& along = frame_.direction[first + k].*side;
+      copy(-w_n.col(k), along.turn);
+      copy(w_w_n.col(k), along.bend);
+      copy(reach.col(k), along.reach);
+      copy(bend_reach.col(k), along.bend_reach);
+      along.turn_0 = static_cast<float>(turn_0[k]);
+      along.bend_0 = static_cast<float>(bend_0[k]);
+    }
+  };
+  const Mat3& R = state_.R;
+  const Mat3 w_e = cross_columns(Mat3::Identity()), w_r = cross_columns(R);
+  set(0, Mat3::Identity(), w_e, cross_columns(w_e));
+  set(3, R, w_r, cross_columns(w_r));
 }
 
 const BoxFrame& PairMotion::frame(double target_mm) {
@@ -230,14 +244,19 @@ const BoxFrame& PairMotion::frame(double target_mm) {
   f.gap_allowance = rounded_up(std::max(target_mm, 0.0) + rounding_mm_ + kFloatRounding * extent);
   const double wide_a = radius_a_ + s.a.arm.norm(), wide_b = radius_b_ + s.b.arm.norm();
   const double speed_a = path_a_.speed(), speed_b = path_b_.speed();
-  f.speed_allowance = rounded_up(
-      speed_rounding_mm_ + kFloatRounding * (v.norm() + speed_a * wide_a + speed_b * wide_b));
+  f.speed_allowance = rounded_up(speed_rounding_mm_ +
+                                 kFloatRounding * (v.norm() + speed_a * wide_a + speed_b * wide_b));
   f.bend_allowance =
       rounded_up(kFloatRounding * (speed_a * speed_a * wide_a + speed_b * speed_b * wide_b));
+  const Vec3 v_A = s.R.transpose() * v;
   for (int k = 0; k < 3; ++k) {
-    set_direction(f.direction[k], Vec3::Unit(k));
-    set_direction(f.direction[3 + k], s.R.col(k));
+    copy(Vec3::Unit(k), f.direction[k].n);
+    copy(s.R.col(k), f.direction[3 + k].n);
+    f.direction[k].v = static_cast<float>(v[k]);
+    f.direction[3 + k].v = static_cast<float>(v_A[k]);
   }
+  if (turns_a()) set_turns(s.a, &DirectionTerms::a, s.R);
+  if (turns_b()) set_turns(s.b, &DirectionTerms::b, Mat3::Identity());
   return f;
 }
 

@@ -16,8 +16,8 @@ class BodyPath {
 
   void at(double t, Mat3& R, Vec3& origin, Vec3& arm) const;
 
-  const Vec3& v() const { return v_; }  ///< velocity of the axis of rotation, mm per tick
-  const Vec3& w() const { return w_; }  ///< rotation vector, rad per tick
+  const Vec3& v() const { return v_; }     ///< velocity of the axis of rotation, mm per tick
+  const Vec3& w() const { return w_; }     ///< rotation vector, rad per tick
   double speed() const { return speed_; }  ///< |w|
 
  private:
@@ -67,7 +67,7 @@ class PairMotion {
 
  private:
   void set_terms(TurnTerms& terms, const BodyState& body, double speed, double horizon) const;
-  void set_direction(DirectionTerms& d, const Vec3& n) const;
+  void set_turns(const BodyState& body, TurnAlong DirectionTerms::*side, const Mat3& R_BBody);
   double horizon() const;
 
   const Solid& solid_b_;
