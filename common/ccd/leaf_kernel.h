@@ -36,7 +36,7 @@ struct LeafFrame {
   double horizon;      ///< ticks; the bounds hold for no longer
   double speed_slack;  ///< rounding of a speed, mm per tick
   double bend_slack;   ///< rounding of an acceleration, mm per tick^2
-  double sweep;        ///< 2 |w_A| |part of v across the axis|: see LeafKernel
+  double sweep;        ///< 2 |w_A x v|: see LeafKernel
   double taken_mm;     ///< target and rounding, taken off every gap
   double suspect_mm;   ///< at or below this gap a pair of triangles is suspect
 };

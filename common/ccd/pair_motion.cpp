@@ -160,16 +160,15 @@ const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) leaf_.r[i][j] = s.R(i, j);
   copy(s.p, leaf_.p);
-  copy(Vec3(s.a.v - s.b.v), leaf_.v);
+  const Vec3 v = s.a.v - s.b.v;
+  copy(v, leaf_.v);
   leaf_.horizon = horizon();
   leaf_.speed_slack = speed_rounding_mm_;
   leaf_.bend_slack = 0.0;
   leaf_.sweep = 0.0;
   if (turns_a()) {
     set_terms(leaf_.a, s.a, path_a_.speed(), leaf_.horizon);
-    const double along = s.a.v.dot(s.a.w) / path_a_.speed();
-    leaf_.sweep =
-        2.0 * path_a_.speed() * std::sqrt(std::max(0.0, s.a.v.squaredNorm() - along * along));
+    leaf_.sweep = 2.0 * s.a.w.cross(v).norm();
   }
   if (turns_b()) set_terms(leaf_.b, s.b, path_b_.speed(), leaf_.horizon);
   // Whatever the place is wrong by, the acceleration is wrong by |w|^2 times as much.

@@ -68,7 +68,9 @@ Case random_case(std::mt19937_64& random, int i) {
                       : linear_motion(from, moved(from), reference);
   };
   c.motion_a = some_motion(a0);
-  c.motion_b = i % 3 == 1 ? some_motion(b0) : still_motion(b0);
+  c.motion_b = i % 3 == 1   ? some_motion(b0)
+               : i % 7 == 0 ? linear_motion(b0, Pose{b0.q, b0.p + Vec3(3, -2, 1)}, Vec3::Zero())
+                            : still_motion(b0);
   return c;
 }
 
