@@ -21,14 +21,18 @@ struct IndexPair {
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
-  /// World box of part `part`, mm; the first call for a part adds it. Parts are numbered from 0.
+  /// World box of part `part`, mm, finite; the first call for a part adds it. Parts are numbered
+  /// from 0. A part whose box is empty meets nobody.
   virtual void set_box(std::uint32_t part, const Box& box) = 0;
-  /// All pairs of overlapping boxes of which at least one part is in `moved` (no repeats in it).
+  /// All pairs of overlapping boxes of which at least one part is in `moved` (no repeats in it, all
+  /// of them added).
   /// Sorted, each pair once. `pairs` is replaced, its capacity reused.
   virtual void find_pairs(std::span<const std::uint32_t> moved, std::vector<IndexPair>& pairs) = 0;
 };
 
-/// FCL's dynamic AABB tree (Debian's libfcl, used for boxes only).
+/// FCL's dynamic AABB tree (Debian's libfcl, used for boxes only) over boxes somewhat larger than
+/// those given, with a list of neighbours for each part that ever moved. A part that stays within
+/// its larger box costs a look at its neighbours; O(log n) once in some ticks when it leaves it.
 std::unique_ptr<BroadPhase> make_dynamic_tree();
 
 /// The slow twin: every moved part against every part.

@@ -4,10 +4,19 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
 #include "common/broadphase/broad_phase.h"
 
 namespace mortise {
 namespace {
+
+// A fat box is larger than the box by this share of the longest edge, or by so many of the last
+// steps of its centre where that is more, up to the larger share. Wider: rarer queries of the tree,
+// longer lists. The answer does not depend on it.
+constexpr double kLeastMargin = 0.1, kMostMargin = 0.5, kStepsAhead = 16.0;
+
+// More than 100 epsilon sqrt(3), what FCL calls the same box, as a share of the largest coordinate.
+constexpr double kFclSameBox = 1e-13;
 
 // FCL takes the box of an object from its geometry; ours comes from the caller. The geometry is a
 // placeholder that is never asked.
@@ -15,9 +24,14 @@ class BoxObject final : public fcl::CollisionObjectd {
  public:
   BoxObject(const std::shared_ptr<fcl::CollisionGeometryd>& placeholder, std::uint32_t part)
       : fcl::CollisionObjectd(placeholder), part_(part) {}
+  // FCL takes a new box for the old one when their corners differ by less than 2.3e-14 of their
+  // distance from the origin, and then keeps the old: grown by more than that, the old holds the
+  // new.
   void set(const Box& box) {
-    aabb.min_ = box.lo;
-    aabb.max_ = box.hi;
+    const double far = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
+    const Box grown = box.grown(kFclSameBox * far);
+    aabb.min_ = grown.lo;
+    aabb.max_ = grown.hi;
   }
   std::uint32_t part() const { return part_; }
 
@@ -25,69 +39,154 @@ class BoxObject final : public fcl::CollisionObjectd {
   std::uint32_t part_;
 };
 
+bool contains(const Box& outer, const Box& inner) {
+  return (outer.lo.array() <= inner.lo.array()).all() &&
+         (inner.hi.array() <= outer.hi.array()).all();
+}
+
+// Two trees of fat boxes: parts that have stood since they were added, and parts that have moved.
+// Who was ever named as moved is watched, and keeps a list of all whose fat boxes meet its own. As
+// long as boxes stay within their fat boxes the lists hold, and no tree is asked.
 class DynamicTree final : public BroadPhase {
  public:
-  DynamicTree() : placeholder_(std::make_shared<fcl::Sphered>(1.0)) {}
-
   void set_box(std::uint32_t part, const Box& box) override {
-    if (part >= objects_.size()) {
-      objects_.resize(part + 1);
+    MORTISE_CHECK(box.empty() || (box.lo.allFinite() && box.hi.allFinite()),
+                  "the box of a part is finite or empty");
+    if (part >= entries_.size()) {
+      entries_.resize(part + 1);
       boxes_.resize(part + 1);
       is_moved_.resize(part + 1, 0);
     }
+    const Box old = boxes_[part];
     boxes_[part] = box;
     if (box.empty()) return;
-    if (!objects_[part]) {
-      objects_[part] = std::make_unique<BoxObject>(placeholder_, part);
-      objects_[part]->set(box);
-      tree_.registerObject(objects_[part].get());
+    Entry& entry = entries_[part];
+    if (!entry.object) {
+      entry.object = std::make_unique<BoxObject>(placeholder_, part);
+      entry.fat = box;
+    } else if (contains(entry.fat, box)) {
       return;
+    } else {
+      entry.stands = false;
+      entry.fat = fat_box(old, box);
     }
-    objects_[part]->set(box);
-    changed_.push_back(objects_[part].get());
+    if (!entry.stale) stale_.push_back(part);
+    entry.stale = true;
   }
 
   void find_pairs(std::span<const std::uint32_t> moved, std::vector<IndexPair>& pairs) override {
     pairs.clear();
-    if (!changed_.empty()) tree_.update(changed_);
-    changed_.clear();
-    for (const std::uint32_t i : moved) is_moved_[i] = 1;
+    if (!stale_.empty()) renew_stale();
     for (const std::uint32_t i : moved) {
-      if (!objects_[i]) continue;
-      Query query{*this, i, pairs};
-      tree_.collide(objects_[i].get(), &query, &DynamicTree::visit);
+      MORTISE_CHECK(i < entries_.size(), "a part has a box before it moves");
+      is_moved_[i] = 1;
+      if (!entries_[i].watched) watch(i);
+    }
+    for (const std::uint32_t i : moved) {
+      const Box box = boxes_[i];
+      for (const std::uint32_t j : entries_[i].near) {
+        // A pair of two moved parts is met twice; the lower one reports it.
+        if (is_moved_[j] && j < i) continue;
+        if (box.overlaps(boxes_[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
+      }
     }
     for (const std::uint32_t i : moved) is_moved_[i] = 0;
     std::sort(pairs.begin(), pairs.end());
   }
 
  private:
-  struct Query {
-    const DynamicTree& self;
-    std::uint32_t part;
-    std::vector<IndexPair>& pairs;
+  struct Entry {
+    Box fat;
+    std::unique_ptr<BoxObject> object;  ///< null: its box was never other than empty
+    /// Whose fat boxes meet this one; of the watched all, of the others the watched ones.
+    std::vector<std::uint32_t> near;
+    bool stands = true;  ///< since it was added: its object belongs to standing_, else to roaming_
+    bool in_tree = false, in_standing = false;
+    bool stale = false;  ///< tree and lists do not know the fat box yet
+    bool watched = false;
   };
+  struct Query {
+    DynamicTree& self;
+    std::uint32_t part;
+  };
+
+  static Box fat_box(const Box& old, const Box& box) {
+    const double longest = (box.hi - box.lo).maxCoeff();
+    const double step = old.empty() ? 0.0 : (box.center() - old.center()).cwiseAbs().maxCoeff();
+    return box.grown(std::clamp(kStepsAhead * step, kLeastMargin * longest, kMostMargin * longest));
+  }
+
+  // 1. Tell the trees. 2. Make the lists of the changed parts anew, when anybody has lists.
+  void renew_stale() {
+    roamed_.clear();
+    bool any_added = false;
+    for (const std::uint32_t i : stale_) {
+      Entry& entry = entries_[i];
+      entry.object->set(entry.fat);
+      entry.stale = false;
+      if (entry.in_tree && !entry.in_standing) {
+        roamed_.push_back(entry.object.get());
+        continue;
+      }
+      if (entry.in_tree) standing_.unregisterObject(entry.object.get());
+      (entry.stands ? standing_ : roaming_).registerObject(entry.object.get());
+      entry.in_tree = true;
+      entry.in_standing = entry.stands;
+      any_added = true;
+    }
+    if (any_added) {
+      standing_.setup();
+      roaming_.setup();
+    }
+    if (!roamed_.empty()) roaming_.update(roamed_);
+    if (watched_count_ > 0)
+      for (const std::uint32_t i : stale_) renew_list(i);
+    stale_.clear();
+  }
+
+  void watch(std::uint32_t part) {
+    entries_[part].watched = true;
+    ++watched_count_;
+    if (entries_[part].object) renew_list(part);
+  }
+
+  void renew_list(std::uint32_t i) {
+    Entry& entry = entries_[i];
+    for (const std::uint32_t j : entry.near) {
+      std::vector<std::uint32_t>& near = entries_[j].near;
+      *std::find(near.begin(), near.end(), i) = near.back();
+      near.pop_back();
+    }
+    entry.near.clear();
+    Query query{*this, i};
+    standing_.collide(entry.object.get(), &query, &DynamicTree::visit);
+    roaming_.collide(entry.object.get(), &query, &DynamicTree::visit);
+  }
 
   static bool visit(fcl::CollisionObjectd* x, fcl::CollisionObjectd* y, void* data) {
     const Query& query = *static_cast<Query*>(data);
     const std::uint32_t i = query.part;
     const std::uint32_t other = static_cast<BoxObject*>(x)->part();
     const std::uint32_t j = other == i ? static_cast<BoxObject*>(y)->part() : other;
-    if (i == j) return false;
-    // A pair of two moved parts is met twice; the lower one reports it.
-    if (query.self.is_moved_[j] && j < i) return false;
-    // The tree keeps the older, larger box of an object that shrank: ask the exact boxes.
-    if (query.self.boxes_[i].overlaps(query.self.boxes_[j]))
-      query.pairs.push_back({std::min(i, j), std::max(i, j)});
+    Entry& a = query.self.entries_[i];
+    Entry& b = query.self.entries_[j];
+    if (i == j || !(a.watched || b.watched)) return false;
+    // FCL keeps the older, larger box of an object that shrank: ask our own.
+    if (a.fat.overlaps(b.fat)) {
+      a.near.push_back(j);
+      b.near.push_back(i);
+    }
     return false;  // go on
   }
 
-  std::shared_ptr<fcl::CollisionGeometryd> placeholder_;
-  std::vector<std::unique_ptr<BoxObject>> objects_;
-  std::vector<Box> boxes_;
+  std::shared_ptr<fcl::CollisionGeometryd> placeholder_ = std::make_shared<fcl::Sphered>(1.0);
+  std::vector<Entry> entries_;
+  std::vector<Box> boxes_;  ///< exact, apart from the entries: read for every neighbour
   std::vector<char> is_moved_;
-  std::vector<fcl::CollisionObjectd*> changed_;
-  fcl::DynamicAABBTreeCollisionManagerd tree_;
+  std::vector<std::uint32_t> stale_;
+  std::size_t watched_count_ = 0;
+  std::vector<fcl::CollisionObjectd*> roamed_;
+  fcl::DynamicAABBTreeCollisionManagerd standing_, roaming_;
 };
 
 }  // namespace
