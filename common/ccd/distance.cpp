@@ -2,6 +2,8 @@
 
 #include "common/base/check.h"
 #include "common/ccd/first_contact.h"
+#include "common/ccd/hull_gap.h"
+#include "common/ccd/leaf_discard.h"
 #include "common/ccd/pair_tree.h"
 
 namespace mortise {
@@ -11,50 +13,171 @@ using namespace ccd;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
+// Node pairs opened before the hulls are asked for a plane. Most pairs of boxes are done by then;
+// far apart curved faces are not, and a plane costs about as much as this.
+constexpr int kOpenedBeforePlane = 64;
+
+// The nearest pair of triangles below a limit. Boxes, planes and the leaf kernels only discard:
+// every distance comes from the double triangles.
+class Search {
+ public:
+  Search(PairMotion& motion, const Bvh& a, const Bvh& b, double limit_mm, double enough_mm,
+         CcdScratch& scratch)
+      : motion_(motion),
+        a_(a),
+        b_(b),
+        limit_mm_(limit_mm),
+        enough_mm_(enough_mm),
+        scratch_(scratch) {
+    const PairState& s = motion.state();
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) placement_.r[i][j] = s.R(i, j);
+      placement_.p[i] = s.p[i];
+      placement_.origin[i] = a.origin[i];
+    }
+    best_.distance_mm = kFar;
+  }
+
+  // Depth first, of the children the nearest first: the first pops go straight down to the most
+  // promising leaves, whose distance then prunes.
+  const Nearest& run() {
+    const BoxKernels& kernels = box_kernels();
+    const BoxFrame& frame = motion_.frame(0.0);
+    std::vector<Item>& stack = scratch_.heap;
+    stack.clear();
+    stack.push_back(root_pair(a_, b_));
+    int opened = 0;
+    while (!stack.empty() && !done()) {
+      const Item item = stack.back();
+      stack.pop_back();
+      if (item.t > reach_mm()) continue;
+      if (is_leaf_pair(item)) {
+        leaf_pair(item.a, item.b);
+        continue;
+      }
+      if (++opened == kOpenedBeforePlane && by_plane()) return best_;
+      const std::size_t begin = stack.size();
+      open(item, a_, b_, frame, kernels.lower_a, kernels.lower_b, [&](Item& child, double lower) {
+        child.t = std::max(item.t, lower);
+        if (child.t > reach_mm()) return;
+        std::size_t at = stack.size();
+        stack.push_back(child);
+        for (; at > begin && stack[at - 1].t < child.t; --at) stack[at] = stack[at - 1];
+        stack[at] = child;
+      });
+    }
+    return best_;
+  }
+
+ private:
+  double reach_mm() const { return std::min(limit_mm_, best_.distance_mm); }
+  bool done() const { return best_.distance_mm <= enough_mm_; }
+
+  Triangle triangle_a(std::uint32_t i) const {
+    const auto& c = a_.corners[i];
+    const PairState& s = motion_.state();
+    Triangle t;
+    for (int k = 0; k < 3; ++k)
+      t[k] = s.R * (Vec3(c[3 * k], c[3 * k + 1], c[3 * k + 2]) - a_.origin) + s.p;
+    return t;
+  }
+  Triangle triangle_b(std::uint32_t j) const {
+    const auto& c = b_.corners[j];
+    Triangle t;
+    for (int k = 0; k < 3; ++k) t[k] = Vec3(c[3 * k], c[3 * k + 1], c[3 * k + 2]) - b_.origin;
+    return t;
+  }
+
+  Reach reach() const {
+    Reach r;
+    r.mm = reach_mm() + motion_.rounding_mm();
+    for (int c = 0; c < 3; ++c) r.n[c] = n_[c];
+    return r;
+  }
+
+  void leaf_pair(std::int32_t leaf_a, std::int32_t leaf_b) {
+    const Bvh::Leaf& a = a_.leaves[~leaf_a];
+    const Bvh::Leaf& b = b_.leaves[~leaf_b];
+    FourTriangles y;
+    if (leaf_a != placed_leaf_) {
+      kernels_.place(a_.corners[a.first].data(), static_cast<int>(a.count), placement_, placed_);
+      placed_leaf_ = leaf_a;
+    }
+    kernels_.move(b_.corners[b.first].data(), static_cast<int>(b.count), b_.origin.data(), y);
+    unsigned left = kernels_.near_pairs(placed_, y, reach());
+    for (std::uint32_t i = 0; i < a.count; ++i)
+      for (std::uint32_t j = 0; j < b.count; ++j) {
+        if ((left >> (4 * i + j) & 1U) == 0) continue;
+        if (nearer(a.first + i, b.first + j)) {
+          if (done()) return;
+          left &= kernels_.near_along(placed_, y, reach());
+        }
+      }
+  }
+
+  // True when the pair is the nearest so far.
+  bool nearer(std::uint32_t i, std::uint32_t j) {
+    const TriangleDistance d = triangle_distance(triangle_a(i), triangle_b(j));
+    if (!(d.distance_mm < best_.distance_mm && d.distance_mm <= limit_mm_)) return false;
+    best_ = {d.distance_mm, a_.triangle_order[i], b_.triangle_order[j], d.point_a, d.point_b,
+             d.crossing};
+    if (d.distance_mm > 0.0) n_ = (d.point_b - d.point_a) / d.distance_mm;
+    return true;
+  }
+
+  // The plane between the hulls. Only triangles that reach over it farther than the nearest pair so
+  // far can be in a nearer pair: when they are few, their pairs are all that is left to look at.
+  bool by_plane() {
+    const PairState& s = motion_.state();
+    const HullGap hulls = hull_gap(motion_, a_, b_, n_.isZero(0.0) ? Vec3(-s.p) : n_);
+    if (!hulls.apart) return false;
+    if (hulls.gap_mm - motion_.rounding_mm() > reach_mm()) return true;
+    for (int k = 0; k < hulls.pairs; ++k)
+      for (int m = 0; m < hulls.pairs; ++m) leaf_pair(hulls.leaf_a[k], hulls.leaf_b[m]);
+    LeafList list_a, list_b;
+    const double over_mm = reach_mm() + motion_.rounding_mm();
+    // Heights are taken from the origin of each tree.
+    const double a_mm = hulls.n.dot(s.p);
+    if (!leaves_above(a_, s.R.transpose() * hulls.n, hulls.near_b_mm - over_mm - a_mm, list_a) ||
+        !leaves_above(b_, -hulls.n, -(hulls.far_a_mm + over_mm), list_b))
+      return false;
+    if (list_a.count * list_b.count > kMostPlanePairs) return false;
+    const auto by_height = [](const LeafHeight& x, const LeafHeight& y) {
+      return x.along_mm != y.along_mm ? x.along_mm > y.along_mm : x.leaf > y.leaf;
+    };
+    std::sort(list_a.leaf.begin(), list_a.leaf.begin() + list_a.count, by_height);
+    std::sort(list_b.leaf.begin(), list_b.leaf.begin() + list_b.count, by_height);
+    for (int i = 0; i < list_a.count; ++i)
+      for (int j = 0; j < list_b.count; ++j) {
+        const double gap = -list_b.leaf[j].along_mm - (list_a.leaf[i].along_mm + a_mm);
+        if (gap > reach_mm() + motion_.rounding_mm()) break;
+        leaf_pair(list_a.leaf[i].leaf, list_b.leaf[j].leaf);
+      }
+    return true;
+  }
+
+  static constexpr int kMostPlanePairs = 1 << 14;
+
+  PairMotion& motion_;
+  const Bvh& a_;
+  const Bvh& b_;
+  double limit_mm_, enough_mm_;
+  CcdScratch& scratch_;
+  const DiscardKernels& kernels_ = discard_kernels();
+  Placement placement_;
+  FourTriangles placed_;
+  std::int32_t placed_leaf_ = 0;  // leaves are below zero
+  Nearest best_;
+  Vec3 n_ = Vec3::Zero();
+};
+
 }  // namespace
 
-// Best first; the first pops go straight down to the most promising leaf, whose distance then
-// prunes.
 DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                         CcdScratch& scratch, double limit_mm) {
   PairMotion motion(a, still_motion(X_WA), b, still_motion(X_WB));
   motion.at(0.0);
-  CcdWork work;
-  const BoxKernels& kernels = box_kernels();
-  const BoxFrame& frame = motion.frame(0.0);
-  std::vector<Item>& heap = scratch.heap;
-  Nearest best;
-  best.distance_mm = kFar;
-  const auto reach_mm = [&] { return std::min(limit_mm, best.distance_mm); };
-  heap.clear();
-  heap.push_back(root_pair(a.bvh(), b.bvh()));
-  while (!heap.empty()) {
-    Item item = pop(heap);
-    if (item.t > reach_mm() || best.distance_mm == 0.0) break;
-    // Greedy: of the children the nearest is opened at once, the others wait.
-    while (!is_leaf_pair(item)) {
-      Item nearest = item;
-      double nearest_mm = kFar;
-      open(item, a.bvh(), b.bvh(), frame, kernels.lower_a, kernels.lower_b,
-           [&](Item& child, double lower) {
-             child.t = std::max(item.t, lower);
-             if (child.t > reach_mm()) return;
-             if (child.t < nearest_mm) {
-               if (nearest_mm < kFar) push(heap, nearest);
-               nearest = child;
-               nearest_mm = child.t;
-             } else {
-               push(heap, child);
-             }
-           });
-      if (nearest_mm == kFar) break;
-      item = nearest;
-    }
-    if (!is_leaf_pair(item)) continue;
-    LeafPair leaves(a.bvh(), item.a, b.bvh(), item.b);
-    const Nearest found = leaves.nearest(motion, reach_mm(), work);
-    if (found.distance_mm < best.distance_mm) best = found;
-  }
+  const Nearest best = Search(motion, a.bvh(), b.bvh(), limit_mm, 0.0, scratch).run();
   DistanceResult result;
   result.within_limit = best.distance_mm <= limit_mm && best.distance_mm < kFar;
   result.distance_mm = result.within_limit ? best.distance_mm : limit_mm;
@@ -70,11 +193,9 @@ bool surfaces_cross(const Solid& a, const Pose& X_WA, const Solid& b, const Pose
                     CcdScratch& scratch) {
   PairMotion motion(a, still_motion(X_WA), b, still_motion(X_WB));
   motion.at(0.0);
-  CcdWork work;
-  return each_leaf_pair_within(
-      motion, a.bvh(), b.bvh(), motion.rounding_mm(), scratch, work, [&](LeafPair& leaves) {
-        return leaves.nearest(motion, motion.rounding_mm(), work).distance_mm < kFar;
-      });
+  const double rounding_mm = motion.rounding_mm();
+  return Search(motion, a.bvh(), b.bvh(), rounding_mm, rounding_mm, scratch).run().distance_mm <
+         kFar;
 }
 
 // Slow, simple, and no proof of freedom: what first_contact is compared with.

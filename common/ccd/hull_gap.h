@@ -1,0 +1,49 @@
+#pragma once
+#include <array>
+
+#include "common/ccd/pair_motion.h"
+
+// How far apart the convex hulls of two meshes are, from their trees: where the hulls are apart,
+// the plane between them proves at once what boxes around curved faces prove only piece by piece.
+namespace mortise::ccd {
+
+/// The corner of a mesh that is farthest along a direction.
+struct Support {
+  double along_mm = 0.0;      ///< direction . point
+  Vec3 point = Vec3::Zero();  ///< from the origin of the tree, axes of the part
+  std::int32_t leaf = 0;      ///< < 0, as in Bvh::Node::child; 0: none yet
+};
+
+/// n: unit, axes of the part. O(log n) typical. `hint`: a corner of the mesh that may be far, or
+/// none.
+Support support(const Bvh& bvh, const Vec3& n, const Support& hint);
+
+/// Leaves with a corner above floor_mm along n (unit, axes of the part, from the origin of the
+/// tree).
+struct LeafHeight {
+  std::int32_t leaf;
+  double along_mm;  ///< of its farthest corner
+};
+inline constexpr int kMostLeaves = 512;
+struct LeafList {
+  std::array<LeafHeight, kMostLeaves> leaf;
+  int count = 0;
+};
+/// False when there are more than kMostLeaves; the list is then useless.
+bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list);
+
+struct HullGap {
+  bool apart = false;     ///< false: the hulls overlap, or nothing was proven
+  double gap_mm = 0.0;    ///< every pair of points is farther apart along n, up to rounding
+  Vec3 n = Vec3::Zero();  ///< unit, from A to B, axes of B
+  double far_a_mm = 0.0;  ///< the farthest corner of A along n, from the origin of B's tree
+  double near_b_mm = 0.0;
+  int pairs = 0;  ///< leaves that hold the corners nearest to each other
+  std::int32_t leaf_a[4], leaf_b[4];
+};
+
+/// At motion.state(); `n`: a first guess, from A to B, axes of B. Gilbert, Johnson and Keerthi
+/// 1988, on the corners that the trees find.
+HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& n);
+
+}  // namespace mortise::ccd
