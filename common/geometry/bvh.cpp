@@ -1,178 +1,261 @@
 #include "common/geometry/bvh.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <thread>
 
 #include "common/base/check.h"
 #include "common/base/constants.h"
+#include "common/geometry/bvh_split.h"
 
 namespace mortise {
 namespace {
 
-constexpr int kBins = 16;  // of the surface area heuristic; more gain nothing measurable
+using bvh::BoxedTriangle;
+using bvh::Range;
 
-double half_area(const Box& box) {
-  if (box.empty()) return 0.0;
-  const Vec3 d = box.hi - box.lo;
-  return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
+// From this depth on sets are halved, whatever their boxes: no tree becomes deeper than about
+// twelve more, which bounds the stacks of those who walk it.
+constexpr int kDeepestByArea = 32;
+
+// A set of this size is built by one thread. The same at any number of threads: it decides the
+// order of the nodes.
+constexpr std::uint32_t kPiece = 8192;
+// Below this a thread costs more than it saves.
+constexpr std::size_t kWorthThreads = 50'000;
+
+float next_up(float f) {
+  if (f == 0.0F) return std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::uint32_t>(f);
+  return std::bit_cast<float>(f > 0.0F ? bits + 1 : bits - 1);
 }
-
 float rounded_up(double x) {
   const float f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+  return static_cast<double>(f) < x ? next_up(f) : f;
+}
+float rounded_down(double x) { return -rounded_up(-x); }
+
+// Calls body(i) for every i below count, on up to `threads` threads; body writes only what belongs
+// to i.
+template <class Body>
+void for_each(std::size_t count, int threads, const Body& body) {
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) body(i);
+  };
+  std::vector<std::jthread> others;
+  for (int k = 1; k < threads && static_cast<std::size_t>(k) < count; ++k)
+    others.emplace_back(work);
+  work();
 }
 
-// The set of triangles on either side of a split depends on coordinates and ids only, never on the
-// order that a library's partition leaves behind: trees are the same on every build.
 class Builder {
  public:
-  Builder(const TriangleMesh& mesh, Bvh& bvh) : mesh_(mesh), bvh_(bvh) {
-    const std::size_t n = mesh.triangles.size();
-    order_.resize(n);
-    boxes_.resize(n);
-    for (std::uint32_t t = 0; t < n; ++t) {
-      order_[t] = t;
-      for (int k = 0; k < 3; ++k) boxes_[t].add(mesh.corner(t, k));
-      bvh.bounds.add(boxes_[t]);
-    }
-    bvh.origin = bvh.bounds.center();
-    for (std::uint32_t t = 0; t < n; ++t)
-      for (int k = 0; k < 3; ++k) {
-        bvh.radius_mm = std::max(bvh.radius_mm, (mesh.corner(t, k) - bvh.origin).norm());
-        bvh.extent_mm = std::max(bvh.extent_mm, mesh.corner(t, k).norm());
-      }
+  Builder(const TriangleMesh& mesh, Bvh& bvh, int threads)
+      : mesh_(mesh), bvh_(bvh), threads_(threads), triangles_(mesh.triangles.size()) {
+    measure();
     rounding_ = kRoundingFactor * kUnitRoundoff * bvh.extent_mm;
+    each_block([&](std::size_t t) {
+      Box box;
+      for (int k = 0; k < 3; ++k) box.add(mesh.corner(static_cast<std::uint32_t>(t), k));
+      BoxedTriangle& boxed = triangles_[t];
+      for (int c = 0; c < 3; ++c) {
+        boxed.lo[c] = rounded_down(box.lo[c] - bvh.origin[c]);
+        boxed.hi[c] = rounded_up(box.hi[c] - bvh.origin[c]);
+      }
+      boxed.id = static_cast<std::uint32_t>(t);
+      boxed.unused = 0;
+    });
   }
 
+  // 1. large sets are opened level by level, all sets of a level at once;
+  // 2. what is left is built piece by piece, each into its own arrays;
+  // 3. the pieces are put behind the upper nodes, in their order.
   void build() {
-    bvh_.nodes.reserve(order_.size() / 8 + 1);
-    bvh_.leaves.reserve(order_.size() / 2 + 1);
-    bvh_.root = subtree({0, static_cast<std::uint32_t>(order_.size())});
-    bvh_.triangle_order = order_;
-    bvh_.corners.resize(order_.size());
-    for (std::size_t i = 0; i < order_.size(); ++i)
+    const auto n = static_cast<std::uint32_t>(triangles_.size());
+    std::vector<Piece> pieces(1);
+    pieces[0].range = {0, n, bvh::box_of(triangles_.data(), n)};
+    while (std::any_of(pieces.begin(), pieces.end(), [](const Piece& p) { return p.large(); }))
+      pieces = open_large(pieces);
+    for_each(pieces.size(), threads_, [&](std::size_t i) {
+      Piece& p = pieces[i];
+      p.root = subtree(p.range, p.depth, p.nodes, p.leaves);
+    });
+    gather(pieces);
+    bvh_.triangle_order.resize(n);
+    bvh_.corners.resize(n);
+    each_block([&](std::size_t i) {
+      bvh_.triangle_order[i] = triangles_[i].id;
       for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) bvh_.corners[i][3 * k + c] = mesh_.corner(order_[i], k)[c];
-    bvh_.nodes.shrink_to_fit();
-    bvh_.leaves.shrink_to_fit();
+        for (int c = 0; c < 3; ++c)
+          bvh_.corners[i][3 * k + c] = mesh_.corner(triangles_[i].id, k)[c];
+    });
   }
 
  private:
-  struct Range {
-    std::uint32_t begin, end;
-    std::uint32_t size() const { return end - begin; }
+  struct Piece {
+    Range range;
+    std::int32_t parent = -1;  // among the upper nodes
+    int slot = 0, depth = 0;
+    std::int32_t root = 0;
+    std::vector<Bvh::Node> nodes;
+    std::vector<Bvh::Leaf> leaves;
+    bool large() const { return range.size() > kPiece; }
   };
 
-  Vec3 center(std::uint32_t t) const { return boxes_[t].center(); }
-
-  Box box_of(Range range) const {
-    Box box;
-    for (std::uint32_t i = range.begin; i < range.end; ++i) box.add(boxes_[order_[i]]);
-    return box;
-  }
-
-  std::uint32_t split(Range range) {
-    Box centers;
-    for (std::uint32_t i = range.begin; i < range.end; ++i) centers.add(center(order_[i]));
-    const Vec3 width = centers.hi - centers.lo;
-    const auto bin_of = [&](std::uint32_t t, int axis) {
-      const double x = (center(t)[axis] - centers.lo[axis]) / width[axis] * kBins;
-      return std::clamp(static_cast<int>(x), 0, kBins - 1);
-    };
-    int best_axis = -1, best_bin = 0;
-    double best_cost = std::numeric_limits<double>::infinity();
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(width[axis] > 0.0)) continue;
-      Box bin_box[kBins];
-      std::uint32_t bin_count[kBins] = {};
-      for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        const int k = bin_of(order_[i], axis);
-        bin_box[k].add(boxes_[order_[i]]);
-        ++bin_count[k];
-      }
-      double right_cost[kBins] = {};
-      Box box;
-      std::uint32_t count = 0;
-      for (int k = kBins - 1; k > 0; --k) {
-        box.add(bin_box[k]);
-        count += bin_count[k];
-        right_cost[k] = count * half_area(box);
-      }
-      box = Box{};
-      count = 0;
-      for (int k = 1; k < kBins; ++k) {
-        box.add(bin_box[k - 1]);
-        count += bin_count[k - 1];
-        if (count == 0 || count == range.size()) continue;
-        const double cost = count * half_area(box) + right_cost[k];
-        if (cost < best_cost) {
-          best_cost = cost;
-          best_axis = axis;
-          best_bin = k;
-        }
-      }
-    }
-    const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end;
-    if (best_axis >= 0) {
-      const auto middle = std::partition(
-          begin, end, [&](std::uint32_t t) { return bin_of(t, best_axis) < best_bin; });
-      const auto index = static_cast<std::uint32_t>(middle - order_.begin());
-      if (index > range.begin && index < range.end) return index;
-    }
-    // All centres in one place: halve by id.
-    std::sort(begin, end);
-    return range.begin + range.size() / 2;
-  }
-
-  std::int32_t leaf(Range range) {
-    std::sort(order_.begin() + range.begin, order_.begin() + range.end);
-    bvh_.leaves.push_back({range.begin, range.size()});
-    return ~static_cast<std::int32_t>(bvh_.leaves.size() - 1);
-  }
-
-  std::int32_t subtree(Range range) {
-    if (range.size() <= Bvh::kLeafSize) return leaf(range);
-    Range parts[Bvh::kWidth] = {range};
+  struct Opened {
     int count = 1;
-    while (count < Bvh::kWidth) {
+    Range part[Bvh::kWidth];
+  };
+
+  template <class Body>
+  void each_block(const Body& body) {
+    constexpr std::size_t kBlock = 4096;
+    const std::size_t n = triangles_.size();
+    for_each((n + kBlock - 1) / kBlock, threads_, [&](std::size_t block) {
+      for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) body(i);
+    });
+  }
+
+  void measure() {
+    const auto n = static_cast<std::uint32_t>(mesh_.triangles.size());
+    for (std::uint32_t t = 0; t < n; ++t)
+      for (int k = 0; k < 3; ++k) bvh_.bounds.add(mesh_.corner(t, k));
+    bvh_.origin = bvh_.bounds.center();
+    double radius2 = 0.0, extent2 = 0.0;
+    for (std::uint32_t t = 0; t < n; ++t)
+      for (int k = 0; k < 3; ++k) {
+        radius2 = std::max(radius2, (mesh_.corner(t, k) - bvh_.origin).squaredNorm());
+        extent2 = std::max(extent2, mesh_.corner(t, k).squaredNorm());
+      }
+    bvh_.radius_mm = std::sqrt(radius2);
+    bvh_.extent_mm = std::sqrt(extent2);
+  }
+
+  // The largest part is split until there are eight, or only leaves.
+  Opened opened(const Range& range, int depth) {
+    Opened out;
+    out.part[0] = range;
+    while (out.count < Bvh::kWidth) {
       int largest = -1;
-      for (int k = 0; k < count; ++k)
-        if (parts[k].size() > Bvh::kLeafSize &&
-            (largest < 0 || parts[k].size() > parts[largest].size()))
+      for (int k = 0; k < out.count; ++k)
+        if (out.part[k].size() > Bvh::kLeafSize &&
+            (largest < 0 || out.part[k].size() > out.part[largest].size()))
           largest = k;
       if (largest < 0) break;
-      const std::uint32_t middle = split(parts[largest]);
-      parts[count++] = {middle, parts[largest].end};
-      parts[largest].end = middle;
+      const Range whole = out.part[largest];
+      bvh::split(triangles_.data(), whole, depth >= kDeepestByArea, out.part[largest],
+                 out.part[out.count++]);
     }
-    const auto me = static_cast<std::int32_t>(bvh_.nodes.size());
-    bvh_.nodes.emplace_back();
+    return out;
+  }
+
+  Bvh::Node node_of(const Range& range, const Opened& children) const {
     Bvh::Node node{};
-    node.count = count;
-    Box whole;
+    node.count = children.count;
     for (int k = 0; k < Bvh::kWidth; ++k) {
-      const int source = k < count ? k : 0;
-      const Box box = box_of(parts[source]);
-      if (k < count) whole.add(box);
+      const bvh::FloatBox& box = children.part[k < children.count ? k : 0].box;
       for (int c = 0; c < 3; ++c) {
-        const double lo = box.lo[c] - bvh_.origin[c], hi = box.hi[c] - bvh_.origin[c];
-        const float middle = static_cast<float>(0.5 * (lo + hi));
+        const float middle = 0.5F * box.lo[c] + 0.5F * box.hi[c];
         node.local_center[c][k] = middle;
-        node.half[c][k] = rounded_up(std::max(hi - middle, middle - lo) + rounding_);
+        const double m = middle;
+        node.half[c][k] = rounded_up(std::max(box.hi[c] - m, m - box.lo[c]) + rounding_);
       }
     }
-    for (int k = 0; k < Bvh::kWidth; ++k)
-      node.child[k] = k < count ? subtree(parts[k]) : node.child[0];
-    node.size = static_cast<float>(whole.half().sum());
-    bvh_.nodes[me] = node;
+    const auto size = range.box.hi - range.box.lo;
+    node.size = 0.5F * (size[0] + size[1] + size[2]);
+    return node;
+  }
+
+  std::vector<Piece> open_large(std::vector<Piece>& pieces) {
+    std::vector<Opened> children(pieces.size());
+    for_each(pieces.size(), threads_, [&](std::size_t i) {
+      if (pieces[i].large()) children[i] = opened(pieces[i].range, pieces[i].depth);
+    });
+    std::vector<Piece> next;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (!pieces[i].large()) {
+        next.push_back(std::move(pieces[i]));
+        continue;
+      }
+      const auto me = static_cast<std::int32_t>(bvh_.nodes.size());
+      bvh_.nodes.push_back(node_of(pieces[i].range, children[i]));
+      set_child(pieces[i], me);
+      for (int k = 0; k < children[i].count; ++k) {
+        Piece child;
+        child.range = children[i].part[k];
+        child.parent = me;
+        child.slot = k;
+        child.depth = pieces[i].depth + 1;
+        next.push_back(std::move(child));
+      }
+    }
+    return next;
+  }
+
+  void set_child(const Piece& piece, std::int32_t root) {
+    if (piece.parent < 0) {
+      bvh_.root = root;
+      return;
+    }
+    Bvh::Node& parent = bvh_.nodes[piece.parent];
+    parent.child[piece.slot] = root;
+    if (piece.slot == 0)  // unused lanes repeat it
+      for (int k = parent.count; k < Bvh::kWidth; ++k) parent.child[k] = root;
+  }
+
+  void gather(std::vector<Piece>& pieces) {
+    std::size_t nodes = bvh_.nodes.size(), leaves = 0;
+    for (const Piece& p : pieces) {
+      nodes += p.nodes.size();
+      leaves += p.leaves.size();
+    }
+    bvh_.nodes.reserve(nodes);
+    bvh_.leaves.reserve(leaves);
+    for (Piece& p : pieces) {
+      const auto node_0 = static_cast<std::int32_t>(bvh_.nodes.size());
+      const auto leaf_0 = static_cast<std::int32_t>(bvh_.leaves.size());
+      const auto moved = [&](std::int32_t child) {
+        return child >= 0 ? child + node_0 : ~(~child + leaf_0);
+      };
+      for (Bvh::Node& node : p.nodes)
+        for (std::int32_t& child : node.child) child = moved(child);
+      set_child(p, moved(p.root));
+      bvh_.nodes.insert(bvh_.nodes.end(), p.nodes.begin(), p.nodes.end());
+      bvh_.leaves.insert(bvh_.leaves.end(), p.leaves.begin(), p.leaves.end());
+      p.nodes = {};
+      p.leaves = {};
+    }
+  }
+
+  std::int32_t leaf(const Range& range, std::vector<Bvh::Leaf>& leaves) {
+    std::sort(triangles_.begin() + range.begin, triangles_.begin() + range.end,
+              [](const BoxedTriangle& x, const BoxedTriangle& y) { return x.id < y.id; });
+    leaves.push_back({range.begin, range.size()});
+    return ~static_cast<std::int32_t>(leaves.size() - 1);
+  }
+
+  std::int32_t subtree(const Range& range, int depth, std::vector<Bvh::Node>& nodes,
+                       std::vector<Bvh::Leaf>& leaves) {
+    if (range.size() <= Bvh::kLeafSize) return leaf(range, leaves);
+    const Opened children = opened(range, depth);
+    const auto me = static_cast<std::int32_t>(nodes.size());
+    nodes.push_back(node_of(range, children));
+    for (int k = 0; k < Bvh::kWidth; ++k) {
+      const std::int32_t child = k < children.count
+                                     ? subtree(children.part[k], depth + 1, nodes, leaves)
+                                     : nodes[me].child[0];
+      nodes[me].child[k] = child;
+    }
     return me;
   }
 
   const TriangleMesh& mesh_;
   Bvh& bvh_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Box> boxes_;
+  int threads_;
+  std::vector<BoxedTriangle> triangles_;
   double rounding_ = 0.0;
 };
 
@@ -197,10 +280,14 @@ std::size_t Bvh::bytes() const {
   return bytes_of(nodes) + bytes_of(leaves) + bytes_of(triangle_order) + bytes_of(corners);
 }
 
-Bvh build_bvh(const TriangleMesh& mesh) {
+Bvh build_bvh(const TriangleMesh& mesh, int threads) {
   MORTISE_CHECK(!mesh.triangles.empty(), "a tree needs at least one triangle");
+  if (threads <= 0)
+    threads = mesh.triangles.size() < kWorthThreads
+                  ? 1
+                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   Bvh bvh;
-  Builder(mesh, bvh).build();
+  Builder(mesh, bvh, threads).build();
   return bvh;
 }
 

@@ -46,7 +46,8 @@ struct Bvh {
   std::size_t bytes() const;
 };
 
-/// Deterministic. mesh must have at least one triangle. O(n log n).
-Bvh build_bvh(const TriangleMesh& mesh);
+/// Deterministic: the same tree to the last bit at any number of threads. mesh must have at least
+/// one triangle. O(n log n). threads 0: one for small meshes, those of the machine for large ones.
+Bvh build_bvh(const TriangleMesh& mesh, int threads = 0);
 
 }  // namespace mortise
