@@ -51,6 +51,7 @@ std::vector<Asked> ask_everyone(const MotionSet& set, bool quick) {
   };
   for (int decade = 2; decade <= 9; ++decade)
     if (!quick || decade % 2 == 0 || decade == 9) ask_ours(ours(set, std::pow(10.0, -decade)));
+  ask_ours(ours_portable(set, kAccuracyDefault_mm));
   std::vector<Method> peers = fcl_methods(set);
   if (set.convex) peers.push_back(bullet_method(set));
   const Limits limits = quick ? Limits{0.3, 0.3} : Limits{2.0, 2.0};

@@ -21,7 +21,8 @@ std::string given_up(const Score& s) {
 
 const Asked& ours_at_default(const SetRun& run) {
   return *std::find_if(run.asked.begin(), run.asked.end(), [](const Asked& asked) {
-    return asked.method.ours && asked.method.accuracy_mm == kAccuracyDefault_mm;
+    return asked.method.ours && !asked.method.portable &&
+           asked.method.accuracy_mm == kAccuracyDefault_mm;
   });
 }
 
@@ -29,9 +30,10 @@ const Asked& ours_at_default(const SetRun& run) {
 struct Total {
   Method method;
   Score score;
-  std::vector<double> times;    ///< by set: how many times as long as ours, at no larger error
-  std::vector<double> against;  ///< by set: how many times as long as ours at the default accuracy
-  long long larger_error = 0;   ///< sets on which our error is larger at every accuracy
+  std::vector<double> error_mm;  ///< of contacts, early or late, where the truth is the finest
+  std::vector<double> times;     ///< by set: how many times as long as ours, at no larger error
+  std::vector<double> against;   ///< by set: how many times as long as ours at the default accuracy
+  long long larger_error = 0;    ///< sets on which our error is larger at every accuracy
 };
 
 std::vector<Total> totals_of(const std::vector<SetRun>& runs) {
@@ -46,7 +48,11 @@ std::vector<Total> totals_of(const std::vector<SetRun>& runs) {
         total = totals.end() - 1;
         total->method = asked.method;
       }
-      total->score.add(score(run.set, asked.method, asked.answers));
+      const Score scored = score(run.set, asked.method, asked.answers);
+      total->score.add(scored);
+      if (run.set.truth != TruthSource::kMeasured)
+        for (std::size_t i = 0; i < scored.late_mm.size(); ++i)
+          total->error_mm.push_back(std::max(scored.late_mm[i], scored.early_mm[i]));
       const Asked& base = ours_at_default(run);
       std::vector<double> against;
       for (std::size_t i = 0; i < run.set.items.size(); ++i)
@@ -78,7 +84,9 @@ void speed_bars(Report& report, const std::vector<Total>& totals) {
       }
 }
 
-void correctness_bars(Report& report, const std::vector<Total>& totals) {
+void correctness_bars(Report& report, const std::vector<SetRun>& runs,
+                      const std::vector<Total>& totals) {
+  // 1. At every accuracy.
   Score own;
   for (const Total& total : totals)
     if (total.method.ours) own.add(total.score);
@@ -88,6 +96,17 @@ void correctness_bars(Report& report, const std::vector<Total>& totals) {
   none("mortise: missed contacts, all accuracies", own.missed);
   none("mortise: contacts late beyond accuracy", own.late);
   none("mortise: false hits beyond accuracy", own.false_hits);
+  none("mortise: undecided", own.undecided);
+  // 2. Vector code may only discard: without it the same answers.
+  long long different = 0;
+  for (const SetRun& run : runs) {
+    const Asked& base = ours_at_default(run);
+    for (const Asked& asked : run.asked)
+      for (std::size_t i = 0; asked.method.portable && i < base.answers.size(); ++i)
+        different += base.answers[i].outcome != asked.answers[i].outcome ||
+                     base.answers[i].t != asked.answers[i].t;
+  }
+  none("mortise: answers that differ without vector code", different);
 }
 
 }  // namespace
@@ -144,23 +163,20 @@ void summary(Report& report, const std::vector<SetRun>& runs, const std::string&
     const double times = geometric_mean(total.against);
     cells.insert(cells.begin() + 2, {static_cast<long long>(total.against.size()), times});
     report.row(cells);
-    std::vector<double> error_mm = total.score.late_mm;
-    for (std::size_t i = 0; i < error_mm.size(); ++i)
-      error_mm[i] = std::max(error_mm[i], total.score.early_mm[i]);
-    if (error_mm.empty()) continue;
+    if (total.error_mm.empty() || total.method.portable) continue;
     Mark mark;
     mark.name = total.method.name;
     mark.time_ms = times * geometric_mean(own_ms);
-    mark.error_mm = quantile(error_mm, 0.99);
-    mark.median_error_mm = median(error_mm);
+    mark.error_mm = quantile(total.error_mm, 0.99);
+    mark.median_error_mm = median(total.error_mm);
     mark.late = total.score.late > 0;
     mark.missed = total.score.missed;
-    mark.contacts = static_cast<long long>(error_mm.size()) + total.score.missed;
+    mark.contacts = static_cast<long long>(total.score.late_mm.size()) + total.score.missed;
     mark.ours = total.method.ours;
     marks.push_back(mark);
   }
   speed_bars(report, totals);
-  correctness_bars(report, totals);
+  correctness_bars(report, runs, totals);
   if (!plot_file.empty()) draw_time_against_error(marks, plot_file);
 }
 

@@ -21,6 +21,7 @@ struct Answer {
 struct Method {
   std::string name;
   bool ours = false;
+  bool portable = false;  ///< ours without vector code: never the one that peers are held against
   double accuracy_mm = 0.0;  ///< what it is asked for; 0: it promises nothing in mm
   std::function<Answer(const Motion&)> ask;
 };

@@ -13,9 +13,9 @@ Method make(const MotionSet& set, double accuracy_mm, bool portable) {
   query.a = set.moving.get();
   query.b = set.fixed.get();
   query.accuracy_mm = accuracy_mm;
-  (void)portable;
+  query.portable = portable;
   set.moving->bvh(), set.fixed->bvh();
-  return {name, true, accuracy_mm, [query, scratch](const Motion& motion) mutable {
+  return {name, true, portable, accuracy_mm, [query, scratch](const Motion& motion) mutable {
             query.motion_a = motion;
             FirstContact found;
             Answer answer;

@@ -35,7 +35,7 @@ std::shared_ptr<btConvexHullShape> hull_of(const Solid& solid) {
 Method bullet_method(const MotionSet& set) {
   MORTISE_CHECK(set.convex, "Bullet casts convex parts only");
   const auto a = hull_of(*set.moving), b = hull_of(*set.fixed);
-  return {kBullet, false, 0.0, [a, b](const Motion& motion) {
+  return {kBullet, false, false, 0.0, [a, b](const Motion& motion) {
             const btTransform from = bullet(motion.X_W0), to = bullet(motion.X_W1);
             const btTransform still = btTransform::getIdentity();
             Answer answer;

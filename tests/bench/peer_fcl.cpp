@@ -58,7 +58,7 @@ Answer timed(Find&& find) {
 }
 
 Method shipped(const Oriented& a, const Oriented& b) {
-  return {kShipped, false, 0.0, [a, b](const Motion& motion) {
+  return {kShipped, false, false, 0.0, [a, b](const Motion& motion) {
             const fcl::Transform3d T0 = fcl_pose(motion.X_W0), T1 = fcl_pose(motion.X_W1);
             const fcl::Transform3d still = fcl::Transform3d::Identity();
             const fcl::ContinuousCollisionRequestd request(
@@ -75,7 +75,7 @@ Method shipped(const Oriented& a, const Oriented& b) {
 
 template <class BV, class Node>
 Method repaired(const char* name, const Model<BV>& a, const Model<BV>& b) {
-  return {name, false, 0.0, [a, b](const Motion& motion) {
+  return {name, false, false, 0.0, [a, b](const Motion& motion) {
             return timed([&](double& t) {
               const auto moving = fcl_motion(motion);
               const fcl::InterpMotion<double> still(
@@ -92,7 +92,7 @@ Method repaired(const char* name, const Model<BV>& a, const Model<BV>& b) {
 Method on_distance(const Oriented& a, const Oriented& b, const Solid& moving) {
   double radius_mm = 0.0;
   for (const Vec3& p : moving.mesh().points_mm) radius_mm = std::max(radius_mm, p.norm());
-  return {kOnDistance, false, kAccuracyDefault_mm, [a, b, radius_mm](const Motion& motion) {
+  return {kOnDistance, false, false, kAccuracyDefault_mm, [a, b, radius_mm](const Motion& motion) {
             const double speed_mm = motion.travel_upper_bound_mm(radius_mm, 0.0, 1.0);
             return timed([&](double& t) {
               for (t = 0.0; t < 1.0;) {
@@ -106,7 +106,7 @@ Method on_distance(const Oriented& a, const Oriented& b, const Solid& moving) {
 }
 
 Method sub_steps(const char* name, int count, const Oriented& a, const Oriented& b) {
-  return {name, false, 0.0, [a, b, count](const Motion& motion) {
+  return {name, false, false, 0.0, [a, b, count](const Motion& motion) {
             return timed([&](double& t) {
               for (int i = 0; i <= count; ++i) {
                 t = static_cast<double>(i) / count;

@@ -16,8 +16,8 @@ constexpr double kLeastError_mm = 1e-10;
 std::string line_of(const Mark& mark) {
   std::string label = mark.name;
   if (mark.missed > 0) {
-    label += "\\n" + std::to_string(mark.missed) + " of " + std::to_string(mark.contacts) +
-             " contacts missed";
+    label +=
+        " (misses " + std::to_string(mark.missed) + " of " + std::to_string(mark.contacts) + ")";
   }
   char numbers[96];
   std::snprintf(numbers, sizeof numbers, "%.6g %.6g %.6g ", std::max(kLeastError_mm, mark.error_mm),
@@ -70,7 +70,7 @@ std::string script_of(const std::vector<Mark>& marks, const std::string& svg_fil
                      block("front", front_of(marks), [](const Mark&) { return true; });
   text += range_of(marks);
   text += R"(set logscale xy
-set xrange [1e-10:1e4]
+set xrange [1e-10:1e3]
 set format x '10^{%T}'
 set xlabel 'error of the time of contact, as travel, mm (mark: p99, whisker: from the median)'
 set ylabel 'CPU time of a query, ms (geometric mean, one thread)'
@@ -79,14 +79,18 @@ set border 3 lc rgb '#444444'
 set tics nomirror
 set key top left reverse Left samplen 2 spacing 1.2
 set lmargin 10
+left_of(x) = (x < 1e-4 || x > 0.1) ? x : 1/0
+right_of(x) = (x < 1e-4 || x > 0.1) ? 1/0 : x
 draw = "plot $front using 1:3 with fsteps lw 6 lc rgb '#d9ead3' title 'Pareto front of those that miss nothing', \
-  $early using 2:3:2:1 with xerrorbars pt 7 ps 0 lc rgb '#9fc5e8' notitle, \
-  $late using 2:3:2:1 with xerrorbars pt 7 ps 0 lc rgb '#f4b6a0' notitle, \
+  $early using 2:3:($1-$2):(0) with vectors nohead lw 2 lc rgb '#9fc5e8' notitle, \
+  $late using 2:3:($1-$2):(0) with vectors nohead lw 2 lc rgb '#f4b6a0' notitle, \
   $ours using 1:3 with linespoints lw 2 pt 5 ps 1 lc rgb '#38761d' title 'mortise, asked for 10^{-9} ... 10^{-2} mm: never late', \
   $early using 1:3 with points pt 7 ps 1.3 lc rgb '#1155cc' title 'peers, early at most (safe)', \
   $late using 1:3 with points pt 9 ps 1.6 lc rgb '#cc4125' title 'peers, late (parts overlap by then)', \
-  $early using 1:3:4 with labels left offset 1,0.6 font ',11' tc rgb '#1155cc' notitle, \
-  $late using 1:3:4 with labels left offset 1,0.6 font ',11' tc rgb '#cc4125' notitle"
+  $early using (left_of($1)):3:4 with labels right offset 1,0.8 font ',11' tc rgb '#1155cc' notitle, \
+  $early using (right_of($1)):3:4 with labels left offset -1,0.8 font ',11' tc rgb '#1155cc' notitle, \
+  $late using (left_of($1)):3:4 with labels right offset 1,0.8 font ',11' tc rgb '#cc4125' notitle, \
+  $late using (right_of($1)):3:4 with labels left offset -1,0.8 font ',11' tc rgb '#cc4125' notitle"
 )";
   // gnuplot's single quotes know one escape: a quote is written twice.
   const auto quoted = [](const std::string& file) {

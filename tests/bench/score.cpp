@@ -96,7 +96,8 @@ Ratio ratio(const MotionSet& set, const Asked& peer, const std::vector<Asked>& a
   best.times = best.times_in_sum = std::numeric_limits<double>::quiet_NaN();
   for (const Asked& own : all) {
     // From the default on towards finer ones.
-    if (!own.method.ours || own.method.accuracy_mm > kAccuracyDefault_mm || best.ours_as_good)
+    if (!own.method.ours || own.method.portable || own.method.accuracy_mm > kAccuracyDefault_mm ||
+        best.ours_as_good)
       continue;
     std::vector<double> ratios;
     double peer_s = 0.0, own_s = 0.0, peer_worst = 0.0, own_worst = 0.0;
@@ -122,7 +123,6 @@ Ratio ratio(const MotionSet& set, const Asked& peer, const std::vector<Asked>& a
 CrossCheck cross_check(const MotionSet& set, const std::vector<Asked>& all) {
   CrossCheck check;
   const Asked* advancement = find(all, kOnDistance);
-  const Asked* steps = find(all, kSubSteps100);
   for (std::size_t i = 0; i < set.items.size(); ++i) {
     const MotionSet::Item& item = set.items[i];
     bool contradicted = false;
@@ -135,10 +135,12 @@ CrossCheck cross_check(const MotionSet& set, const std::vector<Asked>& all) {
       check.confirmed += !contradicted && error >= -kAgrees_mm;
     }
     // 2. Where a sub-step overlaps there was a contact before.
-    if (steps != nullptr && steps->answers[i].outcome == Outcome::kContact)
-      contradicted = contradicted ||
-                     error_mm(set, i, steps->answers[i], 0.0) < -truth_error_mm(set.truth) ||
-                     !item.contact;
+    for (const char* name : {kSubSteps10, kSubSteps100, kSubSteps1000}) {
+      const Asked* steps = find(all, name);
+      if (steps == nullptr || steps->answers[i].outcome != Outcome::kContact) continue;
+      const double error = error_mm(set, i, steps->answers[i], 0.0);
+      contradicted = contradicted || !item.contact || error < -truth_error_mm(set.truth);
+    }
     check.contradicted += contradicted;
   }
   return check;
