@@ -7,29 +7,53 @@
 #include <cstdio>
 #include <limits>
 
+#include "tests/bench/plot_labels.h"
+
 namespace mortise::bench {
 namespace {
 
-// Errors below this are drawn here, mm: a logarithm has no zero.
-constexpr double kLeastError_mm = 1e-10;
+// The plotted area: its size in pixels, at its place in the picture, and the axes' ranges.
+constexpr double kPicture[2] = {960, 600};
+constexpr double kArea[4] = {0.085, 0.115, 0.985, 0.985};  // left, bottom, right, top
+constexpr double kLeastError_mm = 1e-10, kMostError_mm = 1e3;
 
-std::string line_of(const Mark& mark) {
-  std::string label = mark.name;
-  if (mark.missed > 0) {
-    label +=
-        " (misses " + std::to_string(mark.missed) + " of " + std::to_string(mark.contacts) + ")";
+struct Axes {
+  double least_ms, most_ms;
+  double width() const { return (kArea[2] - kArea[0]) * kPicture[0]; }
+  double height() const { return (kArea[3] - kArea[1]) * kPicture[1]; }
+  double x(double error_mm) const {
+    return width() * std::log10(std::max(kLeastError_mm, error_mm) / kLeastError_mm) /
+           std::log10(kMostError_mm / kLeastError_mm);
   }
-  char numbers[96];
-  std::snprintf(numbers, sizeof numbers, "%.6g %.6g %.6g ", std::max(kLeastError_mm, mark.error_mm),
-                std::max(kLeastError_mm, mark.median_error_mm), mark.time_ms);
-  return numbers + ("\"" + label + "\"\n");
+  double y(double time_ms) const {
+    return height() * std::log10(time_ms / least_ms) / std::log10(most_ms / least_ms);
+  }
+};
+
+std::string format(const char* pattern, double a, double b, double c = 0.0) {
+  char text[160];
+  std::snprintf(text, sizeof text, pattern, a, b, c);
+  return text;
+}
+
+// A decade more than the marks need on top: the key stands there.
+Axes axes_of(const std::vector<Mark>& marks) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const Mark& mark : marks) {
+    least = std::min(least, mark.time_ms);
+    most = std::max(most, mark.time_ms);
+  }
+  return {std::pow(10.0, std::floor(std::log10(0.6 * least))),
+          std::pow(10.0, std::ceil(std::log10(3.0 * most)))};
 }
 
 template <class Keep>
 std::string block(const std::string& name, const std::vector<Mark>& marks, Keep&& keep) {
   std::string text = "$" + name + " << EOD\n";
   for (const Mark& mark : marks)
-    if (keep(mark)) text += line_of(mark);
+    if (keep(mark))
+      text += format("%.6g %.6g %.6g\n", std::max(kLeastError_mm, mark.error_mm),
+                     std::max(kLeastError_mm, mark.median_error_mm), mark.time_ms);
   return text + "EOD\n";
 }
 
@@ -49,28 +73,48 @@ std::vector<Mark> front_of(std::vector<Mark> marks) {
   return front;
 }
 
-// The range of the time, whole decades with room for labels.
-std::string range_of(const std::vector<Mark>& marks) {
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+// gnuplot's single quotes know one escape: a quote is written twice.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string labels_of(const std::vector<Mark>& marks, const Axes& axes) {
+  LabelPlaces places(axes.width(), axes.height());
+  places.take({0, axes.height() - 100, 400, axes.height()});  // the key
   for (const Mark& mark : marks) {
-    least = std::min(least, mark.time_ms);
-    most = std::max(most, mark.time_ms);
+    const double x = axes.x(mark.error_mm), y = axes.y(mark.time_ms);
+    places.take({x - 7, y - 7, x + 7, y + 7});
+    if (!mark.ours) places.take({axes.x(mark.median_error_mm), y - 2, x, y + 2});
   }
-  char text[64];
-  std::snprintf(text, sizeof text, "set yrange [%g:%g]\n",
-                std::pow(10.0, std::floor(std::log10(0.5 * least))),
-                std::pow(10.0, std::ceil(std::log10(1.5 * most))));
+  std::string text;
+  for (const Mark& mark : marks) {
+    if (mark.ours) continue;
+    std::string words = mark.name;
+    if (mark.missed > 0)
+      words += ", misses " + std::to_string(mark.missed) + " of " + std::to_string(mark.contacts);
+    const Placed at = places.place(axes.x(mark.error_mm), axes.y(mark.time_ms), words);
+    text += "set label " + quoted(words) +
+            format(" at graph %.4f,%.4f ", at.x / axes.width(), at.y / axes.height()) +
+            (at.to_the_left ? "right" : "left") + " font ',11' tc rgb '" +
+            (mark.late ? "#cc4125" : "#1155cc") + "'\n";
+  }
   return text;
 }
 
 std::string script_of(const std::vector<Mark>& marks, const std::string& svg_file) {
+  const Axes axes = axes_of(marks);
   std::string text = block("ours", marks, [](const Mark& m) { return m.ours; }) +
                      block("early", marks, [](const Mark& m) { return !m.ours && !m.late; }) +
                      block("late", marks, [](const Mark& m) { return !m.ours && m.late; }) +
                      block("front", front_of(marks), [](const Mark&) { return true; });
-  text += range_of(marks);
+  text += labels_of(marks, axes);
+  text += format("set yrange [%g:%g]\n", axes.least_ms, axes.most_ms);
+  text += format("set xrange [%g:%g]\n", kLeastError_mm, kMostError_mm);
+  text += format("set lmargin at screen %g\nset bmargin at screen %g\n", kArea[0], kArea[1]);
+  text += format("set rmargin at screen %g\nset tmargin at screen %g\n", kArea[2], kArea[3]);
   text += R"(set logscale xy
-set xrange [1e-10:1e3]
 set format x '10^{%T}'
 set xlabel 'error of the time of contact, as travel, mm (mark: p99, whisker: from the median)'
 set ylabel 'CPU time of a query, ms (geometric mean, one thread)'
@@ -78,30 +122,19 @@ set grid xtics ytics lc rgb '#dddddd' lt 1
 set border 3 lc rgb '#444444'
 set tics nomirror
 set key top left reverse Left samplen 2 spacing 1.2
-set lmargin 10
-left_of(x) = (x < 1e-4 || x > 0.1) ? x : 1/0
-right_of(x) = (x < 1e-4 || x > 0.1) ? 1/0 : x
-draw = "plot $front using 1:3 with fsteps lw 6 lc rgb '#d9ead3' title 'Pareto front of those that miss nothing', \
+draw = "plot $front using 1:3 with fsteps lw 7 lc rgb '#cfe8c5' title 'Pareto front of those that miss nothing', \
   $early using 2:3:($1-$2):(0) with vectors nohead lw 2 lc rgb '#9fc5e8' notitle, \
   $late using 2:3:($1-$2):(0) with vectors nohead lw 2 lc rgb '#f4b6a0' notitle, \
-  $ours using 1:3 with linespoints lw 2 pt 5 ps 1 lc rgb '#38761d' title 'mortise, asked for 10^{-9} ... 10^{-2} mm: never late', \
-  $early using 1:3 with points pt 7 ps 1.3 lc rgb '#1155cc' title 'peers, early at most (safe)', \
-  $late using 1:3 with points pt 9 ps 1.6 lc rgb '#cc4125' title 'peers, late (parts overlap by then)', \
-  $early using (left_of($1)):3:4 with labels right offset 1,0.8 font ',11' tc rgb '#1155cc' notitle, \
-  $early using (right_of($1)):3:4 with labels left offset -1,0.8 font ',11' tc rgb '#1155cc' notitle, \
-  $late using (left_of($1)):3:4 with labels right offset 1,0.8 font ',11' tc rgb '#cc4125' notitle, \
-  $late using (right_of($1)):3:4 with labels left offset -1,0.8 font ',11' tc rgb '#cc4125' notitle"
+  $ours using 1:3 with linespoints lw 2 pt 5 ps 0.8 lc rgb '#38761d' title 'mortise, asked for 10^{-9} to 10^{-2} mm: never late', \
+  $early using 1:3 with points pt 7 ps 0.9 lc rgb '#1155cc' title 'peers, early at most (safe)', \
+  $late using 1:3 with points pt 9 ps 1.1 lc rgb '#cc4125' title 'peers, late (parts overlap by then)'"
 )";
-  // gnuplot's single quotes know one escape: a quote is written twice.
-  const auto quoted = [](const std::string& file) {
-    std::string out = "'";
-    for (const char c : file) out += c == '\'' ? std::string("''") : std::string(1, c);
-    return out + "'";
-  };
   const std::string png = svg_file.substr(0, svg_file.rfind(".svg")) + ".png";
-  text += "set terminal svg size 960,600 font 'sans,13' background '#ffffff'\n";
+  text += format("set terminal svg size %g,%g font 'sans,13' background '#ffffff'\n", kPicture[0],
+                 kPicture[1]);
   text += "set output " + quoted(svg_file) + "\neval draw\n";
-  text += "set terminal pngcairo size 960,600 font 'sans,10' background '#ffffff'\n";
+  text += format("set terminal pngcairo size %g,%g font 'sans,10' background '#ffffff'\n",
+                 kPicture[0], kPicture[1]);
   text += "set output " + quoted(png) + "\neval draw\nset output\n";
   return text;
 }

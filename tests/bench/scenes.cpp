@@ -267,17 +267,14 @@ MotionSet nut_large_turn_set(int count) {
   return set;
 }
 
-MotionSet gear_set(int count) {
+MotionSet gear_set(int count, int flank_points) {
   constexpr double kApart_mm = 60.0;  // module 2, 24 and 36 teeth
   MotionSet set;
   set.name = "gears";
-  set.moving = gear_solid(24, 24, 0.0);
-  auto large = generate(
-      "gear",
-      {{"teeth", 36.0}, {"flank_points", 24.0}, {"phase_rad", kPi / 36.0}, {"width_mm", 10.0}});
-  MORTISE_CHECK(bool(large), "the generator refused");
-  for (Vec3& p : large.value().mesh.points_mm) p.x() += kApart_mm;
-  set.fixed = solid(std::move(large.value().mesh));
+  set.moving = gear_solid(24, flank_points, 0.0);
+  TriangleMesh large = gear_solid(36, flank_points, kPi / 36.0)->mesh();
+  for (Vec3& p : large.points_mm) p.x() += kApart_mm;
+  set.fixed = solid(std::move(large));
   set.truth = TruthSource::kFinest;
   Dice dice(107);
   fill(set, count, [&](int i) {

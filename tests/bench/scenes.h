@@ -62,7 +62,7 @@ MotionSet nut_set(int count);
 /// The nut on the bolt turned by 10 to 170 degrees at once.
 MotionSet nut_large_turn_set(int count);
 /// Two spur gears in mesh and apart.
-MotionSet gear_set(int count);
+MotionSet gear_set(int count, int flank_points = 24);
 /// One of the sets of measured motions; empty when the data are not there.
 MotionSet measured_set(const std::string& name, int count);
 
