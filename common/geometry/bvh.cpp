@@ -23,6 +23,9 @@ constexpr int kDeepestByArea = 32;
 // A set of this size is built by one thread. The same at any number of threads: it decides the
 // order of the nodes.
 constexpr std::uint32_t kPiece = 8192;
+// Products of three lengths stay within single precision.
+constexpr double kLargest_mm = 1e12;
+
 // Below this a thread costs more than it saves.
 constexpr std::size_t kWorthThreads = 50'000;
 
@@ -121,8 +124,12 @@ class Builder {
 
   void measure() {
     const auto n = static_cast<std::uint32_t>(mesh_.triangles.size());
+    bool all_finite = true;
     for (std::uint32_t t = 0; t < n; ++t)
-      for (int k = 0; k < 3; ++k) bvh_.bounds.add(mesh_.corner(t, k));
+      for (int k = 0; k < 3; ++k) {
+        all_finite = all_finite && mesh_.corner(t, k).allFinite();
+        bvh_.bounds.add(mesh_.corner(t, k));
+      }
     bvh_.origin = bvh_.bounds.center();
     double radius2 = 0.0, extent2 = 0.0;
     for (std::uint32_t t = 0; t < n; ++t)
@@ -130,6 +137,8 @@ class Builder {
         radius2 = std::max(radius2, (mesh_.corner(t, k) - bvh_.origin).squaredNorm());
         extent2 = std::max(extent2, mesh_.corner(t, k).squaredNorm());
       }
+    MORTISE_CHECK(all_finite && extent2 < kLargest_mm * kLargest_mm,
+                  "a tree needs finite coordinates below 1e12 mm");
     bvh_.radius_mm = std::sqrt(radius2);
     bvh_.extent_mm = std::sqrt(extent2);
   }

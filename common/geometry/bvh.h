@@ -47,7 +47,7 @@ struct Bvh {
 };
 
 /// Deterministic: the same tree to the last bit at any number of threads. mesh must have at least
-/// one triangle. O(n log n). threads 0: one for small meshes, those of the machine for large ones.
+/// one triangle, its coordinates be finite and below 1e12 mm. O(n log n). threads 0: one for small meshes, those of the machine for large ones.
 Bvh build_bvh(const TriangleMesh& mesh, int threads = 0);
 
 }  // namespace mortise

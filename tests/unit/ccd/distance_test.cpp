@@ -1,0 +1,253 @@
+// The distance query: against every pair of triangles, its kernels against each other, the plane
+// between hulls.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "common/ccd/hull_gap.h"
+#include "common/ccd/leaf_discard.h"
+#include "common/geometry/triangle_distance.h"
+#include "tests/support/effort.h"
+#include "tests/unit/ccd/shapes.h"
+
+namespace mortise::testing {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Triangle triangle_of(const TriangleMesh& mesh, std::uint32_t t) {
+  return {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+}
+
+double least_of_all(const TriangleMesh& x, const TriangleMesh& y) {
+  double best = 1e300;
+  for (std::uint32_t i = 0; i < x.triangles.size(); ++i)
+    for (std::uint32_t j = 0; j < y.triangles.size(); ++j)
+      best = std::min(best, triangle_distance(triangle_of(x, i), triangle_of(y, j)).distance_mm);
+  return best;
+}
+
+struct Pair {
+  const char* name;
+  SolidPtr a, b;
+  double reach_mm;
+  double sliver_mm = 0.0;  ///< width of the slivers: each may count as its edges
+};
+
+TriangleMesh needles(std::mt19937_64& random, int count) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  TriangleMesh mesh;
+  for (int k = 0; k < count; ++k) {
+    const Vec3 at(unit(random), unit(random), unit(random));
+    const Vec3 along(unit(random), unit(random), unit(random));
+    const auto first = static_cast<std::uint32_t>(mesh.points_mm.size());
+    mesh.points_mm.insert(mesh.points_mm.end(),
+                          {at, at + along, at + 0.5 * along + 1e-9 * Vec3(1.0, unit(random), 0.0)});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+std::vector<Pair> pairs() {
+  std::mt19937_64 random(61);
+  TriangleMesh flat = box_mesh({4, 4, 0.1});
+  TriangleMesh same = box_mesh({1, 1, 1});
+  for (int k = 0; k < 30; ++k) append(same, box_mesh({1, 1, 1}));
+  TriangleMesh far_off = sphere_mesh(1.0, 16, 9);
+  for (Vec3& x : far_off.points_mm) x += Vec3(1e5, 0, -1e5);
+  std::vector<Pair> all;
+  all.push_back({"spheres", solid(sphere_mesh(1, 24, 13)), solid(sphere_mesh(2, 20, 11)), 4.0});
+  all.push_back(
+      {"peg and bore", solid(prism_mesh(0.9, 24, -1, 1)), solid(tube_mesh(1, 2, 24, -3, 3)), 0.05});
+  all.push_back({"plate and copies", solid(flat), solid(same), 3.0});
+  all.push_back({"needles", solid(needles(random, 150)), solid(needles(random, 150)), 3.0, 2e-9});
+  all.push_back(
+      {"one triangle", solid(needles(random, 1)), solid(sphere_mesh(1, 12, 7)), 3.0, 2e-9});
+  all.push_back({"far from their origins", solid(far_off), solid(far_off), 4.0});
+  return all;
+}
+
+TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
+  std::mt19937_64 random(62);
+  CcdScratch scratch;
+  int apart = 0, crossing = 0;
+  for (const Pair& pair : pairs())
+    for (int i = 0; i < test::effort(40); ++i) {
+      const double angle = pair.reach_mm < 0.1 ? 0.02 : kPi;
+      Pose X_WA = random_pose(random, pair.reach_mm, angle);
+      const Pose X_WB = random_pose(random, 0.0, kPi);
+      // Turned about the middle of each mesh, however far that is from its origin.
+      X_WA.p = X_WB * (pair.b->bvh().origin + X_WA.p) - X_WB.q * (X_WA.q * pair.a->bvh().origin);
+      X_WA.q = (X_WB.q * X_WA.q).normalized();
+      const double size = pair.a->bvh().extent_mm + pair.b->bvh().extent_mm + X_WA.p.norm();
+      const double rounding_mm = 64.0 * kUnitRoundoff * size;
+      const double twin =
+          least_of_all(transformed(pair.a->mesh(), X_WA), transformed(pair.b->mesh(), X_WB));
+      const DistanceResult d = distance(*pair.a, X_WA, *pair.b, X_WB, scratch);
+      ASSERT_TRUE(d.within_limit) << pair.name;
+      ASSERT_NEAR(d.distance_mm, twin, rounding_mm) << pair.name << " " << i;
+      if (twin <= rounding_mm) {
+        EXPECT_TRUE(surfaces_cross(*pair.a, X_WA, *pair.b, X_WB, scratch)) << pair.name;
+        ++crossing;
+        continue;
+      }
+      ++apart;
+      EXPECT_FALSE(surfaces_cross(*pair.a, X_WA, *pair.b, X_WB, scratch)) << pair.name;
+      // The witnesses: that far apart, on the triangles that are named.
+      EXPECT_NEAR((d.point_a_W - d.point_b_W).norm(), d.distance_mm, rounding_mm) << pair.name;
+      const auto on = [&](const Solid& part, const Pose& X, std::uint32_t t, const Vec3& at_W) {
+        const Vec3 x = X.inverse() * at_W;
+        return triangle_distance(triangle_of(part.mesh(), t), {x, x, x}).distance_mm;
+      };
+      const double off_mm = 4.0 * rounding_mm + pair.sliver_mm;
+      EXPECT_LE(on(*pair.a, X_WA, d.triangle_a, d.point_a_W), off_mm) << pair.name;
+      EXPECT_LE(on(*pair.b, X_WB, d.triangle_b, d.point_b_W), off_mm) << pair.name;
+      // Limits: below, above.
+      const DistanceResult below =
+          distance(*pair.a, X_WA, *pair.b, X_WB, scratch, 0.99 * twin - rounding_mm);
+      EXPECT_FALSE(below.within_limit) << pair.name;
+      EXPECT_EQ(below.distance_mm, 0.99 * twin - rounding_mm);
+      const DistanceResult above =
+          distance(*pair.a, X_WA, *pair.b, X_WB, scratch, 1.01 * twin + rounding_mm);
+      EXPECT_TRUE(above.within_limit) << pair.name;
+      EXPECT_NEAR(above.distance_mm, twin, rounding_mm) << pair.name;
+      // Either way round.
+      EXPECT_NEAR(distance(*pair.b, X_WB, *pair.a, X_WA, scratch).distance_mm, twin, rounding_mm)
+          << pair.name;
+    }
+  EXPECT_GT(apart, 100);
+  EXPECT_GT(crossing, 10);
+}
+
+ccd::FourTriangles four(std::mt19937_64& random, const Vec3& at, double size_mm) {
+  std::normal_distribution<double> normal;
+  ccd::FourTriangles t;
+  for (int i = 0; i < 4; ++i) {
+    const double flat = i == 3 ? 1e-9 : 1.0;  // a sliver
+    for (int k = 0; k < 3; ++k)
+      for (int c = 0; c < 3; ++c)
+        t.corner[k][c][i] = at[c] + size_mm * normal(random) * (k == 2 ? flat : 1.0);
+  }
+  return t;
+}
+
+Triangle lane(const ccd::FourTriangles& t, int i) {
+  Triangle out;
+  for (int k = 0; k < 3; ++k)
+    out[k] = Vec3(t.corner[k][0][i], t.corner[k][1][i], t.corner[k][2][i]);
+  return out;
+}
+
+// `shrink` plants a fault: the kernel is given a shorter reach than it is judged by.
+int wrongly_discarded(double shrink, int& discarded, int& kept) {
+  std::mt19937_64 random(63);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int wrong = 0;
+  discarded = kept = 0;
+  for (int n = 0; n < test::effort(3000); ++n) {
+    const Pose at = random_pose(random, 6.0, kPi);
+    const ccd::FourTriangles a = four(random, Vec3::Zero(), 1.0), b = four(random, at.p, 1.0);
+    double d[4][4];
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) d[i][j] = triangle_distance(lane(a, i), lane(b, j)).distance_mm;
+    ccd::Reach reach;
+    const double judged = d[n % 4][n / 4 % 4] * (1.0 + 1e-12) + 1e-13;
+    reach.mm = shrink * judged;
+    const Vec3 direction = at.p.normalized();
+    if (n % 3 != 0)
+      for (int c = 0; c < 3; ++c) reach.n[c] = direction[c];
+    const unsigned near = ccd::discard_kernels().near_pairs(a, b, reach);
+    const unsigned along = ccd::discard_kernels().near_along(a, b, reach);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const unsigned bit = 1U << (4 * i + j);
+        discarded += (near & bit) == 0;
+        kept += (near & bit) != 0;
+        if (d[i][j] <= judged) wrong += (near & bit) == 0 || (along & bit) == 0;
+      }
+  }
+  return wrong;
+}
+
+TEST(DiscardKernels, NeverDiscardWhatIsWithinReach) {
+  int discarded = 0, kept = 0;
+  EXPECT_EQ(wrongly_discarded(1.0, discarded, kept), 0);
+  EXPECT_GT(discarded, 5000);
+  EXPECT_GT(kept, 5000);
+  EXPECT_GT(wrongly_discarded(0.9, discarded, kept), 100) << "the check must be able to fail";
+}
+
+TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
+  const ccd::DiscardKernels* wide = ccd::wide_discard_kernels();
+  if (wide == nullptr) GTEST_SKIP() << "no AVX2 here: the portable kernels are the only ones";
+  const ccd::DiscardKernels& portable = ccd::portable_discard_kernels();
+  std::mt19937_64 random(64);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int n = 0; n < 2000; ++n) {
+    const Pose at = random_pose(random, 5.0, kPi);
+    double corners[36];
+    for (double& x : corners) x = unit(random);
+    ccd::Placement placement;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) placement.r[i][j] = at.rotation()(i, j);
+      placement.p[i] = at.p[i];
+      placement.origin[i] = unit(random);
+    }
+    ccd::FourTriangles a, b, twin;
+    wide->place(corners, 1 + n % 4, placement, a);
+    portable.place(corners, 1 + n % 4, placement, twin);
+    EXPECT_EQ(std::memcmp(&a, &twin, sizeof a), 0);
+    wide->move(corners, 1 + n % 4, placement.origin, b);
+    portable.move(corners, 1 + n % 4, placement.origin, twin);
+    EXPECT_EQ(std::memcmp(&b, &twin, sizeof b), 0);
+    const ccd::Reach reach{3.0 * std::abs(unit(random)), {at.p.x() / 9, at.p.y() / 9, 0.1}};
+    EXPECT_EQ(wide->near_pairs(a, b, reach), portable.near_pairs(a, b, reach));
+    EXPECT_EQ(wide->near_along(a, b, reach), portable.near_along(a, b, reach));
+  }
+}
+
+TEST(HullGap, IsTheDistanceOfConvexPartsAndItsPlaneHoldsForAllCorners) {
+  std::mt19937_64 random(65);
+  int apart = 0, overlapping = 0;
+  for (int n = 0; n < test::effort(200); ++n) {
+    const SolidPtr a = solid(convex_mesh(random, 20)), b = solid(sphere_mesh(1, 14, 8));
+    const Pose X_WA = random_pose(random, 2.0, kPi);
+    ccd::PairMotion motion(*a, still_motion(X_WA), *b, still_motion({}));
+    const ccd::PairState& s = motion.at(0.0);
+    const ccd::HullGap gap = ccd::hull_gap(motion, a->bvh(), b->bvh(), -s.p);
+    const double twin = least_of_all(transformed(a->mesh(), X_WA), b->mesh());
+    if (!gap.apart) {
+      ++overlapping;
+      EXPECT_LE(twin, 1e-12) << "convex parts that are apart have a plane between them";
+      continue;
+    }
+    ++apart;
+    EXPECT_NEAR(gap.gap_mm, twin, 1e-11 * (1.0 + twin));
+    for (const Vec3& x : a->mesh().points_mm)
+      EXPECT_LE(gap.n.dot(X_WA * x - b->bvh().origin), gap.far_a_mm + 1e-14);
+    for (const Vec3& y : b->mesh().points_mm)
+      EXPECT_GE(gap.n.dot(y - b->bvh().origin), gap.near_b_mm - 1e-14);
+    // Leaves above a height: all of them, and none besides.
+    const double floor_mm = 0.3;
+    ccd::LeafList list;
+    ASSERT_TRUE(ccd::leaves_above(b->bvh(), gap.n, floor_mm, list));
+    int expected = 0;
+    for (const Bvh::Leaf& leaf : b->bvh().leaves) {
+      bool above = false;
+      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+        for (int k = 0; k < 3; ++k) {
+          const Vec3& y = b->mesh().corner(b->bvh().triangle_order[i], k);
+          above = above || gap.n.dot(y - b->bvh().origin) > floor_mm;
+        }
+      expected += above;
+    }
+    EXPECT_EQ(list.count, expected);
+  }
+  EXPECT_GT(apart, 50);
+  EXPECT_GT(overlapping, 10);
+}
+
+}  // namespace
+}  // namespace mortise::testing
