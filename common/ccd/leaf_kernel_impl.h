@@ -173,10 +173,15 @@ inline Side one_triangle(const Side& side, int i) {
   return one;
 }
 
+inline Lanes inverse(Lanes y) {
+  const Mask safe = y > all(0.0);
+  return safe ? all(1.0) / (safe ? y : all(1.0)) : all(0.0);
+}
+
 // What the four triangles of a side know of themselves.
 struct Faces {
-  Vec edge[3], normal;  // not unit
-  Lanes length2[3], area2;
+  Vec edge[3], normal, inward[3];  // not unit
+  Lanes length2[3], per_length2[3], area2, per_area2;
 };
 
 inline Faces faces_of(const Vec* x) {
@@ -184,15 +189,27 @@ inline Faces faces_of(const Vec* x) {
   for (int k = 0; k < 3; ++k) {
     f.edge[k] = x[k == 2 ? 0 : k + 1] - x[k];
     f.length2[k] = dot(f.edge[k], f.edge[k]);
+    f.per_length2[k] = inverse(f.length2[k]);
   }
   f.normal = cross(f.edge[0], f.edge[1]);
+  for (int k = 0; k < 3; ++k) f.inward[k] = cross(f.normal, f.edge[k]);
   f.area2 = dot(f.normal, f.normal);
+  f.per_area2 = inverse(f.area2);
   return f;
 }
 
-inline Lanes divide(Lanes x, Lanes y) {
-  const Mask safe = y > all(0.0);
-  return safe ? x / (safe ? y : all(1.0)) : all(0.0);
+inline Faces one_triangle(const Faces& f, int i) {
+  Faces one;
+  for (int k = 0; k < 3; ++k) {
+    one.edge[k] = one_lane(f.edge[k], i);
+    one.inward[k] = one_lane(f.inward[k], i);
+    one.length2[k] = all(f.length2[k][i]);
+    one.per_length2[k] = all(f.per_length2[k][i]);
+  }
+  one.normal = one_lane(f.normal, i);
+  one.area2 = all(f.area2[i]);
+  one.per_area2 = all(f.per_area2[i]);
+  return one;
 }
 
 // The shortest way from triangle a (the same in every lane) to each of the triangles b. It only
@@ -214,34 +231,35 @@ inline Vec shortest_way(const Vec* a, const Faces& fa, const Vec* b, const Faces
       const Lanes aa = fa.length2[i], bb = fb.length2[j];
       const Lanes sine2 = aa * bb - ab * ab;
       const Mask askew = sine2 > aa * bb * all(1e-14);
-      Lanes s = askew ? clamp01(divide(ar * bb - ab * br, sine2)) : all(0.0);
-      const Lanes t = clamp01(divide(ab * s - br, bb));
-      s = clamp01(divide(ab * t + ar, aa));
+      Lanes s = askew ? clamp01((ar * bb - ab * br) / (askew ? sine2 : all(1.0))) : all(0.0);
+      const Lanes t = clamp01((ab * s - br) * fb.per_length2[j]);
+      s = clamp01((ab * t + ar) * fa.per_length2[i]);
       const Vec d = r + t * fb.edge[j] - s * fa.edge[i];
       take(dot(d, d), d, always);
     }
   // Corners over the inside of a face.
   const auto over = [&](const Vec& x, const Vec* t, const Faces& f) {
     Mask in = f.area2 > all(0.0);
-    for (int k = 0; k < 3; ++k) in &= dot(cross(f.normal, f.edge[k]), x - t[k]) >= all(0.0);
+    for (int k = 0; k < 3; ++k) in &= dot(f.inward[k], x - t[k]) >= all(0.0);
     return in;
   };
   for (int k = 0; k < 3; ++k) {
     const Lanes height_b = dot(b[k] - a[0], fa.normal), height_a = dot(a[k] - b[0], fb.normal);
-    take(divide(height_b * height_b, fa.area2), divide(height_b, fa.area2) * fa.normal,
+    take(height_b * height_b * fa.per_area2, height_b * fa.per_area2 * fa.normal,
          over(b[k], a, fa));
-    take(divide(height_a * height_a, fb.area2), divide(-height_a, fb.area2) * fb.normal,
+    take(height_a * height_a * fb.per_area2, -height_a * fb.per_area2 * fb.normal,
          over(a[k], b, fb));
   }
   return way;
 }
 
-inline Vec unit(const Vec& v) { return divide(all(1.0), root(dot(v, v))) * v; }
+inline Vec unit(const Vec& v) { return inverse(root(dot(v, v))) * v; }
 
 // The sum of the normals, each as long as its area, in every lane.
-inline Vec normal_of_leaf(const Faces& f, int count) {
-  Vec sum{{all(0.0), all(0.0), all(0.0)}};
-  for (int i = 0; i < count; ++i) sum = sum + one_lane(f.normal, i);
+inline Vec normal_of_leaf(const Vec* x, int count) {
+  const Vec normal = cross(x[1] - x[0], x[2] - x[0]);
+  Vec sum = one_lane(normal, 0);
+  for (int i = 1; i < count; ++i) sum = sum + one_lane(normal, i);
   return unit(sum);
 }
 
@@ -261,10 +279,8 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
       b.x[k][c] = load(corners_b.at[k][c]);
     }
   }
-  const Faces faces_a = faces_of(a.x), faces_b = faces_of(b.x);
-  const Vec normal_a = normal_of_leaf(faces_a, corners_a.count);
-  const Vec normal_b =
-      Vec{{all(0.0), all(0.0), all(0.0)}} - normal_of_leaf(faces_b, corners_b.count);
+  const Vec normal_a = normal_of_leaf(a.x, corners_a.count);
+  const Vec normal_b = all(-1.0) * normal_of_leaf(b.x, corners_b.count);
   Common common{all(f.v), all(f.taken_mm), all(f.speed_slack), all(f.bend_slack), all(f.horizon)};
   if (f.a.turns) {
     double a_to_axis[3];
@@ -282,27 +298,31 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
   if (f.b.turns) set_turning(b, f.b.arm, f.b, false);
 
   Pairs pairs;
+  for (Lanes& dt : pairs.dt) dt = all(0.0);
   LeafAnswer answer;
-  double whole[2];
-  for (int d = 0; d < 2; ++d) {
-    const Vec& n = d == 0 ? normal_a : normal_b;
+  // Along one direction for all: each triangle of the side that goes against all of the other,
+  // which then is one corner. Least of all pairs.
+  const auto free_along = [&](const Vec& n) {
     const Along of_a = along_a(a, n), of_b = along_b(b, n);
-    whole[d] = least(b.goes && !a.goes ? free_time(common, n, together(of_a, true), of_b)
-                                       : free_time(common, n, of_a, together(of_b, false)));
-    if (whole[d] > 0.0 && whole[d] >= enough) {
-      answer.dt = whole[d];
+    if (b.goes && !a.goes) {
+      const Lanes dt = free_time(common, n, together(of_a, true), of_b);
+      for (Lanes& row : pairs.dt) row = larger(row, dt);
+      return least(dt);
+    }
+    const Lanes dt = free_time(common, n, of_a, together(of_b, false));
+    for (int i = 0; i < 4; ++i)
+      if (!pairs.exact[i]) pairs.dt[i] = larger(pairs.dt[i], all(dt[i]));
+    return least(dt);
+  };
+  const Vec* normals[2] = {&normal_a, &normal_b};
+  for (const Vec* n : normals) {
+    const double whole = free_along(*n);
+    if (whole > 0.0 && whole >= enough) {
+      answer.dt = whole;
       return answer;
     }
   }
-  for (int i = 0; i < 4; ++i) pairs.dt[i] = all(whole[0] > whole[1] ? whole[0] : whole[1]);
-  const auto free_along = [&](const Vec& n) {
-    const Along of_b = along_b(b, n);
-    for (int i = 0; i < corners_a.count; ++i) {
-      if (pairs.exact[i]) continue;
-      pairs.dt[i] = larger(pairs.dt[i], free_time(common, n, along_a(one_triangle(a, i), n), of_b));
-    }
-  };
-  free_along(whole[0] > whole[1] ? normal_a : normal_b);
+  const Faces faces_a = faces_of(a.x), faces_b = faces_of(b.x);
   double best = enough;
   while (true) {
     int row = -1;
@@ -317,7 +337,7 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
     }
     if (row < 0) break;
     const Side one = one_triangle(a, row);
-    const Faces faces_one = faces_of(one.x);
+    const Faces faces_one = one_triangle(faces_a, row);
     const Vec n = unit(shortest_way(one.x, faces_one, b.x, faces_b));
     const Along of_a = along_a(one, n), of_b = along_b(b, n);
     const Lanes gap = least_of(of_b.place, of_b.count) - most_of(of_a.place, of_a.count);
