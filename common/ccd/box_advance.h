@@ -25,7 +25,7 @@ struct DirectionTerms {
 /// Of one body: see TurnTerms in leaf_kernel.h.
 struct BoxTurn {
   float w[3], arm[3], speed;
-  float keep, bow;
+  float bow, lift;
   bool turns;
 };
 

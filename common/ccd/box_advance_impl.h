@@ -66,7 +66,7 @@ inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
   const Lanes square = s * s + all(2.0F) * bend * larger(gap, zero);
   const Lanes disc = root(larger(square, zero));
   const Mask closing = s >= zero;
-  const Lanes numerator = closing ? all(2.0F) * gap : disc - s;
+  const Lanes numerator = closing ? all(2.0F) * larger(gap, zero) : disc - s;
   const Lanes denominator = closing ? s + disc : bend;
   // Beyond 2^20 ticks is never. A root that cancelled away in the square is nobody's proof.
   const Mask ever = (denominator > numerator * all(0x1p-20F)) & (square >= all(-8e-6F) * s * s);
@@ -74,15 +74,19 @@ inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
   return gap > zero ? smaller(dt, horizon) : zero;
 }
 
-// Upper bounds of the speed and the acceleration of any point of a box along a direction; a
-// negative speed by turning and a negative acceleration hold in part only (see TurnTerms).
+// Upper bounds of the speed and the acceleration of any point of a box along a direction (see
+// TurnTerms).
 struct Going {
   Lanes s, bend;
 };
 
-inline void add(Going& going, Lanes s, Lanes bend, const BoxTurn& turn) {
-  going.s += larger(s, s * all(turn.keep));
-  going.bend += larger(bend, bend * all(turn.bow));
+// s and bend of the centre, and by how much a corner exceeds either.
+inline void add(Going& going, Lanes s, Lanes reach, Lanes bend, Lanes bend_reach,
+                const BoxTurn& turn) {
+  const Lanes largest = bend + bend_reach;
+  going.s += s + reach;
+  going.bend +=
+      larger(largest, largest * all(turn.bow)) + all(turn.lift) * larger(reach - s, all(0.0F));
 }
 
 // Whichever way the body will have turned: |n x w| |w x e| (ALG 2.1 B3'), m = n x w.
@@ -110,14 +114,14 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     if constexpr (kTurnsA) {
       const Lanes s = dot(n.a.turn, u) + all(n.a.turn_0);
       const Lanes bend = dot(n.a.bend, u) + all(n.a.bend_0);
-      add(going, (forward ? s : -s) + dot(n.a.reach, a.half),
-          (forward ? bend : -bend) + dot(n.a.bend_reach, a.half), f.a);
+      add(going, forward ? s : -s, dot(n.a.reach, a.half), forward ? bend : -bend,
+          dot(n.a.bend_reach, a.half), f.a);
     }
     if constexpr (kTurnsB) {
       const Lanes s = dot(n.b.turn, b.center) + all(n.b.turn_0);
       const Lanes bend = dot(n.b.bend, b.center) + all(n.b.bend_0);
-      add(going, (forward ? -s : s) + dot(n.b.reach, b.half),
-          (forward ? -bend : bend) + dot(n.b.bend_reach, b.half), f.b);
+      add(going, forward ? -s : s, dot(n.b.reach, b.half), forward ? -bend : bend,
+          dot(n.b.bend_reach, b.half), f.b);
     }
     best = larger(best, time_to_close(free_gap, going.s, going.bend, all(f.horizon)));
   };
@@ -154,7 +158,7 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
         reach += in_axis_of_a(m) * a.half[j];
         bend_reach += in_axis_of_a(g) * a.half[j];
       }
-      add(going, dot(m, e) + reach, dot(g, e) + bend_reach, f.a);
+      add(going, dot(m, e), reach, dot(g, e), bend_reach, f.a);
       largest_bend += any_bend(m, e, a, f.a);
     }
     if constexpr (kTurnsB) {
@@ -168,7 +172,7 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
         reach += magnitude(m[j]) * b.half[j];
         bend_reach += magnitude(g[j]) * b.half[j];
       }
-      add(going, reach - dot(m, e), bend_reach - dot(g, e), f.b);
+      add(going, -dot(m, e), reach, -dot(g, e), bend_reach, f.b);
       largest_bend += any_bend(m, e, b, f.b);
     }
     // Far from each other, beyond the horizon of what bends away.

@@ -37,17 +37,24 @@ class Query {
         accuracy_mm_(std::max(query.accuracy_mm, kRoundingsPerAccuracy * motion_.rounding_mm())),
         kernel_(query.portable ? portable_leaf_kernel() : leaf_kernel()) {}
 
-  // 1. one inside the other: no surface need ever meet.
-  // 2. spheres too far for the tick.
+  // 1. spheres too far for the tick.
+  // 2. one inside the other: no surface need ever meet.
   // 3. the trees; a contact at t = 0 is looked at more closely.
   // 4. those that only touch at the start, if wanted, once more with distances below zero.
   FirstContact answer() {
-    if (query_.check_contained &&
+    const double apart_mm =
+        motion_.at(0.0).p.norm() - a_.bvh().radius_mm - b_.bvh().radius_mm - motion_.rounding_mm();
+    if (apart_mm - motion_.travel_mm() > query_.separation_mm + accuracy_mm_) {
+      result_.state = ContactState::kFree;
+      result_.t_clear = result_.t_contact = 1.0;
+      result_.distance_mm = apart_mm - motion_.travel_mm();
+      return result_;
+    }
+    if (query_.check_contained && apart_mm <= 0.0 &&
         contained(a_, query_.motion_a.X_W0, b_, query_.motion_b.X_W0, accuracy_mm_)) {
       result_.contained = true;
       return at_start(ContactState::kOverlappingAtStart, {});
     }
-    if (spheres_stay_apart()) return result_;
     Goal goal;
     goal.contact_mm = query_.separation_mm + kContactAt * accuracy_mm_;
     goal.target_mm = query_.separation_mm + kAim * accuracy_mm_;
@@ -57,22 +64,6 @@ class Query {
   }
 
  private:
-  bool spheres_stay_apart() {
-    const PairState& s = motion_.at(0.0);
-    const double apart_mm = s.p.norm() - a_.bvh().radius_mm - b_.bvh().radius_mm;
-    const auto travel_mm = [](const Motion& motion, const Bvh& bvh) {
-      return motion.travel_upper_bound_mm(bvh.radius_mm + (bvh.origin - motion.reference_P).norm(),
-                                          0.0, 1.0);
-    };
-    const double left_mm = apart_mm - travel_mm(query_.motion_a, a_.bvh()) -
-                           travel_mm(query_.motion_b, b_.bvh()) - motion_.rounding_mm();
-    if (left_mm <= query_.separation_mm + accuracy_mm_) return false;
-    result_.state = ContactState::kFree;
-    result_.t_clear = result_.t_contact = 1.0;
-    result_.distance_mm = left_mm;
-    return true;
-  }
-
   FirstContact at_start(ContactState state, const Nearest& nearest) {
     result_.state = state;
     result_.t_clear = result_.t_contact = 0.0;

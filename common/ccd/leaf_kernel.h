@@ -16,16 +16,18 @@ struct LeafCorners {
 /// A point at e from the axis of a body that turns with w, whose axis moves with v, goes along a
 /// direction n (fixed while time advances by dt, phi = |w| dt) by
 ///   n.v dt + n.(w x e) sin(phi) / |w| + n.(w x (w x e)) (1 - cos(phi)) / |w|^2,
-/// exactly. Below the horizon sin(phi) >= keep phi and 1 - cos(phi) >= bow phi^2 / 2, so that
-///   s = n.v + n.(w x e) (times keep where negative), bend = n.(w x (w x e)) (times bow where
-///   negative)
+/// exactly. Below the horizon T, 1 - cos(phi) >= bow phi^2 / 2 and sin(phi) >= phi - phi^3 / 6,
+/// and (|w| dt)^3 <= |w|^3 T dt^2, so that
+///   s = n.v + n.(w x e),
+///   bend = n.(w x (w x e)) (times bow where negative) + lift |n.(w x e)| (where that is negative)
 /// bound it from above by s dt + bend dt^2 / 2. Unlike a bound by |w|^2 times the distance from the
 /// axis, bend is negative where a point turns away from the other part: a shaft that turns in its
 /// bore is free for the whole tick in one step.
 struct TurnTerms {
   double w[3] = {0.0, 0.0, 0.0};
   double arm[3] = {0.0, 0.0, 0.0};  ///< from the axis of rotation to the origin of A's / B's tree
-  double keep = 1.0, bow = 1.0;
+  double bow = 1.0;                 ///< 1 - (|w| T)^2 / 12
+  double lift = 0.0;                ///< |w|^2 T / 3
   bool turns = false;
 };
 

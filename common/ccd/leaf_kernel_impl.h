@@ -55,7 +55,7 @@ inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
   const Lanes square = s * s + all(2.0) * bend * larger(gap, zero);
   const Lanes disc = root(larger(square, zero));
   const Mask closing = s >= zero;
-  const Lanes numerator = closing ? all(2.0) * gap : disc - s;
+  const Lanes numerator = closing ? all(2.0) * larger(gap, zero) : disc - s;
   const Lanes denominator = closing ? s + disc : bend;
   // Beyond 2^20 ticks is never; so is a parabola without a root.
   const Mask ever = (denominator > numerator * all(0x1p-20)) & (square >= zero);
@@ -67,15 +67,15 @@ inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
 struct Side {
   Vec x[3], turn[3], bend[3];
   bool goes = false;
-  Lanes keep, bow;
+  Lanes bow, lift;
 };
 
 inline void set_turning(Side& side, const double* x_to_axis, const TurnTerms& terms,
                         bool backwards) {
   const Vec w = all(terms.w), to_axis = all(x_to_axis);
   side.goes = true;
-  side.keep = all(terms.keep);
   side.bow = all(terms.bow);
+  side.lift = all(terms.lift);
   for (int k = 0; k < 3; ++k) {
     const Vec turn = cross(w, side.x[k] + to_axis);
     side.bend[k] = cross(w, turn);
@@ -109,8 +109,8 @@ inline Along along_a(const Side& side, const Vec& n) {
   }
   for (int k = 0; k < 3; ++k) {
     const Lanes s = dot(n, side.turn[k]), bend = dot(n, side.bend[k]);
-    result.s[k] = larger(s, s * side.keep);
-    result.bend[k] = larger(bend, bend * side.bow);
+    result.s[k] = s;
+    result.bend[k] = larger(bend, bend * side.bow) + side.lift * larger(-s, all(0.0));
   }
   return result;
 }
@@ -127,8 +127,8 @@ inline Along along_b(const Side& side, const Vec& n) {
   }
   for (int k = 0; k < 3; ++k) {
     const Lanes s = -dot(n, side.turn[k]), bend = -dot(n, side.bend[k]);
-    result.s[k] = larger(s, s * side.keep);
-    result.bend[k] = larger(bend, bend * side.bow);
+    result.s[k] = s;
+    result.bend[k] = larger(bend, bend * side.bow) + side.lift * larger(-s, all(0.0));
   }
   return result;
 }
@@ -162,8 +162,8 @@ inline Along together(const Along& x, bool of_a) {
 inline Side one_triangle(const Side& side, int i) {
   Side one;
   one.goes = side.goes;
-  one.keep = side.keep;
   one.bow = side.bow;
+  one.lift = side.lift;
   for (int k = 0; k < 3; ++k) {
     one.x[k] = one_lane(side.x[k], i);
     if (!side.goes) continue;
@@ -263,6 +263,9 @@ inline Vec normal_of_leaf(const Vec* x, int count) {
   return unit(sum);
 }
 
+// Triangles that share the corner or the edge that decides are not looked at for the last bits.
+constexpr double kGoodEnough = 0.999;
+
 struct Pairs {
   Lanes dt[4];  // row i: triangle i of A against the four of B
   bool exact[4] = {false, false, false, false};
@@ -326,7 +329,7 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
   double best = enough;
   while (true) {
     int row = -1;
-    double earliest = best;
+    double earliest = kGoodEnough * best;
     for (int i = 0; i < corners_a.count; ++i) {
       if (pairs.exact[i]) continue;
       const double dt = least(pairs.dt[i]);

@@ -52,8 +52,8 @@ Along along(const TurnTerms& terms, const Vec3& n, const Vec3& x, const Vec3& x_
   const Vec3 w = vec(terms.w);
   const Vec3 turn = w.cross(x + x_to_axis);
   const double s = sign * n.dot(turn), bend = sign * n.dot(w.cross(turn));
-  result.s = std::max(s, s * terms.keep);
-  result.bend = std::max(bend, bend * terms.bow);
+  result.s = s;
+  result.bend = std::max(bend, bend * terms.bow) + terms.lift * std::max(-s, 0.0);
   return result;
 }
 

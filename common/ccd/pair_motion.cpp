@@ -13,7 +13,7 @@ constexpr double kFloatRounding = 2e-6;
 
 // A bound along a direction holds while a body turns by no more than this (see TurnTerms): what it
 // gives away at the end is a 25th of the speed by turning. Ticks seldom turn as far.
-constexpr double kHorizon_rad = 0.5;
+constexpr double kHorizon_rad = 1.0;
 
 float rounded_up(double x) {
   const float f = static_cast<float>(x);
@@ -27,10 +27,6 @@ void copy(const Vector& from, float* to) {
 
 void copy(const Vec3& from, double* to) {
   for (int c = 0; c < 3; ++c) to[c] = from[c];
-}
-
-double largest_speed(const Motion& motion, double radius, const Vec3& origin_P) {
-  return motion.travel_upper_bound_mm(radius + (origin_P - motion.reference_P).norm(), 0.0, 1.0);
 }
 
 // A group that is moved as one: nothing changes between its parts.
@@ -80,36 +76,46 @@ void BodyPath::at(double t, Mat3& R, Vec3& origin, Vec3& arm) const {
 
 PairMotion::PairMotion(const Solid& a, const Motion& motion_a, const Solid& b,
                        const Motion& motion_b)
-    : solid_b_(b),
-      world_b_(motion_b),
-      b_still_(!motion_b.moves() || moves_as_one(motion_a, motion_b)),
-      radius_a_(a.bvh().radius_mm),
-      radius_b_(b.bvh().radius_mm) {
+    : solid_b_(b), world_b_(motion_b), radius_a_(a.bvh().radius_mm), radius_b_(b.bvh().radius_mm) {
   const Vec3& origin_a = a.bvh().origin;
   const Vec3& origin_b = b.bvh().origin;
-  const auto from_reference = [](const Motion& motion, const Vec3& origin_P) {
-    return Vec3(motion.X_W0.q * (origin_P - motion.reference_P));
-  };
-  // The translations are subtracted first: far from the world's origin nothing else is lost.
-  if (b_still_) {
-    const Motion seen =
-        seen_from(motion_b.moves() ? still_motion(motion_a.X_W0) : motion_a, motion_b.X_W0);
-    path_a_ = BodyPath(seen, seen.X_W0 * origin_a - origin_b, from_reference(seen, origin_a));
-  } else {
-    const Vec3 apart = motion_a.X_W0.p - motion_b.X_W0.p;
-    path_a_ =
-        BodyPath(motion_a, apart + motion_a.X_W0.q * origin_a, from_reference(motion_a, origin_a));
-    path_b_ = BodyPath(motion_b, motion_b.X_W0.q * origin_b, from_reference(motion_b, origin_b));
-  }
   const auto size = [](const Motion& motion) {
     return std::max(motion.X_W0.p.norm(), motion.X_W1.p.norm());
   };
   const double extent = a.bvh().extent_mm + b.bvh().extent_mm + size(motion_a) + size(motion_b);
   rounding_mm_ = kRoundingFactor * kUnitRoundoff * extent;
-  const double largest_speed_mm =
-      largest_speed(motion_a, radius_a_, origin_a) + largest_speed(motion_b, radius_b_, origin_b);
-  speed_rounding_mm_ = kRoundingFactor * kUnitRoundoff *
-                       (largest_speed_mm + extent * (path_a_.speed() + path_b_.speed()));
+  // Less than rounding is no motion.
+  const auto travel = [&](const Motion& motion, double radius, const Vec3& origin_P) {
+    const double mm =
+        motion.travel_upper_bound_mm(radius + (origin_P - motion.reference_P).norm(), 0.0, 1.0);
+    return mm > kUnitRoundoff * extent ? mm : 0.0;
+  };
+  double travel_a = travel(motion_a, radius_a_, origin_a);
+  double travel_b = travel(motion_b, radius_b_, origin_b);
+  if (moves_as_one(motion_a, motion_b)) travel_a = travel_b = 0.0;
+  b_still_ = travel_b == 0.0;
+  // The translations are subtracted first: far from the world's origin nothing else is lost.
+  if (b_still_) {
+    const Pose X_BW0 = motion_b.X_W0.inverse();
+    Motion seen = travel_a > 0.0 ? motion_a : still_motion(motion_a.X_W0);
+    seen.v_W = X_BW0.q * seen.v_W;
+    seen.w_W = X_BW0.q * seen.w_W;
+    seen.axis_W = X_BW0 * seen.axis_W;
+    seen.X_W0 = X_BW0 * seen.X_W0;
+    path_a_ = BodyPath(seen, seen.X_W0 * origin_a - origin_b,
+                       seen.X_W0.q * (origin_a - seen.reference_P));
+  } else {
+    const auto path = [&](const Motion& motion, double mm, const Vec3& origin, const Vec3& base) {
+      const Motion moving = mm > 0.0 ? motion : still_motion(motion.X_W0);
+      return BodyPath(moving, base + moving.X_W0.q * origin,
+                      moving.X_W0.q * (origin - moving.reference_P));
+    };
+    path_a_ = path(motion_a, travel_a, origin_a, motion_a.X_W0.p - motion_b.X_W0.p);
+    path_b_ = path(motion_b, travel_b, origin_b, Vec3::Zero());
+  }
+  travel_mm_ = travel_a + travel_b;
+  speed_rounding_mm_ =
+      kRoundingFactor * kUnitRoundoff * (travel_mm_ + extent * (path_a_.speed() + path_b_.speed()));
 }
 
 const PairState& PairMotion::at(double t) {
@@ -146,9 +152,9 @@ void PairMotion::set_terms(TurnTerms& terms, const BodyState& body, double speed
   terms.turns = speed > 0.0;
   copy(body.w, terms.w);
   copy(body.arm, terms.arm);
-  const double phi = speed * std::min(horizon, 1.0 - state_.t);
-  terms.keep = 1.0 - phi * phi / 6.0;
+  const double ticks = std::min(horizon, 1.0 - state_.t), phi = speed * ticks;
   terms.bow = 1.0 - phi * phi / 12.0;
+  terms.lift = speed * speed * ticks / 3.0;
 }
 
 const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
@@ -233,7 +239,7 @@ const BoxFrame& PairMotion::frame(double target_mm) {
     copy(body.arm, turn.arm);
     turn.speed = rounded_up(speed);
     // Half an ulp of float more than what the rounding to nearest may lose.
-    turn.keep = static_cast<float>(terms.keep) * (1.0F - 1.2e-7F);
+    turn.lift = rounded_up(terms.lift);
     turn.bow = static_cast<float>(terms.bow) * (1.0F - 1.2e-7F);
     turn.turns = terms.turns;
   };

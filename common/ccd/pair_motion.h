@@ -63,6 +63,8 @@ class PairMotion {
   double rounding_mm() const { return rounding_mm_; }
   /// Rounding of a speed along a direction, mm per tick.
   double speed_rounding_mm() const { return speed_rounding_mm_; }
+  /// Upper bound of the ways of both bodies, mm.
+  double travel_mm() const { return travel_mm_; }
   Vec3 to_world(const Vec3& x_local_b, double t) const;
 
  private:
@@ -74,7 +76,7 @@ class PairMotion {
   Motion world_b_;
   bool b_still_;
   BodyPath path_a_, path_b_;
-  double rounding_mm_, speed_rounding_mm_;
+  double rounding_mm_, speed_rounding_mm_, travel_mm_;
   double radius_a_, radius_b_;
   PairState state_;
   BoxFrame frame_{};
