@@ -82,11 +82,10 @@ struct Simplex {
       return true;
     }
     const Vec3 e3 = point[index[3]] - o;
-    const double volume = e1.dot(e2.cross(e3));
-    if (volume == 0.0) return false;
-    const double u = (-o).dot(e2.cross(e3)) / volume, v = e1.dot((-o).cross(e3)) / volume,
-                 w = e1.dot(e2.cross(-o)) / volume;
-    if (!(u > 0.0 && v > 0.0 && w > 0.0 && u + v + w < 1.0)) return false;
+    const double volume = e1.dot(e2.cross(e3)), sign = volume > 0.0 ? 1.0 : -1.0;
+    const double u = sign * (-o).dot(e2.cross(e3)), v = sign * e1.dot((-o).cross(e3)),
+                 w = sign * e1.dot(e2.cross(-o));
+    if (!(u > 0.0 && v > 0.0 && w > 0.0 && u + v + w < sign * volume)) return false;
     at = Vec3::Zero();
     return true;
   }

@@ -148,7 +148,8 @@ unsigned near_along(const FourTriangles& a, const FourTriangles& b, const Reach&
 
 // Cheapest first.
 unsigned near_pairs(const FourTriangles& a, const FourTriangles& b, const Reach& reach) {
-  if (!(reach.mm < 1e150)) return 0xffffU;
+  // Beyond it squares could overflow.
+  if (!(reach.mm < 1e100)) return 0xffffU;
   const Lanes reach2 = all(reach.mm * reach.mm);
   unsigned mask = along(a, b, reach);
   if (mask == 0) return 0;

@@ -11,6 +11,9 @@ constexpr int kBins = 16;
 constexpr int kFewBins = 8;
 constexpr std::uint32_t kSmall = 32;
 
+// Below this the reciprocal could overflow; such sets are halved.
+constexpr float kLeastWidth = 1e-36F;
+
 typedef int IntQuad __attribute__((vector_size(16)));
 
 inline Quad smaller(Quad a, Quad b) { return a < b ? a : b; }
@@ -133,10 +136,8 @@ void split(BoxedTriangle* triangles, const Range& range, bool balanced, Range& l
   for (int c = 1; c < 3; ++c)
     if (width[c] > width[widest]) widest = c;
   Binning binning{centres.lo, Quad{}, n < kSmall ? kFewBins : kBins};
-  for (int c = 0; c < 3; ++c) {
-    const float scale = static_cast<float>(binning.count) / width[c];
-    if (width[c] > 0.0F && scale < FloatBox::kInfinity) binning.scale[c] = scale;
-  }
+  for (int c = 0; c < 3; ++c)
+    if (width[c] > kLeastWidth) binning.scale[c] = static_cast<float>(binning.count) / width[c];
   const Cut cut = balanced ? Cut{} : best_cut(t, n, binning);
   if (cut.axis < 0) {
     halve(triangles, range, widest, left, right);
