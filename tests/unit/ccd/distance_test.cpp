@@ -1,5 +1,6 @@
 // The distance query: against every pair of triangles, its kernels against each other, the plane
 // between hulls.
+#include <fenv.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,6 +15,9 @@
 
 namespace mortise::testing {
 namespace {
+
+// No infinity and nothing that is no number may come out of an operation.
+[[maybe_unused]] const int g_traps = feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 
 constexpr double kPi = std::numbers::pi;
 

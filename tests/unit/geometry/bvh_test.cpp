@@ -1,5 +1,6 @@
 #include "common/geometry/bvh.h"
 
+#include <fenv.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -9,6 +10,9 @@
 
 namespace mortise {
 namespace {
+
+// No infinity and nothing that is no number may come out of an operation.
+[[maybe_unused]] const int g_traps = feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 
 // What is wrong with a tree, as counts.
 struct Faults {
