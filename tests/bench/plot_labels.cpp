@@ -19,11 +19,12 @@ PixelBox box_of(const Placed& placed, const std::string& text) {
 
 Placed LabelPlaces::place(double x, double y, const std::string& text) {
   const Placed right{x + kAside, y, false};
+  const double from = std::max(0.0, x - kAside), to = std::min(width_, x + kAside);
   for (const Placed& candidate :
-       {right, Placed{x + kAside, y + kAbove, true}, Placed{x - kAside, y + kAbove, false},
-        Placed{x + kAside, y - kAbove, true}, Placed{x - kAside, y - kAbove, false},
-        Placed{x + kAside, y + 2 * kAbove, true}, Placed{x + kAside, y - 2 * kAbove, true},
-        Placed{x - kAside, y - 2 * kAbove, false}, Placed{x + kAside, y + 3 * kAbove, true}}) {
+       {right, Placed{to, y + kAbove, true}, Placed{from, y + kAbove, false},
+        Placed{to, y - kAbove, true}, Placed{from, y - kAbove, false},
+        Placed{to, y + 2 * kAbove, true}, Placed{to, y - 2 * kAbove, true},
+        Placed{from, y - 2 * kAbove, false}, Placed{to, y + 3 * kAbove, true}}) {
     const PixelBox box = box_of(candidate, text);
     const bool inside = box.x0 >= 0 && box.x1 <= width_ && box.y0 >= 0 && box.y1 <= height_;
     if (!inside || std::any_of(taken_.begin(), taken_.end(),
