@@ -164,7 +164,7 @@ TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outs
   const Vec3 out_a = na.isZero(0.0) ? na : Vec3(na.normalized());
   const Vec3 out_b = nb.isZero(0.0) ? nb : Vec3(nb.normalized());
   const auto allowed = [&](const Vec3& from_a_to_b) {
-    return !outside_only || (from_a_to_b.dot(out_a) > -kBehind && from_a_to_b.dot(out_b) < kBehind);
+    return !outside_only || from_a_to_b.dot(out_a) > -kBehind || from_a_to_b.dot(out_b) < kBehind;
   };
   TriangleSeparation best{-std::numeric_limits<double>::infinity(), Vec3::Zero()};
   const auto along = [&](const Vec3& direction) {

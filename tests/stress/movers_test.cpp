@@ -48,7 +48,7 @@ TEST(Movers, SwapPlaces) {
 TEST(Movers, MoveTogether) {
   Sweep sweep("two movers in one group");
   int i = 0;
-  for (const double gap_mm : {1.0, 1e-2, 1e-4, 1e-5})
+  for (const double gap_mm : {1.0, 1e-2, 1e-4, 2e-6})
     for (int round = 0; round < test::effort(15); ++round, ++i) {
       std::mt19937_64 random(static_cast<std::uint64_t>(510'000 + i));
       Case c;
@@ -93,7 +93,7 @@ TEST(Movers, HardlyOrNotAtAll) {
     c.b = random_shape(random, i / 3 % kShapes);
     const Pose at = any_pose(random, 1.5), by = any_pose(random, 1.0);
     c.check_contained = true;
-    for (const double way_mm : {0.0, 1e-300, 1e-160, 1e-30, 1e-17, 1e-9}) {
+    for (const double way_mm : {0.0, 4.9e-324, 1e-300, 1e-160, 1e-30, 1e-17, 1e-9}) {
       const Vec3 v = way_mm * Vec3(1, -1, 1);
       const auto go = [&](const Pose& X) {
         Motion m = linear_motion(X, {X.q, X.p + v}, Vec3::Zero());
