@@ -153,9 +153,9 @@ bool triangles_cross(const Triangle& a, const Triangle& b) {
 
 namespace {
 
-// Cosine of how near the back of a triangle a direction must point to be "behind it" (25 degrees).
-// Faces that pass through each other at a larger angle cross on the way. Only across an edge
-// sharper than that could such a direction still part two parts.
+// Cosine of how near the back of both triangles a direction must point to be "behind" them (25
+// degrees). Faces at a larger angle to one another cross when one goes through the other. Behind
+// one of them alone proves nothing: there may be the other side of a sharp edge.
 constexpr double kBehind = 0.9;
 
 TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outside_only) {

@@ -35,9 +35,10 @@ struct TriangleSeparation {
 /// Best of the separating axes: both normals, edge by edge, edges in their planes.
 TriangleSeparation triangle_separation(const Triangle& a, const Triangle& b);
 
-/// The same for triangles with an outside (counter-clockwise seen from there): a is not parted from
-/// what lies right behind its back. A face that passed straight through another one is then as deep
-/// as it went, where triangle_separation() says they are apart again.
+/// The same for triangles with an outside (counter-clockwise seen from there): they are not parted
+/// by a direction that points right behind the back of both. A face that passed straight through
+/// one that faced it is then as deep as it went, where triangle_separation() says they are apart
+/// again.
 TriangleSeparation triangle_separation_outside(const Triangle& a, const Triangle& b);
 
 }  // namespace mortise
