@@ -4,12 +4,20 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/constants.h"
+
 namespace mortise {
 namespace {
 
-// Square of the sine of a corner below which a triangle is its edges: its plane is then wrong by
-// round-off / sine of its length, its edges by sine / 2; equal at sqrt(2 * 1.1e-16).
-constexpr double kFlatSine2 = 2.2e-16;
+// Square of the ratio of height to longest edge below which a triangle is its edges: they differ by
+// less than the rounding of its corners then.
+constexpr double kFlat2 = 3e-30;
+
+// Edges part two triangles (step 1 of distance_of) where the feet are this part of the longest edge
+// apart, or where the corners lie behind them by more than rounding; in units of round-off times
+// coordinate times edge.
+constexpr double kFarFeet2 = 1.0 / 64.0;
+constexpr double kBehindFeet = 16.0;
 
 // Square of the sine between two edges below which they are parallel: the foot points on them would
 // be noise. Their distance varies by less than an ulp of their length there.
@@ -41,46 +49,71 @@ Feet nearest_of_edges(const Vec3& p, const Vec3& a, double aa, const Vec3& q, co
 struct Sides {
   Vec3 edge[3];
   double length2[3];
+  int longest = 0;
   explicit Sides(const Triangle& t) {
     for (int k = 0; k < 3; ++k) {
       edge[k] = t[next(k)] - t[k];
       length2[k] = edge[k].squaredNorm();
-    }
-  }
-  // Normal, not unit; from the two shorter edges, whose cross product loses least. Zero when flat.
-  Vec3 normal() const {
-    int longest = 0;
-    for (int k = 1; k < 3; ++k)
       if (length2[k] > length2[longest]) longest = k;
-    const int i = next(longest), j = next(i);
-    const Vec3 n = edge[i].cross(edge[j]);
-    return n.squaredNorm() > kFlatSine2 * length2[i] * length2[j] ? n : Vec3::Zero();
+    }
   }
 };
 
-bool over_face(const Vec3& x, const Triangle& t, const Sides& sides, const Vec3& n) {
-  for (int k = 0; k < 3; ++k)
-    if (sides.edge[k].cross(x - t[k]).dot(n) < 0.0) return false;
-  return true;
-}
+// A triangle by its longest edge and the height upon it. Of a needle the height is known to
+// round-off of the edge only: it is wrong by an angle that grows with the aspect, and so is the
+// normal. Places along the edge and in parts of the height stay right.
+class Face {
+ public:
+  Face(const Triangle& t, const Sides& sides) {
+    const int k = sides.longest;
+    base_ = t[k];
+    along_ = sides.edge[k];
+    along2_ = sides.length2[k];
+    if (!(along2_ > 0.0)) return;
+    const Vec3 to_apex = -sides.edge[next(next(k))];
+    apex_ = to_apex.dot(along_) / along2_;
+    across_ = to_apex - apex_ * along_;
+    across_ -= (across_.dot(along_) / along2_) * along_;  // of a needle the first pass leaves some
+    across2_ = across_.squaredNorm();
+    normal_ = along_.cross(across_);
+    flat_ = !(across2_ > kFlat2 * along2_) || normal_.isZero(0.0);
+  }
 
-bool edge_crosses(const Vec3& from, const Vec3& to, const Triangle& t, const Sides& sides,
-                  const Vec3& n) {
-  const double h0 = n.dot(from - t[0]), h1 = n.dot(to - t[0]);
-  if ((h0 > 0.0) == (h1 > 0.0) || h0 == h1) return false;
-  return over_face(from + (to - from) * (h0 / (h0 - h1)), t, sides, n);
-}
+  bool flat() const { return flat_; }
+  /// Not unit; zero when flat.
+  Vec3 normal() const { return flat_ ? Vec3::Zero() : normal_; }
 
-bool cross(const Triangle& a, const Sides& sa, const Vec3& na, const Triangle& b, const Sides& sb,
-           const Vec3& nb) {
-  const auto any = [](const Triangle& edges, const Triangle& face, const Sides& sides,
-                      const Vec3& n) {
-    if (n.isZero(0.0)) return false;
+  /// Foot of x on the plane when it lies over the triangle; always a point of the triangle.
+  bool foot(const Vec3& x, Vec3& foot) const {
+    const Vec3 r = x - base_;
+    const double s = r.dot(along_) / along2_;
+    const double h = (r - s * along_).dot(across_) / across2_;
+    if (!(h >= 0.0 && s >= h * apex_ && s <= 1.0 - h * (1.0 - apex_))) return false;
+    foot = base_ + s * along_ + h * across_;
+    return true;
+  }
+
+  bool crossed_by(const Vec3& from, const Vec3& to) const {
+    const double h0 = normal_.dot(from - base_), h1 = normal_.dot(to - base_);
+    if ((h0 > 0.0) == (h1 > 0.0) || h0 == h1) return false;
+    Vec3 unused;
+    return foot(from + (to - from) * (h0 / (h0 - h1)), unused);
+  }
+
+ private:
+  Vec3 base_, along_, across_ = Vec3::Zero(), normal_ = Vec3::Zero();
+  double along2_ = 0.0, across2_ = 0.0, apex_ = 0.0;
+  bool flat_ = true;
+};
+
+bool cross(const Triangle& a, const Face& face_a, const Triangle& b, const Face& face_b) {
+  const auto any = [](const Triangle& edges, const Face& face) {
+    if (face.flat()) return false;
     for (int k = 0; k < 3; ++k)
-      if (edge_crosses(edges[k], edges[next(k)], face, sides, n)) return true;
+      if (face.crossed_by(edges[k], edges[next(k)])) return true;
     return false;
   };
-  return any(a, b, sb, nb) || any(b, a, sa, na);
+  return any(a, face_b) || any(b, face_a);
 }
 
 // 1. edge against edge: if the third corners lie behind the feet, the slab between the feet parts
@@ -103,33 +136,36 @@ TriangleDistance distance_of(const Triangle& a, const Triangle& b, bool may_cros
     best.distance_mm = std::sqrt(best2);
     return best;
   };
+  // Where the feet are close, rounding turns the direction between them: then the corners must lie
+  // behind by more than that could hide.
+  const auto parted = [&](double behind_a, double behind_b) {
+    if (behind_a > 0.0 || behind_b < 0.0) return false;
+    const double longest2 = std::max(sa.length2[sa.longest], sb.length2[sb.longest]);
+    if (best2 >= kFarFeet2 * longest2) return true;
+    double farthest2 = 0.0;
+    for (int k = 0; k < 3; ++k)
+      farthest2 = std::max({farthest2, a[k].squaredNorm(), b[k].squaredNorm()});
+    const double hidden = kBehindFeet * kUnitRoundoff * std::sqrt(longest2 * farthest2);
+    return behind_a <= -hidden && behind_b >= hidden;
+  };
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const Feet feet =
           nearest_of_edges(a[i], sa.edge[i], sa.length2[i], b[j], sb.edge[j], sb.length2[j]);
       if (!take(feet.p, feet.q)) continue;
       const Vec3 v = feet.q - feet.p;
-      if (best2 > 0.0 && v.dot(a[next(next(i))] - feet.p) <= 0.0 &&
-          v.dot(b[next(next(j))] - feet.q) >= 0.0)
+      if (best2 > 0.0 && parted(v.dot(a[next(next(i))] - feet.p), v.dot(b[next(next(j))] - feet.q)))
         return done();
     }
-  const Vec3 na = sa.normal(), nb = sb.normal();
-  const auto corners_over = [&](const Triangle& corners, const Triangle& face, const Sides& sides,
-                                const Vec3& n, bool corners_of_b) {
-    if (n.isZero(0.0)) return;
-    const double nn = n.squaredNorm();
-    for (int k = 0; k < 3; ++k) {
-      if (!over_face(corners[k], face, sides, n)) continue;
-      const Vec3 foot = corners[k] - n * (n.dot(corners[k] - face[0]) / nn);
-      if (corners_of_b)
-        take(foot, corners[k]);
-      else
-        take(corners[k], foot);
-    }
-  };
-  corners_over(b, a, sa, na, true);
-  corners_over(a, b, sb, nb, false);
-  if (may_cross && best2 > 0.0 && cross(a, sa, na, b, sb, nb)) {
+  const Face face_a(a, sa), face_b(b, sb);
+  Vec3 foot;
+  if (!face_a.flat())
+    for (int k = 0; k < 3; ++k)
+      if (face_a.foot(b[k], foot)) take(foot, b[k]);
+  if (!face_b.flat())
+    for (int k = 0; k < 3; ++k)
+      if (face_b.foot(a[k], foot)) take(a[k], foot);
+  if (may_cross && best2 > 0.0 && cross(a, face_a, b, face_b)) {
     best.crossing = true;
     best2 = 0.0;
   }
@@ -148,7 +184,7 @@ TriangleDistance triangle_distance_apart(const Triangle& a, const Triangle& b) {
 
 bool triangles_cross(const Triangle& a, const Triangle& b) {
   const Sides sa(a), sb(b);
-  return cross(a, sa, sa.normal(), b, sb, sb.normal());
+  return cross(a, Face(a, sa), b, Face(b, sb));
 }
 
 namespace {
@@ -160,7 +196,7 @@ constexpr double kBehind = 0.9;
 
 TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outside_only) {
   const Sides sa(a), sb(b);
-  const Vec3 na = sa.normal(), nb = sb.normal();
+  const Vec3 na = Face(a, sa).normal(), nb = Face(b, sb).normal();
   const Vec3 out_a = na.isZero(0.0) ? na : Vec3(na.normalized());
   const Vec3 out_b = nb.isZero(0.0) ? nb : Vec3(nb.normalized());
   const auto allowed = [&](const Vec3& from_a_to_b) {

@@ -32,14 +32,46 @@ Point on_edge(const Point& p, const Point& from, const Point& to) {
   return length2 > 0 ? from + clamp01(dot(p - from, e) / length2) * e : from;
 }
 
+// Twice as many digits, in software: asked where long double cannot tell, which is where triangles
+// are needles and where they touch.
+__extension__ typedef __float128 Quad;
+
+struct QuadPoint {
+  Quad x, y, z;
+  explicit QuadPoint(const Point& p) : x(p.x), y(p.y), z(p.z) {}
+  QuadPoint(Quad a, Quad b, Quad c) : x(a), y(b), z(c) {}
+};
+
+QuadPoint operator-(const QuadPoint& a, const QuadPoint& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Quad dot(const QuadPoint& a, const QuadPoint& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+QuadPoint cross(const QuadPoint& a, const QuadPoint& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+constexpr Real kUnit = std::numeric_limits<Real>::epsilon();
+constexpr Real kNeedle2 = 1e-6;  // square of the sine of a corner below which Quad is asked
+
 // Foot of p on the plane of t when it lies over the face.
 bool over_face(const Point& p, const Corners& t, Point& foot) {
-  const Point n = cross(t[1] - t[0], t[2] - t[0]);
+  const Point u = t[1] - t[0], v = t[2] - t[0], n = cross(u, v);
   const Real nn = square(n);
-  if (!(nn > 0)) return false;
-  foot = p - (dot(p - t[0], n) / nn) * n;
-  for (int k = 0; k < 3; ++k)
-    if (dot(cross(t[next(k)] - t[k], foot - t[k]), n) < 0) return false;
+  if (nn > kNeedle2 * square(u) * square(v)) {
+    foot = p - (dot(p - t[0], n) / nn) * n;
+    for (int k = 0; k < 3; ++k)
+      if (dot(cross(t[next(k)] - t[k], foot - t[k]), n) < 0) return false;
+    return true;
+  }
+  const QuadPoint q(p), a(t[0]), b(t[1]), c(t[2]), qn = cross(b - a, c - a);
+  const Quad qnn = dot(qn, qn);
+  if (!(qnn > 0)) return false;
+  const Quad up = dot(q - a, qn) / qnn;
+  const QuadPoint f(q.x - up * qn.x, q.y - up * qn.y, q.z - up * qn.z);
+  if (dot(cross(b - a, f - a), qn) < 0 || dot(cross(c - b, f - b), qn) < 0 ||
+      dot(cross(a - c, f - c), qn) < 0)
+    return false;
+  foot = {static_cast<Real>(f.x), static_cast<Real>(f.y), static_cast<Real>(f.z)};
   return true;
 }
 
@@ -53,16 +85,21 @@ void inner_points(const Corners& a, int i, const Corners& b, int j, Nearest& nea
   if (s > 0 && s < 1 && t > 0 && t < 1) nearest.take(a[i] + s * u, b[j] + t * v);
 }
 
-Real volume(const Point& p, const Point& q, const Point& r, const Point& s) {
-  return dot(q - p, cross(r - p, s - p));
+// Sign of the volume of a tetrahedron.
+int side(const Point& p, const Point& q, const Point& r, const Point& s) {
+  const Point u = q - p, v = r - p, w = s - p;
+  const Real volume = dot(u, cross(v, w));
+  const auto size = [](const Point& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); };
+  if (std::abs(volume) > 16 * kUnit * size(u) * size(v) * size(w)) return volume > 0 ? 1 : -1;
+  const QuadPoint o(p);
+  const Quad exact = dot(QuadPoint(q) - o, cross(QuadPoint(r) - o, QuadPoint(s) - o));
+  return exact > 0 ? 1 : (exact < 0 ? -1 : 0);
 }
 
 bool edge_passes(const Point& p, const Point& q, const Corners& t) {
-  const Real above = volume(t[0], t[1], t[2], p), below = volume(t[0], t[1], t[2], q);
-  if (!((above > 0 && below < 0) || (above < 0 && below > 0))) return false;
-  const Real x = volume(p, q, t[0], t[1]), y = volume(p, q, t[1], t[2]),
-             z = volume(p, q, t[2], t[0]);
-  return (x > 0 && y > 0 && z > 0) || (x < 0 && y < 0 && z < 0);
+  if (side(t[0], t[1], t[2], p) * side(t[0], t[1], t[2], q) >= 0) return false;
+  const int x = side(p, q, t[0], t[1]);
+  return x != 0 && x == side(p, q, t[1], t[2]) && x == side(p, q, t[2], t[0]);
 }
 
 }  // namespace
