@@ -89,7 +89,7 @@ class Face {
     const double s = r.dot(along_) / along2_;
     const double h = (r - s * along_).dot(across_) / across2_;
     if (!(h >= 0.0 && s >= h * apex_ && s <= 1.0 - h * (1.0 - apex_))) return false;
-    foot = base_ + s * along_ + h * across_;
+    foot = normal_.dot(r) == 0.0 ? x : Vec3(base_ + s * along_ + h * across_);
     return true;
   }
 
