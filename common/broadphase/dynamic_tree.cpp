@@ -11,9 +11,10 @@ namespace mortise {
 namespace {
 
 // A fat box is larger than the box by this share of the longest edge, or by so many of the last
-// steps of its centre where that is more, up to the larger share. Wider: rarer queries of the tree,
-// longer lists. The answer does not depend on it.
-constexpr double kLeastMargin = 0.1, kMostMargin = 0.5, kStepsAhead = 16.0;
+// steps of its centre where that is more, up to the larger share. After a long step it is not: the
+// part would leave it at once. Wider: rarer queries of the tree, longer lists. The answer does not
+// depend on it.
+constexpr double kLeastMargin = 0.1, kMostMargin = 0.5, kStepsAhead = 16.0, kLongStep = 0.1;
 
 // More than 100 epsilon sqrt(3), what FCL calls the same box, as a share of the largest coordinate.
 constexpr double kFclSameBox = 1e-13;
@@ -95,13 +96,14 @@ class DynamicTree final : public BroadPhase {
   }
 
  private:
+  enum class Home : std::uint8_t { kNone, kStanding, kRoaming };
   struct Entry {
     Box fat;
     std::unique_ptr<BoxObject> object;  ///< null: its box was never other than empty
     /// Whose fat boxes meet this one; of the watched all, of the others the watched ones.
     std::vector<std::uint32_t> near;
-    bool stands = true;  ///< since it was added: its object belongs to standing_, else to roaming_
-    bool in_tree = false, in_standing = false;
+    Home home = Home::kNone;
+    bool stands = true;  ///< within the box with which it was added
     bool stale = false;  ///< tree and lists do not know the fat box yet
     bool watched = false;
   };
@@ -113,32 +115,40 @@ class DynamicTree final : public BroadPhase {
   static Box fat_box(const Box& old, const Box& box) {
     const double longest = (box.hi - box.lo).maxCoeff();
     const double step = old.empty() ? 0.0 : (box.center() - old.center()).cwiseAbs().maxCoeff();
+    if (step > kLongStep * longest) return box;
     return box.grown(std::clamp(kStepsAhead * step, kLeastMargin * longest, kMostMargin * longest));
   }
 
   // 1. Tell the trees. 2. Make the lists of the changed parts anew, when anybody has lists.
   void renew_stale() {
-    roamed_.clear();
-    bool any_added = false;
+    std::vector<fcl::CollisionObjectd*>& added = changed_[0];
+    std::vector<fcl::CollisionObjectd*>& roamed = changed_[1];
+    added.clear();
+    roamed.clear();
     for (const std::uint32_t i : stale_) {
       Entry& entry = entries_[i];
+      fcl::CollisionObjectd* object = entry.object.get();
       entry.object->set(entry.fat);
       entry.stale = false;
-      if (entry.in_tree && !entry.in_standing) {
-        roamed_.push_back(entry.object.get());
-        continue;
+      if (entry.home == Home::kRoaming) {
+        roamed.push_back(object);
+      } else if (entry.stands) {
+        added.push_back(object);
+        entry.home = Home::kStanding;
+      } else {
+        if (entry.home == Home::kStanding) standing_.unregisterObject(object);
+        roaming_.registerObject(object);
+        entry.home = Home::kRoaming;
       }
-      if (entry.in_tree) standing_.unregisterObject(entry.object.get());
-      (entry.stands ? standing_ : roaming_).registerObject(entry.object.get());
-      entry.in_tree = true;
-      entry.in_standing = entry.stands;
-      any_added = true;
     }
-    if (any_added) {
-      standing_.setup();
-      roaming_.setup();
-    }
-    if (!roamed_.empty()) roaming_.update(roamed_);
+    // All at once gives a better tree than one by one.
+    if (standing_.empty())
+      standing_.registerObjects(added);
+    else
+      for (fcl::CollisionObjectd* object : added) standing_.registerObject(object);
+    standing_.setup();
+    roaming_.setup();
+    if (!roamed.empty()) roaming_.update(roamed);
     if (watched_count_ > 0)
       for (const std::uint32_t i : stale_) renew_list(i);
     stale_.clear();
@@ -185,7 +195,7 @@ class DynamicTree final : public BroadPhase {
   std::vector<char> is_moved_;
   std::vector<std::uint32_t> stale_;
   std::size_t watched_count_ = 0;
-  std::vector<fcl::CollisionObjectd*> roamed_;
+  std::vector<fcl::CollisionObjectd*> changed_[2];  // memory of renew_stale
   fcl::DynamicAABBTreeCollisionManagerd standing_, roaming_;
 };
 
