@@ -78,6 +78,40 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
     pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time_with_bands(pair, touch, ccd);
 }
 
+double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_mm; }
+
+// Is the pair known to stay clear of everything that has to be looked at? From an earlier distance,
+// or else from the distance now where that is likely to save more than it costs.
+bool stays_clear(PairWork& pair, CcdScratch& ccd) {
+  const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
+  PairMemo& memo = *pair.memo;
+  if (apart_lower_bound_mm(memo, budget) > needed_mm(pair)) return true;
+  // Only surfaces are apart: who may start inside the other is asked, and so is who has to end a
+  // clash.
+  if (!memo.not_contained || pair.open) return false;
+  if (memo.pause > 0) {
+    --memo.pause;
+    return false;
+  }
+  // Enough for many ticks like this one, and for parts that hardly move.
+  const double spent_mm = relative_travel_upper_bound_mm(budget);
+  const double limit_mm =
+      2.0 * needed_mm(pair) + 16.0 * spent_mm +
+      0.01 * std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
+  ++pair.counts.distance_queries;
+  const Pose &X_WA = pair.motion_a.X_W0, &X_WB = pair.motion_b.X_W0;
+  const double apart_mm =
+      distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm).distance_mm;
+  remember_apart(memo, X_WA, X_WB, apart_mm);
+  if (apart_mm - needed_mm(pair) < 4.0 * spent_mm) {
+    memo.pause = memo.next_pause;
+    memo.next_pause = static_cast<std::uint8_t>(std::min(64, 2 * memo.next_pause));
+  } else {
+    memo.next_pause = 1;
+  }
+  return apart_lower_bound_mm(memo, budget) > needed_mm(pair);
+}
+
 }  // namespace
 
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {
@@ -90,10 +124,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     pair.near = true;
     return;
   }
-  // Does an earlier distance still suffice?
-  const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
-  if (switches.motion_budget &&
-      apart_lower_bound_mm(*pair.memo, budget) > pair.band_mm + kClashHysteresis_mm) {
+  if (switches.motion_budget && stays_clear(pair, ccd)) {
     pair.asked = false;
     return;
   }
@@ -101,6 +132,9 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     ask_plain(world, pair, ccd);
   else
     ask_banded(world, pair, ccd);
+  // First contact sometimes learns how far apart they end.
+  if (!pair.near && !pair.touching && pair.apart_at_end_mm > needed_mm(pair))
+    remember_apart(*pair.memo, pair.motion_a.X_W1, pair.motion_b.X_W1, pair.apart_at_end_mm);
 }
 
 void find_contacts(const World& world, Scratch::Impl& work) {

@@ -104,11 +104,13 @@ Box resting_box(const World& world, const SessionState& state, std::uint32_t ind
 
 std::uint64_t state_hash(const World& world, SessionState& state) {
   if (!state.rehash.empty()) {
-    for (const std::uint32_t i : state.rehash) state.parts[i].hash = hash_of(world.parts[i]);
+    // A sum, so that a part can be exchanged in it: each summand knows its part.
+    for (const std::uint32_t i : state.rehash) {
+      const std::uint64_t now = hash_of(world.parts[i]);
+      state.parts_hash += now - state.parts[i].hash;
+      state.parts[i].hash = now;
+    }
     state.rehash.clear();
-    StateHash hash;
-    for (const PartState& part : state.parts) hash.add(part.hash);
-    state.parts_hash = hash.value();
   }
   if (state.clashes_changed) {
     StateHash hash;

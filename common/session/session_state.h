@@ -65,7 +65,8 @@ struct SessionState {
   std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
   std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
   bool clashes_changed = true;
-  std::uint64_t parts_hash = 0, clashes_hash = 0;
+  std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
+  std::uint64_t clashes_hash = 0;
 
   PairMemo& memo(std::uint32_t a, std::uint32_t b) {
     return memos[(static_cast<std::uint64_t>(a) << 32) | b];

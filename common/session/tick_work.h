@@ -46,7 +46,7 @@ struct PairWork {
   // times are of the segment, but for t_stop.
   double tau = 0.0;
   Motion motion_a, motion_b;
-  bool asked = false;      ///< false: the motion budget says that they stay apart
+  bool asked = false;      ///< false: an earlier or a new distance says that they stay apart
   bool near = false;       ///< overlapping or within the band at some time: to be judged
   bool touching = false;   ///< touched at the start and got no deeper: nothing to judge
   bool entered = false;    ///< came within the band during the segment

@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "common/base/constants.h"
-#include "common/session/motion_budget.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
@@ -176,37 +175,6 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
   match_clashes(world, pair, distance_mm);
 }
 
-// A pair that stayed clear: how far apart is it now, so that it need not be asked next time? Only
-// where an answer is likely to save more than it costs.
-void measure(PairWork& pair, CcdScratch& ccd) {
-  const Solid& a = *pair.solid_a;
-  const Solid& b = *pair.solid_b;
-  const double spent_mm = relative_travel_upper_bound_mm({&a, &b, pair.motion_a, pair.motion_b});
-  const double needed_mm = pair.band_mm + kClashHysteresis_mm;
-  PairMemo& memo = *pair.memo;
-  double apart_mm = pair.apart_at_end_mm;
-  if (apart_mm - needed_mm < 2.0 * spent_mm) {
-    if (memo.pause > 0) {
-      --memo.pause;
-      return;
-    }
-    // Enough for many ticks like this one, and for parts that hardly move.
-    const double limit_mm = 2.0 * needed_mm + 16.0 * spent_mm +
-                            0.01 * std::min(a.sphere().radius_mm, b.sphere().radius_mm);
-    ++pair.counts.distance_queries;
-    const DistanceResult result =
-        distance(a, pair.motion_a.X_W1, b, pair.motion_b.X_W1, ccd, limit_mm);
-    apart_mm = result.distance_mm;
-    if (apart_mm - needed_mm < 4.0 * spent_mm) {
-      memo.pause = memo.next_pause;
-      memo.next_pause = static_cast<std::uint8_t>(std::min(64, 2 * memo.next_pause));
-    } else {
-      memo.next_pause = 1;
-    }
-  }
-  remember_apart(memo, pair.motion_a.X_W1, pair.motion_b.X_W1, apart_mm);
-}
-
 // Clear of the band, but an open clash ends only at some distance.
 void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   pair.seen.clear();
@@ -242,7 +210,6 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
       return;
     }
     if (pair.open) judge_clear(world, work, pair, ccd);
-    if (!pair.touching) measure(pair, ccd);
   });
 }
 

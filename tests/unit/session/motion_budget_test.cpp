@@ -74,5 +74,47 @@ TEST_F(MotionBudget, KnowsNothingBeforeTheFirstMeasurement) {
   EXPECT_LT(apart_lower_bound_mm(memo, query), 0.0);
 }
 
+// A ball passes a tilted bar: their boxes meet all the way, they never come nearer than 3 mm. One
+// question of first contact, then a distance now and then.
+TEST(MotionBudgetInTicks, WhoPassesByIsMeasuredAndNotAsked) {
+  SessionBuilder session(Policy::kStop);
+  const UserId ada = session.join("ada");
+  const Pose tilted{rotation_exp(Vec3(0, 0, 0.785)), Vec3(0, 0, 0)};
+  session.add("bar", box_mesh(Vec3(-20, -2, -2), Vec3(20, 2, 2)), tilted, false);
+  const PartId cube = session.add("cube", cube_mesh(2), at(0, -9, 0), true);
+  session.grab(ada, cube);
+  Scratch scratch;
+  StepCounters sum;
+  for (int i = 0; i < 60; ++i) {
+    const StepReport report =
+        play_tick(session.world, {session.push(ada, cube, Vec3(0.08, 0.08, 0))}, scratch);
+    EXPECT_TRUE(report.events.empty());
+    EXPECT_EQ(report.counters.pairs_budget + report.counters.pairs.out, 1U) << i;
+    sum.first_contact_queries += report.counters.first_contact_queries;
+    sum.distance_queries += report.counters.distance_queries;
+  }
+  EXPECT_EQ(sum.first_contact_queries, 1U);
+  EXPECT_LE(sum.distance_queries, 10U);
+  EXPECT_GE(sum.distance_queries, 2U);
+}
+
+// Far from every surface and yet inside: put there and moved in the same tick, it is seen.
+TEST(MotionBudgetInTicks, WhoIsInsideIsNotTakenForFarApart) {
+  SessionBuilder session(Policy::kReport);
+  const UserId ada = session.join("ada");
+  session.add("block", cube_mesh(40), at(0, 0, 0), false);
+  const PartId cube = session.add("cube", cube_mesh(2), at(0, 0, 0), true);
+  session.grab(ada, cube);
+  Scratch scratch;
+  session.world.find(cube)->X_WP = at(100, 0, 0);
+  play_tick(session.world, {session.push(ada, cube, Vec3(-76, 0, 0))}, scratch);  // comes near
+  play_tick(session.world, {session.push(ada, cube, Vec3(0.5, 0, 0))}, scratch);
+  session.command(ada, cube, CommandKind::kReset);  // back into the middle
+  const StepReport report =
+      play_tick(session.world, {session.push(ada, cube, Vec3(0.1, 0, 0))}, scratch);
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].verdict.collision_class, CollisionClass::kReal);
+}
+
 }  // namespace
 }  // namespace mortise
