@@ -27,6 +27,10 @@ std::vector<MotionSet> all_sets(bool quick) {
   sets.push_back(helix_set(count));
   sets.push_back(nut_set(count));
   sets.push_back(gear_set(count));
+  for (const std::string& id : quick ? std::vector<std::string>{} : fit_ids()) {
+    MotionSet set = fit_set(id, count);
+    if (!set.items.empty()) sets.push_back(std::move(set));
+  }
   for (const char* name : {"sphere10k", "peg_c0.50", "peg_c0.10", "gears", "wall"}) {
     MotionSet set = measured_set(name, count);
     if (!set.items.empty()) sets.push_back(std::move(set));

@@ -38,19 +38,6 @@ bool add(MotionSet& set, const Motion& motion) {
   return true;
 }
 
-/// `make(i)` until there are `count` motions that start free.
-template <class Make>
-void fill(MotionSet& set, int count, Make&& make) {
-  for (int tries = 0; static_cast<int>(set.items.size()) < count; ++tries) {
-    MORTISE_CHECK(tries < 100 * count, "a scene whose parts nearly always start in contact");
-    add(set, make(static_cast<int>(set.items.size())));
-  }
-}
-
-Pose turned(const Pose& X, const Vec3& rotation_rad, const Vec3& shift_mm) {
-  return {(rotation_exp(rotation_rad) * X.q).normalized(), X.p + shift_mm};
-}
-
 SolidPtr generated(const std::string& kind, const std::map<std::string, double>& values) {
   auto part = generate(kind, values);
   MORTISE_CHECK(bool(part), "the generator refused");
@@ -92,6 +79,17 @@ Pose engaged(Dice& dice, double least_turns, double most_turns, double play_mm) 
 }
 
 }  // namespace
+
+void fill(MotionSet& set, int count, const std::function<Motion(int)>& make) {
+  for (int tries = 0; static_cast<int>(set.items.size()) < count; ++tries) {
+    MORTISE_CHECK(tries < 100 * count, "a scene whose parts nearly always start in contact");
+    add(set, make(static_cast<int>(set.items.size())));
+  }
+}
+
+Pose turned(const Pose& X, const Vec3& rotation_rad, const Vec3& shift_mm) {
+  return {(rotation_exp(rotation_rad) * X.q).normalized(), X.p + shift_mm};
+}
 
 double Dice::spread(double a, double b) { return std::exp(between(std::log(a), std::log(b))); }
 

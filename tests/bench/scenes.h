@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -63,8 +64,17 @@ MotionSet nut_set(int count);
 MotionSet nut_large_turn_set(int count);
 /// Two spur gears in mesh and apart.
 MotionSet gear_set(int count, int flank_points = 24);
+/// A fit of the data sets (its id there): the part inserted and moved as peg_set does, a nut turned
+/// along its bolt; empty when the data are not there.
+MotionSet fit_set(const std::string& id, int count);
+const std::vector<std::string>& fit_ids();
 /// One of the sets of measured motions; empty when the data are not there.
 MotionSet measured_set(const std::string& name, int count);
+
+/// make(i) until there are `count` motions that start apart.
+void fill(MotionSet& set, int count, const std::function<Motion(int)>& make);
+/// X turned about its own origin, world axes, and shifted.
+Pose turned(const Pose& X, const Vec3& rotation_rad, const Vec3& shift_mm);
 
 /// Solids of the tables "distance", "build" and "triangles" as well.
 SolidPtr gear_solid(int teeth, int flank_points, double phase_rad);
