@@ -16,6 +16,10 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // Node pairs opened before the hulls are asked for a plane. Most pairs of boxes are done by then;
 // far apart curved faces are not, and a plane costs about as much as this.
 constexpr int kOpenedBeforePlane = 64;
+// Where the nearest pair of an earlier answer is known, the plane across it costs little.
+constexpr int kOpenedBeforeSeedPlane = 24;
+constexpr int kPlaneSteps = 32;
+constexpr int kMostSeedLeaves = 64;
 
 // The nearest pair of triangles below a limit. Boxes, planes and the leaf kernels only discard:
 // every distance comes from the double triangles.
@@ -38,6 +42,17 @@ class Search {
     best_.distance_mm = kFar;
   }
 
+  // The pair of triangles of an earlier answer, by their ids in the meshes.
+  void begin_with(const Solid& a, std::uint32_t id_a, const Solid& b, std::uint32_t id_b) {
+    if (id_a >= a.mesh().triangles.size() || id_b >= b.mesh().triangles.size()) return;
+    Triangle x, y;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = place_a(a.mesh().corner(id_a, k));
+      y[k] = b.mesh().corner(id_b, k) - b_.origin;
+    }
+    seeded_ = nearer(x, y, id_a, id_b);
+  }
+
   // Depth first, of the children the nearest first: the first pops go straight down to the most
   // promising leaves, whose distance then prunes.
   const Nearest& run() {
@@ -55,7 +70,9 @@ class Search {
         leaf_pair(item.a, item.b);
         continue;
       }
-      if (++opened == kOpenedBeforePlane && by_plane()) return best_;
+      ++opened;
+      if (seeded_ && opened == kOpenedBeforeSeedPlane && by_plane(1, kMostSeedLeaves)) break;
+      if (opened == kOpenedBeforePlane && by_plane(kPlaneSteps, kMostLeaves)) break;
       const std::size_t begin = stack.size();
       open(item, a_, b_, frame, kernels.lower_a, kernels.lower_b, [&](Item& child, double lower) {
         child.t = std::max(item.t, lower);
@@ -73,19 +90,13 @@ class Search {
   double reach_mm() const { return std::min(limit_mm_, best_.distance_mm); }
   bool done() const { return best_.distance_mm <= enough_mm_; }
 
-  Triangle triangle_a(std::uint32_t i) const {
-    const auto& c = a_.corners[i];
+  Vec3 place_a(const Vec3& x) const {
     const PairState& s = motion_.state();
-    Triangle t;
-    for (int k = 0; k < 3; ++k)
-      t[k] = s.R * (Vec3(c[3 * k], c[3 * k + 1], c[3 * k + 2]) - a_.origin) + s.p;
-    return t;
+    return s.R * (x - a_.origin) + s.p;
   }
-  Triangle triangle_b(std::uint32_t j) const {
-    const auto& c = b_.corners[j];
-    Triangle t;
-    for (int k = 0; k < 3; ++k) t[k] = Vec3(c[3 * k], c[3 * k + 1], c[3 * k + 2]) - b_.origin;
-    return t;
+  static Vec3 corner(const Bvh& bvh, std::uint32_t i, int k) {
+    const auto& c = bvh.corners[i];
+    return {c[3 * k], c[3 * k + 1], c[3 * k + 2]};
   }
 
   Reach reach() const {
@@ -115,21 +126,29 @@ class Search {
       }
   }
 
-  // True when the pair is the nearest so far.
+  // The triangles i and j in the order of the trees. True when they are the nearest so far.
   bool nearer(std::uint32_t i, std::uint32_t j) {
-    const TriangleDistance d = triangle_distance(triangle_a(i), triangle_b(j));
+    Triangle x, y;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = place_a(corner(a_, i, k));
+      y[k] = corner(b_, j, k) - b_.origin;
+    }
+    return nearer(x, y, a_.triangle_order[i], b_.triangle_order[j]);
+  }
+
+  bool nearer(const Triangle& x, const Triangle& y, std::uint32_t id_a, std::uint32_t id_b) {
+    const TriangleDistance d = triangle_distance(x, y);
     if (!(d.distance_mm < best_.distance_mm && d.distance_mm <= limit_mm_)) return false;
-    best_ = {d.distance_mm, a_.triangle_order[i], b_.triangle_order[j], d.point_a, d.point_b,
-             d.crossing};
+    best_ = {d.distance_mm, id_a, id_b, d.point_a, d.point_b, d.crossing};
     if (d.distance_mm > 0.0) n_ = (d.point_b - d.point_a) / d.distance_mm;
     return true;
   }
 
   // The plane between the hulls. Only triangles that reach over it farther than the nearest pair so
   // far can be in a nearer pair: when they are few, their pairs are all that is left to look at.
-  bool by_plane() {
+  bool by_plane(int steps, int most_leaves) {
     const PairState& s = motion_.state();
-    const HullGap hulls = hull_gap(motion_, a_, b_, n_.isZero(0.0) ? Vec3(-s.p) : n_);
+    const HullGap hulls = hull_gap(motion_, a_, b_, n_.isZero(0.0) ? Vec3(-s.p) : n_, steps);
     if (!hulls.apart) return false;
     if (hulls.gap_mm - motion_.rounding_mm() > reach_mm()) return true;
     for (int k = 0; k < hulls.pairs; ++k)
@@ -138,8 +157,9 @@ class Search {
     const double over_mm = reach_mm() + motion_.rounding_mm();
     // Heights are taken from the origin of each tree.
     const double a_mm = hulls.n.dot(s.p);
-    if (!leaves_above(a_, s.R.transpose() * hulls.n, hulls.near_b_mm - over_mm - a_mm, list_a) ||
-        !leaves_above(b_, -hulls.n, -(hulls.far_a_mm + over_mm), list_b))
+    if (!leaves_above(a_, s.R.transpose() * hulls.n, hulls.near_b_mm - over_mm - a_mm, list_a,
+                      most_leaves) ||
+        !leaves_above(b_, -hulls.n, -(hulls.far_a_mm + over_mm), list_b, most_leaves))
       return false;
     if (list_a.count * list_b.count > kMostPlanePairs) return false;
     const auto by_height = [](const LeafHeight& x, const LeafHeight& y) {
@@ -169,15 +189,19 @@ class Search {
   std::int32_t placed_leaf_ = 0;  // leaves are below zero
   Nearest best_;
   Vec3 n_ = Vec3::Zero();
+  bool seeded_ = false;
 };
 
 }  // namespace
 
 DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                        CcdScratch& scratch, double limit_mm) {
+                        CcdScratch& scratch, double limit_mm, const DistanceResult* seed) {
   PairMotion motion(a, still_motion(X_WA), b, still_motion(X_WB));
   motion.at(0.0);
-  const Nearest best = Search(motion, a.bvh(), b.bvh(), limit_mm, 0.0, scratch).run();
+  Search search(motion, a.bvh(), b.bvh(), limit_mm, 0.0, scratch);
+  if (seed != nullptr && seed->within_limit)
+    search.begin_with(a, seed->triangle_a, b, seed->triangle_b);
+  const Nearest best = search.run();
   DistanceResult result;
   result.within_limit = best.distance_mm <= limit_mm && best.distance_mm < kFar;
   result.distance_mm = result.within_limit ? best.distance_mm : limit_mm;

@@ -9,8 +9,6 @@ namespace {
 // Float arithmetic of one height of a box: ten operations of 6e-8 of the extent each.
 constexpr float kFloatRounding = 2e-6F;
 
-// A smooth pair needs about ten; more is a pair of polygons that creeps.
-constexpr int kMostSteps = 32;
 // Overlapping hulls never get a plane: by then there is one, or there is none.
 constexpr int kStepsWithoutPlane = 12;
 // The plane is as good as it gets when nothing of the gap but this share is left.
@@ -152,7 +150,7 @@ Support support(const Bvh& bvh, const Vec3& n, const Support& hint) {
   return best;
 }
 
-bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list) {
+bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list, int most) {
   const Walk walk(bvh, n);
   list.count = 0;
   std::int32_t stack[kStack];
@@ -166,7 +164,7 @@ bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
         for (int k = 0; k < 3; ++k) highest = std::max(highest, n.dot(corner(bvh, i, k)));
       if (highest <= floor_mm) continue;
-      if (list.count == kMostLeaves) return false;
+      if (list.count >= std::min(most, kMostLeaves)) return false;
       list.leaf[list.count++] = {child, highest};
       continue;
     }
@@ -181,7 +179,8 @@ bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list
 // 1. the corners farthest along the direction from the nearest point so far;
 // 2. the plane between them is a bound; the best is kept;
 // 3. the corners join the simplex, whose point nearest to the origin gives the next direction.
-HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& guess) {
+HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& guess,
+                 int most_steps) {
   const PairState& s = motion.state();
   HullGap best;
   best.gap_mm = -std::numeric_limits<double>::infinity();
@@ -189,7 +188,7 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
   Support on_a, on_b;
   Vec3 v = guess;
   double size = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < most_steps; ++step) {
     const double length = v.norm();
     if (!(length > 0.0)) break;
     const Vec3 n = v / length;

@@ -29,8 +29,9 @@ struct LeafList {
   std::array<LeafHeight, kMostLeaves> leaf;
   int count = 0;
 };
-/// False when there are more than kMostLeaves; the list is then useless.
-bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list);
+/// False when there are more than `most`; the list is then useless.
+bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list,
+                  int most = kMostLeaves);
 
 struct HullGap {
   bool apart = false;     ///< false: the hulls overlap, or nothing was proven
@@ -43,7 +44,8 @@ struct HullGap {
 };
 
 /// At motion.state(); `n`: a first guess, from A to B, axes of B. Gilbert, Johnson and Keerthi
-/// 1988, on the corners that the trees find.
-HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& n);
+/// 1988, on the corners that the trees find. most_steps 1: the plane across `n` and no other.
+HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& n,
+                 int most_steps = 32);
 
 }  // namespace mortise::ccd

@@ -125,6 +125,46 @@ TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
   EXPECT_GT(crossing, 10);
 }
 
+// Ticks of a slow motion, each seeded with the answer of the one before; then seeds that are wrong.
+TEST(DistanceSeed, ChangesNoDistance) {
+  std::mt19937_64 random(66);
+  CcdScratch scratch;
+  std::vector<Pair> all = pairs();
+  all.push_back(
+      {"fine spheres", solid(sphere_mesh(1, 80, 41)), solid(sphere_mesh(2, 80, 41)), 3.5});
+  int told = 0;
+  for (const Pair& pair : all)
+    for (int i = 0; i < test::effort(6); ++i) {
+      Pose X = random_pose(random, pair.reach_mm, pair.reach_mm < 0.1 ? 0.02 : kPi);
+      const Pose step = random_pose(random, 0.005, 0.005);
+      const Vec3 shift = pair.b->bvh().origin - X.q * pair.a->bvh().origin;
+      X.p += shift;
+      DistanceResult seed;
+      for (int tick = 0; tick < 8; ++tick) {
+        X = {(step.q * X.q).normalized(), X.p + step.p};
+        const DistanceResult fresh = distance(*pair.a, X, *pair.b, {}, scratch);
+        const double any = std::numeric_limits<double>::infinity();
+        const DistanceResult seeded = distance(*pair.a, X, *pair.b, {}, scratch, any, &seed);
+        EXPECT_EQ(seeded.distance_mm, fresh.distance_mm) << pair.name;
+        EXPECT_EQ(seeded.within_limit, fresh.within_limit);
+        told += seed.within_limit;
+        seed = seeded;
+        DistanceResult wrong = fresh;
+        wrong.triangle_a = static_cast<std::uint32_t>(random() % 20'000);
+        wrong.triangle_b = static_cast<std::uint32_t>(random() % 2'000);
+        wrong.distance_mm = std::numeric_limits<double>::quiet_NaN();
+        EXPECT_EQ(distance(*pair.a, X, *pair.b, {}, scratch, any, &wrong).distance_mm,
+                  fresh.distance_mm)
+            << pair.name;
+        const double limit_mm = 0.5 * fresh.distance_mm;
+        if (fresh.distance_mm > 0.0) {
+          EXPECT_FALSE(distance(*pair.a, X, *pair.b, {}, scratch, limit_mm, &seed).within_limit);
+        }
+      }
+    }
+  EXPECT_GT(told, 200);
+}
+
 ccd::FourTriangles four(std::mt19937_64& random, const Vec3& at, double size_mm) {
   std::normal_distribution<double> normal;
   ccd::FourTriangles t;
