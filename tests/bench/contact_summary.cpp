@@ -169,7 +169,7 @@ void summary(Report& report, const std::vector<SetRun>& runs, const std::string&
     mark.time_ms = times * geometric_mean(own_ms);
     mark.error_mm = quantile(total.error_mm, 0.99);
     mark.median_error_mm = median(total.error_mm);
-    mark.late = total.score.late > 0;
+    mark.late = total.score.late + total.score.missed > 0;
     mark.missed = total.score.missed;
     mark.contacts = static_cast<long long>(total.score.late_mm.size()) + total.score.missed;
     mark.ours = total.method.ours;

@@ -113,6 +113,10 @@ std::string script_of(const std::vector<Mark>& marks, const std::string& svg_fil
                      block("late", marks, [](const Mark& m) { return !m.ours && m.late; }) +
                      block("front", front_of(marks), [](const Mark&) { return true; });
   text += labels_of(marks, axes);
+  const bool late =
+      std::any_of(marks.begin(), marks.end(), [](const Mark& m) { return m.ours && m.late; });
+  text += std::string("ours_title = 'mortise, asked for 10^{-9} to 10^{-2} mm: ") +
+          (late ? "SOME LATE'\n" : "never late'\n");
   text += format("set yrange [%g:%g]\n", axes.least_ms, axes.most_ms);
   text += format("set xrange [%g:%g]\n", kLeastError_mm, kMostError_mm);
   text += format("set lmargin at screen %g\nset bmargin at screen %g\n", kArea[0], kArea[1]);
@@ -128,9 +132,9 @@ set key top left reverse Left samplen 2 spacing 1.2
 draw = "plot $front using 1:3 with fsteps lw 7 lc rgb '#cfe8c5' title 'Pareto front of those that miss nothing', \
   $early using 2:3:($1-$2):(0) with vectors nohead lw 2 lc rgb '#9fc5e8' notitle, \
   $late using 2:3:($1-$2):(0) with vectors nohead lw 2 lc rgb '#f4b6a0' notitle, \
-  $ours using 1:3 with linespoints lw 2 pt 5 ps 0.8 lc rgb '#38761d' title 'mortise, asked for 10^{-9} to 10^{-2} mm: never late', \
+  $ours using 1:3 with linespoints lw 2 pt 5 ps 0.8 lc rgb '#38761d' title ours_title, \
   $early using 1:3 with points pt 7 ps 0.9 lc rgb '#1155cc' title 'peers, early at most (safe)', \
-  $late using 1:3 with points pt 9 ps 1.1 lc rgb '#cc4125' title 'peers, late (parts overlap by then)'"
+  $late using 1:3 with points pt 9 ps 1.1 lc rgb '#cc4125' title 'peers, late (parts overlap by then) or missing contacts'"
 )";
   const std::string png = svg_file.substr(0, svg_file.rfind(".svg")) + ".png";
   text += format("set terminal svg size %g,%g font 'sans,13' background '#ffffff'\n", kPicture[0],

@@ -10,7 +10,7 @@ struct Mark {
   double time_ms = 0.0;
   double error_mm = 0.0;  ///< p99 of early and late
   double median_error_mm = 0.0;
-  bool late = false;  ///< some contacts were found after they happened
+  bool late = false;  ///< some contacts were found after they happened, or missed
   long long missed = 0, contacts = 0;
   bool ours = false;
 };

@@ -16,8 +16,8 @@ struct Placed {
   bool to_the_left;
 };
 
-/// Puts texts beside their marks, one after another, where they cover neither `taken` places nor
-/// each other; when there is no such place, to the right of the mark.
+/// Puts texts beside their marks, one after another, where they cover neither taken places nor each
+/// other; when there is no such place, where they cover least.
 class LabelPlaces {
  public:
   LabelPlaces(double width, double height) : width_(width), height_(height) {}
