@@ -98,10 +98,8 @@ bool stays_clear(PairWork& pair, CcdScratch& ccd) {
   const double limit_mm =
       2.0 * needed_mm(pair) + 16.0 * spent_mm +
       0.01 * std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
-  ++pair.counts.distance_queries;
   const Pose &X_WA = pair.motion_a.X_W0, &X_WB = pair.motion_b.X_W0;
-  const double apart_mm =
-      distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm).distance_mm;
+  const double apart_mm = distance_of(pair, X_WA, X_WB, limit_mm, ccd).distance_mm;
   remember_apart(memo, X_WA, X_WB, apart_mm);
   if (apart_mm - needed_mm(pair) < 4.0 * spent_mm) {
     memo.pause = memo.next_pause;
@@ -113,6 +111,16 @@ bool stays_clear(PairWork& pair, CcdScratch& ccd) {
 }
 
 }  // namespace
+
+DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
+                           CcdScratch& ccd) {
+  ++pair.counts.distance_queries;
+  DistanceResult& nearest = pair.memo->nearest;
+  const DistanceResult result =
+      distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm, &nearest);
+  if (result.within_limit) nearest = result;
+  return result;
+}
 
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {
   pair.asked = true;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/broadphase/broad_phase.h"
+#include "common/ccd/first_contact.h"
 #include "common/session/world.h"
 
 namespace mortise {
@@ -26,6 +27,8 @@ struct PairMemo {
   /// How many more ticks to ask before the distance is measured again, and how long to wait when
   /// that measurement turns out useless as well.
   std::uint8_t pause = 0, next_pause = 1;
+  /// The last place where they were nearest: looked at first the next time.
+  DistanceResult nearest;
   /// Policy stop, pair real at the start of a tick: least certain overlap seen so far, mm; a motion
   /// may not go deeper. Infinite: not real.
   double allowed_depth_mm = std::numeric_limits<double>::infinity();

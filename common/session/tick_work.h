@@ -117,6 +117,11 @@ void report_clashes(const World& world, SessionState& state, Scratch::Impl& work
 /// Asks one pair over the segment set in it; used by 3 and by the rounds of 3b.
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd);
 
+/// Distance of the meshes of a pair at these poses, mm, up to limit_mm; counted, and begun where
+/// the last one was found.
+DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
+                           CcdScratch& ccd);
+
 /// The open clash that each region of pair.seen continues, whether its event is due, and which open
 /// clashes stay although nothing was seen of them. Reads pair.judgement; distance_mm: of the meshes
 /// at the end, infinite when not asked.

@@ -166,10 +166,8 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
   }
   double distance_mm = kInfinity;
   if (pair.open && pair.judgement.overlap.regions.empty()) {
-    ++pair.counts.distance_queries;
-    const DistanceResult result =
-        distance(*pair.solid_a, motion.a.X_W1, *pair.solid_b, motion.b.X_W1, ccd,
-                 2.0 * (pair.band_mm + kClashHysteresis_mm));
+    const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
+                                              2.0 * (pair.band_mm + kClashHysteresis_mm), ccd);
     if (result.within_limit) distance_mm = result.distance_mm;
   }
   match_clashes(world, pair, distance_mm);
@@ -180,9 +178,8 @@ void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, 
   pair.seen.clear();
   pair.judgement = {};
   const PairMotion motion = as_moved(work, pair);
-  ++pair.counts.distance_queries;
-  const DistanceResult result = distance(*pair.solid_a, motion.a.X_W1, *pair.solid_b, motion.b.X_W1,
-                                         ccd, 2.0 * (pair.band_mm + kClashHysteresis_mm));
+  const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
+                                            2.0 * (pair.band_mm + kClashHysteresis_mm), ccd);
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
 }
 
