@@ -148,7 +148,8 @@ class Search {
   // far can be in a nearer pair: when they are few, their pairs are all that is left to look at.
   bool by_plane(int steps, int most_leaves) {
     const PairState& s = motion_.state();
-    const HullGap hulls = hull_gap(motion_, a_, b_, n_.isZero(0.0) ? Vec3(-s.p) : n_, steps);
+    const HullGap hulls = hull_gap(
+        motion_, a_, b_, n_.isZero(0.0) ? Vec3(-s.p) : Vec3(best_.distance_mm * n_), steps);
     if (!hulls.apart) return false;
     if (hulls.gap_mm - motion_.rounding_mm() > reach_mm()) return true;
     for (int k = 0; k < hulls.pairs; ++k)

@@ -6,13 +6,15 @@
 namespace mortise::ccd {
 namespace {
 
-// Float arithmetic of one height of a box: ten operations of 6e-8 of the extent each.
-constexpr float kFloatRounding = 2e-6F;
+// Float arithmetic of one height of a box: ten operations of 6e-8 each, on sums of three products.
+constexpr double kFloatRounding = 2e-6;
 
 // Overlapping hulls never get a plane: by then there is one, or there is none.
 constexpr int kStepsWithoutPlane = 12;
 // The plane is as good as it gets when nothing of the gap but this share is left.
 constexpr double kGoodPlane = 1e-13;
+// How far a plane may be off, as a share of the gap; where boxes cannot tell more, to spare time.
+constexpr double kSlack = 1e-3;
 
 constexpr int kStack = 1024;
 
@@ -41,7 +43,7 @@ struct Walk {
   float n[3], allowance;
   Walk(const Bvh& bvh, const Vec3& direction) {
     for (int c = 0; c < 3; ++c) n[c] = static_cast<float>(direction[c]);
-    allowance = static_cast<float>(4.0 * kFloatRounding * bvh.radius_mm);
+    allowance = static_cast<float>(kFloatRounding * bvh.radius_mm);
   }
 };
 
@@ -113,10 +115,19 @@ struct Simplex {
 
 }  // namespace
 
-Support support(const Bvh& bvh, const Vec3& n, const Support& hint) {
+Support support(const Bvh& bvh, const Vec3& n, const Support& hint, double slack_mm) {
   const Walk walk(bvh, n);
   Support best = hint;
   best.along_mm = hint.leaf < 0 ? n.dot(hint.point) : -std::numeric_limits<double>::infinity();
+  // Boxes of which all but the rounding is reached are left alone, else a flat face would be
+  // searched through from end to end.
+  const double left_mm = std::min(2.0 * static_cast<double>(walk.allowance), slack_mm);
+  double left_alone = best.along_mm;
+  const auto skip = [&](float height) {
+    if (static_cast<double>(height) > best.along_mm + left_mm) return false;
+    left_alone = std::max(left_alone, static_cast<double>(height));
+    return true;
+  };
   struct Waiting {
     std::int32_t child;
     float height;
@@ -126,14 +137,14 @@ Support support(const Bvh& bvh, const Vec3& n, const Support& hint) {
   stack[top++] = {bvh.root, std::numeric_limits<float>::infinity()};
   while (top > 0) {
     const Waiting item = stack[--top];
-    if (static_cast<double>(item.height) <= best.along_mm) continue;
+    if (skip(item.height)) continue;
     if (item.child < 0) {
       const Bvh::Leaf& leaf = bvh.leaves[~item.child];
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
         for (int k = 0; k < 3; ++k) {
           const Vec3 x = corner(bvh, i, k);
           const double along = n.dot(x);
-          if (along > best.along_mm) best = {along, x, item.child};
+          if (along > best.along_mm) best = {along, along, x, item.child};
         }
       continue;
     }
@@ -141,12 +152,13 @@ Support support(const Bvh& bvh, const Vec3& n, const Support& hint) {
     const Heights h = heights(node, walk.n, walk.allowance);
     const int begin = top;
     for (int k = 0; k < node.count; ++k) {
-      if (static_cast<double>(h.value[k]) <= best.along_mm) continue;
+      if (skip(h.value[k])) continue;
       int at = top++;
       for (; at > begin && stack[at - 1].height > h.value[k]; --at) stack[at] = stack[at - 1];
       stack[at] = {node.child[k], h.value[k]};
     }
   }
+  best.bound_mm = std::max(best.along_mm, left_alone);
   return best;
 }
 
@@ -192,10 +204,11 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
     const double length = v.norm();
     if (!(length > 0.0)) break;
     const Vec3 n = v / length;
-    on_a = support(a, s.R.transpose() * n, on_a);
-    on_b = support(b, -n, on_b);
+    on_a = support(a, s.R.transpose() * n, on_a, kSlack * length);
+    on_b = support(b, -n, on_b, kSlack * length);
     const Vec3 x = s.R * on_a.point + s.p;
-    const double far_a = n.dot(x), near_b = n.dot(on_b.point);
+    const Vec3 w = on_b.point - x;
+    const double far_a = n.dot(s.p) + on_a.bound_mm, near_b = -on_b.bound_mm;
     if (near_b - far_a > best.gap_mm) {
       best.gap_mm = near_b - far_a;
       best.n = n;
@@ -203,8 +216,7 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
       best.near_b_mm = near_b;
     }
     if (step >= kStepsWithoutPlane && best.gap_mm <= 0.0) break;
-    const Vec3 w = on_b.point - x;
-    bool known = best.gap_mm >= size * (1.0 - kGoodPlane);
+    bool known = n.dot(w) >= size * (1.0 - kGoodPlane);
     for (int k = 0; k < simplex.count; ++k) known = known || simplex.point[k] == w;
     if (known) break;
     simplex.point[simplex.count] = w;

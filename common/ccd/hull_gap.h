@@ -7,9 +7,10 @@
 // the plane between them proves at once what boxes around curved faces prove only piece by piece.
 namespace mortise::ccd {
 
-/// The corner of a mesh that is farthest along a direction.
+/// The corner of a mesh that is farthest along a direction, or one that is almost as far.
 struct Support {
   double along_mm = 0.0;      ///< direction . point
+  double bound_mm = 0.0;      ///< no corner is farther
   Vec3 point = Vec3::Zero();  ///< from the origin of the tree, axes of the part
   std::int32_t leaf = 0;      ///< < 0, as in Bvh::Node::child; 0: none yet
 };
@@ -43,9 +44,10 @@ struct HullGap {
   std::int32_t leaf_a[4], leaf_b[4];
 };
 
-/// At motion.state(); `n`: a first guess, from A to B, axes of B. Gilbert, Johnson and Keerthi
-/// 1988, on the corners that the trees find. most_steps 1: the plane across `n` and no other.
-HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& n,
+/// At motion.state(); `v`: a first guess of the way from A to B, axes of B, mm. Gilbert, Johnson
+/// and Keerthi 1988, on the corners that the trees find. most_steps 1: the plane across `v` and no
+/// other.
+HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec3& v,
                  int most_steps = 32);
 
 }  // namespace mortise::ccd
