@@ -37,7 +37,6 @@ struct Pair {
   const char* name;
   SolidPtr a, b;
   double reach_mm;
-  double sliver_mm = 0.0;  ///< width of the slivers: each may count as its edges
 };
 
 TriangleMesh needles(std::mt19937_64& random, int count) {
@@ -66,9 +65,8 @@ std::vector<Pair> pairs() {
   all.push_back(
       {"peg and bore", solid(prism_mesh(0.9, 24, -1, 1)), solid(tube_mesh(1, 2, 24, -3, 3)), 0.05});
   all.push_back({"plate and copies", solid(flat), solid(same), 3.0});
-  all.push_back({"needles", solid(needles(random, 150)), solid(needles(random, 150)), 3.0, 2e-9});
-  all.push_back(
-      {"one triangle", solid(needles(random, 1)), solid(sphere_mesh(1, 12, 7)), 3.0, 2e-9});
+  all.push_back({"needles", solid(needles(random, 150)), solid(needles(random, 150)), 3.0});
+  all.push_back({"one triangle", solid(needles(random, 1)), solid(sphere_mesh(1, 12, 7)), 3.0});
   all.push_back({"far from their origins", solid(far_off), solid(far_off), 4.0});
   return all;
 }
@@ -78,7 +76,7 @@ TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
   CcdScratch scratch;
   int apart = 0, crossing = 0;
   for (const Pair& pair : pairs())
-    for (int i = 0; i < test::effort(40); ++i) {
+    for (int i = 0; i < test::effort(20); ++i) {
       const double angle = pair.reach_mm < 0.1 ? 0.02 : kPi;
       Pose X_WA = random_pose(random, pair.reach_mm, angle);
       const Pose X_WB = random_pose(random, 0.0, kPi);
@@ -105,7 +103,7 @@ TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
         const Vec3 x = X.inverse() * at_W;
         return triangle_distance(triangle_of(part.mesh(), t), {x, x, x}).distance_mm;
       };
-      const double off_mm = 4.0 * rounding_mm + pair.sliver_mm;
+      const double off_mm = 4.0 * rounding_mm;
       EXPECT_LE(on(*pair.a, X_WA, d.triangle_a, d.point_a_W), off_mm) << pair.name;
       EXPECT_LE(on(*pair.b, X_WB, d.triangle_b, d.point_b_W), off_mm) << pair.name;
       // Limits: below, above.
@@ -122,7 +120,7 @@ TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
           << pair.name;
     }
   EXPECT_GT(apart, 100);
-  EXPECT_GT(crossing, 10);
+  EXPECT_GT(crossing, 5);
 }
 
 // Ticks of a slow motion, each seeded with the answer of the one before; then seeds that are wrong.
@@ -255,7 +253,7 @@ TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
 TEST(HullGap, IsTheDistanceOfConvexPartsAndItsPlaneHoldsForAllCorners) {
   std::mt19937_64 random(65);
   int apart = 0, overlapping = 0;
-  for (int n = 0; n < test::effort(200); ++n) {
+  for (int n = 0; n < test::effort(100); ++n) {
     const SolidPtr a = solid(convex_mesh(random, 20)), b = solid(sphere_mesh(1, 14, 8));
     const Pose X_WA = random_pose(random, 2.0, kPi);
     ccd::PairMotion motion(*a, still_motion(X_WA), *b, still_motion({}));
@@ -291,8 +289,8 @@ TEST(HullGap, IsTheDistanceOfConvexPartsAndItsPlaneHoldsForAllCorners) {
     }
     EXPECT_EQ(list.count, expected);
   }
-  EXPECT_GT(apart, 50);
-  EXPECT_GT(overlapping, 10);
+  EXPECT_GT(apart, 25);
+  EXPECT_GT(overlapping, 5);
 }
 
 }  // namespace
