@@ -22,6 +22,14 @@ inline constexpr double kAccuracyDefault_mm = 1e-6;
 /// of a micrometre.
 inline constexpr double kDepthAccuracyDefault_mm = 1e-4;
 
+/// Largest coordinate of a mesh or a pose, mm (a million kilometres). Squares of such lengths and
+/// speeds stay far inside single precision, in which boxes are compared. Read by geometry, math.
+inline constexpr double kLargestCoordinate_mm = 1e12;
+
+/// How far a quaternion may be from unit length and still be taken for a rotation: far above the
+/// rounding of a file with seven digits, far below what would be seen. Read by math.
+inline constexpr double kUnitSlack = 1e-6;
+
 /// Largest rotation of one increment, rad. A rotation vector cannot say more than half a turn.
 inline constexpr double kMaxRotationPerTick_rad = 3.14159265358979323846;
 

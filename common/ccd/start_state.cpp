@@ -1,7 +1,9 @@
 #include "common/ccd/start_state.h"
 
 #include <array>
+#include <cmath>
 
+#include "common/base/check.h"
 #include "common/ccd/pair_tree.h"
 #include "common/geometry/signed_distance.h"
 
@@ -124,6 +126,8 @@ namespace mortise {
 
 bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                double margin_mm) {
+  MORTISE_CHECK(valid(X_WA) && valid(X_WB), "poses must be finite and their quaternions unit");
+  MORTISE_CHECK(margin_mm >= 0.0 && std::isfinite(margin_mm), "a margin must be a length");
   const Pose X_BA{(X_WB.q.conjugate() * X_WA.q).normalized(),
                   X_WB.q.conjugate() * (X_WA.p - X_WB.p)};
   return ccd::shell_inside(a, b, X_BA, margin_mm) ||

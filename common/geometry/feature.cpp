@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
@@ -179,6 +181,8 @@ double Surface::curvature_bound(const Vec3& x) const {
 
 Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const Vec3& c,
                                            double accuracy_mm) const {
+  MORTISE_CHECK(a.allFinite() && b.allFinite() && c.allFinite() && accuracy_mm > 0.0,
+                "corners must be finite, the accuracy positive");
   constexpr int kHalvings = 24;  // 4096 pieces along each side
   const double da = outside_distance(*this, a), db = outside_distance(*this, b),
                dc = outside_distance(*this, c);

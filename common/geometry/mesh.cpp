@@ -3,9 +3,20 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/base/check.h"
+#include "common/base/constants.h"
 #include "common/base/hash.h"
 
 namespace mortise {
+
+bool valid(const TriangleMesh& mesh) {
+  for (const Vec3& point : mesh.points_mm)
+    if (!(point.array().abs() <= kLargestCoordinate_mm).all()) return false;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t index : triangle)
+      if (index >= mesh.points_mm.size()) return false;
+  return true;
+}
 
 std::string mesh_hash(const TriangleMesh& mesh) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -60,6 +71,7 @@ BoundingSphere bounding_sphere(const TriangleMesh& mesh) {
 }
 
 double signed_volume_mm3(const TriangleMesh& mesh) {
+  MORTISE_CHECK(valid(mesh), "indices must name points, coordinates must be finite");
   const Vec3 center = bounds_of(mesh).center();
   double six_volumes = 0.0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/base/check.h"
+
 namespace mortise {
 
 std::vector<std::uint32_t> first_triangle_of_each_shell(const TriangleMesh& mesh) {
+  MORTISE_CHECK(valid(mesh), "indices must name points, coordinates must be finite");
   const std::vector<Vec3>& points = mesh.points_mm;
   std::vector<std::uint32_t> by_place(points.size()), parent(points.size());
   std::iota(by_place.begin(), by_place.end(), 0U);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
@@ -232,12 +234,14 @@ Vec3 nearest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3
 }
 
 NearestPoint nearest_point(const Solid& solid, const Vec3& x, double limit_mm) {
+  MORTISE_CHECK(x.allFinite() && !std::isnan(limit_mm), "a point and a limit must be numbers");
   const Found found = find_nearest(solid.bvh(), x, limit_mm);
   if (found.triangle == Topology::kNone) return {limit_mm, x, Topology::kNone};
   return {std::sqrt(found.distance2), found.foot.point, found.triangle};
 }
 
 SurfacePoint nearest_surface(const Solid& solid, const Vec3& x) {
+  MORTISE_CHECK(x.allFinite(), "a point must be finite");
   const Found found = find_nearest(solid.bvh(), x, std::numeric_limits<double>::infinity());
   SurfacePoint at;
   at.triangle = found.triangle;
@@ -255,6 +259,7 @@ SurfacePoint nearest_surface(const Solid& solid, const Vec3& x) {
 }
 
 bool inside(const Solid& solid, const Vec3& x) {
+  MORTISE_CHECK(x.allFinite(), "a point must be finite");
   if (!solid.topology().closed()) return winding_number_brute_force(solid.mesh(), x) > 0.5;
   const Box& box = solid.bounds();
   if ((x.array() < box.lo.array()).any() || (x.array() > box.hi.array()).any()) return false;

@@ -2,13 +2,17 @@
 
 #include <utility>
 
+#include "common/base/check.h"
+
 namespace mortise {
 
 Solid::Solid(TriangleMesh mesh)
     : mesh_(std::move(mesh)),
       hash_(mesh_hash(mesh_)),
       sphere_(bounding_sphere(mesh_)),
-      bounds_(bounds_of(mesh_)) {}
+      bounds_(bounds_of(mesh_)) {
+  MORTISE_CHECK(valid(mesh_), "indices must name points, coordinates must be finite");
+}
 
 const Bvh& Solid::bvh() const {
   std::call_once(bvh_once_, [this] {

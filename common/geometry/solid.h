@@ -18,6 +18,7 @@ namespace mortise {
 /// moves builds none.
 class Solid {
  public:
+  /// mesh must be valid(). One without triangles can be carried about but not asked.
   explicit Solid(TriangleMesh mesh);
   Solid(const Solid&) = delete;
   Solid& operator=(const Solid&) = delete;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/base/check.h"
 #include "common/base/constants.h"
 
 namespace mortise {
@@ -126,6 +127,7 @@ std::uint32_t count_components(std::vector<std::uint32_t>& parent) {
 }  // namespace
 
 Topology build_topology(const TriangleMesh& mesh) {
+  MORTISE_CHECK(valid(mesh), "indices must name points, coordinates must be finite");
   Topology topology = without_edges(mesh);
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const double extent_mm = extent_of(mesh);
@@ -166,6 +168,7 @@ Topology build_topology(const TriangleMesh& mesh) {
 }
 
 Topology build_topology_brute_force(const TriangleMesh& mesh) {
+  MORTISE_CHECK(valid(mesh), "indices must name points, coordinates must be finite");
   Topology topology = without_edges(mesh);
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const double extent_mm = extent_of(mesh);

@@ -14,9 +14,10 @@ struct TriangleDistance {
 };
 
 /// Distance of two solid triangles with witness points (after Larsen et al. 1999; ALG A9).
-/// Scale-free: no absolute epsilon; error a few ulp of the coordinates. A triangle without area is
-/// its edges; so is one whose every corner is flatter than 1.5e-8 rad, where its plane would carry
-/// a larger error than its height.
+/// Scale-free: no absolute epsilon; error a few ulp of the coordinates, for needles of any aspect
+/// too. A triangle without area is its edges. Corners must be finite: of others the distance is no
+/// number or infinite, and nothing else happens (no check here: every number of an answer comes
+/// this way).
 TriangleDistance triangle_distance(const Triangle& a, const Triangle& b);
 
 /// The same for triangles that are known not to cross: the test for crossing is left out.

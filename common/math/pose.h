@@ -1,4 +1,7 @@
 #pragma once
+#include <cmath>
+
+#include "common/base/constants.h"
 #include "common/math/types.h"
 
 namespace mortise {
@@ -20,6 +23,13 @@ struct Pose {
 /// Bit-wise the same pose.
 inline bool identical(const Pose& a, const Pose& b) {
   return (a.q.coeffs().array() == b.q.coeffs().array()).all() && (a.p.array() == b.p.array()).all();
+}
+
+/// A rigid motion that can be computed with: finite, a unit quaternion, no coordinate beyond
+/// kLargestCoordinate_mm.
+inline bool valid(const Pose& X) {
+  return std::abs(X.q.coeffs().squaredNorm() - 1.0) <= 2.0 * kUnitSlack &&
+         (X.p.array().abs() <= kLargestCoordinate_mm).all();
 }
 
 }  // namespace mortise

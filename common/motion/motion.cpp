@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
 #include "common/math/rotation.h"
 
 namespace mortise {
@@ -26,6 +27,7 @@ Vec3 turned_minus_still(const Vec3& w, const Vec3& r) {
 }  // namespace
 
 Pose Motion::pose_at(double t) const {
+  MORTISE_CHECK(!std::isnan(t), "a time must be a number");
   if (kind == PathKind::kStill || t <= 0.0) return X_W0;
   if (t >= 1.0) return X_W1;
   const Vec3 reference_0 = X_W0 * reference_P;
@@ -52,6 +54,7 @@ double Motion::turn_radius_mm() const {
 }
 
 double Motion::travel_upper_bound_mm(double radius_mm, double t0, double t1) const {
+  MORTISE_CHECK(radius_mm >= 0.0 && !std::isnan(t1 - t0), "a radius and times must be numbers");
   if (kind == PathKind::kStill) return 0.0;
   const double turning = w_W.norm() * (radius_mm + turn_radius_mm());
   // On a screw the two speeds are perpendicular; on a linear path they may add up.
@@ -60,7 +63,17 @@ double Motion::travel_upper_bound_mm(double radius_mm, double t0, double t1) con
   return speed * std::max(0.0, t1 - t0);
 }
 
+bool valid(const Motion& motion) {
+  const bool known = motion.kind == PathKind::kStill || motion.kind == PathKind::kLinear ||
+                     motion.kind == PathKind::kScrew;
+  // Rounding of the logarithm at half a turn: a few ulp.
+  constexpr double kHalfTurn = kMaxRotationPerTick_rad * (1.0 + 8.0 * kUnitRoundoff);
+  return known && valid(motion.X_W0) && valid(motion.X_W1) && motion.reference_P.allFinite() &&
+         motion.v_W.allFinite() && motion.axis_W.allFinite() && motion.w_W.norm() <= kHalfTurn;
+}
+
 Motion still_motion(const Pose& X_W) {
+  MORTISE_CHECK(valid(X_W), "a pose must be finite and its quaternion unit");
   Motion motion;
   motion.X_W0 = motion.X_W1 = X_W;
   motion.axis_W = X_W.p;
@@ -68,6 +81,9 @@ Motion still_motion(const Pose& X_W) {
 }
 
 Motion linear_motion(const Pose& X_W0, const Pose& X_W1, const Vec3& reference_P) {
+  MORTISE_CHECK(valid(X_W0) && valid(X_W1), "poses must be finite and their quaternions unit");
+  MORTISE_CHECK((reference_P.array().abs() <= kLargestCoordinate_mm).all(),
+                "a reference point must be finite");
   Motion motion;
   motion.X_W0 = X_W0;
   motion.X_W1 = X_W1;
@@ -102,6 +118,7 @@ Motion screw_motion(const Pose& X_W0, const Pose& X_W1, const Vec3& reference_P)
 }
 
 Motion seen_from(const Motion& motion, const Pose& X_WB) {
+  MORTISE_CHECK(valid(X_WB), "a pose must be finite and its quaternion unit");
   const Pose X_BW = X_WB.inverse();
   Motion seen = motion;
   seen.X_W0 = X_BW * motion.X_W0;
@@ -113,6 +130,7 @@ Motion seen_from(const Motion& motion, const Pose& X_WB) {
 }
 
 Motion until(const Motion& motion, double t_end) {
+  MORTISE_CHECK(!std::isnan(t_end), "a time must be a number");
   if (t_end >= 1.0 || !motion.moves()) return motion;
   if (t_end <= 0.0) return still_motion(motion.X_W0);
   Motion cut = motion;

@@ -22,10 +22,11 @@ struct Motion {
   Vec3 axis_W = Vec3::Zero();  ///< a point of the axis at t = 0: reference point (kLinear), screw
                                ///< axis (kScrew)
 
+  /// Before 0 the start, after 1 the end. t must be a number.
   Pose pose_at(double t) const;
 
   /// Upper bound, mm, of the path length of any point of the part over [t0, t1] whose distance from
-  /// the reference point is at most radius_mm.
+  /// the reference point is at most radius_mm, which must not be negative.
   double travel_upper_bound_mm(double radius_mm, double t0, double t1) const;
 
   /// Velocity of the reference point at t, world axes, mm per tick. The part turns with w_W.
@@ -38,6 +39,10 @@ struct Motion {
   bool moves() const { return kind != PathKind::kStill; }
 };
 
+/// A path that can be asked: a known kind, valid poses, finite velocities, |w| <= pi.
+bool valid(const Motion& motion);
+
+/// Poses must be valid() here and below.
 Motion still_motion(const Pose& X_W);
 Motion linear_motion(const Pose& X_W0, const Pose& X_W1, const Vec3& reference_P);
 /// Screw between the poses; falls back to kLinear (whose path is then the same) when the rotation
@@ -49,7 +54,7 @@ Motion screw_motion(const Pose& X_W0, const Pose& X_W1, const Vec3& reference_P)
 Motion seen_from(const Motion& motion, const Pose& X_WB);
 
 /// The same motion cut short: [0, 1] of the result is [0, t_end] of `motion`, ending exactly at
-/// pose_at(t_end).
+/// pose_at(t_end). t_end must be a number; beyond [0, 1] it is taken for the nearer end.
 Motion until(const Motion& motion, double t_end);
 
 }  // namespace mortise
