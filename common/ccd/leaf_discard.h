@@ -29,7 +29,7 @@ using PlaceLeaf = void (*)(const double* corners, int count, const Placement& pl
                            FourTriangles& out);
 using MoveLeaf = void (*)(const double* corners, int count, const double* origin,
                           FourTriangles& out);
-/// Bit 4 i + j: triangle i of a and j of b may be within reach. About 100 ns.
+/// Bit 4 i + j: triangle i of a and j of b may be within reach. About 80 ns with AVX2, 450 without.
 using NearPairs = unsigned (*)(const FourTriangles& a, const FourTriangles& b, const Reach& reach);
 /// Bit 4 i + j: likewise, along the direction reach.n alone. About 15 ns.
 using NearAlong = NearPairs;
