@@ -132,8 +132,7 @@ class Query {
       ++work.box_tests;
       motion_.at(item.t);
       alignas(32) float dt[Bvh::kWidth];
-      const bool opened_a = open(item, a, b, motion_.frame(goal.target_mm), kernels.advance_a,
-                                 kernels.advance_b, static_cast<float*>(dt));
+      const bool opened_a = open_oriented(item, a, b, motion_, goal.target_mm, kernels, dt);
       queue.push_children(item, opened_a, dt);
     }
     result_.state = ContactState::kFree;

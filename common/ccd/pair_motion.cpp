@@ -7,23 +7,9 @@
 namespace mortise::ccd {
 namespace {
 
-// Float arithmetic of one box test makes at most some thirty errors of half an ulp, 6e-8 of the
-// extent.
-constexpr double kFloatRounding = 2e-6;
-
 // A bound along a direction holds while a body turns by no more than this (see TurnTerms): what it
 // gives away at the end is a 25th of the speed by turning. Ticks seldom turn as far.
 constexpr double kHorizon_rad = 1.0;
-
-float rounded_up(double x) {
-  const float f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
-
-template <class Vector>
-void copy(const Vector& from, float* to) {
-  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
-}
 
 void copy(const Vec3& from, double* to) {
   for (int c = 0; c < 3; ++c) to[c] = from[c];
@@ -147,12 +133,9 @@ double PairMotion::horizon() const {
                                                   : kHorizon_rad / speed;
 }
 
-void PairMotion::set_terms(TurnTerms& terms, const BodyState& body, double speed,
-                           double horizon) const {
-  terms.turns = speed > 0.0;
-  copy(body.w, terms.w);
-  copy(body.arm, terms.arm);
+void PairMotion::set_bounds(TurnTerms& terms, double speed, double horizon) const {
   const double ticks = std::min(horizon, 1.0 - state_.t), phi = speed * ticks;
+  terms.turns = speed > 0.0;
   terms.bow = 1.0 - phi * phi / 12.0;
   terms.lift = speed * speed * ticks / 3.0;
 }
@@ -172,11 +155,16 @@ const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
   leaf_.speed_slack = speed_rounding_mm_;
   leaf_.bend_slack = 0.0;
   leaf_.sweep = 0.0;
+  const auto set_terms = [&](TurnTerms& terms, const BodyState& body, double speed) {
+    set_bounds(terms, speed, leaf_.horizon);
+    copy(body.w, terms.w);
+    copy(body.arm, terms.arm);
+  };
   if (turns_a()) {
-    set_terms(leaf_.a, s.a, path_a_.speed(), leaf_.horizon);
+    set_terms(leaf_.a, s.a, path_a_.speed());
     leaf_.sweep = 2.0 * s.a.w.cross(v).norm();
   }
-  if (turns_b()) set_terms(leaf_.b, s.b, path_b_.speed(), leaf_.horizon);
+  if (turns_b()) set_terms(leaf_.b, s.b, path_b_.speed());
   // Whatever the place is wrong by, the acceleration is wrong by |w|^2 times as much.
   const auto bend_rounding = [](double speed, const Vec3& arm, double radius) {
     return kRoundingFactor * kUnitRoundoff * speed * speed * (arm.norm() + radius);
@@ -184,85 +172,6 @@ const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {
   leaf_.bend_slack = bend_rounding(path_a_.speed(), s.a.arm, radius_a_ + radius_b_ + s.p.norm()) +
                      bend_rounding(path_b_.speed(), s.b.arm, radius_b_);
   return leaf_;
-}
-
-// For the axes e_k of B and r_k of A as directions n, of a point x from the axis of a body that
-// turns with w:  n . (w x x) = (n x w) . x  and  n . (w x (w x x)) = (w x (w x n)) . x.
-void PairMotion::set_turns(const BodyState& body, TurnAlong DirectionTerms::*side,
-                           const Mat3& R_BBody) {
-  const auto cross_columns = [&](const Mat3& m) {
-    Mat3 out;
-    for (int k = 0; k < 3; ++k) out.col(k) = body.w.cross(m.col(k));
-    return out;
-  };
-  const Vec3 arm_turn = body.w.cross(body.arm), arm_bend = body.w.cross(arm_turn);
-  const auto set = [&](int first, const Mat3& n, const Mat3& w_n, const Mat3& w_w_n) {
-    const Mat3 reach = (R_BBody.transpose() * w_n).cwiseAbs();
-    const Mat3 bend_reach = (R_BBody.transpose() * w_w_n).cwiseAbs();
-    const Vec3 turn_0 = n.transpose() * arm_turn, bend_0 = n.transpose() * arm_bend;
-    for (int k = 0; k < 3; ++k) {
-      TurnAlong& along = frame_.direction[first + k].*side;
-      copy(-w_n.col(k), along.turn);
-      copy(w_w_n.col(k), along.bend);
-      copy(reach.col(k), along.reach);
-      copy(bend_reach.col(k), along.bend_reach);
-      along.turn_0 = static_cast<float>(turn_0[k]);
-      along.bend_0 = static_cast<float>(bend_0[k]);
-    }
-  };
-  const Mat3& R = state_.R;
-  const Mat3 w_e = cross_columns(Mat3::Identity()), w_r = cross_columns(R);
-  set(0, Mat3::Identity(), w_e, cross_columns(w_e));
-  set(3, R, w_r, cross_columns(w_r));
-}
-
-const BoxFrame& PairMotion::frame(double target_mm) {
-  if (frame_t_ == state_.t && frame_target_ == target_mm) return frame_;
-  frame_t_ = state_.t;
-  frame_target_ = target_mm;
-  BoxFrame& f = frame_;
-  const PairState& s = state_;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      f.r[i][j] = static_cast<float>(s.R(i, j));
-      f.abs_r[i][j] = std::fabs(f.r[i][j]);
-    }
-  copy(s.p, f.p);
-  const Vec3 v = s.a.v - s.b.v;
-  copy(v, f.v);
-  const double ends = horizon();
-  f.horizon = static_cast<float>(ends);
-  const auto set_turn = [&](BoxTurn& turn, const BodyState& body, double speed) {
-    TurnTerms terms;
-    set_terms(terms, body, speed, ends);
-    copy(body.w, turn.w);
-    copy(body.arm, turn.arm);
-    turn.speed = rounded_up(speed);
-    // Half an ulp of float more than what the rounding to nearest may lose.
-    turn.lift = rounded_up(terms.lift);
-    turn.bow = static_cast<float>(terms.bow) * (1.0F - 1.2e-7F);
-    turn.turns = terms.turns;
-  };
-  set_turn(f.a, s.a, path_a_.speed());
-  set_turn(f.b, s.b, path_b_.speed());
-  const double extent = radius_a_ + radius_b_ + s.p.norm();
-  f.gap_allowance = rounded_up(std::max(target_mm, 0.0) + rounding_mm_ + kFloatRounding * extent);
-  const double wide_a = radius_a_ + s.a.arm.norm(), wide_b = radius_b_ + s.b.arm.norm();
-  const double speed_a = path_a_.speed(), speed_b = path_b_.speed();
-  f.speed_allowance = rounded_up(speed_rounding_mm_ +
-                                 kFloatRounding * (v.norm() + speed_a * wide_a + speed_b * wide_b));
-  f.bend_allowance =
-      rounded_up(kFloatRounding * (speed_a * speed_a * wide_a + speed_b * speed_b * wide_b));
-  const Vec3 v_A = s.R.transpose() * v;
-  for (int k = 0; k < 3; ++k) {
-    copy(Vec3::Unit(k), f.direction[k].n);
-    copy(s.R.col(k), f.direction[3 + k].n);
-    f.direction[k].v = static_cast<float>(v[k]);
-    f.direction[3 + k].v = static_cast<float>(v_A[k]);
-  }
-  if (turns_a()) set_turns(s.a, &DirectionTerms::a, s.R);
-  if (turns_b()) set_turns(s.b, &DirectionTerms::b, Mat3::Identity());
-  return f;
 }
 
 Vec3 PairMotion::to_world(const Vec3& x_local_b, double t) const {

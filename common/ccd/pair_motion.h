@@ -45,14 +45,24 @@ struct PairState {
   BodyState a, b;
 };
 
+/// The axes in which boxes of one part are given: a point x (part axes, from the origin of the
+/// tree) is at axes (x - from_origin), and no farther than radius_mm from there.
+struct BoxAxes {
+  const Mat3* axes = nullptr;  ///< null: those of the part
+  Vec3 from_origin = Vec3::Zero();
+  double radius_mm = 0.0;
+};
+
 class PairMotion {
  public:
   PairMotion(const Solid& a, const Motion& motion_a, const Solid& b, const Motion& motion_b);
 
   /// State at t; remembered until another t is asked for.
   const PairState& at(double t);
-  /// What the box kernels need at state.t.
+  /// What the box kernels need at state.t, for boxes in axes of the parts.
   const BoxFrame& frame(double target_mm);
+  /// The same for boxes in axes of their own.
+  const BoxFrame& frame(double target_mm, const BoxAxes& a, const BoxAxes& b);
   /// What the leaf kernel needs at state.t. Gaps are measured from taken_mm + rounding.
   const LeafFrame& leaf_frame(double taken_mm, double suspect_mm);
 
@@ -68,8 +78,7 @@ class PairMotion {
   Vec3 to_world(const Vec3& x_local_b, double t) const;
 
  private:
-  void set_terms(TurnTerms& terms, const BodyState& body, double speed, double horizon) const;
-  void set_turns(const BodyState& body, TurnAlong DirectionTerms::*side, const Mat3& R_BBody);
+  void set_bounds(TurnTerms& terms, double speed, double horizon) const;
   double horizon() const;
 
   const Solid& solid_b_;
@@ -80,7 +89,7 @@ class PairMotion {
   double radius_a_, radius_b_;
   PairState state_;
   BoxFrame frame_{};
-  double frame_t_ = -1.0, frame_target_ = 0.0;
+  double frame_t_ = -1.0, frame_target_ = 0.0;  // of the frame in axes of the parts
   LeafFrame leaf_{};
   double leaf_t_ = -1.0;
 };

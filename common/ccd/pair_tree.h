@@ -65,7 +65,11 @@ bool open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, K
   return open_a;
 }
 
-/// The same, handing every child pair to f(child_item, value).
+/// The same with the boxes in axes of their own: how many ticks each child is free for.
+bool open_oriented(const Item& item, const Bvh& a, const Bvh& b, PairMotion& motion,
+                   double target_mm, const BoxKernels& kernels, float* dt);
+
+/// The same as open(), handing every child pair to f(child_item, value).
 template <class KernelA, class KernelB, class F>
 void open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, KernelA kernel_a,
           KernelB kernel_b, F f) {

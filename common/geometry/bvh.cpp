@@ -1,19 +1,21 @@
 #include "common/geometry/bvh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <thread>
 
 #include "common/base/check.h"
 #include "common/base/constants.h"
+#include "common/geometry/bvh_orient.h"
 #include "common/geometry/bvh_split.h"
+#include "common/geometry/bvh_threads.h"
 
 namespace mortise {
 namespace {
 
 using bvh::BoxedTriangle;
+using bvh::for_each;
 using bvh::Range;
 
 // From this depth on sets are halved, whatever their boxes: no tree becomes deeper than about
@@ -39,20 +41,6 @@ float rounded_up(double x) {
   return static_cast<double>(f) < x ? next_up(f) : f;
 }
 float rounded_down(double x) { return -rounded_up(-x); }
-
-// Calls body(i) for every i below count, on up to `threads` threads; body writes only what belongs
-// to i.
-template <class Body>
-void for_each(std::size_t count, int threads, const Body& body) {
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) body(i);
-  };
-  std::vector<std::jthread> others;
-  for (int k = 1; k < threads && static_cast<std::size_t>(k) < count; ++k)
-    others.emplace_back(work);
-  work();
-}
 
 class Builder {
  public:
@@ -287,7 +275,8 @@ Box Bvh::child_box(const Node& node, int k) const {
 }
 
 std::size_t Bvh::bytes() const {
-  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(triangle_order) + bytes_of(corners);
+  return bytes_of(nodes) + bytes_of(oriented) + bytes_of(leaves) + bytes_of(triangle_order) +
+         bytes_of(corners);
 }
 
 Bvh build_bvh(const TriangleMesh& mesh, int threads) {
@@ -298,6 +287,7 @@ Bvh build_bvh(const TriangleMesh& mesh, int threads) {
                   : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   Bvh bvh;
   Builder(mesh, bvh, threads).build();
+  bvh::orient(bvh, threads);
   return bvh;
 }
 

@@ -24,12 +24,24 @@ struct Bvh {
     std::int32_t count = 0;      ///< used lanes
     float size = 0.0F;           ///< sum of the half extents of the node's own box
   };
+  /// The boxes of the same children once more, in axes that fit them: those of the part, or, where
+  /// the children are a patch, its normal and its longest edge. A point x of the part (from
+  /// Bvh::origin) is at axes (x - from_origin).
+  struct alignas(32) Oriented {
+    float center[3][kWidth];
+    float half[3][kWidth];  ///< rounded outward
+    Mat3 axes;              ///< by row
+    Vec3 from_origin;
+    double radius_mm;  ///< no point of a box is farther from from_origin
+    bool part_axes;    ///< axes is the identity
+  };
   struct Leaf {
     std::uint32_t first = 0;  ///< into triangle_order
     std::uint32_t count = 0;  ///< 1..kLeafSize
   };
 
   std::vector<Node> nodes;
+  std::vector<Oriented> oriented;  ///< one for each node
   std::vector<Leaf> leaves;
   std::vector<std::uint32_t> triangle_order;  ///< triangle ids in leaf order
   std::vector<std::array<double, 9>>
@@ -47,7 +59,8 @@ struct Bvh {
 };
 
 /// Deterministic: the same tree to the last bit at any number of threads. mesh must have at least
-/// one triangle, its coordinates be finite and below 1e12 mm. O(n log n). threads 0: one for small meshes, those of the machine for large ones.
+/// one triangle, its coordinates be finite and below 1e12 mm. O(n log n). threads 0: one for small
+/// meshes, those of the machine for large ones.
 Bvh build_bvh(const TriangleMesh& mesh, int threads = 0);
 
 }  // namespace mortise

@@ -1,0 +1,163 @@
+#include <cmath>
+#include <limits>
+
+#include "common/ccd/pair_motion.h"
+
+// What the box kernels need, from what PairMotion knows.
+namespace mortise::ccd {
+namespace {
+
+// Float arithmetic of one box test makes at most some thirty errors of half an ulp, 6e-8 of the
+// extent.
+constexpr double kFloatRounding = 2e-6;
+
+float rounded_up(double x) {
+  const float f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+template <class Vector>
+void copy(const Vector& from, float* to) {
+  const Vec3 x = from;
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(x[c]);
+}
+
+// The terms of a body that turns with w for the axes e_k of B and r_k of A (columns of R) as
+// directions n, of a point x from the axis of the body:
+//   n . (w x x) = (n x w) . x,   n . (w x (w x x)) = ((n . w) w - |w|^2 n) . x;
+// and how far the corners of a box reach along these: boxes of A have the axes r_j, of B e_j.
+class Turning {
+ public:
+  Turning(const Vec3& w, const Vec3& arm, const Mat3& R)
+      : w_(w),
+        w2_(w.squaredNorm()),
+        w_A_(R.transpose() * w),
+        R_(R),
+        arm_turn_(w.cross(arm)),
+        arm_bend_(w.cross(arm_turn_)) {
+    for (int k = 0; k < 3; ++k) r_w_.col(k) = R.col(k).cross(w);
+  }
+
+  void set(int k, TurnAlong& of_e, TurnAlong& of_r) const {
+    const Vec3 e = Vec3::Unit(k);
+    copy(e.cross(w_), of_e.turn);
+    copy(w_[k] * w_ - w2_ * e, of_e.bend);
+    of_e.turn_0 = static_cast<float>(arm_turn_[k]);
+    of_e.bend_0 = static_cast<float>(arm_bend_[k]);
+    copy(r_w_.col(k), of_r.turn);
+    copy(w_A_[k] * w_ - w2_ * R_.col(k), of_r.bend);
+    of_r.turn_0 = static_cast<float>(R_.col(k).dot(arm_turn_));
+    of_r.bend_0 = static_cast<float>(R_.col(k).dot(arm_bend_));
+  }
+  void set_reach_of_a(int k, TurnAlong& of_e, TurnAlong& of_r) const {
+    const Vec3 e = Vec3::Unit(k);
+    copy(r_w_.row(k).cwiseAbs(), of_e.reach);
+    copy((w_[k] * w_A_ - w2_ * R_.row(k).transpose()).cwiseAbs(), of_e.bend_reach);
+    copy(e.cross(w_A_).cwiseAbs(), of_r.reach);
+    copy((w_A_[k] * w_A_ - w2_ * e).cwiseAbs(), of_r.bend_reach);
+  }
+  void set_reach_of_b(int k, TurnAlong& of_e, TurnAlong& of_r) const {
+    const Vec3 e = Vec3::Unit(k);
+    copy(e.cross(w_).cwiseAbs(), of_e.reach);
+    copy((w_[k] * w_ - w2_ * e).cwiseAbs(), of_e.bend_reach);
+    copy(r_w_.col(k).cwiseAbs(), of_r.reach);
+    copy((w_A_[k] * w_ - w2_ * R_.col(k)).cwiseAbs(), of_r.bend_reach);
+  }
+
+ private:
+  Vec3 w_;
+  double w2_;
+  Vec3 w_A_;
+  const Mat3& R_;
+  Vec3 arm_turn_, arm_bend_;
+  Mat3 r_w_;
+};
+
+}  // namespace
+
+const BoxFrame& PairMotion::frame(double target_mm) {
+  return frame(target_mm, {nullptr, Vec3::Zero(), radius_a_}, {nullptr, Vec3::Zero(), radius_b_});
+}
+
+const BoxFrame& PairMotion::frame(double target_mm, const BoxAxes& boxes_a,
+                                  const BoxAxes& boxes_b) {
+  BoxFrame& f = frame_;
+  const PairState& s = state_;
+  const bool of_parts = boxes_a.axes == nullptr && boxes_b.axes == nullptr;
+  if (of_parts && frame_t_ == s.t && frame_target_ == target_mm) return f;
+  frame_t_ = of_parts ? s.t : -1.0;
+  frame_target_ = target_mm;
+  // All in axes of the boxes of B, from their origin.
+  const Vec3 from_origin_a = s.R * boxes_a.from_origin;
+  Mat3 R = s.R;
+  Vec3 p = s.p + from_origin_a - boxes_b.from_origin;
+  Vec3 v = s.a.v - s.b.v, w_a = s.a.w, arm_a = s.a.arm + from_origin_a;
+  Vec3 w_b = s.b.w, arm_b = s.b.arm + boxes_b.from_origin;
+  if (boxes_a.axes != nullptr) R = R * boxes_a.axes->transpose();
+  if (boxes_b.axes != nullptr) {
+    const Mat3& N = *boxes_b.axes;
+    R = N * R;
+    p = N * p;
+    v = N * v;
+    w_a = N * w_a;
+    arm_a = N * arm_a;
+    w_b = N * w_b;
+    arm_b = N * arm_b;
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      f.r[i][j] = static_cast<float>(R(i, j));
+      f.abs_r[i][j] = std::fabs(f.r[i][j]);
+    }
+  copy(p, f.p);
+  copy(v, f.v);
+  const double ends = horizon();
+  f.horizon = static_cast<float>(ends);
+  const auto set_turn = [&](BoxTurn& turn, const Vec3& w, const Vec3& arm, double speed) {
+    turn.turns = speed > 0.0;
+    if (!turn.turns) return;
+    TurnTerms terms;
+    set_bounds(terms, speed, ends);
+    copy(w, turn.w);
+    copy(arm, turn.arm);
+    turn.speed = rounded_up(speed);
+    // Half an ulp of float more than what the rounding to nearest may lose.
+    turn.lift = rounded_up(terms.lift);
+    turn.bow = static_cast<float>(terms.bow) * (1.0F - 1.2e-7F);
+  };
+  set_turn(f.a, w_a, arm_a, path_a_.speed());
+  set_turn(f.b, w_b, arm_b, path_b_.speed());
+  const double extent = boxes_a.radius_mm + boxes_b.radius_mm + p.norm();
+  f.gap_allowance = rounded_up(std::max(target_mm, 0.0) + rounding_mm_ + kFloatRounding * extent);
+  const double speed_a = path_a_.speed(), speed_b = path_b_.speed();
+  const double wide_a = speed_a > 0.0 ? boxes_a.radius_mm + arm_a.norm() : 0.0;
+  const double wide_b = speed_b > 0.0 ? boxes_b.radius_mm + arm_b.norm() : 0.0;
+  f.speed_allowance = rounded_up(speed_rounding_mm_ +
+                                 kFloatRounding * (v.norm() + speed_a * wide_a + speed_b * wide_b));
+  f.bend_allowance =
+      rounded_up(kFloatRounding * (speed_a * speed_a * wide_a + speed_b * speed_b * wide_b));
+  const Vec3 v_A = R.transpose() * v;
+  for (int k = 0; k < 3; ++k) {
+    copy(Vec3::Unit(k), f.direction[k].n);
+    copy(R.col(k), f.direction[3 + k].n);
+    f.direction[k].v = static_cast<float>(v[k]);
+    f.direction[3 + k].v = static_cast<float>(v_A[k]);
+  }
+  if (turns_a()) {
+    const Turning turning(w_a, arm_a, R);
+    for (int k = 0; k < 3; ++k) {
+      turning.set(k, f.direction[k].a, f.direction[3 + k].a);
+      turning.set_reach_of_a(k, f.direction[k].a, f.direction[3 + k].a);
+    }
+  }
+  if (turns_b()) {
+    const Turning turning(w_b, arm_b, R);
+    for (int k = 0; k < 3; ++k) {
+      turning.set(k, f.direction[k].b, f.direction[3 + k].b);
+      turning.set_reach_of_b(k, f.direction[k].b, f.direction[3 + k].b);
+    }
+  }
+  return f;
+}
+
+}  // namespace mortise::ccd

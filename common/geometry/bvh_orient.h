@@ -1,0 +1,10 @@
+#pragma once
+#include "common/geometry/bvh.h"
+
+namespace mortise::bvh {
+
+/// Fills Bvh::oriented from the finished tree. Deterministic at any number of threads.
+/// O(n) for the nodes that get axes of their own.
+void orient(Bvh& bvh, int threads);
+
+}  // namespace mortise::bvh
