@@ -36,6 +36,7 @@ struct BoxFrame {
   DirectionTerms direction[6];  ///< axes of B, axes of A
   float v[3];                   ///< relative velocity of the axes of rotation
   BoxTurn a, b;
+  float rest;             ///< ticks to the end, rounded up: longer answers are all the same
   float horizon;          ///< ticks: no answer is longer
   float gap_allowance;    ///< target distance and rounding, taken off every gap
   float speed_allowance;  ///< rounding of a speed

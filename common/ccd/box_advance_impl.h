@@ -125,24 +125,21 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     }
     best = larger(best, time_to_close(free_gap, going.s, going.bend, all(f.horizon)));
   };
-  for (int k = 0; k < 3; ++k) {
-    const Lanes free_gap = magnitude(d[k]) - b.half[k] - extent_a[k] - all(f.gap_allowance);
-    gap[k] = larger(free_gap, zero);
-    try_direction(f.direction[k], d[k], free_gap);
-  }
-  for (int k = 0; k < 3; ++k) {
-    const DirectionTerms& n = f.direction[3 + k];
-    const Lanes along = dot(n.n, d);
-    const Lanes extent_b = all(f.abs_r[0][k]) * b.half[0] + all(f.abs_r[1][k]) * b.half[1] +
-                           all(f.abs_r[2][k]) * b.half[2];
-    try_direction(n, along, magnitude(along) - a.half[k] - extent_b - all(f.gap_allowance));
-  }
+  for (int k = 0; k < 3; ++k)
+    gap[k] = magnitude(d[k]) - b.half[k] - extent_a[k] - all(f.gap_allowance);
+  // Nothing is gained beyond the end of the tick.
+  const auto done = [&] {
+    const Mask still = best * all(kShorter) < all(f.rest);
+    return (still[0] | still[1] | still[2] | still[3] | still[4] | still[5] | still[6] |
+            still[7]) == 0;
+  };
   // The direction from box to box, each lane its own. Each gap above has paid the whole allowance.
   {
-    const Lanes length = root(dot(gap, gap));
+    const Lanes apart[3] = {larger(gap[0], zero), larger(gap[1], zero), larger(gap[2], zero)};
+    const Lanes length = root(dot(apart, apart));
     const Lanes inverse = all(1.0F) / larger(length, all(1e-30F));
     Lanes n[3];
-    for (int k = 0; k < 3; ++k) n[k] = (d[k] > zero ? gap[k] : -gap[k]) * inverse;
+    for (int k = 0; k < 3; ++k) n[k] = (d[k] > zero ? apart[k] : -apart[k]) * inverse;
     Going going{dot(f.v, n) + all(f.speed_allowance), all(f.bend_allowance)};
     Lanes largest_bend = all(f.bend_allowance);
     if constexpr (kTurnsA) {
@@ -179,6 +176,14 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     if ((kTurnsA || kTurnsB) && f.horizon < 1.0F)
       best = larger(best, time_to_close(length, going.s, largest_bend, all(kNever)));
     best = larger(best, time_to_close(length, going.s, going.bend, all(f.horizon)));
+  }
+  for (int k = 0; k < 3 && !done(); ++k) try_direction(f.direction[k], d[k], gap[k]);
+  for (int k = 0; k < 3 && !done(); ++k) {
+    const DirectionTerms& n = f.direction[3 + k];
+    const Lanes along = dot(n.n, d);
+    const Lanes extent_b = all(f.abs_r[0][k]) * b.half[0] + all(f.abs_r[1][k]) * b.half[1] +
+                           all(f.abs_r[2][k]) * b.half[2];
+    try_direction(n, along, magnitude(along) - a.half[k] - extent_b - all(f.gap_allowance));
   }
   best *= all(kShorter);
   __builtin_memcpy(out, &best, sizeof best);

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 
 #include "common/ccd/pair_motion.h"
 
@@ -11,10 +10,8 @@ namespace {
 // extent.
 constexpr double kFloatRounding = 2e-6;
 
-float rounded_up(double x) {
-  const float f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
+// Of a value that is not negative: at least x, at most three ulp more.
+float rounded_up(double x) { return static_cast<float>(x) * (1.0F + 0x1p-22F); }
 
 template <class Vector>
 void copy(const Vector& from, float* to) {
@@ -112,6 +109,7 @@ const BoxFrame& PairMotion::frame(double target_mm, const BoxAxes& boxes_a,
   copy(p, f.p);
   copy(v, f.v);
   const double ends = horizon();
+  f.rest = rounded_up(1.0 - s.t);
   f.horizon = static_cast<float>(ends);
   const auto set_turn = [&](BoxTurn& turn, const Vec3& w, const Vec3& arm, double speed) {
     turn.turns = speed > 0.0;

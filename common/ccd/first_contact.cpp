@@ -20,7 +20,7 @@ constexpr double kContactAt = 0.25;
 constexpr double kAim = 0.03125;
 constexpr double kRoundingsPerAccuracy = 64.0;
 // Ticks: for less than this a pair is not put back, but looked at by its exact distance.
-constexpr double kWorthWhile = 0.01;
+constexpr double kWorthWhile = 0.03;
 // Of a pair that touches at the start: how deep its triangles may go, and how much deeper those may
 // that already lie near that depth and only slide.
 constexpr double kMayPress = 0.875;
@@ -170,7 +170,7 @@ class Query {
       if (t > next_pair) {
         Item again = item;
         again.t = t;
-        queue.push(again);
+        queue.push_again(again);
         return true;
       }
     }

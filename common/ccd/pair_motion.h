@@ -88,7 +88,7 @@ class PairMotion {
   double rounding_mm_, speed_rounding_mm_, travel_mm_;
   double radius_a_, radius_b_;
   PairState state_;
-  BoxFrame frame_{};
+  BoxFrame frame_;  // the terms of a body that does not turn are never read
   double frame_t_ = -1.0, frame_target_ = 0.0;  // of the frame in axes of the parts
   LeafFrame leaf_{};
   double leaf_t_ = -1.0;

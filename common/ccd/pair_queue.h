@@ -32,9 +32,14 @@ class PairQueue {
   /// Of the time that is looked at: it is next.
   void push_now(const Item& item) { now_.push_back(item); }
 
-  void push(const Item& item) {
-    families_.push_back({item, kItself, {}});
-    push_entry(item.t, families_.size() - 1, 0);
+  /// The pair that was popped last, once more.
+  void push_again(const Item& item) {
+    if (last_ == kNone) {
+      last_ = families_.size();
+      families_.push_back({item, kItself, {}});
+    }
+    families_[last_].parent = item;
+    push_entry(item.t, last_, 0);
   }
 
   /// The children of `item` after one side was opened; child k is free for dt[k] ticks more.
@@ -53,6 +58,7 @@ class PairQueue {
   }
 
   Item pop() {
+    last_ = kNone;
     if (!now_.empty()) {
       const Item item = now_.back();
       now_.pop_back();
@@ -62,7 +68,10 @@ class PairQueue {
     const Entry entry = heap_.back();
     heap_.pop_back();
     Family& family = families_[entry.member / Bvh::kWidth];
-    if (family.opened == kItself) return family.parent;
+    if (family.opened == kItself) {
+      last_ = entry.member / Bvh::kWidth;
+      return family.parent;
+    }
     const auto slot = static_cast<int>(entry.member % Bvh::kWidth);
     Item item = child(family, slot);
     item.t = time_of(entry);
@@ -73,6 +82,7 @@ class PairQueue {
 
  private:
   static constexpr std::int32_t kItself = 0, kOpenedA = 1, kOpenedB = 2;
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   static constexpr float kTaken = std::numeric_limits<float>::infinity();
 
   // Times are not negative, so their bits are in the same order; as one integer with the member
@@ -126,6 +136,7 @@ class PairQueue {
   std::vector<Item>& now_;
   std::vector<Entry>& heap_;
   std::vector<Family>& families_;
+  std::size_t last_ = kNone;  // family of a pair that was put back before
 };
 
 }  // namespace mortise::ccd
