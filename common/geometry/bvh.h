@@ -22,18 +22,17 @@ struct Bvh {
     float half[3][kWidth];
     std::int32_t child[kWidth];  ///< >= 0: node; < 0: ~leaf
     std::int32_t count = 0;      ///< used lanes
+    std::int32_t oriented = -1;  ///< into Bvh::oriented; -1: no axes fit better than the part's
     float size = 0.0F;           ///< sum of the half extents of the node's own box
   };
-  /// The boxes of the same children once more, in axes that fit them: those of the part, or, where
-  /// the children are a patch, its normal and its longest edge. A point x of the part (from
-  /// Bvh::origin) is at axes (x - from_origin).
+  /// The boxes of the children of a node that are a patch once more, in axes that fit it: its mean
+  /// normal and its edges. A point x of the part (from Bvh::origin) is at axes (x - from_origin).
   struct alignas(32) Oriented {
     float center[3][kWidth];
     float half[3][kWidth];  ///< rounded outward
     Mat3 axes;              ///< by row
     Vec3 from_origin;
-    double radius_mm;  ///< no point of a box is farther from from_origin
-    bool part_axes;    ///< axes is the identity
+    double radius_mm = 0.0;  ///< no point of a box is farther from from_origin
   };
   struct Leaf {
     std::uint32_t first = 0;  ///< into triangle_order
@@ -41,7 +40,7 @@ struct Bvh {
   };
 
   std::vector<Node> nodes;
-  std::vector<Oriented> oriented;  ///< one for each node
+  std::vector<Oriented> oriented;  ///< of the nodes that have one
   std::vector<Leaf> leaves;
   std::vector<std::uint32_t> triangle_order;  ///< triangle ids in leaf order
   std::vector<std::array<double, 9>>

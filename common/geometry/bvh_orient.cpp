@@ -119,23 +119,18 @@ void set_boxes(Bvh::Oriented& out, const Box* boxes, int count, double slack) {
   out.radius_mm = std::sqrt(radius2) * (1.0 + 1e-12);
 }
 
-void orient_node(const Bvh& bvh, std::size_t index, const std::vector<Span>& spans,
+// True where axes of their own are worth having.
+bool orient_node(const Bvh& bvh, std::size_t index, const std::vector<Span>& spans,
                  Bvh::Oriented& out) {
   const Bvh::Node& node = bvh.nodes[index];
-  const double slack = kRoundingFactor * kUnitRoundoff * bvh.extent_mm;
-  out.part_axes = true;
-  out.axes.setIdentity();
-  out.from_origin.setZero();
-  for (int c = 0; c < 3; ++c) {
-    std::copy(node.local_center[c], node.local_center[c] + Bvh::kWidth, out.center[c]);
-    std::copy(node.half[c], node.half[c] + Bvh::kWidth, out.half[c]);
-  }
-  out.radius_mm = bvh.radius_mm;
   const Span span = spans[index];
-  if (span.end - span.begin > kMostTriangles) return;
+  if (span.end - span.begin > kMostTriangles) return false;
   Patch patch;
-  if (!patch_of(bvh, span, patch)) return;
+  if (!patch_of(bvh, span, patch)) return false;
   const Vec3 middle = corner(bvh, span.begin, 0);
+  const double slack =
+      kRoundingFactor * kUnitRoundoff * bvh.extent_mm + kAxesRounding * bvh.radius_mm;
+  bool found = false;
   double best = 0.0;
   for (int k = 0; k < node.count; ++k) best += kWorthTurning * surface(bvh.child_box(node, k));
   for (const Vec3& along : patch.along) {
@@ -149,23 +144,39 @@ void orient_node(const Bvh& bvh, std::size_t index, const std::vector<Span>& spa
     }
     if (cost >= best) continue;
     best = cost;
-    out.part_axes = false;
+    found = true;
     out.axes = axes;
     out.from_origin = middle - bvh.origin;
-    set_boxes(out, boxes, node.count, slack + kAxesRounding * bvh.radius_mm);
+    set_boxes(out, boxes, node.count, slack);
   }
+  return found;
 }
 
 }  // namespace
 
 void orient(Bvh& bvh, int threads) {
   const std::vector<Span> spans = spans_of_nodes(bvh);
-  bvh.oriented.resize(bvh.nodes.size());
   constexpr std::size_t kBlock = 64;
-  for_each((bvh.nodes.size() + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < std::min(bvh.nodes.size(), (block + 1) * kBlock); ++i)
-      orient_node(bvh, i, spans, bvh.oriented[i]);
+  const std::size_t blocks = (bvh.nodes.size() + kBlock - 1) / kBlock;
+  std::vector<std::vector<Bvh::Oriented>> found(blocks);
+  for_each(blocks, threads, [&](std::size_t block) {
+    Bvh::Oriented oriented;
+    for (std::size_t i = block * kBlock; i < std::min(bvh.nodes.size(), (block + 1) * kBlock);
+         ++i) {
+      if (!orient_node(bvh, i, spans, oriented)) continue;
+      bvh.nodes[i].oriented = static_cast<std::int32_t>(found[block].size());
+      found[block].push_back(oriented);
+    }
   });
+  std::size_t count = 0;
+  for (const auto& of_block : found) count += of_block.size();
+  bvh.oriented.reserve(count);
+  for (std::size_t block = 0; block < blocks; ++block) {
+    const auto before = static_cast<std::int32_t>(bvh.oriented.size());
+    for (std::size_t i = block * kBlock; i < std::min(bvh.nodes.size(), (block + 1) * kBlock); ++i)
+      if (bvh.nodes[i].oriented >= 0) bvh.nodes[i].oriented += before;
+    bvh.oriented.insert(bvh.oriented.end(), found[block].begin(), found[block].end());
+  }
 }
 
 }  // namespace mortise::bvh
