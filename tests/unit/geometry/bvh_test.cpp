@@ -16,27 +16,42 @@ namespace {
 
 // What is wrong with a tree, as counts.
 struct Faults {
-  int missing = 0;  ///< triangles that are not in exactly one leaf
-  int outside = 0;  ///< corners outside of a box above them
-  int corners = 0;  ///< corners that are not those of the mesh
-  int depth = 0;    ///< of the deepest leaf
-  int sum() const { return missing + outside + corners; }
+  int missing = 0;      ///< triangles that are not in exactly one leaf
+  int outside = 0;      ///< corners outside of a box above them
+  int outside_own = 0;  ///< the same of the boxes in axes of their own
+  int own = 0;          ///< nodes that have such
+  int corners = 0;      ///< corners that are not those of the mesh
+  int depth = 0;        ///< of the deepest leaf
+  int sum() const { return missing + outside + outside_own + corners; }
 };
 
 Faults faults_of(const TriangleMesh& mesh, const Bvh& bvh) {
   Faults faults;
   std::vector<int> seen(mesh.triangles.size(), 0);
   std::vector<Box> above{bvh.bounds};
+  std::vector<std::pair<const Bvh::Oriented*, int>> above_own;
+  const auto outside_own = [&](const Bvh::Oriented& boxes, int child, const Vec3& x) {
+    const Vec3 own = boxes.axes * (x - bvh.origin - boxes.from_origin);
+    bool outside = own.norm() > boxes.radius_mm;
+    for (int c = 0; c < 3; ++c)
+      outside = outside || std::fabs(own[c] - static_cast<double>(boxes.center[c][child])) >
+                               static_cast<double>(boxes.half[c][child]);
+    return outside;
+  };
   const auto visit = [&](auto&& self, std::int32_t child) -> void {
     faults.depth = std::max(faults.depth, static_cast<int>(above.size()) - 1);
     if (child >= 0) {
       const Bvh::Node& node = bvh.nodes[child];
       EXPECT_GE(node.count, 2);
       for (int k = node.count; k < Bvh::kWidth; ++k) EXPECT_EQ(node.child[k], node.child[0]);
+      const bool own = node.oriented >= 0;
+      faults.own += own;
       for (int k = 0; k < node.count; ++k) {
         above.push_back(bvh.child_box(node, k));
+        if (own) above_own.emplace_back(&bvh.oriented[node.oriented], k);
         self(self, node.child[k]);
         above.pop_back();
+        if (own) above_own.pop_back();
       }
       return;
     }
@@ -50,6 +65,8 @@ Faults faults_of(const TriangleMesh& mesh, const Bvh& bvh) {
         for (const Box& box : above)
           faults.outside +=
               (x.array() < box.lo.array()).any() || (x.array() > box.hi.array()).any();
+        for (const auto& [boxes, slot] : above_own)
+          faults.outside_own += outside_own(*boxes, slot, x);
         const double* held = bvh.corners[i].data() + 3 * k;
         faults.corners += x != Vec3(held[0], held[1], held[2]);
       }
@@ -64,7 +81,14 @@ bool same(const Bvh& a, const Bvh& b) {
   const auto equal = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
   };
-  return a.root == b.root && equal(a.nodes, b.nodes) && equal(a.leaves, b.leaves) &&
+  bool own = a.oriented.size() == b.oriented.size();
+  for (std::size_t i = 0; own && i < a.oriented.size(); ++i) {
+    const Bvh::Oriented &x = a.oriented[i], &y = b.oriented[i];
+    own = std::memcmp(x.center, y.center, sizeof x.center) == 0 &&
+          std::memcmp(x.half, y.half, sizeof x.half) == 0 && x.axes == y.axes &&
+          x.from_origin == y.from_origin && x.radius_mm == y.radius_mm;
+  }
+  return own && a.root == b.root && equal(a.nodes, b.nodes) && equal(a.leaves, b.leaves) &&
          equal(a.triangle_order, b.triangle_order) && equal(a.corners, b.corners) &&
          a.radius_mm == b.radius_mm && a.extent_mm == b.extent_mm && a.origin == b.origin;
 }
@@ -129,6 +153,7 @@ TEST(Bvh, HoldsEveryTriangleOnceInEveryBoxAbove) {
     const Faults faults = faults_of(mesh, bvh);
     EXPECT_EQ(faults.missing, 0) << name;
     EXPECT_EQ(faults.outside, 0) << name;
+    EXPECT_EQ(faults.outside_own, 0) << name;
     EXPECT_EQ(faults.corners, 0) << name;
     // Those who walk the tree hold stacks of 7 x 45 + 8.
     EXPECT_LE(faults.depth, 45) << name;
@@ -142,6 +167,11 @@ TEST(Bvh, TheCheckSeesPlantedFaults) {
   Bvh bad = good;
   bad.nodes[0].half[1][0] *= 0.999F;
   EXPECT_GT(faults_of(mesh, bad).outside, 0);
+  bad = good;
+  ASSERT_GT(faults_of(mesh, good).own, 0) << "a sphere is made of patches";
+  bad.oriented[0].half[2][0] *= 0.9F;
+  EXPECT_GT(faults_of(mesh, bad).outside_own, 0);
+  EXPECT_FALSE(same(good, bad));
   bad = good;
   bad.triangle_order[3] = bad.triangle_order[4];
   EXPECT_GT(faults_of(mesh, bad).missing, 0);
