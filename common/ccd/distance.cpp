@@ -197,6 +197,7 @@ class Search {
 
 DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                         CcdScratch& scratch, double limit_mm, const DistanceResult* seed) {
+  MORTISE_CHECK(limit_mm >= 0.0, "a limit must be a length");
   PairMotion motion(a, still_motion(X_WA), b, still_motion(X_WB));
   motion.at(0.0);
   Search search(motion, a.bvh(), b.bvh(), limit_mm, 0.0, scratch);
@@ -226,6 +227,12 @@ bool surfaces_cross(const Solid& a, const Pose& X_WA, const Solid& b, const Pose
 // Slow, simple, and no proof of freedom: what first_contact is compared with.
 FirstContact first_contact_by_sampling(const ContactQuery& query, int steps, CcdScratch& scratch) {
   MORTISE_CHECK(query.a != nullptr && query.b != nullptr && steps > 0, "two solids and a step");
+  MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
+                "poses must be finite and unit, rotations at most half a turn");
+  MORTISE_CHECK(query.accuracy_mm >= 0.0 && query.accuracy_mm <= kLargestCoordinate_mm,
+                "an accuracy must be a length");
+  MORTISE_CHECK(query.separation_mm >= 0.0 && query.separation_mm <= kLargestCoordinate_mm,
+                "a separation must be a length");
   const double contact_mm = query.separation_mm + query.accuracy_mm;
   FirstContact result;
   const auto end = [&](ContactState state, double t, const DistanceResult& d) {

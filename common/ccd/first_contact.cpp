@@ -203,6 +203,12 @@ class Query {
 
 FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
   MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
+  MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
+                "poses must be finite and unit, rotations at most half a turn");
+  MORTISE_CHECK(query.accuracy_mm >= 0.0 && query.accuracy_mm <= kLargestCoordinate_mm,
+                "an accuracy must be a length");
+  MORTISE_CHECK(query.separation_mm >= 0.0 && query.separation_mm <= kLargestCoordinate_mm,
+                "a separation must be a length");
   return Query(query, scratch).answer();
 }
 

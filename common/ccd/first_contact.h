@@ -20,6 +20,9 @@ enum class ContactState : std::uint8_t {
   kOverlappingAtStart,  ///< surfaces cross at t = 0, or one part is inside the other
 };
 
+/// Solids with a triangle each, motions that are valid(), lengths from 0 to kLargestCoordinate_mm:
+/// anything else is a caller's fault and stops the program with a sentence. Odd but lawful:
+/// accuracy 0 is as fine as rounding allows, a work cap of 0 ends in kUndecided at once.
 struct ContactQuery {
   const Solid* a = nullptr;
   const Solid* b = nullptr;

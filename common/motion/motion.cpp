@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/base/check.h"
 #include "common/math/rotation.h"
@@ -64,12 +65,14 @@ double Motion::travel_upper_bound_mm(double radius_mm, double t0, double t1) con
 }
 
 bool valid(const Motion& motion) {
-  const bool known = motion.kind == PathKind::kStill || motion.kind == PathKind::kLinear ||
-                     motion.kind == PathKind::kScrew;
-  // Rounding of the logarithm at half a turn: a few ulp.
+  if (!valid(motion.X_W0)) return false;
+  if (motion.kind == PathKind::kStill) return true;
+  if (motion.kind != PathKind::kLinear && motion.kind != PathKind::kScrew) return false;
+  // Rounding of the logarithm at half a turn: a few ulp. Sums that are no numbers are not below.
   constexpr double kHalfTurn = kMaxRotationPerTick_rad * (1.0 + 8.0 * kUnitRoundoff);
-  return known && valid(motion.X_W0) && valid(motion.X_W1) && motion.reference_P.allFinite() &&
-         motion.v_W.allFinite() && motion.axis_W.allFinite() && motion.w_W.norm() <= kHalfTurn;
+  return valid(motion.X_W1) && motion.w_W.squaredNorm() <= kHalfTurn * kHalfTurn &&
+         motion.v_W.squaredNorm() + motion.axis_W.squaredNorm() + motion.reference_P.squaredNorm() <
+             std::numeric_limits<double>::infinity();
 }
 
 Motion still_motion(const Pose& X_W) {
