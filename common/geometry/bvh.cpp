@@ -281,7 +281,7 @@ std::size_t Bvh::bytes() const {
 
 Bvh build_bvh(const TriangleMesh& mesh, int threads) {
   MORTISE_CHECK(!mesh.triangles.empty(), "a tree needs at least one triangle");
-  MORTISE_CHECK(valid(mesh), "indices must name points, coordinates must be finite");
+  MORTISE_CHECK(valid(mesh), "a tree needs finite coordinates and indices that name points");
   if (threads <= 0)
     threads = mesh.triangles.size() < kWorthThreads
                   ? 1
