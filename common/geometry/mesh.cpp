@@ -11,7 +11,8 @@ namespace mortise {
 
 bool valid(const TriangleMesh& mesh) {
   for (const Vec3& point : mesh.points_mm)
-    if (!(point.array().abs() <= kLargestCoordinate_mm).all()) return false;
+    for (const double x : point)  // a quiet comparison: no number raises nothing
+      if (!std::islessequal(std::abs(x), kLargestCoordinate_mm)) return false;
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t index : triangle)
       if (index >= mesh.points_mm.size()) return false;

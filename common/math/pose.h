@@ -28,8 +28,10 @@ inline bool identical(const Pose& a, const Pose& b) {
 /// A rigid motion that can be computed with: finite, a unit quaternion, no coordinate beyond
 /// kLargestCoordinate_mm.
 inline bool valid(const Pose& X) {
-  return std::abs(X.q.coeffs().squaredNorm() - 1.0) <= 2.0 * kUnitSlack &&
-         (X.p.array().abs() <= kLargestCoordinate_mm).all();
+  // Quiet comparisons: what is no number raises nothing.
+  const auto within = [](double x) { return std::islessequal(std::abs(x), kLargestCoordinate_mm); };
+  return std::islessequal(std::abs(X.q.coeffs().squaredNorm() - 1.0), 2.0 * kUnitSlack) &&
+         within(X.p.x()) && within(X.p.y()) && within(X.p.z());
 }
 
 }  // namespace mortise
