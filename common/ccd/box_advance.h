@@ -5,36 +5,23 @@
 // for different instruction sets, and no inline function of a library may come out of them.
 namespace mortise::ccd {
 
-/// How a body moves along a direction n: a point at u from the origin of its tree has the speed
-/// turn . u + turn_0 by turning, and the acceleration bend . u + bend_0. A corner of a box exceeds
-/// its centre by reach and bend_reach times its half extents (A: in axes of A; B: absolute values).
-struct TurnAlong {
-  float turn[3], turn_0;
-  float bend[3], bend_0;
-  float reach[3], bend_reach[3];
-};
-
-/// One separating direction n that is the same for all lanes, axes of B at time t. The instruction
-/// sets must agree bit for bit: every expression is evaluated as written, never contracted.
-struct DirectionTerms {
-  float n[3];
-  float v;  ///< n . (velocity of A's axis - velocity of B's axis)
-  TurnAlong a, b;
-};
-
 /// Of one body: see TurnTerms in leaf_kernel.h.
 struct BoxTurn {
-  float w[3], arm[3], speed;
+  float w[3], arm[3];   ///< rotation vector; from the axis of rotation to the origin of the boxes
+  float w_A[3];         ///< w in axes of A's boxes
+  float r_w[3][3];      ///< axis j of A's boxes x w
+  float speed, speed2;  ///< |w|, |w|^2
   float bow, lift;
   bool turns;
 };
 
-/// Two bodies at one time, in axes of B, relative to the origin of B's tree, mm and mm per tick.
+/// Two bodies at one time. The instruction sets must agree bit for bit: every expression is
+/// evaluated as written, never contracted. In axes of B, relative to the origin of B's tree, mm and
+/// mm per tick.
 struct BoxFrame {
-  float r[3][3], abs_r[3][3];   ///< axes of A's boxes, by row
-  float p[3];                   ///< origin of A's tree
-  DirectionTerms direction[6];  ///< axes of B, axes of A
-  float v[3];                   ///< relative velocity of the axes of rotation
+  float r[3][3], abs_r[3][3];  ///< axes of A's boxes, by row
+  float p[3];                  ///< origin of A's tree
+  float v[3], v_A[3];          ///< relative velocity of the axes of rotation; in axes of A's boxes
   BoxTurn a, b;
   float rest;             ///< ticks to the end, rounded up: longer answers are all the same
   float horizon;          ///< ticks: no answer is longer

@@ -47,6 +47,11 @@ inline Lanes dot(const float* a, const Lanes* b) {
 }
 inline Lanes dot(const Lanes* a, const Lanes* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+inline void cross(const float* w, const Lanes* x, Lanes* out) {
+  out[0] = all(w[1]) * x[2] - all(w[2]) * x[1];
+  out[1] = all(w[2]) * x[0] - all(w[0]) * x[2];
+  out[2] = all(w[0]) * x[1] - all(w[1]) * x[0];
+}
 inline void cross(const Lanes* n, const float* w, Lanes* out) {
   out[0] = n[1] * all(w[2]) - n[2] * all(w[1]);
   out[1] = n[2] * all(w[0]) - n[0] * all(w[2]);
@@ -89,16 +94,52 @@ inline void add(Going& going, Lanes s, Lanes reach, Lanes bend, Lanes bend_reach
       larger(largest, largest * all(turn.bow)) + all(turn.lift) * larger(reach - s, all(0.0F));
 }
 
-// Whichever way the body will have turned: |n x w| |w x e| (ALG 2.1 B3'), m = n x w.
-inline Lanes any_bend(const Lanes* m, const Lanes* e, const Boxes& box, const BoxTurn& turn) {
-  Lanes speed[3];
-  cross(e, turn.w, speed);
-  return root(dot(m, m)) *
-         (root(dot(speed, speed)) + all(turn.speed) * root(dot(box.half, box.half)));
+inline Lanes dot_magnitude(const Lanes* a, const Lanes* half) {
+  return magnitude(a[0]) * half[0] + magnitude(a[1]) * half[1] + magnitude(a[2]) * half[2];
+}
+inline Lanes dot_magnitude(float x, float y, float z, const Lanes* half) {
+  return all(__builtin_fabsf(x)) * half[0] + all(__builtin_fabsf(y)) * half[1] +
+         all(__builtin_fabsf(z)) * half[2];
+}
+
+// Speed w x e and acceleration w x (w x e) of the centres of eight boxes by turning.
+struct Turned {
+  Lanes speed[3], bend[3];
+  Turned(const Lanes* from_origin, const BoxTurn& turn, bool turns) {
+    if (!turns) return;
+    const Lanes e[3] = {from_origin[0] + all(turn.arm[0]), from_origin[1] + all(turn.arm[1]),
+                        from_origin[2] + all(turn.arm[2])};
+    cross(turn.w, e, speed);
+    cross(turn.w, speed, bend);
+  }
+  Lanes any_bend(const Lanes* half, const BoxTurn& turn) const {
+    return root(dot(speed, speed)) + all(turn.speed) * root(dot(half, half));
+  }
+};
+
+// n . (w x x) = (n x w) . x and n . (w x (w x x)) = ((n . w) w - |w|^2 n) . x: how far the corners
+// of boxes reach along axis k of B and along axis k of A, in the axes of their own body.
+inline Lanes reach_b_axis(const BoxTurn& t, int k, bool of_a, const Lanes* half) {
+  if (of_a) return dot_magnitude(t.r_w[0][k], t.r_w[1][k], t.r_w[2][k], half);
+  return k == 0   ? dot_magnitude(0.0F, t.w[2], t.w[1], half)
+         : k == 1 ? dot_magnitude(t.w[2], 0.0F, t.w[0], half)
+                  : dot_magnitude(t.w[1], t.w[0], 0.0F, half);
+}
+inline Lanes reach_a_axis(const BoxTurn& t, int k, bool of_a, const Lanes* half) {
+  if (!of_a) return dot_magnitude(t.r_w[k][0], t.r_w[k][1], t.r_w[k][2], half);
+  return k == 0   ? dot_magnitude(0.0F, t.w_A[2], t.w_A[1], half)
+         : k == 1 ? dot_magnitude(t.w_A[2], 0.0F, t.w_A[0], half)
+                  : dot_magnitude(t.w_A[1], t.w_A[0], 0.0F, half);
+}
+inline Lanes bend_reach(float n_w, const float* w, float speed2, const float* n,
+                        const Lanes* half) {
+  return dot_magnitude(n_w * w[0] - speed2 * n[0], n_w * w[1] - speed2 * n[1],
+                       n_w * w[2] - speed2 * n[2], half);
 }
 
 template <bool kTurnsA, bool kTurnsB>
 inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
+  constexpr float kUnit[3][3] = {{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
   const Lanes zero = all(0.0F);
   Lanes u[3], d[3], extent_a[3];
   for (int i = 0; i < 3; ++i) {
@@ -108,25 +149,9 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
   }
   Lanes best = zero;
   Lanes gap[3];
-  const auto try_direction = [&](const DirectionTerms& n, Lanes along, Lanes free_gap) {
-    const Mask forward = along > zero;
-    Going going{(forward ? all(n.v) : all(-n.v)) + all(f.speed_allowance), all(f.bend_allowance)};
-    if constexpr (kTurnsA) {
-      const Lanes s = dot(n.a.turn, u) + all(n.a.turn_0);
-      const Lanes bend = dot(n.a.bend, u) + all(n.a.bend_0);
-      add(going, forward ? s : -s, dot(n.a.reach, a.half), forward ? bend : -bend,
-          dot(n.a.bend_reach, a.half), f.a);
-    }
-    if constexpr (kTurnsB) {
-      const Lanes s = dot(n.b.turn, b.center) + all(n.b.turn_0);
-      const Lanes bend = dot(n.b.bend, b.center) + all(n.b.bend_0);
-      add(going, forward ? -s : s, dot(n.b.reach, b.half), forward ? -bend : bend,
-          dot(n.b.bend_reach, b.half), f.b);
-    }
-    best = larger(best, time_to_close(free_gap, going.s, going.bend, all(f.horizon)));
-  };
   for (int k = 0; k < 3; ++k)
     gap[k] = magnitude(d[k]) - b.half[k] - extent_a[k] - all(f.gap_allowance);
+  const Turned turned_a(u, f.a, kTurnsA), turned_b(b.center, f.b, kTurnsB);
   // Nothing is gained beyond the end of the tick.
   const auto done = [&] {
     const Mask still = best * all(kShorter) < all(f.rest);
@@ -141,49 +166,68 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     Lanes n[3];
     for (int k = 0; k < 3; ++k) n[k] = (d[k] > zero ? apart[k] : -apart[k]) * inverse;
     Going going{dot(f.v, n) + all(f.speed_allowance), all(f.bend_allowance)};
+    // Whichever way a body will have turned: |n x w| |w x e| (ALG 2.1 B3').
     Lanes largest_bend = all(f.bend_allowance);
     if constexpr (kTurnsA) {
-      Lanes m[3], g[3];
+      Lanes m[3], g[3], m_A[3], g_A[3];
       cross(n, f.a.w, m);
       cross(m, f.a.w, g);
-      const Lanes e[3] = {u[0] + all(f.a.arm[0]), u[1] + all(f.a.arm[1]), u[2] + all(f.a.arm[2])};
-      Lanes reach = zero, bend_reach = zero;
       for (int j = 0; j < 3; ++j) {
-        const auto in_axis_of_a = [&](const Lanes* x) {
-          return magnitude(x[0] * all(f.r[0][j]) + x[1] * all(f.r[1][j]) + x[2] * all(f.r[2][j]));
-        };
-        reach += in_axis_of_a(m) * a.half[j];
-        bend_reach += in_axis_of_a(g) * a.half[j];
+        const float axis[3] = {f.r[0][j], f.r[1][j], f.r[2][j]};
+        m_A[j] = dot(axis, m);
+        g_A[j] = dot(axis, g);
       }
-      add(going, dot(m, e), reach, dot(g, e), bend_reach, f.a);
-      largest_bend += any_bend(m, e, a, f.a);
+      add(going, dot(n, turned_a.speed), dot_magnitude(m_A, a.half), dot(n, turned_a.bend),
+          dot_magnitude(g_A, a.half), f.a);
+      largest_bend += root(dot(m, m)) * turned_a.any_bend(a.half, f.a);
     }
     if constexpr (kTurnsB) {
       Lanes m[3], g[3];
       cross(n, f.b.w, m);
       cross(m, f.b.w, g);
-      const Lanes e[3] = {b.center[0] + all(f.b.arm[0]), b.center[1] + all(f.b.arm[1]),
-                          b.center[2] + all(f.b.arm[2])};
-      Lanes reach = zero, bend_reach = zero;
-      for (int j = 0; j < 3; ++j) {
-        reach += magnitude(m[j]) * b.half[j];
-        bend_reach += magnitude(g[j]) * b.half[j];
-      }
-      add(going, -dot(m, e), reach, -dot(g, e), bend_reach, f.b);
-      largest_bend += any_bend(m, e, b, f.b);
+      add(going, -dot(n, turned_b.speed), dot_magnitude(m, b.half), -dot(n, turned_b.bend),
+          dot_magnitude(g, b.half), f.b);
+      largest_bend += root(dot(m, m)) * turned_b.any_bend(b.half, f.b);
     }
     // Far from each other, beyond the horizon of what bends away.
     if ((kTurnsA || kTurnsB) && f.horizon < 1.0F)
       best = larger(best, time_to_close(length, going.s, largest_bend, all(kNever)));
     best = larger(best, time_to_close(length, going.s, going.bend, all(f.horizon)));
   }
-  for (int k = 0; k < 3 && !done(); ++k) try_direction(f.direction[k], d[k], gap[k]);
   for (int k = 0; k < 3 && !done(); ++k) {
-    const DirectionTerms& n = f.direction[3 + k];
-    const Lanes along = dot(n.n, d);
+    const Mask forward = d[k] > zero;
+    Going going{(forward ? all(f.v[k]) : all(-f.v[k])) + all(f.speed_allowance),
+                all(f.bend_allowance)};
+    if constexpr (kTurnsA)
+      add(going, forward ? turned_a.speed[k] : -turned_a.speed[k],
+          reach_b_axis(f.a, k, true, a.half), forward ? turned_a.bend[k] : -turned_a.bend[k],
+          bend_reach(f.a.w[k], f.a.w_A, f.a.speed2, f.r[k], a.half), f.a);
+    if constexpr (kTurnsB)
+      add(going, forward ? -turned_b.speed[k] : turned_b.speed[k],
+          reach_b_axis(f.b, k, false, b.half), forward ? -turned_b.bend[k] : turned_b.bend[k],
+          bend_reach(f.b.w[k], f.b.w, f.b.speed2, kUnit[k], b.half), f.b);
+    best = larger(best, time_to_close(gap[k], going.s, going.bend, all(f.horizon)));
+  }
+  for (int k = 0; k < 3 && !done(); ++k) {
+    const float n[3] = {f.r[0][k], f.r[1][k], f.r[2][k]};
+    const Lanes along = dot(n, d);
     const Lanes extent_b = all(f.abs_r[0][k]) * b.half[0] + all(f.abs_r[1][k]) * b.half[1] +
                            all(f.abs_r[2][k]) * b.half[2];
-    try_direction(n, along, magnitude(along) - a.half[k] - extent_b - all(f.gap_allowance));
+    const Mask forward = along > zero;
+    Going going{(forward ? all(f.v_A[k]) : all(-f.v_A[k])) + all(f.speed_allowance),
+                all(f.bend_allowance)};
+    if constexpr (kTurnsA) {
+      const Lanes s = dot(n, turned_a.speed), bend = dot(n, turned_a.bend);
+      add(going, forward ? s : -s, reach_a_axis(f.a, k, true, a.half), forward ? bend : -bend,
+          bend_reach(f.a.w_A[k], f.a.w_A, f.a.speed2, kUnit[k], a.half), f.a);
+    }
+    if constexpr (kTurnsB) {
+      const Lanes s = dot(n, turned_b.speed), bend = dot(n, turned_b.bend);
+      add(going, forward ? -s : s, reach_a_axis(f.b, k, false, b.half), forward ? -bend : bend,
+          bend_reach(f.b.w_A[k], f.b.w, f.b.speed2, n, b.half), f.b);
+    }
+    const Lanes free_gap = magnitude(along) - a.half[k] - extent_b - all(f.gap_allowance);
+    best = larger(best, time_to_close(free_gap, going.s, going.bend, all(f.horizon)));
   }
   best *= all(kShorter);
   __builtin_memcpy(out, &best, sizeof best);
