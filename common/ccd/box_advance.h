@@ -16,11 +16,11 @@ struct BoxTurn {
 };
 
 /// Two bodies at one time. The instruction sets must agree bit for bit: every expression is
-/// evaluated as written, never contracted. In axes of B, relative to the origin of B's tree, mm and
+/// evaluated as written, never contracted. In axes of the boxes of B, relative to their origin, mm and
 /// mm per tick.
 struct BoxFrame {
   float r[3][3], abs_r[3][3];  ///< axes of A's boxes, by row
-  float p[3];                  ///< origin of A's tree
+  float p[3];                  ///< origin of A's boxes
   float v[3], v_A[3];          ///< relative velocity of the axes of rotation; in axes of A's boxes
   BoxTurn a, b;
   float rest;             ///< ticks to the end, rounded up: longer answers are all the same
@@ -59,7 +59,8 @@ struct BoxKernels {
 
 /// Baseline instructions, on every machine.
 const BoxKernels& portable_box_kernels();
-/// The same operations in the same order on wider registers; null where they were not compiled.
+/// The same operations in the same order on wider registers; null where they were not compiled or
+/// the machine has none.
 const BoxKernels* wide_box_kernels();
 /// What this machine runs best. The answers are the same.
 const BoxKernels& box_kernels();

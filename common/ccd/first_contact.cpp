@@ -132,7 +132,9 @@ class Query {
       ++work.box_tests;
       motion_.at(item.t);
       alignas(32) float dt[Bvh::kWidth];
-      const bool opened_a = open_oriented(item, a, b, motion_, goal.target_mm, kernels, dt);
+      // At the start a pair within contact_mm must be seen.
+      const double taken_mm = item.t == 0.0 ? goal.contact_mm : goal.target_mm;
+      const bool opened_a = open_oriented(item, a, b, motion_, taken_mm, kernels, dt);
       queue.push_children(item, opened_a, dt);
     }
     result_.state = ContactState::kFree;

@@ -16,8 +16,8 @@ struct Support {
 };
 
 /// n: unit, axes of the part. O(log n) typical. `hint`: a corner of the mesh that may be far, or
-/// none.
-Support support(const Bvh& bvh, const Vec3& n, const Support& hint);
+/// none. A corner within slack_mm of the farthest is good enough.
+Support support(const Bvh& bvh, const Vec3& n, const Support& hint, double slack_mm);
 
 /// Leaves with a corner above floor_mm along n (unit, axes of the part, from the origin of the
 /// tree).

@@ -108,7 +108,7 @@ inline unsigned boxes(const FourTriangles& a, const FourTriangles& b, Lanes reac
 inline unsigned over_faces(const FourTriangles& faces, const FourTriangles& others, Lanes reach2) {
   const Vector x0 = corner(faces, 0), x1 = corner(faces, 1), x2 = corner(faces, 2);
   const Vector n = cross(x1 - x0, x2 - x0);
-  const Lanes limit = reach2 * dot(n, n);
+  const Lanes nn = dot(n, n), limit = reach2 * nn;
   const Lanes f0 = dot(n, x0), f1 = dot(n, x1), f2 = dot(n, x2);
   const Lanes top = larger(larger(f0, f1), f2), bottom = smaller(smaller(f0, f1), f2);
   unsigned mask = 0;
@@ -118,7 +118,8 @@ inline unsigned over_faces(const FourTriangles& faces, const FourTriangles& othe
     const Lanes h2 = dot(n, corner_of_one(others, 2, j));
     const Lanes gap =
         larger(smaller(smaller(h0, h1), h2) - top, bottom - larger(larger(h0, h1), h2));
-    mask |= bits((gap <= all(0.0)) | (gap * gap <= limit)) << (4 * j);
+    // Of a normal whose square is lost nothing is said.
+    mask |= bits((gap <= all(0.0)) | (gap * gap <= limit) | (nn < all(1e-200))) << (4 * j);
   }
   return mask;
 }
@@ -137,7 +138,9 @@ inline unsigned between_centres(const FourTriangles& a, const FourTriangles& b, 
     const Lanes far_a = larger(larger(dot(n, a0), dot(n, a1)), dot(n, a2));
     const Lanes near_b = smaller(smaller(dot(n, b0), dot(n, b1)), dot(n, b2));
     const Lanes gap = near_b - far_a;
-    mask |= bits((gap <= all(0.0)) | (gap * gap <= reach2 * dot(n, n))) << (4 * j);
+    // Of a direction whose square is lost nothing is said.
+    const Lanes nn = dot(n, n);
+    mask |= bits((gap <= all(0.0)) | (gap * gap <= reach2 * nn) | (nn < all(1e-200))) << (4 * j);
   }
   return mask;
 }

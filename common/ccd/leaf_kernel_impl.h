@@ -174,7 +174,7 @@ inline Side one_triangle(const Side& side, int i) {
 }
 
 inline Lanes inverse(Lanes y) {
-  const Mask safe = y > all(0.0);
+  const Mask safe = y > all(1e-280);  // the inverse of less may overflow
   return safe ? all(1.0) / (safe ? y : all(1.0)) : all(0.0);
 }
 

@@ -1,33 +1,10 @@
 #pragma once
-#include <algorithm>
-
 #include "common/ccd/leaf_pair.h"
 
 // Pairs of nodes of two trees, shared by every traversal of this room.
 namespace mortise::ccd {
 
 using Item = CcdScratch::Item;
-
-/// Earliest (or nearest) first; equal keys by the nodes, so that the order is total.
-struct Later {
-  bool operator()(const Item& x, const Item& y) const {
-    if (x.t != y.t) return x.t > y.t;
-    if (x.a != y.a) return x.a > y.a;
-    return x.b > y.b;
-  }
-};
-
-inline void push(std::vector<Item>& heap, const Item& item) {
-  heap.push_back(item);
-  std::push_heap(heap.begin(), heap.end(), Later{});
-}
-
-inline Item pop(std::vector<Item>& heap) {
-  std::pop_heap(heap.begin(), heap.end(), Later{});
-  const Item item = heap.back();
-  heap.pop_back();
-  return item;
-}
 
 inline Item root_pair(const Bvh& a, const Bvh& b) { return {0.0, a.root, b.root, -1, -1, 0, 0}; }
 

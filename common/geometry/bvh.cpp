@@ -25,8 +25,6 @@ constexpr int kDeepestByArea = 32;
 // A set of this size is built by one thread. The same at any number of threads: it decides the
 // order of the nodes.
 constexpr std::uint32_t kPiece = 8192;
-// Products of three lengths stay within single precision.
-constexpr double kLargest_mm = 1e12;
 
 // Below this a thread costs more than it saves.
 constexpr std::size_t kWorthThreads = 50'000;
@@ -126,8 +124,6 @@ class Builder {
         radius2 = std::max(radius2, (mesh_.corner(t, k) - bvh_.origin).squaredNorm());
         extent2 = std::max(extent2, mesh_.corner(t, k).squaredNorm());
       }
-    MORTISE_CHECK(extent2 < kLargest_mm * kLargest_mm,
-                  "a tree needs finite coordinates below 1e12 mm");
     bvh_.radius_mm = std::sqrt(radius2);
     bvh_.extent_mm = std::sqrt(extent2);
   }

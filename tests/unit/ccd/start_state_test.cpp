@@ -80,6 +80,22 @@ TEST(StartState, InsideIsSeenWithoutAnySurfaceMeeting) {
   EXPECT_EQ(solve(cube(), stays_within, solid(open)).state, ContactState::kFree);
 }
 
+// Touching begins at a quarter of the accuracy, whatever boxes could say at the start.
+TEST(StartState, WithinAQuarterOfTheAccuracyIsTouching) {
+  for (double accuracy : {0.1, 1e-2, 1e-4, 1e-6, 1e-8})
+    for (const double way : {0.5, -0.1})
+      for (const double gap : {0.2, 0.3}) {
+        ContactQuery q =
+            query(cube(), slide({1.0 + gap * accuracy, 0, 0}, {1.0 + way, 0, 0}), cube(), Motion{});
+        q.accuracy_mm = accuracy;
+        const FirstContact c = solve(q);
+        if (gap < 0.25)
+          EXPECT_EQ(c.state, ContactState::kTouchingAtStart) << accuracy << ' ' << way;
+        else
+          EXPECT_EQ(c.state, way > 0.0 ? ContactState::kFree : ContactState::kContact) << accuracy;
+      }
+}
+
 TEST(StartState, TouchingPartsMayLeaveSlideAndTurn) {
   const SolidPtr plate = solid(box_mesh({20, 20, 1}, {0, 0, -0.5}));
   for (double gap : {0.0, 1e-7, -1e-7, 1e-15}) {
