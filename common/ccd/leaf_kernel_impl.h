@@ -97,36 +97,19 @@ inline Lanes least_of(const Lanes* x, int count) {
   return count == 1 ? x[0] : smaller(smaller(x[0], x[1]), x[2]);
 }
 
-// The side from which n points away (A).
-inline Along along_a(const Side& side, const Vec& n) {
+// n points away from A (of_a) and towards B.
+inline Along along(const Side& side, const Vec& n, bool of_a) {
   Along result;
   for (int k = 0; k < 3; ++k) result.place[k] = dot(n, side.x[k]);
   result.count = side.goes ? 3 : 1;
   if (!side.goes) {
-    result.place[0] = most_of(result.place, 3);
+    result.place[0] = of_a ? most_of(result.place, 3) : least_of(result.place, 3);
     result.s[0] = result.bend[0] = all(0.0);
     return result;
   }
   for (int k = 0; k < 3; ++k) {
-    const Lanes s = dot(n, side.turn[k]), bend = dot(n, side.bend[k]);
-    result.s[k] = s;
-    result.bend[k] = larger(bend, bend * side.bow) + side.lift * larger(-s, all(0.0));
-  }
-  return result;
-}
-
-// The side towards which n points (B).
-inline Along along_b(const Side& side, const Vec& n) {
-  Along result;
-  for (int k = 0; k < 3; ++k) result.place[k] = dot(n, side.x[k]);
-  result.count = side.goes ? 3 : 1;
-  if (!side.goes) {
-    result.place[0] = least_of(result.place, 3);
-    result.s[0] = result.bend[0] = all(0.0);
-    return result;
-  }
-  for (int k = 0; k < 3; ++k) {
-    const Lanes s = -dot(n, side.turn[k]), bend = -dot(n, side.bend[k]);
+    const Lanes speed = dot(n, side.turn[k]), acceleration = dot(n, side.bend[k]);
+    const Lanes s = of_a ? speed : -speed, bend = of_a ? acceleration : -acceleration;
     result.s[k] = s;
     result.bend[k] = larger(bend, bend * side.bow) + side.lift * larger(-s, all(0.0));
   }
@@ -306,7 +289,7 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
   // Along one direction for all: each triangle of the side that goes against all of the other,
   // which then is one corner. Least of all pairs.
   const auto free_along = [&](const Vec& n) {
-    const Along of_a = along_a(a, n), of_b = along_b(b, n);
+    const Along of_a = along(a, n, true), of_b = along(b, n, false);
     if (b.goes && !a.goes) {
       const Lanes dt = free_time(common, n, together(of_a, true), of_b);
       for (Lanes& row : pairs.dt) row = larger(row, dt);
@@ -342,7 +325,7 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
     const Side one = one_triangle(a, row);
     const Faces faces_one = one_triangle(faces_a, row);
     const Vec n = unit(shortest_way(one.x, faces_one, b.x, faces_b));
-    const Along of_a = along_a(one, n), of_b = along_b(b, n);
+    const Along of_a = along(one, n, true), of_b = along(b, n, false);
     const Lanes gap = least_of(of_b.place, of_b.count) - most_of(of_a.place, of_a.count);
     Lanes dt = larger(pairs.dt[row], free_time(common, n, of_a, of_b));
     const Mask suspect = (gap <= all(f.suspect_mm)) | (dt <= all(0.0));

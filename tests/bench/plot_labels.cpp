@@ -7,7 +7,7 @@ namespace mortise::bench {
 namespace {
 
 // Of a sans serif font of 11 points, pixels; wide enough for most letters.
-constexpr double kLetter = 6.2, kLine = 14.0;
+constexpr double kLetter = 8.3, kLine = 14.0;
 constexpr double kAside = 8.0, kStep = 7.5;
 constexpr int kSteps = 8;
 

@@ -250,6 +250,23 @@ TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
   }
 }
 
+// A needle so thin that the square of its normal is lost is still 5 mm away.
+TEST(DiscardKernels, ANormalWhoseSquareIsLostDiscardsNothing) {
+  const auto triangle = [](double e, double z) {
+    TriangleMesh mesh;
+    mesh.points_mm = {Vec3(-1, -e, z), Vec3(1, -e, z), Vec3(0, e, z)};
+    mesh.triangles = {{0, 1, 2}};
+    return solid(mesh);
+  };
+  CcdScratch scratch;
+  for (const double e : {1e-20, 1e-100, 3e-163, 1e-300}) {
+    const DistanceResult d =
+        distance(*triangle(e, 0.0), Pose{}, *triangle(1.0, 5.0), Pose{}, scratch, 1000.0);
+    EXPECT_TRUE(d.within_limit) << e;
+    EXPECT_NEAR(d.distance_mm, 5.0, 1e-13) << e;
+  }
+}
+
 TEST(HullGap, IsTheDistanceOfConvexPartsAndItsPlaneHoldsForAllCorners) {
   std::mt19937_64 random(65);
   int apart = 0, overlapping = 0;
