@@ -16,7 +16,8 @@ struct SizeLimits {
 };
 
 /// Limits of a class at a nominal diameter (0 < D <= 500 mm), from the standard's tables, not from
-/// its formulas.
+/// its formulas. Grades 01, 0, 1 ... 18; letters a ... zc for shafts, A ... ZC for holes. Where the
+/// standard has no value (t up to 24 mm, cd above 50 mm) the error says so and names neighbours.
 Result<SizeLimits> iso286_limits(std::string_view code, double nominal_mm);
 
 struct Fit {
