@@ -1,0 +1,40 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tests/bench/judgement_methods.h"
+
+namespace mortise::bench {
+
+/// Truths closer to a threshold than this are not held against anybody, mm: what touch is known to.
+constexpr double kTouch_mm = 2e-6;
+/// Margin beyond which a decided truth must be found.
+constexpr double kMargin_mm = 5e-4;
+
+/// What one method said about many cases.
+struct JudgementScore {
+  /// By truth, by word: real, potential, none or fake.
+  std::array<std::array<long long, 3>, 3> confusion{};
+  long long cases = 0, contradictions = 0, capped = 0;
+  /// Decided truths beyond the margin: all, and those found; by coarse (fewer than 24 facets) or
+  /// not.
+  struct Share {
+    long long all = 0, right = 0;
+    double percent() const;
+  };
+  Share coarse, fine;
+  long long decided_truths = 0, left_open = 0;  ///< potential was said though the truth is decided
+  std::vector<double> time_s;
+  std::vector<double> depth_error_mm;  ///< where the depth of the meshes is known
+  std::vector<double> end_error_mm;    ///< of certain and possible, where the truth is the depth
+
+  /// Returns what is wrong with the word; empty: nothing that must not be.
+  std::string add(const JudgedCase& c, const Truth& truth, const Word& word);
+  double left_open_percent() const;
+};
+
+/// Distance of a bracket from the value that it should hold and how far its ends are from it.
+double bracket_error_mm(const Interval& bracket, double exact_mm);
+
+}  // namespace mortise::bench
