@@ -60,6 +60,7 @@ const std::vector<NamedHere>& named_here() {
       {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
       {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/"}},
       {"Boost.Beast", std::regex("boost/(beast|asio).*"), {"client/web/"}},
+      {"Cairo", std::regex("cairo.*"), {"client/tools/judge/canvas.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
   };
   return rules;

@@ -29,9 +29,10 @@ std::string faces_text(const Verdict& v) {
   return fmt::format("  {} / {}", face(v.face_a), face(v.face_b));
 }
 
-std::string region_text(const Verdict& v, bool color) {
-  std::string text = fmt::format("  {}{}\n    {}\n", class_text(v.collision_class, color),
-                                 faces_text(v), v.explanation);
+std::string region_text(std::size_t number, const Verdict& v, bool color) {
+  std::string text =
+      fmt::format("  [{}] {}{}\n    {}\n", number, class_text(v.collision_class, color),
+                  faces_text(v), v.explanation);
   text += fmt::format("    overlap {} µm, fake up to {} µm, real above {} µm, mesh error: {}\n",
                       um(v.delta_mm), um(v.fake_below_mm), um(v.real_above_mm), name_of(v.grade));
   if (v.gpd_mm.hi > 0.0)
@@ -58,6 +59,7 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
   const World& world = opened.scene.world;
   const SessionNames names = names_of(world);
   std::string text;
+  std::size_t number = 0;
   for (const PairVerdicts& pair : report.pairs) {
     text += names.pair(pair.a, pair.b);
     if (pair.excluded) text += "  excluded: " + reason_of(world, pair);
@@ -66,7 +68,9 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
     if (pair.no_inside) text += "  (a part is open: depth unknown)";
     text += "\n";
     const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
-    for (std::size_t i = 0; i < shown; ++i) text += region_text(pair.verdicts[i], color);
+    for (std::size_t i = 0; i < shown; ++i)
+      text += region_text(number + i + 1, pair.verdicts[i], color);
+    number += pair.verdicts.size();
     if (shown < pair.verdicts.size())
       text += fmt::format("  ... {} more regions, none worse; --json lists all\n",
                           pair.verdicts.size() - shown);
@@ -87,11 +91,13 @@ Json judge_json(const OpenedScene& opened, const JudgeReport& report) {
   json["scenario"] = opened.scenario.name;
   json["file"] = opened.scenario.file;
   json["pairs"] = Json::array();
+  std::size_t number = 0;
   for (const PairVerdicts& pair : report.pairs) {
     Json entry = json_of(pair, names);
     const PairRule* rule = world.rule(pair.a, pair.b);
     if (rule != nullptr && !rule->fit.empty()) entry["fit"] = rule->fit;
     if (pair.excluded) entry["reason"] = reason_of(world, pair);
+    for (Json& verdict : entry["verdicts"]) verdict["region"] = ++number;
     json["pairs"].push_back(std::move(entry));
   }
   json["counters"] = json_of(report.counters);

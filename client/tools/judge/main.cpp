@@ -5,9 +5,11 @@
 #include <cstdlib>
 
 #include "client/tools/judge/judge_report.h"
+#include "client/tools/judge/picture.h"
 
 int main(int argc, char** argv) {
-  std::string file, fail_on;
+  std::string file, fail_on, picture;
+  std::vector<std::size_t> regions;
   bool json = false, full = false;
   int threads = 1;
   CLI::App app("mortise-judge: judges all pairs of a scenario at its poses");
@@ -16,6 +18,9 @@ int main(int argc, char** argv) {
   app.add_flag("--full", full, "refine every bracket, not only until the class is decided");
   app.add_option("--fail-on", fail_on, "exit 6 when a collision of this class or worse is found")
       ->check(CLI::IsMember({"real", "potential"}));
+  app.add_option("--picture", picture,
+                 "draw the worst region in section, as .svg or .png; implies --full");
+  app.add_option("--region", regions, "draw this region instead; several are drawn side by side");
   app.add_option("--threads", threads, "threads; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   app.footer("Exit codes: 0 ok, 2 usage, 3 the scenario has errors, 6 --fail-on found something.");
@@ -34,11 +39,18 @@ int main(int argc, char** argv) {
   if (!opened->usable()) return mortise::kExitBadInput;
 
   mortise::Scratch scratch(threads);
-  const mortise::JudgeReport report = mortise::judge(opened->scene.world, scratch, full);
+  const mortise::JudgeReport report =
+      mortise::judge(opened->scene.world, scratch, full || !picture.empty());
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const std::string text = json ? mortise::judge_json(*opened, report).dump(2) + "\n"
                                 : mortise::judge_text(*opened, report, color);
   std::fputs(text.c_str(), stdout);
+  if (!picture.empty())
+    if (const auto drawn = mortise::draw_regions(opened->scene.world, report, regions, picture);
+        !drawn) {
+      std::fprintf(stderr, "mortise-judge: %s\n", drawn.error().text.c_str());
+      return mortise::exit_code_of(drawn.error().code);
+    }
   const auto at_least =
       fail_on == "potential" ? mortise::CollisionClass::kPotential : mortise::CollisionClass::kReal;
   return !fail_on.empty() && mortise::finds(report, at_least) ? mortise::kExitFindings
