@@ -1,5 +1,6 @@
 #include "common/evaluation/tolerance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -43,6 +44,38 @@ std::string size_text(double mm) {
   while (trimmed.back() == '0') trimmed.pop_back();
   if (trimmed.back() == '.') trimmed.pop_back();
   return trimmed == "-0" ? "0" : trimmed;
+}
+
+std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b) {
+  FaceStatement both = b.source.empty() ? a : b;
+  both.position_mm = std::max(a.position_mm, b.position_mm);
+  if (a.source.empty() || b.source.empty()) return both;
+  const Interval x = a.offset_mm, y = b.offset_mm;
+  const auto within = [](const Interval& inner, const Interval& outer) {
+    return inner.lo >= outer.lo - kSameSize_mm && inner.hi <= outer.hi + kSameSize_mm;
+  };
+  if (within(y, x)) return both;
+  both.source = a.source;
+  both.offset_mm = x;
+  if (within(x, y)) return both;
+  both.source = a.source + " and " + b.source;
+  both.offset_mm = {std::max(x.lo, y.lo), std::min(x.hi, y.hi)};
+  if (both.offset_mm.lo <= both.offset_mm.hi) return both;
+  if (both.offset_mm.lo - both.offset_mm.hi > kSameSize_mm) return std::nullopt;
+  const double touch_mm = both.offset_mm.middle();
+  both.offset_mm = {touch_mm, touch_mm};
+  return both;
+}
+
+FaceStatement with_position(const FaceStatement& statement) {
+  if (statement.position_mm <= 0.0) return statement;
+  FaceStatement widened = statement;
+  const double half_mm = 0.5 * statement.position_mm;
+  widened.offset_mm = statement.offset_mm + Interval{-half_mm, half_mm};
+  widened.source += std::string(statement.source.empty() ? "" : ", ") + "position Ø" +
+                    size_text(statement.position_mm) + " mm";
+  widened.position_mm = 0.0;
+  return widened;
 }
 
 Interval size_offset_mm(const SizeLimits& limits, double modelled_radius_mm) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "common/base/result.h"
@@ -9,11 +10,23 @@
 namespace mortise {
 
 /// What is stated of a face: where its real surface may lie, outward of the modelled surface, and
-/// who says so ("Ø20 H7", "±0.05", "" when nothing is stated).
+/// who says so ("Ø20 H7", "±0.05", "" when nothing is stated of size or profile).
 struct FaceStatement {
   Interval offset_mm;
   std::string source;
+  /// Diameter of the zone in which the real axis or centre may lie (position, RFS); 0: at its
+  /// modelled place. Not part of offset_mm, see with_position.
+  double position_mm = 0.0;
 };
+
+/// Two statements of one face hold both: the offsets that satisfy both. The source is that of the
+/// tighter one (of b when they are alike), or of both when each bounds another end. Nothing when
+/// they exclude each other by more than a nanometre.
+std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b);
+
+/// The statement as a band needs it: a feature of size whose axis may lie anywhere in a zone of
+/// diameter T moves its surface by up to T/2 either way, in addition to its size (ALG 5.2).
+FaceStatement with_position(const FaceStatement& statement);
 
 /// Limits of size as offsets of the modelled surface of radius R (collision.md section 4):
 /// shaft [(D+ei)/2 - R, (D+es)/2 - R], hole, outward of its material, [R - (D+ES)/2, R - (D+EI)/2].

@@ -218,7 +218,7 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
                   Scenario::PartSpec& part) {
   const YamlMap map(context, node, "feature " + name,
                     {"kind", "point", "axis", "radius", "diameter", "tube_radius", "half_angle_deg",
-                     "inward", "along", "iso", "nominal", "tolerance"});
+                     "inward", "along", "iso", "nominal", "tolerance", "position"});
   if (!map.usable()) return;
   Scenario::FeatureSpec feature;
   feature.name = name;
@@ -238,6 +238,7 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
     feature.nominal_mm = nominal * context.unit_mm;
   }
   if (const auto nominal = map.positive_length_mm("nominal")) feature.nominal_mm = *nominal;
+  if (const auto position = map.positive_length_mm("position")) feature.position_mm = *position;
   if (map.has("nominal") && feature.iso_class.empty())
     map.error("nominal", "is the size of an iso: class; add iso: or remove it");
   map.one_of({"iso", "tolerance"});

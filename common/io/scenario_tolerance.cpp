@@ -80,8 +80,11 @@ std::optional<Scenario::Tolerance> tolerance_of(const YamlMap& map) {
                              "surface " + size_text(*lower) + "/" + size_text(*upper) + " mm"};
 }
 
-std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YAML::Node& node,
-                                                  const std::string& what) {
+namespace {
+
+std::optional<Scenario::Tolerance> tolerance_without_place(YamlContext& context,
+                                                           const YAML::Node& node,
+                                                           const std::string& what) {
   if (!node.IsScalar())
     return tolerance_of(
         YamlMap(context, node, what, {"plus_minus", "profile", "unequal", "lower", "upper"}));
@@ -97,6 +100,15 @@ std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YA
                           "' is not understood; write \"±0.05\", {plus_minus: 0.05}, "
                           "{profile: 0.1} or {lower: -0.02, upper: 0.01}");
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YAML::Node& node,
+                                                  const std::string& what) {
+  std::optional<Scenario::Tolerance> tolerance = tolerance_without_place(context, node, what);
+  if (tolerance) tolerance->at.line = context.line_of(node);
+  return tolerance;
 }
 
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
 #include "common/io/scene_rules.h"
 #include "scenarios/generators/generators.h"
@@ -50,7 +51,7 @@ AlikeKey key_of(const Scenario::PartSpec& part) {
     key.add(f.name).add(static_cast<double>(s.kind)).add(s.point).add(s.axis).add(s.radius_mm);
     key.add(s.tube_radius_mm).add(s.half_angle_rad).add(s.inward ? 1.0 : 0.0);
     key.add(f.along_mm ? f.along_mm->lo : NAN).add(f.along_mm ? f.along_mm->hi : NAN);
-    key.add(f.tolerance).add(f.iso_class).add(f.nominal_mm);
+    key.add(f.tolerance).add(f.iso_class).add(f.nominal_mm).add(f.position_mm);
   }
   return key;
 }
@@ -137,10 +138,11 @@ class SceneLoader {
     kind.solid = mesh->solid;
     kind.report = mesh->report;
     kind.stated.kind = index;
-    if (spec.tolerance) kind.stated.rest = {spec.tolerance->offset_mm, spec.tolerance->text};
+    if (spec.tolerance)
+      kind.stated.rest = {{spec.tolerance->offset_mm, spec.tolerance->text}, spec.tolerance->at};
     if (!match_features(spec, *mesh, kind)) return std::nullopt;
-    kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm, kind.stated.rest,
-                            kind.stated.of_feature});
+    kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
+                            for_band(kind.stated.rest), for_band(kind.stated.of_feature)});
     return kind;
   }
 
@@ -209,7 +211,8 @@ class SceneLoader {
       }
       if (!match->note.empty()) finding(false, declared.at, who + match->note);
       kind.features.push_back(std::move(match->feature));
-      Result<FaceStatement> statement = statement_of(declared, kind.features.back(), kind.stated);
+      Result<PlacedStatement> statement =
+          statement_of_feature(declared, kind.features.back(), kind.stated.rest);
       if (!statement) {
         finding(true, declared.at, who + statement.error().text);
         good = false;
@@ -266,16 +269,6 @@ class SceneLoader {
     std::string names;
     for (const Feature& f : mesh.generated) names += (names.empty() ? "" : ", ") + f.name;
     return names.empty() ? "it has none; add kind: and the surface" : "known: " + names;
-  }
-
-  static Result<FaceStatement> statement_of(const Scenario::FeatureSpec& declared,
-                                            const Feature& feature, const StatedPart& part) {
-    if (!declared.iso_class.empty())
-      return iso_statement(declared.iso_class, declared.nominal_mm, declared.surface,
-                           feature.residual_mm);
-    if (declared.tolerance)
-      return FaceStatement{declared.tolerance->offset_mm, declared.tolerance->text};
-    return part.rest;  // a feature without its own statement follows the part's
   }
 
   // A triangle that lies on two declared surfaces (a thin rim, or one round declared twice) belongs

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "common/evaluation/band.h"
 #include "common/io/scenario_yaml.h"
 
 namespace mortise {
@@ -26,14 +27,22 @@ class RuleBook {
   void run() {
     for (const auto& fit : scenario_.fits) apply_fit(fit);
     make_bands();
+    note_what_is_tighter();
     for (const auto& exclusion : scenario_.exclusions) apply_exclusion(exclusion);
     for (const auto& user : scenario_.users) check_user(user);
   }
 
  private:
+  using PairSide = std::vector<std::optional<PlacedStatement>>;  // by feature; last: whole part
   struct PairStatements {
-    std::vector<std::optional<FaceStatement>> a, b;  // by feature; the last one is the rest
+    PairSide a, b;
     std::vector<std::string> fits;
+  };
+  // A fit that was resolved, and where: index into LoadedScene::fits.
+  struct AppliedFit {
+    FeaturePair ends;
+    FaceStatement a, b;  // what the fit itself says
+    SourceLine at;
   };
 
   void error(SourceLine at, const std::string& text) {
@@ -166,7 +175,7 @@ class RuleBook {
       return false;
     }
     PairStatements& pair = statements_of(a, b);
-    if (!put(fit, pair.a, a, fa, of_a, b) || !put(fit, pair.b, b, fb, of_b, a)) return false;
+    if (!put(pair.a, a, fa, {of_a, fit.at}) || !put(pair.b, b, fb, {of_b, fit.at})) return false;
     if (std::find(pair.fits.begin(), pair.fits.end(), text) == pair.fits.end())
       pair.fits.push_back(text);
     resolved.part_a = part(a).name, resolved.part_b = part(b).name;
@@ -174,6 +183,7 @@ class RuleBook {
     if (fb != kWholePart) resolved.feature_b = part(b).features[fb].name;
     resolved.code = text;
     scene_.fits.push_back(std::move(resolved));
+    applied_.push_back({{a, fa, b, fb}, of_a, of_b, fit.at});
     return true;
   }
 
@@ -189,47 +199,86 @@ class RuleBook {
     return pair;
   }
 
-  // One surface of one pair has one statement; a second one must say the same.
-  bool put(const Scenario::FitSpec& fit, std::vector<std::optional<FaceStatement>>& side, PartId id,
-           std::size_t feature, const FaceStatement& statement, PartId other) {
-    std::optional<FaceStatement>& slot = feature == kWholePart ? side.back() : side[feature];
-    if (slot && !(slot->offset_mm == statement.offset_mm)) {
-      error(fit.at, "fit: " + name_of_end(id, feature) + " is already " + slot->source +
-                        " against " + part(other).name + " and cannot be " + statement.source +
-                        " as well; one surface has one class");
+  // Statements of one surface in one pair hold together; ones that exclude each other are errors.
+  bool put(PairSide& side, PartId id, std::size_t feature, const PlacedStatement& statement) {
+    std::optional<PlacedStatement>& slot = feature == kWholePart ? side.back() : side[feature];
+    Result<PlacedStatement> both = slot ? both_hold(*slot, statement) : statement;
+    if (!both) {
+      error(statement.at, "fit: " + name_of_end(id, feature) + ": " + both.error().text);
       return false;
     }
-    slot = statement;
+    slot = std::move(both).value();
     return true;
   }
 
   // 3. bands of pairs, shared by pairs that say the same of parts that are alike
 
-  std::shared_ptr<const SurfaceBand> band_of(
-      PartId id, const std::vector<std::optional<FaceStatement>>& side) {
+  // What holds of one face of a part in a pair: the part's and the feature's own statement, the
+  // pair's of the whole part, the pair's of the feature. `at` is the last line that was asked.
+  struct InPair {
+    Result<PlacedStatement> all;
+    SourceLine at;
+  };
+  InPair statement_in_pair(PartId id, const PairSide& side, std::size_t feature) {
+    const StatedPart& own = stated_[id.value - 1];
+    const PlacedStatement& alone = feature == kWholePart ? own.rest : own.of_feature[feature];
+    InPair in_pair{alone, alone.at};
+    const auto beside = [&](const std::optional<PlacedStatement>& statement) {
+      if (!statement || !in_pair.all) return;
+      in_pair = {both_hold(*in_pair.all, *statement), statement->at};
+    };
+    beside(side.back());
+    if (feature != kWholePart) beside(side[feature]);
+    return in_pair;
+  }
+
+  std::shared_ptr<const SurfaceBand> band_of(PartId id, const PairSide& side) {
     if (std::none_of(side.begin(), side.end(), [](auto& s) { return s.has_value(); }))
       return nullptr;
     const StatedPart& own = stated_[id.value - 1];
-    const FaceStatement rest = side.back().value_or(own.rest);
-    std::vector<FaceStatement> of_feature = own.of_feature;
+    std::vector<FaceStatement> statements;  // by feature; the last one is the rest
     std::string key = std::to_string(own.kind);
-    const auto add_to_key = [&](const FaceStatement& s) {
+    for (std::size_t i = 0; i <= own.of_feature.size(); ++i) {
+      const std::size_t feature = i < own.of_feature.size() ? i : kWholePart;
+      const auto [all, at] = statement_in_pair(id, side, feature);
+      if (!all) {
+        error(at, "fit: " + name_of_end(id, feature) + ": " + all.error().text);
+        return nullptr;
+      }
+      statements.push_back(for_band(*all));
       char bytes[sizeof(Interval)];
-      std::memcpy(bytes, &s.offset_mm, sizeof bytes);
-      key.append(bytes, sizeof bytes).append(s.source).push_back('\n');
-    };
-    for (std::size_t i = 0; i < of_feature.size(); ++i) {
-      if (side[i])
-        of_feature[i] = *side[i];
-      else if (side.back())  // a statement of whole parts holds for every face of the pair
-        of_feature[i] = *side.back();
-      add_to_key(of_feature[i]);
+      std::memcpy(bytes, &statements.back().offset_mm, sizeof bytes);
+      key.append(bytes, sizeof bytes).append(statements.back().source).push_back('\n');
     }
-    add_to_key(rest);
+    const FaceStatement rest = statements.back();
+    statements.pop_back();
     std::shared_ptr<const SurfaceBand>& band = bands_[key];
     if (!band)
-      band = std::make_shared<const SurfaceBand>(with_statements(part(id).band, rest, of_feature));
+      band = std::make_shared<const SurfaceBand>(with_statements(part(id).band, rest, statements));
     return band;
+  }
+
+  // Says of each fit what else holds of its faces, and what clearance that leaves.
+  void note_what_is_tighter() {
+    for (std::size_t i = 0; i < applied_.size(); ++i) {
+      const AppliedFit& fit = applied_[i];
+      const auto [a, fa, b, fb] = fit.ends;
+      const PairStatements& pair = pairs_.at({a, b});
+      const Result<PlacedStatement> of_a = statement_in_pair(a, pair.a, fa).all;
+      const Result<PlacedStatement> of_b = statement_in_pair(b, pair.b, fb).all;
+      if (!of_a || !of_b) continue;  // said where the bands were made
+      LoadedScene::ResolvedFit& resolved = scene_.fits[i];
+      const FaceStatement all_a = for_band(*of_a), all_b = for_band(*of_b);
+      if (all_a.source != fit.a.source)
+        resolved.tighter.push_back(name_of_end(a, fa) + ": " + all_a.source);
+      if (all_b.source != fit.b.source)
+        resolved.tighter.push_back(name_of_end(b, fb) + ": " + all_b.source);
+      if (resolved.tighter.empty()) continue;
+      const Interval said = fit.a.offset_mm + fit.b.offset_mm;
+      const Interval holds = all_a.offset_mm + all_b.offset_mm;
+      resolved.clearance_mm.lo -= 2.0 * (holds.hi - said.hi);
+      resolved.clearance_mm.hi -= 2.0 * (holds.lo - said.lo);
+    }
   }
 
   void make_bands() {
@@ -285,6 +334,7 @@ class RuleBook {
   LoadedScene& scene_;
   std::map<std::pair<PartId, PartId>, PairStatements> pairs_;
   std::map<FeaturePair, int> fit_of_;
+  std::vector<AppliedFit> applied_;  // same index as LoadedScene::fits
   std::map<std::string, std::shared_ptr<const SurfaceBand>> bands_;
 };
 

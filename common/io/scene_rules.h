@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/evaluation/band.h"
+#include "common/io/placed_statement.h"
 #include "common/io/scene_load.h"
 
 /// What pairs of parts say of each other: fits, exclusions, who may hold what. Private to
@@ -17,8 +17,9 @@ namespace mortise {
 /// mesh, features and tolerances share a `kind`.
 struct StatedPart {
   std::size_t kind = 0;
-  FaceStatement rest;
-  std::vector<FaceStatement> of_feature;  ///< by index of Part::features
+  PlacedStatement rest;
+  std::vector<PlacedStatement> of_feature;  ///< by index of Part::features; what the part's own
+                                            ///< and the feature's statement leave together
 };
 
 /// "pin*" against "pin_3": '*' stands for any run of characters.

@@ -27,14 +27,16 @@ struct Scenario {
   struct Tolerance {     ///< outward offset of the surface
     Interval offset_mm;  ///< [-t, +t] for +-t; profile zone: [-t/2, t/2], unequal allowed
     std::string text;    ///< as written
+    SourceLine at = {};
   };
   struct FeatureSpec {
     std::string name;
     Surface surface;  ///< part frame; kind kUnknown: the generator's feature of this name
     std::optional<Interval> along_mm;  ///< extent along the axis from `point`; none: unbounded
     std::optional<Tolerance> tolerance;
-    std::string iso_class;    ///< "H7" or "g6"; empty when none
-    double nominal_mm = 0.0;  ///< nominal diameter of iso_class; 0: twice the radius
+    std::string iso_class;     ///< "H7" or "g6"; empty when none
+    double nominal_mm = 0.0;   ///< nominal diameter of iso_class; 0: twice the radius
+    double position_mm = 0.0;  ///< diameter of the zone of its axis or centre; 0: none stated
     SourceLine at;
   };
   struct PartSpec {

@@ -81,6 +81,8 @@ std::string fits_text(const LoadedScene& scene) {
     text += fmt::format("  {:<50}{:>20}  {}\n",
                         end(fit.part_a, fit.feature_a) + " / " + end(fit.part_b, fit.feature_b),
                         um(fit.clearance_mm), fit.code);
+    for (const std::string& tighter : fit.tighter)
+      text += fmt::format("  {:<50}{:>20}  and {}\n", "", "", tighter);
   }
   return text + more(scene.fits.size());
 }
@@ -142,7 +144,8 @@ Json lint_json(const OpenedScene& opened) {
                             {"feature_b", fit.feature_b},
                             {"code", fit.code},
                             {"nominal_mm", fit.nominal_mm},
-                            {"clearance_mm", json_of(fit.clearance_mm)}});
+                            {"clearance_mm", json_of(fit.clearance_mm)},
+                            {"tighter", fit.tighter}});
   json["exclusions"] = Json::array();
   for (const auto& [ids, rule] : scene.world.pair_rules)
     if (rule.excluded)

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "common/evaluation/tolerance.h"
 
@@ -186,24 +185,6 @@ TEST(Probability, NumbersOfTheStandardFits) {
   EXPECT_NEAR(probability_of("H7/n6"), 0.99623, 1e-5);
   EXPECT_NEAR(probability_of("H7/p6"), 0.9999939, 1e-7);
   EXPECT_NEAR(probability_of("H8/f7"), 2.8e-13, 0.05e-13);
-}
-
-TEST(Probability, AgreesWithDrawingParts) {
-  std::mt19937_64 random(424242);
-  for (const char* code : {"H7/k6", "H7/n6", "H7/js6"}) {
-    const auto fit = fit_of(code, 20.0, 10.0, 10.0);
-    ASSERT_TRUE(fit);
-    const auto sizes = [](const Interval& i) {
-      return std::normal_distribution<double>(i.middle(), i.width() / 6.0);
-    };
-    auto hole = sizes(fit->a.offset_mm), shaft = sizes(fit->b.offset_mm);
-    constexpr int kDraws = 400000;
-    int interfering = 0;
-    for (int i = 0; i < kDraws; ++i) interfering += hole(random) + shaft(random) > 0.0 ? 1 : 0;
-    const double p = probability_of(code);
-    const double sigma = std::sqrt(p * (1 - p) / kDraws);
-    EXPECT_NEAR(static_cast<double>(interfering) / kDraws, p, 4.5 * sigma) << code;
-  }
 }
 
 TEST(Probability, WithoutAnySpreadItIsAStep) {

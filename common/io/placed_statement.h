@@ -1,0 +1,29 @@
+#pragma once
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/evaluation/tolerance.h"
+#include "common/session/scenario.h"
+
+/// Statements of a scenario with the lines that say them, and how several of one face hold
+/// together. Private to scene_load.
+namespace mortise {
+
+/// A statement and the line that says it (the tighter one's where two hold).
+struct PlacedStatement {
+  FaceStatement statement;
+  SourceLine at;
+};
+
+/// What both leave together; an error that names both lines when they exclude each other.
+Result<PlacedStatement> both_hold(const PlacedStatement& a, const PlacedStatement& b);
+
+/// What holds of a feature: its own statement (class, tolerance, position) beside that of the part.
+Result<PlacedStatement> statement_of_feature(const Scenario::FeatureSpec& declared,
+                                             const Feature& feature, const PlacedStatement& part);
+
+/// What the bands are made of: positions added to sizes.
+FaceStatement for_band(const PlacedStatement& placed);
+std::vector<FaceStatement> for_band(const std::vector<PlacedStatement>& placed);
+
+}  // namespace mortise
