@@ -44,24 +44,44 @@ struct Source {
   bool fit = false;
 };
 
-// "Ø20 H7" and "Ø20 g6" are "Ø20 H7/g6": the hole, a capital letter, stands first.
+// "Ø20 H7, position Ø0.1 mm" said in two.
+struct Said {
+  std::string size, position;
+};
+
+Said split_position(const std::string& source) {
+  const std::size_t at = source.find("position Ø");
+  if (at == std::string::npos) return {source, ""};
+  const std::string size = source.substr(0, at);
+  return {size.ends_with(", ") ? size.substr(0, size.size() - 2) : size, source.substr(at)};
+}
+
+// "Ø20 H7" and "Ø20 g6" are "Ø20 H7/g6": the hole, a capital letter, stands first. Nothing when
+// either is more, or other, than a class.
 std::string joined_fit(const std::string& a, const std::string& b) {
   const std::size_t blank = a.find(' ');
   if (!a.starts_with("Ø") || blank == std::string::npos || blank + 1 >= a.size() ||
-      a.compare(0, blank + 1, b, 0, blank + 1) != 0)
+      a.compare(0, blank + 1, b, 0, blank + 1) != 0 || b.size() == blank + 1 ||
+      a.find(' ', blank + 1) != std::string::npos || b.find(' ', blank + 1) != std::string::npos)
     return {};
   const std::string size = a.substr(0, blank + 1), x = a.substr(blank + 1), y = b.substr(blank + 1);
   const bool a_is_hole = x[0] >= 'A' && x[0] <= 'Z';
   return a_is_hole ? size + x + "/" + y : size + y + "/" + x;
 }
 
+// What two faces say together.
+std::string together(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return a + b;
+  return a == b ? "twice " + a : a + " and " + b;
+}
+
 Source tolerance_source(const ExplainInput& in) {
   if (in.face_a == nullptr || in.face_b == nullptr) return {in.fit, !in.fit.empty()};
-  const std::string& a = in.face_a->tolerance_source;
-  const std::string& b = in.face_b->tolerance_source;
-  if (const std::string fit = joined_fit(a, b); !fit.empty()) return {fit, true};
-  if (a.empty() || b.empty()) return {a + b, false};
-  return {a == b ? "twice " + a : a + " and " + b, false};
+  const Said a = split_position(in.face_a->tolerance_source);
+  const Said b = split_position(in.face_b->tolerance_source);
+  const std::string fit = joined_fit(a.size, b.size);
+  const std::string sizes = fit.empty() ? together(a.size, b.size) : fit;
+  return {together(sizes, together(a.position, b.position)), !fit.empty()};
 }
 
 std::string signed_term(const std::string& so_far, bool negative, const std::string& term) {
@@ -73,14 +93,15 @@ std::string mesh_error_name(const ExplainInput& in) {
   switch (in.grade) {
     case DeviationGrade::kPlanar:
     case DeviationGrade::kDeclaredFeature:
-    case DeviationGrade::kRecognizedFeature:
       return in.deviation_mm.width() * kUmPerMm > kBracketShown_um
                  ? " within " + um(in.deviation_mm.width())
                  : " exact";
     case DeviationGrade::kDeclaredChord:
       return " by declared chord error";
+    case DeviationGrade::kRecognizedFeature:
+      return " recognized";
     case DeviationGrade::kEstimated:
-      return " estimated, not guaranteed";
+      return " estimated";
     case DeviationGrade::kNominal:
     case DeviationGrade::kUnknown:
       break;
@@ -88,8 +109,13 @@ std::string mesh_error_name(const ExplainInput& in) {
   return "";
 }
 
-// What a threshold is made of, at one end of the offsets. A fit that leaves room adds clearance.
-std::string made_of(const ExplainInput& in, double deviation_mm, double tolerance_mm, bool least) {
+// What a threshold is made of: fake ends at the upper offsets, real begins at the lower ones. A fit
+// that leaves room adds clearance.
+enum class End { kFake, kReal };
+std::string made_of(const ExplainInput& in, End end, bool name_source) {
+  const bool fake = end == End::kFake;
+  const double deviation_mm = fake ? in.deviation_mm.hi : in.deviation_mm.lo;
+  const double tolerance_mm = fake ? in.tolerance_mm.hi : in.tolerance_mm.lo;
   std::string text;
   if (shown(deviation_mm))
     text = signed_term(text, deviation_mm > 0.0,
@@ -101,31 +127,66 @@ std::string made_of(const ExplainInput& in, double deviation_mm, double toleranc
   if (!source.fit)
     what = "tolerance";
   else if (interferes)
-    what = least ? "largest radial interference" : "least radial interference";
+    what = fake ? "largest radial interference" : "least radial interference";
   else
-    what = least ? "least radial clearance" : "largest radial clearance";
-  return signed_term(text, interferes,
-                     what + " " + um(std::fabs(tolerance_mm)) + " of " + source.text);
+    what = fake ? "least radial clearance" : "largest radial clearance";
+  return signed_term(
+      text, interferes,
+      what + " " + um(std::fabs(tolerance_mm)) + (name_source ? " of " + source.text : ""));
 }
 
+// Each threshold that has to do with the class, and what it is made of.
 std::string thresholds_part(const ExplainInput& in) {
   const double fake = in.thresholds.fake_below_mm;
   const double real = in.thresholds.real_above_mm;
-  const std::string why_fake = made_of(in, in.deviation_mm.hi, in.tolerance_mm.hi, true);
-  if (why_fake.empty() && !shown(fake) && !shown(real)) {
+  if (made_of(in, End::kFake, true).empty() && !shown(fake) && !shown(real)) {
     const bool nominal =
         in.grade == DeviationGrade::kNominal || in.grade == DeviationGrade::kUnknown;
     return nominal
                ? "nothing declared, the mesh is taken for the surface (nominal)"
                : "no tolerance declared, mesh error 0.0 (" + std::string(name_of(in.grade)) + ")";
   }
-  std::string text = "fake up to " + um(fake) + " µm";
-  if (!why_fake.empty()) text += " (" + why_fake + ")";
-  return text + ", real above " + um(real) + " µm";
+  const bool is_real = in.collision_class == CollisionClass::kReal;
+  const bool is_fake = in.collision_class == CollisionClass::kFake;
+  const std::string why_fake = is_real ? "" : made_of(in, End::kFake, true);
+  const std::string why_real = is_fake ? "" : made_of(in, End::kReal, why_fake.empty());
+  const auto because = [](const std::string& why) { return why.empty() ? "" : " (" + why + ")"; };
+  return "fake up to " + um(fake) + " µm" + because(why_fake) + ", real above " + um(real) + " µm" +
+         because(why_real);
+}
+
+bool estimated(const ExplainInput& in) {
+  const auto is = [](const SurfaceBand::Face* face) {
+    return face != nullptr && face->grade == DeviationGrade::kEstimated;
+  };
+  return in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
+}
+
+// Largest distance of the mesh corners from the surfaces that were fitted to them.
+double recognized_residual_mm(const ExplainInput& in) {
+  double residual_mm = 0.0;
+  for (const SurfaceBand::Face* face : {in.face_a, in.face_b})
+    if (face != nullptr && face->grade == DeviationGrade::kRecognizedFeature)
+      residual_mm += face->residual_mm;
+  return residual_mm;
+}
+
+// What the verdict rests on where that is less than a declared surface.
+std::string grade_note(const ExplainInput& in) {
+  if (estimated(in)) return "; mesh error estimated, not guaranteed";
+  if (in.grade == DeviationGrade::kRecognizedFeature) {
+    const double residual_mm = recognized_residual_mm(in);
+    return "; surfaces recognized in the mesh, residual " +
+           (shown(residual_mm) ? um(residual_mm) + " µm" : std::string("below 0.1 µm"));
+  }
+  const bool nominal = in.grade == DeviationGrade::kNominal;
+  return nominal && !tolerance_source(in).text.empty() ? "; mesh taken for the surface (nominal)"
+                                                       : "";
 }
 
 std::string conclusion(const ExplainInput& in) {
-  const std::string name(name_of(in.collision_class));
+  const std::string name =
+      std::string(name_of(in.collision_class)) + (estimated(in) ? " by estimate" : "");
   switch (in.collision_class) {
     case CollisionClass::kReal:
       return name + ", " + um(in.margin_mm) + " µm beyond";
@@ -146,7 +207,8 @@ std::string conclusion(const ExplainInput& in) {
 // The lazy answer: on which side of which threshold, no more.
 std::string explain_open_bracket(const ExplainInput& in) {
   const Source source = tolerance_source(in);
-  const std::string of = source.text.empty() ? "" : " (" + source.text + ")";
+  const std::string of = " (" + source.text + (source.text.empty() ? "" : ", ") +
+                         "mesh error: " + std::string(name_of(in.grade)) + ")";
   const Interval& delta = in.delta_mm;
   if (in.collision_class == CollisionClass::kFake)
     return "overlap at most " + um(delta.hi) + " µm; fake up to " +
@@ -167,6 +229,7 @@ std::string explain(const ExplainInput& in) {
       in.delta_mm.width() > kBracketOpen_mm
           ? explain_open_bracket(in)
           : overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
+  text += grade_note(in);
   if (in.capped) text += "; work limit reached, brackets are wide";
   return text;
 }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "common/evaluation/tolerance.h"
 
@@ -194,68 +193,6 @@ TEST(Probability, WithoutAnySpreadItIsAStep) {
   // Doubt about the mesh counts like one more tolerance.
   EXPECT_NEAR(interference_probability({-0.3, -0.3}, {0.1, 0.1}, {}, {}),
               0.5 * std::erfc(0.1 / (0.4 / 6.0) / std::sqrt(2.0)), 1e-12);
-}
-
-SurfaceBand::Face face(const char* source, Interval tolerance) {
-  SurfaceBand::Face f;
-  f.tolerance_source = source;
-  f.tolerance_mm = tolerance;
-  return f;
-}
-
-TEST(Explain, TheSentenceOfAFit) {
-  const SurfaceBand::Face hole = face("Ø20 H7", {-0.0105, 0}),
-                          shaft = face("Ø20 g6", {-0.010, -0.0035});
-  ExplainInput in;
-  in.collision_class = CollisionClass::kFake;
-  in.delta_mm = {kSagitta_mm, kSagitta_mm};
-  in.deviation_mm = {-kSagitta_mm, -kSagitta_mm};
-  in.tolerance_mm = {-0.0205, -0.0035};
-  in.thresholds = {kSagitta_mm + 0.0035, kSagitta_mm + 0.0205};
-  in.margin_mm = 0.0035;
-  in.grade = DeviationGrade::kDeclaredFeature;
-  in.face_a = &shaft;
-  in.face_b = &hole;
-  EXPECT_EQ(explain(in),
-            "overlap 48.2 µm; fake up to 51.7 µm (mesh error 48.2 exact + least radial clearance "
-            "3.5 of Ø20 H7/g6), real above 68.7 µm: fake, 3.5 µm to spare");
-}
-
-TEST(Explain, OtherSentences) {
-  ExplainInput in;
-  in.collision_class = CollisionClass::kReal;
-  in.delta_mm = {0.2, 0.2};
-  in.grade = DeviationGrade::kNominal;
-  in.margin_mm = 0.2;
-  EXPECT_EQ(explain(in),
-            "overlap 200.0 µm; nothing declared, the mesh is taken for the surface (nominal): "
-            "real, 200.0 µm beyond");
-  const SurfaceBand::Face zone = face("profile 0.1 mm", {-0.05, 0.05});
-  in = {};
-  in.collision_class = CollisionClass::kPotential;
-  in.delta_mm = {-0.05, -0.05};
-  in.face_a = in.face_b = &zone;
-  in.tolerance_mm = {-0.1, 0.1};
-  in.thresholds = {-0.1, 0.1};
-  in.grade = DeviationGrade::kPlanar;
-  in.probability = 0.25;
-  EXPECT_EQ(explain(in),
-            "gap 50.0 µm; fake up to -100.0 µm (-tolerance 100.0 of twice profile 0.1 mm), real "
-            "above 100.0 µm: potential, P(interference) 25 %");
-  in.no_inside = true;
-  EXPECT_NE(explain(in).find("a part is open"), std::string::npos);
-  in.delta_mm = {0.05, 1.0};
-  EXPECT_EQ(explain(in),
-            "the surfaces cross, but a part is open and has no inside, so the depth is not known: "
-            "potential");
-  in.no_inside = false;
-  in.capped = true;
-  EXPECT_NE(explain(in).find("work limit"), std::string::npos);
-  in.delta_mm = {0.01, std::numeric_limits<double>::infinity()};
-  in.capped = false;
-  EXPECT_EQ(explain(in),
-            "overlap at least 10.0 µm; real above 100.0 µm (twice profile 0.1 mm): potential, "
-            "P(interference) 25 %");
 }
 
 }  // namespace
