@@ -207,8 +207,11 @@ std::string conclusion(const ExplainInput& in) {
 // The lazy answer: on which side of which threshold, no more.
 std::string explain_open_bracket(const ExplainInput& in) {
   const Source source = tolerance_source(in);
-  const std::string of = " (" + source.text + (source.text.empty() ? "" : ", ") +
-                         "mesh error: " + std::string(name_of(in.grade)) + ")";
+  // Planes without a tolerance have nothing to say for themselves.
+  const bool plain = source.text.empty() && in.grade == DeviationGrade::kPlanar;
+  const std::string of = plain ? ""
+                               : " (" + source.text + (source.text.empty() ? "" : ", ") +
+                                     "mesh error: " + std::string(name_of(in.grade)) + ")";
   const Interval& delta = in.delta_mm;
   if (in.collision_class == CollisionClass::kFake)
     return "overlap at most " + um(delta.hi) + " µm; fake up to " +
