@@ -10,6 +10,7 @@ namespace mortise::bench {
 const std::vector<JudgementSection>& judgement_sections() {
   static const std::vector<JudgementSection> all = {
       {"truth", "random fits against their exact truth, every grade, beside peers", section_truth},
+      {"realization", "real surfaces drawn inside their zones", section_realization},
   };
   return all;
 }

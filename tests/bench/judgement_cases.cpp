@@ -210,15 +210,16 @@ JudgedCase draw_key(Dice& dice) {
   const double w = dice.spread(3.0, 500.0), width = w * dice.spread(1e-4, 3e-3);
   c.offset_a_mm = zone(dice, width);
   c.offset_b_mm = zone(dice, width);
+  const double play = play_mm(c.offset_a_mm + c.offset_b_mm);
   KeyFit fit;
   fit.slot = {0.5 * w, w * dice.between(0.5, 1.0), w * dice.between(1.0, 3.0), 0.5 * w};
-  fit.key_half_mm = Vec3(0.5 * w, w * dice.between(0.5, 0.8), 0.8 * fit.slot.half_length_mm);
+  fit.key_half_mm = Vec3(0.5 * w - play * dice.between(-0.5, 2.0), w * dice.between(0.5, 0.8),
+                         0.8 * fit.slot.half_length_mm);
   c.a = make_block(fit.key_half_mm, dice.between(0.0, 1.0) < 0.5 ? 1 : 4);
   c.b = make_slot(fit.slot);
   c.stated_a = c.stated_b = 3;
-  const double play = play_mm(c.offset_a_mm + c.offset_b_mm);
   fit.center = Vec3(dice.sign() * some(dice, play),
-                    fit.key_half_mm.y() + play * dice.between(-1.0, 4.0), 0.0);
+                    fit.key_half_mm.y() + play * dice.between(-0.5, 4.0), 0.0);
   fit.yaw_rad =
       dice.sign() * (dice.between(0.0, 1.0) < 0.5 ? 0.0 : some(dice, play / fit.key_half_mm.z()));
   place(dice, c, {rotation_exp(fit.yaw_rad * Vec3::UnitY()), fit.center});
@@ -228,10 +229,10 @@ JudgedCase draw_key(Dice& dice) {
   const double depth = key_overlap_mm(fit, {});
   if (depth > 0.0) c.mesh_depth_mm = depth;
   c.text = text(
-      "width %.4f, zones [%.5f, %.5f] [%.5f, %.5f], shift %.5f, above floor %.5f, yaw "
+      "slot %.4f, key %.5f, zones [%.5f, %.5f] [%.5f, %.5f], shift %.5f, above floor %.5f, yaw "
       "%.3g",
-      w, c.offset_a_mm.lo, c.offset_a_mm.hi, c.offset_b_mm.lo, c.offset_b_mm.hi, fit.center.x(),
-      fit.center.y() - fit.key_half_mm.y(), fit.yaw_rad);
+      w, 2.0 * fit.key_half_mm.x(), c.offset_a_mm.lo, c.offset_a_mm.hi, c.offset_b_mm.lo,
+      c.offset_b_mm.hi, fit.center.x(), fit.center.y() - fit.key_half_mm.y(), fit.yaw_rad);
   return c;
 }
 

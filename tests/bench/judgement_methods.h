@@ -34,9 +34,11 @@ struct Word {
   bool capped = false;
 };
 
+constexpr std::uint64_t kFullWorkCap = 200'000;  ///< what a full bracket may take
 struct AskOurs {
   Refinement refinement = Refinement::kDecided;
-  bool swapped = false;  ///< B before A
+  bool swapped = false;             ///< B before A
+  std::uint64_t work_cap = 10'000;  ///< a tick's, see kTickOverlapCap in the session
 };
 Word ask_ours(const JudgedCase& c, const KnownPair& pair, const AskOurs& how);
 

@@ -92,6 +92,7 @@ Word ask_ours(const JudgedCase& c, const KnownPair& pair, const AskOurs& how) {
   query.motion_b = still_motion(how.swapped ? c.X_WA : c.X_WB);
   query.refinement = how.refinement;
   query.want_gpd = false;
+  query.work_cap = how.work_cap;
   // Trees and topologies belong to the part, not to the question.
   for (const Part* part : {query.a, query.b}) part->solid->bvh(), part->solid->topology();
   CcdScratch scratch;

@@ -43,6 +43,10 @@ std::string JudgementScore::add(const JudgedCase& c, const Truth& truth, const W
   ++confusion[is][said];
   capped += word.capped;
   time_s.push_back(word.time_s);
+  if (word.time_s > slowest_s) {
+    slowest_s = word.time_s;
+    slowest = name_of(c);
+  }
   const bool wrong = contradicts(truth, word);
   contradictions += wrong;
   bool missed = false;
@@ -56,13 +60,33 @@ std::string JudgementScore::add(const JudgedCase& c, const Truth& truth, const W
       missed = said != is && &share == &fine;
     }
   }
-  if (c.mesh_depth_mm && word.depth_mm)
-    depth_error_mm.push_back(bracket_error_mm(*word.depth_mm, *c.mesh_depth_mm));
-  if (c.overlap_is_depth && word.possible_mm && word.certain_mm && truth.possible_mm > 0.0)
-    end_error_mm.push_back(std::max(bracket_error_mm(*word.possible_mm, truth.possible_mm),
-                                    bracket_error_mm(*word.certain_mm, truth.certain_mm)));
   if (wrong) return "contradiction";
   return missed ? "not found" : "";
+}
+
+void ErrorScore::add_ours(const JudgedCase& c, const Truth& truth, const Word& word) {
+  time_s.push_back(word.time_s);
+  capped += word.capped;
+  if (c.mesh_depth_mm)
+    depth_mm.push_back(word.depth_mm ? bracket_error_mm(*word.depth_mm, *c.mesh_depth_mm)
+                                     : *c.mesh_depth_mm);
+  // Below zero nobody looks closer than the verdict needs.
+  if (!c.overlap_is_depth || truth.certain_mm <= 0.0) return;
+  overlap_mm.push_back(word.certain_mm
+                           ? std::max(bracket_error_mm(*word.certain_mm, truth.certain_mm),
+                                      bracket_error_mm(*word.possible_mm, truth.possible_mm))
+                           : truth.possible_mm);
+}
+
+void ErrorScore::add_peer(const JudgedCase& c, const Word& word) {
+  time_s.push_back(word.time_s);
+  if (c.mesh_depth_mm) depth_mm.push_back(bracket_error_mm(*word.depth_mm, *c.mesh_depth_mm));
+  if (!c.overlap_is_depth || c.truth(false).certain_mm <= 0.0) return;
+  overlap_mm.push_back(bracket_error_mm(*word.depth_mm, std::max(0.0, c.overlap_mm({}))));
+}
+
+std::string name_of(const JudgedCase& c) {
+  return std::string(name_of(c.family)) + ":" + std::to_string(c.seed);
 }
 
 }  // namespace mortise::bench

@@ -26,15 +26,31 @@ struct JudgementScore {
   Share coarse, fine;
   long long decided_truths = 0, left_open = 0;  ///< potential was said though the truth is decided
   std::vector<double> time_s;
-  std::vector<double> depth_error_mm;  ///< where the depth of the meshes is known
-  std::vector<double> end_error_mm;    ///< of certain and possible, where the truth is the depth
+  double slowest_s = 0.0;
+  std::string slowest;  ///< name of that case
 
   /// Returns what is wrong with the word; empty: nothing that must not be.
   std::string add(const JudgedCase& c, const Truth& truth, const Word& word);
   double left_open_percent() const;
 };
 
-/// Distance of a bracket from the value that it should hold and how far its ends are from it.
+/// How far one method's numbers are from the exact ones.
+struct ErrorScore {
+  std::vector<double> time_s;
+  std::vector<double> depth_mm;    ///< of the depth of the meshes, where it is known
+  std::vector<double> overlap_mm;  ///< of the overlap of the true surfaces, where it is a depth
+  long long capped = 0;
+
+  /// Ours: both ends of the admissible overlap against the truth's.
+  void add_ours(const JudgedCase& c, const Truth& truth, const Word& word);
+  /// A peer knows one depth, and nothing below zero.
+  void add_peer(const JudgedCase& c, const Word& word);
+};
+
+/// Farther end of a bracket from the value that it should be, mm.
 double bracket_error_mm(const Interval& bracket, double exact_mm);
+
+/// "cylinder:123"
+std::string name_of(const JudgedCase& c);
 
 }  // namespace mortise::bench

@@ -16,6 +16,7 @@ struct JudgementOptions {
 
 /// Each adds its tables, notes and bars to the report.
 void section_truth(Report& report, const JudgementOptions& options);
+void section_realization(Report& report, const JudgementOptions& options);
 
 struct JudgementSection {
   const char* name;

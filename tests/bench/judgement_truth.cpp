@@ -10,6 +10,8 @@ namespace {
 
 using std::numbers::pi;
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+// A fit that touches exactly (h6 in H7) must not be called open by the last digit of a sum.
+constexpr double kRounding_mm = 1e-9;
 
 // Largest value of a continuous function of an angle: a coarse grid, then golden sections about
 // every local best of it.
@@ -127,8 +129,8 @@ double polygon_depth_mm(const PolygonFit& fit) {
 }
 
 CollisionClass Truth::collision_class() const {
-  if (certain_mm > 0.0) return CollisionClass::kReal;
-  return possible_mm > 0.0 ? CollisionClass::kPotential : CollisionClass::kNone;
+  if (certain_mm > kRounding_mm) return CollisionClass::kReal;
+  return possible_mm > kRounding_mm ? CollisionClass::kPotential : CollisionClass::kNone;
 }
 
 double Truth::margin_mm() const { return std::min(std::abs(certain_mm), std::abs(possible_mm)); }
