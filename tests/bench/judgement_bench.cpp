@@ -11,6 +11,9 @@ const std::vector<JudgementSection>& judgement_sections() {
   static const std::vector<JudgementSection> all = {
       {"truth", "random fits against their exact truth, every grade, beside peers", section_truth},
       {"realization", "real surfaces drawn inside their zones", section_realization},
+      {"depth", "meshes of known exact depth, however they are cut", section_depth},
+      {"speed", "judging beside first contact, decided beside full", section_speed},
+      {"insertion", "a shaft through its bore, tick by tick", section_insertion},
   };
   return all;
 }
