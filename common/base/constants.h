@@ -37,6 +37,11 @@ inline constexpr double kMaxRotationPerTick_rad = 3.14159265358979323846;
 /// lies just below).
 inline constexpr double kSharpEdge_rad = 0.52359877559829887;
 
+/// Facets that meet at no more than this may stand for one smooth surface, rad (35 degrees: rounds
+/// of 12 facets turn by 30, octagons and chamfers by 45). A prism of twelve flats and a round of
+/// twelve facets cannot be told apart; it counts as round. Read by recognition and estimate.
+inline constexpr double kSmoothEdge_rad = 0.61086523819801535;
+
 /// Factor on estimated mesh deviations, which are never called guaranteed.
 inline constexpr double kEstimatedDeviationFactor = 1.5;
 

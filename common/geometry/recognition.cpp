@@ -1,0 +1,156 @@
+#include "common/geometry/recognition.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+#include "common/base/constants.h"
+#include "common/geometry/recognition_finish.h"
+#include "common/geometry/recognition_seeds.h"
+
+namespace mortise {
+namespace {
+
+// How far corners may stand off, as shares of the radius, exact meshes first.
+constexpr std::array<double, 3> kShares{1e-6, 2e-5, 4e-4};
+// A kind of more parameters must explain this much more than a simpler one.
+constexpr double kWorthMore = 1.2;
+// What a later region takes over whole is smaller by at least this.
+constexpr double kTakesOver = 2.0;
+
+// A first guess this far off, as a share of the extent of its points, is of another kind.
+constexpr double kFarOff = 0.05;
+// Fits to seeds stop where a step wins less: exact points win decades a step.
+constexpr double kWorthGoingOn = 0.05;
+
+constexpr std::int32_t kNobody = -1;
+
+class Recognizer {
+ public:
+  Recognizer(const Solid& solid, const RecognitionOptions& options)
+      : solid_(solid),
+        quantum_mm_(std::max(options.quantum_mm, grid_quantum_mm(solid.mesh()))),
+        facets_(build_facets(solid, flat_allowance_mm(solid, quantum_mm_))),
+        grower_(solid, facets_, quantum_mm_),
+        seeds_(solid, facets_, grower_),
+        options_(options),
+        owner_(solid.mesh().triangles.size(), kNobody) {}
+
+  Recognition run() {
+    std::vector<double> least_share(facets_.count(), 0.0);
+    for (const double share : kShares)
+      for (std::uint32_t f = 0; f < facets_.count(); ++f) {
+        if (owner_[facets_.triangles(f).front()] != kNobody || !seeds_.bends_smoothly(f)) continue;
+        if (least_share[f] > share) continue;  // its seeds fit nothing so well
+        Search search{f, share};
+        if (auto region = best_about(search)) claim(std::move(*region));
+        least_share[f] = search.least_share;
+      }
+    std::erase_if(regions_, [](const Region& r) { return r.triangles.empty(); });
+    return finish_recognition(solid_, facets_, grower_, std::move(regions_), options_.planes);
+  }
+
+ private:
+  struct Search {
+    std::uint32_t facet = 0;
+    double share = 0.0;
+    double least_share = std::numeric_limits<double>::infinity();  // of any fit to any seeds
+  };
+
+  // The region that explains most about a facet; simpler kinds win where they do nearly as well.
+  std::optional<Region> best_about(Search& search) {
+    const SeedSets sets = seeds_.about(search.facet);
+    std::optional<Region> best;
+    for (const SurfaceKind kind :
+         {SurfaceKind::kCylinder, SurfaceKind::kCone, SurfaceKind::kSphere, SurfaceKind::kTorus}) {
+      std::optional<Region> found;
+      if (kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone)
+        found = first_of(kind, sets.ribbons, search);
+      if (!found) found = first_of(kind, sets.patches, search);
+      if (!found) continue;
+      const auto worth = [](const Region& r) { return static_cast<double>(r.triangles.size()); };
+      if (!best || worth(*found) > kWorthMore * worth(*best)) best = std::move(found);
+    }
+    return best;
+  }
+
+  std::optional<Region> first_of(SurfaceKind kind,
+                                 const std::vector<std::vector<std::uint32_t>>& sets,
+                                 Search& search) {
+    for (const auto& seeds : sets) {
+      const std::vector<Vec3> points = grower_.points_of(seeds);
+      const std::vector<OrientedPoint> normals = grower_.normals_of(seeds);
+      const auto guess = guess_of(kind, points, normals);
+      if (!guess || residual_of(*guess, points) > kFarOff * extent_of(points)) continue;
+      const auto fit = fitted_surface(*guess, points, kWorthGoingOn);
+      if (!fit) continue;
+      const double off_mm = residual_of(*fit, points) - grower_.rounding_mm();
+      search.least_share =
+          std::min(search.least_share, off_mm / size_mm(*fit, solid_.mesh(), seeds));
+      if (auto region = grower_.grow(*fit, seeds, search.share)) return region;
+    }
+    return std::nullopt;
+  }
+
+  static double extent_of(std::span<const Vec3> points) {
+    Box box;
+    for (const Vec3& x : points) box.add(x);
+    return (box.hi - box.lo).norm();
+  }
+
+  static std::optional<Surface> guess_of(SurfaceKind kind, std::span<const Vec3> points,
+                                         std::span<const OrientedPoint> normals) {
+    switch (kind) {
+      case SurfaceKind::kCylinder:
+        return guess_cylinder(points, normals);
+      case SurfaceKind::kCone:
+        return guess_cone(points, normals);
+      case SurfaceKind::kSphere:
+        return guess_sphere(points);
+      default:
+        return guess_torus(points, normals);
+    }
+  }
+
+  // Triangles belong to who came first, except that a larger region takes over smaller ones whole:
+  // the strips of a sphere may have been found as cones.
+  void claim(Region region) {
+    std::map<std::int32_t, std::size_t> overlap;
+    for (const std::uint32_t t : region.triangles)
+      if (owner_[t] != kNobody) ++overlap[owner_[t]];
+    for (const auto& [other, count] : overlap) {
+      Region& smaller = regions_[static_cast<std::size_t>(other)];
+      if (count < smaller.triangles.size() ||
+          static_cast<double>(region.triangles.size()) < kTakesOver * static_cast<double>(count))
+        continue;
+      for (const std::uint32_t t : smaller.triangles) owner_[t] = kNobody;
+      smaller.triangles.clear();
+    }
+    const std::size_t before = region.triangles.size();
+    std::erase_if(region.triangles, [&](std::uint32_t t) { return owner_[t] != kNobody; });
+    if (region.triangles.empty()) return;
+    if (region.triangles.size() < before && !grower_.settle(region)) return;
+    for (const std::uint32_t t : region.triangles)
+      owner_[t] = static_cast<std::int32_t>(regions_.size());
+    regions_.push_back(std::move(region));
+  }
+
+  const Solid& solid_;
+  double quantum_mm_ = 0.0;
+  const Facets facets_;
+  RegionGrower grower_;
+  const SeedFinder seeds_;
+  RecognitionOptions options_;
+  std::vector<std::int32_t> owner_;
+  std::vector<Region> regions_;
+};
+
+}  // namespace
+
+Recognition recognize_features(const Solid& solid, const RecognitionOptions& options) {
+  if (solid.mesh().triangles.empty()) return {};
+  return Recognizer(solid, options).run();
+}
+
+}  // namespace mortise

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/feature.h"
+#include "common/geometry/solid.h"
+
+namespace mortise {
+
+/// What the mesh shows of one recognized feature.
+struct FeatureMeasure {
+  std::uint32_t facets = 0;     ///< steps around the axis; sphere, plane: flat facets
+  double arc_rad = 0.0;         ///< covered around the axis; 2 pi: closed. Plane: 0
+  Interval along_mm;            ///< extent along surface.axis from surface.point
+  double chord_error_mm = 0.0;  ///< farthest that a facet stands off the surface: the sagitta
+  double area_mm2 = 0.0;
+};
+
+struct Recognition {
+  /// Grade kRecognizedFeature (planes kPlanar), no triangle in two of them. Named and ordered:
+  /// bore_1, ... (inward cylinders), shaft_1, ..., cone_, sphere_, torus_, plane_; within a kind
+  /// closed ones first, then by falling size, then by place.
+  std::vector<Feature> features;
+  std::vector<FeatureMeasure> measures;  ///< same index
+  std::uint64_t triangles_recognized = 0;
+  std::uint64_t triangles_left = 0;     ///< belong to no feature
+  std::uint64_t doubtful_rows = 0;      ///< single rows of facets that may be steps of a curve
+  std::uint64_t doubtful_planes = 0;    ///< flat facets that may be part of a curve
+  double largest_residual_share = 0.0;  ///< largest residual / radius of a curved feature
+};
+
+struct RecognitionOptions {
+  /// How far the file's coordinates are off for rounding (ImportReport::quantum_mm); 0: doubles.
+  double quantum_mm = 0.0;
+  bool planes = true;
+};
+
+/// Planes, cylinders, cones, spheres and tori of a mesh whose corners lie on the true surfaces, by
+/// growing over smooth edges (exterior angle up to kSmoothEdge_rad) from fits of few facets.
+///
+/// Accepted with all corners within 1e-6 R (plus rounding of the file) where the mesh allows it,
+/// else within 1.4e-5 R, else within 2e-4 R: published bores stand up to 1.5e-4 R off. The residual
+/// reached is in Feature::residual_mm, and bands carry it on both sides.
+///
+/// What decides: only corners and facet normals are known. A prism whose flats turn by 35 degrees
+/// or less and whose corners lie on a circle counts as round: twelve flats do, six and eight do
+/// not. A round shows itself by three facets (two may be chamfers); a torus by four strips, or
+/// three equal ones. A flat whose corners lie on the round is told by being three times as wide as
+/// the middle facet. A single row of facets between smooth neighbours may be a step of a drawn
+/// curve; it is left out, and so are flat facets that meet others smoothly; both are counted.
+///
+/// Deterministic. O(n log n): 263,730 triangles in seconds.
+Recognition recognize_features(const Solid& solid, const RecognitionOptions& options = {});
+
+}  // namespace mortise

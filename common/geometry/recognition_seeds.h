@@ -1,0 +1,51 @@
+#pragma once
+#include <vector>
+
+#include "common/geometry/recognition_region.h"
+
+/// Private to recognition: from which few triangles a surface may be guessed.
+namespace mortise {
+
+/// Sets of triangles about a facet that may belong to one surface. ribbons: facets in a row across
+/// opposite edges, since each facet of a cylinder may touch a fillet at both of its ends; patches:
+/// all neighbours, near ones first. Longer sets come first: they average noise.
+struct SeedSets {
+  std::vector<std::vector<std::uint32_t>> ribbons, patches;
+};
+
+class SeedFinder {
+ public:
+  /// O(n log n), once a mesh.
+  SeedFinder(const Solid& solid, const Facets& facets, const RegionGrower& grower);
+
+  /// Does any edge of the facet bend smoothly?
+  bool bends_smoothly(std::uint32_t facet) const;
+  SeedSets about(std::uint32_t facet) const;
+
+ private:
+  // The longest smooth edge between two facets.
+  struct Crossing {
+    std::uint32_t facet = 0;  // across
+    Vec3 along = Vec3::Zero();
+    double length_mm = 0.0;
+  };
+  std::span<const Crossing> crossings(std::uint32_t facet) const {
+    return std::span(crossings_).subspan(begin_[facet], begin_[facet + 1] - begin_[facet]);
+  }
+  void add_crossings_of(std::uint32_t facet);
+  const Crossing* onward(std::uint32_t facet, const Vec3& along,
+                         const std::vector<std::uint32_t>& been) const;
+  std::vector<std::uint32_t> walk(std::uint32_t seed, Crossing step, std::uint32_t not_into) const;
+  void add_triangles(std::uint32_t facet, std::vector<std::uint32_t>& out) const;
+  void add_ribbons(std::uint32_t seed, SeedSets& sets) const;
+  void add_patches(std::uint32_t seed, SeedSets& sets) const;
+
+  const TriangleMesh& mesh_;
+  const Topology& topology_;
+  const Facets& facets_;
+  const RegionGrower& grower_;
+  std::vector<std::size_t> begin_{0};
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace mortise

@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/geometry/feature.h"
+
+namespace mortise {
+
+/// A point of a mesh with the outward normal of the facet around it; part frame, mm.
+struct OrientedPoint {
+  Vec3 point;
+  Vec3 normal;
+};
+
+/// Moves a surface to the least sum of squared distances of the points (Levenberg-Marquardt on
+/// orthogonal distances, analytic derivatives). From a start within its basin it ends at rounding
+/// for points that lie on a surface of this kind. `inward` is kept. It stops where a step wins less
+/// than worth_going_on of the cost. A surface that degenerates (a
+/// radius without bound, a cone without angle) gives nothing. O(iterations n).
+std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3> points,
+                                      double worth_going_on = 1e-6);
+
+/// Largest distance of a point from the surface, mm.
+double residual_of(const Surface& surface, std::span<const Vec3> points);
+
+/// The unit direction along which normals vary least, counted from `about`: the axis of a cylinder
+/// (about zero) or a cone (about their mean). Nothing when they hardly vary at all.
+std::optional<Vec3> steady_direction(std::span<const OrientedPoint> facets, const Vec3& about);
+
+/// First guesses. Each needs a few points and facets of one surface; nothing comes back where these
+/// do not determine it. Unrefined; the guess is exact for a sphere, and for cylinders and cones
+/// whose facets stand symmetrically.
+std::optional<Surface> guess_cylinder(std::span<const Vec3> points,
+                                      std::span<const OrientedPoint> facets);
+std::optional<Surface> guess_cone(std::span<const Vec3> points,
+                                  std::span<const OrientedPoint> facets);
+std::optional<Surface> guess_sphere(std::span<const Vec3> points);
+/// By the line complex of the normals (Pottmann and Randrup 1998): the normals of a surface of
+/// revolution meet its axis.
+std::optional<Surface> guess_torus(std::span<const Vec3> points,
+                                   std::span<const OrientedPoint> facets);
+
+}  // namespace mortise

@@ -1,0 +1,176 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+
+#include "common/geometry/surface_fit.h"
+
+namespace mortise {
+namespace {
+
+// Facets of a cylinder or cone stand at one angle to the axis; a spread above this is another kind.
+constexpr double kInclinationSpread = 0.1;
+
+Vec3 middle_of(std::span<const Vec3> points) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : points) middle += x;
+  return middle / static_cast<double>(points.size());
+}
+
+// Circle through points of a plane, algebraic least squares (Kasa): x^2 + y^2 = 2ax + 2by + c.
+struct Circle {
+  double x = 0.0, y = 0.0, radius = 0.0;
+};
+std::optional<Circle> circle_through(std::span<const Eigen::Vector2d> points) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const auto& p : points) middle += p;
+  middle /= static_cast<double>(points.size());
+  double extent2 = 0.0;
+  for (const auto& p : points) extent2 = std::max(extent2, (p - middle).squaredNorm());
+  if (!(extent2 > 0.0)) return std::nullopt;
+  const double extent = std::sqrt(extent2);
+  Eigen::MatrixXd a(points.size(), 3);
+  Eigen::VectorXd b(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d q = (points[i] - middle) / extent;
+    a.row(static_cast<Eigen::Index>(i)) << 2.0 * q.x(), 2.0 * q.y(), 1.0;
+    b[static_cast<Eigen::Index>(i)] = q.squaredNorm();
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
+  if (qr.rank() < 3) return std::nullopt;
+  const Eigen::Vector3d s = qr.solve(b);
+  const double radius2 = s[2] + s[0] * s[0] + s[1] * s[1];
+  if (!(radius2 > 0.0)) return std::nullopt;
+  return Circle{middle.x() + extent * s[0], middle.y() + extent * s[1],
+                extent * std::sqrt(radius2)};
+}
+
+bool inclined_alike(std::span<const OrientedPoint> facets, const Vec3& axis, double mean) {
+  for (const OrientedPoint& f : facets)
+    if (std::fabs(f.normal.dot(axis) - mean) > kInclinationSpread) return false;
+  return true;
+}
+
+}  // namespace
+
+std::optional<Vec3> steady_direction(std::span<const OrientedPoint> facets, const Vec3& about) {
+  Mat3 spread = Mat3::Zero();
+  for (const OrientedPoint& f : facets)
+    spread += (f.normal - about) * (f.normal - about).transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(spread);
+  if (!(solver.eigenvalues()[1] > 1e-12 * static_cast<double>(facets.size()))) return std::nullopt;
+  return Vec3(solver.eigenvectors().col(0));
+}
+
+std::optional<Surface> guess_cylinder(std::span<const Vec3> points,
+                                      std::span<const OrientedPoint> facets) {
+  if (facets.size() < 2 || points.size() < 6) return std::nullopt;
+  const auto axis = steady_direction(facets, Vec3::Zero());
+  if (!axis || !inclined_alike(facets, *axis, 0.0)) return std::nullopt;
+  const Vec3 u = axis->unitOrthogonal(), v = axis->cross(u), middle = middle_of(points);
+  std::vector<Eigen::Vector2d> flat;
+  for (const Vec3& x : points) flat.emplace_back((x - middle).dot(u), (x - middle).dot(v));
+  const auto circle = circle_through(flat);
+  if (!circle) return std::nullopt;
+  Surface s;
+  s.kind = SurfaceKind::kCylinder;
+  s.axis = *axis;
+  s.point = middle + circle->x * u + circle->y * v;
+  s.radius_mm = circle->radius;
+  return s;
+}
+
+std::optional<Surface> guess_cone(std::span<const Vec3> points,
+                                  std::span<const OrientedPoint> facets) {
+  if (facets.size() < 3 || points.size() < 6) return std::nullopt;
+  Vec3 about = Vec3::Zero();
+  for (const OrientedPoint& f : facets) about += f.normal;
+  about /= static_cast<double>(facets.size());
+  const auto axis = steady_direction(facets, about);
+  if (!axis) return std::nullopt;
+  const double sine = about.dot(*axis);
+  if (!inclined_alike(facets, *axis, sine) || std::fabs(sine) > 0.9999) return std::nullopt;
+  // The apex lies in all facet planes.
+  Mat3 a = Mat3::Zero();
+  Vec3 b = Vec3::Zero();
+  const Vec3 middle = middle_of(points);
+  for (const OrientedPoint& f : facets) {
+    a += f.normal * f.normal.transpose();
+    b += f.normal * f.normal.dot(f.point - middle);
+  }
+  const Vec3 apex = a.ldlt().solve(b);
+  if (!apex.allFinite()) return std::nullopt;
+  Surface s;
+  s.kind = SurfaceKind::kCone;
+  s.point = middle + apex;
+  s.axis = apex.dot(*axis) > 0.0 ? Vec3(-*axis) : *axis;
+  s.half_angle_rad = std::asin(std::fabs(sine));
+  return s;
+}
+
+std::optional<Surface> guess_sphere(std::span<const Vec3> points) {
+  if (points.size() < 5) return std::nullopt;
+  const Vec3 middle = middle_of(points);
+  double extent2 = 0.0;
+  for (const Vec3& x : points) extent2 = std::max(extent2, (x - middle).squaredNorm());
+  if (!(extent2 > 0.0)) return std::nullopt;
+  const double extent = std::sqrt(extent2);
+  Eigen::MatrixXd a(points.size(), 4);
+  Eigen::VectorXd b(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 q = (points[i] - middle) / extent;
+    a.row(static_cast<Eigen::Index>(i)) << 2.0 * q.x(), 2.0 * q.y(), 2.0 * q.z(), 1.0;
+    b[static_cast<Eigen::Index>(i)] = q.squaredNorm();
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
+  if (qr.rank() < 4) return std::nullopt;
+  const Eigen::Vector4d s = qr.solve(b);
+  const double radius2 = s[3] + s.head<3>().squaredNorm();
+  if (!(radius2 > 0.0)) return std::nullopt;
+  Surface sphere;
+  sphere.kind = SurfaceKind::kSphere;
+  sphere.point = middle + extent * s.head<3>();
+  sphere.radius_mm = extent * std::sqrt(radius2);
+  return sphere;
+}
+
+std::optional<Surface> guess_torus(std::span<const Vec3> points,
+                                   std::span<const OrientedPoint> facets) {
+  if (facets.size() < 6 || points.size() < 8) return std::nullopt;
+  const Vec3 middle = middle_of(points);
+  double extent2 = 0.0;
+  for (const Vec3& x : points) extent2 = std::max(extent2, (x - middle).squaredNorm());
+  if (!(extent2 > 0.0)) return std::nullopt;
+  const double extent = std::sqrt(extent2);
+  // Velocity field of a turn w about an axis with shift s: normal . (s + w x p) = 0 on all normals.
+  Mat3 ss = Mat3::Zero(), sw = Mat3::Zero(), ww = Mat3::Zero();
+  for (const OrientedPoint& f : facets) {
+    const Vec3 moment = ((f.point - middle) / extent).cross(f.normal);
+    ss += f.normal * f.normal.transpose();
+    sw += f.normal * moment.transpose();
+    ww += moment * moment.transpose();
+  }
+  const Eigen::FullPivLU<Mat3> lu(ss);
+  if (!lu.isInvertible()) return std::nullopt;
+  const Mat3 shift_of_turn = -lu.solve(sw);
+  const Mat3 least = ww + sw.transpose() * shift_of_turn;
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(0.5 * (least + least.transpose()));
+  const Vec3 axis = solver.eigenvectors().col(0);
+  const Vec3 on_axis = middle + extent * axis.cross(Vec3(shift_of_turn * axis));
+  std::vector<Eigen::Vector2d> meridian;
+  for (const Vec3& x : points) {
+    const double z = (x - on_axis).dot(axis);
+    meridian.emplace_back((x - on_axis - z * axis).norm(), z);
+  }
+  const auto circle = circle_through(meridian);
+  if (!circle || !(circle->x > circle->radius)) return std::nullopt;
+  Surface s;
+  s.kind = SurfaceKind::kTorus;
+  s.axis = axis;
+  s.point = on_axis + circle->y * axis;
+  s.radius_mm = circle->x;
+  s.tube_radius_mm = circle->radius;
+  return s;
+}
+
+}  // namespace mortise
