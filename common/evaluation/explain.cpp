@@ -89,13 +89,21 @@ std::string signed_term(const std::string& so_far, bool negative, const std::str
   return so_far + (negative ? " - " : " + ") + term;
 }
 
+// Largest distance of the mesh corners from the surfaces of that grade.
+double residual_of(const ExplainInput& in, DeviationGrade grade) {
+  double residual_mm = 0.0;
+  for (const SurfaceBand::Face* face : {in.face_a, in.face_b})
+    if (face != nullptr && face->grade == grade) residual_mm += face->residual_mm;
+  return residual_mm;
+}
+
 std::string mesh_error_name(const ExplainInput& in) {
   switch (in.grade) {
     case DeviationGrade::kPlanar:
-    case DeviationGrade::kDeclaredFeature:
-      return in.deviation_mm.width() * kUmPerMm > kBracketShown_um
-                 ? " within " + um(in.deviation_mm.width())
-                 : " exact";
+    case DeviationGrade::kDeclaredFeature: {
+      const double residual_mm = residual_of(in, DeviationGrade::kDeclaredFeature);
+      return shown(residual_mm) ? " ±" + um(residual_mm) : " exact";
+    }
     case DeviationGrade::kDeclaredChord:
       return " by declared chord error";
     case DeviationGrade::kRecognizedFeature:
@@ -114,8 +122,10 @@ std::string mesh_error_name(const ExplainInput& in) {
 enum class End { kFake, kReal };
 std::string made_of(const ExplainInput& in, End end, bool name_source) {
   const bool fake = end == End::kFake;
-  const double deviation_mm = fake ? in.deviation_mm.hi : in.deviation_mm.lo;
+  const double threshold_mm = fake ? in.thresholds.fake_below_mm : in.thresholds.real_above_mm;
   const double tolerance_mm = fake ? in.tolerance_mm.hi : in.tolerance_mm.lo;
+  // What the tolerance does not explain of the threshold, so that the terms add up to it.
+  const double deviation_mm = -threshold_mm - tolerance_mm;
   std::string text;
   if (shown(deviation_mm))
     text = signed_term(text, deviation_mm > 0.0,
@@ -162,20 +172,11 @@ bool estimated(const ExplainInput& in) {
   return in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
 }
 
-// Largest distance of the mesh corners from the surfaces that were fitted to them.
-double recognized_residual_mm(const ExplainInput& in) {
-  double residual_mm = 0.0;
-  for (const SurfaceBand::Face* face : {in.face_a, in.face_b})
-    if (face != nullptr && face->grade == DeviationGrade::kRecognizedFeature)
-      residual_mm += face->residual_mm;
-  return residual_mm;
-}
-
 // What the verdict rests on where that is less than a declared surface.
 std::string grade_note(const ExplainInput& in) {
   if (estimated(in)) return "; mesh error estimated, not guaranteed";
   if (in.grade == DeviationGrade::kRecognizedFeature) {
-    const double residual_mm = recognized_residual_mm(in);
+    const double residual_mm = residual_of(in, DeviationGrade::kRecognizedFeature);
     return "; surfaces recognized in the mesh, residual " +
            (shown(residual_mm) ? um(residual_mm) + " µm" : std::string("below 0.1 µm"));
   }

@@ -40,7 +40,6 @@ struct ExplainInput {
   double margin_mm = 0.0;
   const SurfaceBand::Face* face_a = nullptr;
   const SurfaceBand::Face* face_b = nullptr;
-  Interval deviation_mm;  ///< sum of both at the deciding point
   Interval tolerance_mm;  ///< sum of both
   DeviationGrade grade = DeviationGrade::kUnknown;
   double probability = 0.0;

@@ -57,12 +57,6 @@ void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, b
   input.face_a = &faces.a;
   input.face_b = &faces.b;
   input.tolerance_mm = faces.a.tolerance_mm + faces.b.tolerance_mm;
-  // What the tolerances do not explain of the difference to the mesh is mesh error.
-  const double lower =
-      region.certain_mm.middle() - region.delta_mm.middle() - input.tolerance_mm.lo;
-  const double upper =
-      region.possible_mm.middle() - region.delta_mm.middle() - input.tolerance_mm.hi;
-  input.deviation_mm = {std::min(lower, upper), std::max(lower, upper)};
   input.grade = verdict.grade;
   input.probability = verdict.probability;
   input.no_inside = no_inside;

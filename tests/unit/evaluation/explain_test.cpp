@@ -24,7 +24,6 @@ TEST(Explain, TheSentenceOfAFit) {
   ExplainInput in;
   in.collision_class = CollisionClass::kFake;
   in.delta_mm = {kSagitta_mm, kSagitta_mm};
-  in.deviation_mm = {-kSagitta_mm, -kSagitta_mm};
   in.tolerance_mm = {-0.0205, -0.0035};
   in.thresholds = {kSagitta_mm + 0.0035, kSagitta_mm + 0.0205};
   in.margin_mm = 0.0035;
@@ -88,7 +87,6 @@ RoundFit round_fit(CollisionClass collision_class, Interval tolerance_mm, const 
   fit.hole.grade = fit.shaft.grade = fit.in.grade = grade;
   fit.in.collision_class = collision_class;
   fit.in.delta_mm = {kSagitta_mm, kSagitta_mm};
-  fit.in.deviation_mm = {-kSagitta_mm, -kSagitta_mm};
   fit.in.tolerance_mm = tolerance_mm;
   fit.in.thresholds = {kSagitta_mm - tolerance_mm.hi, kSagitta_mm - tolerance_mm.lo};
   fit.in.margin_mm = 0.0005;
@@ -125,6 +123,19 @@ TEST(Explain, APotentialVerdictSaysWhatBothThresholdsAreMadeOf) {
             "radial clearance 9.5): potential, P(interference) 31.4 %");
 }
 
+// Brackets that were left open have no middle to speak of: the terms follow the thresholds.
+TEST(Explain, TheTermsAddUpToTheThreshold) {
+  RoundFit fit = round_fit(CollisionClass::kReal, {0.0005, 0.0175}, "Ø20 H7", "Ø20 p6",
+                           DeviationGrade::kDeclaredFeature);
+  fit.in.thresholds.real_above_mm = 0.0320;
+  fit.hole.residual_mm = 0.0012;  // corners of the mesh off the declared surface
+  const std::string text = sentence_of(fit);
+  EXPECT_NE(text.find("real above 32.0 µm (mesh error 32.5 ±1.2 - least radial "
+                      "interference 0.5 of Ø20 H7/p6)"),
+            std::string::npos)
+      << text;
+}
+
 TEST(Explain, AnEstimateNeverReadsAsGuaranteed) {
   for (const CollisionClass c :
        {CollisionClass::kReal, CollisionClass::kPotential, CollisionClass::kFake})
@@ -138,7 +149,7 @@ TEST(Explain, AnEstimateNeverReadsAsGuaranteed) {
         expect_not_in(sentence, "exact");
       };
       expect_marked(sentence_of(fit));
-      fit.in.deviation_mm = {};  // an estimate of nothing is an estimate
+      fit.in.thresholds = {0.0035, 0.0205};  // an estimate of no error is an estimate
       expect_marked(sentence_of(fit));
       // The worse grade of the other face does not hide it.
       fit.in.grade = fit.hole.grade = DeviationGrade::kNominal;
