@@ -9,10 +9,11 @@ namespace mortise {
 
 /// What the mesh shows of one recognized feature.
 struct FeatureMeasure {
-  std::uint32_t facets = 0;     ///< steps around the axis; sphere, plane: flat facets
-  double arc_rad = 0.0;         ///< covered around the axis; 2 pi: closed. Plane: 0
-  Interval along_mm;            ///< extent along surface.axis from surface.point
-  double chord_error_mm = 0.0;  ///< farthest that a facet stands off the surface: the sagitta
+  std::uint32_t facets = 0;  ///< steps around the axis; sphere, plane: flat facets
+  double arc_rad = 0.0;      ///< covered around the axis; 2 pi: closed. Plane: 0
+  Interval along_mm;         ///< extent along surface.axis from surface.point
+  double chord_error_mm =
+      0.0;  ///< farthest that a facet stands off the surface, sampled: the sagitta
   double area_mm2 = 0.0;
 };
 

@@ -70,6 +70,20 @@ double depth_at_middles(const TriangleMesh& mesh, const Surface& surface, std::u
   return most;
 }
 
+// The same on a grid of points of the triangle.
+double depth_at_grid(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
+  constexpr int kSteps = 6;
+  double most = 0.0;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; i + j <= kSteps; ++j) {
+      const Vec3 x =
+          (mesh.corner(t, 0) * i + mesh.corner(t, 1) * j + mesh.corner(t, 2) * (kSteps - i - j)) /
+          kSteps;
+      most = std::max(most, std::fabs(surface.signed_distance_mm(x)));
+    }
+  return most;
+}
+
 double arc_height(double radius, double arc_rad) {
   return radius * (1.0 - std::cos(0.5 * std::min(arc_rad, std::numbers::pi)));
 }
@@ -147,19 +161,12 @@ RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
 
 double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
                       std::span<const std::uint32_t> triangles) {
-  // The middles find the facets that count; only these are asked exactly.
-  constexpr double kMayBeDeepest = 0.25, kAccuracyShare = 1e-4;
-  std::vector<double> depth;
-  for (const std::uint32_t t : triangles) depth.push_back(depth_at_middles(mesh, surface, t));
-  const double most = depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end());
-  double deepest = most;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (depth[i] < kMayBeDeepest * most) continue;
-    const std::uint32_t t = triangles[i];
-    const Interval d =
-        surface.signed_distance_range_mm(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2),
-                                         std::max(1e-7, kAccuracyShare * most));
-    deepest = std::max({deepest, -d.lo, d.hi});
+  double deepest = 0.0;
+  for (const std::uint32_t t : triangles) {
+    const double middles = depth_at_middles(mesh, surface, t);
+    // Only where a triangle bends both ways does another point lie deeper, and not by much.
+    if (middles < 0.5 * deepest) continue;
+    deepest = std::max({deepest, middles, depth_at_grid(mesh, surface, t)});
   }
   return deepest;
 }

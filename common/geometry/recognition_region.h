@@ -34,7 +34,7 @@ double size_mm(const Surface& surface, const TriangleMesh& mesh,
 RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
                              std::span<const std::uint32_t> triangles);
 
-/// Farthest that a facet stands off the surface, mm.
+/// Farthest that a facet stands off the surface, mm; sampled, within a few percent from below.
 double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
                       std::span<const std::uint32_t> triangles);
 
