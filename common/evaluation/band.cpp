@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "common/base/check.h"
 #include "common/evaluation/deviation.h"
+#include "common/evaluation/estimate.h"
 
 namespace mortise {
 namespace {
@@ -82,6 +84,29 @@ void split_rest_by_shape(SurfaceBand& band, const Solid& solid, double chord_err
   }
 }
 
+// The rest of the part by estimate: one face a class of offsets. faces[0] stays with what is flat.
+void split_rest_by_estimate(SurfaceBand& band, const Solid& solid, double quantum_mm) {
+  constexpr std::size_t kMostFaces = 65000;  // face indices are 16 bit
+  const std::vector<Interval> estimates = estimated_deviation_mm(solid, quantum_mm);
+  band.faces[0].grade = DeviationGrade::kPlanar;
+  std::map<std::pair<double, double>, std::uint16_t> face_of;
+  for (std::size_t t = 0; t < estimates.size(); ++t) {
+    if (band.face_of_triangle[t] != 0) continue;
+    const Interval offset = coarsened(estimates[t]);
+    if (offset == Interval{}) continue;
+    const auto [known, fresh] =
+        face_of.try_emplace({offset.lo, offset.hi}, static_cast<std::uint16_t>(band.faces.size()));
+    if (fresh) {
+      MORTISE_CHECK(band.faces.size() < kMostFaces, "too many features beside an estimate");
+      SurfaceBand::Face face;
+      face.deviation_mm = offset;
+      face.grade = DeviationGrade::kEstimated;
+      band.faces.push_back(std::move(face));
+    }
+    band.face_of_triangle[t] = known->second;
+  }
+}
+
 std::size_t feature_count(const SurfaceBand& band) {
   return static_cast<std::size_t>(
       std::count_if(band.faces.begin() + 1, band.faces.end(),
@@ -97,13 +122,16 @@ SurfaceBand build_band(const BandInput& input) {
   band.faces[0].grade = DeviationGrade::kNominal;
   const TriangleMesh& mesh = input.solid->mesh();
   const bool chord = input.chord_error_mm.value_or(0.0) > 0.0;
-  if (!input.features.empty() || chord) band.face_of_triangle.assign(mesh.triangles.size(), 0);
+  const bool estimate = input.estimate && !chord;
+  if (!input.features.empty() || chord || estimate)
+    band.face_of_triangle.assign(mesh.triangles.size(), 0);
   for (const Feature& feature : input.features) {
     const auto index = static_cast<std::uint16_t>(band.faces.size());
     for (const std::uint32_t t : feature.triangles) band.face_of_triangle[t] = index;
     band.faces.push_back(face_of_feature(feature, mesh));
   }
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
+  if (estimate) split_rest_by_estimate(band, *input.solid, input.quantum_mm);
   return with_statements(band, input.rest, input.of_feature);
 }
 

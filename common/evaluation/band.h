@@ -16,11 +16,13 @@ struct BandInput {
   std::optional<double> chord_error_mm;
   FaceStatement rest;                     ///< every face without a statement of its own
   std::vector<FaceStatement> of_feature;  ///< by feature
+  bool estimate = false;  ///< the rest by estimate (grade kEstimated); a chord error goes before it
+  double quantum_mm = 0.0;  ///< rounding of the file's coordinates, for the estimate
 };
 
 /// faces[0] is the rest of the part, faces[1 + i] feature i; under a declared chord error the rest
-/// is split by shape into further faces behind. Triangles and topology are only asked for when
-/// something is declared.
+/// is split by shape into further faces behind, under an estimate by its size. Triangles and
+/// topology are only asked for when something is declared.
 SurfaceBand build_band(const BandInput& input);
 
 /// The same faces under other statements: what a pair with a fit of its own uses.

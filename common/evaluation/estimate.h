@@ -1,0 +1,26 @@
+#pragma once
+#include <vector>
+
+#include "common/geometry/solid.h"
+#include "common/math/interval.h"
+
+namespace mortise {
+
+/// Where the true surface may lie above each triangle, outward positive, mm, estimated from the
+/// mesh alone (ALG 4.4); never a guarantee. Flat groups of triangles are facets; facets of widths
+/// w1, w2 that meet smoothly (exterior angle phi up to kSmoothEdge_rad) bend by phi over (w1 +
+/// w2)/2, so that this one hides (w1/2) tan(phi w1 / (w1 + w2) / 2): the sagitta, exact for a
+/// cylinder of any steps. Two transverse directions add up. Convex bends are offsets outward,
+/// concave ones inward.
+///
+/// Not seen: what a coarser drawing than 35 degrees hides (a hexagon stays a hexagon), and a curve
+/// beside a facet more than four times as wide, which is taken for a plane tangent to it.
+/// Without kEstimatedDeviationFactor. Deterministic, O(n log n). quantum_mm: rounding of the file's
+/// coordinates.
+std::vector<Interval> estimated_deviation_mm(const Solid& solid, double quantum_mm = 0.0);
+
+/// What a band takes for an estimate: times kEstimatedDeviationFactor, each end rounded outward to
+/// the preferred numbers R10 (1, 1.25, 1.6, 2, ...), so that few faces are told apart.
+Interval coarsened(const Interval& estimate_mm);
+
+}  // namespace mortise
