@@ -1,3 +1,4 @@
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -56,15 +57,18 @@ Said split_position(const std::string& source) {
   return {size.ends_with(", ") ? size.substr(0, size.size() - 2) : size, source.substr(at)};
 }
 
-// "Ø20 H7" and "Ø20 g6" are "Ø20 H7/g6": the hole, a capital letter, stands first. Nothing when
-// either is more, or other, than a class.
+// "Ø20 H7" and "Ø20 g6" are "Ø20 H7/g6", "8 N9" and "8 h9" are "8 N9/h9": the hole, a capital
+// letter, stands first. Nothing when either is more, or other, than a class.
 std::string joined_fit(const std::string& a, const std::string& b) {
   const std::size_t blank = a.find(' ');
-  if (!a.starts_with("Ø") || blank == std::string::npos || blank + 1 >= a.size() ||
-      a.compare(0, blank + 1, b, 0, blank + 1) != 0 || b.size() == blank + 1 ||
-      a.find(' ', blank + 1) != std::string::npos || b.find(' ', blank + 1) != std::string::npos)
-    return {};
+  if (blank == std::string::npos || a.compare(0, blank + 1, b, 0, blank + 1) != 0) return {};
   const std::string size = a.substr(0, blank + 1), x = a.substr(blank + 1), y = b.substr(blank + 1);
+  const auto is_class = [](const std::string& text) {
+    return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
+           std::isdigit(static_cast<unsigned char>(text.back())) != 0 &&
+           text.find(' ') == std::string::npos;
+  };
+  if (!is_class(x) || !is_class(y)) return {};
   const bool a_is_hole = x[0] >= 'A' && x[0] <= 'Z';
   return a_is_hole ? size + x + "/" + y : size + y + "/" + x;
 }

@@ -14,22 +14,31 @@ bool has_size(const Surface& surface) {
   return surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kSphere;
 }
 
-Result<FaceStatement> statement_of(const SizeLimits& limits, const Surface& surface,
+// A modelled size under limits of size: a diameter, or a width.
+struct Modelled {
+  const char* what;
+  double size_mm;
+  std::string symbol;  // before the size: "Ø" of a diameter
+};
+
+Result<FaceStatement> statement_of(const SizeLimits& limits, const Modelled& modelled,
                                    double residual_mm) {
-  const double modelled_mm = 2.0 * surface.radius_mm;
   const double slack_mm = 2.0 * residual_mm + kSameSize_mm;
   const double least_mm = limits.nominal_mm + limits.deviation_mm.lo;
   const double most_mm = limits.nominal_mm + limits.deviation_mm.hi;
-  const bool nominal = std::fabs(modelled_mm - limits.nominal_mm) <= slack_mm;
-  const bool within = modelled_mm >= least_mm - slack_mm && modelled_mm <= most_mm + slack_mm;
-  const std::string name = "Ø" + size_text(limits.nominal_mm) + " " + limits.code;
+  const bool nominal = std::fabs(modelled.size_mm - limits.nominal_mm) <= slack_mm;
+  const bool within =
+      modelled.size_mm >= least_mm - slack_mm && modelled.size_mm <= most_mm + slack_mm;
+  const std::string name = modelled.symbol + size_text(limits.nominal_mm) + " " + limits.code;
   if (!nominal && !within)
-    return fail(Code::kInvalidInput, "modelled diameter " + size_text(modelled_mm) +
-                                         " mm is neither the nominal size nor within the limits " +
-                                         size_text(least_mm) + " to " + size_text(most_mm) +
-                                         " mm of " + name + "; state its nominal size");
-  return FaceStatement{size_offset_mm(limits, surface.radius_mm), name};
+    return fail(Code::kInvalidInput,
+                std::string("modelled ") + modelled.what + " " + size_text(modelled.size_mm) +
+                    " mm is neither the nominal size nor within the limits " + size_text(least_mm) +
+                    " to " + size_text(most_mm) + " mm of " + name + "; state its nominal size");
+  return FaceStatement{size_offset_mm(limits, 0.5 * modelled.size_mm), name};
 }
+
+Modelled diameter_of(const Surface& surface) { return {"diameter", 2.0 * surface.radius_mm, "Ø"}; }
 
 std::string side_text(const FitSide& side) {
   return side.name + (side.surface->inward ? " is a hole" : " is a shaft");
@@ -48,7 +57,7 @@ std::string size_text(double mm) {
 
 std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b) {
   FaceStatement both = b.source.empty() ? a : b;
-  both.position_mm = std::max(a.position_mm, b.position_mm);
+  both.position = a.position.zone_mm > b.position.zone_mm ? a.position : b.position;
   if (a.source.empty() || b.source.empty()) return both;
   const Interval x = a.offset_mm, y = b.offset_mm;
   const auto within = [](const Interval& inner, const Interval& outer) {
@@ -68,13 +77,27 @@ std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStateme
 }
 
 FaceStatement with_position(const FaceStatement& statement) {
-  if (statement.position_mm <= 0.0) return statement;
+  const Position& position = statement.position;
+  if (position.zone_mm <= 0.0) return statement;
+  const double half_mm = 0.5 * position.zone_mm;
+  const Interval size = statement.offset_mm, stated = position.size_offset_mm;
   FaceStatement widened = statement;
-  const double half_mm = 0.5 * statement.position_mm;
-  widened.offset_mm = statement.offset_mm + Interval{-half_mm, half_mm};
+  widened.position = {};
   widened.source += std::string(statement.source.empty() ? "" : ", ") + "position Ø" +
-                    size_text(statement.position_mm) + " mm";
-  widened.position_mm = 0.0;
+                    size_text(position.zone_mm) + " mm";
+  switch (position.condition) {
+    case MaterialCondition::kRegardless:
+      widened.offset_mm = size + Interval{-half_mm, half_mm};
+      break;
+    case MaterialCondition::kMaximum:
+      widened.offset_mm = {size.lo - half_mm - (stated.hi - size.lo), stated.hi + half_mm};
+      widened.source += " at MMC";
+      break;
+    case MaterialCondition::kLeast:
+      widened.offset_mm = {stated.lo - half_mm, size.hi + half_mm + (size.hi - stated.lo)};
+      widened.source += " at LMC";
+      break;
+  }
   return widened;
 }
 
@@ -91,7 +114,8 @@ Result<FaceStatement> iso_statement(const std::string& code, double nominal_mm,
   if (!has_size(surface))
     return fail(
         Code::kInvalidInput,
-        "an ISO 286 class needs a diameter (cylinder or sphere); use plus_minus or profile");
+        "an ISO 286 class needs a diameter (cylinder or sphere), or the other plane of a width "
+        "(width_to); use plus_minus or profile");
   const Result<SizeLimits> limits =
       iso286_limits(code, nominal_mm > 0.0 ? nominal_mm : 2.0 * surface.radius_mm);
   if (!limits) return limits.error();
@@ -101,7 +125,32 @@ Result<FaceStatement> iso_statement(const std::string& code, double nominal_mm,
                     ", but the feature is a " + (surface.inward ? "hole" : "shaft") +
                     (limits->hole ? "; use a small letter or say inward: true"
                                   : "; use a capital letter or say inward: false"));
-  return statement_of(*limits, surface, residual_mm);
+  return statement_of(*limits, diameter_of(surface), residual_mm);
+}
+
+Result<FaceStatement> width_statement(const std::string& code, double nominal_mm,
+                                      const Surface& plane, const Surface& opposite,
+                                      double residual_mm) {
+  if (plane.kind != SurfaceKind::kPlane || opposite.kind != SurfaceKind::kPlane)
+    return fail(Code::kInvalidInput, "a width needs two planes");
+  // How far one plane runs away from the other over a width of 1: a second of arc is 5e-6.
+  constexpr double kParallel = 1e-6;
+  const double across_mm = (opposite.point - plane.point).dot(plane.axis);
+  if ((plane.axis + opposite.axis).norm() > kParallel || across_mm == 0.0)
+    return fail(Code::kInvalidInput,
+                "a width needs two parallel planes that face each other or away from each other");
+  const Modelled width{"width", std::fabs(across_mm), ""};
+  const bool slot = across_mm > 0.0;  // the material's outside lies between them
+  const Result<SizeLimits> limits =
+      iso286_limits(code, nominal_mm > 0.0 ? nominal_mm : width.size_mm);
+  if (!limits) return limits.error();
+  if (limits->hole != slot)
+    return fail(Code::kInvalidInput, "class " + code + " is for a " +
+                                         (limits->hole ? "slot" : "key") +
+                                         ", but both planes face " +
+                                         (slot ? "each other; use a capital letter"
+                                               : "away from each other; use a small letter"));
+  return statement_of(*limits, width, residual_mm);
 }
 
 Result<FitStatement> fit_statement(const std::string& code, double nominal_mm, const FitSide& a,
@@ -126,7 +175,7 @@ Result<FitStatement> fit_statement(const std::string& code, double nominal_mm, c
   if (!fit) return fit.error();
   const auto of = [&](const FitSide& side) -> Result<FaceStatement> {
     Result<FaceStatement> stated = statement_of(side.surface->inward ? fit->hole : fit->shaft,
-                                                *side.surface, side.residual_mm);
+                                                diameter_of(*side.surface), side.residual_mm);
     if (!stated) return fail(stated.error().code, side.name + ": " + stated.error().text);
     return stated;
   };

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -9,14 +10,24 @@
 
 namespace mortise {
 
+/// From which size on a position zone grows: never (RFS), by what the size stays away from its
+/// maximum material (the largest shaft, the smallest hole), or from its least material.
+enum class MaterialCondition : std::uint8_t { kRegardless = 0, kMaximum, kLeast };
+
+/// Diameter of the zone in which the real axis or centre of a feature of size may lie; 0: at its
+/// modelled place.
+struct Position {
+  double zone_mm = 0.0;
+  MaterialCondition condition = MaterialCondition::kRegardless;
+  Interval size_offset_mm = {};  ///< of the limits of size that the condition counts from
+};
+
 /// What is stated of a face: where its real surface may lie, outward of the modelled surface, and
 /// who says so ("Ø20 H7", "±0.05", "" when nothing is stated of size or profile).
 struct FaceStatement {
   Interval offset_mm;
   std::string source;
-  /// Diameter of the zone in which the real axis or centre may lie (position, RFS); 0: at its
-  /// modelled place. Not part of offset_mm, see with_position.
-  double position_mm = 0.0;
+  Position position = {};  ///< not part of offset_mm, see with_position
 };
 
 /// Two statements of one face hold both: the offsets that satisfy both. The source is that of the
@@ -25,7 +36,9 @@ struct FaceStatement {
 std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b);
 
 /// The statement as a band needs it: a feature of size whose axis may lie anywhere in a zone of
-/// diameter T moves its surface by up to T/2 either way, in addition to its size (ALG 5.2).
+/// diameter T moves its surface by up to T/2 either way, in addition to its size (ALG 5.2). Under a
+/// material condition the zone grows with the size, so that one end stays at the virtual condition:
+/// at maximum material the outer end (pin MMC + T, hole MMC - T), at least material the inner one.
 FaceStatement with_position(const FaceStatement& statement);
 
 /// Limits of size as offsets of the modelled surface of radius R (collision.md section 4):
@@ -38,6 +51,14 @@ Interval size_offset_mm(const SizeLimits& limits, double modelled_radius_mm);
 /// twice the modelled radius.
 Result<FaceStatement> iso_statement(const std::string& code, double nominal_mm,
                                     const Surface& surface, double residual_mm);
+
+/// Two parallel planes as one feature of size: the width of a key when they face away from each
+/// other (small letters), of a slot when they face each other (capitals). Each plane takes half of
+/// the deviations, the middle plane stays where it is modelled. An error when they are not parallel
+/// and opposite, and otherwise as for iso_statement. nominal_mm 0: the modelled width.
+Result<FaceStatement> width_statement(const std::string& code, double nominal_mm,
+                                      const Surface& plane, const Surface& opposite,
+                                      double residual_mm);
 
 /// A fit between two features, one hole and one shaft, in either order. nominal_mm 0: the modelled
 /// diameter when both agree, else an error that asks for it.

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "common/base/result.h"
@@ -18,9 +19,11 @@ struct PlacedStatement {
 /// What both leave together; an error that names both lines when they exclude each other.
 Result<PlacedStatement> both_hold(const PlacedStatement& a, const PlacedStatement& b);
 
-/// What holds of a feature: its own statement (class, tolerance, position) beside that of the part.
+/// What holds of a feature: its own statement (class, tolerance, position) and that of a width it
+/// is the other plane of, beside that of the part. `all` are the features of the part.
 Result<PlacedStatement> statement_of_feature(const Scenario::FeatureSpec& declared,
-                                             const Feature& feature, const PlacedStatement& part);
+                                             std::span<const Scenario::FeatureSpec> all,
+                                             double residual_mm, const PlacedStatement& part);
 
 /// What the bands are made of: positions added to sizes.
 FaceStatement for_band(const PlacedStatement& placed);

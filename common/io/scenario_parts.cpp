@@ -218,7 +218,7 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
                   Scenario::PartSpec& part) {
   const YamlMap map(context, node, "feature " + name,
                     {"kind", "point", "axis", "radius", "diameter", "tube_radius", "half_angle_deg",
-                     "inward", "along", "iso", "nominal", "tolerance", "position"});
+                     "inward", "along", "iso", "nominal", "width_to", "tolerance", "position"});
   if (!map.usable()) return;
   Scenario::FeatureSpec feature;
   feature.name = name;
@@ -238,7 +238,12 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
     feature.nominal_mm = nominal * context.unit_mm;
   }
   if (const auto nominal = map.positive_length_mm("nominal")) feature.nominal_mm = *nominal;
-  if (const auto position = map.positive_length_mm("position")) feature.position_mm = *position;
+  if (const YAML::Node position = map.find("position"))
+    feature.position =
+        read_position(context, position, "feature " + name + ": position").value_or(Position{});
+  if (const auto other = map.text("width_to")) feature.width_to = *other;
+  if (map.has("width_to") && feature.iso_class.empty())
+    map.error("width_to", "is the other plane of a width under iso:; add iso: or remove it");
   if (map.has("nominal") && feature.iso_class.empty())
     map.error("nominal", "is the size of an iso: class; add iso: or remove it");
   map.one_of({"iso", "tolerance"});

@@ -23,6 +23,10 @@ std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YA
 /// them present is an error.
 std::optional<Scenario::Tolerance> tolerance_of(const YamlMap& map);
 
+/// 0.1, or {zone: 0.1, at: mmc}; at: rfs, mmc or lmc.
+std::optional<Position> read_position(YamlContext& context, const YAML::Node& node,
+                                      const std::string& what);
+
 /// Splits "Ø20 H7/g6" into its nominal diameter (file unit, 0 when none) and "H7/g6".
 std::pair<double, std::string> split_nominal(const std::string& code);
 

@@ -111,4 +111,34 @@ std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YA
   return tolerance;
 }
 
+std::optional<Position> read_position(YamlContext& context, const YAML::Node& node,
+                                      const std::string& what) {
+  Position position;
+  if (node.IsScalar()) {
+    const auto number = leading_number(node.Scalar());
+    if (number && number->second == node.Scalar().size() && number->first > 0.0) {
+      position.zone_mm = number->first * context.unit_mm;
+      return position;
+    }
+    context.error(node, what + ": '" + node.Scalar() +
+                            "' is not understood; write the diameter of the zone, 0.1, or {zone: "
+                            "0.1, at: mmc}");
+    return std::nullopt;
+  }
+  const YamlMap map(context, node, what, {"zone", "at"});
+  if (!map.usable()) return std::nullopt;
+  const auto zone = map.positive_length_mm("zone");
+  if (!map.has("zone")) map.error("zone is missing: the diameter of the zone of the axis");
+  const std::string at = map.text("at").value_or("rfs");
+  if (at == "mmc")
+    position.condition = MaterialCondition::kMaximum;
+  else if (at == "lmc")
+    position.condition = MaterialCondition::kLeast;
+  else if (at != "rfs")
+    map.error("at", "'" + at + "' is not known; write rfs, mmc or lmc");
+  if (!zone) return std::nullopt;
+  position.zone_mm = *zone;
+  return position;
+}
+
 }  // namespace mortise

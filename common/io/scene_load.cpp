@@ -51,7 +51,8 @@ AlikeKey key_of(const Scenario::PartSpec& part) {
     key.add(f.name).add(static_cast<double>(s.kind)).add(s.point).add(s.axis).add(s.radius_mm);
     key.add(s.tube_radius_mm).add(s.half_angle_rad).add(s.inward ? 1.0 : 0.0);
     key.add(f.along_mm ? f.along_mm->lo : NAN).add(f.along_mm ? f.along_mm->hi : NAN);
-    key.add(f.tolerance).add(f.iso_class).add(f.nominal_mm).add(f.position_mm);
+    key.add(f.tolerance).add(f.iso_class).add(f.nominal_mm).add(f.position.zone_mm).add(f.width_to);
+    key.add(static_cast<double>(f.position.condition));
   }
   return key;
 }
@@ -212,7 +213,7 @@ class SceneLoader {
       if (!match->note.empty()) finding(false, declared.at, who + match->note);
       kind.features.push_back(std::move(match->feature));
       Result<PlacedStatement> statement =
-          statement_of_feature(declared, kind.features.back(), kind.stated.rest);
+          statement_of_feature(declared, specs, kind.features.back().residual_mm, kind.stated.rest);
       if (!statement) {
         finding(true, declared.at, who + statement.error().text);
         good = false;

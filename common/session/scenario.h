@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/evaluation/tolerance.h"
 #include "common/geometry/feature.h"
 #include "common/math/pose.h"
 
@@ -34,9 +35,10 @@ struct Scenario {
     Surface surface;  ///< part frame; kind kUnknown: the generator's feature of this name
     std::optional<Interval> along_mm;  ///< extent along the axis from `point`; none: unbounded
     std::optional<Tolerance> tolerance;
-    std::string iso_class;     ///< "H7" or "g6"; empty when none
-    double nominal_mm = 0.0;   ///< nominal diameter of iso_class; 0: twice the radius
-    double position_mm = 0.0;  ///< diameter of the zone of its axis or centre; 0: none stated
+    std::string iso_class;    ///< "H7" or "g6"; empty when none
+    double nominal_mm = 0.0;  ///< nominal diameter of iso_class; 0: twice the radius
+    std::string width_to;     ///< the other plane of a width under iso_class; empty when none
+    Position position = {};   ///< of its axis or centre; zone 0: none stated
     SourceLine at;
   };
   struct PartSpec {

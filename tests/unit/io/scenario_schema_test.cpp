@@ -62,6 +62,8 @@ TEST(ScenarioSchema, KnowsTheKeysThatTheReaderKnows) {
   EXPECT_EQ(properties(defs.at("feature")), known_to_reader(part("features: {f: {zzz: 1}}")));
   EXPECT_EQ(properties(defs.at("tolerance").at("anyOf").at(1)),
             known_to_reader(part("tolerance: {zzz: 1}")));
+  EXPECT_EQ(properties(defs.at("position").at("anyOf").at(1)),
+            known_to_reader(part("features: {f: {position: {zzz: 1}}}")));
   EXPECT_EQ(properties(defs.at("instance")), known_to_reader(part("instances: [{zzz: 1}]")));
   EXPECT_EQ(properties(defs.at("repeat")), known_to_reader(part("repeat: {zzz: 1}")));
   EXPECT_EQ(properties(defs.at("fit")), known_to_reader(list("fits", "{zzz: 1}")));
