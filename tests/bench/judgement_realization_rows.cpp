@@ -2,6 +2,7 @@
 // may contradict what was said of all of them.
 #include <cstdio>
 #include <map>
+#include <utility>
 
 #include "tests/bench/judgement_realization.h"
 #include "tests/bench/judgement_score.h"
@@ -16,13 +17,14 @@ constexpr std::uint64_t kRealizationSeed = 1'000'000;
 
 struct Tally {
   long long cases = 0, real = 0, potential = 0, none = 0, draws = 0, contradictions = 0;
+  long long cases_contradicted = 0;
   /// Potential cases of which some draw interferes and another does not: rightly open.
   long long both_seen = 0;
 };
 
 void play(const JudgedCase& c, Grade grade, const Word& word, Tally& tally) {
   Dice dice(c.seed);
-  bool some = false, all = true;
+  bool some = false, all = true, told = false;
   for (int i = 0; i < kDraws; ++i) {
     const auto overlap =
         sampled_overlap_mm(c, draw_realization(c, speaks_of_whole(grade, c), i, dice));
@@ -33,7 +35,8 @@ void play(const JudgedCase& c, Grade grade, const Word& word, Tally& tally) {
     const bool wrong = (word.collision_class == CollisionClass::kReal && *overlap < -kTouch_mm) ||
                        (word.collision_class <= CollisionClass::kFake && *overlap > kTouch_mm);
     tally.contradictions += wrong;
-    if (wrong)
+    tally.cases_contradicted += wrong && !told;
+    if (wrong && !std::exchange(told, true))
       std::printf("contradiction: --case %s:%llu, %s, realization %d overlaps by %.6f mm; %s\n",
                   name_of(c.family), static_cast<unsigned long long>(c.seed), name_of(grade), i,
                   *overlap, c.text.c_str());
@@ -63,11 +66,11 @@ void section_realization(Report& report, const JudgementOptions& options) {
   }
   report.table("Real surfaces drawn inside their zones",
                {"grade", "cases", "said real", "potential", "fake or none", "surfaces drawn",
-                "contradictions", "potential of which both kinds were drawn"});
+                "contradictions", "in cases", "potential of which both kinds were drawn"});
   long long contradictions = 0;
   for (const auto& [grade, t] : tallies) {
     report.row({std::string(name_of(grade)), t.cases, t.real, t.potential, t.none, t.draws,
-                t.contradictions, t.both_seen});
+                t.contradictions, t.cases_contradicted, t.both_seen});
     if (grade != Grade::kEstimated) contradictions += t.contradictions;
   }
   report.bar("drawn surfaces that contradict a real or a fake", static_cast<double>(contradictions),

@@ -75,13 +75,6 @@ std::vector<Mark> front_of(std::vector<Mark> marks) {
   return front;
 }
 
-// gnuplot's single quotes know one escape: a quote is written twice.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string labels_of(const std::vector<Mark>& marks, const Axes& axes) {
   LabelPlaces places(axes.width(), axes.height());
   places.take({0, axes.height() - 100, 400, axes.height()});  // the key
@@ -98,7 +91,7 @@ std::string labels_of(const std::vector<Mark>& marks, const Axes& axes) {
     if (mark.missed > 0)
       words += ", misses " + std::to_string(mark.missed) + " of " + std::to_string(mark.contacts);
     const Placed at = places.place(axes.x(mark.error_mm), axes.y(mark.time_ms), words);
-    text += "set label " + quoted(words) +
+    text += "set label " + quoted_for_gnuplot(words) +
             format(" at graph %.4f,%.4f ", at.x / axes.width(), at.y / axes.height()) +
             (at.to_the_left ? "right" : "left") + " font ',11' tc rgb '" +
             (mark.late ? "#cc4125" : "#1155cc") + "'\n";
@@ -139,23 +132,27 @@ draw = "plot $front using 1:3 with fsteps lw 7 lc rgb '#cfe8c5' title 'Pareto fr
   const std::string png = svg_file.substr(0, svg_file.rfind(".svg")) + ".png";
   text += format("set terminal svg size %g,%g font 'sans,13' background '#ffffff'\n", kPicture[0],
                  kPicture[1]);
-  text += "set output " + quoted(svg_file) + "\neval draw\n";
+  text += "set output " + quoted_for_gnuplot(svg_file) + "\neval draw\n";
   text += format("set terminal pngcairo size %g,%g font 'sans,10' background '#ffffff'\n",
                  kPicture[0], kPicture[1]);
-  text += "set output " + quoted(png) + "\neval draw\nset output\n";
+  text += "set output " + quoted_for_gnuplot(png) + "\neval draw\nset output\n";
   return text;
 }
 
 }  // namespace
 
-bool draw_time_against_error(const std::vector<Mark>& marks, const std::string& svg_file) {
-  if (marks.empty()) return false;
+std::string quoted_for_gnuplot(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+bool run_gnuplot(const std::string& script) {
   std::FILE* gnuplot = popen("gnuplot -", "w");
   if (gnuplot == nullptr) {
     std::fprintf(stderr, "no picture: a child process could not be started\n");
     return false;
   }
-  const std::string script = script_of(marks, svg_file);
   std::fwrite(script.data(), 1, script.size(), gnuplot);
   const int status = pclose(gnuplot);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
@@ -163,6 +160,10 @@ bool draw_time_against_error(const std::vector<Mark>& marks, const std::string& 
                            ? "no picture: gnuplot is not installed (package gnuplot-nox)\n"
                            : "no picture: gnuplot failed, see its words above\n");
   return false;
+}
+
+bool draw_time_against_error(const std::vector<Mark>& marks, const std::string& svg_file) {
+  return !marks.empty() && run_gnuplot(script_of(marks, svg_file));
 }
 
 }  // namespace mortise::bench
