@@ -11,6 +11,7 @@ const std::vector<JudgementSection>& judgement_sections() {
   static const std::vector<JudgementSection> all = {
       {"truth", "random fits against their exact truth, every grade, beside peers", section_truth},
       {"realization", "real surfaces drawn inside their zones", section_realization},
+      {"recognition", "surfaces found again in their meshes", section_recognition},
       {"depth", "meshes of known exact depth, however they are cut", section_depth},
       {"speed", "judging beside first contact, decided beside full", section_speed},
       {"insertion", "a shaft through its bore, tick by tick", section_insertion},

@@ -3,6 +3,7 @@
 
 #include "common/evaluation/band.h"
 #include "tests/bench/judgement_methods.h"
+#include "tests/bench/judgement_recognition.h"
 #include "tests/bench/statistics.h"
 
 namespace mortise::bench {
@@ -41,6 +42,30 @@ SurfaceBand chord_band(const JudgedPart& part, const Interval& offset_mm) {
   return build_band(input);
 }
 
+// A statement of size counts from the surface that was found.
+Interval from_found(const Interval& offset_mm, const Surface& truth, const Surface& found) {
+  if (truth.kind != SurfaceKind::kCylinder && truth.kind != SurfaceKind::kSphere) return offset_mm;
+  const double shift = (truth.radius_mm - found.radius_mm) * (truth.inward ? -1.0 : 1.0);
+  return {offset_mm.lo + shift, offset_mm.hi + shift};
+}
+
+std::optional<SurfaceBand> recognized_band(const JudgedPart& part, const Interval& offset_mm,
+                                           std::size_t stated) {
+  const Recognition recognition = recognize_features(*part.solid);
+  BandInput input;
+  input.solid = part.solid.get();
+  input.features = recognition.features;
+  input.of_feature.resize(recognition.features.size());
+  for (std::size_t i = 0; i < stated; ++i) {
+    const auto found = find_feature(recognition, part.solid->mesh(), part.features[i]);
+    if (!found) return std::nullopt;
+    input.of_feature[*found] = {
+        from_found(offset_mm, part.features[i].surface, recognition.features[*found].surface),
+        "zone"};
+  }
+  return build_band(input);
+}
+
 }  // namespace
 
 const char* name_of(Grade grade) {
@@ -59,7 +84,7 @@ const char* name_of(Grade grade) {
 
 bool applies(Grade grade, const JudgedCase& c) {
   if (grade == Grade::kDeclared) return true;
-  if (grade == Grade::kRecognized || grade == Grade::kEstimated) return false;
+  if (grade == Grade::kEstimated) return false;
   return c.facets() > 0;
 }
 
@@ -78,6 +103,14 @@ std::optional<KnownPair> with_grade(const JudgedCase& c, Grade grade) {
       pair.a = part_of(1, c.a, chord_band(c.a, c.offset_a_mm));
       pair.b = part_of(2, c.b, chord_band(c.b, c.offset_b_mm));
       break;
+    case Grade::kRecognized: {
+      auto band_a = recognized_band(c.a, c.offset_a_mm, c.stated_a);
+      auto band_b = recognized_band(c.b, c.offset_b_mm, c.stated_b);
+      if (!band_a || !band_b) return std::nullopt;
+      pair.a = part_of(1, c.a, std::move(*band_a));
+      pair.b = part_of(2, c.b, std::move(*band_b));
+      break;
+    }
     default:
       return std::nullopt;
   }

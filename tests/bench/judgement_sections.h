@@ -17,6 +17,7 @@ struct JudgementOptions {
 /// Each adds its tables, notes and bars to the report.
 void section_truth(Report& report, const JudgementOptions& options);
 void section_realization(Report& report, const JudgementOptions& options);
+void section_recognition(Report& report, const JudgementOptions& options);
 void section_depth(Report& report, const JudgementOptions& options);
 void section_speed(Report& report, const JudgementOptions& options);
 void section_insertion(Report& report, const JudgementOptions& options);

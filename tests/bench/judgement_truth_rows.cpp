@@ -87,6 +87,7 @@ class Run {
     for (const Grade grade : kGrades) {
       if (i % stride_of(grade) != 0 || !applies(grade, c)) continue;
       const auto pair = with_grade(c, grade);
+      if (!pair) ++not_recognized;
       if (!pair) continue;
       const Truth truth = c.truth(speaks_of_whole(grade, c));
       const bool swapped = i % 2 == 1;
@@ -118,7 +119,7 @@ class Run {
 
   std::map<std::string, JudgementScore> grades, families, peers;
   std::map<std::string, ErrorScore> errors;
-  long long order_asked = 0, order_changes = 0;
+  long long order_asked = 0, order_changes = 0, not_recognized = 0;
 
  private:
   void note(const std::string& method, const JudgedCase& c, const Truth& truth, const Word& word) {
@@ -234,6 +235,9 @@ void section_truth(Report& report, const JudgementOptions& options) {
   for (const auto& [name, score] : run.peers) add_row(report, name, score);
   report.table("By family, declared features", kColumns);
   for (const auto& [name, score] : run.families) add_row(report, name, score);
+  report.note(std::to_string(run.not_recognized) +
+              " cases are not among the recognized: a stated surface was not found again; " +
+              std::to_string(run.order_asked) + " cases were asked in both orders");
   error_rows(report, run.errors);
   add_bars(report, run, wanted);
   if (!options.plot_file.empty()) draw(run, options.plot_file);
