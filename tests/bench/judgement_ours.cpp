@@ -42,6 +42,14 @@ SurfaceBand chord_band(const JudgedPart& part, const Interval& offset_mm) {
   return build_band(input);
 }
 
+SurfaceBand estimated_band(const JudgedPart& part, const Interval& offset_mm) {
+  BandInput input;
+  input.solid = part.solid.get();
+  input.estimate = true;
+  input.rest = {offset_mm, "zone"};
+  return build_band(input);
+}
+
 // A statement of size counts from the surface that was found.
 Interval from_found(const Interval& offset_mm, const Surface& truth, const Surface& found) {
   if (truth.kind != SurfaceKind::kCylinder && truth.kind != SurfaceKind::kSphere) return offset_mm;
@@ -84,7 +92,6 @@ const char* name_of(Grade grade) {
 
 bool applies(Grade grade, const JudgedCase& c) {
   if (grade == Grade::kDeclared) return true;
-  if (grade == Grade::kEstimated) return false;
   return c.facets() > 0;
 }
 
@@ -111,8 +118,10 @@ std::optional<KnownPair> with_grade(const JudgedCase& c, Grade grade) {
       pair.b = part_of(2, c.b, std::move(*band_b));
       break;
     }
-    default:
-      return std::nullopt;
+    case Grade::kEstimated:
+      pair.a = part_of(1, c.a, estimated_band(c.a, c.offset_a_mm));
+      pair.b = part_of(2, c.b, estimated_band(c.b, c.offset_b_mm));
+      break;
   }
   return pair;
 }

@@ -59,7 +59,7 @@ void section_realization(Report& report, const JudgementOptions& options) {
                                        : Family::kCylinder;
     const JudgedCase c = draw_case(family, kRealizationSeed + i);
     for (const Grade grade : kGrades) {
-      if (!applies(grade, c) || (grade == Grade::kChord && i % 4 != 2)) continue;
+      if (!applies(grade, c) || (grade >= Grade::kChord && i % 4 != 2)) continue;
       const auto pair = with_grade(c, grade);
       if (pair) play(c, grade, ask_ours(c, *pair, {}), tallies[grade]);
     }

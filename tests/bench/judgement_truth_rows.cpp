@@ -76,13 +76,16 @@ int stride_of(Grade grade) {
   }
   return 1;
 }
-constexpr int kPeerStride = 37, kOrderStride = 11, kFullStride = 491;
+constexpr int kPeerStride = 37, kOrderStride = 11;
 const std::string kOurs = "ours, ", kDecided = ", decided only";
 constexpr const char* kFcl = "FCL, deepest contact > 0";
 constexpr const char* kVertices = "deepest vertex > 0";
 
 class Run {
  public:
+  // Full brackets are the slowest of all: some 200 of them in a whole run.
+  explicit Run(long long cases) : full_stride_(cases >= 50'000 ? 491 : 41) {}
+
   void judge(const JudgedCase& c, long long i) {
     for (const Grade grade : kGrades) {
       if (i % stride_of(grade) != 0 || !applies(grade, c)) continue;
@@ -98,20 +101,20 @@ class Run {
         order_changes += ask_ours(c, *pair, {Refinement::kDecided, !swapped}).collision_class !=
                          word.collision_class;
       }
-      if (i % kFullStride == 0) {
+      if (i % full_stride_ == 0) {
         errors[kOurs + name_of(grade) + kDecided].add_ours(c, truth, word);
         errors[kOurs + name_of(grade)].add_ours(
             c, truth, ask_ours(c, *pair, {Refinement::kFull, swapped, kFullWorkCap}));
       }
     }
-    if (i % kPeerStride != 0 && i % kFullStride != 0) return;
+    if (i % kPeerStride != 0 && i % full_stride_ != 0) return;
     const Truth truth = c.truth(false);
     const Word fcl = FclPair(c).ask(c), vertices = ask_vertices(c);
     if (i % kPeerStride == 0) {
       peers[kFcl].add(c, truth, fcl);
       peers[kVertices].add(c, truth, vertices);
     }
-    if (i % kFullStride == 0) {
+    if (i % full_stride_ == 0) {
       errors[kFcl].add_peer(c, fcl);
       errors[kVertices].add_peer(c, vertices);
     }
@@ -129,6 +132,8 @@ class Run {
                                                         method == name_of(Grade::kRecognized))))
       tell(wrong.c_str(), method.c_str(), c, truth, word);
   }
+
+  int full_stride_;
 };
 
 const std::vector<std::string> kColumns = {"who",
@@ -227,7 +232,7 @@ void add_bars(Report& report, const Run& run, long long least_cases) {
 void section_truth(Report& report, const JudgementOptions& options) {
   const long long wanted = options.quick ? 3000 : 100'000;
   const long long count = options.cases > 0 ? options.cases : wanted;
-  Run run;
+  Run run(count);
   for (long long i = 0; i < count; ++i)
     run.judge(draw_case(family_of(i), static_cast<std::uint64_t>(i)), i);
   report.table("What is said of random fits (columns: truth: word)", kColumns);
