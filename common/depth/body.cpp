@@ -15,8 +15,8 @@ constexpr std::size_t kMostSharp = 8;
 // Deeper than this many times the largest offset the nearest face less that offset is good enough.
 constexpr double kDeepReaches = 20.0;
 
-// Share of a face's deviation by which two ways to measure it may differ over the face.
-constexpr double kSecondOrder = 0.1;
+// Farther outside than this many times the largest offset a point is outside of every layer.
+constexpr double kFarReaches = 1.5;
 
 // Two chords of one circle differ by no more than this; and how closely that is asked.
 constexpr double kChordMargin = 1.1;
@@ -160,29 +160,100 @@ double Body::offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const
   return offset_of(f, layer) - (surface != nullptr ? surface->signed_distance_mm(x) : 0.0);
 }
 
-double Body::depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const {
-  if (layer == Layer::kMesh) return nearest.depth_mm;
-  double least = nearest.depth_mm + offset_at(nearest.triangle, nearest.point, layer);
-  // Over a declared face its own distance is exact; the mesh point's deviation differs from it in
-  // second order. Where they differ by more, x lies beyond the face's end.
-  const SurfaceBand::Face& at_face = face(nearest.triangle);
-  if (const Surface* surface = surface_of(at_face, layer)) {
-    const double exact = offset_of(at_face, layer) - surface->signed_distance_mm(x);
-    if (std::fabs(exact - least) <= kSecondOrder * at_face.deviation_mm.width())
-      least = std::min(least, exact);
+namespace {
+
+// Declared faces that may be near one point at once; of further ones the triangles are asked.
+constexpr int kMostSurfaces = 12;
+
+// A direction that grazes a facet more than this says nothing of where its offset is met.
+constexpr double kLeastFacing = 0.05;
+
+// The declared surfaces near a point, each with the distance of its own foot to the face that
+// stands for it.
+struct NearSurfaces {
+  struct One {
+    const SurfaceBand::Face* face;
+    const Surface* surface;
+    double depth_mm;  // of the surface without offset
+    Vec3 foot;
+    double off_face2 = std::numeric_limits<double>::infinity();
+    double by_triangles_mm = std::numeric_limits<double>::infinity();
+  };
+  std::array<One, kMostSurfaces> all;
+  int count = 0;
+
+  One* of(const SurfaceBand::Face& face, const Surface& surface, const Vec3& x) {
+    for (int i = 0; i < count; ++i)
+      if (all[i].face == &face) return &all[i];
+    if (count == kMostSurfaces) return nullptr;
+    One& one = all[count++];
+    one.face = &face;
+    one.surface = &surface;
+    one.depth_mm = -surface.signed_distance_mm(x);
+    one.foot = x + one.depth_mm * surface.outward_normal(x);
+    return &one;
   }
+};
+
+}  // namespace
+
+// Near the edge of two faces the part is where the layers of both have it: the least of all near
+// faces. Behind a hollow edge, where either would do, that is less than the truth, never more.
+double Body::depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const {
   const double reach = largest_offset_mm[static_cast<int>(layer)];
-  // Outside the mesh the nearest face decides; deep inside no face comes nearer than the nearest
-  // one less the offsets of both.
-  if (nearest.depth_mm <= 0.0 || least <= 0.0 || reach == 0.0) return least;
-  const double range = nearest.depth_mm + 2.0 * reach;
-  if (nearest.depth_mm > kDeepReaches * reach) return std::min(least, nearest.depth_mm - reach);
+  if (layer == Layer::kMesh || reach == 0.0) return nearest.depth_mm;
+  // Deep inside no face comes nearer than the nearest one less the offsets of both; far outside the
+  // sign is known.
+  if (nearest.depth_mm > kDeepReaches * reach) return nearest.depth_mm - reach;
+  if (nearest.depth_mm < -kFarReaches * reach)
+    return nearest.depth_mm + offset_at(nearest.triangle, nearest.point, layer);
+  const bool in_mesh = nearest.depth_mm > 0.0;
+  const double range = std::fabs(nearest.depth_mm) + 2.0 * reach;
   const Box box{x.array() - range, x.array() + range};
+  NearSurfaces surfaces;
+  double least = std::numeric_limits<double>::infinity();
   for_each_triangle_in(solid->bvh(), box, [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
-    const Vec3 foot = nearest_on_triangle(x, c[0], c[1], c[2]);
-    least = std::min(least, (foot - x).norm() + offset_at(t, foot, layer));
+    const SurfaceBand::Face& face_t = face(t);
+    const Surface* surface = surface_of(face_t, layer);
+    NearSurfaces::One* one = surface != nullptr ? surfaces.of(face_t, *surface, x) : nullptr;
+    if (one != nullptr)
+      one->off_face2 =
+          std::min(one->off_face2,
+                   (nearest_on_triangle(one->foot, c[0], c[1], c[2]) - one->foot).squaredNorm());
+    const double by_triangle = depth_by_triangle(x, t, c, in_mesh, layer);
+    if (one != nullptr)
+      one->by_triangles_mm = std::min(one->by_triangles_mm, by_triangle);
+    else
+      least = std::min(least, by_triangle);
   });
+  for (int i = 0; i < surfaces.count; ++i) {
+    const NearSurfaces::One& one = surfaces.all[i];
+    const Interval& deviation = one.face->deviation_mm;
+    const double on_face =
+        kChordMargin * std::max(std::fabs(deviation.lo), std::fabs(deviation.hi)) +
+        kFlatShare * one.surface->radius_mm;
+    const bool over = one.off_face2 <= on_face * on_face;
+    least =
+        std::min(least, over ? one.depth_mm + offset_of(*one.face, layer) : one.by_triangles_mm);
+  }
+  // Nothing near: the box was empty by rounding.
+  if (!std::isfinite(least)) return nearest.depth_mm - reach;
   return least;
+}
+
+// Depth of x below the offset plane of a triangle: along the way to the triangle from inside, along
+// its normal from outside.
+double Body::depth_by_triangle(const Vec3& x, std::uint32_t t, const std::array<Vec3, 3>& c,
+                               bool in_mesh, Layer layer) const {
+  const Vec3 foot = nearest_on_triangle(x, c[0], c[1], c[2]);
+  const double offset = offset_at(t, foot, layer);
+  const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+  const double length = n.norm();
+  const double below = length > 0.0 ? n.dot(foot - x) / length : 0.0;
+  if (!in_mesh) return length > 0.0 ? below + offset : std::numeric_limits<double>::infinity();
+  const double distance = (foot - x).norm();
+  if (offset >= 0.0 || !(distance > 0.0)) return distance + offset;
+  return distance + offset / std::max(kLeastFacing, below / distance);
 }
 
 }  // namespace mortise

@@ -50,11 +50,14 @@ struct Body {
   /// Outward offset of the layer at mesh point x of a triangle.
   double offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const;
 
-  /// Depth of x in the layer, positive inside, given its nearest mesh point. Inside the mesh every
-  /// face within reach is asked, since one farther away may come nearer by its own offset.
+  /// Depth of x in the layer, positive inside, given its nearest mesh point: never more than the
+  /// truth where it is positive. Over a declared face its own distance counts, exact however coarse
+  /// the mesh; elsewhere the triangles with their offsets.
   double depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const;
 
  private:
+  double depth_by_triangle(const Vec3& x, std::uint32_t triangle,
+                           const std::array<Vec3, 3>& corners, bool in_mesh, Layer layer) const;
   void find_sharp_neighbours(std::uint32_t triangle) const;
   struct Range {
     std::uint32_t first = Topology::kNone, count = 0;
