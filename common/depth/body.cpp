@@ -165,6 +165,10 @@ namespace {
 // Declared faces that may be near one point at once; of further ones the triangles are asked.
 constexpr int kMostSurfaces = 12;
 
+// A foot this many times as far off its face as the mesh may be is still beside the end of it: on
+// the rim of a countersink the way to the facet is longer than its deviation.
+constexpr double kBesideFace = 4.0;
+
 // A direction that grazes a facet more than this says nothing of where its offset is met.
 constexpr double kLeastFacing = 0.05;
 
@@ -232,9 +236,13 @@ double Body::depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) c
     const double on_face =
         kChordMargin * std::max(std::fabs(deviation.lo), std::fabs(deviation.hi)) +
         kFlatShare * one.surface->radius_mm;
-    const bool over = one.off_face2 <= on_face * on_face;
-    least =
-        std::min(least, over ? one.depth_mm + offset_of(*one.face, layer) : one.by_triangles_mm);
+    const double exact = one.depth_mm + offset_of(*one.face, layer);
+    if (one.off_face2 <= on_face * on_face)
+      least = std::min(least, exact);
+    else if (one.off_face2 <= kBesideFace * kBesideFace * on_face * on_face)
+      least = std::min({least, exact, one.by_triangles_mm});
+    else
+      least = std::min(least, one.by_triangles_mm);
   }
   // Nothing near: the box was empty by rounding.
   if (!std::isfinite(least)) return nearest.depth_mm - reach;
