@@ -71,6 +71,32 @@ const Interval& Body::extent_of(std::uint16_t face) const {
   return extents_[face];
 }
 
+namespace {
+
+// How far a point of a declared surface may be from the triangles that stand for it.
+double off_face_mm(const SurfaceBand::Face& face) {
+  const Interval& deviation = face.deviation_mm;
+  return kChordMargin * std::max(std::fabs(deviation.lo), std::fabs(deviation.hi)) +
+         kFlatShare * face.surface->radius_mm;
+}
+
+}  // namespace
+
+bool Body::stands_for(std::uint16_t face, const Vec3& x) const {
+  const SurfaceBand::Face& f = band->faces[face];
+  const Vec3 foot = x - f.surface->signed_distance_mm(x) * f.surface->outward_normal(x);
+  // Near its rim the way from the surface to a facet is longer than the facet's deviation.
+  const double allowed = 2.0 * off_face_mm(f);
+  bool found = false;
+  for_each_triangle_in(
+      solid->bvh(), Box{foot.array() - allowed, foot.array() + allowed},
+      [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
+        found = found || (face_index(t) == face &&
+                          (nearest_on_triangle(foot, c[0], c[1], c[2]) - foot).norm() <= allowed);
+      });
+  return found;
+}
+
 std::span<const std::uint32_t> Body::sharp_neighbours(std::uint32_t triangle) const {
   if (sharp_range_.empty()) sharp_range_.resize(mesh->triangles.size());
   if (sharp_range_[triangle].first == Topology::kNone) find_sharp_neighbours(triangle);
@@ -232,10 +258,7 @@ double Body::depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) c
   });
   for (int i = 0; i < surfaces.count; ++i) {
     const NearSurfaces::One& one = surfaces.all[i];
-    const Interval& deviation = one.face->deviation_mm;
-    const double on_face =
-        kChordMargin * std::max(std::fabs(deviation.lo), std::fabs(deviation.hi)) +
-        kFlatShare * one.surface->radius_mm;
+    const double on_face = off_face_mm(*one.face);
     const double exact = one.depth_mm + offset_of(*one.face, layer);
     if (one.off_face2 <= on_face * on_face)
       least = std::min(least, exact);

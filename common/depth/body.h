@@ -36,6 +36,10 @@ struct Body {
   /// Extent of a face along the axis of its declared surface, from the surface's point, mm.
   const Interval& extent_of(std::uint16_t face) const;
 
+  /// Does the face's mesh stand for its declared surface at the point of it nearest to x, or does
+  /// the surface end before?
+  bool stands_for(std::uint16_t face, const Vec3& x) const;
+
   /// Triangles around the corners of one that meet its plane at a sharp convex angle and have all
   /// of it on their material side: where they move inward they cut it, where outward they extend
   /// it. One of each declared surface or plane.

@@ -168,8 +168,9 @@ class Finder {
     pair.overlap = *overlap;
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
     const bool never = overlap->hi_mm + upper <= pair_.touch_mm;
-    if (!never && !is_tight(pair_, pair)) return std::nullopt;
-    return pair;
+    if (never || is_tight(pair_, pair)) return pair;
+    found_.bounded.push_back(pair);
+    return std::nullopt;
   }
 
   // A chamfer or taper in a bore that it cannot touch.
@@ -277,13 +278,7 @@ class Finder {
 bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
   if (pair.overlap.hi_mm - pair.overlap.lo_mm > kDepthAccuracyDefault_mm) return false;
   const auto on_face = [&](int i, const Vec3& x) {
-    const SurfaceBand::Face& face = frame.bodies[i].band->faces[pair.face[i]];
-    const NearestPoint at = nearest_point(*frame.bodies[i].solid, x);
-    const Interval range = Body::offset_range_of(face, Layer::kMesh);
-    const double deviation = std::fabs(face.surface->signed_distance_mm(at.point));
-    return frame.bodies[i].face_index(at.triangle) == pair.face[i] &&
-           at.distance_mm <= deviation + range.hi + std::fabs(pair.overlap.hi_mm) * 1.01 +
-                                 frame.rounding_mm + kDepthAccuracyDefault_mm;
+    return frame.bodies[i].stands_for(pair.face[i], x);
   };
   return on_face(0, frame.X_KS[1] * pair.overlap.point_B) && on_face(1, pair.overlap.point_B);
 }

@@ -19,6 +19,7 @@ struct KnownFacePair {
 struct Candidates {
   std::vector<std::uint32_t> triangles[2];  ///< near the other part, ascending
   std::vector<KnownFacePair> known;         ///< not contained in `triangles` on their account
+  std::vector<KnownFacePair> bounded;       ///< not tight: only their upper ends are of use
   bool cross = false;                       ///< asked for when a part has no inside
   std::uint32_t cross_triangle[2] = {0, 0};
   Vec3 cross_point_B = Vec3::Zero();

@@ -4,14 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "common/depth/round_pair.h"
+
 namespace mortise {
 namespace {
 
-// Axes farther apart in angle are no sliding fit: the closed form would be far from tight.
+// Axes farther apart in angle are no sliding fit: the bound would be far from tight.
 constexpr double kLeastCosine = 0.95;
 
-// Where along the common length the overlap at an end is taken.
-constexpr double kEndShare = 0.002;
+// How closely a closed form is followed around its circles.
+constexpr double kRoundAccuracy_mm = 1e-5;
 
 struct Line {
   Vec3 point, direction;
@@ -22,96 +24,84 @@ struct Line {
   }
 };
 
-struct Shaft {
-  Line axis;
-  double radius_mm;
-  FaceExtent extent;
-};
+Surface moved(Surface surface, const Pose& X) {
+  surface.point = X * surface.point;
+  surface.axis = X.q * surface.axis;
+  return surface;
+}
 
-// Point and outward normal of the hole's face, in the frame of both.
-struct InHole {
-  double lo_mm, hi_mm;
-  Vec3 point, outward;
-};
+// The direction from the centre of a ball that leads farthest along d, among those that end between
+// two heights; nothing when none does.
+std::optional<Vec3> farthest_direction(const Vec3& d, const Vec3& axis, const Interval& rise) {
+  if (rise.lo > 1.0 || rise.hi < -1.0) return std::nullopt;
+  const double length = d.norm();
+  const Vec3 straight = length > 0.0 ? Vec3(d / length) : Vec3::Zero();
+  const double along = straight.dot(axis);
+  if (length > 0.0 && along >= rise.lo && along <= rise.hi) return straight;
+  const double z = std::clamp(length > 0.0 ? along : 0.5 * (rise.lo + rise.hi),
+                              std::max(-1.0, rise.lo), std::min(1.0, rise.hi));
+  Vec3 flat = straight - along * axis;
+  if (!(flat.norm() > 1e-12)) flat = axis.unitOrthogonal();
+  return Vec3(z * axis + std::sqrt(std::max(0.0, 1.0 - z * z)) * flat.normalized());
+}
 
-std::optional<InHole> shaft_in_hole(const Shaft& shaft, const Shaft& hole, double margin_mm) {
-  const double cosine = std::fabs(shaft.axis.direction.dot(hole.axis.direction));
-  if (cosine < kLeastCosine) return std::nullopt;
-  const double tilt = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-  // The part of the shaft's axis whose circle may be near the hole.
-  const double beyond = margin_mm + shaft.radius_mm * tilt;
-  const double slope = shaft.axis.direction.dot(hole.axis.direction);
-  const double z0 = (shaft.axis.point - hole.axis.point).dot(hole.axis.direction);
-  const auto along = [&](double hole_z) { return (hole_z - z0) / slope; };
-  const auto clipped = [&](double grown) {
-    const double a = along(hole.extent.lo_mm - grown), b = along(hole.extent.hi_mm + grown);
-    return FaceExtent{std::max(shaft.extent.lo_mm, std::min(a, b)),
-                      std::min(shaft.extent.hi_mm, std::max(a, b))};
+// A ball in a socket that is open on one side or both: its deepest point within the socket.
+std::optional<FacePairOverlap> ball_in_socket(const Surface& ball, const Surface& socket,
+                                              const FaceExtent& extent, double margin_mm) {
+  const Vec3 d = ball.point - socket.point;
+  const double z = d.dot(socket.axis);
+  const auto reach = [&](double beyond) -> std::optional<Vec3> {
+    const auto u = farthest_direction(d, socket.axis,
+                                      {(extent.lo_mm - beyond - z) / ball.radius_mm,
+                                       (extent.hi_mm + beyond - z) / ball.radius_mm});
+    if (!u) return std::nullopt;
+    return Vec3(ball.point + ball.radius_mm * *u);
   };
-  const FaceExtent wide = clipped(beyond), narrow = clipped(0.0);
-  if (wide.lo_mm > wide.hi_mm) return std::nullopt;
-  InHole in;
-  in.hi_mm = -std::numeric_limits<double>::infinity();
-  for (const double z : {wide.lo_mm, wide.hi_mm})
-    in.hi_mm = std::max(in.hi_mm, hole.axis.across(shaft.axis.at(z)).norm());
-  in.hi_mm += shaft.radius_mm - hole.radius_mm;
-  in.lo_mm = -std::numeric_limits<double>::infinity();
-  if (narrow.lo_mm > narrow.hi_mm) return in;
-  // The middle first: at the ends other faces are as near. A little inside of them, for the same
-  // reason.
-  const double length = narrow.hi_mm - narrow.lo_mm;
-  for (const double share : {0.5, kEndShare, 1.0 - kEndShare}) {
-    const double z = narrow.lo_mm + share * length;
-    const Vec3 center = shaft.axis.at(z);
-    const Vec3 away = hole.axis.across(center);
-    Vec3 out = away - away.dot(shaft.axis.direction) * shaft.axis.direction;
-    // Coaxial: every direction is the same.
-    if (!(out.norm() > 1e-9 * shaft.radius_mm)) out = shaft.axis.direction.unitOrthogonal();
-    const Vec3 point = center + shaft.radius_mm * out.normalized();
-    const Vec3 from_axis = hole.axis.across(point);
-    const double overlap = from_axis.norm() - hole.radius_mm;
-    if (overlap <= in.lo_mm + 1e-9 * shaft.radius_mm) continue;
-    in.lo_mm = overlap;
-    in.point = point;
-    in.outward = -from_axis.normalized();
+  const auto overlap = [&](const Vec3& x) { return (x - socket.point).norm() - socket.radius_mm; };
+  FacePairOverlap found;
+  found.lo_mm = found.hi_mm = -std::numeric_limits<double>::infinity();
+  if (const auto far = reach(margin_mm + extent.beyond_mm)) found.hi_mm = overlap(*far);
+  if (const auto near = reach(0.0)) {
+    found.lo_mm = overlap(*near);
+    found.point_B = *near;
+    found.normal_B = (*near - socket.point).stableNormalized();
   }
-  return in;
+  return found;
 }
 
 }  // namespace
 
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface) {
-  (void)surface;
   const Interval& extent = body.extent_of(face);
-  return {extent.lo, extent.hi};
+  // The pole of a sphere need not be a corner.
+  const Interval& off = body.band->faces[face].deviation_mm;
+  const double beyond =
+      surface.kind == SurfaceKind::kSphere ? std::max(std::fabs(off.lo), std::fabs(off.hi)) : 0.0;
+  return {extent.lo, extent.hi, beyond};
 }
 
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm) {
   if (a.kind != b.kind || a.inward == b.inward) return std::nullopt;
-  const Vec3 point_a = X_BA * a.point;
-  if (a.kind == SurfaceKind::kCylinder) {
-    const Shaft in_b_a{{point_a, X_BA.q * a.axis}, a.radius_mm, extent_a};
-    const Shaft in_b_b{{b.point, b.axis}, b.radius_mm, extent_b};
-    const auto in = a.inward ? shaft_in_hole(in_b_b, in_b_a, margin_mm)
-                             : shaft_in_hole(in_b_a, in_b_b, margin_mm);
-    if (!in) return std::nullopt;
-    return FacePairOverlap{in->lo_mm, in->hi_mm, in->point,
-                           a.inward ? Vec3(-in->outward) : in->outward};
-  }
+  const Surface a_B = moved(a, X_BA);
+  const Surface &convex = a.inward ? b : a_B, &hollow = a.inward ? a_B : b;
+  const FaceExtent &along = a.inward ? extent_b : extent_a,
+                   &of_hollow = a.inward ? extent_a : extent_b;
+  std::optional<FacePairOverlap> found;
   if (a.kind == SurfaceKind::kSphere) {
-    const Vec3& socket = a.inward ? point_a : b.point;
-    const Vec3& ball = a.inward ? b.point : point_a;
-    const double ball_radius = a.inward ? b.radius_mm : a.radius_mm;
-    const double socket_radius = a.inward ? a.radius_mm : b.radius_mm;
-    const double apart = (ball - socket).norm();
-    const Vec3 out =
-        apart > 1e-9 * ball_radius ? Vec3((ball - socket) / apart) : Vec3(Vec3::UnitZ());
-    const double overlap = apart + ball_radius - socket_radius;
-    return FacePairOverlap{overlap, overlap, ball + ball_radius * out, a.inward ? out : Vec3(-out)};
+    found = ball_in_socket(convex, hollow, of_hollow, margin_mm);
+  } else {
+    const auto face = RoundFace::of(convex, {along.lo_mm, along.hi_mm});
+    const auto wall = RoundFace::of(hollow, {of_hollow.lo_mm, of_hollow.hi_mm});
+    if (!face || !wall) return std::nullopt;
+    const auto reach = round_reach(*face, *wall, margin_mm, kRoundAccuracy_mm);
+    if (!reach) return std::nullopt;
+    found = FacePairOverlap{reach->reach_mm.lo, reach->reach_mm.hi, reach->point, -reach->outward};
   }
-  return std::nullopt;
+  // Now out of the convex face; B's own normal is asked for.
+  if (found && !a.inward) found->normal_B = -found->normal_B;
+  return found;
 }
 
 bool is_round_in_bore(const Surface& a, const Surface& b) {

@@ -11,6 +11,7 @@ namespace mortise {
 /// Extent of a face along the axis of its surface, from `point`, mm.
 struct FaceExtent {
   double lo_mm = 0.0, hi_mm = 0.0;
+  double beyond_mm = 0.0;  ///< by which the face may go on beyond its outermost corners
 };
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface);
 
@@ -22,11 +23,9 @@ struct FacePairOverlap {
   Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
 };
 
-/// Closed form for a shaft in a bore (nearly parallel axes) and a ball in a socket; nothing for
-/// other pairs. `margin_mm` is how far beyond its end a face still counts as near.
-///
-/// The distance from the bore's axis is convex, so that over the shaft it is largest on the end
-/// circles; those reach no farther than their centre's distance plus the shaft's radius.
+/// Closed form for a shaft in a bore, a cone in a cone (nearly parallel axes; see round_reach) and
+/// a ball in a socket; nothing for other pairs. `margin_mm` is how far beyond its end a face still
+/// counts as near. Both ends -infinity: no point of the convex face is near the hollow one.
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm);

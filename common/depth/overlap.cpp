@@ -59,9 +59,23 @@ class Overlap {
   }
 
   void find_known(const Candidates& candidates) {
-    for (const KnownFacePair& known : candidates.known)
-      known_.rows.push_back({{known.face[0], known.face[1]}, known.overlap.hi_mm});
+    for (const KnownFacePair& known : candidates.known) add_row(known, true);
+    for (const KnownFacePair& known : candidates.bounded) add_row(known, false);
     add_in_bore_rows(pair_, known_);
+  }
+
+  void add_row(const KnownFacePair& known, bool told) {
+    KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.hi_mm};
+    row.told = told;
+    const int convex = pair_.bodies[0].band->faces[known.face[0]].surface->inward ? 1 : 0;
+    if (pair_.bodies[0].band->faces[known.face[0]].surface->kind == SurfaceKind::kCone &&
+        std::isfinite(known.overlap.hi_mm)) {
+      // Between its ends the inside of a cone is the hull of its end circles, over which the convex
+      // distance is no larger than on them.
+      row.within_mm = known.overlap.hi_mm;
+      row.within_extent_mm = pair_.bodies[convex].extent_of(known.face[convex]);
+    }
+    known_.rows.push_back(row);
   }
 
   std::uint64_t work_left() const {

@@ -17,6 +17,11 @@ constexpr double kSameSide = 0.5;
 // A patch whose hull comes nearer to the axis than this share of the radius goes through it.
 constexpr double kLeastFacing = 1e-3;
 
+// Cosines of normals of one plane differ from one by less than this.
+constexpr double kOnePlane = 1e-9;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
@@ -190,12 +195,35 @@ class Neighbourhood {
     const auto bound = [&](std::uint32_t t, bool itself) {
       const KnownOverlaps::Row* row = proof_.known->find(proof_.role, s.face_index(t), face_k);
       if (row == nullptr) return;
-      const double overlap = itself ? std::min(row->overlap_mm, row->within_mm) : row->within_mm;
+      const bool within = std::isfinite(row->within_mm) && keeps_within(*row);
+      const double overlap =
+          std::min(itself ? row->overlap_mm : kInfinity, within ? row->within_mm : kInfinity);
       least = std::min(least, overlap + Body::offset_of(s.face(t), proof_.layer));
     };
     bound(proof_.triangle_s, true);
     for (const std::uint32_t t : s.sharp_neighbours(proof_.triangle_s)) bound(t, false);
     return least + facet.offset_mm;
+  }
+
+  // Is the patch between the ends of the row's convex face?
+  bool keeps_within(const KnownOverlaps::Row& row) const {
+    const Interval& extent = row.within_extent_mm;
+    if (!std::isfinite(extent.lo)) return true;
+    const SurfaceBand::Face& face_s = proof_.s->band->faces[row.face[proof_.role]];
+    const SurfaceBand::Face& face_k = k_.band->faces[row.face[1 - proof_.role]];
+    const auto is_between = [&](const Surface& convex, const Vec3& x) {
+      const double z = (x - convex.point).dot(convex.axis);
+      return z >= extent.lo - proof_.rounding_mm && z <= extent.hi + proof_.rounding_mm;
+    };
+    if (!face_s.surface->inward) {
+      for (int i = 0; i < 3; ++i)
+        if (!is_between(*face_s.surface, proof_.s->mesh->corner(proof_.triangle_s, i)))
+          return false;
+      return true;
+    }
+    for (int i = 0; i < patch_.count; ++i)
+      if (!is_between(*face_k.surface, patch_.points[i])) return false;
+    return true;
   }
 
   bool covered(std::uint32_t t, const Corners& c) const {
@@ -205,7 +233,19 @@ class Neighbourhood {
   }
 
   bool below(std::uint32_t t, const Corners& c, const Facet& wall) const {
-    return triangle_below(t, c, wall) || round_face_below(t, wall);
+    return triangle_below(t, c, wall) || round_face_below(t, wall) || cut_back(t, wall);
+  }
+
+  // A facet that meets the wall at a sharp edge ends on the wall's own layer: where that lies
+  // deeper than the mesh, so does the end of the facet.
+  bool cut_back(std::uint32_t t, const Facet& wall) const {
+    if (wall.surface != nullptr || wall.offset_mm >= 0.0) return false;
+    const std::uint16_t face = k_.face_index(wall.triangle);
+    for (const std::uint32_t other : k_.sharp_neighbours(t))
+      if (k_.face_index(other) == face &&
+          (other == wall.triangle || k_.normal(other).dot(wall.normal) > 1.0 - kOnePlane))
+        return true;
+    return false;
   }
 
   // A round face lies within the hull of its end circles: its true surface is below a plane or a

@@ -1,0 +1,190 @@
+#include "common/depth/round_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace mortise {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Axes farther apart in angle are no sliding fit.
+constexpr double kLeastCosine = 0.95;
+
+// At the very end of a face its neighbour is as near: a point is named that is a little inside.
+constexpr double kEndShare = 1e-4;
+
+// First pieces of the circle, and pieces looked at before the bracket is left as it is.
+constexpr int kFirstPieces = 16;
+constexpr int kMostPieces = 600;
+
+class Reach {
+ public:
+  Reach(const RoundFace& convex, const RoundFace& hollow)
+      : convex_(convex),
+        hollow_(hollow),
+        slope_(convex.axis.dot(hollow.axis)),
+        cosine_(1.0 / std::hypot(1.0, hollow.widening)),
+        e1_(convex.axis.unitOrthogonal()),
+        e2_(convex.axis.cross(e1_)),
+        rise_(e1_.dot(hollow.axis), e2_.dot(hollow.axis)) {}
+
+  std::optional<RoundReach> run(double margin_mm, double accuracy_mm) {
+    margin_mm_ = margin_mm;
+    struct Piece {
+      double from, to, bound;
+    };
+    std::vector<Piece> pieces;
+    const auto add = [&](double from, double to) {
+      const double bound = upper(from, to);
+      if (bound > -kInfinity) pieces.push_back({from, to, bound});
+      look(0.5 * (from + to));
+    };
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    for (int i = 0; i < kFirstPieces; ++i)
+      add(kTurn * i / kFirstPieces, kTurn * (i + 1) / kFirstPieces);
+    const auto lower = [](const Piece& a, const Piece& b) { return a.bound < b.bound; };
+    std::make_heap(pieces.begin(), pieces.end(), lower);
+    for (int looked = kFirstPieces; !pieces.empty() && looked < kMostPieces; looked += 2) {
+      if (pieces.front().bound <= best_ + accuracy_mm) break;
+      std::pop_heap(pieces.begin(), pieces.end(), lower);
+      const Piece piece = pieces.back();
+      pieces.pop_back();
+      const double middle = 0.5 * (piece.from + piece.to);
+      for (const auto& [from, to] : {std::pair(piece.from, middle), std::pair(middle, piece.to)}) {
+        const std::size_t before = pieces.size();
+        add(from, to);
+        if (pieces.size() > before) std::push_heap(pieces.begin(), pieces.end(), lower);
+      }
+    }
+    RoundReach reach;
+    if (pieces.empty()) {  // they pass each other
+      reach.reach_mm = {-kInfinity, -kInfinity};
+      return reach;
+    }
+    reach.reach_mm = {best_, std::max(best_, pieces.front().bound)};
+    if (!std::isfinite(reach.reach_mm.hi)) return std::nullopt;
+    reach.point = point_;
+    const Vec3 from_axis = across(point_);
+    reach.outward = -cosine_ * (from_axis.stableNormalized() - hollow_.widening * hollow_.axis);
+    return reach;
+  }
+
+ private:
+  Vec3 across(const Vec3& x) const {
+    const Vec3 d = x - hollow_.point;
+    return d - d.dot(hollow_.axis) * hollow_.axis;
+  }
+  double height(const Vec3& x) const { return (x - hollow_.point).dot(hollow_.axis); }
+  Vec3 at(double t, double angle) const {
+    return convex_.point + t * convex_.axis +
+           convex_.radius_at(t) * (std::cos(angle) * e1_ + std::sin(angle) * e2_);
+  }
+  double beyond(const Vec3& x) const {
+    return cosine_ * (across(x).norm() - hollow_.radius_at(height(x)));
+  }
+
+  // Where the generator whose direction rises by `rise` along the hollow axis meets a height.
+  double cut(double rise, double z) const {
+    const double z0 = height(convex_.point);
+    const double along = slope_ + convex_.widening * rise;
+    return (z - z0 - convex_.radius_mm * rise) / along;
+  }
+
+  // Range of t on generators whose rises lie in an interval, where heights lie in another.
+  Interval within(const Interval& rise, const Interval& z) const {
+    Interval t{kInfinity, -kInfinity};
+    for (const double r : {rise.lo, rise.hi})
+      for (const double h : {z.lo, z.hi}) {
+        t.lo = std::min(t.lo, cut(r, h));
+        t.hi = std::max(t.hi, cut(r, h));
+      }
+    return {std::max(t.lo, convex_.extent_mm.lo), std::min(t.hi, convex_.extent_mm.hi)};
+  }
+
+  // A point of the convex face at both ends of its generator, and in the middle.
+  void look(double angle) {
+    const double rise = rise_.x() * std::cos(angle) + rise_.y() * std::sin(angle);
+    const Interval t = within({rise, rise}, hollow_.extent_mm);
+    if (!(t.lo <= t.hi)) return;
+    for (const double share : {0.5, kEndShare, 1.0 - kEndShare}) {
+      const Vec3 x = at(t.lo + share * (t.hi - t.lo), angle);
+      const double reach = beyond(x);
+      if (reach <= best_ + 1e-9 * convex_.radius_at(t.hi)) continue;
+      best_ = reach;
+      point_ = x;
+    }
+  }
+
+  // No point of the convex face between two angles is farther beyond the wall.
+  double upper(double from, double to) const {
+    const double width = to - from;
+    const auto rise_at = [&](double angle) {
+      return rise_.x() * std::cos(angle) + rise_.y() * std::sin(angle);
+    };
+    const double r0 = rise_at(from), r1 = rise_at(to);
+    const double bulge = rise_.norm() * width * width / 8.0;
+    const Interval z{hollow_.extent_mm.lo - margin_mm_, hollow_.extent_mm.hi + margin_mm_};
+    const Interval t = within({std::min(r0, r1) - bulge, std::max(r0, r1) + bulge}, z);
+    if (!(t.lo <= t.hi)) return -kInfinity;
+    return std::max(on_circle(t.lo, from, to), on_circle(t.hi, from, to));
+  }
+
+  // Upper bound of f over an arc of the circle at t: at most above its ends by the curvature.
+  double on_circle(double t, double from, double to) const {
+    const double radius = convex_.radius_at(t);
+    const Vec3 v0 = across(convex_.point + t * convex_.axis);
+    const auto flat = [&](const Vec3& e) -> Vec3 {
+      return radius * (e - e.dot(hollow_.axis) * hollow_.axis);
+    };
+    const Vec3 v1 = flat(e1_), v2 = flat(e2_);
+    // |v0 + v1 cos + v2 sin|^2 = mean + first harmonic + second harmonic.
+    const double mean = v0.squaredNorm() + 0.5 * (v1.squaredNorm() + v2.squaredNorm());
+    const double first = 2.0 * std::hypot(v0.dot(v1), v0.dot(v2));
+    const double second = std::hypot(0.5 * (v1.squaredNorm() - v2.squaredNorm()), v1.dot(v2));
+    const double least = mean - first - second;
+    if (!(least > 0.0)) return kInfinity;
+    const double bend =
+        (first + 4.0 * second) / (2.0 * std::sqrt(least)) +
+        (first + 2.0 * second) * (first + 2.0 * second) / (4.0 * least * std::sqrt(least)) +
+        std::fabs(hollow_.widening) * radius * rise_.norm();
+    const double ends = std::max(beyond(at(t, from)), beyond(at(t, to)));
+    return ends + cosine_ * bend * (to - from) * (to - from) / 8.0;
+  }
+
+  const RoundFace& convex_;
+  const RoundFace& hollow_;
+  const double slope_, cosine_;
+  const Vec3 e1_, e2_;
+  const Eigen::Vector2d rise_;  // of a turn about the convex axis, along the hollow one
+  double margin_mm_ = 0.0;
+  double best_ = -kInfinity;
+  Vec3 point_ = Vec3::Zero();
+};
+
+}  // namespace
+
+std::optional<RoundFace> RoundFace::of(const Surface& surface, const Interval& extent_mm) {
+  if (surface.kind == SurfaceKind::kCylinder)
+    return RoundFace{surface.point, surface.axis, surface.radius_mm, 0.0, extent_mm};
+  // Beyond its apex a cone would have a negative radius.
+  if (surface.kind == SurfaceKind::kCone && extent_mm.lo >= 0.0)
+    return RoundFace{surface.point, surface.axis, 0.0, std::tan(surface.half_angle_rad), extent_mm};
+  return std::nullopt;
+}
+
+std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
+                                      double margin_mm, double accuracy_mm) {
+  const double slope = convex.axis.dot(hollow.axis);
+  if (std::fabs(slope) < kLeastCosine) return std::nullopt;
+  // A generator that runs square to the hollow axis meets no height of it.
+  const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
+  if (std::fabs(convex.widening) * tilt > 0.5 * std::fabs(slope)) return std::nullopt;
+  return Reach(convex, hollow).run(margin_mm, accuracy_mm);
+}
+
+}  // namespace mortise
