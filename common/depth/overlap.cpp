@@ -13,6 +13,9 @@ namespace {
 // Triangles of a known pair of faces that are asked how far the meshes overlap.
 constexpr std::size_t kKnownQuestions = 24;
 
+// Evaluations of a search that only has to find points, not to prove that there are none.
+constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
+
 // Corners, middles of edges, centre.
 std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
   const Vec3 &a = mesh.corner(t, 0), &b = mesh.corner(t, 1), &c = mesh.corner(t, 2);
@@ -82,7 +85,10 @@ class Overlap {
     return query_.work_cap - std::min(query_.work_cap, result_.evaluations);
   }
 
-  std::vector<Bracket> search(Layer layer, bool sign_only) {
+  // Lazily a glance is enough where the class does not hang on a proof.
+  std::uint64_t glance() const { return kGlance + kGlancePerRoot * regions_.roots.size(); }
+
+  std::vector<Bracket> search(Layer layer, bool sign_only, std::uint64_t work_cap) {
     SearchQuery search;
     search.pair = &pair_;
     search.layer = layer;
@@ -93,19 +99,25 @@ class Overlap {
     search.primary = regions_.primary;
     search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
     search.sign_only = sign_only;
-    search.work_cap = std::max<std::uint64_t>(work_left(), regions_.roots.size());
+    search.work_cap = std::max<std::uint64_t>(work_cap, regions_.roots.size());
     return search_depth(search, scratch_, result_.evaluations);
   }
 
   void search_regions() {
     const bool lazy = query_.refinement == Refinement::kDecided;
-    const std::vector<Bracket> mesh = search(Layer::kMesh, lazy);
+    const bool shape_only = lazy && !pair_.trivial;
+    const std::vector<Bracket> mesh =
+        search(Layer::kMesh, lazy, shape_only ? std::min(glance(), work_left()) : work_left());
     std::vector<Bracket> upper, lower;
     bool any_open = false;
     for (const bool open : regions_.may_interfere) any_open |= open;
     if (!pair_.trivial && (any_open || !lazy)) {
-      upper = search(Layer::kUpper, lazy);
-      lower = search(Layer::kLower, lazy);
+      upper = search(Layer::kUpper, lazy, work_left());
+      bool may_be_certain = false;
+      for (const Bracket& p : upper) may_be_certain |= p.hi_mm > pair_.touch_mm;
+      // What is not seen to be certain is potential: that none of it is needs no proof.
+      if (may_be_certain || !lazy)
+        lower = search(Layer::kLower, lazy, lazy ? std::min(glance(), work_left()) : work_left());
     }
     for (std::size_t i = 0; i < regions_.count; ++i) {
       const Bracket& d = mesh[i];
@@ -123,7 +135,7 @@ class Overlap {
       region.certain_mm.hi = std::min(region.certain_mm.hi, region.possible_mm.hi);
       region.certain_mm.lo = std::min(region.certain_mm.lo, region.certain_mm.hi);
       region.area_mm2 = d.area_mm2;
-      region.capped = regions_.capped || d.undecided || p.undecided || c.undecided;
+      region.capped = regions_.capped || p.undecided || (!lazy && (d.undecided || c.undecided));
       const Sample& deciding = region.possible_mm.lo > 0.0 ? c.best : p.best;
       describe(pair_, d.best, deciding, region);
       for (const Sample& sample : d.samples)

@@ -11,7 +11,10 @@ constexpr int kRootEvaluations = 24;
 
 // A decided search goes on for this many evaluations per root, so that the numbers in its report
 // are good; the class is known by then.
-constexpr std::uint64_t kPolishPerRoot = 2, kPolishLeast = 200;
+constexpr std::uint64_t kPolishPerRoot = 2, kPolishLeast = 60, kPolishMost = 600;
+
+// How often the best triangle is cut in four around its best quarter.
+constexpr int kClimbs = 10;
 
 // How much of a depth the bracket may leave open when only the class was asked for.
 constexpr double kLooseShare = 0.2;
@@ -38,6 +41,13 @@ bool worse(const Item& a, const Item& b) {
 Piece whole(const Body& s, std::uint32_t triangle) {
   return {{s.mesh->corner(triangle, 0), s.mesh->corner(triangle, 1), s.mesh->corner(triangle, 2)},
           triangle};
+}
+
+std::array<Piece, 4> quarters(const Piece& piece) {
+  const std::array<Vec3, 3>& c = piece.corners;
+  const Vec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
+  return {Piece{{c[0], ab, ca}, piece.triangle}, Piece{{ab, c[1], bc}, piece.triangle},
+          Piece{{ca, bc, c[2]}, piece.triangle}, Piece{{ab, bc, ca}, piece.triangle}};
 }
 
 struct Looked {
@@ -88,8 +98,11 @@ class Search {
   std::vector<Bracket> run() {
     for (const Root& root : *query_.roots) add_root(root);
     std::make_heap(heap_.begin(), heap_.end(), worse);
+    if (query_.sign_only)
+      for (Bracket& bracket : brackets_)
+        if (bracket.best.depth_mm <= pair_.touch_mm) climb(bracket);
     const std::uint64_t polish =
-        std::max<std::uint64_t>(kPolishLeast, kPolishPerRoot * query_.roots->size());
+        std::clamp<std::uint64_t>(kPolishPerRoot * query_.roots->size(), kPolishLeast, kPolishMost);
     while (!heap_.empty() && work_ < query_.work_cap) {
       if (query_.sign_only && work_ >= polish && all_decided()) break;
       std::pop_heap(heap_.begin(), heap_.end(), worse);
@@ -133,6 +146,29 @@ class Search {
     if (root.role != query_.primary) return;
     const Vec3 n = (piece.corners[1] - piece.corners[0]).cross(piece.corners[2] - piece.corners[0]);
     brackets_[root.region].area_mm2 += 0.5 * n.norm() * inside / (skip_corners ? 1.0 : 4.0);
+  }
+
+  // From the best triangle's middle towards its deepest point.
+  void climb(Bracket& bracket) {
+    if (!std::isfinite(bracket.best.depth_mm)) return;
+    const int role = bracket.best.role;
+    Piece piece = whole(pair_.s(role), bracket.best.triangle);
+    for (int i = 0; i < kClimbs && bracket.best.depth_mm <= pair_.touch_mm; ++i) {
+      double deepest = -std::numeric_limits<double>::infinity();
+      Piece next = piece;
+      for (const Piece& quarter : quarters(piece)) {
+        const Vec3 middle = (quarter.corners[0] + quarter.corners[1] + quarter.corners[2]) / 3.0;
+        const Sample sample = sample_at(pair_, query_.layer, role, piece.triangle, middle);
+        ++work_;
+        ++evaluations_;
+        if (sample.depth_mm > deepest) {
+          deepest = sample.depth_mm;
+          next = quarter;
+        }
+        if (sample.depth_mm > bracket.best.depth_mm) bracket.best = sample;
+      }
+      piece = next;
+    }
   }
 
   std::uint32_t region_of(int role, std::uint32_t inherited, std::uint32_t met) const {
