@@ -115,15 +115,8 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
     if (const Surface* surface = surface_of(face(t), Layer::kUpper)) {
       const double chord = std::max(0.0, -face(t).deviation_mm.lo);
       const double allowed = face(t).residual_mm + kChordMargin * chord + kFlatShare * size;
-      const Vec3 &a = mesh->corner(triangle, 0), &b = mesh->corner(triangle, 1),
-                 &c = mesh->corner(triangle, 2);
-      const double highest_at_corner =
-          std::max({surface->signed_distance_mm(a), surface->signed_distance_mm(b),
-                    surface->signed_distance_mm(c)});
-      if (highest_at_corner > allowed) return false;
-      // Outside of a shaft the distance is convex: corners are enough.
-      return !surface->inward ||
-             surface->signed_distance_range_mm(a, b, c, (kChordMargin - 1.0) * chord).hi <= allowed;
+      return surface->stays_below_mm(mesh->corner(triangle, 0), mesh->corner(triangle, 1),
+                                     mesh->corner(triangle, 2), allowed);
     }
     for (int k = 0; k < 3; ++k)
       if (normal_t.dot(mesh->corner(triangle, k) - mesh->corner(t, 0)) > kFlatShare * size)
@@ -169,7 +162,7 @@ const Surface* Body::surface_of(const SurfaceBand::Face& face, Layer layer) {
 double Body::offset_of(const SurfaceBand::Face& face, Layer layer) {
   if (layer == Layer::kMesh) return 0.0;
   const bool exact = surface_of(face, layer) != nullptr;
-  const Interval doubt = exact ? Interval{-face.residual_mm, face.residual_mm} : face.deviation_mm;
+  const Interval doubt = exact ? Interval{-face.doubt_mm(), face.doubt_mm()} : face.deviation_mm;
   return layer == Layer::kLower ? doubt.lo + face.tolerance_mm.lo : doubt.hi + face.tolerance_mm.hi;
 }
 

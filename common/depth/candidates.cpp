@@ -5,6 +5,7 @@
 #include <map>
 
 #include "common/geometry/triangle_distance.h"
+#include "common/geometry/triangle_meeting.h"
 
 namespace mortise {
 namespace {
@@ -43,6 +44,8 @@ struct FaceTree {
   }
 };
 
+enum class Mark : std::uint8_t { kNone = 0, kNear, kCrossing };
+
 struct Side {
   std::int32_t child = 0;
   std::int32_t face = kMixed;
@@ -54,17 +57,17 @@ class Finder {
   explicit Finder(const CandidateQuery& query)
       : query_(query), pair_(*query.pair), R_(pair_.X_KS[0].rotation()), R_abs_(R_.cwiseAbs()) {
     for (int i = 0; i < 2; ++i) {
-      marked_[i].assign(pair_.bodies[i].mesh->triangles.size(), 0);
+      marked_[i].assign(pair_.bodies[i].mesh->triangles.size(), Mark::kNone);
       if (!pair_.trivial && has_surfaces(pair_.bodies[i])) faces_[i].emplace(pair_.bodies[i]);
     }
   }
 
   Candidates run() {
+    found_.has_meetings = query_.want_meetings;
     Side a = root(0), b = root(1);
     visit(a, b);
-    for (int i = 0; i < 2; ++i)
-      for (std::uint32_t t = 0; t < marked_[i].size(); ++t)
-        if (marked_[i][t] != 0) found_.triangles[i].push_back(t);
+    for (std::vector<std::uint32_t>& triangles : found_.triangles)
+      std::sort(triangles.begin(), triangles.end());
     for (auto& [faces, slot] : known_) {
       if (query_.skip != nullptr || !slot.known ||
           (slot.nodes[0].empty() && slot.triangles[0].empty()))
@@ -204,7 +207,8 @@ class Finder {
       const Box grown = box.grown(m);
       for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
         const std::uint32_t tb = bvh_b.triangle_order[j];
-        const bool news = marked_[0][ta] == 0 || marked_[1][tb] == 0;
+        const Mark most = query_.want_meetings ? Mark::kCrossing : Mark::kNear;
+        const bool news = marked_[0][ta] < most || marked_[1][tb] < most;
         if (!news && !(query_.want_crossing && !found_.cross)) continue;
         const Triangle cb = {pair_.bodies[1].mesh->corner(tb, 0),
                              pair_.bodies[1].mesh->corner(tb, 1),
@@ -212,13 +216,21 @@ class Finder {
         Box box_b;
         for (const Vec3& x : cb) box_b.add(x);
         if (!grown.overlaps(box_b)) continue;
-        if (beyond_plane(ca, cb, m) || beyond_plane(cb, ca, m)) continue;
+        Mark mark = Mark::kNear;
+        if (query_.want_meetings) {
+          const Meeting meeting = meeting_of(ca, cb, pair_.touch_mm);
+          if (meeting == Meeting::kApart) continue;
+          if (meeting == Meeting::kCrossing) mark = Mark::kCrossing;
+        } else if (beyond_plane(ca, cb, m) || beyond_plane(cb, ca, m)) {
+          continue;
+        }
         if (Slot* slot = known_of(pair_.bodies[0].face_index(ta), pair_.bodies[1].face_index(tb))) {
           slot->triangles[0].push_back(ta);
           slot->triangles[1].push_back(tb);
           continue;
         }
-        marked_[0][ta] = marked_[1][tb] = 1;
+        set(0, ta, mark, tb);
+        set(1, tb, mark, ta);
         if (query_.want_crossing && !found_.cross && triangles_cross(ca, cb)) {
           found_.cross = true;
           found_.cross_triangle[0] = ta;
@@ -228,6 +240,14 @@ class Finder {
         }
       }
     }
+  }
+
+  void set(int i, std::uint32_t t, Mark mark, std::uint32_t partner) {
+    Mark& now = marked_[i][t];
+    if (now >= mark) return;
+    if (now == Mark::kNone) found_.triangles[i].push_back(t);
+    if (mark == Mark::kCrossing) found_.crossing[i][t] = partner;
+    now = mark;
   }
 
   // All of x on one side of the plane of t, farther than m.
@@ -268,7 +288,7 @@ class Finder {
   const PairFrame& pair_;
   const Mat3 R_, R_abs_;
   std::optional<FaceTree> faces_[2];
-  std::vector<std::uint8_t> marked_[2];
+  std::vector<Mark> marked_[2];
   std::map<std::pair<std::int32_t, std::int32_t>, Slot> known_;
   Candidates found_;
 };

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/flat_map.h"
 #include "common/depth/face_pair.h"
 #include "common/depth/pair_frame.h"
 #include "common/depth/proof.h"
@@ -19,8 +20,11 @@ struct KnownFacePair {
 struct Candidates {
   std::vector<std::uint32_t> triangles[2];  ///< near the other part, ascending
   std::vector<KnownFacePair> known;         ///< not contained in `triangles` on their account
-  std::vector<KnownFacePair> bounded;       ///< not tight: only their upper ends are of use
-  bool cross = false;                       ///< asked for when a part has no inside
+  /// Asked for: triangles that go through one of the other part, and which.
+  FlatMap<std::uint32_t> crossing[2];
+  bool has_meetings = false;
+  std::vector<KnownFacePair> bounded;  ///< not tight: only their upper ends are of use
+  bool cross = false;                  ///< asked for when a part has no inside
   std::uint32_t cross_triangle[2] = {0, 0};
   Vec3 cross_point_B = Vec3::Zero();
   std::uint64_t tests = 0;
@@ -30,6 +34,9 @@ struct CandidateQuery {
   const PairFrame* pair = nullptr;
   double margin_mm = 0.0;
   bool want_crossing = false;
+  /// Where the meshes are the parts: name the triangles that go through each other, leave out those
+  /// that do not meet.
+  bool want_meetings = false;
   /// Set: just these pairs of faces are not descended into, and no closed form is formed.
   const KnownOverlaps* skip = nullptr;
 };

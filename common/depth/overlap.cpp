@@ -28,7 +28,9 @@ class Overlap {
 
   OverlapResult run() {
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
-    const Candidates candidates = find_candidates({&pair_, pair_.near_mm, result_.no_inside});
+    CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
+    near.want_meetings = pair_.trivial && !result_.no_inside;
+    const Candidates candidates = find_candidates(near);
     find_known(candidates);
     for (const KnownFacePair& known : candidates.known)
       if (!told_by_another(known, candidates)) add_known(known);

@@ -25,9 +25,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
-// On which side of a surface a triangle lies: a coarse bracket first, in shares of the chord error.
-constexpr double kRangeShares[3] = {0.1, 1e-3, 1e-5};
-
 class Neighbourhood {
  public:
   Neighbourhood(const DepthProof& proof, const Patch& patch, ProofScratch& scratch)
@@ -290,27 +287,23 @@ class Neighbourhood {
       // Faces that end on a bore end on its true circle; their triangles end on chords of it.
       const double chord = std::max(0.0, -k_.face(wall.triangle).deviation_mm.lo);
       allowed += chord;
-      if (wall.surface->inward)
-        for (const double share : kRangeShares) {
-          if (highest > allowed) return false;
-          const double over =
-              wall.surface
-                  ->signed_distance_range_mm(c[0], c[1], c[2], share * chord + proof_.rounding_mm)
-                  .hi;
-          if (over <= allowed || share == kRangeShares[2]) {
-            highest = over;
-            break;
-          }
-        }
+      if (wall.surface->inward && proof_.layer != Layer::kMesh) {
+        const double rise = rise_above(t, c, wall);
+        return highest + rise <= allowed &&
+               wall.surface->stays_below_mm(c[0], c[1], c[2], allowed - rise);
+      }
     }
     if (highest > allowed) return false;
-    if (proof_.layer == Layer::kMesh) return true;
-    const double rise = Body::offset_range_of(face, proof_.layer).hi - wall.offset_mm;
-    if (rise <= 0.0) return true;
+    return proof_.layer == Layer::kMesh || highest + rise_above(t, c, wall) <= allowed;
+  }
+
+  // By how much the layer moves a triangle more than a wall, along the wall's normal.
+  double rise_above(std::uint32_t t, const Corners& c, const Facet& wall) const {
+    const double rise = Body::offset_range_of(k_.face(t), proof_.layer).hi - wall.offset_mm;
+    if (rise <= 0.0) return 0.0;
     const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
     const double length = n.norm();
-    const double facing = length > 0.0 ? std::max(0.0, n.dot(wall.normal) / length) : 1.0;
-    return highest + facing * rise <= allowed;
+    return rise * (length > 0.0 ? std::max(0.0, n.dot(wall.normal) / length) : 1.0);
   }
 
   // Depths of the patch's points below the plane of a triangle, when all near facets lie below it.

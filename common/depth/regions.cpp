@@ -34,7 +34,15 @@ class UnionFind {
   std::vector<std::uint32_t> parent_;
 };
 
-enum class State : std::uint8_t { kUnseen = 0, kQueued, kDropped, kKept };
+// kNear: a candidate; kReached: from a neighbour that was kept, or a shell inside.
+enum class State : std::uint8_t { kUnseen = 0, kNear, kReached, kDropped, kKept };
+
+struct Asked {
+  State state = State::kUnseen;
+  bool may_interfere = false;
+  std::uint32_t met = Topology::kNone;  // triangle of the other part
+  std::uint32_t number = 0;             // in the list of kept ones
+};
 
 class Grouping {
  public:
@@ -45,36 +53,36 @@ class Grouping {
     const std::uint64_t begin = evaluations_;
     const std::vector<ContainedShell> shells = contained_shells(pair_, evaluations_);
     for (int role = 0; role < 2; ++role) {
-      state_[role].assign(pair_.s(role).mesh->triangles.size(), State::kUnseen);
-      met_[role].assign(state_[role].size(), Topology::kNone);
-      may_interfere_[role].assign(state_[role].size(), 0);
       if (!pair_.k(role).has_inside) continue;
       prepare_limits(role);
       std::deque<std::uint32_t> queue;
       for (const std::uint32_t t : query_.candidates->triangles[role]) {
         queue.push_back(t);
-        state_[role][t] = State::kQueued;
+        asked_[role][t].state = State::kNear;
       }
       for (const ContainedShell& shell : shells)
-        if (shell.role == role && state_[role][shell.triangle] == State::kUnseen) {
+        if (shell.role == role && asked_[role].find(shell.triangle) == nullptr) {
           queue.push_back(shell.triangle);
-          state_[role][shell.triangle] = State::kQueued;
+          asked_[role][shell.triangle].state = State::kReached;
         }
       while (!queue.empty()) {
         const std::uint32_t t = queue.front();
         queue.pop_front();
         const bool capped = evaluations_ - begin > query_.work_cap;
         regions_.capped |= capped;
-        if (capped) may_interfere_[role][t] = 1;
+        if (capped) asked_[role][t].may_interfere = true;
         const bool keep = capped || may_interfere(role, t);
-        state_[role][t] = keep ? State::kKept : State::kDropped;
-        if (!keep || capped) continue;
+        asked_[role][t].state = keep ? State::kKept : State::kDropped;
+        if (!keep) continue;
+        kept_[role].push_back(t);
+        if (capped) continue;
         for (const std::uint32_t n : pair_.s(role).solid->topology().neighbor[t])
-          if (n != Topology::kNone && state_[role][n] == State::kUnseen) {
-            state_[role][n] = State::kQueued;
+          if (n != Topology::kNone && asked_[role].find(n) == nullptr) {
+            asked_[role][n].state = State::kReached;
             queue.push_back(n);
           }
       }
+      std::sort(kept_[role].begin(), kept_[role].end());
     }
     group();
     return std::move(regions_);
@@ -100,14 +108,37 @@ class Grouping {
     }
   }
 
+  // Where the meshes are the parts: a triangle that goes through one of the other part reaches
+  // inside; one that meets none is wholly inside or outside, as its middle is. Only touching ones
+  // are doubtful.
+  bool reaches_inside(int role, std::uint32_t t) {
+    Asked& asked_of = asked_[role][t];
+    const std::uint32_t* partner = query_.candidates->crossing[role].find(t);
+    if (partner != nullptr) {
+      asked_of.met = *partner;
+      asked_of.may_interfere = true;
+      return true;
+    }
+    const TriangleMesh& mesh = *pair_.s(role).mesh;
+    const Vec3 middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0;
+    const Sample sample = sample_at(pair_, Layer::kMesh, role, t, middle);
+    ++evaluations_;
+    asked_of.met = sample.at.triangle;
+    asked_of.may_interfere = sample.depth_mm > pair_.touch_mm;
+    return asked_of.may_interfere;
+  }
+
   bool may_interfere(int role, std::uint32_t t) {
+    if (query_.candidates->has_meetings && (asked_[role].find(t)->state == State::kReached ||
+                                            query_.candidates->crossing[role].find(t) != nullptr))
+      return reaches_inside(role, t);
     const std::uint16_t face = pair_.s(role).face_index(t);
     double limit = limit_[face];
     if (!query_.known->rows.empty())
       for (const std::uint32_t n : pair_.s(role).sharp_neighbours(t))
         limit = std::max(limit, limit_[pair_.s(role).face_index(n)]);
     if (asked(role, t, widest(), limit)) {
-      may_interfere_[role][t] = 1;
+      asked_[role][t].may_interfere = true;
       return true;
     }
     return !pair_.trivial && !beside_known(role, t) && meshes_overlap(role, t);
@@ -125,7 +156,7 @@ class Grouping {
       ++evaluations_;
       const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x);
       if (sample.depth_mm <= pair_.touch_mm) continue;
-      met_[role][t] = sample.at.triangle;
+      asked_[role][t].met = sample.at.triangle;
       return true;
     }
     return false;
@@ -145,75 +176,81 @@ class Grouping {
     const RootQuery root{&pair_, layer, query_.known, role, t, limit};
     const RootAnswer answer = ask_root(root, scratch_, evaluations_);
     if (answer.state == RootState::kBelow) return false;
-    met_[role][t] = answer.best.at.triangle;
+    asked_[role][t].met = answer.best.at.triangle;
     return true;
   }
 
-  void join_neighbours(int role, std::uint32_t first, UnionFind& sets) const {
-    const Topology& topology = pair_.s(role).solid->topology();
-    for (std::uint32_t t = 0; t < state_[role].size(); ++t) {
-      if (state_[role][t] != State::kKept) continue;
-      for (const std::uint32_t n : topology.neighbor[t])
-        if (n != Topology::kNone && state_[role][n] == State::kKept)
-          sets.join(first + t, first + n);
-    }
+  const Asked* kept(int role, std::uint32_t t) const {
+    const Asked* asked = t == Topology::kNone ? nullptr : asked_[role].find(t);
+    return asked != nullptr && asked->state == State::kKept ? asked : nullptr;
   }
 
-  std::size_t count_sets(int role, std::uint32_t first, UnionFind& sets) const {
+  void join_neighbours(int role, UnionFind& sets) const {
+    const Topology& topology = pair_.s(role).solid->topology();
+    for (const std::uint32_t t : kept_[role])
+      for (const std::uint32_t n : topology.neighbor[t])
+        if (const Asked* other = kept(role, n)) sets.join(kept(role, t)->number, other->number);
+  }
+
+  std::size_t count_sets(int role, UnionFind& sets) const {
     std::size_t count = 0;
-    for (std::uint32_t t = 0; t < state_[role].size(); ++t)
-      count += state_[role][t] == State::kKept && sets.find(first + t) == first + t;
+    for (const std::uint32_t t : kept_[role]) {
+      const std::uint32_t number = kept(role, t)->number;
+      count += sets.find(number) == number;
+    }
     return count;
   }
 
   void group() {
-    const auto n0 = static_cast<std::uint32_t>(state_[0].size());
-    const std::uint32_t first[2] = {0, n0};
-    UnionFind sets(n0 + state_[1].size());
+    std::uint32_t number = 0;
+    for (int role = 0; role < 2; ++role)
+      for (const std::uint32_t t : kept_[role]) asked_[role][t].number = number++;
+    UnionFind sets(number);
     std::size_t count[2];
     for (int role = 0; role < 2; ++role) {
-      join_neighbours(role, first[role], sets);
-      count[role] = count_sets(role, first[role], sets);
+      join_neighbours(role, sets);
+      count[role] = count_sets(role, sets);
     }
     const int primary = count[1] > count[0] ? 1 : 0;
     regions_.primary = primary;
-    if (count[primary] > kMostRegions) {
+    if (count[primary] > kMostRegions)
       for (int role = 0; role < 2; ++role)
-        for (std::uint32_t t = 0; t < state_[role].size(); ++t)
-          if (state_[role][t] == State::kKept && met_[role][t] != Topology::kNone &&
-              state_[1 - role][met_[role][t]] == State::kKept)
-            sets.join(first[role] + t, first[1 - role] + met_[role][t]);
-    }
-    number(primary, first, sets);
+        for (const std::uint32_t t : kept_[role]) {
+          const Asked* mine = kept(role, t);
+          if (const Asked* other = kept(1 - role, mine->met))
+            sets.join(mine->number, other->number);
+        }
+    number_regions(primary, sets);
   }
 
-  void number(int primary, const std::uint32_t (&first)[2], UnionFind& sets) {
-    std::vector<std::uint32_t> region_of_set(state_[0].size() + state_[1].size(), Topology::kNone);
-    std::vector<std::uint32_t>& region_of = regions_.region_of_triangle;
-    region_of.assign(state_[primary].size(), Topology::kNone);
+  void number_regions(int primary, UnionFind& sets) {
+    FlatMap<std::uint32_t> region_of_set;
     const auto region_of_leader = [&](std::uint32_t leader) {
-      if (region_of_set[leader] == Topology::kNone)
+      if (region_of_set.find(leader) == nullptr)
         region_of_set[leader] = static_cast<std::uint32_t>(regions_.count++);
-      return region_of_set[leader];
+      return *region_of_set.find(leader);
     };
-    for (std::uint32_t t = 0; t < state_[primary].size(); ++t) {
-      if (state_[primary][t] != State::kKept) continue;
-      region_of[t] = region_of_leader(sets.find(first[primary] + t));
-      regions_.roots.push_back({primary, t, region_of[t]});
+    for (const std::uint32_t t : kept_[primary]) {
+      const std::uint32_t region = region_of_leader(sets.find(kept(primary, t)->number));
+      regions_.region_of_triangle[t] = region;
+      regions_.roots.push_back({primary, t, region});
     }
     const int other = 1 - primary;
-    for (std::uint32_t t = 0; t < state_[other].size(); ++t) {
-      if (state_[other][t] != State::kKept) continue;
-      const std::uint32_t met = met_[other][t];
-      std::uint32_t region = met == Topology::kNone ? Topology::kNone : region_of[met];
-      if (region == Topology::kNone)
+    for (const std::uint32_t t : kept_[other]) {
+      const Asked* mine = kept(other, t);
+      const std::uint32_t* met =
+          mine->met == Topology::kNone ? nullptr : regions_.region_of_triangle.find(mine->met);
+      std::uint32_t region = 0;
+      if (met != nullptr)
+        region = *met;
+      else
         region = regions_.count > 0 ? nearest_region(other, t)
-                                    : region_of_leader(sets.find(first[other] + t));
+                                    : region_of_leader(sets.find(mine->number));
       regions_.roots.push_back({other, t, region});
     }
     regions_.may_interfere.assign(regions_.count, false);
     for (const Root& root : regions_.roots)
-      if (may_interfere_[root.role][root.triangle] != 0) regions_.may_interfere[root.region] = true;
+      if (kept(root.role, root.triangle)->may_interfere) regions_.may_interfere[root.region] = true;
   }
 
   // Of the first triangle of the primary part that is nearest to a triangle of the other.
@@ -239,9 +276,8 @@ class Grouping {
   const PairFrame& pair_;
   SearchScratch& scratch_;
   std::uint64_t& evaluations_;
-  std::vector<State> state_[2];
-  std::vector<std::uint32_t> met_[2];
-  std::vector<std::uint8_t> may_interfere_[2];
+  FlatMap<Asked> asked_[2];
+  std::vector<std::uint32_t> kept_[2];  // ascending
   std::vector<double> limit_;
   std::vector<bool> known_face_;
   std::uint64_t brief_work_ = 0;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/base/flat_map.h"
 #include "common/depth/candidates.h"
 #include "common/depth/search.h"
 
@@ -12,8 +13,8 @@ struct Regions {
   std::vector<Root> roots;
   std::size_t count = 0;
   int primary = 0;  ///< the part whose connected triangles make the regions
-  std::vector<std::uint32_t> region_of_triangle;  ///< of the primary part
-  std::vector<bool> may_interfere;  ///< by region: false: only the meshes overlap, proven
+  FlatMap<std::uint32_t> region_of_triangle;  ///< of the primary part; of those in a region
+  std::vector<bool> may_interfere;            ///< by region: false: only the meshes overlap, proven
   bool capped = false;
 };
 

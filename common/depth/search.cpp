@@ -113,8 +113,10 @@ class Search {
     // What was not reached keeps its bound.
     for (const Item& item : heap_) {
       Bracket& bracket = brackets_[item.region];
-      if (bracket.best.depth_mm <= pair_.touch_mm && item.bound_mm > pair_.touch_mm)
-        bracket.undecided = true;
+      const bool open = query_.sign_only ? bracket.best.depth_mm <= pair_.touch_mm &&
+                                               item.bound_mm > pair_.touch_mm
+                                         : item.bound_mm > tight_limit(bracket);
+      bracket.undecided |= open;
       bracket.hi_mm = std::max(bracket.hi_mm, item.bound_mm);
     }
     for (Bracket& bracket : brackets_)
@@ -131,9 +133,16 @@ class Search {
     // Depth is often reached at a corner. Where there are many, some are enough to know the class.
     const bool skip_corners =
         query_.sign_only && roots_seen_++ % (1 + query_.roots->size() / kMostCornerRoots) != 0;
-    for (const Vec3& corner : piece.corners) {
-      if (skip_corners) break;
-      const Sample sample = sample_at(pair_, query_.layer, root.role, root.triangle, corner);
+    const bool shared = query_.layer == Layer::kMesh;
+    for (int k = 0; k < 3 && !skip_corners; ++k) {
+      const std::uint32_t point = s.mesh->triangles[root.triangle][k];
+      if (const double* depth = shared ? depth_at_[root.role].find(point) : nullptr) {
+        inside += *depth > pair_.touch_mm ? 1 : 0;
+        continue;
+      }
+      const Sample sample =
+          sample_at(pair_, query_.layer, root.role, root.triangle, piece.corners[k]);
+      if (shared) depth_at_[root.role][point] = sample.depth_mm;
       ++work_;
       ++evaluations_;
       const std::uint32_t region = region_of(root.role, root.region, sample.at.triangle);
@@ -173,8 +182,8 @@ class Search {
 
   std::uint32_t region_of(int role, std::uint32_t inherited, std::uint32_t met) const {
     if (query_.region_of_triangle == nullptr || role == query_.primary) return inherited;
-    const std::uint32_t region = (*query_.region_of_triangle)[met];
-    return region == Topology::kNone ? inherited : region;
+    const std::uint32_t* region = query_.region_of_triangle->find(met);
+    return region == nullptr ? inherited : *region;
   }
 
   void take(const Sample& sample, std::uint32_t region) {
@@ -256,6 +265,7 @@ class Search {
   std::uint64_t& evaluations_;
   std::vector<Bracket> brackets_;
   std::vector<Item> heap_;
+  FlatMap<double> depth_at_[2];  // corners of the meshes that were asked
   std::uint64_t work_ = 0, order_ = 0;
   std::uint64_t roots_seen_ = 0;
   bool started_ = false;

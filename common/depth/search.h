@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/base/flat_map.h"
 #include "common/depth/pair_frame.h"
 #include "common/depth/proof.h"
 
@@ -41,9 +42,9 @@ struct SearchQuery {
   const KnownOverlaps* known = nullptr;
   const std::vector<Root>* roots = nullptr;
   std::size_t regions = 1;
-  /// Regions by triangle of the primary part (kNone: none): pieces of the other part follow the
+  /// Regions by triangle of the primary part : pieces of the other part follow the
   /// region of the triangle they meet. Null: pieces stay in their root's region.
-  const std::vector<std::uint32_t>* region_of_triangle = nullptr;
+  const FlatMap<std::uint32_t>* region_of_triangle = nullptr;
   int primary = 0;
   double accuracy_mm = 1e-4;
   bool sign_only = false;      ///< stop when every region is known to be above touch or not

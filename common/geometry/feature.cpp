@@ -147,6 +147,30 @@ double least_over(LeastSearch& search, const Corners& c, int depth) {
                   least_over(search, {half, c[(longest + 1) % 3], apex}, depth - 1));
 }
 
+// Is the outside distance, a convex function, nowhere less than the limit? By tangents, halving
+// only where they leave it open.
+bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int depth) {
+  const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+  const double at_middle = outside_distance(s, middle);
+  if (at_middle < limit_mm) return false;
+  const Vec3 slope = outside_normal(s, middle);
+  double bound = std::numeric_limits<double>::infinity(), reach = 0.0;
+  for (const Vec3& corner : c) {
+    bound = std::min(bound, at_middle + slope.dot(corner - middle));
+    reach = std::max(reach, (corner - middle).norm());
+  }
+  if (std::max(bound, at_middle - reach) >= limit_mm) return true;
+  if (depth == 0) return false;
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if ((c[(k + 1) % 3] - c[k]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm())
+      longest = k;
+  const Vec3 half = 0.5 * (c[longest] + c[(longest + 1) % 3]);
+  const Vec3& apex = c[(longest + 2) % 3];
+  return nowhere_below(s, limit_mm, {c[longest], half, apex}, depth - 1) &&
+         nowhere_below(s, limit_mm, {half, c[(longest + 1) % 3], apex}, depth - 1);
+}
+
 }  // namespace
 
 double Surface::signed_distance_mm(const Vec3& x) const {
@@ -208,6 +232,15 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
     most += std::min(longest * longest / 6.0 * concave_bend(*this), longest);
   }
   return inward ? Interval{-most, -least} : Interval{least, most};
+}
+
+bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double limit_mm) const {
+  constexpr int kHalvings = 24;
+  if (std::max({signed_distance_mm(a), signed_distance_mm(b), signed_distance_mm(c)}) > limit_mm)
+    return false;
+  if (kind == SurfaceKind::kTorus) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
+  if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown || !inward) return true;
+  return nowhere_below(*this, -limit_mm, {a, b, c}, kHalvings);
 }
 
 }  // namespace mortise

@@ -22,6 +22,11 @@ struct SurfaceBand {
                             ///< set: bound of e(x) +- residual over all triangles of the face
     Interval tolerance_mm;  ///< outward positive, of the modelled surface
     DeviationGrade grade = DeviationGrade::kNominal;
+    /// How far the real surface may be off `surface`: a declared one is the truth, whatever the
+    /// corners of the mesh; of a recognized one they are all that is known.
+    double doubt_mm() const {
+      return grade == DeviationGrade::kDeclaredFeature ? 0.0 : residual_mm;
+    }
     std::string tolerance_source;  ///< "Ø20 H7", "profile 0.1", "" when nothing is declared
   };
   std::vector<Face> faces;  ///< faces[0] is the rest of the part

@@ -1,0 +1,14 @@
+#pragma once
+#include "common/geometry/triangle_distance.h"
+
+namespace mortise {
+
+/// Whether the solid triangles of two surfaces go through each other. kDoubtful: touching,
+/// coplanar, or crossing by no more than the tolerance and rounding.
+enum class Meeting : std::uint8_t { kApart = 0, kCrossing, kDoubtful };
+
+/// By the intervals that both cut out of the line in which their planes meet (Moeller 1997), each
+/// widened by what rounding may hide. kApart and kCrossing are certain; 0.1 us.
+Meeting meeting_of(const Triangle& a, const Triangle& b, double tolerance_mm);
+
+}  // namespace mortise
