@@ -236,12 +236,14 @@ class Neighbourhood {
   // A facet that meets the wall at a sharp edge ends on the wall's own layer: where that lies
   // deeper than the mesh, so does the end of the facet.
   bool cut_back(std::uint32_t t, const Facet& wall) const {
-    if (wall.surface != nullptr || wall.offset_mm >= 0.0) return false;
+    if (wall.offset_mm >= 0.0 || wall.slack_mm < -proof_.rounding_mm) return false;
     const std::uint16_t face = k_.face_index(wall.triangle);
-    for (const std::uint32_t other : k_.sharp_neighbours(t))
-      if (k_.face_index(other) == face &&
-          (other == wall.triangle || k_.normal(other).dot(wall.normal) > 1.0 - kOnePlane))
+    for (const std::uint32_t other : k_.sharp_neighbours(t)) {
+      if (k_.face_index(other) != face) continue;
+      if (wall.surface != nullptr || other == wall.triangle ||
+          k_.normal(other).dot(wall.normal) > 1.0 - kOnePlane)
         return true;
+    }
     return false;
   }
 
