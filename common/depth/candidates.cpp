@@ -170,7 +170,7 @@ class Finder {
     if (!overlap) return cone_in_bore(pair);
     pair.overlap = *overlap;
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
-    const bool never = overlap->hi_mm + upper <= pair_.touch_mm;
+    const bool never = overlap->near_hi_mm + upper <= pair_.touch_mm;
     if (never || is_tight(pair_, pair)) return pair;
     found_.bounded.push_back(pair);
     return std::nullopt;
@@ -185,7 +185,7 @@ class Finder {
     const InBoreBound bound = in_bore_bound(pair_, pair.face[0], pair.face[1], query_.margin_mm);
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
     if (!(bound.face_mm + upper <= pair_.touch_mm)) return std::nullopt;
-    pair.overlap.hi_mm = bound.face_mm;
+    pair.overlap.hi_mm = pair.overlap.near_hi_mm = bound.face_mm;
     pair.overlap.lo_mm = -std::numeric_limits<double>::infinity();
     return pair;
   }

@@ -59,8 +59,9 @@ std::optional<FacePairOverlap> ball_in_socket(const Surface& ball, const Surface
   };
   const auto overlap = [&](const Vec3& x) { return (x - socket.point).norm() - socket.radius_mm; };
   FacePairOverlap found;
-  found.lo_mm = found.hi_mm = -std::numeric_limits<double>::infinity();
-  if (const auto far = reach(margin_mm + extent.beyond_mm)) found.hi_mm = overlap(*far);
+  found.lo_mm = found.hi_mm = found.near_hi_mm = -std::numeric_limits<double>::infinity();
+  if (const auto end = reach(extent.beyond_mm)) found.hi_mm = overlap(*end);
+  if (const auto far = reach(margin_mm + extent.beyond_mm)) found.near_hi_mm = overlap(*far);
   if (const auto near = reach(0.0)) {
     found.lo_mm = overlap(*near);
     found.point_B = *near;
@@ -75,8 +76,11 @@ FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surfac
   const Interval& extent = body.extent_of(face);
   // The pole of a sphere need not be a corner.
   const Interval& off = body.band->faces[face].deviation_mm;
-  const double beyond =
+  double beyond =
       surface.kind == SurfaceKind::kSphere ? std::max(std::fabs(off.lo), std::fabs(off.hi)) : 0.0;
+  // A face goes on where the one that ends it moves outward.
+  for (std::size_t i = 0; i < body.band->faces.size(); ++i)
+    if (i != face) beyond = std::max(beyond, Body::offset_of(body.band->faces[i], Layer::kUpper));
   return {extent.lo, extent.hi, beyond};
 }
 
@@ -95,9 +99,11 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
     const auto face = RoundFace::of(convex, {along.lo_mm, along.hi_mm});
     const auto wall = RoundFace::of(hollow, {of_hollow.lo_mm, of_hollow.hi_mm});
     if (!face || !wall) return std::nullopt;
-    const auto reach = round_reach(*face, *wall, margin_mm, kRoundAccuracy_mm);
-    if (!reach) return std::nullopt;
-    found = FacePairOverlap{reach->reach_mm.lo, reach->reach_mm.hi, reach->point, -reach->outward};
+    const auto reach = round_reach(*face, *wall, of_hollow.beyond_mm, kRoundAccuracy_mm);
+    const auto near = round_reach(*face, *wall, margin_mm + of_hollow.beyond_mm, kRoundAccuracy_mm);
+    if (!reach || !near) return std::nullopt;
+    found = FacePairOverlap{reach->reach_mm.lo, reach->reach_mm.hi, near->reach_mm.hi, reach->point,
+                            -reach->outward};
   }
   // Now out of the convex face; B's own normal is asked for.
   if (found && !a.inward) found->normal_B = -found->normal_B;

@@ -15,11 +15,12 @@ struct FaceExtent {
 };
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface);
 
-/// Bracket of the overlap of two declared surfaces where their faces are near each other, nominal
-/// surfaces, mm: sup of -(s_a + s_b). Frame B.
+/// Bracket of the overlap of two declared surfaces where both faces are, nominal surfaces, mm: sup
+/// of -(s_a + s_b). Frame B.
 struct FacePairOverlap {
   double lo_mm = 0.0, hi_mm = 0.0;
-  Vec3 point_B = Vec3::Zero();    ///< on the surface of the convex face, where lo is reached
+  double near_hi_mm = 0.0;      ///< upper end over all that is within the margin of the faces' ends
+  Vec3 point_B = Vec3::Zero();  ///< on the surface of the convex face, where lo is reached
   Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
 };
 

@@ -70,7 +70,7 @@ class Overlap {
   }
 
   void add_row(const KnownFacePair& known, bool told) {
-    KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.hi_mm};
+    KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
     row.told = told;
     const Surface& a = *pair_.bodies[0].band->faces[known.face[0]].surface;
     const Surface& b = *pair_.bodies[1].band->faces[known.face[1]].surface;
@@ -80,11 +80,11 @@ class Overlap {
       row.within_mm = (pair_.X_KS[0] * a.point - b.point).norm() + (a.inward ? b : a).radius_mm -
                       (a.inward ? a : b).radius_mm;
     }
-    if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.hi_mm)) {
+    if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.near_hi_mm)) {
       // Between its ends the inside of a cone is the hull of its end circles, over which the convex
       // distance is no larger than on them.
       const int convex = a.inward ? 1 : 0;
-      row.within_mm = known.overlap.hi_mm;
+      row.within_mm = known.overlap.near_hi_mm;
       row.within_extent_mm = pair_.bodies[convex].extent_of(known.face[convex]);
     }
     known_.rows.push_back(row);

@@ -127,7 +127,7 @@ class RealTimeSearch {
     const auto overlap_at = [&](double t) {
       const Pose X_BA = path_.pose(0, t);
       const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, margin);
-      return (overlap ? overlap->hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
+      return (overlap ? overlap->near_hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
     };
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
     if (const double at0 = within_at(0.0), at1 = within_at(1.0);
