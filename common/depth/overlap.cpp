@@ -13,6 +13,9 @@ namespace {
 // Triangles of a known pair of faces that are asked how far the meshes overlap.
 constexpr std::size_t kKnownQuestions = 24;
 
+// Where a witness of a closed form is looked for: shares of the way to the middle of the face.
+constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
+
 // Evaluations of a search that only has to find points, not to prove that there are none.
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 
@@ -203,26 +206,35 @@ class Overlap {
     for (const Sample& sample : mesh.samples)
       region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
     region.points_W.push_back(region.point_W);
-    if (region.certain_mm.lo > 0.0) set_witness(known_witness(known, region.certain_mm.lo), region);
+    if (region.certain_mm.lo > 0.0) set_witness(known_witness(known), region);
     result_.regions.push_back(std::move(region));
   }
 
-  std::optional<Vec3> known_witness(const KnownFacePair& known, double depth_mm) const {
-    // The closed form names a point of the convex face, on its nominal surface; frame B.
-    const Surface& surface_a = *pair_.bodies[0].band->faces[known.face[0]].surface;
-    const int role = surface_a.inward ? 1 : 0;
-    const Vec3 out_of_k_B = (role == 0 ? 1.0 : -1.0) * known.overlap.normal_B;
-    const double offset =
-        Body::offset_of(pair_.bodies[role].band->faces[known.face[role]], Layer::kLower);
-    Sample least;
-    least.role = role;
-    const Vec3 point_B = known.overlap.point_B - offset * out_of_k_B;
-    least.point_K = role == 0 ? point_B : Vec3(pair_.X_KS[1] * point_B);
-    least.depth_mm = depth_mm;
-    least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
-    least.triangle =
-        nearest_point(*pair_.s(role).solid, pair_.X_KS[1 - role] * least.point_K).triangle;
-    return find_witness(pair_, least);
+  // From the point that the closed form names, and from others farther from the end of its face.
+  std::optional<Vec3> known_witness(const KnownFacePair& known) const {
+    const int role = pair_.bodies[0].band->faces[known.face[0]].surface->inward ? 1 : 0;
+    const SurfaceBand::Face& convex = pair_.s(role).band->faces[known.face[role]];
+    const SurfaceBand::Face& hollow = pair_.k(role).band->faces[known.face[1 - role]];
+    const Surface& surface = *convex.surface;
+    const Vec3 named_S =
+        role == 0 ? Vec3(pair_.X_KS[1] * known.overlap.point_B) : known.overlap.point_B;
+    const double z = (named_S - surface.point).dot(surface.axis);
+    const double to_middle = pair_.s(role).extent_of(known.face[role]).middle() - z;
+    for (const double share : kWitnessShares) {
+      Vec3 x = named_S + share * to_middle * surface.axis;
+      const Vec3 n = surface.outward_normal(x);
+      x += (Body::offset_of(convex, Layer::kLower) - surface.signed_distance_mm(x)) * n;
+      Sample least;
+      least.role = role;
+      least.point_K = pair_.X_KS[role] * x;
+      least.depth_mm = Body::offset_of(hollow, Layer::kLower) -
+                       hollow.surface->signed_distance_mm(least.point_K);
+      if (!(least.depth_mm > 0.0)) continue;
+      least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
+      least.triangle = nearest_point(*pair_.s(role).solid, x).triangle;
+      if (const auto witness = find_witness(pair_, least)) return witness;
+    }
+    return std::nullopt;
   }
 
   Bracket mesh_overlap_of(const KnownFacePair& known) {
