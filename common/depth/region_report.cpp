@@ -12,6 +12,10 @@ constexpr std::size_t kMostCoincidenceQuestions = 64;
 // Two normals look the same way.
 constexpr double kSameWay = 0.99;
 
+// Steps to a point inside both parts, as shares of the overlap: a part may be far thinner than the
+// overlap is deep.
+constexpr double kWitnessShares[] = {0.5, 0.25, 0.1, 0.02, 2e-3, 2e-4, 2e-5, 2e-6};
+
 // Depth of x in the least real part.
 double least_depth(const Body& body, const Vec3& x) {
   return body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower);
@@ -72,7 +76,7 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
                               mesh_s.corner(least.triangle, 2)) /
                              3.0);
   const Vec3 inwards = ((middle_K - p).stableNormalized() + into_s).stableNormalized();
-  for (const double share : {0.5, 0.25, 0.1, 0.02})
+  for (const double share : kWitnessShares)
     for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized()), inwards,
                               Vec3((out + inwards).stableNormalized())}) {
       const Vec3 w = p + share * least.depth_mm * along;

@@ -11,10 +11,14 @@ constexpr int kRootEvaluations = 8;
 
 // A decided search goes on for this many evaluations per root, so that the numbers in its report
 // are good; the class is known by then.
+// Few roots are large ones, whose deepest points are far from their corners.
 constexpr std::uint64_t kPolishPerRoot = 2, kPolishLeast = 60, kPolishMost = 600;
+constexpr std::uint64_t kFewRoots = 16, kPolishFew = 200;
 
 // How often the best triangle is cut in four around its best quarter.
 constexpr int kClimbs = 10;
+// A step that gains less than this is the last one.
+constexpr double kWorthwhile = 1.05;
 
 // How much of a depth the bracket may leave open when only the class was asked for.
 constexpr double kLooseShare = 0.2;
@@ -93,16 +97,19 @@ class Search {
         pair_(*query.pair),
         scratch_(scratch),
         evaluations_(evaluations),
-        brackets_(query.regions) {}
+        brackets_(query.regions),
+        best_of_role_(query.regions) {}
 
   std::vector<Bracket> run() {
     for (const Root& root : *query_.roots) add_root(root);
     std::make_heap(heap_.begin(), heap_.end(), worse);
     if (query_.sign_only)
-      for (Bracket& bracket : brackets_)
-        if (bracket.best.depth_mm <= pair_.touch_mm) climb(bracket);
+      for (std::size_t i = 0; i < brackets_.size(); ++i)
+        for (const Sample& from : best_of_role_[i]) climb(from, brackets_[i]);
+    const std::uint64_t roots = query_.roots->size();
     const std::uint64_t polish =
-        std::clamp<std::uint64_t>(kPolishPerRoot * query_.roots->size(), kPolishLeast, kPolishMost);
+        roots <= kFewRoots ? kPolishFew
+                           : std::clamp(kPolishPerRoot * roots, kPolishLeast, kPolishMost);
     while (!heap_.empty() && work_ < query_.work_cap) {
       if (query_.sign_only && work_ >= polish && all_decided()) break;
       std::pop_heap(heap_.begin(), heap_.end(), worse);
@@ -157,17 +164,18 @@ class Search {
     brackets_[root.region].area_mm2 += 0.5 * n.norm() * inside / (skip_corners ? 1.0 : 4.0);
   }
 
-  // From the best triangle's middle towards its deepest point.
-  void climb(Bracket& bracket) {
-    if (!std::isfinite(bracket.best.depth_mm)) return;
-    const int role = bracket.best.role;
-    Piece piece = whole(pair_.s(role), bracket.best.triangle);
-    for (int i = 0; i < kClimbs && bracket.best.depth_mm <= pair_.touch_mm; ++i) {
+  // From a triangle's middle towards its deepest point. Of a layer only the sign counts.
+  void climb(const Sample& from, Bracket& bracket) {
+    if (!std::isfinite(from.depth_mm)) return;
+    Piece piece = whole(pair_.s(from.role), from.triangle);
+    double reached = from.depth_mm;
+    for (int i = 0; i < kClimbs; ++i) {
+      if (query_.layer != Layer::kMesh && bracket.best.depth_mm > pair_.touch_mm) return;
       double deepest = -std::numeric_limits<double>::infinity();
       Piece next = piece;
       for (const Piece& quarter : quarters(piece)) {
         const Vec3 middle = (quarter.corners[0] + quarter.corners[1] + quarter.corners[2]) / 3.0;
-        const Sample sample = sample_at(pair_, query_.layer, role, piece.triangle, middle);
+        const Sample sample = sample_at(pair_, query_.layer, from.role, piece.triangle, middle);
         ++work_;
         ++evaluations_;
         if (sample.depth_mm > deepest) {
@@ -176,6 +184,8 @@ class Search {
         }
         if (sample.depth_mm > bracket.best.depth_mm) bracket.best = sample;
       }
+      if (reached > pair_.touch_mm && deepest <= kWorthwhile * reached) return;
+      reached = std::max(reached, deepest);
       piece = next;
     }
   }
@@ -189,6 +199,8 @@ class Search {
   void take(const Sample& sample, std::uint32_t region) {
     Bracket& bracket = brackets_[region];
     if (sample.depth_mm > bracket.best.depth_mm) bracket.best = sample;
+    Sample& of_role = best_of_role_[region][sample.role];
+    if (sample.depth_mm > of_role.depth_mm) of_role = sample;
   }
 
   void push(const Piece& piece, int role, std::uint32_t region, double parent_bound) {
@@ -264,6 +276,7 @@ class Search {
   SearchScratch& scratch_;
   std::uint64_t& evaluations_;
   std::vector<Bracket> brackets_;
+  std::vector<std::array<Sample, 2>> best_of_role_;
   std::vector<Item> heap_;
   FlatMap<double> depth_at_[2];  // corners of the meshes that were asked
   std::uint64_t work_ = 0, order_ = 0;
