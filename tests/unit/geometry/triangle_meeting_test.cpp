@@ -28,8 +28,12 @@ TEST(TriangleMeeting, IsCertainWhereItSaysSo) {
     const Meeting meeting = meeting_of(a, b, 1e-6);
     EXPECT_EQ(meeting, meeting_of(b, a, 1e-6));
     const TriangleDistance distance = triangle_distance(a, b);
-    if (meeting == Meeting::kApart) EXPECT_GT(distance.distance_mm, 0.0) << i;
-    if (meeting == Meeting::kCrossing) EXPECT_TRUE(triangles_cross(a, b)) << i;
+    if (meeting == Meeting::kApart) {
+      EXPECT_GT(distance.distance_mm, 0.0) << i;
+    }
+    if (meeting == Meeting::kCrossing) {
+      EXPECT_TRUE(triangles_cross(a, b)) << i;
+    }
     apart += meeting == Meeting::kApart;
     crossing += meeting == Meeting::kCrossing;
     doubtful += meeting == Meeting::kDoubtful;
