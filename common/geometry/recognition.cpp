@@ -21,6 +21,9 @@ constexpr double kTakesOver = 2.0;
 
 // A first guess this far off, as a share of the extent of its points, is of another kind.
 constexpr double kFarOff = 0.05;
+// A fit to seeds that is so many times farther off than the loosest share after a few steps will
+// not come near.
+constexpr double kHopeless = 30.0;
 // Fits to seeds stop where a step wins less: exact points win decades a step.
 constexpr double kWorthGoingOn = 0.05;
 
@@ -67,6 +70,7 @@ class Recognizer {
       std::optional<Region> found;
       if (kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone)
         found = first_of(kind, sets.ribbons, search);
+      if (kind == SurfaceKind::kTorus && best) found = torus_of(*best, sets, search);
       if (!found) found = first_of(kind, sets.patches, search);
       if (!found) continue;
       const auto worth = [](const Region& r) { return static_cast<double>(r.triangles.size()); };
@@ -82,13 +86,32 @@ class Recognizer {
       const std::vector<Vec3> points = grower_.points_of(seeds);
       const std::vector<OrientedPoint> normals = grower_.normals_of(seeds);
       const auto guess = guess_of(kind, points, normals);
-      if (!guess || residual_of(*guess, points) > kFarOff * extent_of(points)) continue;
-      const auto fit = fitted_surface(*guess, points, kWorthGoingOn);
-      if (!fit) continue;
-      const double off_mm = residual_of(*fit, points) - grower_.rounding_mm();
-      search.least_share =
-          std::min(search.least_share, off_mm / size_mm(*fit, solid_.mesh(), seeds));
-      if (auto region = grower_.grow(*fit, seeds, search.share)) return region;
+      if (!guess) continue;
+      if (auto region = from_guess(*guess, points, seeds, search)) return region;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Region> from_guess(const Surface& guess, std::span<const Vec3> points,
+                                   std::span<const std::uint32_t> seeds, Search& search) {
+    if (residual_of(guess, points) > kFarOff * extent_of(points)) return std::nullopt;
+    const double size = size_mm(guess, solid_.mesh(), seeds);
+    const double hopeless_mm = kHopeless * (kShares.back() * size + grower_.rounding_mm());
+    const auto fit = fitted_surface(guess, points, kWorthGoingOn, hopeless_mm);
+    if (!fit) return std::nullopt;
+    const double off_mm = residual_of(*fit, points) - grower_.rounding_mm();
+    search.least_share = std::min(search.least_share, off_mm / size_mm(*fit, solid_.mesh(), seeds));
+    return grower_.grow(*fit, seeds, search.share);
+  }
+
+  // A strip may be one of a torus: its axis is that of the torus.
+  std::optional<Region> torus_of(const Region& strip, const SeedSets& sets, Search& search) {
+    if (!measure_region(solid_.mesh(), strip.surface, strip.triangles).one_row) return std::nullopt;
+    for (const auto& seeds : sets.patches) {
+      const std::vector<Vec3> points = grower_.points_of(seeds);
+      const auto guess = guess_torus_about(strip.surface, points);
+      if (!guess) continue;
+      if (auto region = from_guess(*guess, points, seeds, search)) return region;
     }
     return std::nullopt;
   }

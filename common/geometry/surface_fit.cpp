@@ -14,6 +14,8 @@ using Vec7 = Eigen::Matrix<double, kMaxParameters, 1>;
 using Mat7 = Eigen::Matrix<double, kMaxParameters, kMaxParameters>;
 
 constexpr int kIterations = 25;
+// Iterations after which a fit must be near: it wins decades a step.
+constexpr int kPatience = 3;
 // A root mean square residual that only rounding leaves, as a share of the extent.
 constexpr double kExact = 1e-15;
 // A radius this many times the extent of the points says that they are flat.
@@ -29,6 +31,7 @@ struct Model {
   Vec3 p = Vec3::Zero(), a = Vec3::UnitZ(), u = Vec3::UnitX(), v = Vec3::UnitY();
   double size = 0.0;   // cylinder, sphere: radius; cone: radius at p; torus: of the centre circle
   double other = 0.0;  // cone: half angle; torus: tube radius
+  double cosine = 1.0, sine = 0.0;  // of `other`
 
   int parameters() const {
     switch (kind) {
@@ -41,6 +44,11 @@ struct Model {
       default:
         return 7;
     }
+  }
+  void set_angle(double angle) {
+    other = angle;
+    cosine = std::cos(angle);
+    sine = std::sin(angle);
   }
   void set_axis(const Vec3& axis) {
     a = axis.normalized();
@@ -60,7 +68,7 @@ double residual_at(const Model& m, const Vec3& x) {
   const double z = d.dot(m.a), rho = (d - z * m.a).norm();
   if (m.kind == SurfaceKind::kCylinder) return rho - m.size;
   if (m.kind == SurfaceKind::kTorus) return std::hypot(rho - m.size, z) - m.other;
-  return (rho - m.size) * std::cos(m.other) - z * std::sin(m.other);
+  return (rho - m.size) * m.cosine - z * m.sine;
 }
 
 Row row_of(const Model& m, const Vec3& x) {
@@ -83,8 +91,8 @@ Row row_of(const Model& m, const Vec3& x) {
     row.residual = rho - m.size;
     row.slope[4] = -1.0;
   } else if (m.kind == SurfaceKind::kCone) {
-    to_rho = std::cos(m.other);
-    to_z = -std::sin(m.other);
+    to_rho = m.cosine;
+    to_z = -m.sine;
     row.residual = (rho - m.size) * to_rho + z * to_z;
     row.slope[4] = -to_rho;
     row.slope[5] = (rho - m.size) * to_z - z * to_rho;
@@ -119,7 +127,7 @@ Model moved(const Model& m, const Vec7& step) {
     next.other += step[6];
   } else {
     next.size += step[4];
-    if (m.kind == SurfaceKind::kCone) next.other += step[5];
+    if (m.kind == SurfaceKind::kCone) next.set_angle(m.other + step[5]);
   }
   return next;
 }
@@ -161,7 +169,7 @@ Model model_of(const Surface& s, const Scaled& frame) {
   if (s.kind == SurfaceKind::kCylinder || s.kind == SurfaceKind::kCone) {
     const double along = -m.p.dot(m.a);  // the foot of the middle of the points
     m.p += along * m.a;
-    m.other = s.half_angle_rad;
+    m.set_angle(s.half_angle_rad);
     m.size = s.kind == SurfaceKind::kCone ? along * std::tan(s.half_angle_rad)
                                           : s.radius_mm / frame.extent;
   } else {
@@ -200,7 +208,7 @@ Surface surface_of(const Model& m, const Scaled& frame, bool inward) {
 }  // namespace
 
 std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3> points,
-                                      double worth_going_on) {
+                                      double worth_going_on, double hopeless_mm) {
   if (points.size() < 4) return std::nullopt;
   const Scaled frame = scaled(points);
   if (!(frame.extent > 0.0)) return std::nullopt;
@@ -208,6 +216,8 @@ std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3
   const int n = m.parameters();
   double cost = cost_of(m, frame.points), damping = 1e-6;
   const double exact = std::pow(kExact, 2) * static_cast<double>(frame.points.size());
+  const double hopeless =
+      std::pow(hopeless_mm / frame.extent, 2) * static_cast<double>(points.size());
   for (int i = 0; i < kIterations && cost > exact && std::isfinite(cost); ++i) {
     Mat7 normal = Mat7::Zero();
     Vec7 gradient = Vec7::Zero();
@@ -216,6 +226,7 @@ std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3
       normal.noalias() += row.slope * row.slope.transpose();
       gradient += row.residual * row.slope;
     }
+    if (i >= kPatience && cost > hopeless) return std::nullopt;
     bool better = false;
     double step_size = 0.0;
     const double cost_before = cost;

@@ -16,10 +16,11 @@ struct OrientedPoint {
 /// Moves a surface to the least sum of squared distances of the points (Levenberg-Marquardt on
 /// orthogonal distances, analytic derivatives). From a start within its basin it ends at rounding
 /// for points that lie on a surface of this kind. `inward` is kept. It stops where a step wins less
-/// than worth_going_on of the cost. A surface that degenerates (a
+/// than worth_going_on of the cost, and gives up when the points stay farther off than hopeless_mm
+/// (root mean square) after a few steps. A surface that degenerates (a
 /// radius without bound, a cone without angle) gives nothing. O(iterations n).
 std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3> points,
-                                      double worth_going_on = 1e-6);
+                                      double worth_going_on = 1e-6, double hopeless_mm = 1e300);
 
 /// Largest distance of a point from the surface, mm.
 double residual_of(const Surface& surface, std::span<const Vec3> points);
@@ -40,5 +41,8 @@ std::optional<Surface> guess_sphere(std::span<const Vec3> points);
 /// revolution meet its axis.
 std::optional<Surface> guess_torus(std::span<const Vec3> points,
                                    std::span<const OrientedPoint> facets);
+
+/// A torus about an axis that is known from a strip of it: the circle through the meridian.
+std::optional<Surface> guess_torus_about(const Surface& strip, std::span<const Vec3> points);
 
 }  // namespace mortise

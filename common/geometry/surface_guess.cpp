@@ -157,17 +157,27 @@ std::optional<Surface> guess_torus(std::span<const Vec3> points,
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(0.5 * (least + least.transpose()));
   const Vec3 axis = solver.eigenvectors().col(0);
   const Vec3 on_axis = middle + extent * axis.cross(Vec3(shift_of_turn * axis));
+  Surface about;
+  about.point = on_axis;
+  about.axis = axis;
+  return guess_torus_about(about, points);
+}
+
+std::optional<Surface> guess_torus_about(const Surface& strip, std::span<const Vec3> points) {
+  if (points.size() < 8) return std::nullopt;
+  const Vec3 middle = middle_of(points);
+  const Vec3 on_axis = strip.point + (middle - strip.point).dot(strip.axis) * strip.axis;
   std::vector<Eigen::Vector2d> meridian;
   for (const Vec3& x : points) {
-    const double z = (x - on_axis).dot(axis);
-    meridian.emplace_back((x - on_axis - z * axis).norm(), z);
+    const double z = (x - on_axis).dot(strip.axis);
+    meridian.emplace_back((x - on_axis - z * strip.axis).norm(), z);
   }
   const auto circle = circle_through(meridian);
   if (!circle || !(circle->x > circle->radius)) return std::nullopt;
   Surface s;
   s.kind = SurfaceKind::kTorus;
-  s.axis = axis;
-  s.point = on_axis + circle->y * axis;
+  s.axis = strip.axis;
+  s.point = on_axis + circle->y * strip.axis;
   s.radius_mm = circle->x;
   s.tube_radius_mm = circle->radius;
   return s;
