@@ -41,15 +41,11 @@ class Recognizer {
         owner_(solid.mesh().triangles.size(), kNobody) {}
 
   Recognition run() {
-    std::vector<double> least_share(facets_.count(), 0.0);
+    given_up_.assign(facets_.count(), 0.0);
+    // Sparse seeds first: large regions are found from a few, and their fringes need none.
     for (const double share : kShares)
-      for (std::uint32_t f = 0; f < facets_.count(); ++f) {
-        if (owner_[facets_.triangles(f).front()] != kNobody || !seeds_.bends_smoothly(f)) continue;
-        if (least_share[f] > share) continue;  // its seeds fit nothing so well
-        Search search{f, share};
-        if (auto region = best_about(search)) claim(std::move(*region));
-        least_share[f] = search.least_share;
-      }
+      for (const std::uint32_t stride : {64U, 8U, 1U})
+        for (std::uint32_t f = 0; f < facets_.count(); f += stride) try_facet(f, share);
     std::erase_if(regions_, [](const Region& r) { return r.triangles.empty(); });
     return finish_recognition(solid_, facets_, grower_, std::move(regions_), options_.planes);
   }
@@ -60,6 +56,16 @@ class Recognizer {
     double share = 0.0;
     double least_share = std::numeric_limits<double>::infinity();  // of any fit to any seeds
   };
+
+  void try_facet(std::uint32_t f, double share) {
+    if (given_up_[f] >= share || owner_[facets_.triangles(f).front()] != kNobody ||
+        !seeds_.bends_smoothly(f))
+      return;
+    Search search{f, share};
+    if (auto region = best_about(search)) claim(std::move(*region));
+    // Its seeds fit nothing better than that: no use in trying again below it.
+    given_up_[f] = std::max({given_up_[f], share, std::nextafter(search.least_share, 0.0)});
+  }
 
   // The region that explains most about a facet; simpler kinds win where they do nearly as well.
   std::optional<Region> best_about(Search& search) {
@@ -153,7 +159,14 @@ class Recognizer {
     const std::size_t before = region.triangles.size();
     std::erase_if(region.triangles, [&](std::uint32_t t) { return owner_[t] != kNobody; });
     if (region.triangles.empty()) return;
-    if (region.triangles.size() < before && !grower_.settle(region)) return;
+    if (region.triangles.size() < before && !grower_.settle(region)) {
+      // What is left over beside others would be found again from each of its facets.
+      for (const std::uint32_t t : region.triangles) {
+        double& given_up = given_up_[facets_.of_triangle[t]];
+        given_up = std::max(given_up, region.share);
+      }
+      return;
+    }
     for (const std::uint32_t t : region.triangles)
       owner_[t] = static_cast<std::int32_t>(regions_.size());
     regions_.push_back(std::move(region));
@@ -167,6 +180,7 @@ class Recognizer {
   RecognitionOptions options_;
   std::vector<std::int32_t> owner_;
   std::vector<Region> regions_;
+  std::vector<double> given_up_;  // by facet: up to this share it need not be tried
 };
 
 }  // namespace
