@@ -56,6 +56,7 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
     else
       top.error("policy", "'" + *policy + "' is not known; write stop or report");
   }
+  if (const auto undeclared = read_deviation(top)) scenario.undeclared = *undeclared;
   if (const auto jump = top.positive_length_mm("max_jump")) scenario.max_jump_mm = *jump;
   if (const auto lease = top.number("lease_s")) {
     if (*lease >= 0.1 && *lease <= 86400.0)
@@ -189,8 +190,8 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
   YamlContext context;
   context.file = name;
   const YamlMap top(context, document, "scenario",
-                    {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "parts",
-                     "fits", "exclusions", "users"});
+                    {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation",
+                     "parts", "fits", "exclusions", "users"});
   if (top.usable()) {
     read_head(context, top, reading.scenario);
     read_list(context, top, "parts", reading.scenario, read_part);

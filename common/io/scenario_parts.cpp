@@ -181,7 +181,9 @@ void read_surface(YamlContext& context, const YamlMap& map, Surface& surface) {
   for (const std::string_view key :
        {"point", "axis", "radius", "diameter", "tube_radius", "half_angle_deg", "inward"})
     if (!map.has("kind") && map.has(key))
-      map.error(key, "needs kind: beside it; without kind the generator's own surface is meant");
+      map.error(key,
+                "needs kind: beside it; without kind the generator's own or a recognized surface "
+                "is meant");
   const auto kind = map.text("kind");
   if (!kind) return;
   const auto& kinds = surface_kinds();
@@ -224,8 +226,11 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
   feature.name = name;
   feature.at.line = map.line();
   read_surface(context, map, feature.surface);
-  if (!map.has("kind") && part.mesh.generator.empty())
-    map.error("kind is missing: write plane, cylinder, cone, sphere or torus");
+  if (!map.has("kind") && part.mesh.generator.empty() &&
+      part.undeclared == UndeclaredSurface::kNominal)
+    map.error(
+        "kind is missing: write plane, cylinder, cone, sphere or torus, or deviation: recognized "
+        "for the part");
   if (const auto along = map.numbers("along", 2)) {
     if ((*along)[0] < (*along)[1])
       feature.along_mm = Interval{(*along)[0] * context.unit_mm, (*along)[1] * context.unit_mm};
@@ -337,10 +342,20 @@ void read_repeat(YamlContext& context, const YAML::Node& node, const Scenario::P
 
 }  // namespace
 
+std::optional<UndeclaredSurface> read_deviation(const YamlMap& map) {
+  const auto text = map.text("deviation");
+  if (!text) return std::nullopt;
+  if (*text == "none") return UndeclaredSurface::kNominal;
+  if (*text == "recognized") return UndeclaredSurface::kRecognized;
+  if (*text == "estimated") return UndeclaredSurface::kEstimated;
+  map.error("deviation", "'" + *text + "' is not known; write recognized, estimated or none");
+  return std::nullopt;
+}
+
 void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
   const YamlMap map(context, node, "part",
-                    {"name", "mesh", "generator", "pose", "moving", "chord_error", "tolerance",
-                     "features", "instances", "repeat"});
+                    {"name", "mesh", "generator", "pose", "moving", "chord_error", "deviation",
+                     "tolerance", "features", "instances", "repeat"});
   if (!map.usable()) return;
   Scenario::PartSpec part;
   part.at.line = map.line();
@@ -363,6 +378,10 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
     else
       map.error("chord_error", "must not be negative");
   }
+  part.undeclared = read_deviation(map).value_or(scenario.undeclared);
+  if (map.has("deviation") && part.undeclared == UndeclaredSurface::kEstimated &&
+      part.chord_error_mm)
+    map.error("deviation", "estimated and chord_error: both speak of the rest; remove one");
   if (const YAML::Node tolerance = map.find("tolerance"))
     part.tolerance = read_tolerance(context, tolerance, "part: tolerance");
   if (const YAML::Node features = map.find("features")) read_features(context, features, part);

@@ -15,6 +15,9 @@ inline constexpr std::size_t kMaxParts = 100'000;
 /// Reads one entry of `parts` and appends it, once per instance or repeat.
 void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario);
 
+/// deviation: recognized | estimated | none, of the whole file or of one part.
+std::optional<UndeclaredSurface> read_deviation(const YamlMap& map);
+
 /// "±0.05", {plus_minus: 0.05}, {profile: 0.1, unequal: 0.03}, {lower: -0.02, upper: 0.01}.
 std::optional<Scenario::Tolerance> read_tolerance(YamlContext& context, const YAML::Node& node,
                                                   const std::string& what);

@@ -7,6 +7,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
+#include "common/io/scene_features.h"
 #include "common/io/scene_rules.h"
 #include "scenarios/generators/generators.h"
 
@@ -46,6 +47,7 @@ AlikeKey key_of(const Scenario::MeshSource& mesh) {
 AlikeKey key_of(const Scenario::PartSpec& part) {
   AlikeKey key = key_of(part.mesh);
   key.add(part.chord_error_mm.value_or(-1.0)).add(part.tolerance);
+  key.add(static_cast<double>(part.undeclared));
   for (const auto& f : part.features) {
     const Surface& s = f.surface;
     key.add(f.name).add(static_cast<double>(s.kind)).add(s.point).add(s.axis).add(s.radius_mm);
@@ -127,9 +129,14 @@ class SceneLoader {
       if (face.name.empty() && face.tolerance_source.empty() &&
           face.grade != DeviationGrade::kDeclaredChord)
         continue;
+      if (face.grade == DeviationGrade::kEstimated) continue;  // all in one line below
       scene_.tolerances.push_back({part.name, face.name, face.tolerance_source, face.tolerance_mm,
                                    face.grade, face.deviation_mm, face.residual_mm});
     }
+    if (const auto estimated = estimated_deviation_of(part.band))
+      scene_.tolerances.push_back({part.name, "", part.band.faces[0].tolerance_source,
+                                   part.band.faces[0].tolerance_mm, DeviationGrade::kEstimated,
+                                   *estimated, 0.0});
   }
 
   std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, std::size_t index) {
@@ -141,9 +148,15 @@ class SceneLoader {
     kind.stated.kind = index;
     if (spec.tolerance)
       kind.stated.rest = {{spec.tolerance->offset_mm, spec.tolerance->text}, spec.tolerance->at};
-    if (!match_features(spec, *mesh, kind)) return std::nullopt;
-    kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
-                            for_band(kind.stated.rest), for_band(kind.stated.of_feature)});
+    const Recognition* recognized = spec.undeclared == UndeclaredSurface::kNominal
+                                        ? nullptr
+                                        : &recognized_.of(*kind.solid, kind.report.quantum_mm);
+    if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
+    if (recognized != nullptr) add_undeclared(*recognized, kind);
+    kind.band =
+        build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
+                    for_band(kind.stated.rest), for_band(kind.stated.of_feature),
+                    spec.undeclared == UndeclaredSurface::kEstimated, kind.report.quantum_mm});
     return kind;
   }
 
@@ -192,19 +205,31 @@ class SceneLoader {
 
   // 3. features
 
-  bool match_features(const Scenario::PartSpec& spec, const LoadedMesh& mesh, PartKind& kind) {
-    const std::vector<Scenario::FeatureSpec> specs = with_generated(spec, mesh);
+  static void add_undeclared(const Recognition& recognized, PartKind& kind) {
+    for (Feature& feature :
+         undeclared_features(recognized, kind.features, kind.solid->mesh().triangles.size())) {
+      kind.features.push_back(std::move(feature));
+      kind.stated.of_feature.push_back(kind.stated.rest);
+    }
+  }
+
+  bool match_features(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                      const Recognition* recognized, PartKind& kind) {
+    std::vector<Scenario::FeatureSpec> specs = with_generated(spec, mesh);
     bool good = true;
-    for (const auto& declared : specs) {
+    for (auto& declared : specs) {
       const std::string who = "part " + spec.name + ": feature " + declared.name + ": ";
-      if (declared.surface.kind == SurfaceKind::kUnknown) {
-        finding(true, declared.at,
-                who + "generator " + spec.mesh.generator + " has no feature of this name; " +
-                    known_names(mesh));
+      const bool named = declared.surface.kind == SurfaceKind::kUnknown;
+      const Feature* own =
+          named && recognized != nullptr ? find_recognized(*recognized, declared.name) : nullptr;
+      if (named && own == nullptr) {
+        finding(true, declared.at, who + not_known(spec, mesh, recognized));
         good = false;
         continue;
       }
-      Result<FeatureMatch> match = match_of(spec, declared, mesh);
+      if (own != nullptr) declared.surface = own->surface;
+      Result<FeatureMatch> match = own != nullptr ? Result<FeatureMatch>(FeatureMatch{*own, ""})
+                                                  : match_of(spec, declared, mesh);
       if (!match) {
         finding(true, declared.at, who + match.error().text);
         good = false;
@@ -264,6 +289,14 @@ class SceneLoader {
       }
     }
     return specs;
+  }
+
+  static std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                               const Recognition* recognized) {
+    if (spec.mesh.generator.empty() && recognized != nullptr)
+      return "no feature of this name was recognized; " + recognized_names(*recognized);
+    return "generator " + spec.mesh.generator + " has no feature of this name; " +
+           known_names(mesh);
   }
 
   static std::string known_names(const LoadedMesh& mesh) {
@@ -337,37 +370,10 @@ class SceneLoader {
   std::vector<std::optional<PartKind>> kinds_;  // nothing: could not be made, said in findings
   std::map<std::string, std::optional<LoadedMesh>> mesh_of_;
   std::map<std::string, SolidPtr> solid_of_;
+  RecognizedMeshes recognized_;
 };
 
-Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
-  Result<GeneratedPart> generated = generate(part.mesh.generator, part.mesh.parameters);
-  if (!generated) return generated.error();
-  ImportedMesh imported;
-  imported.mesh = std::move(generated->mesh);
-  ImportReport& report = imported.report;
-  report.file = "generator " + part.mesh.generator;
-  report.format = "generated";
-  report.raw_vertices = report.points = imported.mesh.points_mm.size();
-  report.raw_triangles = report.triangles = imported.mesh.triangles.size();
-  const Topology topology = build_topology(imported.mesh);
-  report.boundary_edges = topology.boundary_edges;
-  report.non_manifold_edges = topology.non_manifold_edges;
-  report.misoriented_edges = topology.misoriented_edges;
-  report.components = topology.components;
-  report.volume_mm3 = topology.volume_mm3;
-  report.closed = topology.closed();
-  return imported;
-}
-
 }  // namespace
-
-MeshProvider default_meshes() {
-  return [](const Scenario& scenario, const Scenario::PartSpec& part) -> Result<ImportedMesh> {
-    if (!part.mesh.generator.empty()) return generated_mesh(part);
-    const std::filesystem::path folder = std::filesystem::path(scenario.file).parent_path();
-    return import_mesh(folder / part.mesh.file, part.mesh.unit_mm);
-  };
-}
 
 bool LoadedScene::usable() const {
   return std::none_of(findings.begin(), findings.end(),

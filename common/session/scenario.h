@@ -17,6 +17,13 @@ struct SourceLine {
 
 enum class Policy : std::uint8_t { kUnknown = 0, kStop, kReport };
 
+/// What is taken for known of surfaces of which nothing is declared.
+enum class UndeclaredSurface : std::uint8_t {
+  kNominal = 0,  ///< the mesh is taken for the surface
+  kRecognized,   ///< what the mesh shows of planes, cylinders, cones, spheres, tori
+  kEstimated,    ///< that, and the rest by estimate
+};
+
 /// A scenario as it is written, in mm and rad; read from YAML by io/scenario_file, or made in code.
 struct Scenario {
   struct MeshSource {
@@ -47,7 +54,8 @@ struct Scenario {
     Pose X_WP;
     bool moving = false;
     std::optional<double> chord_error_mm;  ///< declared largest mesh error
-    std::optional<Tolerance> tolerance;    ///< of every face without its own
+    UndeclaredSurface undeclared = UndeclaredSurface::kNominal;
+    std::optional<Tolerance> tolerance;  ///< of every face without its own
     std::vector<FeatureSpec> features;
     SourceLine at;
   };
@@ -75,6 +83,7 @@ struct Scenario {
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;  ///< largest translation of one increment
   double lease_s = 5.0;
+  UndeclaredSurface undeclared = UndeclaredSurface::kNominal;  ///< of parts that say nothing
   std::vector<PartSpec> parts;
   std::vector<FitSpec> fits;
   std::vector<Exclusion> exclusions;
