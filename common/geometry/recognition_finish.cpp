@@ -60,7 +60,6 @@ class Finisher {
 
  private:
   // 1. one surface in pieces
-
   static bool alike(const Surface& a, const Surface& b, double share) {
     if (a.kind != b.kind || a.inward != b.inward) return false;
     const double size = std::max(a.radius_mm, b.radius_mm);
@@ -127,7 +126,6 @@ class Finisher {
   }
 
   // 2. what they show
-
   void measure() {
     measures_.clear();
     for (const Region& r : regions_) {
@@ -215,7 +213,6 @@ class Finisher {
   }
 
   // 4. features
-
   double area_of(const std::vector<std::uint32_t>& triangles) const {
     double area = 0.0;
     for (const std::uint32_t t : triangles)
