@@ -67,6 +67,7 @@ wire::Verdict to_wire(const Verdict& verdict) {
   out.witness_mm(triple(verdict.witness_W));
   out.separation_translation_mm(triple(verdict.separation_translation_mm));
   out.separation_rotation_rad(triple(verdict.separation_rotation_rad));
+  out.separation_way(static_cast<std::uint8_t>(verdict.separation_way));
   out.shape_a(static_cast<std::uint8_t>(verdict.shape_a));
   out.shape_b(static_cast<std::uint8_t>(verdict.shape_b));
   out.grade(static_cast<std::uint8_t>(verdict.grade));
@@ -97,6 +98,8 @@ Result<Verdict> from_wire(const wire::Verdict& in) {
   door.position(in.witness_mm(), "witness_mm");
   door.position(in.separation_translation_mm(), "separation_translation_mm");
   door.vector(in.separation_rotation_rad(), "separation_rotation_rad");
+  door.need(in.separation_way() <= static_cast<std::uint8_t>(SeparationWay::kAxis),
+            "separation_way");
   door.need(in.shape_a() <= kShapes && in.shape_b() <= kShapes, "shape");
   door.need(in.grade() <= static_cast<std::uint8_t>(DeviationGrade::kNominal), "grade");
   door.name(in.face_a(), "face_a");
@@ -120,6 +123,7 @@ Result<Verdict> from_wire(const wire::Verdict& in) {
   verdict.witness_W = vec3(in.witness_mm());
   verdict.separation_translation_mm = vec3(in.separation_translation_mm());
   verdict.separation_rotation_rad = vec3(in.separation_rotation_rad());
+  verdict.separation_way = static_cast<SeparationWay>(in.separation_way());
   verdict.shape_a = static_cast<FaceShape>(in.shape_a());
   verdict.shape_b = static_cast<FaceShape>(in.shape_b());
   verdict.grade = static_cast<DeviationGrade>(in.grade());
@@ -166,6 +170,8 @@ wire::ClashEvent to_wire(const ClashEvent& event) {
   out.part_b(event.part_b.value);
   out.user(event.user.value);
   out.t_contact(event.t_contact);
+  out.t_potential(event.t_potential);
+  out.t_real(event.t_real);
   out.begin_tick(event.begin_tick);
   out.worst_class(static_cast<std::uint8_t>(event.worst_class));
   out.worst_delta_lo_mm(event.worst_delta_mm.lo);
@@ -182,6 +188,9 @@ Result<ClashEvent> from_wire(const wire::ClashEvent& in) {
   door.need(in.clash() != 0, "clash");
   door.need(in.part_a() != 0 && in.part_a() < in.part_b(), "parts");
   door.need(in.t_contact() >= 0.0 && in.t_contact() <= 1.0, "t_contact");
+  const auto within_tick = [](double t) { return (t >= 0.0 && t <= 1.0) || t == kNever; };
+  door.need(within_tick(in.t_potential()), "t_potential");
+  door.need(within_tick(in.t_real()), "t_real");
   door.need(in.begin_tick() <= in.tick(), "begin_tick");
   door.need(in.worst_class() <= static_cast<std::uint8_t>(CollisionClass::kReal), "worst_class");
   door.interval(in.worst_delta_lo_mm(), in.worst_delta_hi_mm(), "worst_delta_mm");
@@ -198,6 +207,8 @@ Result<ClashEvent> from_wire(const wire::ClashEvent& in) {
   event.user = UserId{in.user()};
   event.verdict = std::move(verdict.value());
   event.t_contact = in.t_contact();
+  event.t_potential = in.t_potential();
+  event.t_real = in.t_real();
   event.begin_tick = in.begin_tick();
   event.worst_class = static_cast<CollisionClass>(in.worst_class());
   event.worst_delta_mm = {in.worst_delta_lo_mm(), in.worst_delta_hi_mm()};

@@ -54,6 +54,8 @@ void Tally::add(const ClientUpdate& update, const Client& client) {
     hash.add(static_cast<std::uint64_t>(event.kind));
     hash.add(std::uint64_t{event.user.value});
     hash.add(event.t_contact);
+    hash.add(event.t_potential);
+    hash.add(event.t_real);
     add_clash(hash, event);
     event_hash_ = hash.value();
   }

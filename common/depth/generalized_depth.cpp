@@ -1,8 +1,10 @@
 #include "common/depth/generalized_depth.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "common/depth/region_report.h"
 #include "common/math/rotation.h"
@@ -15,6 +17,12 @@ constexpr double kLengthsTried[] = {1.0, 1.02, 1.1, 1.3, 2.0, 4.0};
 
 // Steps of the fit of a small motion to the contact points; each is linear least squares.
 constexpr int kFitSteps = 3;
+
+// Contact points that are looked at.
+constexpr std::size_t kMostContacts = 96;
+
+// Share of the largest below which no normal has a part along a direction.
+constexpr double kSlides = 1e-3;
 
 // Work of one proof that a pose is free, and of all of them together.
 constexpr std::uint64_t kFreeWorkCap = 2'000, kAllFreeWorkCap = 4'000;
@@ -32,19 +40,62 @@ class Separation {
         scratch_(scratch),
         nominal_(nominal_band()),
         center_A_(query.overlap.a->sphere().center_mm),
-        radius_mm_(query.overlap.a->sphere().radius_mm) {}
+        radius_mm_(query.overlap.a->sphere().radius_mm) {
+    if (query.regions.empty()) add_contacts(region_);
+    for (const OverlapRegion& region : query.regions) add_contacts(region);
+    // Some of many say as much.
+    while (contacts_.size() > kMostContacts) {
+      for (std::size_t i = 0; 2 * i < contacts_.size(); ++i) contacts_[i] = contacts_[2 * i];
+      contacts_.resize((contacts_.size() + 1) / 2);
+    }
+  }
 
   GeneralizedDepth run() {
     best_.gpd_mm = {std::max(0.0, region_.delta_mm.lo), std::numeric_limits<double>::infinity()};
     measure_travel();
+    if (region_.delta_mm.hi <= 0.0) {  // only the offsets make them meet: the meshes are free
+      best_.gpd_mm = {};
+      return best_;
+    }
     try_back();
     try_normal();
     try_fitted();
+    try_axis();
     return best_;
   }
 
  private:
-  using Way = GeneralizedDepth::Way;
+  // A point of the surface of one part that lies in the other; fixed to the one whose it is.
+  struct Contact {
+    Vec3 x_W;
+    bool on_a = true;
+  };
+  void add_contacts(const OverlapRegion& region) {
+    for (const Vec3& x : region.points_W) contacts_.push_back({x, in_b(x) >= in_a(x, Pose())});
+  }
+  SurfacePoint at_b(const Vec3& x_W) const {
+    return nearest_surface(*query_.overlap.b, query_.overlap.X_WB.inverse() * x_W);
+  }
+  SurfacePoint at_a(const Vec3& x_W, const Pose& X) const {
+    return nearest_surface(*query_.overlap.a, (X * query_.overlap.X_WA).inverse() * x_W);
+  }
+  double in_b(const Vec3& x_W) const { return at_b(x_W).depth_mm; }
+  double in_a(const Vec3& x_W, const Pose& X) const { return at_a(x_W, X).depth_mm; }
+
+  // With A displaced by X: where the contact is, how deep, and along what A leaves it.
+  struct Push {
+    Vec3 x_W, out_W;
+    double depth_mm = 0.0;
+  };
+  Push push_of(const Contact& contact, const Pose& X) const {
+    if (contact.on_a) {
+      const Vec3 x = X * contact.x_W;
+      const SurfacePoint at = at_b(x);
+      return {x, query_.overlap.X_WB.q * at.outward, at.depth_mm};
+    }
+    const SurfacePoint at = at_a(contact.x_W, X);
+    return {contact.x_W, -((X * query_.overlap.X_WA).q * at.outward), at.depth_mm};
+  }
 
   // Motion of A seen by B over [t, 1], as the displacement of world points fixed to A at the
   // target.
@@ -89,14 +140,10 @@ class Separation {
   // Do the meshes stay out of each other with A displaced by X (world)?
   bool is_free(const Pose& X) {
     // Most attempts that fall short are seen to by the contact points themselves.
-    const Pose X_BW = query_.overlap.X_WB.inverse();
-    for (const Vec3& x : region_.points_W) {
-      const Vec3 x_A = query_.overlap.X_WA.inverse() * x;
-      const double in_b = nearest_surface(*query_.overlap.b, X_BW * (X * x)).depth_mm;
-      if (in_b > query_.overlap.accuracy_mm &&
-          in_b + nearest_surface(*query_.overlap.a, x_A).depth_mm > query_.overlap.accuracy_mm)
-        return false;
-    }
+    for (const Contact& contact : contacts_)
+      for (const Vec3& x : {contact.x_W, Vec3(X * contact.x_W)}) {
+        if (in_b(x) + in_a(x, X) > query_.overlap.accuracy_mm) return false;
+      }
     if (work_ >= kAllFreeWorkCap) return false;
     OverlapQuery query = query_.overlap;
     query.band_a = query.band_b = &nominal_;
@@ -110,7 +157,7 @@ class Separation {
     return !result.meshes_cross || !result.regions.empty();
   }
 
-  void offer(Way way, double length_mm, const Attempt& attempt) {
+  void offer(SeparationWay way, double length_mm, const Attempt& attempt) {
     if (!(length_mm < best_.gpd_mm.hi)) return;
     best_.gpd_mm.hi = std::max(length_mm, best_.gpd_mm.lo);
     best_.way = way;
@@ -146,7 +193,7 @@ class Separation {
     const Vec3 center = query_.overlap.X_WA * center_A_;
     attempt.translation = back * center - center;
     attempt.rotation = rotation_log(back.q.normalized());
-    offer(Way::kBack, length, attempt);
+    offer(SeparationWay::kBack, length, attempt);
   }
 
   double needed_mm() const {
@@ -163,22 +210,22 @@ class Separation {
       attempt.translation = times * needed_mm() * n;
       if (length_of(attempt) >= best_.gpd_mm.hi) return;
       if (!is_free(pose_of(attempt))) continue;
-      offer(Way::kNormal, length_of(attempt), attempt);
+      offer(SeparationWay::kNormal, length_of(attempt), attempt);
       return;
     }
   }
 
   // Least squares twist that moves every contact point out along the normal of B's surface there.
   void try_fitted() {
-    if (region_.points_W.size() < 3) return;
+    if (contacts_.size() < 3) return;
     Pose X;
     Attempt attempt;
     const Vec3 center = query_.overlap.X_WA * center_A_;
     for (int step = 0; step < kFitSteps; ++step) {
       Eigen::Matrix<double, 6, 6> ata = Eigen::Matrix<double, 6, 6>::Zero();
       Eigen::Matrix<double, 6, 1> atb = Eigen::Matrix<double, 6, 1>::Zero();
-      for (const Vec3& x0 : region_.points_W)
-        add_row(X * x0, center + attempt.translation, ata, atb);
+      for (const Contact& contact : contacts_)
+        add_row(push_of(contact, X), center + attempt.translation, ata, atb);
       // Rotations are measured by the path that they give the farthest point.
       const double weight = 1e-6 * std::max(1.0, ata.trace());
       ata.diagonal().array() += weight;
@@ -191,21 +238,99 @@ class Separation {
       const Attempt longer{times * attempt.translation, times * attempt.rotation};
       if (length_of(longer) >= best_.gpd_mm.hi) return;
       if (!is_free(pose_of(longer))) continue;
-      offer(Way::kFitted, length_of(longer), longer);
+      offer(SeparationWay::kFitted, length_of(longer), longer);
       return;
     }
   }
 
-  void add_row(const Vec3& x, const Vec3& center, Eigen::Matrix<double, 6, 6>& ata,
+  // What is convex comes free of what is convex along the normal. A round face in a bore, a key in
+  // a slot are only left along the direction in which their surfaces go on: the axis of the bore,
+  // else what all normals are perpendicular to. Either way along it, as far as the two faces lie in
+  // each other, or as far as both parts do.
+  void try_axis() {
+    if (region_.shape_a == FaceShape::kConvex && region_.shape_b == FaceShape::kConvex) return;
+    std::vector<Vec3> ways;
+    for (const Vec3& along : sliding_directions())
+      for (const Vec3& d : {along, Vec3(-along)})
+        for (const bool faces_only : {true, false}) {
+          const double length = reach(1, d, faces_only) + reach(0, -d, faces_only);
+          if (length > 0.0) ways.push_back((length + query_.overlap.accuracy_mm) * d);
+        }
+    std::stable_sort(ways.begin(), ways.end(), [](const Vec3& x, const Vec3& y) {
+      return x.squaredNorm() < y.squaredNorm();
+    });
+    work_ = 0;  // of its own: far apart little is to be proven
+    for (const Vec3& way : ways) {
+      Attempt attempt;
+      attempt.translation = way;
+      if (length_of(attempt) >= best_.gpd_mm.hi) return;
+      if (!is_free(pose_of(attempt))) continue;
+      offer(SeparationWay::kAxis, length_of(attempt), attempt);
+      return;
+    }
+  }
+
+  const Solid& solid(int part) const { return part == 0 ? *query_.overlap.a : *query_.overlap.b; }
+  const SurfaceBand& band(int part) const {
+    return part == 0 ? *query_.overlap.band_a : *query_.overlap.band_b;
+  }
+  std::uint32_t deciding(int part) const {
+    return part == 0 ? region_.deciding_triangle_a : region_.deciding_triangle_b;
+  }
+
+  // Directions along which the surfaces that hold A go on, either sense.
+  std::vector<Vec3> sliding_directions() const {
+    const Quat q[2] = {query_.overlap.X_WA.q, query_.overlap.X_WB.q};
+    for (int part = 0; part < 2; ++part) {
+      const auto& surface = band(part).face_of(deciding(part)).surface;
+      if (surface &&
+          (surface->kind == SurfaceKind::kCylinder || surface->kind == SurfaceKind::kCone))
+        return {q[part] * surface->axis};
+    }
+    Mat3 sum = Mat3::Zero();
+    Vec3 mean = Vec3::Zero();
+    for (const Contact& contact : contacts_) {
+      const Vec3 n = push_of(contact, Pose()).out_W;
+      sum += n * n.transpose();
+      mean += n / static_cast<double>(contacts_.size());
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(sum);
+    const Vec3& sizes = solver.eigenvalues();
+    if (sizes[0] > kSlides * sizes[2]) return {};
+    if (sizes[1] > kSlides * sizes[2]) return {solver.eigenvectors().col(0)};
+    // All normals are along one line. Walls that face each other leave a plane: along their edges.
+    std::vector<Vec3> edges;
+    if (mean.norm() > 0.9) return edges;
+    const TriangleMesh& mesh = solid(1).mesh();
+    for (int k = 0; k < 3; ++k)
+      edges.push_back(
+          q[1] *
+          (mesh.corner(deciding(1), (k + 1) % 3) - mesh.corner(deciding(1), k)).stableNormalized());
+    return edges;
+  }
+
+  // How far a part, or its deciding face, reaches along a world direction.
+  double reach(int part, const Vec3& d, bool faces_only) const {
+    const TriangleMesh& mesh = solid(part).mesh();
+    const Pose& X = part == 0 ? query_.overlap.X_WA : query_.overlap.X_WB;
+    const Vec3 d_P = X.q.conjugate() * d;
+    const SurfaceBand& its_band = band(part);
+    const bool by_face = faces_only && !its_band.face_of_triangle.empty();
+    const SurfaceBand::Face* face = &its_band.face_of(deciding(part));
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (!by_face || &its_band.face_of(t) == face)
+        for (int k = 0; k < 3; ++k) most = std::max(most, mesh.corner(t, k).dot(d_P));
+    return most + X.p.dot(d);
+  }
+
+  void add_row(const Push& push, const Vec3& center, Eigen::Matrix<double, 6, 6>& ata,
                Eigen::Matrix<double, 6, 1>& atb) const {
-    const Pose X_BW = query_.overlap.X_WB.inverse();
-    const SurfacePoint at = nearest_surface(*query_.overlap.b, X_BW * x);
-    const Vec3 n = query_.overlap.X_WB.q * at.outward;
     Eigen::Matrix<double, 6, 1> row;
-    row.head<3>() = n;
-    row.tail<3>() = (x - center).cross(n) / radius_mm_;
+    row.head<3>() = push.out_W;
+    row.tail<3>() = (push.x_W - center).cross(push.out_W) / radius_mm_;
     ata += row * row.transpose();
-    atb += row * std::max(0.0, at.depth_mm);
+    atb += row * std::max(0.0, push.depth_mm);
   }
 
   const GpdQuery& query_;
@@ -214,6 +339,7 @@ class Separation {
   const SurfaceBand nominal_;
   const Vec3 center_A_;
   const double radius_mm_;
+  std::vector<Contact> contacts_;  // of all regions: a motion has to free them all
   std::uint64_t work_ = 0;
   GeneralizedDepth best_;
 };

@@ -289,10 +289,16 @@ class Overlap {
     region.triangle_a = region.deciding_triangle_a = shared->triangle[0];
     region.triangle_b = region.deciding_triangle_b = shared->triangle[1];
     region.normal_W = -(pair_.X_W[0].q * pair_.bodies[0].normal(region.triangle_a));
-    region.shape_a = face_shape(pair_.bodies[0], region.triangle_a);
-    region.shape_b = face_shape(pair_.bodies[1], region.triangle_b);
+    set_shapes(region);
     region.points_W = {region.point_W};
     result_.regions.push_back(std::move(region));
+  }
+
+  void set_shapes(OverlapRegion& region) const {
+    region.shape_a =
+        face_shape(pair_.bodies[0], region.triangle_a, pair_.X_W[0].inverse() * region.point_W);
+    region.shape_b =
+        face_shape(pair_.bodies[1], region.triangle_b, pair_.X_W[1].inverse() * region.point_W);
   }
 
   double smaller_radius() const {
@@ -326,8 +332,7 @@ class Overlap {
     region.deciding_triangle_a = region.triangle_a;
     region.deciding_triangle_b = region.triangle_b;
     region.normal_W = pair_.X_W[1].q * pair_.bodies[1].normal(region.triangle_b);
-    region.shape_a = face_shape(pair_.bodies[0], region.triangle_a);
-    region.shape_b = face_shape(pair_.bodies[1], region.triangle_b);
+    set_shapes(region);
     region.points_W = {region.point_W};
     result_.regions.push_back(std::move(region));
   }

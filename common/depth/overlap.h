@@ -84,4 +84,18 @@ struct RealTime {
 /// overlapped before.
 RealTime find_real_time(const SweptQuery& query, CcdScratch& scratch);
 
+/// When an overlap becomes possible in the tick.
+struct PossibleTime {
+  bool becomes_possible = false;
+  double t_clear = 1.0;     ///< at no t <= t_clear do any admissible surfaces interfere deeper than
+                            ///< accuracy_mm, proven
+  double t_possible = 1.0;  ///< some admissible pair interferes there, when becomes_possible
+  bool capped = false;      ///< t_clear is still proven; beyond it nothing is said
+  std::uint64_t evaluations = 0;
+};
+
+/// The same for possible_mm > 0, over the largest surfaces that the bands admit. With trivial bands
+/// both times are those at which the meshes interfere.
+PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch);
+
 }  // namespace mortise

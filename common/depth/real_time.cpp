@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common/depth/candidates.h"
+#include "common/depth/interference_search.h"
 #include "common/depth/overlap.h"
 #include "common/depth/pair_path.h"
 #include "common/depth/region_report.h"
@@ -14,7 +15,7 @@ namespace mortise {
 namespace {
 
 // Branch and bound over (piece of surface) x (interval of time), earliest first, in the layer of
-// the least surfaces:
+// the least surfaces (of the largest, where it is asked what is possible):
 //   1. triangles of either part that the path may bring near the other part: the first items;
 //   2. an item that is proven outside for its whole interval is dropped;
 //   3. an item whose centre is inside at an end of its interval gives a time at which the overlap
@@ -51,16 +52,16 @@ bool later(const Item& a, const Item& b) {
   return a.order > b.order;
 }
 
-class RealTimeSearch {
+class InterferenceSearch {
  public:
-  explicit RealTimeSearch(const SweptQuery& query)
+  InterferenceSearch(const SweptQuery& query, Layer layer)
       : query_(query),
         at_(query.at_target),
         bodies_{Body(*at_.a, *at_.band_a), Body(*at_.b, *at_.band_b)},
         path_{{query.motion_a, query.motion_b},
               {at_.a->sphere().radius_mm, at_.b->sphere().radius_mm}} {
     trivial_ = at_.band_a->trivial && at_.band_b->trivial;
-    layer_ = trivial_ ? Layer::kMesh : Layer::kLower;
+    layer_ = trivial_ ? Layer::kMesh : layer;
     at_.X_WA = path_.motions[0].pose_at(0.0);
     at_.X_WB = path_.motions[1].pose_at(0.0);
   }
@@ -212,7 +213,9 @@ class RealTimeSearch {
     const OverlapResult result = find_overlap(query, scratch);
     answer_.evaluations += result.evaluations;
     for (const OverlapRegion& region : result.regions)
-      if (region.certain_mm.lo > 0.0 && region.has_witness) return true;
+      if (layer_ == Layer::kUpper ? region.possible_mm.lo > 0.0
+                                  : region.certain_mm.lo > 0.0 && region.has_witness)
+        return true;
     return false;
   }
 
@@ -292,11 +295,13 @@ class RealTimeSearch {
                       nearest_surface(*bodies_[1 - item.role].solid, patch.center));
   }
 
-  // The overlap is certain only with a point in both parts.
+  // The overlap is certain only with a point in both parts; it is possible where a point of the
+  // largest surface of one lies within that of the other.
   bool is_certain(const Item& item, double t, const Vec3& point_K, const SurfacePoint& at) {
     Sample sample;
     sample.depth_mm = bodies_[1 - item.role].depth_in(point_K, at, layer_);
     if (sample.depth_mm <= touch_mm_) return false;
+    if (layer_ == Layer::kUpper) return true;
     at_.X_WA = path_.motions[0].pose_at(t);
     at_.X_WB = path_.motions[1].pose_at(t);
     sample.role = item.role;
@@ -378,8 +383,12 @@ class RealTimeSearch {
 
 }  // namespace
 
+RealTime first_interference(const SweptQuery& query, Layer layer) {
+  return InterferenceSearch(query, layer).run();
+}
+
 RealTime find_real_time(const SweptQuery& query, CcdScratch&) {
-  return RealTimeSearch(query).run();
+  return first_interference(query, Layer::kLower);
 }
 
 }  // namespace mortise

@@ -16,6 +16,11 @@ constexpr double kSameWay = 0.99;
 // overlap is deep.
 constexpr double kWitnessShares[] = {0.5, 0.25, 0.1, 0.02, 2e-3, 2e-4, 2e-5, 2e-6};
 
+double distance_from_axis(const Surface& surface, const Vec3& x) {
+  const Vec3 d = x - surface.point;
+  return (d - d.dot(surface.axis) * surface.axis).norm();
+}
+
 // Depth of x in the least real part.
 double least_depth(const Body& body, const Vec3& x) {
   return body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower);
@@ -23,13 +28,15 @@ double least_depth(const Body& body, const Vec3& x) {
 
 }  // namespace
 
-FaceShape face_shape(const Body& body, std::uint32_t triangle) {
+FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x) {
   const SurfaceBand::Face& face = body.face(triangle);
   if (face.surface) switch (face.surface->kind) {
       case SurfaceKind::kPlane:
         return FaceShape::kPlanar;
       case SurfaceKind::kTorus:
-        return FaceShape::kSaddle;
+        if (distance_from_axis(*face.surface, x) < face.surface->radius_mm)
+          return FaceShape::kSaddle;
+        return face.surface->inward ? FaceShape::kConcave : FaceShape::kConvex;
       case SurfaceKind::kCylinder:
       case SurfaceKind::kCone:
       case SurfaceKind::kSphere:
@@ -128,8 +135,11 @@ void describe(const PairFrame& pair, const Sample& deepest, const Sample& decidi
   region.triangle_b = role == 0 ? deepest.at.triangle : deepest.triangle;
   region.deciding_triangle_a = deciding.role == 0 ? deciding.triangle : deciding.at.triangle;
   region.deciding_triangle_b = deciding.role == 0 ? deciding.at.triangle : deciding.triangle;
-  region.shape_a = face_shape(pair.bodies[0], region.deciding_triangle_a);
-  region.shape_b = face_shape(pair.bodies[1], region.deciding_triangle_b);
+  const Vec3 at_W = pair.in_world(deciding.role, deciding.point_K);
+  region.shape_a =
+      face_shape(pair.bodies[0], region.deciding_triangle_a, pair.X_W[0].inverse() * at_W);
+  region.shape_b =
+      face_shape(pair.bodies[1], region.deciding_triangle_b, pair.X_W[1].inverse() * at_W);
 }
 
 Interval without_touch(Interval value, double touch_mm) {

@@ -47,6 +47,7 @@ ordered_json json_of(const ClashEvent& event) {
           {"witness_W", vector(v.witness_W)},
           {"separation_translation_mm", vector(v.separation_translation_mm)},
           {"separation_rotation_rad", vector(v.separation_rotation_rad)},
+          {"separation_way", name_of(v.separation_way)},
           {"shape_a", name_of(v.shape_a)},
           {"shape_b", name_of(v.shape_b)},
           {"grade", name_of(v.grade)},
@@ -54,6 +55,8 @@ ordered_json json_of(const ClashEvent& event) {
           {"face_b", v.face_b},
           {"explanation", v.explanation},
           {"t_contact", number(event.t_contact)},
+          {"t_potential", number(event.t_potential)},
+          {"t_real", number(event.t_real)},
           {"begin_tick", event.begin_tick},
           {"worst_class", name_of(event.worst_class)},
           {"worst_delta_mm", interval(event.worst_delta_mm)}};
@@ -201,6 +204,11 @@ void each_counter(const StepCounters& counters, const Visit& visit) {
   visit("first_contact_queries", counters.first_contact_queries);
   visit("distance_queries", counters.distance_queries);
   visit("depth_queries", counters.depth_queries);
+  visit("event_time_queries", counters.event_time_queries);
+  visit("judged_with_bands", counters.judged_with_bands);
+  visit("judged_plain", counters.judged_plain);
+  visit("regions_decided_early", counters.regions_decided_early);
+  visit("regions_refined", counters.regions_refined);
   visit("verdicts_in", counters.verdicts.in);
   visit("verdicts_out", counters.verdicts.out);
   visit("verdicts_fake", counters.verdicts_by_class[1]);
@@ -253,6 +261,7 @@ bool decode(std::string_view text, ClashEvent& event) {
   in.vector("witness_W", v.witness_W);
   in.vector("separation_translation_mm", v.separation_translation_mm);
   in.vector("separation_rotation_rad", v.separation_rotation_rad);
+  in.name("separation_way", v.separation_way);
   in.name("shape_a", v.shape_a);
   in.name("shape_b", v.shape_b);
   in.name("grade", v.grade);
@@ -260,6 +269,8 @@ bool decode(std::string_view text, ClashEvent& event) {
   in.text("face_b", v.face_b);
   in.text("explanation", v.explanation);
   in.real("t_contact", event.t_contact);
+  in.real("t_potential", event.t_potential, kNever);
+  in.real("t_real", event.t_real, kNever);
   in.integer("begin_tick", event.begin_tick);
   in.name("worst_class", event.worst_class);
   in.interval("worst_delta_mm", event.worst_delta_mm);

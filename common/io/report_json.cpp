@@ -115,7 +115,8 @@ Json json_of(const Verdict& verdict) {
   json["area_mm2"] = number(verdict.area_mm2);
   json["witness_mm"] = verdict.has_witness ? json_of(verdict.witness_W) : Json(nullptr);
   json["separation"] = {{"translation_mm", json_of(verdict.separation_translation_mm)},
-                        {"rotation_rad", json_of(verdict.separation_rotation_rad)}};
+                        {"rotation_rad", json_of(verdict.separation_rotation_rad)},
+                        {"way", name_of(verdict.separation_way)}};
   json["shape_a"] = name_of(verdict.shape_a);
   json["shape_b"] = name_of(verdict.shape_b);
   json["face_a"] = verdict.face_a;
@@ -147,7 +148,12 @@ Json json_of(const StepCounters& c) {
   json["verdicts"]["by_class"] = by_class(c.verdicts_by_class);
   json["queries"] = {{"first_contact", c.first_contact_queries},
                      {"distance", c.distance_queries},
-                     {"depth", c.depth_queries}};
+                     {"depth", c.depth_queries},
+                     {"event_times", c.event_time_queries}};
+  json["judged"] = {{"with_bands", c.judged_with_bands},
+                    {"plain", c.judged_plain},
+                    {"regions_decided_early", c.regions_decided_early},
+                    {"regions_refined", c.regions_refined}};
   json["work"] = {{"box_tests", c.box_tests},
                   {"triangle_tests", c.triangle_tests},
                   {"depth_evaluations", c.depth_evaluations}};
@@ -168,6 +174,8 @@ Json json_of(const ClashEvent& event, const SessionNames& names) {
   json["part_b"] = names.part(event.part_b);
   json["user"] = names.user(event.user);
   json["t_contact"] = number(event.t_contact);
+  json["t_potential"] = number(event.t_potential);
+  json["t_real"] = number(event.t_real);
   json["begin_tick"] = event.begin_tick;
   json["worst_class"] = name_of(event.worst_class);
   json["worst_delta_mm"] = json_of(event.worst_delta_mm);
@@ -285,6 +293,12 @@ std::string stage_table(const StepCounters& c) {
   text += fmt::format("  {:<14}{:>12}{:>12}  {} real, {} potential, {} fake\n", "verdicts",
                       c.verdicts.in, c.verdicts.out, c.verdicts_by_class[3], c.verdicts_by_class[2],
                       c.verdicts_by_class[1]);
+  text +=
+      fmt::format("  {:<14}{:>12}{:>12}  {} plain: nothing declared, no band looked at\n", "bands",
+                  c.judged_with_bands + c.judged_plain, c.judged_with_bands, c.judged_plain);
+  text += fmt::format("  {:<14}{:>12}{:>12}  {} decided before their depth was\n", "refined",
+                      c.regions_decided_early + c.regions_refined, c.regions_refined,
+                      c.regions_decided_early);
   if (c.not_examined > 0) {
     text += fmt::format(
         "  {} pair(s) were NOT examined to the end (work cap); they are not "

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "common/base/ids.h"
@@ -27,6 +28,15 @@ enum class DeviationGrade : std::uint8_t {
 /// paper).
 enum class FaceShape : std::uint8_t { kUnknown = 0, kPlanar, kConvex, kConcave, kSaddle, kEdge };
 
+/// How part A comes free of part B by the shortest motion that was verified.
+enum class SeparationWay : std::uint8_t {
+  kNone = 0,    ///< none was found
+  kBack = 1,    ///< back along the tick's motion
+  kNormal = 2,  ///< along the normal of the region
+  kFitted = 3,  ///< a small turn and shift, fitted to the contact points
+  kAxis = 4,    ///< along the axis of a round face: drawn out of its hole
+};
+
 /// The judged collision of one region of one pair of parts. World frame, mm.
 /// delta: overlap of the meshes, -min_p(sd_A + sd_B), negative when apart. Class by the two
 /// thresholds: real iff delta > real_above, fake iff delta <= fake_below (over every pair of faces
@@ -50,12 +60,16 @@ struct Verdict {
   Vec3 separation_translation_mm =
       Vec3::Zero();  ///< the motion of A that reaches gpd_mm.hi and separates
   Vec3 separation_rotation_rad = Vec3::Zero();
+  SeparationWay separation_way = SeparationWay::kNone;
   FaceShape shape_a = FaceShape::kUnknown;
   FaceShape shape_b = FaceShape::kUnknown;
   DeviationGrade grade = DeviationGrade::kUnknown;
   std::string face_a, face_b;  ///< feature names, empty when none
   std::string explanation;     ///< one sentence
 };
+
+/// A time that does not come within the tick.
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Begin, change or end of one clash. Same pair and near the same place is one clash for as long as
 /// it lasts.
@@ -68,7 +82,10 @@ struct ClashEvent {
   PartId part_a, part_b;  ///< part_a < part_b
   UserId user;            ///< who moved a part of the pair last, none when nobody did
   Verdict verdict;
-  double t_contact = 1.0;  ///< time of first contact inside the tick, 0..1
+  double t_contact = 1.0;       ///< time of first contact of the meshes inside the tick, 0..1
+  double t_potential = kNever;  ///< 0..1: before, no admissible pair of real surfaces interferes
+  double t_real = kNever;       ///< 0..1: first time at which every admissible pair does; both are
+                                ///< those of the pair of parts, and kNever when they do not come
   std::uint64_t begin_tick = 0;
   CollisionClass worst_class = CollisionClass::kNone;
   Interval worst_delta_mm;

@@ -54,6 +54,22 @@ std::string_view name_of(FaceShape value) {
   return "?";
 }
 
+std::string_view name_of(SeparationWay value) {
+  switch (value) {
+    case SeparationWay::kNone:
+      return "none";
+    case SeparationWay::kBack:
+      return "back along the motion";
+    case SeparationWay::kNormal:
+      return "along the normal";
+    case SeparationWay::kFitted:
+      return "turned and shifted";
+    case SeparationWay::kAxis:
+      return "along the axis";
+  }
+  return "?";
+}
+
 std::string_view name_of(Refusal value) {
   switch (value) {
     case Refusal::kNone:

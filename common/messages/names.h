@@ -10,6 +10,7 @@ namespace mortise {
 std::string_view name_of(CollisionClass value);
 std::string_view name_of(DeviationGrade value);
 std::string_view name_of(FaceShape value);
+std::string_view name_of(SeparationWay value);
 std::string_view name_of(Refusal value);
 std::string_view name_of(CommandKind value);
 std::string_view name_of(Decision::Kind value);

@@ -27,6 +27,13 @@ struct StepCounters {
   StageCount contacts;  ///< pairs asked -> pairs in contact or in the band
   std::uint64_t contacts_clear = 0, contacts_undecided = 0;
   std::uint64_t first_contact_queries = 0, distance_queries = 0, depth_queries = 0;
+  std::uint64_t event_time_queries = 0;  ///< searches for when an event became possible or real
+  /// Pairs judged (depth_queries that asked for verdicts): with bands, or with the meshes taken for
+  /// the parts because nothing is declared of either; these ask for no deviation and no tolerance.
+  std::uint64_t judged_with_bands = 0, judged_plain = 0;
+  /// Regions whose class was decided while their depth was still a wide bracket, and those that
+  /// were refined to the accuracy of depth.
+  std::uint64_t regions_decided_early = 0, regions_refined = 0;
   StageCount verdicts;  ///< regions judged -> regions with a class
   std::uint64_t verdicts_by_class[4] = {0, 0, 0, 0};
   std::uint64_t stopped_parts = 0, rounds = 0;

@@ -84,23 +84,39 @@ void take_in(OpenClash& clash, const SeenRegion& seen) {
   }
 }
 
+// Times of the tick that an event tells.
+struct Times {
+  double contact = 1.0, potential = kNever, real = kNever;
+};
+
+Times times_of(const PairWork& pair) {
+  Times times{1.0, pair.t_potential, pair.t_real};
+  if (pair.placed)
+    times.contact = 0.0;
+  else if (pair.meets)
+    times.contact = pair.tau + (1.0 - pair.tau) * pair.t_contact;
+  return times;
+}
+
 // Fills in what every event of a clash carries and remembers it as the last one.
 void tell(const World& world, SessionState& state, OpenClash& clash, ClashEvent::Kind kind,
-          double t_contact, StepReport& report) {
+          const Times& times, StepReport& report) {
   ClashEvent& event = clash.last;
   event.kind = kind;
   event.seq = ++state.event_seq;
   event.tick = world.tick;
   event.user = last_mover(state, event.part_a.value - 1, event.part_b.value - 1);
   event.verdict = clash.now;
-  event.t_contact = t_contact;
+  event.t_contact = times.contact;
+  event.t_potential = times.potential;
+  event.t_real = times.real;
   event.worst_class = clash.worst_class;
   event.worst_delta_mm = clash.worst_delta_mm;
   report.events.push_back(event);
 }
 
 void begin(const World& world, SessionState& state, const PairWork& pair, const SeenRegion& seen,
-           double t_contact, StepReport& report) {
+           const Times& times, StepReport& report) {
   OpenClash clash;
   clash.last.clash = ClashId{state.next_clash++};
   clash.last.part_a = world.parts[pair.a].id;
@@ -109,16 +125,11 @@ void begin(const World& world, SessionState& state, const PairWork& pair, const 
   clash.worst_class = seen.verdict.collision_class;
   clash.worst_delta_mm = seen.verdict.delta_mm;
   take_in(clash, seen);
-  tell(world, state, clash, ClashEvent::Kind::kBegin, t_contact, report);
+  tell(world, state, clash, ClashEvent::Kind::kBegin, times, report);
   if (seen.passing)
-    tell(world, state, clash, ClashEvent::Kind::kEnd, t_contact, report);
+    tell(world, state, clash, ClashEvent::Kind::kEnd, times, report);
   else
     state.open[{clash.last.part_a, clash.last.part_b}].push_back(std::move(clash));
-}
-
-double t_contact_of_tick(const PairWork& pair) {
-  if (pair.placed) return 0.0;
-  return pair.meets ? pair.tau + (1.0 - pair.tau) * pair.t_contact : 1.0;
 }
 
 // The clashes of one pair that were open before the tick: change, end, or go on in silence.
@@ -130,14 +141,14 @@ void update(const World& world, SessionState& state, const PairWork* pair,
     if (known)
       for (const SeenRegion& region : pair->seen)
         if (region.open == static_cast<int>(c)) seen = &region;
-    const double t_contact = known ? t_contact_of_tick(*pair) : 1.0;
+    const Times times = known ? times_of(*pair) : Times{};
     if (seen) take_in(open[c], *seen);
     if (seen && !seen->passing) {
-      if (seen->tell) tell(world, state, open[c], ClashEvent::Kind::kChange, t_contact, report);
+      if (seen->tell) tell(world, state, open[c], ClashEvent::Kind::kChange, times, report);
       continue;
     }
     if (!seen && known && pair->keeps[c]) continue;
-    tell(world, state, open[c], ClashEvent::Kind::kEnd, t_contact, report);
+    tell(world, state, open[c], ClashEvent::Kind::kEnd, times, report);
   }
   std::erase_if(open,
                 [](const OpenClash& clash) { return clash.last.kind == ClashEvent::Kind::kEnd; });
@@ -219,7 +230,7 @@ void report_clashes(const World& world, SessionState& state, Scratch::Impl& work
     if (!pair.asked) continue;
     for (const SeenRegion& seen : pair.seen)
       if (seen.open < 0) {
-        begin(world, state, pair, seen, t_contact_of_tick(pair), report);
+        begin(world, state, pair, seen, times_of(pair), report);
         state.clashes_changed = true;
       }
   }

@@ -24,15 +24,11 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, bool full_b
   query.refinement = full_brackets ? Refinement::kFull : Refinement::kDecided;
   Judgement judgement = judge_pair(query, ccd);
   StepCounters& counts = judged.counts;
-  counts.depth_queries = 1;
-  counts.depth_evaluations = judgement.overlap.evaluations;
+  count(query, judgement, counts);
   counts.contacts.in = 1;
   const bool near = !judgement.overlap.regions.empty() || judgement.overlap.meshes_cross ||
                     judgement.overlap.contained;
   ++(near ? counts.contacts.out : counts.contacts_clear);
-  counts.verdicts = {judgement.overlap.regions.size(), judgement.verdicts.size()};
-  for (const Verdict& verdict : judgement.verdicts)
-    ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
   for (const OverlapRegion& region : judgement.overlap.regions)
     if (region.capped) counts.not_examined = 1;
   judged.verdicts.a = a.id;

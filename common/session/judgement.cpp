@@ -97,10 +97,12 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
 }
 
 void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& overlap,
-                           const OverlapRegion& region, CcdScratch& scratch, Verdict& verdict) {
+                           std::span<const OverlapRegion> regions, const OverlapRegion& region,
+                           CcdScratch& scratch, Verdict& verdict) {
   GpdQuery gpd;
   gpd.overlap = overlap;
   gpd.region = &region;
+  gpd.regions = regions;
   gpd.motion_a = query.motion_a;
   gpd.motion_b = query.motion_b;
   gpd.t_contact = query.t_contact;
@@ -110,6 +112,14 @@ void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& over
   verdict.normal_travel_mm = depth.normal_travel_mm;
   verdict.separation_translation_mm = depth.translation_mm;
   verdict.separation_rotation_rad = depth.rotation_rad;
+  verdict.separation_way = depth.way;
+}
+
+// Is the depth of the region known as closely as was asked for at most, layer by layer?
+bool is_refined(const OverlapRegion& region) {
+  const double most = 2.0 * kDepthAccuracyDefault_mm;
+  return region.delta_mm.width() <= most && region.certain_mm.width() <= most &&
+         region.possible_mm.width() <= most;
 }
 
 }  // namespace
@@ -133,7 +143,7 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
     if (verdict.collision_class == CollisionClass::kNone) continue;
     if (query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
         !judgement.overlap.no_inside)
-      add_generalized_depth(query, overlap, region, scratch, verdict);
+      add_generalized_depth(query, overlap, judgement.overlap.regions, region, scratch, verdict);
     judgement.verdicts.push_back(std::move(verdict));
   }
   // Worst first; the regions are sorted by depth already.
@@ -142,6 +152,20 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
         return static_cast<int>(x.collision_class) > static_cast<int>(y.collision_class);
       });
   return judgement;
+}
+
+void count(const JudgementQuery& query, const Judgement& judgement, StepCounters& counts) {
+  ++counts.depth_queries;
+  ++(band_a_of(query).trivial && band_b_of(query).trivial ? counts.judged_plain
+                                                          : counts.judged_with_bands);
+  counts.depth_evaluations += judgement.overlap.evaluations;
+  counts.verdicts.in += judgement.overlap.regions.size();
+  counts.verdicts.out += judgement.verdicts.size();
+  for (const Verdict& verdict : judgement.verdicts)
+    ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
+  for (const OverlapRegion& region : judgement.overlap.regions)
+    if (!region.capped)
+      ++(is_refined(region) ? counts.regions_refined : counts.regions_decided_early);
 }
 
 }  // namespace mortise

@@ -32,4 +32,7 @@ const SurfaceBand& band_b_of(const JudgementQuery& query);
 
 Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch);
 
+/// Adds what one judgement asked and found.
+void count(const JudgementQuery& query, const Judgement& judgement, StepCounters& counts);
+
 }  // namespace mortise

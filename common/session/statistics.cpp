@@ -36,6 +36,11 @@ void accumulate(StepCounters& into, const StepCounters& from) {
   into.first_contact_queries += from.first_contact_queries;
   into.distance_queries += from.distance_queries;
   into.depth_queries += from.depth_queries;
+  into.event_time_queries += from.event_time_queries;
+  into.judged_with_bands += from.judged_with_bands;
+  into.judged_plain += from.judged_plain;
+  into.regions_decided_early += from.regions_decided_early;
+  into.regions_refined += from.regions_refined;
   add(into.verdicts, from.verdicts);
   for (int i = 0; i < 4; ++i) into.verdicts_by_class[i] += from.verdicts_by_class[i];
   into.stopped_parts += from.stopped_parts;

@@ -62,6 +62,7 @@ struct PairWork {
   // Stage 4.
   Judgement judgement;
   std::vector<SeenRegion> seen;
+  double t_potential = kNever, t_real = kNever;  ///< of the tick; where somebody is told
   std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)
 
   StepCounters counts;  ///< of this pair alone, merged in pair order

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "common/base/constants.h"
+#include "common/session/event_times.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
@@ -38,13 +39,7 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
   query.want_gpd = want_gpd;
   query.work_cap = kTickOverlapCap;
   Judgement judgement = judge_pair(query, ccd);
-  StepCounters& counts = pair.counts;
-  ++counts.depth_queries;
-  counts.depth_evaluations += judgement.overlap.evaluations;
-  counts.verdicts.in += judgement.overlap.regions.size();
-  counts.verdicts.out += judgement.verdicts.size();
-  for (const Verdict& verdict : judgement.verdicts)
-    ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
+  count(query, judgement, pair.counts);
   for (const OverlapRegion& region : judgement.overlap.regions)
     if (region.capped) pair.undecided = true;
   return judgement;
@@ -69,14 +64,19 @@ Motion as_moved(const Scratch::Impl& work, std::int32_t index, const Motion& seg
   return cut;
 }
 
+// Time of the tick up to which a part of the pair moves.
+double end_of(const Scratch::Impl& work, const PairWork& pair) {
+  double end = pair.tau;
+  for (const std::int32_t index : {pair.move_a, pair.move_b})
+    if (index >= 0) end = std::max(end, work.moves[static_cast<std::size_t>(index)].stop);
+  return end;
+}
+
 PairMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
   PairMotion motion = as_asked(pair);
   motion.a = as_moved(work, pair.move_a, pair.motion_a, pair.tau);
   motion.b = as_moved(work, pair.move_b, pair.motion_b, pair.tau);
-  double end = pair.tau;
-  for (const std::int32_t index : {pair.move_a, pair.move_b})
-    if (index >= 0) end = std::max(end, work.moves[static_cast<std::size_t>(index)].stop);
-  const double local_end = (end - pair.tau) / (1.0 - pair.tau);
+  const double local_end = (end_of(work, pair) - pair.tau) / (1.0 - pair.tau);
   motion.t_contact = share_of(pair.t_contact, local_end);
   motion.t_enter = pair.t_enter > 0.0 ? share_of(pair.t_enter, local_end) : 0.0;
   return motion;
@@ -203,7 +203,9 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
       }
       // The separating motion is needed only where somebody is told of it.
       judge_near(world, work, pair, pair.open == nullptr, ccd);
-      if (pair.open && anything_to_tell(pair)) judge_near(world, work, pair, true, ccd);
+      if (!anything_to_tell(pair)) return;
+      if (pair.open) judge_near(world, work, pair, true, ccd);
+      find_event_times(pair, end_of(work, pair), ccd);
       return;
     }
     if (pair.open) judge_clear(world, work, pair, ccd);

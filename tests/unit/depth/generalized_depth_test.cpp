@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <random>
 
 #include "tests/unit/depth/depth_bands.h"
 
@@ -15,14 +17,15 @@ struct Scene {
   SolidPtr a, b;
   Motion motion_a = still_motion(Pose()), motion_b = still_motion(Pose());
   double t_contact = 1.0;
+  SurfaceBand band_a = nominal_band(), band_b = nominal_band();
 };
 
 GeneralizedDepth depth_of(const Scene& s, OverlapResult* overlap = nullptr) {
-  const SurfaceBand nominal = nominal_band();
   GpdQuery query;
   query.overlap.a = s.a.get();
   query.overlap.b = s.b.get();
-  query.overlap.band_a = query.overlap.band_b = &nominal;
+  query.overlap.band_a = &s.band_a;
+  query.overlap.band_b = &s.band_b;
   query.overlap.X_WA = s.motion_a.X_W1;
   query.overlap.X_WB = s.motion_b.X_W1;
   query.overlap.refinement = Refinement::kFull;
@@ -34,6 +37,7 @@ GeneralizedDepth depth_of(const Scene& s, OverlapResult* overlap = nullptr) {
   if (overlap != nullptr) *overlap = result;
   if (result.regions.empty()) return {};
   query.region = &result.regions[0];
+  query.regions = result.regions;
   return generalized_depth(query, scratch);
 }
 
@@ -79,18 +83,144 @@ TEST(GeneralizedDepth, PathOfATurn) {
   EXPECT_GT(gpd.travel_mm, 2.0 * std::sin(0.05) * farthest + 1e-4);
 }
 
-// ALG 6.2.8 in the plane: a slightly turned key is freed by a small turn; a translation alone needs
-// at least as much.
-TEST(GeneralizedDepth, TurnedKeyInSlot) {
-  const SolidPtr slot = solid(u_slot(10, 4, 8, 5, 0, 30));
-  const double angle = 0.02;
-  Scene s{solid(box({3.98, 3, 10})), slot};
-  s.motion_a = still_motion({rotation_exp({0, 0, angle}), {0, 3.3, 15}});
+// Is some translation of A this long at most enough? Asked in many directions.
+bool a_translation_frees(const Scene& s, double length_mm) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 400; ++i) {
+    Vec3 d = i < 6 ? Vec3((i < 3 ? 1.0 : -1.0) * Vec3::Unit(i % 3))
+                   : Vec3(normal(random), normal(random), normal(random)).normalized();
+    for (const double share : {1.0, 0.5, 0.25}) {
+      Scene moved = s;
+      moved.motion_a = still_motion(Pose::translation(share * length_mm * d) * s.motion_a.X_W1);
+      CcdScratch scratch;
+      if (!surfaces_cross(*s.a, moved.motion_a.X_W1, *s.b, s.motion_b.X_W1, scratch)) return true;
+    }
+  }
+  return false;
+}
+
+// ALG 6.2.8: a key turned in its slot by 0.02 jams between the walls. A turn back by as much, 11 mm
+// from its centre at most, frees it; a translation has to lift it out of the slot by 8 mm.
+TEST(GeneralizedDepth, ATurnFreesTheKeyOfASlotSooner) {
+  Scene s{solid(box({3.98, 3, 10})), solid(u_slot(10, 4, 8, 5, 0, 30))};
+  s.motion_a = still_motion({rotation_exp({0, 0, 0.02}), {0, 3.3, 15}});
   OverlapResult overlap;
   const GeneralizedDepth gpd = depth_of(s, &overlap);
   ASSERT_FALSE(overlap.regions.empty());
   EXPECT_GT(gpd.gpd_mm.lo, 0.0);
-  EXPECT_GE(gpd.gpd_mm.hi, gpd.gpd_mm.lo);
+  EXPECT_EQ(gpd.way, SeparationWay::kFitted);
+  EXPECT_LT(gpd.gpd_mm.hi, 0.02 * 12);
+  EXPECT_FALSE(a_translation_frees(s, 4.0));
+  EXPECT_TRUE(a_translation_frees(s, 9.0));
+}
+
+// A peg of 20 mm stands 15 mm deep in a plate of 20: out is 15 mm up, or 25 down. Its radius is too
+// large by 10 um, so that neither the normal nor a small turn frees it.
+struct Standing {
+  explicit Standing(double into_mm) {
+    scene.a = solid(peg({10.01, 0, 20, 32, 1, 0}));
+    scene.b = solid(ring({10, 0, 20, 32, 1, 0}, 20));
+    scene.motion_a = still_motion(Pose::translation({0, 0, 20 - into_mm}));
+  }
+  Scene scene;
+};
+
+TEST(GeneralizedDepth, APegComesOutAlongItsAxis) {
+  Scene s = Standing(15).scene;
+  for (const bool declared : {false, true}) {
+    if (declared) {
+      s.band_a = cylinder_band(s.a, 10.01, false, {});
+      s.band_b = cylinder_band(s.b, 10, true, {});
+    }
+    const GeneralizedDepth gpd = depth_of(s);
+    EXPECT_EQ(gpd.way, SeparationWay::kAxis) << declared;
+    EXPECT_NEAR(gpd.gpd_mm.hi, 15.0, 2e-4) << declared;
+    EXPECT_NEAR(gpd.translation_mm.z(), 15.0, 2e-4) << declared;
+    EXPECT_NEAR(gpd.gpd_mm.lo, 0.01, 1e-4) << declared;
+  }
+}
+
+TEST(GeneralizedDepth, TheShorterWayAlongTheAxisAnywhereInTheWorld) {
+  std::mt19937_64 random(8);
+  for (const double into : {4.0, 30.0}) {  // 30: its foot 10 below the plate, 10 mm to go that way
+    Scene s = Standing(into).scene;
+    const Pose G = random_pose(random, 50.0);
+    s.motion_b = still_motion(G);
+    s.motion_a = still_motion(G * s.motion_a.X_W1);
+    const GeneralizedDepth gpd = depth_of(s);
+    EXPECT_EQ(gpd.way, SeparationWay::kAxis);
+    EXPECT_NEAR(gpd.gpd_mm.hi, into > 20 ? 10.0 : into, 2e-4);
+    EXPECT_NEAR((G.q.conjugate() * gpd.translation_mm).z(), into > 20 ? -10.0 : 4.0, 2e-4);
+  }
+}
+
+// A bottom of the hole does not matter when the way out is the way it came.
+TEST(GeneralizedDepth, ABlindHoleIsLeftUpwards) {
+  Scene s = Standing(15).scene;
+  s.b = solid(together(ring({10, 0, 20, 32, 1, 0}, 20), box({15, 15, 1}, {0, 0, -2})));
+  const GeneralizedDepth gpd = depth_of(s);
+  EXPECT_EQ(gpd.way, SeparationWay::kAxis);
+  EXPECT_NEAR(gpd.translation_mm.z(), 15.0, 2e-4);
+}
+
+// Where only the zones meet, the meshes are free as they are.
+TEST(GeneralizedDepth, ApartMeansNothingToDo) {
+  Scene s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}, {1.02, .1, .2}))};
+  s.band_a = s.band_b = uniform_band({}, {-.05, .05});
+  const GeneralizedDepth gpd = depth_of(s);
+  EXPECT_EQ(gpd.gpd_mm, Interval{});
+  EXPECT_EQ(gpd.way, SeparationWay::kNone);
+}
+
+// Penetration depth of two boxes in closed form: the faces of their Minkowski difference have the
+// normals of either box or are crosses of two edges. For convex bodies turning does not help
+// (PD_g = PD_t: Zhang, Kim, Varadhan, Manocha 2007).
+double penetration_of_boxes(const Vec3& half_a, const Pose& X_A, const Vec3& half_b,
+                            const Pose& X_B) {
+  const Mat3 A = X_A.rotation(), B = X_B.rotation();
+  std::vector<Vec3> axes;
+  for (int i = 0; i < 3; ++i) {
+    axes.push_back(A.col(i));
+    axes.push_back(B.col(i));
+    for (int j = 0; j < 3; ++j) axes.push_back(A.col(i).cross(B.col(j)));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& axis : axes) {
+    if (axis.norm() < 1e-9) continue;
+    const Vec3 n = axis.normalized();
+    const double reach =
+        (A.transpose() * n).cwiseAbs().dot(half_a) + (B.transpose() * n).cwiseAbs().dot(half_b);
+    least = std::min(least, reach - std::fabs(n.dot(X_A.p - X_B.p)));
+  }
+  return least;
+}
+
+TEST(GeneralizedDepth, BracketsThePenetrationOfConvexBodies) {
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> size(0.3, 1.2);
+  int asked = 0, finite = 0, tight = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 half_a(size(random), size(random), size(random)),
+        half_b(size(random), size(random), size(random));
+    Scene s{solid(box(half_a)), solid(box(half_b))};
+    Pose X_A = random_pose(random, 0.0), X_B = random_pose(random, 0.0);
+    X_A.p = (1.2 + 0.5 * size(random)) * (X_A.q * Vec3::UnitX());
+    const double exact = penetration_of_boxes(half_a, X_A, half_b, X_B);
+    if (exact < 1e-3) continue;
+    s.motion_a = still_motion(X_A);
+    s.motion_b = still_motion(X_B);
+    const GeneralizedDepth gpd = depth_of(s);
+    ++asked;
+    EXPECT_LE(gpd.gpd_mm.lo, exact + 1e-9) << i;
+    EXPECT_GE(gpd.gpd_mm.hi, exact - 1e-6) << i;
+    finite += std::isfinite(gpd.gpd_mm.hi);
+    tight += gpd.gpd_mm.hi <= 1.3 * exact;
+  }
+  EXPECT_GT(asked, 20);
+  std::printf("%d convex pairs, %d with a finite bracket, %d within 1.3 of the exact depth\n",
+              asked, finite, tight);
+  EXPECT_GT(finite, asked / 2);
 }
 
 // The motion that is reported really separates, and a shorter one does not.

@@ -23,7 +23,7 @@ Motion slide(const Vec3& from, const Vec3& to) {
   return linear_motion(Pose::translation(from), Pose::translation(to), Vec3::Zero());
 }
 
-RealTime real_time_of(const Sweep& s) {
+SweptQuery swept_query(const Sweep& s) {
   SweptQuery query;
   query.at_target.a = s.a.get();
   query.at_target.b = s.b.get();
@@ -32,11 +32,21 @@ RealTime real_time_of(const Sweep& s) {
   query.motion_a = s.motion_a;
   query.motion_b = s.motion_b;
   query.accuracy_mm = s.accuracy_mm;
-  CcdScratch scratch;
-  return find_real_time(query, scratch);
+  return query;
 }
 
-double certain_at(const Sweep& s, double t) {
+RealTime real_time_of(const Sweep& s) {
+  CcdScratch scratch;
+  return find_real_time(swept_query(s), scratch);
+}
+
+PossibleTime possible_time_of(const Sweep& s) {
+  CcdScratch scratch;
+  return find_possible_time(swept_query(s), scratch);
+}
+
+// Lower bounds of what is certain and of what is possible.
+Interval depths_at(const Sweep& s, double t) {
   OverlapQuery query;
   query.a = s.a.get();
   query.b = s.b.get();
@@ -45,11 +55,16 @@ double certain_at(const Sweep& s, double t) {
   query.X_WA = s.motion_a.pose_at(t);
   query.X_WB = s.motion_b.pose_at(t);
   CcdScratch scratch;
-  double most = -1e9;
-  for (const OverlapRegion& region : find_overlap(query, scratch).regions)
-    most = std::max(most, region.certain_mm.lo);
+  query.refinement = Refinement::kFull;
+  Interval most{-1e9, -1e9};
+  for (const OverlapRegion& region : find_overlap(query, scratch).regions) {
+    most.lo = std::max(most.lo, region.certain_mm.lo);
+    most.hi = std::max(most.hi, region.possible_mm.lo);
+  }
   return most;
 }
+
+double certain_at(const Sweep& s, double t) { return depths_at(s, t).lo; }
 
 TEST(RealTime, CubeMeetsCube) {
   Sweep s{solid(box({.5, .5, .5}, Vec3::Zero(), 2)), solid(box({.5, .5, .5}, {5, .2, .1}, 2))};
@@ -70,6 +85,54 @@ TEST(RealTime, ToleranceDelaysIt) {
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_free, 0.41, 2e-5);
   EXPECT_NEAR(real.t_real, 0.41, 2e-5);
+}
+
+// Faces 4 mm apart, 10 mm a tick, each within +-0.05: they may meet 0.1 early and must 0.1 late.
+TEST(PossibleTime, TolerancesMeetBeforeTheMeshesDo) {
+  Sweep s{solid(box({.5, .5, .5}, Vec3::Zero(), 2)), solid(box({.5, .5, .5}, {5, .2, .1}, 2))};
+  s.band_a = s.band_b = uniform_band({}, {-.05, .05});
+  s.motion_a = slide(Vec3::Zero(), {10, 0, 0});
+  const PossibleTime possible = possible_time_of(s);
+  EXPECT_TRUE(possible.becomes_possible);
+  EXPECT_NEAR(possible.t_clear, 0.39, 2e-5);
+  EXPECT_NEAR(possible.t_possible, 0.39, 2e-5);
+  EXPECT_LE(possible.t_clear, possible.t_possible);
+  // Ends with faces 0.15 apart: nothing can happen. With 0.05: it may, but need not.
+  s.motion_a = slide(Vec3::Zero(), {3.85, 0, 0});
+  EXPECT_FALSE(possible_time_of(s).becomes_possible);
+  EXPECT_EQ(possible_time_of(s).t_clear, 1.0);
+  s.motion_a = slide(Vec3::Zero(), {3.95, 0, 0});
+  EXPECT_NEAR(possible_time_of(s).t_clear, 3.9 / 3.95, 5e-5);
+  EXPECT_FALSE(real_time_of(s).becomes_real);
+}
+
+// 20 H7/g6 pushed aside: its least clearance is 3.5 um, its largest 20.5; the meshes (32 facets,
+// half a phase apart) overlap from the start and say nothing.
+TEST(PossibleTime, PegPushedAsideInItsFit) {
+  const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
+  Sweep s;
+  s.a = solid(peg({10, 0, 30, 32, 8, std::numbers::pi / 32}));
+  s.b = solid(ring({10, 0, 20, 32, 8, 0}, 20));
+  s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
+  s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
+  s.motion_a = slide({0, 0, 5}, {0.03, 0, 5});
+  const PossibleTime possible = possible_time_of(s);
+  EXPECT_TRUE(possible.becomes_possible);
+  EXPECT_NEAR(possible.t_clear * 0.03, 0.0035, 2e-4);
+  EXPECT_NEAR(possible.t_possible * 0.03, 0.0035, 4e-4);
+  // Slid along its axis, at rest in a fit that may interfere: at once.
+  s.motion_a = slide({0, 0, 5}, {0, 0, 4});
+  EXPECT_FALSE(possible_time_of(s).becomes_possible);
+  const FitOffsets k6 = fit_offsets("H7/k6", 10.0);
+  s.band_a = cylinder_band(s.a, 10, false, k6.shaft_mm);
+  EXPECT_TRUE(possible_time_of(s).becomes_possible);
+  EXPECT_EQ(possible_time_of(s).t_clear, 0.0);
+}
+
+TEST(PossibleTime, WithoutBandsItIsTheTimeOfTheMeshes) {
+  Sweep s{solid(box({.5, .5, .5})), solid(box({.0005, 5, 5}, {10, 0, 0}))};
+  s.motion_a = slide(Vec3::Zero(), {20, 0, 0});
+  EXPECT_NEAR(possible_time_of(s).t_clear, 9.4995 / 20.0, 2e-5);
 }
 
 // The disease and the cure: both ends of the tick are free, the wall is in between.
@@ -152,6 +215,36 @@ TEST(RealTime, StartsRealOrTouching) {
   s.b = solid(box({.5, .5, .5}, {1, .1, .2}));
   s.motion_a = slide(Vec3::Zero(), {0, 3, 0});  // along the touching faces
   EXPECT_FALSE(real_time_of(s).becomes_real);
+}
+
+// The same for what is possible: never before t_clear, and in the order possible, then real.
+TEST(PossibleTime, NeverPossibleBeforeClear) {
+  std::mt19937_64 random(22);
+  int became = 0, planted = 0;
+  for (int i = 0; i < 12; ++i) {
+    Sweep s{solid(box({1, .3, .2})), solid(box({.4, .6, .5}))};
+    s.band_a = uniform_band({}, {-.01, .02});
+    s.band_b = uniform_band({-.005, .01}, {-.01, .01});
+    s.accuracy_mm = 1e-3;
+    Pose from = random_pose(random, 1.0), to = random_pose(random, 1.0);
+    from.p.x() -= 2.5;
+    to.p.x() += 0.5;
+    to.q = (rotation_exp(0.5 * rotation_log((to.q * from.q.conjugate()).normalized())) * from.q)
+               .normalized();
+    s.motion_a = linear_motion(from, to, Vec3::Zero());
+    const PossibleTime possible = possible_time_of(s);
+    EXPECT_FALSE(possible.capped);
+    became += possible.becomes_possible;
+    for (int k = 0; k < 20; ++k)
+      EXPECT_LE(depths_at(s, possible.t_clear * k / 20.0).hi, s.accuracy_mm) << i;
+    if (possible.becomes_possible) {
+      EXPECT_LT((possible.t_possible - possible.t_clear) * 6.0, 0.1) << i;
+      EXPECT_LE(possible.t_clear, real_time_of(s).t_real) << i;
+      planted += depths_at(s, std::min(1.0, possible.t_clear + 0.02)).hi > 0.0;
+    }
+  }
+  EXPECT_GT(became, 4);
+  EXPECT_GT(planted, 2);
 }
 
 // Random motions: never real before t_free, by an independent query at many times; and the check

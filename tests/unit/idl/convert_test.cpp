@@ -216,6 +216,11 @@ TEST(Convert, EventsAreRefused) {
   EXPECT_FALSE(passes([](E& e) { e.part_b(e.part_a()); }));
   EXPECT_FALSE(passes([](E& e) { e.t_contact(kNan); }));
   EXPECT_FALSE(passes([](E& e) { e.t_contact(1.5); }));
+  EXPECT_FALSE(passes([](E& e) { e.t_potential(kNan); }));
+  EXPECT_FALSE(passes([](E& e) { e.t_potential(-0.1); }));
+  EXPECT_FALSE(passes([](E& e) { e.t_real(-kInf); }));
+  EXPECT_FALSE(passes([](E& e) { e.t_real(1.5); }));
+  EXPECT_TRUE(passes([](E& e) { e.t_real(kInf); }));
   EXPECT_FALSE(passes([](E& e) { e.begin_tick(e.tick() + 1); }));
   EXPECT_FALSE(passes([](E& e) { e.worst_class(4); }));
   EXPECT_FALSE(passes([](E& e) { e.worst_delta_lo_mm(kNan); }));
@@ -229,6 +234,7 @@ TEST(Convert, EventsAreRefused) {
   EXPECT_FALSE(passes([](E& e) { e.verdict().point_mm({kInf, 0, 0}); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().normal({0, kNan, 0}); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().area_mm2(-1); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().separation_way(5); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().shape_b(6); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().grade(7); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().face_a(std::string(129, 'x')); }));

@@ -38,6 +38,7 @@ ClashEvent some_clash(std::uint64_t seq) {
   event.part_b = PartId{9};
   event.user = UserId{1};
   event.t_contact = 0.25;
+  event.t_potential = 0.125;  // t_real: never
   event.worst_class = CollisionClass::kReal;
   event.worst_delta_mm = {0.1, 0.2};
   Verdict& verdict = event.verdict;
@@ -57,6 +58,7 @@ ClashEvent some_clash(std::uint64_t seq) {
   verdict.witness_W = Vec3(1, 2, 2.99);
   verdict.separation_translation_mm = Vec3(0, 0, 0.04);
   verdict.separation_rotation_rad = Vec3(0.001, 0, 0);
+  verdict.separation_way = SeparationWay::kFitted;
   verdict.shape_a = FaceShape::kConvex;
   verdict.shape_b = FaceShape::kConcave;
   verdict.grade = DeviationGrade::kRecognizedFeature;
@@ -104,6 +106,8 @@ void expect_same(const ClashEvent& a, const ClashEvent& b) {
   EXPECT_EQ(a.part_b, b.part_b);
   EXPECT_EQ(a.user, b.user);
   EXPECT_EQ(a.t_contact, b.t_contact);
+  EXPECT_EQ(a.t_potential, b.t_potential);
+  EXPECT_EQ(a.t_real, b.t_real);
   EXPECT_EQ(a.worst_class, b.worst_class);
   EXPECT_EQ(a.worst_delta_mm, b.worst_delta_mm);
   const Verdict &v = a.verdict, &w = b.verdict;
@@ -123,6 +127,7 @@ void expect_same(const ClashEvent& a, const ClashEvent& b) {
   EXPECT_EQ(v.witness_W, w.witness_W);
   EXPECT_EQ(v.separation_translation_mm, w.separation_translation_mm);
   EXPECT_EQ(v.separation_rotation_rad, w.separation_rotation_rad);
+  EXPECT_EQ(v.separation_way, w.separation_way);
   EXPECT_EQ(v.shape_a, w.shape_a);
   EXPECT_EQ(v.shape_b, w.shape_b);
   EXPECT_EQ(v.grade, w.grade);

@@ -101,6 +101,8 @@ inline TickRecord sample_tick(std::uint64_t tick, std::uint64_t seed) {
     event.verdict.face_a = "bore";
     event.verdict.explanation = "overlap 48.2 \xc2\xb5m";
     event.t_contact = uniform(random);
+    event.t_potential = 0.1;  // t_real: never
+    event.verdict.separation_way = SeparationWay::kAxis;
     event.begin_tick = tick;
     event.worst_class = CollisionClass::kReal;
     event.worst_delta_mm = {-1.0, 2.0};

@@ -46,6 +46,8 @@ inline std::uint64_t digest(const StepReport& report) {
                                   static_cast<std::uint64_t>(event.worst_class)})
       hash.add(x);
     hash.add(event.t_contact);
+    hash.add(event.t_potential);
+    hash.add(event.t_real);
     hash.add(event.worst_delta_mm.lo);
     add(hash, event.verdict);
   }

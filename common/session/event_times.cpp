@@ -1,0 +1,80 @@
+#include "common/session/event_times.h"
+
+#include <algorithm>
+
+#include "common/depth/overlap.h"
+
+namespace mortise {
+namespace {
+
+// Evaluations of each of the two searches, some 10 ms of work. At the cap the time of the verdict
+// itself is told, and the pair is counted as not examined.
+constexpr std::uint64_t kEventTimeWorkCap = 4'000;
+
+CollisionClass worst_told(const PairWork& pair) {
+  CollisionClass worst = CollisionClass::kNone;
+  for (const SeenRegion& seen : pair.seen)
+    if (seen.tell) worst = std::max(worst, seen.verdict.collision_class);
+  return worst;
+}
+
+SweptQuery swept_query(const PairWork& pair) {
+  SweptQuery query;
+  query.at_target.a = pair.solid_a;
+  query.at_target.b = pair.solid_b;
+  query.at_target.band_a = pair.band_a;
+  query.at_target.band_b = pair.band_b;
+  query.at_target.work_cap = kEventTimeWorkCap;
+  query.motion_a = pair.motion_a;
+  query.motion_b = pair.motion_b;
+  return query;
+}
+
+void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
+  ++pair.counts.event_time_queries;
+  pair.counts.depth_evaluations += evaluations;
+  if (capped) pair.undecided = true;
+}
+
+// With bands the two times differ, and neither is that of the meshes.
+void search(PairWork& pair, CcdScratch& ccd) {
+  const auto in_tick = [&](double t) { return pair.tau + (1.0 - pair.tau) * t; };
+  const SweptQuery query = swept_query(pair);
+  const PossibleTime possible = find_possible_time(query, ccd);
+  count(pair, possible.evaluations, possible.capped);
+  if (possible.becomes_possible) pair.t_potential = in_tick(possible.t_clear);
+  if (!possible.becomes_possible && !possible.capped) return;
+  if (pair.blocks) {
+    // The response knows it already.
+    pair.t_real = pair.t_stop;
+  } else if (!pair.no_inside()) {
+    const RealTime real = find_real_time(query, ccd);
+    count(pair, real.evaluations, real.capped);
+    if (real.becomes_real) pair.t_real = in_tick(real.t_real);
+  }
+}
+
+}  // namespace
+
+void find_event_times(PairWork& pair, double t_end, CcdScratch& ccd) {
+  pair.t_potential = pair.t_real = kNever;
+  const CollisionClass worst = worst_told(pair);
+  if (pair.placed) {
+    t_end = 0.0;
+  } else if (!pair.plain()) {
+    search(pair, ccd);
+  } else if (pair.meets) {
+    // The meshes are the parts: they interfere from where they press in.
+    pair.t_potential = pair.tau + (1.0 - pair.tau) * pair.t_enter;
+    if (!pair.no_inside()) pair.t_real = pair.t_potential;
+  }
+  if (pair.blocks) t_end = 1.0;
+  if (pair.t_potential > t_end) pair.t_potential = kNever;
+  if (pair.t_real > t_end) pair.t_real = kNever;
+  // What the verdict says at the end of the motion holds there at the latest.
+  if (worst >= CollisionClass::kReal) pair.t_real = std::min(pair.t_real, t_end);
+  if (worst >= CollisionClass::kPotential) pair.t_potential = std::min(pair.t_potential, t_end);
+  pair.t_potential = std::min(pair.t_potential, pair.t_real);
+}
+
+}  // namespace mortise
