@@ -49,12 +49,29 @@ void pair_up(PairWork& pair, const std::vector<OpenClash>& open, double radius_m
   }
 }
 
+// How far beyond a threshold a class has to be left behind: 1 % of the width of the zone between
+// both, within bounds (ALG 5.4).
+double hysteresis_mm(const Verdict& verdict) {
+  const double width = verdict.real_above_mm - verdict.fake_below_mm;
+  if (!(width > 0.0)) return kClashHysteresis_mm;
+  return std::clamp(kClashHysteresisShare * width, kClashHysteresis_mm, kClashHysteresisMost_mm);
+}
+
+// A class is entered at its threshold and left beyond it, so that what trembles about a threshold
+// is told once.
+bool is_left(CollisionClass told, const Verdict& now) {
+  const double h = hysteresis_mm(now);
+  if (told == CollisionClass::kReal && now.collision_class == CollisionClass::kPotential)
+    return now.real_above_mm - now.delta_mm.hi >= h;
+  return now.margin_mm >= h;
+}
+
 // Worth an event? A worse class always, a better one when it is beyond the threshold for certain, a
 // growing depth now and then.
 bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick) {
   const CollisionClass told = clash.last.verdict.collision_class;
   if (verdict.collision_class > told) return true;
-  if (verdict.collision_class < told) return verdict.margin_mm >= kClashHysteresis_mm;
+  if (verdict.collision_class < told) return is_left(told, verdict);
   if (tick < clash.last.tick + kClashQuietTicks) return false;
   const double told_mm = clash.last.worst_delta_mm.lo;
   return verdict.delta_mm.lo - told_mm >
@@ -192,12 +209,14 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
     }
   }
   // 2. Hysteresis: not interfering any more, but by less than can be told for certain.
-  const bool close = distance_mm <= pair.band_mm + kClashHysteresis_mm;
-  const bool barely = std::any_of(
-      pair.judgement.overlap.regions.begin(), pair.judgement.overlap.regions.end(),
-      [](const OverlapRegion& region) {
-        return region.possible_mm.hi <= 0.0 && region.possible_mm.hi > -kClashHysteresis_mm;
-      });
+  double h = kClashHysteresis_mm;
+  for (const OpenClash& clash : open) h = std::max(h, hysteresis_mm(clash.now));
+  const bool close = distance_mm <= pair.band_mm + h;
+  const bool barely =
+      std::any_of(pair.judgement.overlap.regions.begin(), pair.judgement.overlap.regions.end(),
+                  [&](const OverlapRegion& region) {
+                    return region.possible_mm.hi <= 0.0 && region.possible_mm.hi > -h;
+                  });
   if (pair.seen.empty() && (close || barely)) pair.keeps.assign(open.size(), 1);
 }
 

@@ -7,9 +7,14 @@
 namespace mortise {
 namespace {
 
-// Evaluations of each of the two searches, some 10 ms of work. At the cap the time of the verdict
-// itself is told, and the pair is counted as not examined.
+// Evaluations of each of the two searches, some 10 ms of work. At the cap the time is looked for by
+// halving, which finds a time of that kind but does not prove it the first, and the pair is counted
+// as not examined.
 constexpr std::uint64_t kEventTimeWorkCap = 4'000;
+
+// Halvings, and the evaluations of each look.
+constexpr int kHalvings = 14;
+constexpr std::uint64_t kLookWorkCap = 1'000;
 
 CollisionClass worst_told(const PairWork& pair) {
   CollisionClass worst = CollisionClass::kNone;
@@ -36,6 +41,33 @@ void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
   if (capped) pair.undecided = true;
 }
 
+enum class Asked { kPossible, kReal };
+
+bool interferes_at(PairWork& pair, const SweptQuery& swept, double t, Asked asked,
+                   CcdScratch& ccd) {
+  OverlapQuery query = swept.at_target;
+  query.X_WA = swept.motion_a.pose_at(t);
+  query.X_WB = swept.motion_b.pose_at(t);
+  query.work_cap = kLookWorkCap;
+  const OverlapResult overlap = find_overlap(query, ccd);
+  pair.counts.depth_evaluations += overlap.evaluations;
+  return std::any_of(overlap.regions.begin(), overlap.regions.end(), [&](const auto& region) {
+    return asked == Asked::kPossible ? region.possible_mm.lo > 0.0 : region.certain_mm.lo > 0.0;
+  });
+}
+
+// A time at which they interfere, after `clear` and not after `known`; kNever when not even at
+// `known`.
+double halved(PairWork& pair, const SweptQuery& swept, double clear, double known, Asked asked,
+              CcdScratch& ccd) {
+  if (!interferes_at(pair, swept, known, asked, ccd)) return kNever;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (clear + known);
+    (interferes_at(pair, swept, middle, asked, ccd) ? known : clear) = middle;
+  }
+  return known;
+}
+
 // With bands the two times differ, and neither is that of the meshes.
 void search(PairWork& pair, CcdScratch& ccd) {
   const auto in_tick = [&](double t) { return pair.tau + (1.0 - pair.tau) * t; };
@@ -43,6 +75,9 @@ void search(PairWork& pair, CcdScratch& ccd) {
   const PossibleTime possible = find_possible_time(query, ccd);
   count(pair, possible.evaluations, possible.capped);
   if (possible.becomes_possible) pair.t_potential = in_tick(possible.t_clear);
+  if (possible.capped)
+    pair.t_potential =
+        in_tick(halved(pair, query, possible.t_clear, possible.t_possible, Asked::kPossible, ccd));
   if (!possible.becomes_possible && !possible.capped) return;
   if (pair.blocks) {
     // The response knows it already.
@@ -51,6 +86,8 @@ void search(PairWork& pair, CcdScratch& ccd) {
     const RealTime real = find_real_time(query, ccd);
     count(pair, real.evaluations, real.capped);
     if (real.becomes_real) pair.t_real = in_tick(real.t_real);
+    if (real.capped)
+      pair.t_real = in_tick(halved(pair, query, real.t_free, real.t_real, Asked::kReal, ccd));
   }
 }
 

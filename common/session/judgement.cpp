@@ -165,7 +165,9 @@ void count(const JudgementQuery& query, const Judgement& judgement, StepCounters
     ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
   for (const OverlapRegion& region : judgement.overlap.regions)
     if (!region.capped)
-      ++(is_refined(region) ? counts.regions_refined : counts.regions_decided_early);
+      ++(query.refinement == Refinement::kFull || is_refined(region)
+             ? counts.regions_refined
+             : counts.regions_decided_early);
 }
 
 }  // namespace mortise

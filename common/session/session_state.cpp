@@ -38,7 +38,7 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
     grow(pair.second, rule.band_b);
   }
   for (std::uint32_t i = 0; i < world.parts.size(); ++i) {
-    state->parts[i].growth_mm += kClashHysteresis_mm;
+    state->parts[i].growth_mm += kClashHysteresisMost_mm;
     state->broad_phase->set_box(i, resting_box(world, *state, i));
   }
   return state;

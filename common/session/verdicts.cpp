@@ -167,7 +167,7 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
   double distance_mm = kInfinity;
   if (pair.open && pair.judgement.overlap.regions.empty()) {
     const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
-                                              2.0 * (pair.band_mm + kClashHysteresis_mm), ccd);
+                                              2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
     if (result.within_limit) distance_mm = result.distance_mm;
   }
   match_clashes(world, pair, distance_mm);
@@ -179,7 +179,7 @@ void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, 
   pair.judgement = {};
   const PairMotion motion = as_moved(work, pair);
   const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
-                                            2.0 * (pair.band_mm + kClashHysteresis_mm), ccd);
+                                            2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
 }
 

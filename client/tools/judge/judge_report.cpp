@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/messages/names.h"
 
@@ -14,7 +15,6 @@ namespace {
 constexpr std::size_t kMostRegions = 4;
 
 std::string um(double mm) { return std::isfinite(mm) ? fmt::format("{:.1f}", mm * 1e3) : "inf"; }
-std::string um(const Interval& mm) { return fmt::format("[{}, {}]", um(mm.lo), um(mm.hi)); }
 
 std::string class_text(CollisionClass c, bool color) {
   const std::string name(name_of(c));
@@ -23,21 +23,74 @@ std::string class_text(CollisionClass c, bool color) {
   return fmt::format("\033[{}m{}\033[0m", code, name);
 }
 
-std::string faces_text(const Verdict& v) {
-  if (v.face_a.empty() && v.face_b.empty()) return "";
-  const auto face = [](const std::string& name) { return name.empty() ? "other face" : name; };
-  return fmt::format("  {} / {}", face(v.face_a), face(v.face_b));
+// Micrometres as long as they are read as such.
+std::string length(double mm) {
+  return std::fabs(mm) < 1.0 ? um(mm) + " µm" : fmt::format("{:.3f} mm", mm);
 }
 
-std::string region_text(std::size_t number, const Verdict& v, bool color) {
-  std::string text =
-      fmt::format("  [{}] {}{}\n    {}\n", number, class_text(v.collision_class, color),
-                  faces_text(v), v.explanation);
-  text += fmt::format("    overlap {} µm, fake up to {} µm, real above {} µm, mesh error: {}\n",
-                      um(v.delta_mm), um(v.fake_below_mm), um(v.real_above_mm), name_of(v.grade));
-  if (v.gpd_mm.hi > 0.0)
-    text += fmt::format("    separating motion {} µm, at ({:.3f}, {:.3f}, {:.3f}) mm\n",
-                        um(v.gpd_mm), v.point_W.x(), v.point_W.y(), v.point_W.z());
+std::string range(const Interval& mm) {
+  return mm.width() < 5e-5 ? length(mm.lo) : length(mm.lo) + " to " + length(mm.hi);
+}
+
+std::string vector(const Vec3& v, int digits) {
+  return fmt::format("({0:.{3}f}, {1:.{3}f}, {2:.{3}f})", v.x(), v.y(), v.z(), digits);
+}
+
+std::string face_text(const std::string& part, const std::string& face, FaceShape shape) {
+  return fmt::format("{}{} ({})", part, face.empty() ? "" : "." + face, name_of(shape));
+}
+
+std::string depth_text(const Verdict& v) {
+  const Interval apart{-v.delta_mm.hi, -v.delta_mm.lo};
+  const std::string depth =
+      v.delta_mm.hi < 0.0 ? "meshes apart " + range(apart) : "meshes overlap " + range(v.delta_mm);
+  const char* edge = v.collision_class == CollisionClass::kReal   ? "beyond real"
+                     : v.collision_class == CollisionClass::kFake ? "to spare below potential"
+                                                                  : "to the nearer threshold";
+  return fmt::format("{}; fake up to {}, real above {}; {} {}", depth, length(v.fake_below_mm),
+                     length(v.real_above_mm), length(v.margin_mm), edge);
+}
+
+struct RegionNames {
+  std::size_t number = 0;
+  std::string part_a, part_b;
+  bool only_b_moves = false;
+};
+
+std::string way_out_text(const Verdict& v, const RegionNames& names) {
+  // The motion is that of A; where A stands fast, a shift is told as the opposite one of B.
+  const double turn = v.separation_rotation_rad.norm();
+  const bool of_b = names.only_b_moves && turn <= 1e-9;
+  const std::string& part = of_b ? names.part_b : names.part_a;
+  const Vec3 shift = (of_b ? -1.0 : 1.0) * v.separation_translation_mm;
+  const std::string least = "at least " + length(v.gpd_mm.lo);
+  if (v.separation_way == SeparationWay::kNone)
+    return least + "; no motion was found that frees it";
+  std::string text = fmt::format("{}, and {} does: {} moved {}", least, length(v.gpd_mm.hi), part,
+                                 name_of(v.separation_way));
+  if (const double by = shift.norm(); by > 0.0)
+    text += fmt::format(", {} towards {}", length(by), vector(shift / by, 3));
+  if (turn > 1e-9)
+    text += fmt::format(", turned {:.4f}° about {}", turn * 180.0 / std::numbers::pi,
+                        vector(v.separation_rotation_rad / turn, 3));
+  return text;
+}
+
+std::string region_text(const RegionNames& names, const Verdict& v, bool color) {
+  std::string text = fmt::format("  [{}] {}  {} / {}\n      {}\n", names.number,
+                                 class_text(v.collision_class, color),
+                                 face_text(names.part_a, v.face_a, v.shape_a),
+                                 face_text(names.part_b, v.face_b, v.shape_b), v.explanation);
+  const auto row = [&](const char* what, const std::string& how) {
+    text += fmt::format("      {:<12}{}\n", what, how);
+  };
+  row("depth", depth_text(v));
+  row("mesh error", std::string(name_of(v.grade)));
+  if (v.gpd_mm.hi > 0.0) row("comes free", way_out_text(v, names));
+  row("where", fmt::format("{} mm, normal {}{}", vector(v.point_W, 3), vector(v.normal_W, 3),
+                           v.area_mm2 > 0.0 ? fmt::format(", {:.3g} mm²", v.area_mm2) : ""));
+  if (v.has_witness)
+    row("witness", vector(v.witness_W, 3) + " mm lies inside both, however they are made");
   return text;
 }
 
@@ -69,7 +122,9 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
     text += "\n";
     const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
     for (std::size_t i = 0; i < shown; ++i)
-      text += region_text(number + i + 1, pair.verdicts[i], color);
+      text += region_text({number + i + 1, names.part(pair.a), names.part(pair.b),
+                           !world.find(pair.a)->moving && world.find(pair.b)->moving},
+                          pair.verdicts[i], color);
     number += pair.verdicts.size();
     if (shown < pair.verdicts.size())
       text += fmt::format("  ... {} more regions, none worse; --json lists all\n",
@@ -81,6 +136,10 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
                       c.verdicts_by_class[2], c.verdicts_by_class[1], c.pairs_excluded);
   if (c.not_examined > 0) text += fmt::format("; {} not settled by the work limit", c.not_examined);
   if (c.parts_without_inside > 0) text += fmt::format("; {} open parts", c.parts_without_inside);
+  if (c.judged_plain > 0) text += fmt::format("; {} pairs with nothing declared", c.judged_plain);
+  if (c.regions_decided_early > 0)
+    text += fmt::format("; {} regions decided before their depth was, --full refines",
+                        c.regions_decided_early);
   return text + "\n";
 }
 
