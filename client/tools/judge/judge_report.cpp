@@ -33,7 +33,10 @@ std::string range(const Interval& mm) {
 }
 
 std::string vector(const Vec3& v, int digits) {
-  return fmt::format("({0:.{3}f}, {1:.{3}f}, {2:.{3}f})", v.x(), v.y(), v.z(), digits);
+  const double least = 0.5 * std::pow(10.0, -digits);  // no "-0.000"
+  const auto shown = [&](double x) { return std::fabs(x) < least ? 0.0 : x; };
+  return fmt::format("({0:.{3}f}, {1:.{3}f}, {2:.{3}f})", shown(v.x()), shown(v.y()), shown(v.z()),
+                     digits);
 }
 
 std::string face_text(const std::string& part, const std::string& face, FaceShape shape) {
