@@ -240,6 +240,7 @@ bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double
     return false;
   if (kind == SurfaceKind::kTorus) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
   if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown || !inward) return true;
+  if (kind == SurfaceKind::kCylinder) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
   return nowhere_below(*this, -limit_mm, {a, b, c}, kHalvings);
 }
 
