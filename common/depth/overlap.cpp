@@ -11,7 +11,7 @@ namespace mortise {
 namespace {
 
 // Triangles of a known pair of faces that are asked how far the meshes overlap.
-constexpr std::size_t kKnownQuestions = 24;
+constexpr std::size_t kKnownQuestions = 24, kKnownQuestionsLazily = 12;
 
 // Where a witness of a closed form is looked for: shares of the way to the middle of the face.
 constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
@@ -199,9 +199,15 @@ class Overlap {
     const double excess =
         std::max(0.0, -face_a.deviation_mm.lo) + std::max(0.0, -face_b.deviation_mm.lo);
     mesh.hi_mm = std::max(mesh.best.depth_mm, std::min(mesh.hi_mm, known.overlap.hi_mm + excess));
-    if (mesh.best.depth_mm <= pair_.touch_mm && region.possible_mm.hi <= 0.0) return;
+    if (mesh.best.depth_mm <= pair_.touch_mm && region.possible_mm.hi <= 0.0 && query_.want_delta)
+      return;
     region.delta_mm = bracket_of(mesh);
-    describe(pair_, mesh.best, mesh.best, region);
+    if (std::isfinite(mesh.best.depth_mm)) {
+      describe(pair_, mesh.best, mesh.best, region);
+    } else {
+      region.point_W = pair_.X_W[1] * known.overlap.point_B;
+      region.normal_W = pair_.X_W[1].q * known.overlap.normal_B;
+    }
     region.area_mm2 = mesh.area_mm2;
     for (const Sample& sample : mesh.samples)
       region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
@@ -240,11 +246,14 @@ class Overlap {
   Bracket mesh_overlap_of(const KnownFacePair& known) {
     Bracket found;
     found.hi_mm = std::numeric_limits<double>::infinity();
+    if (!query_.want_delta) return found;
+    const std::size_t questions =
+        query_.refinement == Refinement::kFull ? kKnownQuestions : kKnownQuestionsLazily;
     for (int role = 0; role < 2; ++role) {
       if (!pair_.k(role).has_inside) continue;
       const std::vector<std::uint32_t>& triangles = known.triangles[role];
-      const double step = std::max(
-          1.0, static_cast<double>(triangles.size()) / static_cast<double>(kKnownQuestions));
+      const double step =
+          std::max(1.0, static_cast<double>(triangles.size()) / static_cast<double>(questions));
       for (double i = 0.0; i < static_cast<double>(triangles.size()); i += step) {
         const std::uint32_t t = triangles[static_cast<std::size_t>(i)];
         for (const Vec3& x : probe_points(*pair_.s(role).mesh, t)) {

@@ -21,6 +21,8 @@ struct OverlapQuery {
   Pose X_WA, X_WB;  ///< where the overlap is judged (the target of the tick)
   Refinement refinement = Refinement::kDecided;
   double accuracy_mm = kDepthAccuracyDefault_mm;
+  /// False: only certain_mm and possible_mm are wanted; delta_mm may be wide.
+  bool want_delta = true;
   std::uint64_t work_cap =
       200'000;  ///< branch-and-bound evaluations; on the cap brackets stay wide, never wrong
 };

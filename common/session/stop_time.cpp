@@ -22,6 +22,8 @@ constexpr std::uint64_t kLookWorkCap = 2'000;
 // needs many and is left to the search.
 constexpr double kAdvanceAccuracy_mm = 0.5 * kDepthAccuracyDefault_mm;
 constexpr int kAdvanceSteps = 12;
+// Parts that approach by less than this share of their speed slide.
+constexpr double kLeastApproach = 0.1;
 static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
 
 // Upper bound of the lower outward offset of any face: what the real surface has at least.
@@ -57,24 +59,46 @@ OverlapQuery overlap_query(const PairWork& pair) {
 
 // Bracket of the deepest overlap that is certain at one time of the segment, mm. A place that the
 // overlap does not speak of is not even possible, and so at least the width of the bands away.
-Interval certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
-                       CcdScratch& ccd) {
+struct Look {
+  Interval depth_mm;
+  bool has_place = false;  // where the deepest region lies, world frame, and its normal from B to A
+  Vec3 point_W = Vec3::Zero(), normal_W = Vec3::UnitZ();
+};
+
+Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
+                   CcdScratch& ccd) {
   OverlapQuery query = overlap_query(pair);
   query.X_WA = pair.motion_a.pose_at(t);
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
   query.work_cap = kLookWorkCap;
+  query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += overlap.evaluations;
   const double elsewhere_mm = -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
-  Interval depth_mm{elsewhere_mm, elsewhere_mm};
+  Look look;
+  look.depth_mm = {elsewhere_mm, elsewhere_mm};
   for (const OverlapRegion& region : overlap.regions) {
-    depth_mm.lo = std::max(depth_mm.lo, region.certain_mm.lo);
-    depth_mm.hi = std::max(depth_mm.hi, region.certain_mm.hi);
+    look.depth_mm.lo = std::max(look.depth_mm.lo, region.certain_mm.lo);
+    if (region.certain_mm.hi < look.depth_mm.hi) continue;
+    look.depth_mm.hi = region.certain_mm.hi;
+    look.has_place = true;
+    look.point_W = region.point_W;
+    look.normal_W = region.normal_W;
   }
-  return depth_mm;
+  return look;
+}
+
+// Do the parts slide past each other at the place, rather than approach? mm a segment.
+bool slides(const PairWork& pair, const Look& look, double t, double speed_mm) {
+  if (!look.has_place) return false;
+  const auto end = [&](const Motion& motion) -> Vec3 {
+    return motion.X_W1 * (motion.pose_at(t).inverse() * look.point_W);
+  };
+  const double approach_mm = -look.normal_W.dot(end(pair.motion_a) - end(pair.motion_b));
+  return approach_mm < kLeastApproach * (1.0 - t) * speed_mm;
 }
 
 enum class Advanced { kDone, kRealAtStart, kUnsure };
@@ -94,8 +118,8 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   Advance advance;
   double t = advance.t_free = t_start;
   for (int i = 0; i < kAdvanceSteps; ++i) {
-    const Interval depth_mm =
-        certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, ccd);
+    const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, ccd);
+    const Interval& depth_mm = look.depth_mm;
     if (depth_mm.lo > 0.0 && t == 0.0) {
       advance.state = Advanced::kRealAtStart;
       return advance;
@@ -110,6 +134,7 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
       return advance;
     }
     t += lacking_mm / speed_mm;
+    if (t < 1.0 && slides(pair, look, advance.t_free, speed_mm)) return advance;
     if (!(t < 1.0)) {
       advance = {Advanced::kDone, 1.0};
       return advance;
@@ -123,7 +148,8 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
 double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
   constexpr int kLooks = 4;
   const auto depth_mm = [&](double t) {
-    return std::max(0.0, certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd).lo);
+    return std::max(0.0,
+                    certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd).depth_mm.lo);
   };
   double& allowed_mm = pair.memo->allowed_depth_mm;
   allowed_mm = std::min(allowed_mm, depth_mm(0.0));
