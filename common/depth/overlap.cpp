@@ -129,7 +129,9 @@ class Overlap {
       for (const Bracket& p : upper) may_be_certain |= p.hi_mm > pair_.touch_mm;
       // What is not seen to be certain is potential: that none of it is needs no proof.
       if (may_be_certain || !lazy)
-        lower = search(Layer::kLower, lazy, lazy ? std::min(glance(), work_left()) : work_left());
+        lower = search(
+            Layer::kLower, lazy,
+            lazy && !query_.prove_not_certain ? std::min(glance(), work_left()) : work_left());
     }
     for (std::size_t i = 0; i < regions_.count; ++i) {
       const Bracket& d = mesh[i];

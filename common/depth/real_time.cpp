@@ -209,6 +209,7 @@ class InterferenceSearch {
     query.X_WA = path_.motions[0].pose_at(t);
     query.X_WB = path_.motions[1].pose_at(t);
     query.refinement = Refinement::kDecided;
+    query.prove_not_certain = true;
     CcdScratch scratch;
     const OverlapResult result = find_overlap(query, scratch);
     answer_.evaluations += result.evaluations;

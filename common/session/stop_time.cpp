@@ -73,6 +73,7 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
   query.work_cap = kLookWorkCap;
+  query.prove_not_certain = true;
   query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
