@@ -336,7 +336,10 @@ void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known) {
       const double upper =
           Body::offset_of(faces_a[i], Layer::kUpper) + Body::offset_of(faces_b[j], Layer::kUpper);
       if (bound.face_mm + upper <= pair.touch_mm)
-        known.rows.push_back({{i, j}, bound.face_mm, bound.within_mm, false});
+        known.rows.push_back({.face = {i, j},
+                              .overlap_mm = bound.face_mm,
+                              .within_mm = bound.within_mm,
+                              .told = false});
     }
 }
 

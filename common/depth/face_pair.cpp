@@ -95,13 +95,14 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   std::optional<FacePairOverlap> found;
   if (a.kind == SurfaceKind::kSphere) {
     found = ball_in_socket(convex, hollow, of_hollow, margin_mm);
+    if (found && !std::isfinite(found->near_hi_mm)) return std::nullopt;
   } else {
     const auto face = RoundFace::of(convex, {along.lo_mm, along.hi_mm});
     const auto wall = RoundFace::of(hollow, {of_hollow.lo_mm, of_hollow.hi_mm});
     if (!face || !wall) return std::nullopt;
     const auto reach = round_reach(*face, *wall, of_hollow.beyond_mm, kRoundAccuracy_mm);
     const auto near = round_reach(*face, *wall, margin_mm + of_hollow.beyond_mm, kRoundAccuracy_mm);
-    if (!reach || !near) return std::nullopt;
+    if (!reach || !near || !std::isfinite(near->reach_mm.hi)) return std::nullopt;
     found = FacePairOverlap{reach->reach_mm.lo, reach->reach_mm.hi, near->reach_mm.hi, reach->point,
                             -reach->outward};
   }

@@ -26,7 +26,8 @@ struct FacePairOverlap {
 
 /// Closed form for a shaft in a bore, a cone in a cone (nearly parallel axes; see round_reach) and
 /// a ball in a socket; nothing for other pairs. `margin_mm` is how far beyond its end a face still
-/// counts as near. Both ends -infinity: no point of the convex face is near the hollow one.
+/// counts as near. Nothing either where no point of the convex face is within the
+/// margin; lo and hi are -infinity where none is within both faces' ends.
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm);

@@ -7,7 +7,7 @@ namespace mortise {
 namespace {
 
 // Pieces that one root may be cut into before it is passed on undecided.
-constexpr int kRootEvaluations = 8;
+constexpr int kRootEvaluations = 24;
 
 // A decided search goes on for this many evaluations per root, so that the numbers in its report
 // are good; the class is known by then.
