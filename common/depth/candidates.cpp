@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::int32_t kMixed = -1;
 
+// An overlap of a smaller share of the radius than this is next to the wall that it is of.
+constexpr double kShallowShare = 0.05;
+
 // The face of all triangles below each child of each node; kMixed when there are several.
 struct FaceTree {
   std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;
@@ -298,7 +301,16 @@ class Finder {
 bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
   if (pair.overlap.hi_mm - pair.overlap.lo_mm > kDepthAccuracyDefault_mm) return false;
   const auto on_face = [&](int i, const Vec3& x) {
-    return frame.bodies[i].stands_for(pair.face[i], x);
+    const Body& body = frame.bodies[i];
+    if (!body.stands_for(pair.face[i], x)) return false;
+    // Far behind a wall there may be anything: then the face has to be the nearest one.
+    const Surface& surface = *body.band->faces[pair.face[i]].surface;
+    const Vec3 from = x - surface.point;
+    const double radius = surface.kind == SurfaceKind::kCone
+                              ? (from - from.dot(surface.axis) * surface.axis).norm()
+                              : surface.radius_mm;
+    return std::fabs(pair.overlap.hi_mm) <= kShallowShare * radius ||
+           body.face_index(nearest_point(*body.solid, x).triangle) == pair.face[i];
   };
   return on_face(0, frame.X_KS[1] * pair.overlap.point_B) && on_face(1, pair.overlap.point_B);
 }
