@@ -11,7 +11,7 @@ namespace mortise {
 namespace {
 
 // Triangles of a known pair of faces that are asked how far the meshes overlap.
-constexpr std::size_t kKnownQuestions = 24, kKnownQuestionsLazily = 12;
+constexpr std::size_t kKnownQuestions = 24, kKnownQuestionsLazily = 24;
 
 // Where a witness of a closed form is looked for: shares of the way to the middle of the face.
 constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};

@@ -195,7 +195,7 @@ TEST(Skipping, WithoutTolerancesNoBandIsLookedAt) {
 // Far beyond a threshold the class is decided while the depth is still a wide bracket; on demand
 // all are refined.
 TEST(Skipping, DecidedEarlyAndRefinedAreCounted) {
-  BlocksAt s(3.0, 0.05);
+  BlocksAt s(0.4, 0.05);
   const StepCounters lazy = judge(s.session.world, s.scratch, false).counters;
   const StepCounters full = judge(s.session.world, s.scratch, true).counters;
   EXPECT_EQ(lazy.regions_decided_early + lazy.regions_refined, lazy.verdicts.in);
