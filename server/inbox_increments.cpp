@@ -1,0 +1,117 @@
+#include "server/inbox.h"
+
+#include <algorithm>
+
+#include "common/base/constants.h"
+
+namespace mortise {
+
+bool Inbox::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
+  return std::any_of(backlog_.begin(), backlog_.end(), [&](const ReceivedIncrement& r) {
+    return r.increment.user == user && (!part || r.increment.part == part) &&
+           r.increment.seq <= up_to_seq;
+  });
+}
+
+void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t now_ns,
+                              Intake& intake) {
+  const Increment& increment = received.increment;
+  ++counters_.increments;
+  Seat* seat = seat_of(increment.user, received.client);
+  if (seat == nullptr) {
+    refuse(increment, first_user_of(received.client), Refusal::kUnknownUser, intake);
+    return;
+  }
+  Refusal reason = seat->increments.admit(increment.seq);
+  if (reason == Refusal::kNone && !take_token(*seat, now_ns)) {
+    acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+    reason = Refusal::kRateTooHigh;
+  }
+  if (reason != Refusal::kNone) {
+    refuse(increment, increment.user, reason, intake);
+    return;
+  }
+  backlog_.push_back(received);
+}
+
+void Inbox::receive_refused(const RefusedIncrement& refused, Intake& intake) {
+  ++counters_.increments;
+  const bool seated =
+      refused.user && refused.user.value <= seats_.size() && seats_[refused.user.value - 1].present;
+  if (seated && seats_[refused.user.value - 1].increments.admit(refused.seq) == Refusal::kNone) {
+    acknowledge(refused.user, refused.seq, 0, intake);
+  }
+  Increment increment;
+  increment.user = refused.user;
+  increment.part = refused.part;
+  increment.seq = refused.seq;
+  refuse(increment, refused.user, refused.reason, intake);
+}
+
+void Inbox::take_increments(const World& world, std::int64_t now_ns, Intake& intake) {
+  taken_.assign(seats_.size(), 0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < backlog_.size(); ++i) {
+    const Increment& increment = backlog_[i].increment;
+    const std::size_t user = increment.user.value - 1;
+    Refusal reason = seats_[user].present ? judge(increment, world) : Refusal::kUnknownUser;
+    if (reason == Refusal::kNone) renewed_ns_[increment.part.value - 1] = now_ns;
+    // Also what would be refused waits its turn: the sequence of a user never goes back.
+    if (seats_[user].present && taken_[user] >= limits_.increments_per_tick) {
+      if (kept != i) backlog_[kept] = backlog_[i];
+      ++kept;
+      continue;
+    }
+    if (reason == Refusal::kNone) {
+      ++taken_[user];
+      ++counters_.accepted;
+      intake.increments.push_back(increment);
+    }
+    acknowledge(increment.user, increment.seq, backlog_[i].sent_ns, intake);
+    if (reason != Refusal::kNone) refuse(increment, increment.user, reason, intake);
+  }
+  backlog_.resize(kept);
+  counters_.longest_backlog = std::max<std::uint64_t>(counters_.longest_backlog, kept);
+}
+
+Refusal Inbox::judge(const Increment& increment, const World& world) const {
+  if (!increment.translation_mm.allFinite() || !increment.rotation_rad.allFinite()) {
+    return Refusal::kNotFinite;
+  }
+  // stableNorm: the square of a huge finite number must not become infinity unnoticed.
+  if (!(increment.rotation_rad.stableNorm() <= kMaxRotationPerTick_rad)) {
+    return Refusal::kRotationTooLarge;
+  }
+  if (!(increment.translation_mm.stableNorm() <= world.max_jump_mm)) return Refusal::kJumpTooLarge;
+  const Part* part = increment.part ? world.find(increment.part) : nullptr;
+  if (part == nullptr) return Refusal::kUnknownPart;
+  if (!part->moving) return Refusal::kPartIsStatic;
+  if (part->holder != increment.user) return Refusal::kNotHolder;
+  return Refusal::kNone;
+}
+
+void Inbox::refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake) {
+  ++counters_.refused[static_cast<std::size_t>(reason)];
+  const bool known = tell && tell.value <= seats_.size();
+  std::uint32_t& told = known ? seats_[tell.value - 1].told : told_strangers_;
+  if (told >= limits_.refusals_told_per_tick) {
+    ++counters_.refusals_untold;
+    return;
+  }
+  ++told;
+  intake.refused.push_back({tell, increment.part, increment.seq, reason});
+}
+
+void Inbox::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake) {
+  const auto at = std::lower_bound(intake.acks.begin(), intake.acks.end(), user,
+                                   [](const Ack& ack, UserId id) { return ack.user < id; });
+  if (at == intake.acks.end() || at->user != user) {
+    intake.acks.insert(at, Ack{user, seq, sent_ns});
+    return;
+  }
+  if (seq > at->seq && sent_ns != 0) at->sent_ns = sent_ns;
+  if (at->sent_ns == 0) at->sent_ns = sent_ns;
+  at->seq = std::max(at->seq, seq);
+}
+
+}  // namespace mortise
