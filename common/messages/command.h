@@ -26,8 +26,12 @@ enum class Refusal : std::uint8_t {
   kMovedBySomeoneElse = 13,
   kRateTooHigh = 14,
   kSessionFull = 15,
+  kUnknownFeature = 16,
+  kConstraintUnfit = 17,     ///< the kind cannot hold between these surfaces
+  kConstraintConflict = 18,  ///< it contradicts those that hold already
+  kUnknownConstraint = 19,
 };
-inline constexpr std::uint8_t kRefusalCount = 16;
+inline constexpr std::uint8_t kRefusalCount = 20;
 
 struct Command {
   UserId user;

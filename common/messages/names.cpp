@@ -104,6 +104,30 @@ std::string_view name_of(Refusal value) {
       return "rate above the limit";
     case Refusal::kSessionFull:
       return "session is full";
+    case Refusal::kUnknownFeature:
+      return "unknown feature";
+    case Refusal::kConstraintUnfit:
+      return "constraint does not fit these surfaces";
+    case Refusal::kConstraintConflict:
+      return "constraint contradicts another";
+    case Refusal::kUnknownConstraint:
+      return "unknown constraint";
+  }
+  return "?";
+}
+
+std::string_view name_of(ConstraintKind value) {
+  switch (value) {
+    case ConstraintKind::kUnknown:
+      return "unknown";
+    case ConstraintKind::kCoaxial:
+      return "coaxial";
+    case ConstraintKind::kCoplanar:
+      return "coplanar";
+    case ConstraintKind::kParallelDistance:
+      return "parallel at a distance";
+    case ConstraintKind::kTangent:
+      return "tangent";
   }
   return "?";
 }

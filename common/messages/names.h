@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "common/messages/command.h"
+#include "common/messages/constraint.h"
 #include "common/messages/event.h"
 
 namespace mortise {
@@ -12,6 +13,7 @@ std::string_view name_of(DeviationGrade value);
 std::string_view name_of(FaceShape value);
 std::string_view name_of(SeparationWay value);
 std::string_view name_of(Refusal value);
+std::string_view name_of(ConstraintKind value);
 std::string_view name_of(CommandKind value);
 std::string_view name_of(Decision::Kind value);
 std::string_view name_of(ClashEvent::Kind value);

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/messages/names.h"
+#include "common/session/guidance.h"
 #include "common/session/session_state.h"
 
 namespace mortise {
@@ -48,12 +49,15 @@ PartPose pose_of(const Part& part) { return {part.id, part.holder, part.X_WP}; }
 
 void put(World& world, Part& part, const Pose& X_WP) {
   part.X_WP = X_WP;
+  rest_guides_of(world, part.id);
   note_placed(world, part.id.value - 1);
 }
 
 void give(World& world, Part& part, UserId holder) {
   part.holder = holder;
+  part.group = {};
   part.moved_since_grab = false;
+  drop_constraints_of(world, part.id);
   note_holder(world, part.id.value - 1);
 }
 

@@ -10,8 +10,10 @@
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
 #include "common/messages/command.h"
+#include "common/messages/constraint.h"
 #include "common/messages/report.h"
 #include "common/messages/scene.h"
+#include "common/session/relation.h"
 #include "common/session/scenario.h"
 
 namespace mortise {
@@ -30,6 +32,7 @@ struct Part {
   UserId last_mover;              ///< who moved it last
   std::optional<Pose> undo_X_WP;  ///< pose before the last mover's grab
   bool moved_since_grab = false;  ///< the present holder has moved it: undo_X_WP is set
+  GroupId group;  ///< parts of one group have one holder and move as one body; none: by itself
 };
 
 /// What a pair of parts has of its own: bands that replace the parts' bands, or an exclusion.
@@ -46,6 +49,16 @@ struct User {
   std::string name;
   bool present = false;
   std::uint64_t last_seq = 0;  ///< highest applied increment sequence
+};
+
+/// One constraint that holds.
+struct Guide {
+  ConstraintId id;
+  UserId user;  ///< who set it
+  Constraint constraint;
+  Relation relation;  ///< elements in the frames of the two parts
+  /// The part goes for the constraint without being pushed: after a snap, and once it has kept it.
+  bool follows = false;
 };
 
 struct SessionState;  ///< caches and open clashes between ticks, session/session_state.h
@@ -65,6 +78,10 @@ struct World {
   std::vector<User> users;  ///< users[i].id.value == i + 1
   std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
   std::vector<Scenario::UserSpec> may_hold;  ///< by user name; empty: anyone
+  std::vector<Guide> guides;                 ///< by id, see session/guidance.h
+  std::uint32_t next_constraint = 1;
+  /// What meshes show, by hash; filled when a constraint first names such a feature. A cache.
+  mutable std::map<std::string, std::shared_ptr<const std::vector<Feature>>> recognized;
   bool evaluates = false;  ///< some part has deviation or tolerance: near pairs are examined
   std::shared_ptr<SessionState> state;  ///< made by the first step
 
