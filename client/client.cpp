@@ -38,7 +38,11 @@ LocalUser Client::add_user(const std::string& name, const std::string& role) {
 
 void Client::leave(LocalUser index) {
   LocalUserState& user = users_[index];
-  if (user.id) channel_.leave(user.id);
+  if (user.id) {
+    // Nobody will repeat them later.
+    if (!user.unacknowledged.empty()) channel_.send(user.unacknowledged.repeat(now_ns_));
+    channel_.leave(user.id);
+  }
   user.state = JoinState::kLeft;
   user.id = UserId{};
 }
@@ -85,9 +89,18 @@ std::uint64_t Client::send(LocalUser index, PartId part, const Vec3& translation
   increment.rotation_rad = rotation_rad;
   const std::int64_t sent_ns = clock_();
   if (!user.unacked_since_ns) user.unacked_since_ns = sent_ns;
-  channel_.send(increment, sent_ns);
+  channel_.send(user.unacknowledged.add({increment, sent_ns}, sent_ns));
   ++statistics_.increments_sent;
   return increment.seq;
+}
+
+ClientStatistics Client::statistics() const {
+  ClientStatistics statistics = statistics_;
+  for (const LocalUserState& user : users_) {
+    statistics.increments_repeated += user.unacknowledged.repeated();
+    statistics.increments_given_up += user.unacknowledged.given_up();
+  }
+  return statistics;
 }
 
 PartId Client::find_part(const std::string& name) const {
@@ -144,6 +157,7 @@ void Client::forget_server() {
     user.id = UserId{};
     user.in_doubt = false;
     user.join_sent_ns.reset();
+    user.unacknowledged.clear();
   }
   for (auto& [id, part] : parts_) part.tick = 0;  // another server counts anew
   pending_.clear();
@@ -168,6 +182,7 @@ void Client::apply_join(const JoinReply& reply, ClientUpdate& update) {
       user.was_joined = true;
       user.refusal.clear();
       user.unacked_since_ns.reset();
+      user.unacknowledged.clear();
       user.heartbeat_at_ns = now_ns_ - in_ns(options_.heartbeat_s);
       update.joined.push_back(index);
     } else {
@@ -282,6 +297,7 @@ void Client::apply_poses(const PoseBatch& batch, ClientUpdate& update) {
     LocalUserState* user = own_user(ack.user);
     if (user == nullptr || ack.seq <= user->acked_seq) continue;
     user->acked_seq = ack.seq;
+    user->unacknowledged.acknowledge(ack.seq);
     user->unacked_since_ns.reset();
     if (ack.seq < user->increment_seq) user->unacked_since_ns = now_ns_;
     if (ack.sent_ns != 0) {
@@ -362,6 +378,10 @@ void Client::send_what_is_due() {
         now_ns_ - user.heartbeat_at_ns >= in_ns(options_.heartbeat_s)) {
       user.heartbeat_at_ns = now_ns_;
       channel_.heartbeat(user.id);
+    }
+    if (user.state == JoinState::kJoined && !user.unacknowledged.empty() &&
+        now_ns_ - user.unacknowledged.last_sent_ns() >= in_ns(options_.repeat_after_s)) {
+      channel_.send(user.unacknowledged.repeat(now_ns_));
     }
   }
   const bool gap = !synced_ && have_snapshot_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/unacknowledged.h"
 #include "common/messages/channel.h"
 
 namespace mortise {
@@ -17,9 +18,10 @@ struct ClientOptions {
   double join_retry_s = 1.0;  ///< an unanswered join is sent again after this
   double resync_after_s =
       0.2;  ///< so long may a gap of events stand before a snapshot is asked for
-  double resync_retry_s = 1.0;  ///< between two requests for a snapshot
-  double ack_timeout_s = 2.0;   ///< increments unanswered for so long: ask to join again
-  double pose_resync_s = 2.0;   ///< so long may lost poses wait for a keyframe
+  double resync_retry_s = 1.0;   ///< between two requests for a snapshot
+  double repeat_after_s = 0.05;  ///< increments unacknowledged for so long are sent again
+  double ack_timeout_s = 2.0;    ///< increments unanswered for so long: ask to join again
+  double pose_resync_s = 2.0;    ///< so long may lost poses wait for a keyframe
 };
 
 /// A user of this client, in the order of add_user().
@@ -54,6 +56,8 @@ struct ClientStatistics {
   std::uint64_t gaps = 0, snapshots_requested = 0, snapshots_applied = 0, snapshots_stale = 0;
   std::uint64_t poses_missed = 0, poses_stale = 0;
   std::uint64_t joins_sent = 0, server_losses = 0, increments_sent = 0, not_joined = 0;
+  std::uint64_t increments_repeated = 0;  ///< entries sent again, lest the first was lost
+  std::uint64_t increments_given_up = 0;  ///< never acknowledged, and not kept any longer
   std::uint64_t highest_event_seq = 0, highest_tick = 0;
 };
 
@@ -102,7 +106,7 @@ class Client {
   const std::vector<UserInfo>& users() const { return session_users_; }
   const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
   PartId find_part(const std::string& name) const;  ///< none when unknown
-  const ClientStatistics& statistics() const { return statistics_; }
+  ClientStatistics statistics() const;
 
  private:
   struct LocalUserState {
@@ -110,6 +114,7 @@ class Client {
     JoinState state = JoinState::kUnknown;
     UserId id;
     std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
+    Unacknowledged unacknowledged;
     bool was_joined = false;  ///< joins again by itself, also when refused
     bool in_doubt = false;    ///< the server may have taken us for gone: ask to join again
     std::optional<std::int64_t> join_sent_ns, unacked_since_ns;

@@ -28,38 +28,61 @@ std::string clip(const std::string& text, std::size_t limit) {
   return out;
 }
 
-wire::Increment to_wire(const Increment& increment, std::int64_t sent_ns) {
-  wire::Increment out;
-  out.user(increment.user.value);
-  out.part(increment.part.value);
-  out.seq(increment.seq);
-  out.sent_ns(sent_ns);
-  out.translation_mm(triple(increment.translation_mm));
-  out.rotation_rad(triple(increment.rotation_rad));
+wire::IncrementBatch to_wire(const IncrementBatch& batch) {
+  wire::IncrementBatch out;
+  out.kept_from(batch.kept_from);
+  out.fresh_from(batch.fresh_from);
+  for (const auto& [increment, sent_ns] : batch.increments) {
+    out.user(increment.user.value);
+    wire::Increment& entry = out.increments().emplace_back();
+    entry.part(increment.part.value);
+    entry.seq(increment.seq);
+    entry.sent_ns(sent_ns);
+    entry.translation_mm(triple(increment.translation_mm));
+    entry.rotation_rad(triple(increment.rotation_rad));
+  }
   return out;
 }
 
-Result<DoorIncrement> from_wire(const wire::Increment& in) {
-  if (in.user() == 0) return fail(Code::kInvalidInput, "increment: user is none");
-  DoorIncrement out;
-  out.increment.user = UserId{in.user()};
-  out.increment.part = PartId{in.part()};
-  out.increment.seq = in.seq();
+namespace {
+
+Refusal refusal_of(const wire::Increment& in) {
   const Vec3 translation_mm = vec3(in.translation_mm()), rotation_rad = vec3(in.rotation_rad());
-  if (in.part() == 0) {
-    out.refusal = Refusal::kUnknownPart;
-  } else if (in.seq() == 0) {
-    out.refusal = Refusal::kStale;
-  } else if (!translation_mm.allFinite() || !rotation_rad.allFinite()) {
-    out.refusal = Refusal::kNotFinite;
-  } else if (!(rotation_rad.norm() <= kMaxRotationPerTick_rad)) {
-    out.refusal = Refusal::kRotationTooLarge;
-  } else if (!(translation_mm.norm() <= kMaxCoordinate_mm)) {
-    out.refusal = Refusal::kJumpTooLarge;
-  } else {
-    out.increment.translation_mm = translation_mm;
-    out.increment.rotation_rad = rotation_rad;
-    out.sent_ns = in.sent_ns();
+  if (in.part() == 0) return Refusal::kUnknownPart;
+  if (in.seq() == 0) return Refusal::kStale;
+  if (!translation_mm.allFinite() || !rotation_rad.allFinite()) return Refusal::kNotFinite;
+  if (!(rotation_rad.norm() <= kMaxRotationPerTick_rad)) return Refusal::kRotationTooLarge;
+  if (!(translation_mm.norm() <= kMaxCoordinate_mm)) return Refusal::kJumpTooLarge;
+  return Refusal::kNone;
+}
+
+}  // namespace
+
+Result<std::vector<ReceivedIncrement>> from_wire(const wire::IncrementBatch& in) {
+  const std::vector<wire::Increment>& entries = in.increments();
+  const auto not_rising = [](const wire::Increment& a, const wire::Increment& b) {
+    return a.seq() >= b.seq();
+  };
+  Door door("increments");
+  door.need(in.user() != 0, "user");
+  door.need(!entries.empty() && entries.size() <= kMaxBatchIncrements, "number");
+  door.need(std::adjacent_find(entries.begin(), entries.end(), not_rising) == entries.end(), "seq");
+  door.need(entries.empty() || in.kept_from() <= entries.front().seq(), "kept_from");
+  if (!door.open()) return door.refusal();
+  std::vector<ReceivedIncrement> out;
+  out.reserve(entries.size());
+  for (const wire::Increment& entry : entries) {
+    ReceivedIncrement& r = out.emplace_back();
+    r.increment.user = UserId{in.user()};
+    r.increment.part = PartId{entry.part()};
+    r.increment.seq = entry.seq();
+    r.kept_from = in.kept_from();
+    r.repeated = entry.seq() < in.fresh_from();
+    r.at_door = refusal_of(entry);
+    if (r.at_door != Refusal::kNone) continue;
+    r.increment.translation_mm = vec3(entry.translation_mm());
+    r.increment.rotation_rad = vec3(entry.rotation_rad());
+    r.sent_ns = entry.sent_ns();
   }
   return out;
 }

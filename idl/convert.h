@@ -25,16 +25,12 @@ inline constexpr std::size_t kMaxSequence = 65536;   ///< entries of one sample
 
 // ---- client to server
 
-wire::Increment to_wire(const Increment& increment, std::int64_t sent_ns);
+wire::IncrementBatch to_wire(const IncrementBatch& batch);
 
-/// user, part and seq are as claimed; the rest only when refusal is kNone.
-struct DoorIncrement {
-  Increment increment;
-  std::int64_t sent_ns = 0;
-  Refusal refusal = Refusal::kNone;
-};
-/// Fails without a user: nobody can be told.
-Result<DoorIncrement> from_wire(const wire::Increment& increment);
+/// Of a batch, each with its own refusal at the door; the client is left to the caller, who knows
+/// the sender. Fails when the batch as a whole is none: without a user (nobody can be told), empty,
+/// too long, or not in rising sequence.
+Result<std::vector<ReceivedIncrement>> from_wire(const wire::IncrementBatch& batch);
 
 struct Request {
   enum class Kind : std::uint8_t {

@@ -67,7 +67,8 @@ class DdsClientChannel final : public ClientChannel {
       participant_->open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, nullptr, meshes_, status);
     }
     participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
-    participant_->open_writer<wire::IncrementPubSubType>(Topic::kIncrement, increments_, status);
+    participant_->open_writer<wire::IncrementBatchPubSubType>(Topic::kIncrement, increments_,
+                                                              status);
     participant_->open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status);
     // Last: once the server's answers are matched, everything else is declared.
     participant_->open_reader<wire::AnswersPubSubType>(Topic::kAnswers, &watch_, answers_, status);
@@ -96,9 +97,9 @@ class DdsClientChannel final : public ClientChannel {
     write(presence_, sample);
     asserted_at_ = Clock::now();
   }
-  void send(const Increment& increment, std::int64_t sent_ns) override {
+  void send(const IncrementBatch& batch) override {
     assert_presence();
-    write(increments_, to_wire(increment, sent_ns));
+    write(increments_, to_wire(batch));
   }
   void send(const Command& command) override {
     assert_presence();

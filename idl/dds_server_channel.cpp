@@ -66,8 +66,8 @@ class DdsServerChannel final : public ServerChannel {
     participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &departures_, presence_,
                                                         status);
     participant_->open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
-    participant_->open_reader<wire::IncrementPubSubType>(Topic::kIncrement, nullptr, increments_,
-                                                         status);
+    participant_->open_reader<wire::IncrementBatchPubSubType>(Topic::kIncrement, nullptr,
+                                                              increments_, status);
     return status;
   }
 
@@ -219,21 +219,19 @@ class DdsServerChannel final : public ServerChannel {
   }
 
   void take_increments(ServerInput& input) {
-    take_all<wire::Increment>(increments_, [&](const wire::Increment& sample,
-                                               const ClientKey& key) {
-      const Result<DoorIncrement> read = from_wire(sample);
-      if (!read) {
-        ++counters_.malformed;
-      } else if (read->refusal == Refusal::kNone) {
-        input.increments.push_back({key, read->increment, read->sent_ns});
-      } else {
-        ++counters_.malformed;
-        const Increment& claimed = read->increment;
-        if (owns(key, claimed.user)) {
-          input.refused_at_door.push_back({claimed.user, claimed.part, claimed.seq, read->refusal});
-        }
-      }
-    });
+    take_all<wire::IncrementBatch>(
+        increments_, [&](const wire::IncrementBatch& sample, const ClientKey& key) {
+          Result<std::vector<ReceivedIncrement>> read = from_wire(sample);
+          if (!read) {
+            ++counters_.malformed;
+            return;
+          }
+          for (ReceivedIncrement& received : read.value()) {
+            counters_.malformed += received.at_door != Refusal::kNone && !received.repeated;
+            received.client = key;
+            input.increments.push_back(std::move(received));
+          }
+        });
   }
 
   Departures departures_;  // before the participant, whose threads call it

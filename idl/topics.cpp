@@ -17,8 +17,8 @@ constexpr int kMaxMeshChunks = 32768;  // 1.9 GB of meshes
 constexpr std::array<TopicRow, 10> kTopics = {{
     // topic, type, to server, key, reliable, transient local, writer depth, reader, depth, keys,
     // asynchronous, throttled, presence, large
-    {"mortise_increment", "Increment", true, "user", true, false, 32, kAll, 128, kMaxUsers, false,
-     false, false, false},
+    {"mortise_increment", "IncrementBatch", true, "user", false, false, 32, kAll, 128, kMaxUsers,
+     false, false, false, true},
     {"mortise_request", "Request", true, "", true, false, 1024, kAll, 8192, 1, false, false, false,
      true},
     {"mortise_presence", "Presence", true, "user", true, false, 1, kLast, 1, kMaxUsers, false,

@@ -26,6 +26,9 @@ Json json_of(const InboxCounters& c) {
   json["commands_deferred"] = c.commands_deferred;
   json["increments"] = c.increments;
   json["accepted"] = c.accepted;
+  json["repeats"] = c.repeats;
+  json["repaired"] = c.repaired;
+  json["lost"] = c.lost;
   json["foreign"] = c.foreign;
   json["refused"] = Json::object();
   for (std::size_t i = 1; i < c.refused.size(); ++i) {
@@ -48,6 +51,9 @@ std::string inbox_lines(const InboxCounters& c) {
   for (std::size_t i = 1; i < c.refused.size(); ++i) {
     if (c.refused[i] == 0) continue;
     text += fmt::format(", {} {}", c.refused[i], name_of(static_cast<Refusal>(i)));
+  }
+  if (c.repaired + c.lost > 0) {
+    text += fmt::format("; {} came only by repetition, {} never", c.repaired, c.lost);
   }
   if (c.longest_backlog > 0) {
     text += fmt::format("; up to {} had to wait for a later tick", c.longest_backlog);

@@ -87,7 +87,6 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
     }
   }
   for (const ReceivedIncrement& r : input.increments) receive_increment(r, now_ns, intake);
-  for (const RefusedIncrement& refused : input.refused_at_door) receive_refused(refused, intake);
   for (const ReceivedCommand& command : input.commands) {
     admit_command(command, world, now_ns, intake);
   }

@@ -6,6 +6,7 @@
 
 #include "common/messages/channel.h"
 #include "common/session/world.h"
+#include "server/increment_order.h"
 #include "server/sequence_window.h"
 
 namespace mortise {
@@ -29,8 +30,11 @@ struct InboxLimits {
 struct InboxCounters {
   std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0;
   std::uint64_t commands = 0, commands_refused = 0, commands_deferred = 0;
-  std::uint64_t increments = 0, accepted = 0;
-  std::uint64_t foreign = 0;  ///< sent for a user that another participant joined as
+  std::uint64_t increments = 0, accepted = 0;  ///< arrived for the first time; of these taken
+  std::uint64_t repeats = 0;   ///< arrived again, which is how a lossy link is made good
+  std::uint64_t repaired = 0;  ///< arrived only by repetition
+  std::uint64_t lost = 0;      ///< numbered by their sender, and never came
+  std::uint64_t foreign = 0;   ///< sent for a user that another participant joined as
   std::array<std::uint64_t, kRefusalCount> refused{};  ///< increments, by Refusal
   std::uint64_t refusals_untold = 0;
   std::uint64_t longest_backlog = 0;  ///< increments that waited for a later tick, at most
@@ -74,7 +78,9 @@ class Inbox {
     std::uint64_t nonce = 0;
     std::string role;
     bool present = false;
-    SequenceWindow increments, commands;
+    IncrementOrder increments;
+    std::uint64_t acknowledged = 0;  ///< of the increments
+    SequenceWindow commands;
     double tokens = 0.0;  ///< of the rate bucket
     std::int64_t tokens_at_ns = 0;
     std::uint32_t told = 0;  ///< refusals in this drain
@@ -101,7 +107,8 @@ class Inbox {
   void carry_out_deferred(World& world, std::int64_t now_ns, Intake& intake);
   /// Who sent it, in which order, how fast: what can be said on arrival.
   void receive_increment(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
-  void receive_refused(const RefusedIncrement& refused, Intake& intake);
+  /// The same for what is in order now.
+  void queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
   /// Takes this tick's share from the backlog, against the holders as they are now.
   void take_increments(const World& world, std::int64_t now_ns, Intake& intake);
   bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
@@ -112,13 +119,15 @@ class Inbox {
   void depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world, Intake& intake);
   void leave(UserId user, bool said_goodbye, World& world, Intake& intake);
   void end_leases(World& world, std::int64_t now_ns, Intake& intake);
-  static void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);
+  /// sent_ns 0: no latency can be told from this one.
+  void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);
 
   InboxLimits limits_;
   InboxCounters counters_;
   std::vector<Seat> seats_;
   std::vector<std::int64_t> renewed_ns_;    ///< by part index: when its lease was last renewed
   std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
+  std::vector<ReceivedIncrement> ready_;    ///< in order now, of one arrival
   std::vector<std::uint32_t> taken_;        ///< by user index, in this tick
   std::vector<DeferredCommand> deferred_;   ///< in order of arrival
   std::vector<DeferredGoodbye> goodbyes_;

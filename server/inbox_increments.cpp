@@ -16,36 +16,45 @@ bool Inbox::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
 void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t now_ns,
                               Intake& intake) {
   const Increment& increment = received.increment;
-  ++counters_.increments;
   Seat* seat = seat_of(increment.user, received.client);
   if (seat == nullptr) {
+    ++counters_.increments;
     refuse(increment, first_user_of(received.client), Refusal::kUnknownUser, intake);
     return;
   }
-  Refusal reason = seat->increments.admit(increment.seq);
-  if (reason == Refusal::kNone && !take_token(*seat, now_ns)) {
-    acknowledge(increment.user, increment.seq, received.sent_ns, intake);
-    reason = Refusal::kRateTooHigh;
-  }
-  if (reason != Refusal::kNone) {
-    refuse(increment, increment.user, reason, intake);
+  IncrementOrder& order = seat->increments;
+  const std::uint64_t lost = order.lost(), repaired = order.repaired();
+  ready_.clear();
+  const IncrementOrder::Arrival arrival = order.receive(received, ready_);
+  counters_.lost += order.lost() - lost;
+  counters_.repaired += order.repaired() - repaired;
+  for (const ReceivedIncrement& next : ready_) queue(next, now_ns, intake);
+  const bool seen = arrival == IncrementOrder::Arrival::kSeen;
+  if (seen && received.kept_from != 0) {
+    ++counters_.repeats;
+    // The acknowledgement may have been lost.
+    if (increment.seq <= seat->acknowledged) {
+      acknowledge(increment.user, seat->acknowledged, 0, intake);
+    }
     return;
   }
-  backlog_.push_back(received);
+  ++counters_.increments;
+  if (arrival == IncrementOrder::Arrival::kNew) return;
+  refuse(increment, increment.user, seen ? Refusal::kDuplicate : Refusal::kStale, intake);
 }
 
-void Inbox::receive_refused(const RefusedIncrement& refused, Intake& intake) {
-  ++counters_.increments;
-  const bool seated =
-      refused.user && refused.user.value <= seats_.size() && seats_[refused.user.value - 1].present;
-  if (seated && seats_[refused.user.value - 1].increments.admit(refused.seq) == Refusal::kNone) {
-    acknowledge(refused.user, refused.seq, 0, intake);
+void Inbox::queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake) {
+  const Increment& increment = received.increment;
+  Refusal reason = received.at_door;
+  if (reason == Refusal::kNone && !take_token(seats_[increment.user.value - 1], now_ns)) {
+    reason = Refusal::kRateTooHigh;
   }
-  Increment increment;
-  increment.user = refused.user;
-  increment.part = refused.part;
-  increment.seq = refused.seq;
-  refuse(increment, refused.user, refused.reason, intake);
+  if (reason == Refusal::kNone) {
+    backlog_.push_back(received);
+    return;
+  }
+  acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+  refuse(increment, increment.user, reason, intake);
 }
 
 void Inbox::take_increments(const World& world, std::int64_t now_ns, Intake& intake) {
@@ -103,6 +112,8 @@ void Inbox::refuse(const Increment& increment, UserId tell, Refusal reason, Inta
 }
 
 void Inbox::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake) {
+  std::uint64_t& acknowledged = seats_[user.value - 1].acknowledged;
+  acknowledged = std::max(acknowledged, seq);
   const auto at = std::lower_bound(intake.acks.begin(), intake.acks.end(), user,
                                    [](const Ack& ack, UserId id) { return ack.user < id; });
   if (at == intake.acks.end() || at->user != user) {

@@ -208,6 +208,8 @@ class Bot {
     json["seconds"] = acted_s_;
     json["sent"] = s.increments_sent;
     json["not_sent"] = s.not_joined;
+    json["repeated"] = s.increments_repeated;
+    json["given_up"] = s.increments_given_up;
     json["lost"] = {{"pose_batches", s.poses_missed},
                     {"event_gaps", s.gaps},
                     {"events_by_snapshot", s.events_skipped}};

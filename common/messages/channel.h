@@ -30,10 +30,34 @@ struct JoinReply {
   std::string text;
 };
 
+struct SentIncrement {
+  Increment increment;
+  std::int64_t sent_ns = 0;  ///< sender's clock, only for latency figures
+};
+/// What one datagram holds: increments of one user, in rising sequence; those that were not
+/// acknowledged yet are repeated beside what is new.
+struct IncrementBatch {
+  std::uint64_t kept_from = 0;   ///< the sender can repeat from here on; 0: it never repeats
+  std::uint64_t fresh_from = 0;  ///< from here on: sent for the first time
+  std::vector<SentIncrement> increments;
+};
+/// One increment of a sender that never repeats.
+inline IncrementBatch batch_of(const Increment& increment, std::int64_t sent_ns) {
+  return {0, increment.seq, {{increment, sent_ns}}};
+}
+/// More in one batch could pass one Ethernet frame, and a datagram of several is lost more often.
+inline constexpr std::size_t kMaxBatchIncrements = 16;
+/// So many increments of a user are kept for repetition, by the sender and, beyond a hole, by the
+/// server: 4 s at 240 Hz.
+inline constexpr std::size_t kMaxKeptIncrements = 1024;
+
 struct ReceivedIncrement {
   ClientKey client;
   Increment increment;
-  std::int64_t sent_ns = 0;  ///< sender's clock, only for latency figures
+  std::int64_t sent_ns = 0;
+  std::uint64_t kept_from = 0;       ///< of its batch
+  bool repeated = false;             ///< was sent before
+  Refusal at_door = Refusal::kNone;  ///< not finite and the like: only user, part, seq are known
 };
 struct ReceivedCommand {
   ClientKey client;
@@ -55,8 +79,6 @@ struct ServerInput {
   std::vector<JoinRequest> joins;
   std::vector<ReceivedCommand> commands;
   std::vector<ReceivedIncrement> increments;
-  std::vector<RefusedIncrement>
-      refused_at_door;  ///< not finite and the like, with the user it claimed
   std::vector<LostUser> lost;
   std::vector<UserId> heartbeats;
   std::vector<ClientKey> snapshot_requests;  ///< who missed something: publish a snapshot again
@@ -64,7 +86,7 @@ struct ServerInput {
 
 struct Ack {
   UserId user;
-  std::uint64_t seq = 0;     ///< highest increment sequence seen (applied or refused)
+  std::uint64_t seq = 0;     ///< all increments up to here were applied, refused or given up
   std::int64_t sent_ns = 0;  ///< of that increment, echoed
 };
 
@@ -134,7 +156,7 @@ class ClientChannel {
   virtual void join(std::uint64_t nonce, const std::string& name, const std::string& role) = 0;
   virtual void leave(UserId user) = 0;
   virtual void heartbeat(UserId user) = 0;
-  virtual void send(const Increment& increment, std::int64_t sent_ns) = 0;
+  virtual void send(const IncrementBatch& batch) = 0;
   virtual void send(const Command& command) = 0;
   virtual void request_snapshot() = 0;  ///< after a gap, or when none has come
   virtual ClientInput take() = 0;

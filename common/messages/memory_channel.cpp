@@ -1,6 +1,7 @@
 #include "common/messages/memory_channel.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -81,7 +82,7 @@ struct MemoryHub::State {
   std::uint64_t incarnation = 0;  ///< of the server; 0: none yet
   bool server_present = false;
   ServerInput reliable;
-  FaultyQueue<ReceivedIncrement> increments;
+  FaultyQueue<std::vector<ReceivedIncrement>> increments;  ///< by datagram
   ChannelCounters counters;
   std::map<UserId, ClientKey> joined;
   std::optional<Snapshot> snapshot;
@@ -144,7 +145,9 @@ class MemoryServer final : public ServerChannel {
     const std::lock_guard lock(state_->mutex);
     if (!current()) return {};
     ServerInput input = std::exchange(state_->reliable, {});
-    input.increments = state_->increments.take();
+    for (std::vector<ReceivedIncrement>& datagram : state_->increments.take()) {
+      std::move(datagram.begin(), datagram.end(), std::back_inserter(input.increments));
+    }
     state_->counters.received += input.increments.size() + input.commands.size() +
                                  input.joins.size() + input.heartbeats.size();
     state_->counters.lost = state_->increments.lost();
@@ -243,10 +246,13 @@ class MemoryClient final : public ClientChannel {
       if (state_->owns(key_, user)) input.heartbeats.push_back(user);
     });
   }
-  void send(const Increment& increment, std::int64_t sent_ns) override {
-    up([&](ServerInput&) {
-      state_->increments.push({key_, increment, sent_ns}, state_->up, state_->random_up);
-    });
+  void send(const IncrementBatch& batch) override {
+    std::vector<ReceivedIncrement> datagram;
+    for (const auto& [increment, sent_ns] : batch.increments) {
+      datagram.push_back({key_, increment, sent_ns, batch.kept_from,
+                          increment.seq < batch.fresh_from, Refusal::kNone});
+    }
+    up([&](ServerInput&) { state_->increments.push(datagram, state_->up, state_->random_up); });
   }
   void send(const Command& command) override {
     up([&](ServerInput& input) { input.commands.push_back({key_, command}); });

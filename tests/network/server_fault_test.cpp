@@ -124,19 +124,20 @@ TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
   const PartId red = anna.client->find_part("red"), blue = anna.client->find_part("blue");
   const double nan = std::numeric_limits<double>::quiet_NaN();
 
-  anna.client->send(anna.user, red, {1, 0, 0});                             // seq 1, good
-  anna.client->send(anna.user, red, {nan, 0, 0});                           // 2 not finite
-  anna.client->send(anna.user, red, {1e12, 0, 0});                          // 3 huge
-  anna.client->send(anna.user, red, {0, 0, 0}, {0, 0, 4});                  // 4 turns too far
-  anna.client->send(anna.user, blue, {1, 0, 0});                            // 5 foreign part
-  anna.client->send(anna.user, PartId{99}, {1, 0, 0});                      // 6 no such part
-  anna.client->send(anna.user, red, {1, 0, 0});                             // 7 good
-  anna.channel->send(Increment{id, red, 7, {9, 0, 0}, Vec3::Zero()}, 0);    // replayed
-  anna.channel->send(Increment{id, red, 20, {1, 0, 0}, Vec3::Zero()}, 0);   // 20 good
-  anna.channel->send(Increment{id, red, 15, {9, 0, 0}, Vec3::Zero()}, 0);   // out of order
-  ben.channel->send(Increment{id, red, 1000, {9, 0, 0}, Vec3::Zero()}, 0);  // foreign user
+  anna.client->send(anna.user, red, {1, 0, 0});             // seq 1, good
+  anna.client->send(anna.user, red, {nan, 0, 0});           // 2 not finite
+  anna.client->send(anna.user, red, {1e12, 0, 0});          // 3 huge
+  anna.client->send(anna.user, red, {0, 0, 0}, {0, 0, 4});  // 4 turns too far
+  anna.client->send(anna.user, blue, {1, 0, 0});            // 5 foreign part
+  anna.client->send(anna.user, PartId{99}, {1, 0, 0});      // 6 no such part
+  anna.client->send(anna.user, red, {1, 0, 0});             // 7 good
+  anna.channel->send(batch_of(Increment{id, red, 7, {9, 0, 0}, Vec3::Zero()}, 0));   // replayed
+  anna.channel->send(batch_of(Increment{id, red, 20, {1, 0, 0}, Vec3::Zero()}, 0));  // 20 good
+  anna.channel->send(batch_of(Increment{id, red, 15, {9, 0, 0}, Vec3::Zero()}, 0));  // out of order
+  ben.channel->send(
+      batch_of(Increment{id, red, 1000, {9, 0, 0}, Vec3::Zero()}, 0));  // foreign user
   EXPECT_TRUE(anna.until(5, [&] { return anna.refused.size() >= 7 && anna.x("red") == 3.0; }));
-  anna.channel->send(Increment{id, red, 21, {1, 0, 0}, Vec3::Zero()}, 0);
+  anna.channel->send(batch_of(Increment{id, red, 21, {1, 0, 0}, Vec3::Zero()}, 0));
   EXPECT_TRUE(anna.until(3, [&] { return anna.x("red") == 4.0; })) << "the session goes on";
 
   std::map<Refusal, int> reasons;

@@ -245,7 +245,7 @@ TEST(Network, RefusesAtTheDoorAndForForeignUsers) {
   stolen.part = PartId{1};
   stolen.seq = 99;
   stolen.translation_mm = Vec3(1, 0, 0);
-  session.channels[1]->send(stolen, 0);
+  session.channels[1]->send(batch_of(stolen, 0));
   ClientKey key;
   ASSERT_TRUE(session.wait(5.0, [&] {
     for (const auto& received : session.server->last_input.increments) key = received.client;

@@ -97,10 +97,18 @@ void SmallServer::turn() {
     part.holder = command.kind == CommandKind::kGrab ? command.user : UserId{};
     replies.push_back({command.user, command.part, command.seq, Refusal::kNone, part.holder, ""});
   }
-  refused_at_door += last_input.refused_at_door.size();
   PoseBatch batch;
   batch.tick = tick;
+  std::vector<RefusedIncrement> refused;
   for (const ReceivedIncrement& received : last_input.increments) {
+    const auto& [user, part_id, seq, translation_mm, rotation_rad] = received.increment;
+    if (seq <= newest[user]) continue;  // a repeat
+    newest[user] = seq;
+    if (received.at_door != Refusal::kNone) {
+      refused.push_back({user, part_id, seq, received.at_door});
+      batch.acks.push_back({user, seq, 0});
+      continue;
+    }
     ++increments;
     PartPose& part = parts[received.increment.part.value - 1];
     part.X_WP.p += received.increment.translation_mm;
@@ -110,8 +118,9 @@ void SmallServer::turn() {
   batch.event_seq = event_seq;
   const double start_s = now_s();
   if (!replies.empty()) channel_.publish_replies(replies);
-  if (!last_input.refused_at_door.empty()) channel_.publish_refusals(last_input.refused_at_door);
-  if (!batch.parts.empty()) channel_.publish_poses(batch);
+  refused_at_door += refused.size();
+  if (!refused.empty()) channel_.publish_refusals(refused);
+  if (!batch.acks.empty()) channel_.publish_poses(batch);
   if (wanted) channel_.publish_snapshot(snapshot());
   note_publish(start_s);
 }

@@ -38,6 +38,7 @@ class SmallServer {
   std::vector<LostUser> lost;
   std::uint64_t increments = 0, event_seq = 0, tick = 0, commands = 0, refused_at_door = 0;
   std::map<UserId, std::pair<ClientKey, std::string>> users;
+  std::map<UserId, std::uint64_t> newest;  ///< increment
   std::vector<PartPose> parts;
   double longest_publish_s = 0.0;
   std::uint64_t slow_publishes = 0;  ///< longer than a writer may wait for a lock

@@ -19,26 +19,56 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Convert, IncrementGoesRound) {
   const Increment sent = test::some_increment();
-  const Result<DoorIncrement> got = from_wire(to_wire(sent, 123));
+  Increment next = sent;
+  ++next.seq;
+  const auto got = from_wire(to_wire(IncrementBatch{3, next.seq, {{sent, 123}, {next, 124}}}));
   ASSERT_TRUE(got);
-  EXPECT_EQ(got->refusal, Refusal::kNone);
-  EXPECT_EQ(got->sent_ns, 123);
-  EXPECT_EQ(got->increment.user, sent.user);
-  EXPECT_EQ(got->increment.part, sent.part);
-  EXPECT_EQ(got->increment.seq, sent.seq);
-  EXPECT_EQ(got->increment.translation_mm, sent.translation_mm);
-  EXPECT_EQ(got->increment.rotation_rad, sent.rotation_rad);
+  ASSERT_EQ(got->size(), 2u);
+  const ReceivedIncrement& first = got->front();
+  EXPECT_EQ(first.at_door, Refusal::kNone);
+  EXPECT_EQ(first.sent_ns, 123);
+  EXPECT_EQ(first.kept_from, 3u);
+  EXPECT_TRUE(first.repeated);
+  EXPECT_EQ(first.increment.user, sent.user);
+  EXPECT_EQ(first.increment.part, sent.part);
+  EXPECT_EQ(first.increment.seq, sent.seq);
+  EXPECT_EQ(first.increment.translation_mm, sent.translation_mm);
+  EXPECT_EQ(first.increment.rotation_rad, sent.rotation_rad);
+  EXPECT_EQ(got->back().increment.seq, next.seq);
+  EXPECT_FALSE(got->back().repeated);
+}
+
+TEST(Convert, ABatchThatIsNoneIsRefusedAsAWhole) {
+  const auto passes = [](std::vector<std::uint64_t> sequence, std::uint64_t kept_from = 1) {
+    IncrementBatch batch{kept_from, 1, {}};
+    for (const std::uint64_t seq : sequence) {
+      batch.increments.push_back({test::some_increment(), 1});
+      batch.increments.back().increment.seq = seq;
+    }
+    return bool(from_wire(to_wire(batch)));
+  };
+  EXPECT_FALSE(passes({}));
+  EXPECT_TRUE(passes({1, 2, 9}));
+  EXPECT_FALSE(passes({1, 1}));
+  EXPECT_FALSE(passes({2, 1}));
+  EXPECT_TRUE(passes({7}, 7));
+  EXPECT_FALSE(passes({7}, 8)) << "it says that it does not keep what it sends";
+  std::vector<std::uint64_t> many;
+  while (many.size() < kMaxBatchIncrements) many.push_back(many.size() + 1);
+  EXPECT_TRUE(passes(many));
+  many.push_back(many.size() + 1);
+  EXPECT_FALSE(passes(many));
 }
 
 TEST(Convert, IncrementIsRefusedWithItsReason) {
   const auto refusal_of = [](auto change) {
     Increment increment = test::some_increment();
     change(increment);
-    const Result<DoorIncrement> got = from_wire(to_wire(increment, 1));
+    const auto got = from_wire(to_wire(batch_of(increment, 1)));
     EXPECT_TRUE(got);
-    EXPECT_EQ(got->increment.user, increment.user);
-    EXPECT_EQ(got->increment.seq, increment.seq);
-    return got->refusal;
+    EXPECT_EQ(got->front().increment.user, increment.user);
+    EXPECT_EQ(got->front().increment.seq, increment.seq);
+    return got->front().at_door;
   };
   for (const double bad : {kNan, kInf, -kInf}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -61,7 +91,7 @@ TEST(Convert, IncrementIsRefusedWithItsReason) {
   EXPECT_EQ(refusal_of([](Increment& i) { i.seq = 0; }), Refusal::kStale);
   Increment nobody = test::some_increment();
   nobody.user = UserId{};
-  EXPECT_FALSE(from_wire(to_wire(nobody, 1)));
+  EXPECT_FALSE(from_wire(to_wire(batch_of(nobody, 1))));
 }
 
 TEST(Convert, RequestsGoRound) {
@@ -291,22 +321,25 @@ TEST(Convert, RandomValuesPassOnlyInRange) {
   };
   std::size_t passed = 0, refused = 0;
   for (int i = 0; i < 200'000; ++i) {
+    wire::IncrementBatch batch;
+    batch.user(static_cast<std::uint32_t>(random() % 3));
     wire::Increment increment;
-    increment.user(static_cast<std::uint32_t>(random() % 3));
     increment.part(static_cast<std::uint32_t>(random() % 3));
     increment.seq(random() % 3);
     increment.translation_mm({number(), number(), number()});
     increment.rotation_rad({number(), number(), number()});
-    const Result<DoorIncrement> got = from_wire(increment);
-    if (!got || got->refusal != Refusal::kNone) {
+    batch.increments({increment});
+    const auto got = from_wire(batch);
+    if (!got || got->front().at_door != Refusal::kNone) {
       ++refused;
       continue;
     }
     ++passed;
-    ASSERT_TRUE(got->increment.user && got->increment.part && got->increment.seq > 0);
-    ASSERT_LE(got->increment.rotation_rad.norm(), kMaxRotationPerTick_rad);
-    ASSERT_LE(got->increment.translation_mm.norm(), kMaxCoordinate_mm);
-    ASSERT_EQ(to_wire(got->increment, 0).translation_mm(), increment.translation_mm());
+    const Increment& passed_on = got->front().increment;
+    ASSERT_TRUE(passed_on.user && passed_on.part && passed_on.seq > 0);
+    ASSERT_LE(passed_on.rotation_rad.norm(), kMaxRotationPerTick_rad);
+    ASSERT_LE(passed_on.translation_mm.norm(), kMaxCoordinate_mm);
+    ASSERT_EQ(passed_on.translation_mm[2], increment.translation_mm()[2]);
   }
   EXPECT_GT(passed, 1000u);
   EXPECT_GT(refused, 1000u);

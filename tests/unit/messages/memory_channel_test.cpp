@@ -21,7 +21,7 @@ std::vector<std::uint64_t> sent_through(const MemoryFaults& faults, int count) {
   auto client = hub.open_client();
   std::vector<std::uint64_t> arrived;
   for (int i = 0; i < count + 50; ++i) {
-    if (i < count) client->send(increment_of(static_cast<std::uint64_t>(i) + 1), 0);
+    if (i < count) client->send(batch_of(increment_of(static_cast<std::uint64_t>(i) + 1), 0));
     for (const ReceivedIncrement& got : server->take().increments) {
       arrived.push_back(got.increment.seq);
     }

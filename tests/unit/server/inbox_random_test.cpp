@@ -64,7 +64,9 @@ TEST(Inbox, KeepsItsBooksUnderRandomTraffic) {
             break;
           case 6:
             ++sent;
-            input.refused_at_door.push_back({user, part, ++increment_seq, Refusal::kNotFinite});
+            input.increments.push_back(
+                {client, {user, part, ++increment_seq, {0, 0, 0}, {0, 0, 0}}});
+            input.increments.back().at_door = Refusal::kNotFinite;
             break;
           default:
             for (std::uint64_t n = below(6); n > 0; --n) {

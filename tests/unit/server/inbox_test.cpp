@@ -160,8 +160,10 @@ TEST_F(InboxTest, RefusesAForeignCommandAndAForeignGoodbye) {
 
 TEST_F(InboxTest, WhatTheDoorRefusedIsToldCountedAndAcknowledgedOutOfNobodysWay) {
   ServerInput input;
-  input.refused_at_door.push_back({anna_, kRed, 2, Refusal::kNotFinite});
   input.increments.push_back(increment("a", anna_, kRed, 1));
+  input.increments.push_back(increment("a", anna_, kRed, 2));
+  input.increments.back().sent_ns = 0;
+  input.increments.back().at_door = Refusal::kNotFinite;
   admit(std::move(input));
   EXPECT_EQ(intake_.increments.size(), 1U) << "a later refusal must not make the first one late";
   ASSERT_EQ(intake_.refused.size(), 1U);

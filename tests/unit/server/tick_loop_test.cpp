@@ -100,7 +100,7 @@ struct Participant {
     channel->send(Command{user, part, ++command_seq, CommandKind::kRelease});
   }
   void move(PartId part, const Vec3& by) {
-    channel->send(Increment{user, part, ++seq, by, Vec3::Zero()}, 0);
+    channel->send(batch_of(Increment{user, part, ++seq, by, Vec3::Zero()}, 0));
   }
 };
 
@@ -299,10 +299,12 @@ TEST_F(TickLoopTest, NonsenseIsRefusedWithAReasonAndTheSessionGoesOn) {
   Participant anna = join("anna"), ben = join("ben");
   anna.grab(kRed);
   tick();
-  ben.move(kRed, {1, 0, 0});                                                      // not the holder
-  anna.move(kRed, {1e9, 0, 0});                                                   // jump
-  anna.channel->send(Increment{anna.user, kRed, 1, {1, 0, 0}, Vec3::Zero()}, 0);  // replayed
-  ben.channel->send(Increment{anna.user, kRed, 9, {1, 0, 0}, Vec3::Zero()}, 0);   // foreign user
+  ben.move(kRed, {1, 0, 0});     // not the holder
+  anna.move(kRed, {1e9, 0, 0});  // jump
+  anna.channel->send(
+      batch_of(Increment{anna.user, kRed, 1, {1, 0, 0}, Vec3::Zero()}, 0));  // replayed
+  ben.channel->send(
+      batch_of(Increment{anna.user, kRed, 9, {1, 0, 0}, Vec3::Zero()}, 0));  // foreign user
   anna.move(kRed, {0, 0, 2});
   tick();
   anna.take();
