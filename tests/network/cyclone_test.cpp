@@ -1,0 +1,87 @@
+// Another DDS implementation takes part: Cyclone DDS, in C, from the same IDL, against the real
+// server, beside a client of ours. Both must see the same.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "client/client.h"
+#include "idl/dds_channel.h"
+#include "tests/network/program.h"
+
+namespace mortise::test {
+namespace {
+
+constexpr char kScenario[] = R"(
+name: two blocks
+units: mm
+policy: report
+parts:
+  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
+  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [0, 0, 20]}}
+)";
+
+/// What the peer said on a line that begins with `what`, by the name before the number.
+double said(const std::string& text, const std::string& what, const std::string& name) {
+  const std::size_t line = text.find(what + " ");
+  if (line == std::string::npos) return -1.0;
+  const std::size_t at = text.find(" " + name + " ", line);
+  return at == std::string::npos ? -1.0 : std::atof(text.c_str() + at + name.size() + 2);
+}
+
+TEST(Cyclone, JoinsGrabsMovesAndSeesPosesAndClashes) {
+#ifndef MORTISE_HAS_CYCLONE
+  GTEST_SKIP() << "Cyclone DDS is not installed: apt-get install cyclonedds-dev cyclonedds-tools";
+#endif
+  TestFolder folder;
+  constexpr int kDomain = 218;
+  const std::string domain = std::to_string(kDomain);
+  Program server(folder.path(), "mortise-server",
+                 {folder.write("blocks.yaml", kScenario), "--domain", domain, "--no-log", "--json",
+                  "--duration", "40"});
+  DdsOptions options;
+  options.domain = kDomain;
+  auto channel = open_client_channel(options);
+  ASSERT_TRUE(channel) << channel.error().text;
+  Client witness(**channel);
+  witness.add_user("witness", "observer");
+  std::vector<ClashEvent> events;
+  const auto listen = [&] {
+    for (const ClashEvent& event : witness.poll().events) events.push_back(event);
+    usleep(4000);
+  };
+  for (int i = 0; i < 2000 && !witness.synced(); ++i) listen();
+  ASSERT_TRUE(witness.synced()) << server.errors();
+
+  // Down through the base's face at z = 10 mm (from 20 by 60 steps of 0.2) and 2 mm into it.
+  Program peer(folder.path(), "cyclone_peer", {domain, "default", "red", "60", "-0.2"});
+  while (peer.running()) listen();
+  for (int i = 0; i < 50; ++i) listen();
+  const std::string out = peer.out();
+  std::printf("%s", out.c_str());
+  ASSERT_EQ(peer.wait(1), 0) << out << peer.errors();
+  EXPECT_EQ(peer.errors(), "");
+  EXPECT_EQ(said(out, "moved", "acknowledged"), 60.0);
+  const Pose& X_WP = witness.parts().at(witness.find_part("red")).info.X_WP;
+  EXPECT_NEAR(X_WP.p.z(), 8.0, 1e-9);
+  EXPECT_EQ(said(out, "moved", "z_mm"), X_WP.p.z()) << "the same pose, to the last bit";
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(said(out, "events", "count"), static_cast<double>(events.size()));
+  EXPECT_EQ(said(out, "events", "first"), static_cast<double>(events.front().seq));
+  EXPECT_EQ(said(out, "events", "last"), static_cast<double>(events.back().seq));
+  EXPECT_EQ(said(out, "events", "missed"), 0.0);
+  EXPECT_EQ(said(out, "events", "class"),
+            static_cast<double>(events.back().verdict.collision_class));
+  EXPECT_EQ(said(out, "events", "open"), 1.0);
+  server.signal(SIGTERM);
+  ASSERT_EQ(server.wait(5), 0) << server.errors();
+  EXPECT_NE(server.out().find("\"accepted\": 60"), std::string::npos) << server.out();
+  EXPECT_NE(server.errors().find("cyclone left"), std::string::npos) << server.errors();
+}
+
+}  // namespace
+}  // namespace mortise::test
