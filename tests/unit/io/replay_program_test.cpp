@@ -1,39 +1,21 @@
 // The program mortise-replay from outside: exit codes, text and JSON.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/golden/played_session.h"
+#include "tests/support/programs.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {
 namespace {
 
 using nlohmann::json;
+using test::Outcome;
 using test::TemporaryFile;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  json document() const { return json::parse(out, nullptr, false); }
-};
-
-Outcome run(const std::string& arguments) {
-  const std::string command =
-      std::string(MORTISE_BIN_DIR) + "/mortise-replay " + arguments + " 2>/dev/null";
-  Outcome outcome;
-  FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.out.append(buffer.data(), count);
-  outcome.exit_code = WEXITSTATUS(::pclose(pipe));
-  return outcome;
-}
+Outcome run(const std::string& arguments) { return test::run("mortise-replay", arguments); }
 
 std::string quoted(const TemporaryFile& file) {
   return std::string("'").append(file.path().string()).append("'");

@@ -1,53 +1,17 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/programs.h"
+
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-};
+using mortise::test::Outcome;
+using mortise::test::run;
 
-// Runs a program of the house as a user would; stderr is left out.
-Outcome run(const std::string& program, const std::string& arguments) {
-  const std::string command =
-      std::string(MORTISE_BIN_DIR) + "/" + program + " " + arguments + " 2>/dev/null";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer{};
-  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    outcome.out.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-class ScenarioTools : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("mortise_scenario_tools_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string file(const std::string& name, const std::string& text) const {
-    const auto path = folder_ / name;
-    std::ofstream(path) << text;
-    return path.string();
-  }
-
-  std::filesystem::path folder_;
-};
+class ScenarioTools : public mortise::test::InFolder {};
 
 // Two blocks with their top and bottom faces this far apart (negative: overlapping).
 std::string blocks(const std::string& gap) {
