@@ -24,6 +24,8 @@ constexpr double kFarOff = 0.05;
 // A fit to seeds that is so many times farther off than the loosest share after a few steps will
 // not come near.
 constexpr double kHopeless = 30.0;
+// Seeds that bulge by less than this part of what corners may be off show no curve.
+constexpr double kLeastBulge = 0.1;
 // Fits to seeds stop where a step wins less: exact points win decades a step.
 constexpr double kWorthGoingOn = 0.05;
 
@@ -100,13 +102,17 @@ class Recognizer {
 
   std::optional<Region> from_guess(const Surface& guess, std::span<const Vec3> points,
                                    std::span<const std::uint32_t> seeds, Search& search) {
-    if (residual_of(guess, points) > kFarOff * extent_of(points)) return std::nullopt;
+    const double extent_mm = extent_of(points);
+    if (residual_of(guess, points) > kFarOff * extent_mm) return std::nullopt;
     const double size = size_mm(guess, solid_.mesh(), seeds);
     const double hopeless_mm = kHopeless * (kShares.back() * size + grower_.rounding_mm());
     const auto fit = fitted_surface(guess, points, kWorthGoingOn, hopeless_mm);
     if (!fit) return std::nullopt;
+    const double fit_size = size_mm(*fit, solid_.mesh(), seeds);
     const double off_mm = residual_of(*fit, points) - grower_.rounding_mm();
-    search.least_share = std::min(search.least_share, off_mm / size_mm(*fit, solid_.mesh(), seeds));
+    search.least_share = std::min(search.least_share, off_mm / fit_size);
+    const double bulge_mm = extent_mm * extent_mm / (8.0 * fit_size);
+    if (bulge_mm < kLeastBulge * search.share * fit_size) return std::nullopt;
     return grower_.grow(*fit, seeds, search.share);
   }
 

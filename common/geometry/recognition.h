@@ -50,7 +50,10 @@ struct RecognitionOptions {
 /// the middle facet. A single row of facets between smooth neighbours may be a step of a drawn
 /// curve; it is left out, and so are flat facets that meet others smoothly; both are counted.
 ///
-/// Deterministic. O(n log n): 263,730 triangles in seconds.
+/// A ball is told only where its facets lie far enough around its centre for the arc to stand clear
+/// of the residual: nearly flat regions, however their normals turn, are none.
+///
+/// Deterministic. About 0.1 ms of CPU a triangle: 263,554 triangles take half a minute.
 Recognition recognize_features(const Solid& solid, const RecognitionOptions& options = {});
 
 }  // namespace mortise

@@ -23,153 +23,24 @@ constexpr double kShareOfArcHeight = 2e-3;
 // Corners that a region needs: those that fix its surface, and as many more to bear it out.
 constexpr std::size_t kCornersOfCylinder = 8, kCornersOfCone = 10, kCornersOfSphere = 9,
                       kCornersOfTorus = 15;
-// Corners nearer than this along the arc are one step. rad
-constexpr double kSameStep_rad = 1e-3;
 // With four circles of corners a torus is told from unlike chamfers only by equal steps.
 constexpr double kEqualSteps = 0.02;
 constexpr std::size_t kLeastMeridianCircles = 5;
 // While a region grows, so many of its corners are enough for a fit.
 constexpr std::size_t kCornersOnTheWay = 1000;
+// A guess this many times as far off as corners may be from all that an earlier one reached would
+// reach the same: a fit on the way brings it there.
+constexpr double kSameGrowth = 30.0;
+// Corners kept of what a growth reached.
+constexpr std::size_t kCornersKept = 24;
 // A part of the mesh radius by which corners are off for rounding of doubles.
 constexpr double kRoundingShare = 1e-12;
-
-double distance_from_axis(const Surface& s, const Vec3& x) {
-  const Vec3 d = x - s.point;
-  return (d - d.dot(s.axis) * s.axis).norm();
-}
-
-std::vector<double> distinct(std::vector<double> values, double apart) {
-  std::sort(values.begin(), values.end());
-  std::vector<double> kept;
-  for (const double v : values)
-    if (kept.empty() || v - kept.back() > apart) kept.push_back(v);
-  return kept;
-}
-
-// Union of arcs, each less than half a turn; what is left open is the largest gap.
-double covered_rad(std::vector<std::pair<double, double>> arcs) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  if (arcs.empty()) return 0.0;
-  std::sort(arcs.begin(), arcs.end());
-  double reach = arcs.front().first, gap = 0.0;
-  for (const auto& [from, to] : arcs) {
-    gap = std::max(gap, from - reach);
-    reach = std::max(reach, to);
-  }
-  gap = std::max(gap, arcs.front().first + kTurn - reach);
-  return gap <= kSameStep_rad ? kTurn : kTurn - gap;
-}
-
-// How far a facet stands off at its middles, where it is deepest or nearly so.
-double depth_at_middles(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
-  const Vec3 &a = mesh.corner(t, 0), &b = mesh.corner(t, 1), &c = mesh.corner(t, 2);
-  double most = 0.0;
-  for (const Vec3& x :
-       {Vec3((a + b + c) / 3.0), Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)), Vec3(0.5 * (c + a))})
-    most = std::max(most, std::fabs(surface.signed_distance_mm(x)));
-  return most;
-}
-
-// The same on a grid of points of the triangle.
-double depth_at_grid(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
-  constexpr int kSteps = 6;
-  double most = 0.0;
-  for (int i = 0; i <= kSteps; ++i)
-    for (int j = 0; i + j <= kSteps; ++j) {
-      const Vec3 x =
-          (mesh.corner(t, 0) * i + mesh.corner(t, 1) * j + mesh.corner(t, 2) * (kSteps - i - j)) /
-          kSteps;
-      most = std::max(most, std::fabs(surface.signed_distance_mm(x)));
-    }
-  return most;
-}
 
 double arc_height(double radius, double arc_rad) {
   return radius * (1.0 - std::cos(0.5 * std::min(arc_rad, std::numbers::pi)));
 }
 
-struct AxisAngles {
-  std::vector<double> corners, meridian, heights;
-  std::vector<std::pair<double, double>> arcs;
-};
-
-AxisAngles angles_of(const TriangleMesh& mesh, const Surface& s,
-                     std::span<const std::uint32_t> triangles) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  AxisAngles out;
-  const Vec3 u = s.axis.unitOrthogonal(), v = s.axis.cross(u);
-  for (const std::uint32_t t : triangles) {
-    double first = 0.0, lo = 0.0, hi = 0.0;
-    bool any = false;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 d = mesh.corner(t, k) - s.point;
-      const double x = d.dot(u), y = d.dot(v), z = d.dot(s.axis), rho = std::hypot(x, y);
-      out.heights.push_back(z);
-      if (s.kind == SurfaceKind::kTorus) out.meridian.push_back(std::atan2(z, rho - s.radius_mm));
-      if (rho <= 1e-9 * (std::fabs(z) + s.radius_mm)) continue;  // an apex has no angle
-      const double angle = std::atan2(y, x);
-      out.corners.push_back(angle);
-      if (!any) first = angle;
-      any = true;
-      const double turn = std::remainder(angle - first, kTurn);
-      lo = std::min(lo, turn);
-      hi = std::max(hi, turn);
-    }
-    if (!any) continue;
-    out.arcs.emplace_back(first + lo, first + hi);
-    if (first + lo < -std::numbers::pi)  // the same arc once more where the count begins
-      out.arcs.emplace_back(first + lo + kTurn, first + hi + kTurn);
-    if (first + hi > std::numbers::pi)
-      out.arcs.emplace_back(first + lo - kTurn, first + hi - kTurn);
-  }
-  return out;
-}
-
 }  // namespace
-
-double size_mm(const Surface& surface, const TriangleMesh& mesh,
-               std::span<const std::uint32_t> triangles) {
-  if (surface.kind == SurfaceKind::kTorus) return surface.tube_radius_mm;
-  if (surface.kind != SurfaceKind::kCone) return surface.radius_mm;
-  double most = 0.0;
-  for (const std::uint32_t t : triangles)
-    for (int k = 0; k < 3; ++k)
-      most = std::max(most, distance_from_axis(surface, mesh.corner(t, k)));
-  return most;
-}
-
-RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
-                             std::span<const std::uint32_t> triangles) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  RegionMeasure m;
-  AxisAngles angles = angles_of(mesh, surface, triangles);
-  m.arc_rad = covered_rad(std::move(angles.arcs));
-  std::vector<double> steps = distinct(std::move(angles.corners), kSameStep_rad);
-  // The first and the last can be one, on either side of half a turn.
-  if (steps.size() > 1 && steps.front() + kTurn - steps.back() < kSameStep_rad) steps.pop_back();
-  const bool closed = m.arc_rad >= kTurn;
-  m.steps = static_cast<std::uint32_t>(steps.size()) - (closed || steps.empty() ? 0U : 1U);
-  m.meridian_rad = distinct(std::move(angles.meridian), kSameStep_rad);
-  const auto [lo, hi] = std::minmax_element(angles.heights.begin(), angles.heights.end());
-  if (lo != angles.heights.end()) m.along_mm = {*lo, *hi};
-  const double near = 1e-3 * m.along_mm.width();
-  m.one_row = std::all_of(angles.heights.begin(), angles.heights.end(), [&](double z) {
-    return z - m.along_mm.lo <= near || m.along_mm.hi - z <= near;
-  });
-  return m;
-}
-
-double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
-                      std::span<const std::uint32_t> triangles) {
-  double deepest = 0.0;
-  for (const std::uint32_t t : triangles) {
-    const double middles = depth_at_middles(mesh, surface, t);
-    // Only where a triangle bends both ways does another point lie deeper, and not by much.
-    if (middles < 0.5 * deepest) continue;
-    deepest = std::max({deepest, middles, depth_at_grid(mesh, surface, t)});
-  }
-  return deepest;
-}
 
 RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm)
     : mesh_(solid.mesh()),
@@ -218,7 +89,7 @@ bool RegionGrower::belongs(std::uint32_t t, const Surface& surface, double allow
   for (int k = 0; k < 3; ++k) {
     const Vec3& x = mesh_.corner(t, k);
     const bool apex = surface.kind == SurfaceKind::kCone &&
-                      distance_from_axis(surface, x) <= 1e-6 * (x - middle).norm();
+                      distance_from_axis_mm(surface, x) <= 1e-6 * (x - middle).norm();
     outward[k] = surface.outward_normal(apex ? middle : x);
   }
   return outward[0].dot(outward[1]) > kSpanCosine && outward[1].dot(outward[2]) > kSpanCosine &&
@@ -262,7 +133,7 @@ bool RegionGrower::refit(Region& region, std::size_t most) {
 void RegionGrower::drop_deep_facets(Region& region) const {
   std::vector<double> depth;
   for (const std::uint32_t t : region.triangles)
-    depth.push_back(depth_at_middles(mesh_, region.surface, t));
+    depth.push_back(depth_at_middles_mm(mesh_, region.surface, t));
   std::vector<double> sorted = depth;
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
   const double most = kDeepFacet * sorted[sorted.size() / 2] + region.allowed_mm;
@@ -286,21 +157,26 @@ bool RegionGrower::shows_enough(const Region& region) {
   return region.residual_mm <= kShareOfArcHeight * arc_height(radius, m.arc_rad);
 }
 
-// The widest angle about the centre stands for the arc. All corners on two circles: a cone as well.
+// The widest angle about the centre stands for the arc; told by the places of the facets, since the
+// normals of a nearly flat region turn by more than it spans. All corners on two circles: a cone as
+// well.
 bool RegionGrower::shows_enough_of_sphere(const Region& region) const {
   const Surface& s = region.surface;
-  const std::vector<OrientedPoint> normals = normals_of(region.triangles);
-  Vec3 mean = Vec3::Zero();
-  for (const OrientedPoint& f : normals) mean += f.normal;
-  if (normals.empty()) return false;
-  mean /= static_cast<double>(normals.size());
-  double least = 1.0;
-  if (mean.norm() > 1e-9)
-    for (const OrientedPoint& f : normals) least = std::min(least, f.normal.dot(mean.normalized()));
-  else
-    least = -1.0;
+  const std::vector<OrientedPoint> facets = normals_of(region.triangles);
+  if (facets.empty()) return false;
+  Vec3 mean_normal = Vec3::Zero(), mean_place = Vec3::Zero();
+  for (const OrientedPoint& f : facets) {
+    mean_normal += f.normal / static_cast<double>(facets.size());
+    mean_place += (f.point - s.point).normalized();
+  }
+  double least = -1.0;
+  if (mean_place.norm() > 1e-9 * static_cast<double>(facets.size())) {
+    least = 1.0;
+    for (const OrientedPoint& f : facets)
+      least = std::min(least, (f.point - s.point).normalized().dot(mean_place.normalized()));
+  }
   if (region.residual_mm > kShareOfArcHeight * s.radius_mm * (1.0 - least)) return false;
-  const auto axis = steady_direction(normals, mean);
+  const auto axis = steady_direction(facets, mean_normal);
   if (!axis) return false;
   Surface about = s;
   about.axis = *axis;
@@ -328,6 +204,67 @@ bool RegionGrower::settle(Region& region) {
   return refit(region) && region.residual_mm <= region.allowed_mm && shows_enough(region);
 }
 
+// Can the surface begin here? Says on which side its material is.
+bool RegionGrower::starts(Region& region, std::span<const std::uint32_t> seeds) {
+  region.residual_mm = residual_of(region.surface, points_of(seeds));
+  if (region.residual_mm > region.allowed_mm) return false;
+  double outward = 0.0;
+  for (const OrientedPoint& f : normals_of(seeds))
+    outward += f.normal.dot(region.surface.outward_normal(f.point)) > 0.0 ? 1.0 : -1.0;
+  if (outward < 0.0) region.surface.inward = !region.surface.inward;
+  return std::all_of(seeds.begin(), seeds.end(), [&](std::uint32_t t) {
+    return belongs(t, region.surface, region.allowed_mm);
+  });
+}
+
+// What does not belong to the settled surface goes, until it is settled.
+std::optional<Region> RegionGrower::settled(Region region, std::size_t least) {
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
+    drop_deep_facets(region);
+    std::erase_if(region.triangles,
+                  [&](std::uint32_t t) { return !belongs(t, region.surface, region.allowed_mm); });
+    if (region.triangles.size() < least || !refit(region)) return std::nullopt;
+    if (region.residual_mm <= region.allowed_mm) break;
+  }
+  if (region.residual_mm > region.allowed_mm || !shows_enough(region)) return std::nullopt;
+  std::sort(region.triangles.begin(), region.triangles.end());
+  return region;
+}
+
+// The attempt that reached all seeds, if the guess runs through all of what that reached: it would
+// end as that did.
+const RegionGrower::Attempt* RegionGrower::grown_before(const Surface& guess,
+                                                        std::span<const std::uint32_t> seeds,
+                                                        const Region& region) const {
+  const auto& attempt_of = attempt_of_[static_cast<std::size_t>(guess.kind)];
+  if (attempt_of.empty()) return nullptr;
+  const std::uint32_t id = attempt_of[seeds.front()];
+  if (id == 0 || !std::all_of(seeds.begin(), seeds.end(),
+                              [&](std::uint32_t t) { return attempt_of[t] == id; }))
+    return nullptr;
+  const Attempt& attempt = attempts_[id - 1];
+  if (attempt.share != region.share) return nullptr;
+  const double near_mm = kSameGrowth * region.allowed_mm;
+  for (const Vec3& x : attempt.reached)
+    if (!(std::fabs(guess.signed_distance_mm(x)) <= near_mm)) return nullptr;
+  return &attempt;
+}
+
+void RegionGrower::keep(SurfaceKind kind, double share, std::span<const std::uint32_t> reached,
+                        const std::optional<Region>& outcome) {
+  auto& attempt_of = attempt_of_[static_cast<std::size_t>(kind)];
+  if (attempt_of.empty()) attempt_of.assign(mesh_.triangles.size(), 0);
+  Attempt& attempt = attempts_.emplace_back();
+  attempt.share = share;
+  attempt.outcome = outcome;
+  const std::size_t stride = 1 + reached.size() / kCornersKept;
+  for (std::size_t i = 0; i < reached.size(); i += stride)
+    attempt.reached.push_back(mesh_.corner(reached[i], static_cast<int>(i % 3)));
+  for (const std::uint32_t t : reached)
+    attempt_of[t] = static_cast<std::uint32_t>(attempts_.size());
+}
+
 std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const std::uint32_t> seeds,
                                          double share) {
   Region region;
@@ -335,35 +272,19 @@ std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const s
   region.share = share;
   region.triangles.assign(seeds.begin(), seeds.end());
   region.allowed_mm = share * size_mm(guess, mesh_, seeds) + rounding_mm_;
-  region.residual_mm = residual_of(guess, points_of(seeds));
-  if (region.residual_mm > region.allowed_mm) return std::nullopt;
-  // 1. which side is the material on? The facets say.
-  double outward = 0.0;
-  for (const OrientedPoint& f : normals_of(seeds))
-    outward += f.normal.dot(region.surface.outward_normal(f.point)) > 0.0 ? 1.0 : -1.0;
-  if (outward < 0.0) region.surface.inward = !region.surface.inward;
-  for (const std::uint32_t t : seeds)
-    if (!belongs(t, region.surface, region.allowed_mm)) return std::nullopt;
-  // 2. outward in doubling steps, a fit after each
+  if (!starts(region, seeds)) return std::nullopt;
+  if (const Attempt* before = grown_before(guess, seeds, region)) return before->outcome;
+  // Outward in doubling steps, a fit after each.
   for (std::size_t limit = 2 * seeds.size();; limit *= 2) {
     const std::size_t before = region.triangles.size();
     spread(region.surface, region.allowed_mm, limit, region.triangles);
     if (region.triangles.size() == before) break;
     if (!refit(region, kCornersOnTheWay)) return std::nullopt;
   }
-  // 3. what does not belong to the settled surface goes, until it is settled
-  constexpr int kRounds = 4;
-  for (int round = 0; round < kRounds; ++round) {
-    drop_deep_facets(region);
-    std::erase_if(region.triangles,
-                  [&](std::uint32_t t) { return !belongs(t, region.surface, region.allowed_mm); });
-    if (region.triangles.size() < seeds.size()) return std::nullopt;
-    if (!refit(region)) return std::nullopt;
-    if (region.residual_mm <= region.allowed_mm) break;
-  }
-  if (region.residual_mm > region.allowed_mm || !shows_enough(region)) return std::nullopt;
-  std::sort(region.triangles.begin(), region.triangles.end());
-  return region;
+  const std::vector<std::uint32_t> reached = region.triangles;
+  std::optional<Region> outcome = settled(std::move(region), seeds.size());
+  keep(guess.kind, share, reached, outcome);
+  return outcome;
 }
 
 }  // namespace mortise

@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "common/geometry/facets.h"
+#include "common/geometry/recognition_measure.h"
 #include "common/geometry/surface_fit.h"
 
 /// Private to recognition: triangles that stand for one surface.
@@ -17,27 +19,6 @@ struct Region {
   double share = 0.0;       ///< of the size, without rounding
 };
 
-/// What a region shows of its surface; angles about the axis (sphere: about the best axis).
-struct RegionMeasure {
-  std::uint32_t steps = 0;           ///< facets around: distinct corner angles, less one when open
-  double arc_rad = 0.0;              ///< 2 pi: closed
-  Interval along_mm;                 ///< from surface.point along surface.axis
-  std::vector<double> meridian_rad;  ///< torus: distinct corner angles of the tube, ascending
-  bool one_row = false;              ///< all corners on two circles about the axis
-};
-
-/// Length to which the allowance of a surface is proportional: its radius; torus: of the tube;
-/// cone: the largest radius of the triangles.
-double size_mm(const Surface& surface, const TriangleMesh& mesh,
-               std::span<const std::uint32_t> triangles);
-
-RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
-                             std::span<const std::uint32_t> triangles);
-
-/// Farthest that a facet stands off the surface, mm; sampled, within a few percent from below.
-double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
-                      std::span<const std::uint32_t> triangles);
-
 /// Grows regions over smooth edges. Holds marks of its own: one per thread.
 class RegionGrower {
  public:
@@ -45,7 +26,8 @@ class RegionGrower {
 
   /// The region of a surface fitted to seed triangles: grown in doubling steps with a fit after
   /// each, cut back to corners within share * size + rounding. Nothing when fewer than
-  /// the seeds remain, or when the region shows too little of the surface to tell it.
+  /// the seeds remain, or when the region shows too little of the surface to tell it. What was
+  /// grown before from other seeds along the same surface is not grown again.
   std::optional<Region> grow(const Surface& guess, std::span<const std::uint32_t> seeds,
                              double share);
 
@@ -65,6 +47,18 @@ class RegionGrower {
   bool belongs(std::uint32_t t, const Surface& surface, double allowed_mm) const;
   void spread(const Surface& surface, double allowed_mm, std::size_t limit,
               std::vector<std::uint32_t>& triangles);
+  // What a growth reached and how it ended.
+  struct Attempt {
+    double share = 0.0;
+    std::vector<Vec3> reached;  // a few corners, all over what it reached
+    std::optional<Region> outcome;
+  };
+  const Attempt* grown_before(const Surface& guess, std::span<const std::uint32_t> seeds,
+                              const Region& region) const;
+  void keep(SurfaceKind kind, double share, std::span<const std::uint32_t> reached,
+            const std::optional<Region>& outcome);
+  bool starts(Region& region, std::span<const std::uint32_t> seeds);
+  std::optional<Region> settled(Region region, std::size_t least);
   bool refit(Region& region, std::size_t most = 100'000);
   void drop_deep_facets(Region& region) const;
   bool shows_enough(const Region& region);
@@ -77,6 +71,9 @@ class RegionGrower {
   double rounding_mm_ = 0.0;
   std::vector<std::uint32_t> triangle_mark_, point_mark_;
   std::uint32_t mark_ = 0;
+  std::vector<Attempt> attempts_;
+  // By kind of surface and triangle: the last attempt that reached it, counted from one.
+  std::array<std::vector<std::uint32_t>, 6> attempt_of_;
 };
 
 }  // namespace mortise

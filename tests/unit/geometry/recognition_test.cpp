@@ -166,5 +166,41 @@ TEST(Recognition, FindsWhatWasTurned) {
   }
 }
 
+// A slab whose top waves by 2 mm over 200 mm: its normals turn by several degrees, but it is no
+// part of a ball.
+TEST(Recognition, AWavySlabIsNoBall) {
+  constexpr std::uint32_t kCells = 20;
+  TriangleMesh mesh;
+  for (const bool top : {false, true})
+    for (std::uint32_t i = 0; i <= kCells; ++i)
+      for (std::uint32_t j = 0; j <= kCells; ++j) {
+        const double x = 10.0 * i, y = 10.0 * j;
+        mesh.points_mm.emplace_back(
+            x, y, top ? 20.0 + std::sin(x / 30.0) * std::sin(y / 37.0) + std::cos(x / 50.0) : 0.0);
+      }
+  const std::uint32_t up = (kCells + 1) * (kCells + 1);
+  const auto at = [](std::uint32_t i, std::uint32_t j) { return i * (kCells + 1) + j; };
+  for (std::uint32_t i = 0; i < kCells; ++i) {
+    for (std::uint32_t j = 0; j < kCells; ++j) {
+      const std::uint32_t a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+      shapes::add_quad(mesh, a, d, c, b);
+      shapes::add_quad(mesh, up + a, up + b, up + c, up + d);
+    }
+    for (const auto& [p, q] : {std::pair{at(i, 0), at(i + 1, 0)},
+                               {at(kCells, i), at(kCells, i + 1)},
+                               {at(i + 1, kCells), at(i, kCells)},
+                               {at(0, i + 1), at(0, i)}})
+      shapes::add_quad(mesh, p, q, up + q, up + p);
+  }
+  const Solid solid(mesh);
+  ASSERT_TRUE(solid.topology().closed());
+  ASSERT_GT(solid.topology().volume_mm3, 0.0);
+  for (const Feature& f : recognize_features(solid).features) {
+    if (f.surface.kind != SurfaceKind::kSphere) continue;
+    EXPECT_LT(f.surface.radius_mm, 1000.0) << f.name << " of " << f.triangles.size();
+    EXPECT_LT(f.residual_mm, 0.05) << f.name;
+  }
+}
+
 }  // namespace
 }  // namespace mortise

@@ -1,0 +1,147 @@
+#include "common/geometry/recognition_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace mortise {
+namespace {
+
+// Corners nearer than this along the arc are one step. rad
+constexpr double kSameStep_rad = 1e-3;
+
+std::vector<double> distinct(std::vector<double> values, double apart) {
+  std::sort(values.begin(), values.end());
+  std::vector<double> kept;
+  for (const double v : values)
+    if (kept.empty() || v - kept.back() > apart) kept.push_back(v);
+  return kept;
+}
+
+// Union of arcs, each less than half a turn; what is left open is the largest gap.
+double covered_rad(std::vector<std::pair<double, double>> arcs) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  if (arcs.empty()) return 0.0;
+  std::sort(arcs.begin(), arcs.end());
+  double reach = arcs.front().first, gap = 0.0;
+  for (const auto& [from, to] : arcs) {
+    gap = std::max(gap, from - reach);
+    reach = std::max(reach, to);
+  }
+  gap = std::max(gap, arcs.front().first + kTurn - reach);
+  return gap <= kSameStep_rad ? kTurn : kTurn - gap;
+}
+
+// The same as depth_at_middles_mm on a grid of points of the triangle.
+double depth_at_grid(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
+  constexpr int kSteps = 6;
+  double most = 0.0;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; i + j <= kSteps; ++j) {
+      const Vec3 x =
+          (mesh.corner(t, 0) * i + mesh.corner(t, 1) * j + mesh.corner(t, 2) * (kSteps - i - j)) /
+          kSteps;
+      most = std::max(most, std::fabs(surface.signed_distance_mm(x)));
+    }
+  return most;
+}
+
+struct AxisAngles {
+  std::vector<double> corners, meridian, heights;
+  std::vector<std::pair<double, double>> arcs;
+};
+
+AxisAngles angles_of(const TriangleMesh& mesh, const Surface& s,
+                     std::span<const std::uint32_t> triangles) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  AxisAngles out;
+  const Vec3 u = s.axis.unitOrthogonal(), v = s.axis.cross(u);
+  for (const std::uint32_t t : triangles) {
+    double first = 0.0, lo = 0.0, hi = 0.0;
+    bool any = false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 d = mesh.corner(t, k) - s.point;
+      const double x = d.dot(u), y = d.dot(v), z = d.dot(s.axis), rho = std::hypot(x, y);
+      out.heights.push_back(z);
+      if (s.kind == SurfaceKind::kTorus) out.meridian.push_back(std::atan2(z, rho - s.radius_mm));
+      if (rho <= 1e-9 * (std::fabs(z) + s.radius_mm)) continue;  // an apex has no angle
+      const double angle = std::atan2(y, x);
+      out.corners.push_back(angle);
+      if (!any) first = angle;
+      any = true;
+      const double turn = std::remainder(angle - first, kTurn);
+      lo = std::min(lo, turn);
+      hi = std::max(hi, turn);
+    }
+    if (!any) continue;
+    out.arcs.emplace_back(first + lo, first + hi);
+    if (first + lo < -std::numbers::pi)  // the same arc once more where the count begins
+      out.arcs.emplace_back(first + lo + kTurn, first + hi + kTurn);
+    if (first + hi > std::numbers::pi)
+      out.arcs.emplace_back(first + lo - kTurn, first + hi - kTurn);
+  }
+  return out;
+}
+
+}  // namespace
+
+double distance_from_axis_mm(const Surface& s, const Vec3& x) {
+  const Vec3 d = x - s.point;
+  return (d - d.dot(s.axis) * s.axis).norm();
+}
+
+double depth_at_middles_mm(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
+  const Vec3 &a = mesh.corner(t, 0), &b = mesh.corner(t, 1), &c = mesh.corner(t, 2);
+  double most = 0.0;
+  for (const Vec3& x :
+       {Vec3((a + b + c) / 3.0), Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)), Vec3(0.5 * (c + a))})
+    most = std::max(most, std::fabs(surface.signed_distance_mm(x)));
+  return most;
+}
+
+double size_mm(const Surface& surface, const TriangleMesh& mesh,
+               std::span<const std::uint32_t> triangles) {
+  if (surface.kind == SurfaceKind::kTorus) return surface.tube_radius_mm;
+  if (surface.kind != SurfaceKind::kCone) return surface.radius_mm;
+  double most = 0.0;
+  for (const std::uint32_t t : triangles)
+    for (int k = 0; k < 3; ++k)
+      most = std::max(most, distance_from_axis_mm(surface, mesh.corner(t, k)));
+  return most;
+}
+
+RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
+                             std::span<const std::uint32_t> triangles) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  RegionMeasure m;
+  AxisAngles angles = angles_of(mesh, surface, triangles);
+  m.arc_rad = covered_rad(std::move(angles.arcs));
+  std::vector<double> steps = distinct(std::move(angles.corners), kSameStep_rad);
+  // The first and the last can be one, on either side of half a turn.
+  if (steps.size() > 1 && steps.front() + kTurn - steps.back() < kSameStep_rad) steps.pop_back();
+  const bool closed = m.arc_rad >= kTurn;
+  m.steps = static_cast<std::uint32_t>(steps.size()) - (closed || steps.empty() ? 0U : 1U);
+  m.meridian_rad = distinct(std::move(angles.meridian), kSameStep_rad);
+  const auto [lo, hi] = std::minmax_element(angles.heights.begin(), angles.heights.end());
+  if (lo != angles.heights.end()) m.along_mm = {*lo, *hi};
+  const double near = 1e-3 * m.along_mm.width();
+  m.one_row = std::all_of(angles.heights.begin(), angles.heights.end(), [&](double z) {
+    return z - m.along_mm.lo <= near || m.along_mm.hi - z <= near;
+  });
+  return m;
+}
+
+double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
+                      std::span<const std::uint32_t> triangles) {
+  double deepest = 0.0;
+  for (const std::uint32_t t : triangles) {
+    const double middles = depth_at_middles_mm(mesh, surface, t);
+    // Only where a triangle bends both ways does another point lie deeper, and not by much.
+    if (middles < 0.5 * deepest) continue;
+    deepest = std::max({deepest, middles, depth_at_grid(mesh, surface, t)});
+  }
+  return deepest;
+}
+
+}  // namespace mortise

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/geometry/feature.h"
+#include "common/geometry/mesh.h"
+
+/// Private to recognition: what triangles show of a surface.
+namespace mortise {
+
+/// What a region shows of its surface; angles about the axis (sphere: about the best axis).
+struct RegionMeasure {
+  std::uint32_t steps = 0;           ///< facets around: distinct corner angles, less one when open
+  double arc_rad = 0.0;              ///< 2 pi: closed
+  Interval along_mm;                 ///< from surface.point along surface.axis
+  std::vector<double> meridian_rad;  ///< torus: distinct corner angles of the tube, ascending
+  bool one_row = false;              ///< all corners on two circles about the axis
+};
+
+/// Length to which the allowance of a surface is proportional: its radius; torus: of the tube;
+/// cone: the largest radius of the triangles.
+double size_mm(const Surface& surface, const TriangleMesh& mesh,
+               std::span<const std::uint32_t> triangles);
+
+RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
+                             std::span<const std::uint32_t> triangles);
+
+/// Farthest that a facet stands off the surface, mm; sampled, within a few percent from below.
+double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
+                      std::span<const std::uint32_t> triangles);
+
+double distance_from_axis_mm(const Surface& surface, const Vec3& x);
+
+/// How far a triangle stands off at its middles, where it is deepest or nearly so.
+double depth_at_middles_mm(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t);
+
+}  // namespace mortise
