@@ -83,12 +83,14 @@ Vec3 outside_normal(const Surface& s, const Vec3& x) {
   return s.axis;
 }
 
-// The distance to a cylinder, cone or sphere is a convex function; the distance to a torus bends
-// the other way by no more than this on its inner side: 1/(R - r).
-double concave_bend(const Surface& s) {
+// The distance to a cylinder, cone or sphere is a convex function. That to a torus bends the other
+// way inside its centre circle, around the axis, by no more than 1 / distance from the axis: here
+// over all points within reach of the middle.
+double concave_bend(const Surface& s, const Vec3& middle, double reach_mm) {
   if (s.kind != SurfaceKind::kTorus) return 0.0;
-  const double inner = s.radius_mm - s.tube_radius_mm;
-  return inner > 0.0 ? 1.0 / inner : std::numeric_limits<double>::infinity();
+  const double nearest_mm = view_from_axis(s, middle).r_mm - reach_mm;
+  if (nearest_mm >= s.radius_mm) return 0.0;
+  return nearest_mm > 0.0 ? 1.0 / nearest_mm : std::numeric_limits<double>::infinity();
 }
 
 // Rounding of a distance, as a share of it.
@@ -115,7 +117,6 @@ double distance_to_flat_triangle(const Vec3& x, const Vec3& normal, const Corner
 
 struct LeastSearch {
   const Surface& surface;
-  double bend;
   double accuracy_mm;
   double best;  // least value met so far
 };
@@ -135,7 +136,8 @@ double least_over(LeastSearch& search, const Corners& c, int depth) {
     search.best = std::min(search.best, outside_distance(search.surface, corner));
   }
   // A distance changes by no more than the path walked, whatever the curvature.
-  bound = std::max(bound - 0.5 * search.bend * reach * reach, at_middle - reach);
+  const double bend = concave_bend(search.surface, middle, reach);
+  bound = std::max(at_middle - reach, bound - 0.5 * bend * reach * reach);
   if (bound >= search.best - search.accuracy_mm || depth == 0) return bound;
   int longest = 0;
   for (int k = 1; k < 3; ++k)
@@ -195,7 +197,10 @@ double Surface::curvature_bound(const Vec3& x) const {
       return r > 0.0 ? std::cos(half_angle_rad) / r : std::numeric_limits<double>::infinity();
     }
     case SurfaceKind::kTorus:
-      return std::max(1.0 / tube_radius_mm, concave_bend(*this));
+      // On the inner side of the tube it bends around the axis.
+      return std::max(1.0 / tube_radius_mm, radius_mm > tube_radius_mm
+                                                ? 1.0 / (radius_mm - tube_radius_mm)
+                                                : std::numeric_limits<double>::infinity());
     case SurfaceKind::kPlane:
     case SurfaceKind::kUnknown:
       break;
@@ -220,16 +225,17 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
     least = distance_to_flat_triangle(point, axis, corners) * (1.0 - kRoundingShare) -
             radius_mm * (1.0 + kRoundingShare);
   } else {
-    LeastSearch search{*this, concave_bend(*this), accuracy_mm, std::min({da, db, dc})};
+    LeastSearch search{*this, accuracy_mm, std::min({da, db, dc})};
     least = least_over(search, corners, kHalvings);
   }
-  // A convex function is largest at a corner; a torus exceeds that by its inner curvature over the
-  // circle around the triangle, whose radius is at most longest edge / sqrt(3).
+  // A convex function is largest at a corner; a torus exceeds that by its bend over the circle
+  // around the triangle, whose radius is at most longest edge / sqrt(3).
   double most = std::max({da, db, dc});
   if (kind == SurfaceKind::kTorus) {
     const double longest =
         std::sqrt(std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()}));
-    most += std::min(longest * longest / 6.0 * concave_bend(*this), longest);
+    const double bend = concave_bend(*this, (a + b + c) / 3.0, longest);
+    most += std::min(longest, longest * longest / 6.0 * bend);
   }
   return inward ? Interval{-most, -least} : Interval{least, most};
 }

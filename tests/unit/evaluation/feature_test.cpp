@@ -221,5 +221,100 @@ TEST(Surface, FacetOfASphere) {
   EXPECT_NEAR(range.hi, 0.0, 1e-14);
 }
 
+// Inside the hole of a torus the distance bends sharply around the axis.
+TEST(Surface, RangeHoldsNearTheAxisOfATorus) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> near(-1.5, 1.5);
+  Surface s;
+  s.kind = SurfaceKind::kTorus;
+  s.radius_mm = 4.0;
+  s.tube_radius_mm = 1.5;
+  for (int i = 0; i < 300; ++i) {
+    const auto any = [&] { return Vec3(near(random), near(random), 2.0 * near(random)); };
+    const Vec3 a = any(), b = a + 0.3 * any(), c = a + 0.3 * any();
+    const Interval range = s.signed_distance_range_mm(a, b, c, 1e-6);
+    for (int u = 0; u <= 30; ++u)
+      for (int v = 0; u + v <= 30; ++v) {
+        const double d = s.signed_distance_mm(a + (b - a) * u / 30.0 + (c - a) * v / 30.0);
+        ASSERT_GE(d, range.lo - 1e-12) << i;
+        ASSERT_LE(d, range.hi + 1e-12) << i;
+      }
+  }
+}
+
+// The exact largest distance decides: just above it the answer is yes, just below it is no.
+TEST(Surface, StaysBelowInKnownCases) {
+  Surface bore;
+  bore.kind = SurfaceKind::kCylinder;
+  bore.radius_mm = 10.0;
+  bore.inward = true;
+  const double a = 2.0 * kPi / 32;
+  const Vec3 p(10, 0, 0), q(10 * std::cos(a), 10 * std::sin(a), 0), r = q + Vec3(0, 0, 50);
+  const double sagitta = 10.0 * (1.0 - std::cos(kPi / 32));
+  EXPECT_TRUE(bore.stays_below_mm(p, q, r, sagitta + 1e-6));
+  EXPECT_FALSE(bore.stays_below_mm(p, q, r, sagitta - 1e-6));
+  bore.inward = false;  // the same facet of a shaft lies inside
+  EXPECT_TRUE(bore.stays_below_mm(p, q, r, 1e-12));
+  EXPECT_FALSE(bore.stays_below_mm(p, q, 1.1 * r, 0.5));  // a corner is out
+  Surface socket;
+  socket.kind = SurfaceKind::kSphere;
+  socket.radius_mm = 10.0;
+  socket.inward = true;
+  const double h = std::sqrt(99.0);  // a facet on a circle of radius 1
+  const Vec3 u(1, 0, h), v(-0.5, std::sqrt(0.75), h), w(-0.5, -std::sqrt(0.75), h);
+  EXPECT_TRUE(socket.stays_below_mm(u, v, w, 10.0 - h + 1e-6));
+  EXPECT_FALSE(socket.stays_below_mm(u, v, w, 10.0 - h - 1e-6));
+  Surface plane;
+  plane.kind = SurfaceKind::kPlane;
+  EXPECT_TRUE(plane.stays_below_mm({0, 0, 1}, {1, 0, 2}, {0, 1, 3}, 3.0));
+  EXPECT_FALSE(plane.stays_below_mm({0, 0, 1}, {1, 0, 2}, {0, 1, 3}, 2.999));
+}
+
+// Against dense sampling: never yes where a sample is above the limit; yes where the bracket of the
+// range is clear of it. What the tally counts shows up when a limit is planted 5 um off.
+struct BelowTally {
+  int wrong_yes = 0, wrong_no = 0, yes = 0, no = 0;
+};
+
+BelowTally play_below(double planted_mm) {
+  std::mt19937 random(31);
+  std::uniform_real_distribution<double> coordinate(-6, 6), unit(0, 1);
+  BelowTally tally;
+  for (const Surface& s : surfaces())
+    for (int i = 0; i < 120; ++i) {
+      const auto any = [&] {
+        return Vec3(coordinate(random), coordinate(random), coordinate(random));
+      };
+      const Vec3 a = any(), size = i % 3 == 0 ? Vec3(1, 1, 1) : Vec3(0.05, 0.05, 0.05);
+      const Vec3 b = a + size.cwiseProduct(any()), c = a + size.cwiseProduct(any());
+      double most = -1e9;
+      constexpr int kGrid = 60;
+      for (int u = 0; u <= kGrid; ++u)
+        for (int v = 0; u + v <= kGrid; ++v)
+          most =
+              std::max(most, s.signed_distance_mm(a + (b - a) * u / kGrid + (c - a) * v / kGrid));
+      // Limits just about the largest distance are the hard ones.
+      const double limit = most + (i % 2 ? 1e-3 : -1e-3);
+      const bool below = s.stays_below_mm(a, b, c, limit + planted_mm);
+      (below ? tally.yes : tally.no) += 1;
+      tally.wrong_yes += below && most > limit + 1e-9;
+      tally.wrong_no += !below && s.signed_distance_range_mm(a, b, c).hi < limit - 1e-5;
+    }
+  return tally;
+}
+
+TEST(Surface, StaysBelowAgreesWithDenseSampling) {
+  const BelowTally tally = play_below(0.0);
+  EXPECT_EQ(tally.wrong_yes, 0);
+  EXPECT_EQ(tally.wrong_no, 0);
+  EXPECT_GT(tally.yes, 200);
+  EXPECT_GT(tally.no, 200);
+}
+
+TEST(Surface, StaysBelowWithALimitPlanted5MicrometresOffIsSeen) {
+  EXPECT_GT(play_below(5e-3).wrong_yes, 100);
+  EXPECT_GT(play_below(-5e-3).wrong_no, 100);
+}
+
 }  // namespace
 }  // namespace mortise
