@@ -37,7 +37,8 @@ Body::Body(const Solid& solid_of, const SurfaceBand& band_of)
     : solid(&solid_of),
       band(&band_of),
       mesh(&solid_of.mesh()),
-      has_inside(solid_of.topology().closed()) {
+      has_inside(solid_of.topology().closed()),
+      index_(body_index(solid_of, band_of)) {
   for (const Layer layer : {Layer::kLower, Layer::kUpper})
     for (const SurfaceBand::Face& face : band->faces) {
       const Interval range = offset_range_of(face, layer);
@@ -54,21 +55,22 @@ Vec3 Body::normal(std::uint32_t triangle) const {
 }
 
 const Interval& Body::extent_of(std::uint16_t face) const {
-  if (extents_.empty()) {
+  std::vector<Interval>& extents = index_->extents;
+  if (extents.empty()) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    extents_.assign(band->faces.size(), Interval{kInfinity, -kInfinity});
+    extents.assign(band->faces.size(), Interval{kInfinity, -kInfinity});
     for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
       const std::uint16_t f = face_index(t);
       const auto& surface = band->faces[f].surface;
       if (!surface) continue;
       for (int k = 0; k < 3; ++k) {
         const double z = (mesh->corner(t, k) - surface->point).dot(surface->axis);
-        extents_[f].lo = std::min(extents_[f].lo, z);
-        extents_[f].hi = std::max(extents_[f].hi, z);
+        extents[f].lo = std::min(extents[f].lo, z);
+        extents[f].hi = std::max(extents[f].hi, z);
       }
     }
   }
-  return extents_[face];
+  return extents[face];
 }
 
 namespace {
@@ -98,17 +100,19 @@ bool Body::stands_for(std::uint16_t face, const Vec3& x) const {
 }
 
 std::span<const std::uint32_t> Body::sharp_neighbours(std::uint32_t triangle) const {
-  if (sharp_range_.empty()) sharp_range_.resize(mesh->triangles.size());
-  if (sharp_range_[triangle].first == Topology::kNone) find_sharp_neighbours(triangle);
-  const Range& range = sharp_range_[triangle];
-  return {sharp_.data() + range.first, range.count};
+  std::vector<BodyIndex::Range>& ranges = index_->sharp_range;
+  if (ranges.empty()) ranges.resize(mesh->triangles.size());
+  if (ranges[triangle].first == Topology::kNone) find_sharp_neighbours(triangle);
+  const BodyIndex::Range& range = ranges[triangle];
+  return {index_->sharp.data() + range.first, range.count};
 }
 
 void Body::find_sharp_neighbours(std::uint32_t triangle) const {
+  std::vector<std::uint32_t>& sharp = index_->sharp;
   const Topology& topology = solid->topology();
   const Vec3 n = normal(triangle);
   const double size = (mesh->corner(triangle, 1) - mesh->corner(triangle, 0)).norm();
-  const auto first = static_cast<std::uint32_t>(sharp_.size());
+  const auto first = static_cast<std::uint32_t>(sharp.size());
   const auto bounds = [&](std::uint32_t t, const Vec3& normal_t) {
     // A declared surface itself: corners of a face around a bore may lie above the planes of its
     // triangles.
@@ -125,11 +129,11 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
   };
   const auto known = [&](std::uint32_t t, const Vec3& normal_t) {
     const Surface* surface = surface_of(face(t), Layer::kUpper);
-    for (std::size_t i = first; i < sharp_.size(); ++i) {
-      const Surface* other = surface_of(face(sharp_[i]), Layer::kUpper);
+    for (std::size_t i = first; i < sharp.size(); ++i) {
+      const Surface* other = surface_of(face(sharp[i]), Layer::kUpper);
       if (surface != nullptr ? surface == other
-                             : other == nullptr && face_index(t) == face_index(sharp_[i]) &&
-                                   normal(sharp_[i]).dot(normal_t) > 1.0 - kFlatShare)
+                             : other == nullptr && face_index(t) == face_index(sharp[i]) &&
+                                   normal(sharp[i]).dot(normal_t) > 1.0 - kFlatShare)
         return true;
     }
     return false;
@@ -147,11 +151,40 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       // However few triangles stand for it, a declared surface is smooth.
       if (face_index(t) == face_index(triangle) && surface_of(face(t), Layer::kUpper) != nullptr)
         continue;
-      if (sharp_.size() - first < kMostSharp && bounds(t, normal_t) && !known(t, normal_t))
-        sharp_.push_back(t);
+      if (sharp.size() - first < kMostSharp && bounds(t, normal_t) && !known(t, normal_t))
+        sharp.push_back(t);
     }
   }
-  sharp_range_[triangle] = {first, static_cast<std::uint32_t>(sharp_.size() - first)};
+  index_->sharp_range[triangle] = {first, static_cast<std::uint32_t>(sharp.size() - first)};
+}
+
+const std::vector<std::array<std::int32_t, Bvh::kWidth>>& Body::face_of_child() const {
+  if (index_->face_of_child.empty()) {
+    index_->face_of_child.resize(solid->bvh().nodes.size());
+    find_faces_of_children(solid->bvh().root);
+  }
+  return index_->face_of_child;
+}
+
+std::int32_t Body::find_faces_of_children(std::int32_t child) const {
+  const Bvh& bvh = solid->bvh();
+  if (child < 0) {
+    const Bvh::Leaf& leaf = bvh.leaves[~child];
+    const std::int32_t first = face_index(bvh.triangle_order[leaf.first]);
+    for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+      if (face_index(bvh.triangle_order[i]) != first) return kMixed;
+    return first;
+  }
+  const Bvh::Node& node = bvh.nodes[child];
+  std::int32_t common = kMixed;
+  bool mixed = false;
+  for (int k = 0; k < node.count; ++k) {
+    const std::int32_t face = find_faces_of_children(node.child[k]);
+    index_->face_of_child[child][k] = face;
+    if (k == 0) common = face;
+    mixed |= face != common;
+  }
+  return mixed ? kMixed : common;
 }
 
 const Surface* Body::surface_of(const SurfaceBand::Face& face, Layer layer) {

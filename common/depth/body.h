@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/depth/body_index.h"
 #include "common/geometry/signed_distance.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
@@ -36,6 +37,10 @@ struct Body {
   /// Extent of a face along the axis of its declared surface, from the surface's point, mm.
   const Interval& extent_of(std::uint16_t face) const;
 
+  /// The face of all triangles below each child of each node of the tree; kMixed: several.
+  static constexpr std::int32_t kMixed = -1;
+  const std::vector<std::array<std::int32_t, Bvh::kWidth>>& face_of_child() const;
+
   /// Does the face's mesh stand for its declared surface at the point of it nearest to x, or does
   /// the surface end before?
   bool stands_for(std::uint16_t face, const Vec3& x) const;
@@ -63,12 +68,8 @@ struct Body {
   double depth_by_triangle(const Vec3& x, std::uint32_t triangle,
                            const std::array<Vec3, 3>& corners, bool in_mesh, Layer layer) const;
   void find_sharp_neighbours(std::uint32_t triangle) const;
-  struct Range {
-    std::uint32_t first = Topology::kNone, count = 0;
-  };
-  mutable std::vector<Range> sharp_range_;  // by triangle, filled when asked for
-  mutable std::vector<std::uint32_t> sharp_;
-  mutable std::vector<Interval> extents_;  // by face, filled when asked for
+  std::int32_t find_faces_of_children(std::int32_t child) const;
+  std::shared_ptr<BodyIndex> index_;
 };
 
 /// Calls visit(triangle, corners) for every triangle whose box is within the given box (part

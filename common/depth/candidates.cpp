@@ -10,42 +10,10 @@
 namespace mortise {
 namespace {
 
-constexpr std::int32_t kMixed = -1;
-
 // An overlap of a smaller share of the radius than this is next to the wall that it is of.
 constexpr double kShallowShare = 0.05;
 
-// The face of all triangles below each child of each node; kMixed when there are several.
-struct FaceTree {
-  std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;
-
-  explicit FaceTree(const Body& body) {
-    const Bvh& bvh = body.solid->bvh();
-    face_of_child.resize(bvh.nodes.size());
-    fill(body, bvh.root);
-  }
-
-  std::int32_t fill(const Body& body, std::int32_t child) {
-    const Bvh& bvh = body.solid->bvh();
-    std::int32_t common = kMixed;
-    if (child < 0) {
-      const Bvh::Leaf& leaf = bvh.leaves[~child];
-      common = body.face_index(bvh.triangle_order[leaf.first]);
-      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-        if (body.face_index(bvh.triangle_order[i]) != common) return kMixed;
-      return common;
-    }
-    const Bvh::Node& node = bvh.nodes[child];
-    bool mixed = false;
-    for (int k = 0; k < node.count; ++k) {
-      const std::int32_t face = fill(body, node.child[k]);
-      face_of_child[child][k] = face;
-      if (k == 0) common = face;
-      mixed |= face != common;
-    }
-    return mixed ? kMixed : common;
-  }
-};
+constexpr std::int32_t kMixed = Body::kMixed;
 
 enum class Mark : std::uint8_t { kNone = 0, kNear, kCrossing };
 
@@ -61,7 +29,8 @@ class Finder {
       : query_(query), pair_(*query.pair), R_(pair_.X_KS[0].rotation()), R_abs_(R_.cwiseAbs()) {
     for (int i = 0; i < 2; ++i) {
       marked_[i].assign(pair_.bodies[i].mesh->triangles.size(), Mark::kNone);
-      if (!pair_.trivial && has_surfaces(pair_.bodies[i])) faces_[i].emplace(pair_.bodies[i]);
+      if (!pair_.trivial && has_surfaces(pair_.bodies[i]))
+        faces_[i] = &pair_.bodies[i].face_of_child();
     }
   }
 
@@ -126,7 +95,7 @@ class Finder {
     for (int k = 0; k < node.count; ++k) {
       Side side;
       side.child = node.child[k];
-      side.face = faces_[i] ? faces_[i]->face_of_child[n][k] : kMixed;
+      side.face = faces_[i] ? (*faces_[i])[n][k] : kMixed;
       for (int c = 0; c < 3; ++c) {
         side.center[c] = bvh.origin[c] + static_cast<double>(node.local_center[c][k]);
         side.half[c] = static_cast<double>(node.half[c][k]);
@@ -290,7 +259,8 @@ class Finder {
   const CandidateQuery& query_;
   const PairFrame& pair_;
   const Mat3 R_, R_abs_;
-  std::optional<FaceTree> faces_[2];
+  // Null where no face has a surface.
+  const std::vector<std::array<std::int32_t, Bvh::kWidth>>* faces_[2] = {nullptr, nullptr};
   std::vector<Mark> marked_[2];
   std::map<std::pair<std::int32_t, std::int32_t>, Slot> known_;
   Candidates found_;

@@ -7,10 +7,10 @@ namespace mortise {
 namespace {
 
 // Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
-constexpr int kLooks = 6;
+constexpr int kLooks = 3;
 
 // Work of one look; at the brink of interfering it is not worth more.
-constexpr std::uint64_t kLookWorkCap = 2'000;
+constexpr std::uint64_t kLookWorkCap = 600;
 
 // A path cut anywhere is a path of its kind.
 Motion rest_of(const Motion& motion, double t) {
@@ -18,6 +18,11 @@ Motion rest_of(const Motion& motion, double t) {
   const Pose X_Wt = motion.pose_at(t);
   return motion.kind == PathKind::kScrew ? screw_motion(X_Wt, motion.X_W1, motion.reference_P)
                                          : linear_motion(X_Wt, motion.X_W1, motion.reference_P);
+}
+
+// Upper bound of how far the largest surface lies outside of a triangle.
+double reach_mm(const SurfaceBand& band, std::uint32_t triangle) {
+  return Body::offset_range_of(band.face_of(triangle), Layer::kUpper).hi;
 }
 
 bool is_possible_at(const SweptQuery& query, double t, std::uint64_t& evaluations,
@@ -61,7 +66,10 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   const PairPath path{{query.motion_a, query.motion_b},
                       {at.a->sphere().radius_mm, at.b->sphere().radius_mm}};
   double step = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
-  for (int i = 0; i < kLooks; ++i, step *= 2.0) {
+  const bool widest_meet =
+      reach_mm(*at.band_a, first.triangle_a) + reach_mm(*at.band_b, first.triangle_b) >=
+      near.separation_mm - query.accuracy_mm;
+  for (int i = 0; i < kLooks && (widest_meet || !begins); ++i, step *= 2.0) {
     const double t = begins ? t0 + step : 0.0;
     if (t > 1.0) break;
     if (is_possible_at(query, t, answer.evaluations, scratch)) {

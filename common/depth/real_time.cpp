@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common/depth/candidates.h"
+#include "common/depth/exclusion.h"
 #include "common/depth/interference_search.h"
 #include "common/depth/overlap.h"
 #include "common/depth/pair_path.h"
@@ -19,8 +20,7 @@ namespace {
 //   1. triangles of either part that the path may bring near the other part: the first items;
 //   2. an item that is proven outside for its whole interval is dropped;
 //   3. an item whose centre is inside at an end of its interval gives a time at which the overlap
-//   is
-//      certain: nothing later matters any more;
+//      is certain: nothing later matters any more;
 //   4. else it is halved, in time when it stands clear at its start, else in space;
 //   5. the first item that is as brief as the accuracy and ends in a certain overlap is the answer.
 
@@ -30,12 +30,20 @@ constexpr double kSmallestShare = 0.25;
 // Paths longer than this many widths are cut in time without asking.
 constexpr double kLongPath = 4.0;
 
-// A closed form that stops excluding an overlap is followed this many doublings of the accuracy on.
-constexpr int kSoon = 8;
+// A closed form that stops excluding an overlap is followed by so many of the briefest intervals:
+// certain by then, it is so from there on as far as the search goes.
+constexpr double kSoon = 256.0;
 
 // After so many evaluations, and again when they have doubled, it is asked whether the parts are
-// about to interfere.
-constexpr std::uint64_t kFirstLook = 600, kLookWorkCap = 2'000;
+// about to interfere: this many times the accuracy of the path on. Where the last tick stopped it,
+// a part stands a little before.
+constexpr std::uint64_t kFirstLook = 400, kLookWorkCap = 2'000;
+constexpr double kSoonShare = 4.0;
+
+// After this share of the work cap what is proven need not come closer than this, mm of path, to a
+// time at which the parts do interfere: two rims at the brink take ten times the work for the rest.
+constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
+constexpr double kCloseEnough_mm = 0.02;
 
 // Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
 constexpr int kBackOff = 12;
@@ -85,6 +93,11 @@ class InterferenceSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
+      if (answer_.evaluations >= std::max(kEnoughLeast, at_.work_cap / kEnoughOfCap) &&
+          (t_real_ - item.span.t0) * path_.speed_upper_bound() <= kCloseEnough_mm) {
+        free_until_ = std::min(free_until_, item.span.t0);
+        break;
+      }
       if (item.span.t0 <= 0.0 && answer_.evaluations >= next_look) {
         if (real_soon_after(item.span.t0)) break;
         next_look = 2 * answer_.evaluations;
@@ -119,27 +132,30 @@ class InterferenceSearch {
     const FaceExtent ea = extent_of(bodies_[0], faces[0], sa);
     const FaceExtent eb = extent_of(bodies_[1], faces[1], sb);
     const double offsets = Body::offset_of(fa, layer_) + Body::offset_of(fb, layer_);
-    const double margin = path_.speed_upper_bound();
-    const InBoreQuery in_bore{
-        &sa, &sb, ea, eb, std::max(0.0, -Body::offset_of(sa.inward ? fb : fa, layer_)), margin};
-    const auto within_at = [&](double t) {
+    const auto margin = [&](const Span& span) {
+      return path_.speed_upper_bound() * (span.t1 - span.t0) + touch_mm_;
+    };
+    InBoreQuery in_bore{
+        &sa, &sb, ea, eb, std::max(0.0, -Body::offset_of(sa.inward ? fb : fa, layer_)), 0.0};
+    const auto within_over = [&](const Span& span, double t) {
+      in_bore.margin_mm = margin(span);
       return in_bore_bound(in_bore, path_.pose(0, t)).within_mm + offsets;
     };
-    const auto overlap_at = [&](double t) {
+    const auto overlap_over = [&](const Span& span, double t) {
       const Pose X_BA = path_.pose(0, t);
-      const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, margin);
+      in_bore.margin_mm = margin(span);
+      const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, in_bore.margin_mm);
       return (overlap ? overlap->near_hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
     };
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
-    if (const double at0 = within_at(0.0), at1 = within_at(1.0);
-        first_not_excluded(within_at, {0.0, 1.0}, at0, at1).t0 >= 1.0)
-      row.within_mm = most_excluded_mm_ - offsets;
-    const Span first = first_not_excluded(overlap_at, {0.0, 1.0}, overlap_at(0.0), overlap_at(1.0));
-    row.overlap_mm = most_excluded_mm_ - offsets;
+    Exclusion excluded{path_, touch_mm_, moment()};
+    if (excluded.first(within_over).t0 >= 1.0) row.within_mm = excluded.most_mm - offsets;
+    const Span first = excluded.first(overlap_over);
+    row.overlap_mm = excluded.most_mm - offsets;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
-      const auto overlap = face_pair_overlap(sa, ea, sb, eb, path_.pose(0, t), margin);
+      const auto overlap = face_pair_overlap(sa, ea, sb, eb, path_.pose(0, t), touch_mm_);
       if (!overlap || overlap->lo_mm + offsets <= -query_.accuracy_mm) return false;
       pair.overlap = *overlap;
       std::copy(faces.begin(), faces.end(), pair.face);
@@ -147,46 +163,25 @@ class InterferenceSearch {
       at_.X_WB = path_.motions[1].pose_at(t);
       return is_tight(PairFrame(at_), pair);
     };
-    if (first.t0 >= 1.0 ||
-        ((meet_at(first.t0) || meet_at(std::min(1.0, first.t1))) && ends_at(first)))
-      known_.rows.push_back(row);
+    if (first.t0 >= 1.0 || ends_at(first, meet_at)) known_.rows.push_back(row);
   }
 
-  // The first interval, as brief as the accuracy, over which a closed form exceeds touch; [1, 1]:
-  // none.
-  template <class OverlapAt>
-  Span first_not_excluded(const OverlapAt& overlap_at, const Span& span, double at0, double at1) {
-    most_excluded_mm_ = -std::numeric_limits<double>::infinity();
-    return exclude(overlap_at, span, at0, at1);
-  }
-  template <class OverlapAt>
-  Span exclude(const OverlapAt& overlap_at, const Span& span, double at0, double at1) {
-    const double most = std::max(at0, at1) + path_.spread(0, span) + path_.spread(1, span);
-    if (most <= touch_mm_) {
-      most_excluded_mm_ = std::max(most_excluded_mm_, most);
-      return {1.0, 1.0};
-    }
-    const double middle = 0.5 * (span.t0 + span.t1);
-    const bool brief =
-        path_.speed_upper_bound() * (span.t1 - span.t0) <= kSmallestShare * query_.accuracy_mm;
-    if (brief || !(middle > span.t0) || !(middle < span.t1) || at0 > touch_mm_) return span;
-    const double at = overlap_at(middle);
-    const Span early = exclude(overlap_at, {span.t0, middle}, at0, at);
-    return early.t0 < 1.0 ? early : exclude(overlap_at, {middle, span.t1}, at, at1);
+  // The time in which no point goes farther than a share of the accuracy.
+  double moment() const {
+    return kSmallestShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
   }
 
-  // Is the overlap certain soon after the interval? Then the search ends there.
-  bool ends_at(const Span& span) {
-    const double step = std::max(
-        1e-12, kSmallestShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300));
-    double t = span.t0 <= 0.0 ? 0.0 : span.t1;
-    for (int i = 0; i < kSoon && t <= 1.0; ++i) {
-      if (is_real_at(t)) {
-        t_real_ = std::min(t_real_, t);
-        free_until_ = std::min(free_until_, span.t0);
-        return true;
-      }
-      t = std::min(1.0, std::max(t, span.t0) + step * std::ldexp(1.0, i));
+  // Is the overlap certain soon after the interval? Then the search ends there. Later: no later.
+  template <class MeetAt>
+  bool ends_at(const Span& span, const MeetAt& meet_at) {
+    double step = std::max(1e-12, moment());
+    for (double t = span.t0 <= 0.0 ? 0.0 : span.t1; t <= 1.0; t = span.t0 + step, step *= 2.0) {
+      if (!meet_at(t)) continue;
+      if (!is_real_at(t)) return false;
+      t_real_ = std::min(t_real_, t);
+      if (t - span.t0 > kSoon * moment()) return false;
+      free_until_ = std::min(free_until_, span.t0);
+      return true;
     }
     return false;
   }
@@ -194,7 +189,8 @@ class InterferenceSearch {
   // Everything before t is proven free. A part that rests against another and is pushed on is real
   // at once: then nothing is gained by parting the surfaces that touch.
   bool real_soon_after(double t) {
-    const double soon = t + query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
+    const double soon =
+        t + kSoonShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
     if (soon > std::min(1.0, t_real_) || !is_real_at(soon, kLookWorkCap)) return false;
     t_real_ = soon;
     free_until_ = std::min(free_until_, t);
@@ -371,8 +367,6 @@ class InterferenceSearch {
   bool trivial_ = true;
   Layer layer_ = Layer::kMesh;
   double rounding_mm_ = 0.0, touch_mm_ = 0.0;
-  double most_excluded_mm_ =
-      0.0;  // by the closed form at hand, over the intervals that it excludes
   KnownOverlaps known_;
   SearchScratch scratch_;
   std::vector<Item> heap_;

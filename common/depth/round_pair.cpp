@@ -18,6 +18,9 @@ constexpr double kLeastCosine = 0.95;
 // At the very end of a face its neighbour is as near: a point is named that is a little inside.
 constexpr double kEndShare = 1e-4;
 
+// Axes that leave each other by less than this over the whole face are parallel.
+constexpr double kParallel_mm = 1e-9;
+
 // First pieces of the circle, and pieces looked at before the bracket is left as it is.
 constexpr int kFirstPieces = 16;
 constexpr int kMostPieces = 600;
@@ -35,6 +38,7 @@ class Reach {
 
   std::optional<RoundReach> run(double margin_mm, double accuracy_mm) {
     margin_mm_ = margin_mm;
+    if (const auto reach = parallel_cylinders()) return reach;
     struct Piece {
       double from, to, bound;
     };
@@ -66,15 +70,42 @@ class Reach {
       reach.reach_mm = {-kInfinity, -kInfinity};
       return reach;
     }
-    reach.reach_mm = {best_, std::max(best_, pieces.front().bound)};
-    if (!std::isfinite(reach.reach_mm.hi)) return std::nullopt;
+    return reached(std::max(best_, pieces.front().bound));
+  }
+
+ private:
+  std::optional<RoundReach> reached(double hi_mm) const {
+    if (!std::isfinite(hi_mm)) return std::nullopt;
+    RoundReach reach;
+    reach.reach_mm = {best_, hi_mm};
     reach.point = point_;
     const Vec3 from_axis = across(point_);
     reach.outward = -cosine_ * (from_axis.stableNormalized() - hollow_.widening * hollow_.axis);
     return reach;
   }
 
- private:
+  // Cylinders whose axes are parallel reach the distance of the axes beyond the wall, wherever they
+  // are side by side. Nothing for others.
+  std::optional<RoundReach> parallel_cylinders() {
+    if (convex_.widening != 0.0 || hollow_.widening != 0.0) return std::nullopt;
+    const double farthest =
+        std::max(std::fabs(convex_.extent_mm.lo), std::fabs(convex_.extent_mm.hi));
+    const double tilt_mm = rise_.norm() * (farthest + convex_.radius_mm);
+    if (tilt_mm > kParallel_mm) return std::nullopt;
+    const double rise = rise_.norm();
+    const Interval near = within(
+        {-rise, rise}, {hollow_.extent_mm.lo - margin_mm_, hollow_.extent_mm.hi + margin_mm_});
+    RoundReach apart;
+    apart.reach_mm = {-kInfinity, -kInfinity};
+    if (!(near.lo <= near.hi)) return apart;
+    const Vec3 off = across(convex_.point);
+    const double side = off.norm() > kParallel_mm ? std::atan2(off.dot(e2_), off.dot(e1_))
+                                                  : std::numbers::pi / kFirstPieces;
+    look(side);
+    const double reach_mm = off.norm() + convex_.radius_mm - hollow_.radius_mm + tilt_mm;
+    return reached(std::max(best_, reach_mm));
+  }
+
   Vec3 across(const Vec3& x) const {
     const Vec3 d = x - hollow_.point;
     return d - d.dot(hollow_.axis) * hollow_.axis;

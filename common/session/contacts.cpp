@@ -127,6 +127,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.near = pair.touching = pair.entered = pair.undecided = false;
   pair.meets = pair.overlaps_at_start = pair.blocks = false;
   pair.t_contact = pair.t_stop = 1.0;
+  pair.never_real = false;
   pair.t_enter = pair.apart_at_end_mm = 0.0;
   if (pair.placed) {  // no motion: only how it stands
     pair.near = true;

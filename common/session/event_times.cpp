@@ -7,13 +7,12 @@
 namespace mortise {
 namespace {
 
-// Evaluations of each of the two searches, some 10 ms of work. At the cap the time is looked for by
-// halving, which finds a time of that kind but does not prove it the first, and the pair is counted
-// as not examined.
-constexpr std::uint64_t kEventTimeWorkCap = 4'000;
+// Evaluations of each of the two searches, some 10 ms of work. At the cap a time of that kind
+// is told that is not proven to be the first, and the pair is counted as not examined.
+constexpr std::uint64_t kEventTimeWorkCap = 3'000;
 
 // Halvings, and the evaluations of each look.
-constexpr int kHalvings = 14;
+constexpr int kHalvings = 13;
 constexpr std::uint64_t kLookWorkCap = 1'000;
 
 CollisionClass worst_told(const PairWork& pair) {
@@ -41,6 +40,10 @@ void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
   if (capped) pair.undecided = true;
 }
 
+// Where the search leaves more of the tick open between what is clear and what is not, the time at
+// which they do interfere is told.
+constexpr double kClose = 1e-3;
+
 enum class Asked { kPossible, kReal };
 
 bool interferes_at(PairWork& pair, const SweptQuery& swept, double t, Asked asked,
@@ -49,6 +52,7 @@ bool interferes_at(PairWork& pair, const SweptQuery& swept, double t, Asked aske
   query.X_WA = swept.motion_a.pose_at(t);
   query.X_WB = swept.motion_b.pose_at(t);
   query.work_cap = kLookWorkCap;
+  query.want_delta = false;
   const OverlapResult overlap = find_overlap(query, ccd);
   pair.counts.depth_evaluations += overlap.evaluations;
   return std::any_of(overlap.regions.begin(), overlap.regions.end(), [&](const auto& region) {
@@ -74,19 +78,22 @@ void search(PairWork& pair, CcdScratch& ccd) {
   const SweptQuery query = swept_query(pair);
   const PossibleTime possible = find_possible_time(query, ccd);
   count(pair, possible.evaluations, possible.capped);
-  if (possible.becomes_possible) pair.t_potential = in_tick(possible.t_clear);
-  if (possible.capped)
+  const bool close = possible.t_possible - possible.t_clear <= kClose;
+  if (possible.becomes_possible)
+    pair.t_potential = in_tick(close ? possible.t_clear : possible.t_possible);
+  // The cap may come before the proof, yet after a time.
+  if (possible.capped && !possible.becomes_possible)
     pair.t_potential =
         in_tick(halved(pair, query, possible.t_clear, possible.t_possible, Asked::kPossible, ccd));
   if (!possible.becomes_possible && !possible.capped) return;
   if (pair.blocks) {
     // The response knows it already.
     pair.t_real = pair.t_stop;
-  } else if (!pair.no_inside()) {
+  } else if (!pair.no_inside() && !pair.never_real) {
     const RealTime real = find_real_time(query, ccd);
     count(pair, real.evaluations, real.capped);
     if (real.becomes_real) pair.t_real = in_tick(real.t_real);
-    if (real.capped)
+    if (real.capped && !real.becomes_real)
       pair.t_real = in_tick(halved(pair, query, real.t_free, real.t_real, Asked::kReal, ccd));
   }
 }

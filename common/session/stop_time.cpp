@@ -1,6 +1,7 @@
 #include "common/session/stop_time.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/constants.h"
 #include "common/session/motion_budget.h"
@@ -48,6 +49,12 @@ double narrowest_mm(const SurfaceBand& band) {
   return std::max(0.0, narrowest);
 }
 
+// Upper bound of the certain depth of a place that an overlap does not speak of: it is not even
+// possible there.
+double elsewhere_mm(const PairWork& pair) {
+  return -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
+}
+
 OverlapQuery overlap_query(const PairWork& pair) {
   OverlapQuery query;
   query.a = pair.solid_a;
@@ -57,8 +64,7 @@ OverlapQuery overlap_query(const PairWork& pair) {
   return query;
 }
 
-// Bracket of the deepest overlap that is certain at one time of the segment, mm. A place that the
-// overlap does not speak of is not even possible, and so at least the width of the bands away.
+// Bracket of the deepest overlap that is certain at one time of the segment, mm.
 struct Look {
   Interval depth_mm;
   bool has_place = false;  // where the deepest region lies, world frame, and its normal from B to A
@@ -78,9 +84,8 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   const OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += overlap.evaluations;
-  const double elsewhere_mm = -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
   Look look;
-  look.depth_mm = {elsewhere_mm, elsewhere_mm};
+  look.depth_mm = {elsewhere_mm(pair), elsewhere_mm(pair)};
   for (const OverlapRegion& region : overlap.regions) {
     look.depth_mm.lo = std::max(look.depth_mm.lo, region.certain_mm.lo);
     if (region.certain_mm.hi < look.depth_mm.hi) continue;
@@ -163,9 +168,9 @@ double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
   return 1.0;
 }
 
-double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
-  // Without an inside there is no depth and so no real verdict: nobody is stopped.
-  if (pair.no_inside()) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
+namespace {
+
+double free_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
   double t_start = pair.t_enter;
   if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
     // Real needs an overlap of the meshes.
@@ -173,7 +178,10 @@ double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratc
     if (touch.state == ContactState::kUndecided) return touch.t_clear;
     if (touch.state == ContactState::kContact) t_start = touch.t_contact;
   }
-  const Advance advance = advance_to_real(pair, t_start, ccd);
+  // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
+  const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
+  const Advance advance =
+      may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
   if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
   pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
   if (advance.state == Advanced::kDone) return advance.t_free;
@@ -189,6 +197,17 @@ double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratc
   if (real.real_at_start) return withdrawal_time(pair, ccd);
   if (real.capped) pair.undecided = true;
   return std::max(advance.t_free, real.t_free);
+}
+
+}  // namespace
+
+double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
+  // Without an inside there is no depth and so no real verdict: nobody is stopped.
+  if (pair.no_inside()) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
+  const double t_free = free_time(pair, touch, ccd);
+  // Who withdraws is real all the while.
+  pair.never_real = t_free >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
+  return t_free;
 }
 
 }  // namespace mortise

@@ -1,0 +1,68 @@
+#include "common/depth/body_index.h"
+
+#include <algorithm>
+
+namespace mortise {
+namespace {
+
+// Parts with their bands of which an index is held; the one that was not asked for longest goes.
+constexpr std::size_t kMostHeld = 64;
+
+bool same_surface(const Surface& a, const Surface& b) {
+  return a.kind == b.kind && a.inward == b.inward && a.point == b.point && a.axis == b.axis &&
+         a.radius_mm == b.radius_mm && a.tube_radius_mm == b.tube_radius_mm &&
+         a.half_angle_rad == b.half_angle_rad;
+}
+
+bool same(const Interval& a, const Interval& b) { return a.lo == b.lo && a.hi == b.hi; }
+
+// Names and sources of a face say nothing of where its surface lies.
+bool same_face(const SurfaceBand::Face& a, const SurfaceBand::Face& b) {
+  if (a.surface.has_value() != b.surface.has_value()) return false;
+  if (a.surface && !same_surface(*a.surface, *b.surface)) return false;
+  return a.residual_mm == b.residual_mm && a.grade == b.grade &&
+         same(a.deviation_mm, b.deviation_mm) && same(a.tolerance_mm, b.tolerance_mm);
+}
+
+// Solids and bands come and go, and new ones may stand where old ones did: what an index was made
+// of is compared, not where it was.
+struct Shelf {
+  struct Held {
+    const Solid* solid = nullptr;
+    std::string hash;  // of the mesh
+    std::vector<SurfaceBand::Face> faces;
+    std::vector<std::uint16_t> face_of_triangle;
+    std::shared_ptr<BodyIndex> index;
+    std::uint64_t asked = 0;
+
+    bool is_of(const Solid& s, const SurfaceBand& band) const {
+      return solid == &s && hash == s.hash() && face_of_triangle == band.face_of_triangle &&
+             std::equal(faces.begin(), faces.end(), band.faces.begin(), band.faces.end(),
+                        same_face);
+    }
+  };
+  std::vector<Held> held;
+  std::uint64_t asked = 0;
+};
+
+}  // namespace
+
+// One shelf a thread: nothing is shared, and no answer depends on what it holds.
+std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& band) {
+  thread_local Shelf shelf;
+  ++shelf.asked;
+  for (Shelf::Held& held : shelf.held)
+    if (held.is_of(solid, band)) {
+      held.asked = shelf.asked;
+      return held.index;
+    }
+  if (shelf.held.size() >= kMostHeld)
+    shelf.held.erase(std::min_element(
+        shelf.held.begin(), shelf.held.end(),
+        [](const Shelf::Held& a, const Shelf::Held& b) { return a.asked < b.asked; }));
+  shelf.held.push_back({&solid, solid.hash(), band.faces, band.face_of_triangle,
+                        std::make_shared<BodyIndex>(), shelf.asked});
+  return shelf.held.back().index;
+}
+
+}  // namespace mortise

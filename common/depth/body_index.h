@@ -1,0 +1,29 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/geometry/solid.h"
+#include "common/geometry/surface_band.h"
+
+namespace mortise {
+
+/// What depth works out of one part and its band, and asks again at every pose. Filled in by Body
+/// when it is first needed; holds nothing that depends on anything but the part and the band.
+struct BodyIndex {
+  struct Range {
+    std::uint32_t first = Topology::kNone, count = 0;
+  };
+  std::vector<Range> sharp_range;    ///< by triangle, into `sharp`
+  std::vector<std::uint32_t> sharp;  ///< see Body::sharp_neighbours
+  std::vector<Interval> extents;     ///< by face, see Body::extent_of
+  std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;  ///< see Body::face_of_child
+};
+
+/// The index of a part with a band: one that this thread made before when both are, value for
+/// value, what it was made of; else a new one. Cost: one comparison of the band.
+std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& band);
+
+}  // namespace mortise

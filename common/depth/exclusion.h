@@ -1,0 +1,46 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+
+#include "common/depth/pair_path.h"
+
+namespace mortise {
+
+/// Over which part of a tick a bound that is convex in the displacement keeps two faces from
+/// interfering.
+struct Exclusion {
+  const PairPath& path;
+  double touch_mm = 0.0;
+  double moment = 0.0;  ///< the briefest interval, of the tick
+  /// Largest bound over the intervals that were excluded, mm.
+  double most_mm = -std::numeric_limits<double>::infinity();
+
+  /// The first interval, as brief as `moment`, over which the bound exceeds touch; [1, 1]: none.
+  /// overlap_over(span, t): the bound at time t for all that is near at any time of the span. What
+  /// is near over an interval is near, but for the way between, at both of its ends; there a convex
+  /// bound is largest, up to the path's own curvature.
+  template <class OverlapOver>
+  Span first(const OverlapOver& overlap_over) {
+    most_mm = -std::numeric_limits<double>::infinity();
+    const Span begin{0.0, std::min(1.0, moment)};
+    if (overlap_over(begin, 0.0) > touch_mm) return begin;
+    return first(overlap_over, {0.0, 1.0});
+  }
+
+ private:
+  template <class OverlapOver>
+  Span first(const OverlapOver& overlap_over, const Span& span) {
+    const double most = std::max(overlap_over(span, span.t0), overlap_over(span, span.t1)) +
+                        path.spread(0, span) + path.spread(1, span);
+    if (most <= touch_mm) {
+      most_mm = std::max(most_mm, most);
+      return {1.0, 1.0};
+    }
+    const double middle = 0.5 * (span.t0 + span.t1);
+    if (span.t1 - span.t0 <= moment || !(middle > span.t0) || !(middle < span.t1)) return span;
+    const Span early = first(overlap_over, {span.t0, middle});
+    return early.t0 < 1.0 ? early : first(overlap_over, {middle, span.t1});
+  }
+};
+
+}  // namespace mortise
