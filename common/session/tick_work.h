@@ -56,7 +56,7 @@ struct PairWork {
   double t_contact = 1.0;
   double t_enter = 0.0;  ///< nothing to judge before: plain pairs do not overlap, others stay clear
   double t_stop = 1.0;   ///< of the tick: the pair is proven not to become real before
-  bool never_real = false;  ///< proven by the search for t_stop, over the whole segment
+  bool never_real = false;       ///< proven by the search for t_stop, over the whole segment
   double apart_at_end_mm = 0.0;  ///< lower bound, when neither near nor touching
   bool blocks = false;           ///< the response stopped a part because of this pair
 
