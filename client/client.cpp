@@ -114,6 +114,7 @@ ClientUpdate Client::poll() {
   ClientUpdate update;
   ClientInput input = channel_.take();
   now_ns_ = clock_();
+  update.at_ns = now_ns_;
   changed_.clear();
   server_present_ = input.server_present;
   if (input.server_lost) {
@@ -135,6 +136,7 @@ ClientUpdate Client::poll() {
   }
   apply_events(update);
   watch_gap(update);
+  statistics_.known_event_seq = std::max(known_event_seq_, event_seq_);
   if (!input.pulses.empty()) update.pulse = input.pulses.back();
   update.meshes = std::move(input.meshes);
   update.changed.assign(changed_.begin(), changed_.end());
@@ -300,6 +302,8 @@ void Client::apply_poses(const PoseBatch& batch, ClientUpdate& update) {
     user->unacknowledged.acknowledge(ack.seq);
     user->unacked_since_ns.reset();
     if (ack.seq < user->increment_seq) user->unacked_since_ns = now_ns_;
+    update.acks.push_back(
+        {static_cast<LocalUser>(user - users_.data()), ack.seq, batch.tick, ack.sent_ns});
     if (ack.sent_ns != 0) {
       update.latency_ms.push_back(static_cast<double>(now_ns_ - ack.sent_ns) * 1e-6);
     }

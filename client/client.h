@@ -35,6 +35,13 @@ struct KnownPart {
   std::uint64_t tick = 0;  ///< of that pose
 };
 
+/// The server has taken increments of one of our users up to `seq`, in this tick.
+struct SeenAck {
+  LocalUser user = 0;
+  std::uint64_t seq = 0, tick = 0;
+  std::int64_t sent_ns = 0;  ///< when that one was sent, by our clock; 0: not known
+};
+
 /// What one poll() brought.
 struct ClientUpdate {
   std::vector<PartId> changed;            ///< parts with a new pose or holder, by id, each once
@@ -43,6 +50,8 @@ struct ClientUpdate {
   std::vector<RefusedIncrement> refused;  ///< of our users
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here
+  std::vector<SeenAck> acks;              ///< new ones, in order
+  std::int64_t at_ns = 0;                 ///< our clock when this was taken
   std::optional<SessionPulse> pulse;      ///< the latest
   std::vector<MeshBytes> meshes;          ///< arrived
   bool resynced = false;                  ///< a snapshot took the place of what was known
@@ -59,6 +68,7 @@ struct ClientStatistics {
   std::uint64_t increments_repeated = 0;  ///< entries sent again, lest the first was lost
   std::uint64_t increments_given_up = 0;  ///< never acknowledged, and not kept any longer
   std::uint64_t highest_event_seq = 0, highest_tick = 0;
+  std::uint64_t known_event_seq = 0;  ///< the server has said that this one exists
 };
 
 /// A participant of a session without an engine: asks the server and keeps what it answers. Holds

@@ -116,7 +116,15 @@ void Announcer::say_trouble(const TickLoop& loop) {
     spdlog::warn("{} pairs not examined to the end; they are not reported as clear",
                  pulse.not_examined - not_examined_);
   }
-  if (loop.log_dropped_ticks() > dropped_) {
+  if (loop.log() != nullptr && !log_failed_) {
+    if (const Status status = loop.log()->status(); !status) {
+      log_failed_ = true;
+      clear_line();
+      spdlog::error("{}; the session goes on, and what is not recorded is counted",
+                    status.error().text);
+    }
+  }
+  if (!log_failed_ && loop.log_dropped_ticks() > dropped_) {
     clear_line();
     spdlog::warn("the log's disk is too slow: {} ticks are missing in it (marked as a gap)",
                  loop.log_dropped_ticks() - dropped_);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -66,6 +69,32 @@ std::string inbox_lines(const InboxCounters& c) {
   return text;
 }
 
+// Those with trouble first; a session of hundreds names ten.
+std::string user_lines(const TickLoop& loop) {
+  constexpr std::size_t kMostLines = 10;
+  const std::vector<UserCounters>& counters = loop.inbox().user_counters();
+  std::vector<std::size_t> order(std::min(counters.size(), loop.world().users.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.empty()) return {};
+  const auto trouble = [&](std::size_t i) {
+    return counters[i].refused + counters[i].lost + counters[i].commands_refused;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return trouble(a) > trouble(b); });
+  std::string text = fmt::format("  {:<24}{:>10}{:>10}{:>8}{:>10}{:>10}\n", "user", "received",
+                                 "refused", "lost", "commands", "refused");
+  for (std::size_t n = 0; n < std::min(order.size(), kMostLines); ++n) {
+    const UserCounters& c = counters[order[n]];
+    text +=
+        fmt::format("  {:<24}{:>10}{:>10}{:>8}{:>10}{:>10}\n", loop.world().users[order[n]].name,
+                    c.received, c.refused, c.lost, c.commands, c.commands_refused);
+  }
+  if (order.size() > kMostLines) {
+    text += fmt::format("  and {} more with less trouble\n", order.size() - kMostLines);
+  }
+  return text;
+}
+
 }  // namespace
 
 Json closing_json(const Closing& closing, const TickLoop& loop) {
@@ -90,7 +119,25 @@ Json closing_json(const Closing& closing, const TickLoop& loop) {
   json["log"] = closing.log_file.empty() ? Json(nullptr)
                                          : Json{{"file", closing.log_file},
                                                 {"bytes", closing.log_bytes},
-                                                {"dropped_ticks", closing.log_dropped_ticks}};
+                                                {"dropped_ticks", closing.log_dropped_ticks},
+                                                {"error", closing.log_error}};
+  json["restored"] = closing.restored_from.empty()
+                         ? Json(nullptr)
+                         : Json{{"log", closing.restored_from},
+                                {"ticks", closing.restored_ticks},
+                                {"left_out_ticks", closing.restore_left_out_ticks}};
+  json["users"] = Json::array();
+  const std::vector<UserCounters>& users = loop.inbox().user_counters();
+  for (std::size_t i = 0; i < users.size() && i < loop.world().users.size(); ++i) {
+    json["users"].push_back({{"name", loop.world().users[i].name},
+                             {"received", users[i].received},
+                             {"accepted", users[i].accepted},
+                             {"refused", users[i].refused},
+                             {"repaired", users[i].repaired},
+                             {"lost", users[i].lost},
+                             {"commands", users[i].commands},
+                             {"commands_refused", users[i].commands_refused}});
+  }
   return json;
 }
 
@@ -119,6 +166,11 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
       "  at the door: received {}, malformed {}, foreign {}, lost {}, not sent {}; datagrams cut "
       "by the guard {} (Fast DDS adds a trailer to each)\n",
       c.received, c.malformed, c.foreign, c.lost, c.send_failed, c.guard_dropped);
+  text += user_lines(loop);
+  if (!closing.restored_from.empty()) {
+    text += fmt::format("\nRestored from {}: {} ticks, {} left out\n", closing.restored_from,
+                        closing.restored_ticks, closing.restore_left_out_ticks);
+  }
   if (!closing.parts_without_inside.empty()) {
     text += "\nParts without an inside (open or non-manifold: crossing is found, depth is not)\n";
     for (const std::string& part : closing.parts_without_inside) text += "  " + part + "\n";

@@ -53,12 +53,28 @@ UserId Inbox::first_user_of(const ClientKey& client) const {
 }
 
 bool Inbox::take_token(Seat& seat, std::int64_t now_ns) {
-  const double gained = static_cast<double>(now_ns - seat.tokens_at_ns) * 1e-9;
-  seat.tokens = std::min(limits_.messages_per_s, seat.tokens + gained * limits_.messages_per_s);
+  const auto refill = [&](double& tokens, std::int64_t since_ns, double rate) {
+    tokens = std::min(rate, tokens + static_cast<double>(now_ns - since_ns) * 1e-9 * rate);
+  };
+  if (!session_tokens_at_ns_) session_tokens_ = limits_.session_messages_per_s;
+  refill(session_tokens_, session_tokens_at_ns_.value_or(now_ns), limits_.session_messages_per_s);
+  session_tokens_at_ns_ = now_ns;
+  refill(seat.tokens, seat.tokens_at_ns, limits_.messages_per_s);
   seat.tokens_at_ns = now_ns;
-  if (seat.tokens < 1.0) return false;
+  if (seat.tokens < 1.0 || session_tokens_ < 1.0) return false;
   seat.tokens -= 1.0;
+  session_tokens_ -= 1.0;
   return true;
+}
+
+bool Inbox::hand_is_full(const World& world, const Command& grab) const {
+  std::uint32_t held = 0;
+  for (const Part& part : world.parts) {
+    if (part.holder != grab.user) continue;
+    if (part.id == grab.part) return false;  // held already
+    ++held;
+  }
+  return held >= limits_.parts_per_user;
 }
 
 void Inbox::renew(World& world, UserId user, std::int64_t now_ns) {

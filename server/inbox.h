@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct InboxLimits {
   /// Increments and commands a second and user, as a bucket of one second. A designer's device
   /// sends at most 240 Hz; a flood of one user must not take the tick of the others.
   double messages_per_s = 1000.0;
+  /// The same for all users together: what a tick can take in without being late for all.
+  double session_messages_per_s = 100'000.0;
   /// A session with more is refused: one user costs up to one broad-phase move a tick.
   std::uint32_t max_users = 256;
   /// Refusals told to one user in one tick; the rest is only counted, so that nonsense is not
@@ -25,6 +28,18 @@ struct InboxLimits {
   /// it the increments that piled up in one slow tick would make the next one a single long leap,
   /// slower still.
   std::uint32_t increments_per_tick = 8;
+  /// Parts in the hands of one user: more are refused at the grab. A hand needs one, a group move
+  /// some; who takes all keeps the others from working.
+  std::uint32_t parts_per_user = 64;
+};
+
+/// What one user sent since the session began here, and what became of it.
+struct UserCounters {
+  std::uint64_t received = 0;  ///< increments, silent repeats not counted
+  std::uint64_t accepted = 0, refused = 0;
+  std::uint64_t repaired = 0;  ///< came only by repetition
+  std::uint64_t lost = 0;      ///< numbered by the user, and never came
+  std::uint64_t commands = 0, commands_refused = 0;
 };
 
 struct InboxCounters {
@@ -70,6 +85,9 @@ class Inbox {
   void admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake);
 
   const InboxCounters& counters() const { return counters_; }
+  const std::vector<UserCounters>& user_counters() const { return user_counters_; }  ///< by index
+  std::size_t waiting_increments() const { return backlog_.size(); }
+  std::size_t waiting_commands() const { return deferred_.size(); }
   std::uint32_t users_present() const;
 
  private:
@@ -98,6 +116,8 @@ class Inbox {
   Seat* seat_of(UserId user, const ClientKey& client);
   UserId first_user_of(const ClientKey& client) const;
   bool take_token(Seat& seat, std::int64_t now_ns);
+  /// Would the grab put more parts into the user's hand than the session lets one hold?
+  bool hand_is_full(const World& world, const Command& grab) const;
   void renew(World& world, UserId user, std::int64_t now_ns);
 
   void admit_join(const JoinRequest& request, World& world, std::int64_t now_ns, Intake& intake);
@@ -123,7 +143,11 @@ class Inbox {
   void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);
 
   InboxLimits limits_;
+  UserCounters& counters_of(UserId user);  ///< of nobody in particular for who never joined
+
   InboxCounters counters_;
+  std::vector<UserCounters> user_counters_;
+  UserCounters strangers_;
   std::vector<Seat> seats_;
   std::vector<std::int64_t> renewed_ns_;    ///< by part index: when its lease was last renewed
   std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
@@ -132,6 +156,8 @@ class Inbox {
   std::vector<DeferredCommand> deferred_;   ///< in order of arrival
   std::vector<DeferredGoodbye> goodbyes_;
   std::uint32_t told_strangers_ = 0;
+  double session_tokens_ = 0.0;  ///< of the session's rate bucket; full at the first message
+  std::optional<std::int64_t> session_tokens_at_ns_;
 };
 
 }  // namespace mortise

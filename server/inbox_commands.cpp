@@ -55,13 +55,19 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
     reply.text = std::string(name_of(order));
   } else if (!take_token(*seat, now_ns)) {
     reply.refusal = Refusal::kRateTooHigh;
-    reply.text = "more messages a second than the session takes from one user";
+    reply.text = "more messages a second than the session takes from one user, or from all";
   } else if (command.kind == CommandKind::kGrab && seat->role == "observer") {
     reply.refusal = Refusal::kNotAllowed;
     reply.text = "observers do not hold parts";
+  } else if (command.kind == CommandKind::kGrab && hand_is_full(world, command)) {
+    reply.refusal = Refusal::kNotAllowed;
+    reply.text = "a user of this session holds at most " + std::to_string(limits_.parts_per_user) +
+                 " parts; release one first";
   }
+  ++counters_of(reply.user).commands;
   if (reply.refusal != Refusal::kNone) {
     ++counters_.commands_refused;
+    ++counters_of(reply.user).commands_refused;
     intake.replies.push_back(std::move(reply));
     return;
   }
@@ -80,6 +86,7 @@ void Inbox::carry_out(const Command& command, World& world, std::int64_t now_ns,
   Reply reply = apply_command(world, command, decision);
   if (reply.refusal != Refusal::kNone) {
     ++counters_.commands_refused;
+    ++counters_of(command.user).commands_refused;
   } else {
     if (command.kind == CommandKind::kGrab) renewed_ns_[command.part.value - 1] = now_ns;
     intake.decisions.push_back(std::move(decision));

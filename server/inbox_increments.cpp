@@ -13,6 +13,12 @@ bool Inbox::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
   });
 }
 
+UserCounters& Inbox::counters_of(UserId user) {
+  if (!user || user.value > seats_.size()) return strangers_;
+  if (user_counters_.size() < seats_.size()) user_counters_.resize(seats_.size());
+  return user_counters_[user.value - 1];
+}
+
 void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t now_ns,
                               Intake& intake) {
   const Increment& increment = received.increment;
@@ -28,6 +34,9 @@ void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t no
   const IncrementOrder::Arrival arrival = order.receive(received, ready_);
   counters_.lost += order.lost() - lost;
   counters_.repaired += order.repaired() - repaired;
+  UserCounters& user = counters_of(increment.user);
+  user.lost += order.lost() - lost;
+  user.repaired += order.repaired() - repaired;
   for (const ReceivedIncrement& next : ready_) queue(next, now_ns, intake);
   const bool seen = arrival == IncrementOrder::Arrival::kSeen;
   if (seen && received.kept_from != 0) {
@@ -39,6 +48,7 @@ void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t no
     return;
   }
   ++counters_.increments;
+  ++user.received;
   if (arrival == IncrementOrder::Arrival::kNew) return;
   refuse(increment, increment.user, seen ? Refusal::kDuplicate : Refusal::kStale, intake);
 }
@@ -74,6 +84,7 @@ void Inbox::take_increments(const World& world, std::int64_t now_ns, Intake& int
     if (reason == Refusal::kNone) {
       ++taken_[user];
       ++counters_.accepted;
+      ++counters_of(increment.user).accepted;
       intake.increments.push_back(increment);
     }
     acknowledge(increment.user, increment.seq, backlog_[i].sent_ns, intake);
@@ -101,6 +112,7 @@ Refusal Inbox::judge(const Increment& increment, const World& world) const {
 
 void Inbox::refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake) {
   ++counters_.refused[static_cast<std::size_t>(reason)];
+  ++counters_of(tell).refused;
   const bool known = tell && tell.value <= seats_.size();
   std::uint32_t& told = known ? seats_[tell.value - 1].told : told_strangers_;
   if (told >= limits_.refusals_told_per_tick) {

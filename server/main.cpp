@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "server/json_lines.h"
 #include "server/options.h"
 #include "server/serve.h"
 
@@ -16,7 +17,11 @@ int main(int argc, char** argv) {
     static_cast<spdlog::sinks::stderr_color_sink_mt*>(logger->sinks().front().get())
         ->set_color_mode(spdlog::color_mode::never);
   }
-  logger->set_pattern("%H:%M:%S %^%l%$ %v");
+  if (line.options.messages == "json") {
+    logger->set_formatter(mortise::json_lines());
+  } else {
+    logger->set_pattern("%H:%M:%S %^%l%$ %v");
+  }
   logger->set_level(line.options.quiet ? spdlog::level::warn : spdlog::level::info);
   spdlog::set_default_logger(std::move(logger));
   return mortise::serve(line.options);

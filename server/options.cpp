@@ -3,12 +3,43 @@
 #include <CLI/CLI.hpp>
 
 namespace mortise {
+namespace {
+
+void add_operation(CLI::App& app, ServerOptions& o) {
+  app.add_option("--max-users", o.limits.max_users, "Users in the session at one time")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--max-messages", o.limits.messages_per_s,
+                 "Increments and commands a second and user")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--max-session-messages", o.limits.session_messages_per_s,
+                 "The same of all users together")
+      ->check(CLI::Range(1.0, 1e7))
+      ->capture_default_str();
+  app.add_option("--max-parts", o.limits.parts_per_user, "Parts in the hands of one user")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--metrics-port", o.metrics_port,
+                 "Serve /metrics (Prometheus text) and /healthz over HTTP; 0: a free port")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--metrics-address", o.metrics_address, "IPv4 address to serve them at")
+      ->capture_default_str();
+  app.add_option("--messages", o.messages, "Messages on stderr: text, or json, one object a line")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+}
+
+}  // namespace
 
 CommandLine read_command_line(int argc, char** argv) {
   CommandLine line;
   ServerOptions& o = line.options;
   CLI::App app{"mortise-server: plays a scenario as a shared session and judges every collision"};
-  app.add_option("scenario", o.scenario, "Scenario file (YAML)")->required();
+  app.add_option("scenario", o.scenario, "Scenario file (YAML)");
+  app.add_option("--restore", o.restore,
+                 "Go on from this session log, or from the newest of the session in this folder "
+                 "(none there: begin SCENARIO)");
   app.add_option("--session", o.session, "Name of the session that clients ask for")
       ->capture_default_str();
   app.add_option("--domain", o.domain, "DDS domain")
@@ -19,7 +50,8 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--port", o.port, "Discovery port; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
   auto* log = app.add_option("--log", o.log,
-                             "Session log (MCAP); default sessions/<session>-<UTC time>.mcap");
+                             "Session log (MCAP), or a folder for it; default "
+                             "sessions/<session>-<UTC time>.mcap");
   app.add_flag("--no-log", o.no_log, "Write no session log")->excludes(log);
   app.add_option("--threads", o.threads, "Threads of the engine; the results are the same")
       ->check(CLI::Range(1, 256))
@@ -34,11 +66,18 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::IsMember({"stop", "report"}));
   app.add_option("--rate", o.rate_hz, "Ticks a second instead of the scenario's")
       ->check(CLI::Range(1.0, 1000.0));
+  add_operation(app, o);
   app.footer(
-      "Exit codes: 0 ok, 1 runtime error (port in use, log not writable), 2 usage, 3 bad "
-      "scenario.");
+      "Exit codes: 0 ok, 1 runtime error (port in use, log not writable), 2 usage, 3 bad scenario "
+      "or log, 4 the log to restore from and this engine disagree.");
   try {
     app.parse(argc, argv);
+    if (o.scenario.empty() && o.restore.empty()) {
+      throw CLI::ValidationError("a SCENARIO to play, or --restore LOG");
+    }
+    if (!o.restore.empty() && (!o.policy.empty() || o.rate_hz > 0.0)) {
+      throw CLI::ValidationError("--restore goes on as the log says: without --policy and --rate");
+    }
   } catch (const CLI::ParseError& error) {
     line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

@@ -1,7 +1,9 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "common/base/result.h"
+#include "server/inbox.h"
 
 namespace mortise {
 
@@ -10,8 +12,9 @@ struct ServerOptions {
   std::string session = "default";
   int domain = 0;
   std::string interface = "127.0.0.1";
-  int port = 0;     ///< 0: the domain's own
-  std::string log;  ///< empty: sessions/<session>-<UTC>.mcap
+  int port = 0;         ///< 0: the domain's own
+  std::string restore;  ///< log to go on from, or folder of logs; empty: begin anew
+  std::string log;      ///< file or existing folder; empty: sessions/<session>-<UTC>.mcap
   bool no_log = false;
   int threads = 1;
   double duration_s = 0.0;  ///< 0: until a signal
@@ -19,6 +22,10 @@ struct ServerOptions {
   bool json = false, quiet = false, live = false;
   std::string policy;    ///< empty: the scenario's
   double rate_hz = 0.0;  ///< 0: the scenario's
+  InboxLimits limits;
+  std::string metrics_address = "127.0.0.1";
+  std::optional<int> metrics_port;  ///< none: no metrics; 0: a free one
+  std::string messages = "text";    ///< or json: a line is an object
 };
 
 /// Reads the command line. Empty when the program must go on; else the exit code, with what had to

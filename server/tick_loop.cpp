@@ -24,6 +24,12 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
   for (const Part& part : world_.parts) published_.push_back({part.id, part.holder, part.X_WP});
 }
 
+void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> departures) {
+  statistics_ = std::move(statistics);
+  departures_ = std::move(departures);
+  event_seq_ = snapshot_of(world_).event_seq;
+}
+
 void TickLoop::open() {
   now_ns_ = opened_ns_ = pulse_ns_ = clock_.now_ns();
   std::set<std::string> sent;
@@ -42,6 +48,10 @@ void TickLoop::tick() {
   ServerInput input = channel_.take();
   snapshot_wanted_ |= !input.snapshot_requests.empty();
   inbox_.admit(std::move(input), world_, now_ns_, intake_);
+  if (!departures_.empty()) {
+    intake_.decisions.insert(intake_.decisions.begin(), departures_.begin(), departures_.end());
+    departures_.clear();
+  }
   measure_delay();
 
   // 1-6. the engine

@@ -35,6 +35,10 @@ class TickLoop {
   TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLogWriter* log,
            const TickLoopOptions& options);
 
+  /// Goes on with a session of before, whose ticks `statistics` tells. `departures` were applied to
+  /// the world already; they are logged with the first tick. Called before open().
+  void resume(SessionStatistics statistics, std::vector<Decision> departures);
+
   /// Publishes the meshes, once per distinct hash, and the first snapshot.
   void open();
 
@@ -56,6 +60,7 @@ class TickLoop {
   const StepReport& last_report() const { return report_; }
   const Intake& last_intake() const { return intake_; }
   SessionPulse pulse() const;
+  const SessionLogWriter* log() const { return log_; }  ///< null: none is written
   std::uint64_t log_dropped_ticks() const { return log_ != nullptr ? log_->dropped_ticks() : 0; }
   double seconds() const { return static_cast<double>(now_ns_ - opened_ns_) * 1e-9; }
 
@@ -78,6 +83,7 @@ class TickLoop {
   SessionStatistics statistics_;
   TickMetrics metrics_;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
+  std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::vector<PartPose> published_;            ///< what the pose stream said last, by part index
   std::uint64_t event_seq_ = 0;
   std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0;

@@ -232,6 +232,23 @@ Wish Script::beat(const View& view) {
   return wish;
 }
 
+namespace {
+
+/// One after another insert, wander and shake, each for a while: with more users than parts every
+/// part goes from hand to hand.
+std::unique_ptr<Behaviour> mixed(const BehaviourSpec& spec, std::uint64_t seed,
+                                 Carrier::Settings settings) {
+  Random random(seed);
+  settings.hold_s = random.uniform(1.0, 3.0);
+  if (spec.index % 3 == 0) {
+    return std::make_unique<Carrier>(settings, std::make_unique<InsertPath>());
+  }
+  return std::make_unique<Carrier>(
+      settings, std::make_unique<SwingPath>(seed, spec.index % 3 == 1 ? kWander : kShake));
+}
+
+}  // namespace
+
 std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec) {
   // Users of one bot differ by index, bots by seed.
   const std::uint64_t seed = spec.seed * 0x9e3779b97f4a7c15ULL + spec.index;
@@ -245,6 +262,7 @@ std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec) {
   if (spec.kind == "shake") {
     return std::make_unique<Carrier>(settings, std::make_unique<SwingPath>(seed, kShake));
   }
+  if (spec.kind == "mixed") return mixed(spec, seed, settings);
   if (spec.kind == "fight") {
     Random random(seed);
     settings.hold_s = random.uniform(0.5, 1.5);

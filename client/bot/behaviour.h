@@ -105,7 +105,7 @@ class Script : public Behaviour {
 };
 
 struct BehaviourSpec {
-  std::string kind;  ///< insert | wander | shake | fight | script
+  std::string kind;  ///< insert | wander | shake | fight | mixed | script
   std::string user;
   std::size_t index = 0;  ///< of the user in the bot
   std::uint64_t seed = 1;

@@ -1,10 +1,35 @@
 #include "client/bot/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
+#include "client/bot/load_report.h"
 #include "common/base/result.h"
 
 namespace mortise {
+namespace {
+
+std::string known_limits() {
+  std::string text = "Names:";
+  for (const auto& [name, meaning] : limit_names()) text += " " + name;
+  return text;
+}
+
+Limit read_limit(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  Limit limit{text.substr(0, sign), -1.0};
+  const bool known = std::any_of(limit_names().begin(), limit_names().end(),
+                                 [&](const auto& row) { return row.first == limit.name; });
+  if (!known) throw CLI::ValidationError("--limit " + text + ": no such figure. " + known_limits());
+  const bool read =
+      sign != std::string::npos && CLI::detail::lexical_cast(text.substr(sign + 1), limit.bound);
+  if (!read || !(limit.bound >= 0.0)) {
+    throw CLI::ValidationError("--limit " + text + ": write NAME=VALUE, VALUE not below 0");
+  }
+  return limit;
+}
+
+}  // namespace
 
 BotCommandLine read_bot_command_line(int argc, char** argv) {
   BotCommandLine line;
@@ -24,15 +49,23 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--names", o.names, "Their names, comma separated")->delimiter(',');
   app.add_option("--behaviour", o.behaviour, "What they do")
-      ->check(CLI::IsMember({"insert", "wander", "shake", "fight", "script"}))
+      ->check(CLI::IsMember({"insert", "wander", "shake", "fight", "mixed", "script"}))
       ->capture_default_str();
   app.add_option("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)");
   app.add_option("--part", o.part, "Part to begin with (fight: the part that all want)");
+  app.add_option("--first-part", o.first_part,
+                 "Number of the moving part that the first user begins with, from 0");
   app.add_option("--seed", o.seed, "Seed of what is random")->capture_default_str();
   app.add_option("--rate", o.rate_hz, "Increments a second and user")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  app.add_option("--duration", o.duration_s, "Act for so many seconds; 0: until the script ends")
+  app.add_option("--processes", o.processes, "So many processes, each with --users of its own")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--ramp", o.ramp_s, "Users come in evenly over so many seconds")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--duration,--seconds", o.duration_s,
+                 "Act for so many seconds; 0: until the script ends")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait", o.wait_s, "Wait so long for the server")
       ->check(CLI::NonNegativeNumber)
@@ -45,14 +78,27 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
   app.add_flag("--observer", o.observer, "Only look and count");
   app.add_flag("--json", o.json, "Report as one JSON document");
   app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
-  app.add_option("--max-p99-ms", o.max_p99_ms,
-                 "Exit with 5 when the 99th percentile of the latency is above")
+  std::vector<std::string> limits;
+  app.add_option(
+      "--limit", limits,
+      "NAME=VALUE, again for more: exit with 5 when the figure is above. " + known_limits());
+  app.add_option_function<double>(
+         "--max-p99-ms",
+         [&](double ms) {
+           o.limits.push_back({"p99_ms", ms});
+         },
+         "The same as --limit p99_ms=VALUE")
       ->check(CLI::PositiveNumber);
+  app.add_option("--junit", o.junit, "Write the limits to this file as a JUnit document");
   app.footer(
-      "Exit codes: 0 ok, 1 no server or refused, 2 usage, 3 bad play file, 5 latency above the "
-      "limit.");
+      "Exit codes: 0 ok, 1 no server or refused, 2 usage, 3 bad play file, 5 a figure is "
+      "above its limit.");
   try {
     app.parse(argc, argv);
+    for (const std::string& text : limits) o.limits.push_back(read_limit(text));
+    if (o.processes > 1 && (!o.names.empty() || o.behaviour == "script")) {
+      throw CLI::ValidationError("--processes makes up its users: without --names and script");
+    }
     if (o.behaviour == "script" && o.play.empty() && !o.observer) {
       throw CLI::ValidationError("--behaviour script needs --play FILE");
     }

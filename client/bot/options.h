@@ -7,6 +7,12 @@
 
 namespace mortise {
 
+/// A figure of the report that must not be above `bound`; names: limit_names() of load_report.h.
+struct Limit {
+  std::string name;
+  double bound = 0.0;
+};
+
 struct BotOptions {
   std::string session = "default";
   int domain = 0;
@@ -16,8 +22,9 @@ struct BotOptions {
   std::vector<std::string> names;
   int users = 1;
   std::string behaviour = "wander";
-  std::string play;  ///< file for the behaviour script
-  std::string part;  ///< the part to begin with; for fight the one that all want
+  std::string play;            ///< file for the behaviour script
+  std::string part;            ///< the part to begin with; for fight the one that all want
+  std::size_t first_part = 0;  ///< the moving part that the first user begins with, by number
   std::uint64_t seed = 1;
   double rate_hz = 60.0;
   double duration_s = 0.0;  ///< 0: until the script ends or a signal comes
@@ -25,7 +32,10 @@ struct BotOptions {
   double delay_s = 0.0;     ///< between having joined and the first act
   double linger_s = 0.5;    ///< listening on after the last act
   bool observer = false, json = false, quiet = false;
-  double max_p99_ms = 0.0;  ///< 0: no limit
+  int processes = 1;    ///< of so many users each
+  double ramp_s = 0.0;  ///< users come in evenly over this time
+  std::string junit;    ///< file for the limits as a JUnit document; empty: none
+  std::vector<Limit> limits;
 };
 
 struct BotCommandLine {

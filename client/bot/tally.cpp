@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "client/bot/load_report.h"
 #include "common/base/hash.h"
 #include "common/messages/names.h"
 
@@ -12,6 +12,18 @@ namespace mortise {
 namespace {
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+std::size_t place_of(Refusal reason) {
+  return std::min<std::size_t>(static_cast<std::size_t>(reason), kRefusalCount - 1);
+}
+
+nlohmann::ordered_json by_reason(const std::array<std::uint64_t, kRefusalCount>& counts) {
+  auto json = nlohmann::ordered_json::object();
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    if (counts[i] > 0) json[std::string(name_of(static_cast<Refusal>(i)))] = counts[i];
+  }
+  return json;
+}
 
 void add_verdict(StateHash& hash, const Verdict& verdict) {
   hash.add(static_cast<std::uint64_t>(verdict.collision_class));
@@ -33,16 +45,25 @@ void add_clash(StateHash& hash, const ClashEvent& event) {
 
 void Tally::add(const ClientUpdate& update, const Client& client) {
   latency_ms_.insert(latency_ms_.end(), update.latency_ms.begin(), update.latency_ms.end());
+  const std::vector<double> delays_ms = event_delay_.add(update, client);
+  event_latency_ms_.insert(event_latency_ms_.end(), delays_ms.begin(), delays_ms.end());
+  for (const SeenAck& ack : update.acks) {
+    if (ack.user >= acknowledged_.size()) acknowledged_.resize(ack.user + 1, 0);
+    acknowledged_[ack.user] = std::max(acknowledged_[ack.user], ack.seq);
+  }
   for (const RefusedIncrement& refused : update.refused) {
-    ++refused_[std::min<std::size_t>(static_cast<std::size_t>(refused.reason), kRefusalCount - 1)];
+    ++refused_[place_of(refused.reason)];
   }
   for (const Reply& reply : update.replies) {
     ++replies_;
-    if (reply.refusal != Refusal::kNone) ++commands_refused_;
+    if (reply.refusal == Refusal::kNone) continue;
+    ++commands_refused_;
+    ++commands_refused_by_[place_of(reply.refusal)];
   }
   for (const ClashEvent& event : update.events) {
     if (first_seq_ == 0) first_seq_ = event.seq;
     last_seq_ = event.seq;
+    stream_.add(event);
     ++events_;
     ++events_by_kind_[static_cast<std::size_t>(event.kind) & 3U];
     CollisionClass& worst = worst_[event.clash];
@@ -75,38 +96,26 @@ std::uint64_t Tally::refused() const {
   return sum;
 }
 
-double Tally::latency_percentile_ms(double fraction) const {
-  if (latency_ms_.empty()) return 0.0;
-  std::vector<double> sorted = latency_ms_;
-  const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
-  const auto at = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
-  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
-  return sorted[static_cast<std::size_t>(at)];
-}
-
 std::string Tally::event_hash() const { return hex(event_hash_); }
 
 nlohmann::ordered_json Tally::json() const {
   nlohmann::ordered_json json;
-  json["latency_ms"] = {{"count", latency_ms_.size()},
-                        {"p50", latency_percentile_ms(0.5)},
-                        {"p90", latency_percentile_ms(0.9)},
-                        {"p99", latency_percentile_ms(0.99)},
-                        {"max", latency_percentile_ms(1.0)}};
-  json["refused"] = nlohmann::ordered_json::object();
-  for (std::size_t i = 1; i < refused_.size(); ++i) {
-    if (refused_[i] == 0) continue;
-    json["refused"][std::string(name_of(static_cast<Refusal>(i)))] = refused_[i];
-  }
+  json["latency_ms"] = percentiles(latency_ms_);
+  json["event_latency_ms"] = percentiles(event_latency_ms_);
+  json["events_without_increment"] = event_delay_.unmatched();
+  json["refused"] = by_reason(refused_);
   json["replies"] = replies_;
   json["commands_refused"] = commands_refused_;
+  json["commands_refused_by"] = by_reason(commands_refused_by_);
+  json["commands_accepted"] = replies_ - commands_refused_;
   json["events"] = {{"count", events_},
                     {"first_seq", first_seq_},
                     {"last_seq", last_seq_},
                     {"begin", events_by_kind_[1]},
                     {"change", events_by_kind_[2]},
                     {"end", events_by_kind_[3]},
-                    {"hash", event_hash()}};
+                    {"hash", event_hash()},
+                    {"stream_hash", hex(stream_.hash())}};
   std::array<std::uint64_t, 4> by_class{};
   for (const auto& [id, worst] : worst_) ++by_class[static_cast<std::size_t>(worst) & 3U];
   json["clashes_seen"] = {{"real", by_class[3]}, {"potential", by_class[2]}, {"fake", by_class[1]}};

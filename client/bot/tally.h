@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "client/bot/event_delay.h"
+#include "client/bot/stream_digest.h"
 #include "client/client.h"
 
 namespace mortise {
@@ -18,14 +20,23 @@ class Tally {
   void add(const ClientUpdate& update, const Client& client);
 
   std::uint64_t refused() const;
-  double latency_percentile_ms(double fraction) const;  ///< 0 when nothing was acknowledged
   std::string event_hash() const;
+  const std::vector<double>& latency_ms() const { return latency_ms_; }  ///< increment to pose
+  const std::vector<double>& event_latency_ms() const { return event_latency_ms_; }
+  const StreamDigest& stream() const { return stream_; }
+  std::uint64_t replies() const { return replies_; }
+  std::uint64_t resyncs() const { return resyncs_; }
+  /// Highest sequence acknowledged, by local user.
+  const std::vector<std::uint64_t>& acknowledged() const { return acknowledged_; }
 
   nlohmann::ordered_json json() const;
 
  private:
-  std::vector<double> latency_ms_;
-  std::array<std::uint64_t, kRefusalCount> refused_{};
+  std::vector<double> latency_ms_, event_latency_ms_;
+  EventDelay event_delay_;
+  StreamDigest stream_;
+  std::vector<std::uint64_t> acknowledged_;
+  std::array<std::uint64_t, kRefusalCount> refused_{}, commands_refused_by_{};
   std::uint64_t replies_ = 0, commands_refused_ = 0;
   std::uint64_t events_ = 0, first_seq_ = 0, last_seq_ = 0;
   std::array<std::uint64_t, 4> events_by_kind_{};

@@ -209,6 +209,7 @@ void McapWriter::end_chunk() {
   index.u64(bytes_written());
   index.u64(mcap::kRecordHeaderBytes + content.size());
   write_record(mcap::kChunk, content);
+  if (!error_) ++chunks_;
 
   const std::uint64_t index_start = bytes_written();
   std::map<std::uint16_t, std::uint64_t> index_offsets;
@@ -229,7 +230,6 @@ void McapWriter::end_chunk() {
   index.u64(records.size());
   index.u64(chunk_.size());
   summary_.emplace_back(mcap::kChunkIndex, std::move(index));
-  ++chunks_;
   chunk_.clear();
   chunk_index_.clear();
   chunk_counted_ = {};

@@ -53,6 +53,8 @@ class McapWriter {
   /// Adds index, statistics and footer. The writer is of no use afterwards.
   Status close();
 
+  /// Chunks that are whole in the file, also when what follows them could not be written.
+  std::uint32_t chunks_written() const { return chunks_; }
   std::uint64_t bytes_written() const { return offset_.load(std::memory_order_relaxed); }
   const std::optional<Error>& error() const { return error_; }
 

@@ -98,11 +98,8 @@ Result<LoadedScene> scene_of(const SessionLog& log) {
   return scene;
 }
 
-Result<ReplayReport> verify(const SessionLog& log, int threads,
-                            const std::function<void(const World&, const StepReport&)>& on_tick) {
-  auto scene = scene_of(log);
-  if (!scene) return scene.error();
-  World& world = scene->world;
+Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
+                            const OnReplayedTick& on_tick) {
   Scratch scratch(threads);
   ReplayReport report;
   report.ticks_logged = log.ticks.size();
@@ -129,7 +126,7 @@ Result<ReplayReport> verify(const SessionLog& log, int threads,
     while (world.tick + 1 < record.tick) {
       const StepReport idle = step(world, {}, scratch);
       ++report.idle_ticks;
-      if (on_tick) on_tick(world, idle);
+      if (on_tick) on_tick({world, idle, nullptr});
       if (differs(idle.tick, compare_events({}, idle))) return report;
     }
     // 3. The tick itself.
@@ -139,7 +136,7 @@ Result<ReplayReport> verify(const SessionLog& log, int threads,
     report.decisions += record.decisions.size();
     report.events_compared += record.report.events.size();
     ++report.ticks_compared;
-    if (on_tick) on_tick(world, computed);
+    if (on_tick) on_tick({world, computed, &record});
     if (differs(record.tick, compare_refusals(record.report, computed)) ||
         differs(record.tick, compare_events(record.report, computed)) ||
         differs(record.tick, compare_hash(record.report, computed, world)))
@@ -147,6 +144,15 @@ Result<ReplayReport> verify(const SessionLog& log, int threads,
     report.verified_to_tick = record.tick;
   }
   return report;
+}
+
+Result<ReplayReport> verify(const SessionLog& log, int threads,
+                            const std::function<void(const World&, const StepReport&)>& on_tick) {
+  auto scene = scene_of(log);
+  if (!scene) return scene.error();
+  OnReplayedTick each;
+  if (on_tick) each = [&](const ReplayedTick& tick) { on_tick(tick.world, tick.computed); };
+  return replay(scene->world, log, threads, each);
 }
 
 }  // namespace mortise

@@ -32,10 +32,22 @@ struct ReplayReport {
   bool same_build = false;     ///< bit for bit agreement is promised
 };
 
-/// Computes a session again, tick by tick, and compares refusals, events and state hashes. Stops at
-/// the first difference, and at the first gap: what was lost there cannot be computed. Fails when
-/// the log cannot be replayed at all. `on_tick` sees every computed tick, idle ones included, and
-/// the world after it.
+/// A tick as it was computed again. `logged` is null for an idle one.
+struct ReplayedTick {
+  const World& world;  ///< after it
+  const StepReport& computed;
+  const TickRecord* logged;
+};
+using OnReplayedTick = std::function<void(const ReplayedTick&)>;
+
+/// Computes a logged session again in `world`, which stands as scene_of(log) made it, tick by tick,
+/// and compares refusals, events and state hashes. Stops at the first difference, and at the first
+/// gap: what was lost there cannot be computed. Fails when the log cannot be replayed at all.
+Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
+                            const OnReplayedTick& on_tick = {});
+
+/// The same in a world of its own. `on_tick` sees every computed tick, idle ones included, and the
+/// world after it.
 Result<ReplayReport> verify(
     const SessionLog& log, int threads,
     const std::function<void(const World&, const StepReport&)>& on_tick = {});

@@ -27,9 +27,11 @@ class FileWriter final : public SessionLogWriter {
   ~FileWriter() override { static_cast<void>(close()); }
 
   void record(TickRecord record) override;
+  Status flush() override;
   Status close() override;
   std::uint64_t dropped_ticks() const override { return dropped_.load(); }
   std::uint64_t bytes_written() const override { return mcap_->bytes_written(); }
+  std::size_t queued_ticks() const override;
   Status status() const override;
   Status begin();
 
@@ -58,12 +60,15 @@ class FileWriter final : public SessionLogWriter {
   bool has_time_ = false;
   log_json::CounterSums sums_;
   std::uint64_t ticks_in_chunk_ = 0;  ///< written, but not yet in the file
+  std::uint32_t chunks_settled_ = 0;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Item> queue_;
   Gap gap_;  ///< dropped since the last queued tick
   bool closing_ = false;
+  std::uint64_t flushes_asked_ = 0, flushes_done_ = 0;
+  std::condition_variable flushed_;
   std::optional<Error> error_;
   std::atomic<std::uint64_t> dropped_ = 0;
   std::thread thread_;
@@ -137,18 +142,19 @@ void FileWriter::run() {
   std::deque<Item> items;
   std::unique_lock lock(mutex_);
   while (true) {
-    const auto work = [&] { return closing_ || !queue_.empty(); };
+    const auto work = [&] { return closing_ || !queue_.empty() || flushes_asked_ > flushes_done_; };
     if (unflushed)
       wake_.wait_until(lock, next_flush, work);
     else
       wake_.wait(lock, work);
     items.swap(queue_);
     const bool closing = closing_;
+    const std::uint64_t flushes = flushes_asked_;
     lock.unlock();
     unflushed = unflushed || !items.empty();
     for (const Item& item : items) write(item);
     items.clear();
-    if (unflushed && Clock::now() >= next_flush) {
+    if (unflushed && (Clock::now() >= next_flush || flushes > flushes_done_)) {
       static_cast<void>(mcap_->sync());  // an error sticks and is taken below
       settle_chunk();
       unflushed = false;
@@ -156,6 +162,8 @@ void FileWriter::run() {
     }
     lock.lock();
     remember_error();
+    flushes_done_ = flushes;
+    flushed_.notify_all();
     if (closing && queue_.empty()) return;
   }
 }
@@ -189,7 +197,9 @@ void FileWriter::write(const Item& item) {
 
 // The ticks of a chunk that the disk did not take are lost with it.
 void FileWriter::settle_chunk() {
-  if (mcap_->error()) dropped_.fetch_add(ticks_in_chunk_);
+  const bool is_whole = mcap_->chunks_written() > chunks_settled_;
+  if (mcap_->error() && !is_whole) dropped_.fetch_add(ticks_in_chunk_);
+  chunks_settled_ = mcap_->chunks_written();
   ticks_in_chunk_ = 0;
 }
 
@@ -218,6 +228,20 @@ void FileWriter::message(std::uint16_t channel, std::span<const std::byte> data)
 }
 void FileWriter::message(std::uint16_t channel, const std::string& text) {
   message(channel, std::as_bytes(std::span(text)));
+}
+
+Status FileWriter::flush() {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t mine = ++flushes_asked_;
+  wake_.notify_one();
+  flushed_.wait(lock, [&] { return flushes_done_ >= mine || !thread_.joinable(); });
+  if (error_) return *error_;
+  return ok();
+}
+
+std::size_t FileWriter::queued_ticks() const {
+  const std::lock_guard lock(mutex_);
+  return queue_.size();
 }
 
 Status FileWriter::close() {

@@ -53,9 +53,12 @@ class SessionLogWriter {
                                                           const LogOptions& options = {});
   virtual ~SessionLogWriter() = default;  ///< closes
   virtual void record(TickRecord record) = 0;
+  /// Waits until all that was recorded so far is on disk.
+  virtual Status flush() { return status(); }
   virtual Status close() = 0;  ///< waits until all is on disk; writes index and summary
   virtual std::uint64_t dropped_ticks() const = 0;
   virtual std::uint64_t bytes_written() const = 0;
+  virtual std::size_t queued_ticks() const { return 0; }  ///< recorded, but not yet written
   virtual Status status() const = 0;  ///< fails once the disk did: later ticks count as dropped
 };
 

@@ -59,7 +59,7 @@ const std::vector<NamedHere>& named_here() {
       {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
       {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/"}},
-      {"Boost.Beast", std::regex("boost/(beast|asio).*"), {"client/web/"}},
+      {"Boost.Beast", std::regex("boost/(beast|asio).*"), {"client/web/", "server/metrics_endpoint."}},
       {"Cairo", std::regex("cairo.*"), {"client/tools/judge/canvas.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
   };

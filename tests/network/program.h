@@ -24,6 +24,7 @@ class Program {
   bool running();
   std::string out() const;     ///< what it wrote to stdout so far
   std::string errors() const;  ///< and to stderr
+  pid_t pid() const { return pid_; }  ///< -1: it has ended
   double cpu_s() const;        ///< user and system time so far; only while it runs
 
  private:

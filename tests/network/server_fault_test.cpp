@@ -11,6 +11,7 @@
 #include "client/client.h"
 #include "common/io/session_log.h"
 #include "idl/dds_channel.h"
+#include "tests/network/guest.h"
 #include "tests/network/program.h"
 
 /// The real server under bad luck and bad company, over DDS on loopback.
@@ -30,52 +31,6 @@ parts:
   - {name: blue, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
      pose: {position: [500, 0, 20]}}
 )";
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// A participant in this process.
-struct Guest {
-  explicit Guest(int domain, const std::string& name) {
-    DdsOptions options;
-    options.domain = domain;
-    auto opened = open_client_channel(options);
-    if (!opened) return;
-    channel = std::move(*opened);
-    client = std::make_unique<Client>(*channel);
-    user = client->add_user(name, "designer");
-  }
-  bool until(double limit_s, const std::function<bool()>& done) {
-    for (const double end_s = now_s() + limit_s; now_s() < end_s;) {
-      const ClientUpdate update = client->poll();
-      for (const RefusedIncrement& r : update.refused) refused.push_back(r);
-      for (const Reply& r : update.replies) replies.push_back(r);
-      if (done()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    return false;
-  }
-  bool joined() {
-    return until(10, [&] { return client->user_id(user) && client->synced(); });
-  }
-  UserId holder(const char* part) const {
-    return client->parts().at(client->find_part(part)).info.holder;
-  }
-  double x(const char* part) const {
-    return client->parts().at(client->find_part(part)).info.X_WP.p.x();
-  }
-  bool grab(const char* part) {
-    client->grab(user, client->find_part(part));
-    return until(3, [&] { return holder(part) == client->user_id(user); });
-  }
-
-  std::unique_ptr<ClientChannel> channel;
-  std::unique_ptr<Client> client;
-  LocalUser user = 0;
-  std::vector<RefusedIncrement> refused;
-  std::vector<Reply> replies;
-};
 
 class ServerFault : public ::testing::Test {
  protected:
@@ -103,10 +58,10 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   EXPECT_NE(ben.replies.back().text.find("bot1-1"), std::string::npos) << ben.replies.back().text;
 
   bot.signal(SIGKILL);
-  const double killed_s = now_s();
+  const double killed_s = steady_s();
   ASSERT_TRUE(ben.until(4, [&] { return !ben.holder("red"); }));
   // Liveliness lease 0.8 s; its check, a tick and the way back on a busy machine.
-  EXPECT_LT(now_s() - killed_s, 2.0);
+  EXPECT_LT(steady_s() - killed_s, 2.0);
   EXPECT_TRUE(ben.grab("red"));
   server->signal(SIGTERM);
   EXPECT_EQ(server->wait(5), 0);
@@ -229,9 +184,9 @@ TEST_F(ServerFault, AnIdleSessionCostsNextToNothing) {
   Guest anna(217, "anna");
   ASSERT_TRUE(anna.joined()) << server->errors();
   anna.until(0.5, [] { return false; });
-  const double start_s = now_s(), cpu_start_s = server->cpu_s();
+  const double start_s = steady_s(), cpu_start_s = server->cpu_s();
   anna.until(4.0, [] { return false; });
-  const double share = (server->cpu_s() - cpu_start_s) / (now_s() - start_s);
+  const double share = (server->cpu_s() - cpu_start_s) / (steady_s() - start_s);
   RecordProperty("idle_cpu_percent", std::to_string(share * 100));
   std::printf("idle server at 60 Hz with one participant: %.2f %% of one core\n", share * 100);
   EXPECT_LE(share, 0.03);

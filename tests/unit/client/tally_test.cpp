@@ -44,17 +44,6 @@ TEST_F(TallyTest, EventHashTellsContentAndOrderButNotPolling) {
   EXPECT_NE(hash_of({{a, event(2, 0.25000001)}}), hash_of({{a, b}}));
 }
 
-TEST_F(TallyTest, PercentilesAreNearestRank) {
-  Tally tally;
-  EXPECT_EQ(tally.latency_percentile_ms(0.99), 0.0);
-  ClientUpdate update;
-  for (int i = 100; i >= 1; --i) update.latency_ms.push_back(i);
-  tally.add(update, client_);
-  EXPECT_EQ(tally.latency_percentile_ms(0.5), 50.0);
-  EXPECT_EQ(tally.latency_percentile_ms(0.99), 99.0);
-  EXPECT_EQ(tally.latency_percentile_ms(1.0), 100.0);
-}
-
 TEST_F(TallyTest, CountsRefusalsByReason) {
   Tally tally;
   ClientUpdate update;

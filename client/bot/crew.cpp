@@ -1,0 +1,239 @@
+#include "client/bot/crew.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace mortise {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr double kPollEvery_s = 0.002;  // what latency figures are rounded up to
+constexpr double kObserverPollEvery_s = 0.010;
+constexpr double kGoodbye_s = 0.2;  // for leave messages to go out
+
+std::atomic<bool> stop_asked{false};
+
+double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+}  // namespace
+
+void ask_to_stop(int) { stop_asked = true; }
+bool stop_is_asked() { return stop_asked; }
+
+Crew::Crew(const BotOptions& options, ClientChannel& channel, std::optional<Play> play)
+    : options_(options), client_(channel), play_(std::move(play)) {
+  name_users();
+}
+
+int Crew::run(ProcessReport& report) {
+  add_users_due(0.0);
+  if (!wait_until_joined()) return kExitRuntime;
+  if (!options_.quiet) {
+    spdlog::info("{} joined session '{}': {} parts, {:g} Hz, policy {}", names_.front(),
+                 client_.session(), client_.parts().size(), client_.tick_rate_hz(),
+                 client_.policy());
+  }
+  listen(options_.delay_s);
+  if (Status found = find_part(); !found) {
+    spdlog::error("{}", found.error().text);
+    return exit_code_of(found.error().code);
+  }
+  act();
+  release_all();
+  listen(options_.linger_s);
+  report.document = document();
+  report.latency_ms = tally_.latency_ms();
+  report.event_latency_ms = tally_.event_latency_ms();
+  report.stream_blocks = tally_.stream().blocks();
+  for (LocalUser user = 0; user < client_.user_count(); ++user) client_.leave(user);
+  stop_asked = false;
+  listen(kGoodbye_s);
+  return kExitOk;
+}
+
+void Crew::name_users() {
+  names_ = options_.names;
+  if (names_.empty() && options_.behaviour == "script" && play_) names_ = play_->users();
+  for (int i = static_cast<int>(names_.size()); i < options_.users; ++i) {
+    names_.push_back((options_.observer ? "observer" : "bot") + std::to_string(options_.seed) +
+                     "-" + std::to_string(i + 1));
+  }
+}
+
+// At time 0 at least one; all of them when there is no ramp.
+void Crew::add_users_due(double now_s) {
+  const auto all = static_cast<double>(names_.size());
+  while (client_.user_count() < names_.size()) {
+    const auto next = static_cast<double>(client_.user_count());
+    if (now_s < options_.ramp_s * next / all) return;
+    client_.add_user(names_[client_.user_count()], options_.observer ? "observer" : "bot");
+  }
+}
+
+bool Crew::wait_until_joined() {
+  const auto start = SteadyClock::now();
+  const auto any = [&](JoinState state) {
+    for (LocalUser user = 0; user < client_.user_count(); ++user) {
+      if (client_.join_state(user) == state) return true;
+    }
+    return false;
+  };
+  while (any(JoinState::kJoining) || any(JoinState::kRefused) || !client_.synced()) {
+    if (stop_asked) return false;
+    if (any(JoinState::kRefused) || seconds_since(start) > options_.wait_s) {
+      say_why_not_joined();
+      return false;
+    }
+    poll(kPollEvery_s);
+  }
+  return true;
+}
+
+void Crew::say_why_not_joined() const {
+  for (LocalUser user = 0; user < client_.user_count(); ++user) {
+    if (client_.join_state(user) == JoinState::kRefused) {
+      spdlog::error("{} was refused: {}", names_[user], client_.refusal_text(user));
+      return;
+    }
+  }
+  spdlog::error(
+      "no server of session '{}' answered on domain {} at {} within {:g} s; start mortise-server "
+      "first, or wait longer with --wait",
+      options_.session, options_.domain,
+      options_.server.empty() ? options_.interface : options_.server, options_.wait_s);
+}
+
+Status Crew::find_part() {
+  if (options_.observer || options_.part.empty()) return ok();
+  part_ = client_.find_part(options_.part);
+  if (part_) return ok();
+  return fail(Code::kNotFound, "no part '" + options_.part + "' in the session");
+}
+
+void Crew::poll(double pause_s) {
+  tally_.add(client_.poll(), client_);
+  std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
+}
+
+void Crew::listen(double seconds) {
+  const auto start = SteadyClock::now();
+  while (!stop_asked && seconds_since(start) < seconds) poll(kPollEvery_s);
+}
+
+void Crew::act() {
+  const auto start = SteadyClock::now();
+  const double beat_s = 1.0 / options_.rate_hz;
+  double last_s = 0.0, next_s = 0.0;
+  while (!stop_asked) {
+    const double now_s = seconds_since(start);
+    if (options_.duration_s > 0.0 && now_s >= options_.duration_s) break;
+    add_users_due(now_s);
+    if (options_.observer) {
+      poll(kObserverPollEvery_s);
+      continue;
+    }
+    if (now_s >= next_s) {
+      const bool all_done = beat(now_s, now_s - last_s);
+      last_s = now_s;
+      next_s = std::max(next_s + beat_s, now_s);
+      if (all_done) break;
+    }
+    const double until_next_s = next_s - seconds_since(start);
+    poll(std::clamp(until_next_s, 0.0, kPollEvery_s));
+  }
+  acted_s_ = seconds_since(start);
+}
+
+bool Crew::beat(double now_s, double beat_s) {
+  bool all_done = client_.user_count() == names_.size();
+  for (LocalUser user = 0; user < client_.user_count(); ++user) {
+    if (user >= behaviours_.size()) {
+      behaviours_.push_back(
+          make_behaviour({options_.behaviour, names_[user], options_.first_part + user,
+                          options_.seed, part_, play_ ? &*play_ : nullptr}));
+      sent_seq_.push_back(0);
+    }
+    if (options_.ramp_s > 0.0 && client_.join_state(user) != JoinState::kJoined) {
+      all_done = false;  // on the way in
+      continue;
+    }
+    View view;
+    view.time_s = now_s;
+    view.beat_s = beat_s;
+    view.self = client_.user_id(user);
+    view.parts = &client_.parts();
+    const Wish wish = behaviours_[user]->beat(view);
+    all_done = all_done && wish.done;
+    carry_out(user, wish);
+  }
+  return all_done;
+}
+
+void Crew::carry_out(LocalUser user, const Wish& wish) {
+  if (wish.grab) sent_command(client_.grab(user, wish.grab));
+  const bool moves = !wish.translation_mm.isZero(0.0) || !wish.rotation_rad.isZero(0.0);
+  if (wish.move && moves) {
+    const std::uint64_t seq = client_.send(user, wish.move, wish.translation_mm, wish.rotation_rad);
+    if (seq != 0) sent_seq_[user] = seq;
+  }
+  if (wish.release) sent_command(client_.release(user, wish.release));
+}
+
+void Crew::release_all() {
+  for (LocalUser user = 0; user < client_.user_count(); ++user) {
+    for (const auto& [id, part] : client_.parts()) {
+      if (client_.user_id(user) && part.info.holder == client_.user_id(user)) {
+        sent_command(client_.release(user, id));
+      }
+    }
+  }
+}
+
+Json Crew::document() const {
+  const ClientStatistics s = client_.statistics();
+  std::uint64_t unacknowledged = 0;
+  for (LocalUser user = 0; user < sent_seq_.size(); ++user) {
+    const auto& acknowledged = tally_.acknowledged();
+    const std::uint64_t up_to = user < acknowledged.size() ? acknowledged[user] : 0;
+    unacknowledged += sent_seq_[user] - std::min(sent_seq_[user], up_to);
+  }
+  Json json;
+  json["session"] = client_.session();
+  json["names"] = names_;
+  json["role"] = options_.observer ? "observer" : "bot";
+  json["behaviour"] = options_.observer ? "observe" : options_.behaviour;
+  json["seed"] = options_.seed;
+  json["seconds"] = acted_s_;
+  json["sent"] = s.increments_sent;
+  json["not_sent"] = s.not_joined;
+  json["unacknowledged_increments"] = unacknowledged;
+  json["commands_sent"] = commands_sent_;
+  json["unanswered_commands"] = commands_sent_ - std::min(commands_sent_, tally_.replies());
+  // Known of from the pose stream, but neither come nor covered by a snapshot by now.
+  json["lost"] = {{"events", s.known_event_seq - s.highest_event_seq},
+                  {"pose_batches", s.poses_missed},
+                  {"event_gaps", s.gaps},
+                  {"increments_given_up", s.increments_given_up}};
+  json["repaired"] = {{"resyncs", s.snapshots_applied > 0 ? s.snapshots_applied - 1 : 0},
+                      {"events_by_snapshot", s.events_skipped},
+                      {"snapshots_requested", s.snapshots_requested},
+                      {"increments_repeated", s.increments_repeated}};
+  json.update(tally_.json());
+  json["last_tick"] = s.highest_tick;
+  json["state"] = state_json(client_);
+  json["troubles"] = Json::array();
+  for (const auto& behaviour : behaviours_) {
+    for (const std::string& trouble : behaviour->troubles()) json["troubles"].push_back(trouble);
+  }
+  return json;
+}
+
+}  // namespace mortise

@@ -1,0 +1,215 @@
+#include "client/bot/load_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/bot/stream_digest.h"
+
+namespace mortise {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Sums of every number of `from` into `into`, object by object.
+void add_counts(Json& into, const Json& from) {
+  if (!into.is_object()) into = Json::object();
+  for (const auto& [key, value] : from.items()) {
+    if (value.is_object()) {
+      add_counts(into[key], value);
+    } else if (value.is_number_integer()) {
+      into[key] = into.value(key, std::uint64_t{0}) + value.get<std::uint64_t>();
+    }
+  }
+}
+
+double figure_of(const Json& d, const std::string& name) {
+  if (name.starts_with("event_")) {
+    return d["event_latency_ms"][name.substr(6, name.size() - 9)].get<double>();
+  }
+  if (name.ends_with("_ms")) return d["latency_ms"][name.substr(0, name.size() - 3)].get<double>();
+  if (name == "refused") {
+    double sum = 0.0;
+    for (const auto& [reason, count] : d["refused"].items()) sum += count.get<double>();
+    return sum;
+  }
+  if (name == "lost_events") return d["lost"]["events"].get<double>();
+  if (name == "missed_poses") return d["lost"]["pose_batches"].get<double>();
+  if (name == "unanswered") return d["unanswered_commands"].get<double>();
+  if (name == "unacknowledged") return d["unacknowledged_increments"].get<double>();
+  if (name == "resyncs") return d["repaired"]["resyncs"].get<double>();
+  if (name == "differing_streams") {
+    return d.contains("streams") ? d["streams"]["differing_blocks"].get<double>() : 0.0;
+  }
+  return std::nan("");
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<') {
+      out += "&lt;";
+    } else if (c == '&') {
+      out += "&amp;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, std::string>>& limit_names() {
+  static const std::vector<std::pair<std::string, std::string>> names = {
+      {"p50_ms", "increment to pose, median"},
+      {"p90_ms", "increment to pose, 90th percentile"},
+      {"p99_ms", "increment to pose, 99th percentile"},
+      {"max_ms", "increment to pose, longest"},
+      {"event_p50_ms", "increment to event, median"},
+      {"event_p99_ms", "increment to event, 99th percentile"},
+      {"event_max_ms", "increment to event, longest"},
+      {"refused", "increments refused"},
+      {"lost_events", "events that neither came nor were covered by a snapshot"},
+      {"unanswered", "commands without an answer"},
+      {"unacknowledged", "increments without an acknowledgement"},
+      {"resyncs", "snapshots that took the place of events"},
+      {"missed_poses", "pose batches that did not come"},
+      {"differing_streams", "blocks of the event stream that participants saw differently"},
+  };
+  return names;
+}
+
+std::vector<std::uint8_t> to_bytes(const ProcessReport& report) {
+  Json blocks = Json::array();
+  for (const auto& [block, hash] : report.stream_blocks) blocks.push_back({block, hash});
+  return Json::to_cbor({{"document", report.document},
+                        {"latency_ms", report.latency_ms},
+                        {"event_latency_ms", report.event_latency_ms},
+                        {"stream_blocks", blocks}});
+}
+
+bool from_bytes(const std::vector<std::uint8_t>& bytes, ProcessReport& report) {
+  const Json json = Json::from_cbor(bytes, true, false);
+  if (json.is_discarded() || !json.is_object() || !json.contains("stream_blocks")) return false;
+  report.document = json["document"];
+  report.latency_ms = json["latency_ms"].get<std::vector<double>>();
+  report.event_latency_ms = json["event_latency_ms"].get<std::vector<double>>();
+  for (const Json& row : json["stream_blocks"]) {
+    report.stream_blocks[row[0].get<std::uint64_t>()] = row[1].get<std::uint64_t>();
+  }
+  return true;
+}
+
+Json percentiles(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double fraction) {
+    if (values.empty()) return 0.0;
+    const double rank = std::ceil(fraction * static_cast<double>(values.size()));
+    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+  };
+  return {{"count", values.size()},
+          {"p50", at(0.5)},
+          {"p90", at(0.9)},
+          {"p99", at(0.99)},
+          {"max", at(1.0)}};
+}
+
+Json merged(const std::vector<ProcessReport>& reports) {
+  Json all;
+  std::vector<double> latency_ms, event_latency_ms;
+  std::vector<std::map<std::uint64_t, std::uint64_t>> streams;
+  all["processes"] = reports.size();
+  double seconds = 0.0;
+  std::uint64_t users = 0;
+  Json counts, participants = Json::array();
+  for (const ProcessReport& report : reports) {
+    const Json& d = report.document;
+    latency_ms.insert(latency_ms.end(), report.latency_ms.begin(), report.latency_ms.end());
+    event_latency_ms.insert(event_latency_ms.end(), report.event_latency_ms.begin(),
+                            report.event_latency_ms.end());
+    streams.push_back(report.stream_blocks);
+    seconds = std::max(seconds, d["seconds"].get<double>());
+    users += d["names"].size();
+    Json sums;
+    for (const char* key : {"sent", "not_sent", "refused", "commands_sent", "replies",
+                            "commands_accepted", "commands_refused", "commands_refused_by",
+                            "unanswered_commands", "unacknowledged_increments", "lost", "repaired",
+                            "server_losses", "events_without_increment"}) {
+      if (d.contains(key)) sums[key] = d[key];
+    }
+    add_counts(counts, sums);
+    participants.push_back({{"names", d["names"]},
+                            {"sent", d["sent"]},
+                            {"latency_ms", d["latency_ms"]},
+                            {"events", d["events"]},
+                            {"lost", d["lost"]},
+                            {"repaired", d["repaired"]},
+                            {"pose_hash", d["state"]["pose_hash"]},
+                            {"clash_hash", d["state"]["clash_hash"]}});
+  }
+  const StreamComparison streams_seen = compare_streams(streams);
+  all["users"] = users;
+  all["seconds"] = seconds;
+  all["latency_ms"] = percentiles(std::move(latency_ms));
+  all["event_latency_ms"] = percentiles(std::move(event_latency_ms));
+  all.update(counts);
+  all["streams"] = {{"participants", reports.size()},
+                    {"blocks_compared", streams_seen.blocks},
+                    {"events_compared", streams_seen.blocks * StreamDigest::kBlock},
+                    {"differing_blocks", streams_seen.differing}};
+  all["participants"] = std::move(participants);
+  return all;
+}
+
+std::vector<LimitResult> check_limits(const Json& document, const std::vector<Limit>& limits) {
+  std::vector<LimitResult> results;
+  for (const Limit& limit : limits) {
+    LimitResult result{limit, {}, figure_of(document, limit.name), false};
+    for (const auto& [name, meaning] : limit_names()) {
+      if (name == limit.name) result.meaning = meaning;
+    }
+    // Without a sample there is nothing that a limit of time could be held against.
+    const char* samples = limit.name.starts_with("event_") ? "event_latency_ms" : "latency_ms";
+    const bool measured = !limit.name.ends_with("_ms") || document[samples]["count"] > 0;
+    result.holds = measured && result.figure <= limit.bound;
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+Json json_of(const std::vector<LimitResult>& results) {
+  Json json = Json::array();
+  for (const LimitResult& r : results) {
+    json.push_back({{"name", r.limit.name},
+                    {"meaning", r.meaning},
+                    {"figure", r.figure},
+                    {"bound", r.limit.bound},
+                    {"holds", r.holds}});
+  }
+  return json;
+}
+
+std::string junit(const std::vector<LimitResult>& results, double seconds) {
+  const auto failed = std::count_if(results.begin(), results.end(),
+                                    [](const LimitResult& result) { return !result.holds; });
+  std::string xml = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuite name=\"mortise-bot\" tests=\"{}\" failures=\"{}\" errors=\"0\" "
+      "time=\"{:.3f}\">\n",
+      results.size(), failed, seconds);
+  for (const LimitResult& r : results) {
+    xml += fmt::format("  <testcase classname=\"limit\" name=\"{}\">", escaped(r.limit.name));
+    if (!r.holds) {
+      xml += fmt::format("<failure message=\"{}: {:g} is above the limit of {:g}\"/>",
+                         escaped(r.meaning), r.figure, r.limit.bound);
+    }
+    xml += "</testcase>\n";
+  }
+  return xml + "</testsuite>\n";
+}
+
+}  // namespace mortise

@@ -1,0 +1,48 @@
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/bot/options.h"
+
+namespace mortise {
+
+/// What one process of bots measured: its report, and what must be whole to be put together with
+/// those of others.
+struct ProcessReport {
+  nlohmann::ordered_json document;
+  std::vector<double> latency_ms, event_latency_ms;
+  std::map<std::uint64_t, std::uint64_t> stream_blocks;  ///< see stream_digest.h
+};
+
+std::vector<std::uint8_t> to_bytes(const ProcessReport& report);
+/// False when the bytes are no report: the process ended before it could write one.
+bool from_bytes(const std::vector<std::uint8_t>& bytes, ProcessReport& report);
+
+/// p50, p90, p99, max by nearest rank, 0 when there is none; and how many.
+nlohmann::ordered_json percentiles(std::vector<double> values);
+
+/// One document of all processes: counts are sums, percentiles are of all samples, and
+/// `streams` says whether all saw the same sequence of events.
+nlohmann::ordered_json merged(const std::vector<ProcessReport>& reports);
+
+/// Names that --limit knows, and what each stands for.
+const std::vector<std::pair<std::string, std::string>>& limit_names();
+
+/// A limit and what became of it.
+struct LimitResult {
+  Limit limit;
+  std::string meaning;
+  double figure = 0.0;
+  bool holds = false;
+};
+std::vector<LimitResult> check_limits(const nlohmann::ordered_json& document,
+                                      const std::vector<Limit>& limits);
+nlohmann::ordered_json json_of(const std::vector<LimitResult>& results);
+
+/// The limits as a JUnit document, a test case each.
+std::string junit(const std::vector<LimitResult>& results, double seconds);
+
+}  // namespace mortise

@@ -1,0 +1,124 @@
+// Server and bots as programs on loopback, with the demo scene: latency, losses, deadlines, memory.
+#include <fmt/format.h>
+
+#include "tests/bench/session_load.h"
+#include "tests/bench/session_sections.h"
+
+namespace mortise::bench {
+namespace {
+
+constexpr double kMissedBar_percent = 0.5;
+constexpr double kMemoryBar_mb_per_h = 1.0;
+constexpr double kBeyondTickBar_ms = 5.0;
+
+const std::vector<std::string> kColumns = {"processes",
+                                           "users",
+                                           "rate Hz",
+                                           "seconds",
+                                           "increments",
+                                           "to pose p50 ms",
+                                           "p90",
+                                           "p99",
+                                           "max",
+                                           "to event p50 ms",
+                                           "p99",
+                                           "tick p50 us",
+                                           "p99",
+                                           "missed %",
+                                           "lost events",
+                                           "resyncs",
+                                           "missed pose batches",
+                                           "lost commands",
+                                           "lost increments",
+                                           "streams differing",
+                                           "load average"};
+
+std::string name_of(const LoadShape& shape) {
+  return shape.processes == 1
+             ? fmt::format("{} users at {:g} Hz", shape.users, shape.rate_hz)
+             : fmt::format("{} processes at {:g} Hz", shape.processes, shape.rate_hz);
+}
+
+LoadResult row(Report& report, const LoadShape& shape) {
+  LoadResult r = run_load(shape);
+  if (!r.ran) {
+    report.note(name_of(shape) + " did not run: " + r.why_not);
+    return r;
+  }
+  const Json &b = r.bots, &tick_us = r.server["times_us"]["tick"];
+  const auto count = [&](const Json& value) { return static_cast<long long>(value.get<double>()); };
+  report.row({static_cast<long long>(shape.processes),
+              static_cast<long long>(shape.processes * shape.users),
+              shape.rate_hz,
+              shape.seconds,
+              count(b["sent"]),
+              r.at("latency_ms", "p50"),
+              r.at("latency_ms", "p90"),
+              r.at("latency_ms", "p99"),
+              r.at("latency_ms", "max"),
+              r.at("event_latency_ms", "p50"),
+              r.at("event_latency_ms", "p99"),
+              tick_us["p50"].get<double>(),
+              tick_us["p99"].get<double>(),
+              r.missed_percent,
+              count(b["lost"]["events"]),
+              count(b["repaired"]["resyncs"]),
+              count(b["lost"]["pose_batches"]),
+              static_cast<long long>(r.lost_commands),
+              static_cast<long long>(r.lost_increments),
+              b.contains("streams") ? count(b["streams"]["differing_blocks"]) : 0LL,
+              fmt::format("{:.1f} to {:.1f}", r.load_average_before, r.load_average_after)});
+  return r;
+}
+
+void bars(Report& report, const LoadShape& shape, const LoadResult& r,
+          const SessionOptions& options) {
+  const std::string name = name_of(shape);
+  const auto bar = [&](const std::string& what, double figure, double bound) {
+    report.bar(name + ": " + what, r.ran ? figure : std::nan(""), bound, BoundKind::kAtMost);
+  };
+  const auto number = [&](auto read) { return r.ran ? static_cast<double>(read()) : 0.0; };
+  bar("lost events after resync", number([&] { return r.bots["lost"]["events"].get<double>(); }),
+      0.0);
+  bar("lost acknowledged commands", number([&] { return r.lost_commands; }), 0.0);
+  bar("lost acknowledged increments", number([&] { return r.lost_increments; }), 0.0);
+  bar("deadlines missed, %", r.missed_percent, kMissedBar_percent);
+  if (r.ran && r.bots.contains("streams")) {
+    bar("blocks of the event stream that differ between participants",
+        r.bots["streams"]["differing_blocks"].get<double>(), 0.0);
+  }
+  if (!r.ran) return;
+  report.note(fmt::format(
+      "{}: server memory {:.1f} to {:.1f} MB over {:.0f} s after warm-up, {:+.1f} MB/h; one page "
+      "more would show as {:.2f} MB/h{}",
+      name, r.memory.first_mb, r.memory.last_mb, r.memory.seconds, r.memory.mb_per_h,
+      r.memory.resolution_mb_per_h,
+      options.soak ? "" : ": too short to tell a slope of 1 MB/h, that is asked of --soak"));
+  if (options.soak) bar("server memory slope, MB/h", r.memory.mb_per_h, kMemoryBar_mb_per_h);
+}
+
+}  // namespace
+
+void section_users(Report& report, const SessionOptions& options) {
+  report.table("One process with many users, demo scene, loopback", kColumns);
+  const LoadShape shape{1, 64, 60.0, options.load_seconds()};
+  const LoadResult result = row(report, shape);
+  bars(report, shape, result, options);
+}
+
+void section_processes(Report& report, const SessionOptions& options) {
+  report.table("Many client processes, demo scene, loopback", kColumns);
+  const LoadShape asked{16, 1, 120.0, options.load_seconds()};
+  const LoadResult result = row(report, asked);
+  // More are reported; nothing is promised of them on two cores.
+  if (!options.soak)
+    for (const int processes : {32, 64})
+      row(report, {processes, 1, 120.0, options.quick ? 5.0 : 15.0});
+  bars(report, asked, result, options);
+  const double tick_ms = result.ran ? 1e3 / result.server["tick_rate_hz"].get<double>() : 0.0;
+  report.bar("16 processes at 120 Hz: increment to pose p99, ms",
+             result.ran ? result.at("latency_ms", "p99") : std::nan(""),
+             tick_ms + kBeyondTickBar_ms, BoundKind::kAtMost);
+}
+
+}  // namespace mortise::bench

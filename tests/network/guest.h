@@ -1,0 +1,60 @@
+#pragma once
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/client.h"
+#include "idl/dds_channel.h"
+
+namespace mortise::test {
+
+inline double steady_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A participant in this process.
+struct Guest {
+  explicit Guest(int domain, const std::string& name) {
+    DdsOptions options;
+    options.domain = domain;
+    auto opened = open_client_channel(options);
+    if (!opened) return;
+    channel = std::move(*opened);
+    client = std::make_unique<Client>(*channel);
+    user = client->add_user(name, "designer");
+  }
+  bool until(double limit_s, const std::function<bool()>& done) {
+    for (const double end_s = steady_s() + limit_s; steady_s() < end_s;) {
+      const ClientUpdate update = client->poll();
+      for (const RefusedIncrement& r : update.refused) refused.push_back(r);
+      for (const Reply& r : update.replies) replies.push_back(r);
+      if (done()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  }
+  bool joined() {
+    return until(10, [&] { return client->user_id(user) && client->synced(); });
+  }
+  UserId holder(const char* part) const {
+    return client->parts().at(client->find_part(part)).info.holder;
+  }
+  double x(const char* part) const {
+    return client->parts().at(client->find_part(part)).info.X_WP.p.x();
+  }
+  bool grab(const char* part) {
+    client->grab(user, client->find_part(part));
+    return until(3, [&] { return holder(part) == client->user_id(user); });
+  }
+
+  std::unique_ptr<ClientChannel> channel;
+  std::unique_ptr<Client> client;
+  LocalUser user = 0;
+  std::vector<RefusedIncrement> refused;
+  std::vector<Reply> replies;
+};
+
+}  // namespace mortise::test

@@ -1,0 +1,243 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/io/session_log.h"
+#include "tests/network/guest.h"
+#include "tests/network/program.h"
+
+/// The server killed without warning and started again on its own log; and a disk that is full.
+namespace mortise::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kScenario[] = R"(
+name: two blocks
+units: mm
+policy: report
+parts:
+  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
+  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [0, 0, 20]}}
+  - {name: blue, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
+     pose: {position: [30, 0, 20]}}
+)";
+
+class RestoreAfterCrash : public ::testing::Test {
+ protected:
+  std::unique_ptr<Program> serve(int domain, std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(domain), "--json"});
+    return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
+  }
+  std::string scenario() const { return folder_.write("blocks.yaml", kScenario); }
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  static bool step_by(Guest& guest, const char* part, const Vec3& by_mm) {
+    const PartId id = guest.client->find_part(part);
+    const Vec3 to = guest.client->parts().at(id).info.X_WP.p + by_mm;
+    guest.client->send(guest.user, id, by_mm);
+    return guest.until(
+        3, [&] { return (guest.client->parts().at(id).info.X_WP.p - to).norm() < 1e-9; });
+  }
+  static std::map<PartId, Pose> poses(const Guest& guest) {
+    std::map<PartId, Pose> poses;
+    for (const auto& [id, part] : guest.client->parts()) poses[id] = part.info.X_WP;
+    return poses;
+  }
+  static void kill_and_wait(Program& server) {
+    server.signal(SIGKILL);
+    ASSERT_EQ(server.wait(5), 128 + SIGKILL);
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
+  auto server = serve(220, {scenario(), "--log", file("first.mcap")});
+  Guest anna(220, "anna"), ben(220, "ben");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(ben.joined());
+  const UserId anna_id = anna.client->user_id(anna.user);
+  ASSERT_TRUE(anna.grab("red"));
+  ASSERT_TRUE(ben.grab("blue"));
+  ASSERT_TRUE(step_by(anna, "red", {1, 0, -12}));   // 2 mm into the base
+  ASSERT_TRUE(step_by(ben, "blue", {0, 1, -11}));   // 1 mm
+  ASSERT_TRUE(step_by(ben, "blue", {0, 0.25, 4}));  // and out again: that clash has ended
+  ASSERT_TRUE(anna.until(3, [&] { return anna.client->open_clashes().size() == 1; }));
+  anna.until(2.2, [&] {  // two flushes later all of it is on disk
+    ben.client->poll();
+    return false;
+  });
+  const auto poses_before = poses(anna);
+  const std::map<ClashId, ClashEvent> open_before = anna.client->open_clashes();
+  const std::uint64_t events_before = anna.client->statistics().highest_event_seq;
+  ASSERT_EQ(open_before.size(), 1U);
+  ASSERT_GE(events_before, 3U);
+  kill_and_wait(*server);
+  const auto log = read_session_log(file("first.mcap"));
+  ASSERT_TRUE(log) << log.error().text;
+  EXPECT_FALSE(log->complete);
+
+  const double restarted_s = steady_s();
+  server = serve(220, {"--restore", file("first.mcap"), "--log", file("second.mcap")});
+  ASSERT_TRUE(anna.until(15, [&] {
+    ben.client->poll();
+    return anna.client->statistics().server_losses > 0 && anna.client->user_id(anna.user) &&
+           anna.client->synced();
+  })) << server->errors();
+  std::printf("back in the session %.2f s after the new process started\n",
+              steady_s() - restarted_s);
+  EXPECT_EQ(anna.client->user_id(anna.user), anna_id) << "the same user by name";
+  ASSERT_EQ(poses(anna).size(), poses_before.size());
+  for (const auto& [id, pose] : poses_before) EXPECT_TRUE(identical(poses(anna)[id], pose));
+  ASSERT_EQ(anna.client->open_clashes().size(), 1U);
+  const auto& [id, clash] = *anna.client->open_clashes().begin();
+  const ClashEvent& before = open_before.begin()->second;
+  EXPECT_EQ(id, open_before.begin()->first);
+  EXPECT_EQ(clash.verdict.delta_mm, before.verdict.delta_mm);
+  EXPECT_EQ(clash.verdict.collision_class, before.verdict.collision_class);
+  EXPECT_EQ(clash.begin_tick, before.begin_tick);
+  EXPECT_EQ(clash.seq, before.seq);
+  EXPECT_FALSE(anna.holder("red")) << "held parts are free";
+  EXPECT_FALSE(anna.holder("blue"));
+
+  // Numbers go on; what was moved before the crash can be undone after it.
+  ASSERT_TRUE(anna.until(3, [&] { return anna.client->find_part("red") != PartId{}; }));
+  anna.client->undo(anna.user, anna.client->find_part("red"));
+  ASSERT_TRUE(anna.until(3, [&] { return anna.client->open_clashes().empty(); }));
+  EXPECT_EQ(anna.client->statistics().highest_event_seq, events_before + 1);
+  EXPECT_EQ(anna.x("red"), 0.0);
+  anna.until(0.3, [] { return false; });
+  server->signal(SIGTERM);
+  ASSERT_EQ(server->wait(5), 0) << server->errors();
+  const Json closing = Json::parse(server->out());
+  EXPECT_EQ(closing["restored"]["ticks"].get<std::size_t>(), log->ticks.size());
+  EXPECT_EQ(closing["restored"]["left_out_ticks"], 0);
+
+  // The new log holds the old one, tick by tick, and replays from the beginning.
+  const auto second = read_session_log(file("second.mcap"));
+  ASSERT_TRUE(second) << second.error().text;
+  EXPECT_TRUE(second->complete);
+  ASSERT_GT(second->ticks.size(), log->ticks.size());
+  for (std::size_t i = 0; i < log->ticks.size(); ++i) {
+    ASSERT_EQ(second->ticks[i].tick, log->ticks[i].tick);
+    ASSERT_EQ(second->ticks[i].report.state_hash, log->ticks[i].report.state_hash);
+  }
+  EXPECT_EQ(second->ticks[log->ticks.size()].tick, log->ticks.back().tick + 1);
+  Program replay(folder_.path(), "mortise-replay", {"verify", file("second.mcap")});
+  EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+}
+
+// In the middle of everything, twice, from a folder: what the log of the dead server tells up to
+// its last whole chunk is where the next one begins.
+TEST_F(RestoreAfterCrash, InMidMotionTheLastFlushedSecondCounts) {
+  const std::filesystem::path logs = folder_.path() / "logs";
+  std::filesystem::create_directories(logs);
+  const auto newest = [&] {
+    std::filesystem::path last;
+    for (const auto& entry : std::filesystem::directory_iterator(logs))
+      if (entry.path().extension() == ".mcap" && entry.path().filename() > last.filename())
+        last = entry.path();
+    return last;
+  };
+  const std::vector<std::string> arguments = {scenario(), "--restore", logs.string(), "--log",
+                                              logs.string()};
+  Program bots(folder_.path(), "mortise-bot",
+               {"--domain", "221", "--wait", "20", "--users", "3", "--behaviour", "mixed",
+                "--duration", "30", "--json"});
+  std::filesystem::path before;
+  std::uint64_t ticks = 0;
+  for (int crash = 0; crash < 3; ++crash) {
+    auto server = serve(221, arguments);
+    Guest anna(221, "anna" + std::to_string(crash));
+    ASSERT_TRUE(anna.joined()) << server->errors();
+    const std::uint64_t seen = anna.client->statistics().highest_tick;
+    EXPECT_GE(seen, ticks) << "the session began anew";
+    ASSERT_TRUE(anna.until(6, [&] { return anna.client->statistics().highest_tick > seen + 150; }))
+        << server->errors();
+    const std::uint64_t killed_at = anna.client->statistics().highest_tick;
+    kill_and_wait(*server);
+    const std::filesystem::path file = newest();
+    ASSERT_NE(file, before) << "each server writes a log of its own";
+    const auto log = read_session_log(file);
+    ASSERT_TRUE(log) << log.error().text;
+    ASSERT_FALSE(log->ticks.empty());
+    ticks = log->ticks.back().tick;
+    EXPECT_EQ(log->ticks.size(), ticks) << "nothing is missing from the first tick on";
+    // A flush each second of 60 ticks, and a busy disk.
+    EXPECT_GT(ticks + 180, killed_at);
+    if (!before.empty()) {
+      const auto earlier = read_session_log(before);
+      ASSERT_TRUE(earlier);
+      for (std::size_t i = 0; i < earlier->ticks.size(); ++i)
+        ASSERT_EQ(log->ticks[i].report.state_hash, earlier->ticks[i].report.state_hash) << i;
+    }
+    before = file;
+  }
+  Program replay(folder_.path(), "mortise-replay", {"verify", before.string()});
+  EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+}
+
+TEST_F(RestoreAfterCrash, WhatCannotBeRestoredSaysSoInOneLine) {
+  const std::string no_log = folder_.write("none.mcap", "no log");
+  const struct {
+    std::vector<std::string> arguments;
+    int code;
+    const char* says;
+  } cases[] = {
+      {{"--restore", no_log}, 3, "none.mcap"},
+      {{"--restore", folder_.path().string(), "--session", "other"}, 3, "no log of session"},
+      {{"--restore", no_log, "--policy", "stop"}, 2, "--policy"},
+      {{}, 2, "--restore"},
+  };
+  for (const auto& [arguments, code, says] : cases) {
+    auto server = serve(222, arguments);
+    EXPECT_EQ(server->wait(10), code);
+    EXPECT_NE((server->errors() + server->out()).find(says), std::string::npos)
+        << server->errors() << server->out();
+  }
+}
+
+// The disk is full from some point on: said once, counted, and the session does not notice.
+TEST_F(RestoreAfterCrash, AFullDiskIsSaidOnceAndTheSessionGoesOn) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit small = before;
+  small.rlim_cur = 16384;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);  // inherited by what is started now
+  auto server = serve(223, {scenario(), "--log", file("full.mcap")});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  Guest anna(223, "anna");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(anna.grab("red"));
+  const auto failed = [&] { return server->errors().find("cannot write") != std::string::npos; };
+  int moves = 0;
+  for (const double end_s = steady_s() + 30; !failed() && steady_s() < end_s; ++moves)
+    ASSERT_TRUE(step_by(anna, "red", {moves % 2 ? -0.001 : 0.00123, 0, 0}));
+  ASSERT_TRUE(failed()) << server->errors();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(step_by(anna, "red", {0, 0.01, 0})) << "it goes on";
+  anna.until(1.5, [] { return false; });
+  server->signal(SIGTERM);
+  EXPECT_EQ(server->wait(5), 1) << "the log is not whole, and the exit code says so";
+  const std::string errors = server->errors();
+  std::size_t times = 0;
+  for (std::size_t at = 0; (at = errors.find("the session goes on", at)) != std::string::npos; ++at)
+    ++times;
+  EXPECT_EQ(times, 1U) << errors;
+  const Json log = Json::parse(server->out())["log"];
+  EXPECT_GE(log["dropped_ticks"].get<int>(), 100) << log;
+  EXPECT_NE(log["error"].get<std::string>().find("full.mcap"), std::string::npos);
+  // What was written stays readable, and what was not is what was counted.
+  const auto read = read_session_log(file("full.mcap"));
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_FALSE(read->complete);
+  EXPECT_EQ(read->ticks.size() + log["dropped_ticks"].get<std::size_t>(),
+            Json::parse(server->out())["statistics"]["ticks"].get<std::size_t>());
+}
+
+}  // namespace
+}  // namespace mortise::test

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include "server/inbox.h"
+#include "tests/unit/server/small_world.h"
+
+namespace mortise {
+namespace {
+
+using namespace mortise::testing;
+
+class InboxLimitsTest : public ::testing::Test {
+ protected:
+  UserId join(const std::string& name) {
+    ServerInput input;
+    input.joins.push_back({name, 1, name, "designer"});
+    inbox().admit(std::move(input), world_, now_ns_, intake_);
+    return intake_.join_replies.at(0).user;
+  }
+  Reply command(const std::string& client, UserId user, PartId part, CommandKind kind) {
+    ServerInput input;
+    input.commands.push_back({client, Command{user, part, ++seq_, kind}});
+    inbox().admit(std::move(input), world_, now_ns_, intake_);
+    return intake_.replies.at(0);
+  }
+  std::size_t accepted_of(const std::string& client, UserId user, int count) {
+    ServerInput input;
+    for (int i = 0; i < count; ++i)
+      input.increments.push_back({client, {user, kRed, ++seq_, {0.01, 0, 0}, Vec3::Zero()}, 0});
+    const std::uint64_t before = inbox().counters().accepted;
+    inbox().admit(std::move(input), world_, now_ns_, intake_);
+    return inbox().counters().accepted - before + inbox().waiting_increments();
+  }
+  Inbox& inbox() {
+    if (!inbox_) inbox_ = std::make_unique<Inbox>(limits_);
+    return *inbox_;
+  }
+
+  InboxLimits limits_;
+  World world_ = small_world();
+  std::unique_ptr<Inbox> inbox_;
+  Intake intake_;
+  std::int64_t now_ns_ = kSecond_ns;
+  std::uint64_t seq_ = 0;
+};
+
+TEST_F(InboxLimitsTest, AHandHoldsSoManyPartsAndNoMore) {
+  limits_.parts_per_user = 1;
+  const UserId anna = join("anna"), ben = join("ben");
+  EXPECT_EQ(command("anna", anna, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
+  const Reply second = command("anna", anna, kBlue, CommandKind::kGrab);
+  EXPECT_EQ(second.refusal, Refusal::kNotAllowed);
+  EXPECT_NE(second.text.find("at most 1"), std::string::npos) << second.text;
+  EXPECT_EQ(command("anna", anna, kRed, CommandKind::kGrab).refusal, Refusal::kNone) << "has it";
+  EXPECT_EQ(command("ben", ben, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
+  EXPECT_EQ(command("ben", ben, kBlue, CommandKind::kRelease).refusal, Refusal::kNone);
+  EXPECT_EQ(command("anna", anna, kRed, CommandKind::kRelease).refusal, Refusal::kNone);
+  EXPECT_EQ(command("anna", anna, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
+  EXPECT_EQ(inbox().user_counters()[0].commands, 5U);
+  EXPECT_EQ(inbox().user_counters()[0].commands_refused, 1U);
+}
+
+// Each below the limit of one user, together above that of the session.
+TEST_F(InboxLimitsTest, ASessionTakesSoManyMessagesOfAllTogether) {
+  limits_.messages_per_s = 100.0;
+  limits_.session_messages_per_s = 120.0;
+  limits_.increments_per_tick = 1000;
+  const UserId anna = join("anna");
+  ASSERT_EQ(command("anna", anna, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
+  EXPECT_EQ(accepted_of("anna", anna, 90), 90U);
+  const UserId ben = join("ben");
+  for (int i = 0; i < 40; ++i) command("ben", ben, kBlue, CommandKind::kGrab);
+  EXPECT_EQ(inbox().user_counters()[1].commands_refused, 40U - 29U) << "120 - 1 - 90 were left";
+  now_ns_ += kSecond_ns / 2;  // 60 more for all
+  EXPECT_EQ(command("ben", ben, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
+  EXPECT_EQ(accepted_of("anna", anna, 70), 50U + 9U)
+      << "60 - 1 of the session, and 9 + 50 of her own";
+}
+
+}  // namespace
+}  // namespace mortise

@@ -1,0 +1,109 @@
+#include "server/metrics_text.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "common/messages/memory_channel.h"
+#include "tests/unit/server/small_world.h"
+
+namespace mortise {
+namespace {
+
+using namespace mortise::testing;
+
+struct Exposition {
+  std::map<std::string, std::string> values;  ///< by name and labels
+  std::map<std::string, std::string> kinds;
+};
+
+// The format as its own documents give it, read strictly.
+Exposition read(const std::string& text) {
+  static const std::regex help("# HELP ([a-z_]+) \\S.*");
+  static const std::regex type("# TYPE ([a-z_]+) (counter|gauge)");
+  static const std::regex sample(
+      "([a-z_]+)(\\{[a-z_]+=\"(?:[^\"\\\\\n]|\\\\.)*\"(?:,[a-z_]+=\"(?:[^\"\\\\\n]|\\\\.)*\")*\\})?"
+      " ([-+0-9.e]+|inf|nan)");
+  Exposition read;
+  std::istringstream lines(text);
+  std::string line, family, helped;
+  std::smatch m;
+  while (std::getline(lines, line)) {
+    if (std::regex_match(line, m, help)) {
+      helped = m[1];
+    } else if (std::regex_match(line, m, type)) {
+      family = m[1];
+      EXPECT_EQ(helped, family);
+      EXPECT_TRUE(read.kinds.emplace(family, m[2]).second) << "told twice: " << family;
+    } else if (std::regex_match(line, m, sample)) {
+      EXPECT_EQ(m[1], family) << "a sample outside of its family";
+      EXPECT_TRUE(read.values.emplace(m[1].str() + m[2].str(), m[3]).second) << line;
+    } else {
+      ADD_FAILURE() << "no line of this format: " << line;
+    }
+  }
+  for (const auto& [name, kind] : read.kinds)
+    EXPECT_EQ(kind == "counter", name.ends_with("_total")) << name;
+  return read;
+}
+
+TEST(MetricsText, TellsWhatTheSessionKnows) {
+  MemoryHub hub;
+  World world = small_world();
+  world.policy = Policy::kReport;
+  auto channel = hub.open_server();
+  SystemClock clock;
+  TickLoop loop(world, *channel, clock, nullptr, {});
+  loop.open();
+  auto anna = hub.open_client(), ben = hub.open_client();
+  anna->join(1, "anna \"the\\hand\"", "designer");
+  loop.tick();
+  ben->join(1, "ben", "designer");
+  loop.tick();
+  const UserId a{1}, b{2};
+  anna->send(Command{a, kRed, 1, CommandKind::kGrab});
+  ben->send(Command{b, kRed, 1, CommandKind::kGrab});  // refused
+  loop.tick();
+  const auto move = [](const UserId user, std::uint64_t seq, double x_mm) {
+    return Increment{user, kRed, seq, {x_mm, 0, 0}, Vec3::Zero()};
+  };
+  anna->send(batch_of(move(a, 1, -6), 0));
+  anna->send(batch_of(move(a, 4, -6), 0));  // 2 and 3 were lost
+  anna->send(batch_of(move(a, 4, -6), 0));  // a repeat
+  ben->send(batch_of(move(b, 1, 1), 0));    // not the holder
+  loop.tick();
+
+  const Exposition told = read(metrics_text(figures_of(loop, channel->counters(), "a\nb"), 4096));
+  const std::map<std::string, std::string> expected = {
+      {"mortise_session_info{session=\"a\\nb\",policy=\"report\"}", "1"},
+      {"mortise_ticks_total", "4"},
+      {"mortise_users", "2"},
+      {"mortise_increments_total", "4"},
+      {"mortise_increments_accepted_total", "2"},
+      {"mortise_increments_refused_total{reason=\"duplicate sequence\"}", "1"},
+      {"mortise_commands_refused_total", "1"},
+      {"mortise_user_increments_total{user=\"anna \\\"the\\\\hand\\\"\"}", "3"},
+      {"mortise_user_increments_lost_total{user=\"anna \\\"the\\\\hand\\\"\"}", "2"},
+      {"mortise_user_increments_refused_total{user=\"anna \\\"the\\\\hand\\\"\"}", "1"},
+      {"mortise_user_parts_held{user=\"anna \\\"the\\\\hand\\\"\"}", "1"},
+      {"mortise_user_increments_accepted_total{user=\"ben\"}", "0"},
+      {"mortise_user_increments_refused_total{user=\"ben\"}", "1"},
+      {"mortise_user_commands_refused_total{user=\"ben\"}", "1"},
+      {"mortise_clashes_open{class=\"real\"}", "1"},
+      {"mortise_clashes_total{class=\"real\"}", "1"},
+      {"mortise_log_open", "0"},
+      {"process_resident_memory_bytes", "4096"},
+  };
+  for (const auto& [name, value] : expected) {
+    ASSERT_TRUE(told.values.contains(name)) << name;
+    EXPECT_EQ(told.values.at(name), value) << name;
+  }
+  EXPECT_GT(std::stod(told.values.at("mortise_tick_seconds{quantile=\"1\"}")), 0.0);
+  EXPECT_GT(resident_bytes(), 1'000'000U);
+}
+
+}  // namespace
+}  // namespace mortise

@@ -1,0 +1,169 @@
+#include "server/restore.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/io/replay.h"
+#include "common/session/step.h"
+#include "tests/golden/played_session.h"
+#include "tests/network/program.h"
+
+namespace mortise {
+namespace {
+
+using test::play_session;
+using test::PlayedSession;
+using test::TestFolder;
+using test::write_log;
+
+class Restore : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path scenarios = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
+    auto played = play_session(scenarios / "peg_in_hole.yaml", scenarios / "peg_in_hole.play.yaml");
+    ASSERT_TRUE(played) << played.error().text;
+    session_ = std::make_unique<PlayedSession>(std::move(*played));
+    const auto file = folder_.path() / "whole.mcap";
+    ASSERT_TRUE(write_log(*session_, file));
+    auto log = read_session_log(file);
+    ASSERT_TRUE(log) << log.error().text;
+    log_ = std::move(*log);
+  }
+  SessionLog first(std::size_t ticks) const {
+    SessionLog log = log_;
+    log.ticks.resize(ticks);
+    log.complete = false;
+    return log;
+  }
+
+  TestFolder folder_;
+  std::unique_ptr<PlayedSession> session_;
+  SessionLog log_;
+};
+
+// Who held what takes it again; then the rest of the session must be what it was without a break.
+TEST_F(Restore, FromAnyTickTheSessionGoesOnAsIfNothingHadBeen) {
+  const std::size_t all = log_.ticks.size();
+  ASSERT_GT(all, 100U);
+  std::size_t with_clash = 0, with_holder = 0;
+  for (const std::size_t k : {std::size_t{1}, all / 5, all / 3, all / 2, 2 * all / 3, all - 1}) {
+    auto scene = scene_of(log_);
+    ASSERT_TRUE(scene) << scene.error().text;
+    World& world = scene->world;
+    std::map<PartId, UserId> held;  // as the log has it
+    std::uint64_t event_seq = 0;
+    for (std::size_t i = 0; i < k; ++i) {
+      for (const Decision& d : log_.ticks[i].decisions) {
+        if (d.kind == Decision::Kind::kGrab) held[d.part] = d.user;
+        if (d.kind == Decision::Kind::kRelease) held.erase(d.part);
+      }
+      for (const ClashEvent& event : log_.ticks[i].report.events) event_seq = event.seq;
+    }
+    auto resumed = resume_from(first(k), world, 1, nullptr);
+    ASSERT_TRUE(resumed) << resumed.error().text;
+    EXPECT_EQ(resumed->ticks, k);
+    EXPECT_EQ(resumed->ticks_left_out, 0U);
+    EXPECT_EQ(world.tick, log_.ticks[k - 1].tick);
+    EXPECT_EQ(snapshot_of(world).event_seq, event_seq);
+    EXPECT_EQ(resumed->statistics.ticks(), k);
+    EXPECT_EQ(resumed->departures.size(), world.users.size());
+    with_clash += snapshot_of(world).open_clashes.empty() ? 0 : 1;
+    with_holder += held.empty() ? 0 : 1;
+    for (const Part& part : world.parts) EXPECT_FALSE(part.holder) << part.name;
+    for (const User& user : world.users) EXPECT_FALSE(user.present) << user.name;
+
+    for (const User& user : world.users)
+      apply_decision(world, {Decision::Kind::kJoin, user.id, PartId{}, user.name});
+    for (const auto& [part, user] : held)
+      apply_decision(world, {Decision::Kind::kGrab, user, part, ""});
+    Scratch scratch(1);
+    for (std::size_t i = k; i < all; ++i) {
+      const TickRecord& record = log_.ticks[i];
+      for (const Decision& decision : record.decisions) apply_decision(world, decision);
+      const StepReport report = step(world, record.increments, scratch);
+      ASSERT_EQ(report.state_hash, record.report.state_hash)
+          << "restored at " << k << ", tick " << record.tick;
+      ASSERT_EQ(report.events.size(), record.report.events.size());
+      for (std::size_t e = 0; e < report.events.size(); ++e) {
+        EXPECT_EQ(report.events[e].seq, record.report.events[e].seq);
+        EXPECT_EQ(report.events[e].clash, record.report.events[e].clash);
+      }
+    }
+  }
+  EXPECT_GE(with_clash, 1U) << "no restore with an open clash: this shows too little";
+  EXPECT_GE(with_holder, 2U);
+}
+
+TEST_F(Restore, TheNextLogIsWholeAgain) {
+  const std::size_t k = log_.ticks.size() / 2;
+  auto scene = scene_of(log_);
+  ASSERT_TRUE(scene);
+  const auto file = folder_.path() / "next.mcap";
+  auto writer = SessionLogWriter::create(file, session_->header);
+  ASSERT_TRUE(writer) << writer.error().text;
+  auto resumed = resume_from(first(k), scene->world, 1, writer->get());
+  ASSERT_TRUE(resumed) << resumed.error().text;
+  ASSERT_TRUE((*writer)->flush());
+  // On disk now, though the log is still open.
+  auto next = read_session_log(file);
+  ASSERT_TRUE(next) << next.error().text;
+  ASSERT_EQ(next->ticks.size(), k);
+  // And it goes on from there.
+  TickRecord record;
+  record.decisions = resumed->departures;
+  Scratch scratch(1);
+  record.report = step(scene->world, {}, scratch);
+  (*writer)->record(record);
+  ASSERT_TRUE((*writer)->close());
+  next = read_session_log(file);
+  ASSERT_TRUE(next) << next.error().text;
+  ASSERT_EQ(next->ticks.size(), k + 1);
+  const auto report = verify(*next, 1);
+  ASSERT_TRUE(report) << report.error().text;
+  EXPECT_FALSE(report->difference) << report->difference->what;
+  EXPECT_EQ(report->ticks_compared, k + 1);
+}
+
+TEST_F(Restore, ALogThatThisEngineDoesNotComputeIsRefused) {
+  SessionLog log = first(50);
+  log.ticks[20].report.state_hash ^= 1;
+  auto scene = scene_of(log);
+  ASSERT_TRUE(scene);
+  const auto resumed = resume_from(log, scene->world, 1, nullptr);
+  ASSERT_FALSE(resumed);
+  EXPECT_EQ(resumed.error().code, Code::kMismatch);
+  EXPECT_NE(resumed.error().text.find("tick 21"), std::string::npos) << resumed.error().text;
+}
+
+TEST_F(Restore, WhatLiesBehindAGapIsLeftOutAndCounted) {
+  SessionLog log = first(60);
+  log.ticks.erase(log.ticks.begin() + 40, log.ticks.begin() + 45);
+  log.gaps.push_back({40, 46, "the queue to the disk was full"});
+  auto scene = scene_of(log);
+  ASSERT_TRUE(scene);
+  const auto resumed = resume_from(log, scene->world, 1, nullptr);
+  ASSERT_TRUE(resumed) << resumed.error().text;
+  EXPECT_EQ(scene->world.tick, 40U);
+  EXPECT_EQ(resumed->ticks, 40U);
+  EXPECT_EQ(resumed->ticks_left_out, 15U);
+  EXPECT_NE(resumed->left_out_because.find("queue"), std::string::npos);
+}
+
+TEST(LogToRestore, IsTheNewestOfTheSessionAndNoOther) {
+  TestFolder folder;
+  EXPECT_FALSE(log_to_restore(folder.path(), "demo"));
+  for (const char* name :
+       {"demo-20260101-120000.mcap", "demo-20260101-120000_1.mcap", "demo-20251231-235959.mcap",
+        "demo-2-20270101-000000.mcap", "demo-20280101-000000.mcap.begun", "demo-notes.txt"})
+    folder.write(name, "x");
+  const auto file = log_to_restore(folder.path(), "demo");
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->filename(), "demo-20260101-120000_1.mcap");
+  EXPECT_EQ(log_to_restore(folder.path(), "demo-2")->filename(), "demo-2-20270101-000000.mcap");
+  EXPECT_FALSE(log_to_restore(folder.path(), "other"));
+  EXPECT_EQ(*log_to_restore(folder.path() / "x.mcap", "demo"), folder.path() / "x.mcap");
+}
+
+}  // namespace
+}  // namespace mortise
