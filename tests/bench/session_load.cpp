@@ -120,7 +120,7 @@ LoadResult run_load(const LoadShape& shape) {
   const auto text = [](double value) { return std::to_string(value); };
   auto bots = server.bots({"--processes", std::to_string(shape.processes), "--users",
                            std::to_string(shape.users), "--rate", text(shape.rate_hz), "--seconds",
-                           text(shape.seconds), "--behaviour", "mixed", "--seed", "1"});
+                           text(shape.seconds), "--behaviour", shape.behaviour, "--seed", "1"});
   std::vector<std::pair<double, double>> mb_at_s;
   const double start_s = steady_s();
   while (bots->running() && steady_s() - start_s < shape.seconds + 180.0) {

@@ -50,6 +50,7 @@ MemorySlope slope_of(const std::vector<std::pair<double, double>>& mb_at_s, doub
 struct LoadShape {
   int processes = 1, users = 64;
   double rate_hz = 60.0, seconds = 30.0;
+  std::string behaviour = "mixed";
 };
 /// What one load brought, seen by the bots and by the server.
 struct LoadResult {

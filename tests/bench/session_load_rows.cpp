@@ -11,7 +11,8 @@ constexpr double kMissedBar_percent = 0.5;
 constexpr double kMemoryBar_mb_per_h = 1.0;
 constexpr double kBeyondTickBar_ms = 5.0;
 
-const std::vector<std::string> kColumns = {"processes",
+const std::vector<std::string> kColumns = {"behaviour",
+                                           "processes",
                                            "users",
                                            "rate Hz",
                                            "seconds",
@@ -39,6 +40,14 @@ std::string name_of(const LoadShape& shape) {
              : fmt::format("{} processes at {:g} Hz", shape.processes, shape.rate_hz);
 }
 
+// The same with hands that tremble where parts stand apart: what wire and server take without the
+// engine. Reported beside.
+LoadShape in_free_air(LoadShape shape, const SessionOptions& options) {
+  shape.behaviour = "shake";
+  shape.seconds = options.quick ? 5.0 : 15.0;
+  return shape;
+}
+
 LoadResult row(Report& report, const LoadShape& shape) {
   LoadResult r = run_load(shape);
   if (!r.ran) {
@@ -47,7 +56,8 @@ LoadResult row(Report& report, const LoadShape& shape) {
   }
   const Json &b = r.bots, &tick_us = r.server["times_us"]["tick"];
   const auto count = [&](const Json& value) { return static_cast<long long>(value.get<double>()); };
-  report.row({static_cast<long long>(shape.processes),
+  report.row({shape.behaviour,
+              static_cast<long long>(shape.processes),
               static_cast<long long>(shape.processes * shape.users),
               shape.rate_hz,
               shape.seconds,
@@ -103,6 +113,7 @@ void section_users(Report& report, const SessionOptions& options) {
   report.table("One process with many users, demo scene, loopback", kColumns);
   const LoadShape shape{1, 64, 60.0, options.load_seconds()};
   const LoadResult result = row(report, shape);
+  if (!options.soak) row(report, in_free_air(shape, options));
   bars(report, shape, result, options);
 }
 
@@ -111,9 +122,11 @@ void section_processes(Report& report, const SessionOptions& options) {
   const LoadShape asked{16, 1, 120.0, options.load_seconds()};
   const LoadResult result = row(report, asked);
   // More are reported; nothing is promised of them on two cores.
-  if (!options.soak)
+  if (!options.soak) {
+    row(report, in_free_air(asked, options));
     for (const int processes : {32, 64})
       row(report, {processes, 1, 120.0, options.quick ? 5.0 : 15.0});
+  }
   bars(report, asked, result, options);
   const double tick_ms = result.ran ? 1e3 / result.server["tick_rate_hz"].get<double>() : 0.0;
   report.bar("16 processes at 120 Hz: increment to pose p99, ms",
