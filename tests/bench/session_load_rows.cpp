@@ -11,28 +11,13 @@ constexpr double kMissedBar_percent = 0.5;
 constexpr double kMemoryBar_mb_per_h = 1.0;
 constexpr double kBeyondTickBar_ms = 5.0;
 
-const std::vector<std::string> kColumns = {"behaviour",
-                                           "processes",
-                                           "users",
-                                           "rate Hz",
-                                           "seconds",
-                                           "increments",
-                                           "to pose p50 ms",
-                                           "p90",
-                                           "p99",
-                                           "max",
-                                           "to event p50 ms",
-                                           "p99",
-                                           "tick p50 us",
-                                           "p99",
-                                           "missed %",
-                                           "lost events",
-                                           "resyncs",
-                                           "missed pose batches",
-                                           "lost commands",
-                                           "lost increments",
-                                           "streams differing",
-                                           "load average"};
+const std::vector<std::string> kColumns = {
+    "behaviour",         "processes",           "users",           "rate Hz",
+    "seconds",           "increments",          "to pose p50 ms",  "to pose p90 ms",
+    "to pose p99 ms",    "to pose max ms",      "to event p50 ms", "to event p99 ms",
+    "tick p50 us",       "tick p99 us",         "missed %",        "lost events",
+    "resyncs",           "missed pose batches", "lost commands",   "lost increments",
+    "streams differing", "load average"};
 
 std::string name_of(const LoadShape& shape) {
   return shape.processes == 1
