@@ -77,6 +77,7 @@ TEST(MetricsText, TellsWhatTheSessionKnows) {
   loop.tick();
 
   const Exposition told = read(metrics_text(figures_of(loop, channel->counters(), "a\nb"), 4096));
+  const std::string whole = metrics_text(figures_of(loop, channel->counters(), "a"), 4096);
   const std::map<std::string, std::string> expected = {
       {"mortise_session_info{session=\"a\\nb\",policy=\"report\"}", "1"},
       {"mortise_ticks_total", "4"},
@@ -98,7 +99,7 @@ TEST(MetricsText, TellsWhatTheSessionKnows) {
       {"process_resident_memory_bytes", "4096"},
   };
   for (const auto& [name, value] : expected) {
-    ASSERT_TRUE(told.values.contains(name)) << name;
+    ASSERT_TRUE(told.values.contains(name)) << name << "\n" << whole;
     EXPECT_EQ(told.values.at(name), value) << name;
   }
   EXPECT_GT(std::stod(told.values.at("mortise_tick_seconds{quantile=\"1\"}")), 0.0);
