@@ -54,7 +54,7 @@ void sleep_s(double seconds) {
 
 BenchServer::BenchServer(const std::string& scenario, const std::vector<std::string>& more)
     : domain_(next_domain()) {
-  std::vector<std::string> arguments = {scenario_path(scenario),
+  std::vector<std::string> arguments = {open_to_all(folder_, scenario),
                                         "--domain",
                                         std::to_string(domain_),
                                         "--log",
