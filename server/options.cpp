@@ -63,7 +63,7 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
   app.add_flag("--live", o.live, "Status line: ticks, users, open clashes, tick time");
   app.add_option("--policy", o.policy, "Response to a real contact instead of the scenario's")
-      ->check(CLI::IsMember({"stop", "report"}));
+      ->check(CLI::IsMember({"stop", "slide", "report"}));
   app.add_option("--rate", o.rate_hz, "Ticks a second instead of the scenario's")
       ->check(CLI::Range(1.0, 1000.0));
   add_operation(app, o);

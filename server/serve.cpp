@@ -103,7 +103,7 @@ int serve(const ServerOptions& options) {
   Closing closing;
   closing.session = options.session;
   closing.scenario = start->source;
-  closing.policy = world.policy == Policy::kStop ? "stop" : "report";
+  closing.policy = name_of(world.policy);
   closing.log_file = log->file();
   for (std::size_t i = 0; i < start->scene.imports.size() && i < world.parts.size(); ++i) {
     if (!start->scene.imports[i].closed)

@@ -180,7 +180,10 @@ class Separation {
   void try_back() {
     if ((!query_.motion_a.moves() && !query_.motion_b.moves()) || query_.t_contact >= 1.0) return;
     const double t = query_.t_contact;
-    const double length = query_.motion_a.travel_upper_bound_mm(radius_mm_, t, 1.0) +
+    const double arm_mm = radius_mm_ + (query_.overlap.X_WA * center_A_ -
+                                        query_.motion_a.X_W1 * query_.motion_a.reference_P)
+                                           .norm();
+    const double length = query_.motion_a.travel_upper_bound_mm(arm_mm, t, 1.0) +
                           query_.motion_b.travel_upper_bound_mm(
                               radius_mm_ + (query_.overlap.X_WA * center_A_ -
                                             query_.motion_b.X_W1 * query_.motion_b.reference_P)

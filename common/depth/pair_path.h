@@ -1,4 +1,5 @@
 #pragma once
+#include "common/geometry/solid.h"
 #include "common/math/pose.h"
 #include "common/motion/motion.h"
 
@@ -14,7 +15,16 @@ struct Span {
 /// tick.
 struct PairPath {
   Motion motions[2];
-  double radius_mm[2];  ///< of the bounding spheres
+  double radius_mm[2];  ///< no point of a part is farther from its reference point
+
+  PairPath(const Motion& a, const Solid& solid_a, const Motion& b, const Solid& solid_b)
+      : motions{a, b}, radius_mm{reach_mm(a, solid_a), reach_mm(b, solid_b)} {}
+
+  static double reach_mm(const Motion& motion, const Solid& solid) {
+    const BoundingSphere& sphere = solid.sphere();
+    if (!motion.moves()) return sphere.radius_mm;
+    return (sphere.center_mm - motion.reference_P).norm() + sphere.radius_mm;
+  }
 
   /// Relative pose X_KS at t.
   Pose pose(int role, double t) const {

@@ -63,8 +63,7 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   }
   const bool begins = first.state == ContactState::kContact;
   const double t0 = begins ? first.t_clear : 0.0;
-  const PairPath path{{query.motion_a, query.motion_b},
-                      {at.a->sphere().radius_mm, at.b->sphere().radius_mm}};
+  const PairPath path(query.motion_a, *at.a, query.motion_b, *at.b);
   double step = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
   const bool widest_meet =
       reach_mm(*at.band_a, first.triangle_a) + reach_mm(*at.band_b, first.triangle_b) >=

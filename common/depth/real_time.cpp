@@ -66,8 +66,7 @@ class InterferenceSearch {
       : query_(query),
         at_(query.at_target),
         bodies_{Body(*at_.a, *at_.band_a), Body(*at_.b, *at_.band_b)},
-        path_{{query.motion_a, query.motion_b},
-              {at_.a->sphere().radius_mm, at_.b->sphere().radius_mm}} {
+        path_(query.motion_a, *at_.a, query.motion_b, *at_.b) {
     trivial_ = at_.band_a->trivial && at_.band_b->trivial;
     layer_ = trivial_ ? Layer::kMesh : layer;
     at_.X_WA = path_.motions[0].pose_at(0.0);

@@ -216,6 +216,10 @@ void each_counter(const StepCounters& counters, const Visit& visit) {
   visit("verdicts_real", counters.verdicts_by_class[3]);
   visit("stopped_parts", counters.stopped_parts);
   visit("rounds", counters.rounds);
+  visit("slid_parts", counters.slid_parts);
+  visit("slide_legs", counters.slide_legs);
+  visit("slide_holds", counters.slide_holds);
+  visit("slides_cut_short", counters.slides_cut_short);
   visit("box_tests", counters.box_tests);
   visit("triangle_tests", counters.triangle_tests);
   visit("depth_evaluations", counters.depth_evaluations);

@@ -159,6 +159,10 @@ Json json_of(const StepCounters& c) {
                   {"depth_evaluations", c.depth_evaluations}};
   json["stopped_parts"] = c.stopped_parts;
   json["rounds"] = c.rounds;
+  json["slides"] = {{"parts", c.slid_parts},
+                    {"legs", c.slide_legs},
+                    {"holds", c.slide_holds},
+                    {"cut_short", c.slides_cut_short}};
   json["parts_without_inside"] = c.parts_without_inside;
   json["not_examined"] = c.not_examined;
   return json;

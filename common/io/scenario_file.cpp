@@ -49,12 +49,10 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
       top.error("tick_rate_hz", "must lie between 1 and 1000");
   }
   if (const auto policy = top.text("policy")) {
-    if (*policy == "stop")
-      scenario.policy = Policy::kStop;
-    else if (*policy == "report")
-      scenario.policy = Policy::kReport;
+    if (const auto known = policy_named(*policy))
+      scenario.policy = *known;
     else
-      top.error("policy", "'" + *policy + "' is not known; write stop or report");
+      top.error("policy", "'" + *policy + "' is not known; write stop, slide or report");
   }
   if (const auto undeclared = read_deviation(top)) scenario.undeclared = *undeclared;
   if (const auto jump = top.positive_length_mm("max_jump")) scenario.max_jump_mm = *jump;

@@ -37,6 +37,9 @@ struct StepCounters {
   StageCount verdicts;  ///< regions judged -> regions with a class
   std::uint64_t verdicts_by_class[4] = {0, 0, 0, 0};
   std::uint64_t stopped_parts = 0, rounds = 0;
+  /// Policy slide: parts that went on along what they met, pieces of their paths, places they were
+  /// held by, and bodies that were left where they were because they had too many pieces.
+  std::uint64_t slid_parts = 0, slide_legs = 0, slide_holds = 0, slides_cut_short = 0;
   std::uint64_t box_tests = 0, triangle_tests = 0, depth_evaluations = 0;
   std::uint64_t parts_without_inside =
       0;  ///< open or non-manifold parts that took part: crossing is found, depth is not

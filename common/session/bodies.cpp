@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/math/rotation.h"
+
 namespace mortise {
 namespace {
 
@@ -26,6 +28,38 @@ Body body_of(const World& world, std::uint32_t index) {
                                                   part.solid->sphere().radius_mm);
   }
   return body;
+}
+
+Motion rigid_motion(const Pose& X_W0, const Vec3& center_W, const Displacement& by) {
+  const bool turns = !by.turn.vec().isZero(0.0);
+  Pose X_W1{X_W0.q, X_W0.p + by.shift_mm};
+  if (turns) {
+    X_W1.q = (by.turn * X_W0.q).normalized();
+    X_W1.p = center_W + by.shift_mm + by.turn * (X_W0.p - center_W);
+  }
+  Motion motion = linear_motion(X_W0, X_W1, X_W0.inverse() * center_W);
+  if (!motion.moves()) return motion;
+  motion.v_W = by.shift_mm;
+  motion.w_W = turns ? rotation_log(by.turn) : Vec3::Zero();
+  motion.axis_W = center_W;
+  return motion;
+}
+
+Displacement about(const Displacement& by, const Vec3& from_W, const Vec3& to_W) {
+  const Vec3 arm = to_W - from_W;
+  return {by.turn, by.shift_mm + (by.turn * arm - arm)};
+}
+
+Vec3 straight_point(const Body& body, const std::vector<Relation>& relations) {
+  for (const Relation& relation : relations) {
+    if (relation.a.kind == ElementKind::kPlane || relation.b.kind == ElementKind::kPlane ||
+        relation.distance_mm != 0.0)
+      continue;
+    if (relation.a.kind == ElementKind::kPoint) return relation.a.point;
+    const Vec3 along = relation.a.direction;
+    return relation.a.point + (body.reference_W - relation.a.point).dot(along) * along;
+  }
+  return body.reference_W;
 }
 
 std::vector<Relation> relations_of(const World& world, const Body& body) {

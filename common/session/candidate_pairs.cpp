@@ -56,6 +56,9 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
   pair.motion_a = motion_of(pair.move_a, a);
   pair.motion_b = motion_of(pair.move_b, b);
   pair.placed = !pair.motion_a.moves() && !pair.motion_b.moves();
+  pair.together = a.group && a.group == b.group && pair.move_a >= 0 && pair.move_b >= 0 &&
+                  !work.moves[static_cast<std::size_t>(pair.move_a)].placed &&
+                  !work.moves[static_cast<std::size_t>(pair.move_b)].placed;
 }
 
 }  // namespace

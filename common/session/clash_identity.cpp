@@ -152,6 +152,7 @@ void begin(const World& world, SessionState& state, const PairWork& pair, const 
 // The clashes of one pair that were open before the tick: change, end, or go on in silence.
 void update(const World& world, SessionState& state, const PairWork* pair,
             std::vector<OpenClash>& open, StepReport& report) {
+  if (pair && pair->together) return;  // they stand to each other as before
   const bool known = pair && pair->asked;
   for (std::size_t c = 0; c < open.size(); ++c) {
     const SeenRegion* seen = nullptr;

@@ -1,3 +1,4 @@
+#include "common/session/guidance.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
@@ -22,6 +23,12 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
     state.broad_phase->set_box(move.part, resting_box(world, state, move.part));
   }
   state.placed.clear();
+  if (world.guides.empty()) return;
+  std::vector<PartId> moved, held_back;
+  for (const Move& move : work.moves)
+    if (move.motion.moves())
+      (move.stopped || move.sliding >= 0 ? held_back : moved).push_back(world.parts[move.part].id);
+  settle_guides(world, moved, held_back);
 }
 
 }  // namespace mortise

@@ -44,7 +44,7 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
   pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
   pair.t_contact = touch.touched_at_start ? 0.0 : touch.t_contact;
   pair.t_enter = pair.undecided ? touch.t_clear : touch.t_contact;
-  if (world.policy != Policy::kStop) return;
+  if (!holds_back(world.policy)) return;
   double t_stop = pair.t_enter;
   if (pair.no_inside())
     t_stop = pair.undecided ? touch.t_clear : 1.0;
@@ -74,7 +74,7 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
   if (pair.meets) pair.t_contact = touch.t_contact;
   pair.t_enter = pair.entered ? near.t_contact : 0.0;
-  if (world.policy == Policy::kStop)
+  if (holds_back(world.policy))
     pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time_with_bands(pair, touch, ccd);
 }
 
@@ -129,6 +129,10 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.t_contact = pair.t_stop = 1.0;
   pair.never_real = false;
   pair.t_enter = pair.apart_at_end_mm = 0.0;
+  if (pair.together) {
+    pair.asked = false;
+    return;
+  }
   if (pair.placed) {  // no motion: only how it stands
     pair.near = true;
     return;

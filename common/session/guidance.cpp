@@ -188,6 +188,19 @@ void rest_guides_of(World& world, PartId part) {
     if (guide.constraint.held.part == part) guide.follows = false;
 }
 
+void settle_guides(World& world, std::span<const PartId> moved, std::span<const PartId> held_back) {
+  for (Guide& guide : world.guides) {
+    const PartId part = guide.constraint.held.part;
+    const auto among = [&](std::span<const PartId> parts) {
+      return std::find(parts.begin(), parts.end(), part) != parts.end();
+    };
+    if (among(held_back))
+      guide.follows = false;
+    else if (among(moved))
+      guide.follows = true;
+  }
+}
+
 GuidedState guided_state(const World& world, PartId part) {
   if (!world.find(part)) return {};
   const Body body = body_of(world, part.value - 1);

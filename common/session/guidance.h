@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ std::vector<ConstraintId> drop_constraints_of(World& world, PartId part);
 
 /// A part that was put somewhere (undo, reset) stays there until it is pushed.
 void rest_guides_of(World& world, PartId part);
+
+/// After a tick: a guided part that got where it went follows its constraints from now on; one that
+/// was held back waits to be pushed.
+void settle_guides(World& world, std::span<const PartId> moved, std::span<const PartId> held_back);
 
 /// How far the part (its group) is off its constraints, and what they leave.
 struct GuidedState {

@@ -20,9 +20,11 @@ double relative_travel_upper_bound_mm(const BudgetQuery& query) {
   const Motion& a = query.motion_a;
   const Motion& b = query.motion_b;
   if (a.w_W.isZero(0.0) && b.w_W.isZero(0.0)) return (a.v_W - b.v_W).norm();
-  // The linear path keeps the centre of the bounding sphere straight: its radius bounds the arm.
-  return a.travel_upper_bound_mm(query.a->sphere().radius_mm, 0.0, 1.0) +
-         b.travel_upper_bound_mm(query.b->sphere().radius_mm, 0.0, 1.0);
+  const auto travel_mm = [](const Motion& motion, const BoundingSphere& sphere) {
+    const double arm_mm = (sphere.center_mm - motion.reference_P).norm() + sphere.radius_mm;
+    return motion.travel_upper_bound_mm(arm_mm, 0.0, 1.0);
+  };
+  return travel_mm(a, query.a->sphere()) + travel_mm(b, query.b->sphere());
 }
 
 double apart_lower_bound_mm(const PairMemo& memo, const BudgetQuery& query) {

@@ -1,6 +1,5 @@
 #include "common/session/relation.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "common/base/check.h"
 #include "common/base/constants.h"
+#include "common/math/least_squares.h"
 #include "common/math/rotation.h"
 
 namespace mortise {
@@ -238,6 +238,13 @@ Element moved(const Element& element, const Pose& X) {
   return {element.kind, X * element.point, X.q * element.direction};
 }
 
+std::vector<Eigen::Matrix<double, 6, 1>> guide_rows(const GuideQuery& query) {
+  const Rows rows = rows_of(query, query.wanted);
+  std::vector<Eigen::Matrix<double, 6, 1>> result;
+  for (int i = 0; i < rows.count; ++i) result.emplace_back(rows.J.row(i).transpose());
+  return result;
+}
+
 double violation_mm(const GuideQuery& query) { return rows_of(query, query.wanted).largest(); }
 
 GuidedDisplacement guided(const GuideQuery& query) {
@@ -256,15 +263,13 @@ GuidedDisplacement guided(const GuideQuery& query) {
       result.residual_mm = off_mm;
     }
     // 2. a step of least norm
-    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, 6>;
-    const Matrix J = rows.J.topRows(rows.count);
-    Eigen::JacobiSVD<Matrix> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(kGuideRankShare);
-    result.freedom = 6 - static_cast<int>(svd.rank());
+    int rank = 0;
+    const Eigen::VectorXd z = least_norm_solution(rows.J.topRows(rows.count),
+                                                  -rows.r.head(rows.count), kGuideRankShare, &rank);
+    result.freedom = 6 - rank;
     const bool stuck = step > 3 && off_mm > 0.9 * best_mm;
     best_mm = std::min(best_mm, off_mm);
     if (off_mm == 0.0 || stuck) break;
-    const Eigen::Matrix<double, 6, 1> z = svd.solve(-rows.r.head(rows.count));
     Vec3 turn = z.tail<3>() / query.lever_mm;
     if (turn.norm() > 1.0) turn.normalize();
     at.shift_mm += z.head<3>();

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <vector>
 
 #include "common/base/constants.h"
 #include "common/base/result.h"
@@ -72,6 +73,10 @@ struct GuidedDisplacement {
 /// other ends in the least-squares middle, with residual_mm > 0. At most kMostRelations relations.
 GuidedDisplacement guided(const GuideQuery& query);
 inline constexpr std::size_t kMostRelations = 8;
+
+/// What stays zero to first order, row by row over (shift, lever * turn), at the wanted
+/// displacement.
+std::vector<Eigen::Matrix<double, 6, 1>> guide_rows(const GuideQuery& query);
 
 /// Largest violation of the relations at the wanted displacement, mm, turns times the lever.
 double violation_mm(const GuideQuery& query);

@@ -2,6 +2,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/evaluation/tolerance.h"
@@ -15,7 +16,25 @@ struct SourceLine {
   int line = 0;
 };
 
-enum class Policy : std::uint8_t { kUnknown = 0, kStop, kReport };
+/// What happens to a part at a real contact: it is left there (stop), the rest of its increments
+/// goes along the contact (slide), or it is only told (report).
+enum class Policy : std::uint8_t { kUnknown = 0, kStop, kReport, kSlide };
+
+constexpr std::string_view name_of(Policy policy) {
+  if (policy == Policy::kStop) return "stop";
+  if (policy == Policy::kReport) return "report";
+  return policy == Policy::kSlide ? "slide" : "unknown";
+}
+/// None when there is no policy of that name.
+constexpr std::optional<Policy> policy_named(std::string_view name) {
+  for (const Policy policy : {Policy::kStop, Policy::kReport, Policy::kSlide})
+    if (name_of(policy) == name) return policy;
+  return std::nullopt;
+}
+/// Is nobody let into a real collision?
+constexpr bool holds_back(Policy policy) {
+  return policy == Policy::kStop || policy == Policy::kSlide;
+}
 
 /// What is taken for known of surfaces of which nothing is declared.
 enum class UndeclaredSurface : std::uint8_t {

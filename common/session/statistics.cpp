@@ -45,6 +45,10 @@ void accumulate(StepCounters& into, const StepCounters& from) {
   for (int i = 0; i < 4; ++i) into.verdicts_by_class[i] += from.verdicts_by_class[i];
   into.stopped_parts += from.stopped_parts;
   into.rounds += from.rounds;
+  into.slid_parts += from.slid_parts;
+  into.slide_legs += from.slide_legs;
+  into.slide_holds += from.slide_holds;
+  into.slides_cut_short += from.slides_cut_short;
   into.box_tests += from.box_tests;
   into.triangle_tests += from.triangle_tests;
   into.depth_evaluations += from.depth_evaluations;

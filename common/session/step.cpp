@@ -15,7 +15,7 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters&
     const PairWork& pair = work.pairs[i];
     accumulate(counters, pair.counts);
     if (!pair.asked) {
-      ++counters.pairs_budget;
+      ++(pair.together ? counters.pairs_still : counters.pairs_budget);
       continue;
     }
     ++counters.pairs.out;

@@ -1,10 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "common/session/bodies.h"
 #include "common/session/judgement.h"
 #include "common/session/session_state.h"
 #include "common/session/step.h"
+#include "common/session/tangent_cone.h"
 #include "common/session/worker_pool.h"
 
 namespace mortise {
@@ -19,6 +22,32 @@ struct Move {
   double stop = 1.0;        ///< time at which the response ends it
   bool stopped = false;
   Pose X_WP_end;  ///< after the response
+  GroupId group;  ///< moves as one with the other parts of it
+  /// The piece of its path that it is on: `motion`, or, where it slides, what goes on from time
+  /// leg_start of the tick to its end.
+  Motion leg;
+  double leg_start = 0.0;
+  std::int32_t sliding = -1;  ///< index among the sliding bodies; -1: it does not slide
+};
+
+/// A body on its way along what it met (policy slide).
+struct SlidingBody {
+  Body body;                        ///< at the start of the tick
+  std::vector<std::int32_t> moves;  ///< of its parts
+  std::vector<Relation> relations;  ///< that guide it, at the start of the tick
+  std::vector<Hold> holds;          ///< of pairs with bands, as they are at the start of the leg
+  Twist wanted, given;              ///< of the present leg, whole; about its centre
+  int legs = 0, stalls = 0;
+  double look = 2.0;  ///< time at which what holds it lets go; 2: it does not
+  bool look_due = false;
+};
+
+/// What a pair was asked over an earlier piece of the tick, to be judged in place of the last one.
+struct AskedEarlier {
+  double tau = 0.0, t_contact = 1.0, t_enter = 0.0, t_stop = 1.0;
+  Motion motion_a, motion_b;
+  bool entered = false, meets = false, overlaps_at_start = false;
+  double t_end = 1.0;  ///< of the tick: until then
 };
 
 /// One region of a pair as judged in this tick, and the open clash that it continues.
@@ -60,6 +89,11 @@ struct PairWork {
   double apart_at_end_mm = 0.0;  ///< lower bound, when neither near nor touching
   bool blocks = false;           ///< the response stopped a part because of this pair
 
+  bool together = false;  ///< both move as one: what was said of them stays
+  double t_left = 2.0;    ///< of the tick: the parts went other ways from then on; 2: they did not
+  std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
+                                                ///< back; near, and left again
+
   // Stage 4.
   Judgement judgement;
   std::vector<SeenRegion> seen;
@@ -94,6 +128,7 @@ struct Scratch::Impl {
   std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
   std::size_t pair_count = 0;
   std::vector<std::uint32_t> again;  ///< pairs to ask again in a round of the response
+  std::vector<SlidingBody> sliding;
 };
 
 // The stages, in the order of the tick. Each reads what the ones before have written.

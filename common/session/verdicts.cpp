@@ -73,6 +73,7 @@ double end_of(const Scratch::Impl& work, const PairWork& pair) {
 }
 
 PairMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
+  if (pair.t_left < 1.0) return up_to(as_asked(pair), (pair.t_left - pair.tau) / (1.0 - pair.tau));
   PairMotion motion = as_asked(pair);
   motion.a = as_moved(work, pair.move_a, pair.motion_a, pair.tau);
   motion.b = as_moved(work, pair.move_b, pair.motion_b, pair.tau);
@@ -164,6 +165,8 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
         pair.seen.push_back(std::move(*region));
       }
   }
+  if (pair.t_left < 1.0)
+    for (SeenRegion& seen : pair.seen) seen.passing = true;
   double distance_mm = kInfinity;
   if (pair.open && pair.judgement.overlap.regions.empty()) {
     const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,

@@ -183,7 +183,7 @@ Snapshot snapshot_of(const World& world) {
   snapshot.session = world.name;
   snapshot.tick = world.tick;
   snapshot.tick_rate_hz = world.tick_rate_hz;
-  snapshot.policy = world.policy == Policy::kReport ? "report" : "stop";
+  snapshot.policy = name_of(world.policy);
   for (const Part& part : world.parts)
     snapshot.parts.push_back({part.id, part.name, part.solid->hash(), part.moving, part.holder,
                               part.X_WP, part.solid->sphere().center_mm,

@@ -176,7 +176,7 @@ std::vector<Fault> faults() {
       {head("parts: 5\n"), 3, "expected a list"},
       {"name: a\nunits: furlong\n" + good.substr(18), 2, "write mm, cm, m, in or um"},
       {good + "polcy: stop\n", 7, "did you mean 'policy'"},
-      {good + "policy: maybe\n", 7, "write stop or report"},
+      {good + "policy: maybe\n", 7, "write stop, slide or report"},
       {good + "policy: stop\npolicy: stop\n", 8, "stands here twice"},
       {good + "tick_rate_hz: fast\n", 7, "expected a number"},
       {good + "tick_rate_hz: 0\n", 7, "between 1 and 1000"},
