@@ -112,6 +112,15 @@ class Places {
   }
 
  private:
+  // Triangles that share a corner show it once.
+  void add(std::size_t place, std::vector<std::size_t>& chosen) const {
+    for (const std::size_t other : chosen)
+      if (other == place ||
+          (places_[other].point_W - places_[place].point_W).norm() <= 1e-3 * reach_mm_)
+        return;
+    chosen.push_back(place);
+  }
+
   void keep_outermost(const std::vector<std::size_t>& alike,
                       std::vector<ContactPlace>& kept) const {
     const Across across(places_[alike.front()].normal_W);
@@ -123,13 +132,13 @@ class Places {
       for (const std::size_t j : alike)
         if (way.dot(across.flat(places_[j].point_W)) > way.dot(across.flat(places_[best].point_W)))
           best = j;
-      if (std::find(chosen.begin(), chosen.end(), best) == chosen.end()) chosen.push_back(best);
+      add(best, chosen);
     }
     // And the deepest, wherever it is.
     std::size_t deepest = alike.front();
     for (const std::size_t j : alike)
       if (places_[j].gap_mm < places_[deepest].gap_mm) deepest = j;
-    if (std::find(chosen.begin(), chosen.end(), deepest) == chosen.end()) chosen.push_back(deepest);
+    add(deepest, chosen);
     for (const std::size_t j : chosen) kept.push_back(places_[j]);
   }
 

@@ -1,10 +1,14 @@
 #include <algorithm>
 
+#include "common/base/constants.h"
 #include "common/session/slide.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
 namespace {
+
+// How far a slide sets out before the place where something holds it, mm.
+constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm;
 
 bool active(const Scratch::Impl& work, std::int32_t move) {
   if (move < 0) return false;
@@ -71,8 +75,9 @@ class Response {
       if (t >= 1.0) break;
       ++counters_.rounds;
       find_responding(t);
-      for (const std::int32_t move : responding_) respond(move, t);
-      ask_again(t);
+      changed_at_ = backed_off(t);
+      for (const std::int32_t move : responding_) respond(move, changed_at_);
+      ask_again(changed_at_);
     }
     for (std::size_t i = 0; i < work_.pair_count; ++i) settle(work_.pairs[i]);
   }
@@ -102,6 +107,20 @@ class Response {
       for (const std::int32_t move : {work_.pairs[i].move_a, work_.pairs[i].move_b})
         if (move >= 0 && move_at(move).sliding == number) t = std::min(t, work_.pairs[i].t_stop);
     return t;
+  }
+
+  // A part that is to turn on what it touches must not stand so deep in it as first contact lets
+  // it: a slide sets out from a little before, though never from before what happened last.
+  double backed_off(double t) {
+    if (world_.policy != Policy::kSlide) return t;
+    double fastest_mm = 0.0;
+    for (const std::int32_t index : responding_) {
+      const Move& move = move_at(index);
+      const double radius_mm = world_.parts[move.part].solid->sphere().radius_mm;
+      fastest_mm = std::max(
+          fastest_mm, move.leg.travel_upper_bound_mm(radius_mm, 0.0, 1.0) / (1.0 - move.leg_start));
+    }
+    return fastest_mm > 0.0 ? std::max(changed_at_, t - kBackOff_mm / fastest_mm) : t;
   }
 
   // The movers of every pair of that time, one for each body, by index.
@@ -187,6 +206,7 @@ class Response {
   Scratch::Impl& work_;
   StepCounters& counters_;
   std::vector<std::int32_t> responding_;
+  double changed_at_ = 0.0;  ///< time of the last round
 };
 
 }  // namespace

@@ -160,6 +160,22 @@ std::vector<Relation> relations_at(const SlidingBody& sliding, const Pose& X_W0,
   return relations;
 }
 
+// A turning point leaves its tangent by half its arm times the turn squared: by so much it has to
+// get away from what holds it, or the leg would end before it has begun.
+TangentMove on_arc(TangentQuery query, double& lift_mm) {
+  lift_mm = 0.0;
+  const TangentMove straight = on_tangent_cone(query);
+  const double turn_rad = straight.twist.turn_rad.norm();
+  if (!straight.possible || turn_rad == 0.0) return straight;
+  for (Hold& hold : query.holds) {
+    const double off_mm = 0.55 * turn_rad * turn_rad * (hold.point_W - query.center_W).norm();
+    hold.gap_mm -= off_mm;
+    lift_mm = std::max(lift_mm, off_mm);
+  }
+  const TangentMove move = on_tangent_cone(query);
+  return move.possible ? move : straight;
+}
+
 // Puts the body on its next leg, kept exactly on what guides it.
 void set_out(const World& world, Scratch::Impl& work, SlidingBody& sliding, const Vec3& center_W,
              const std::vector<Relation>& relations, double t) {
@@ -225,7 +241,7 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
   query.holds.insert(query.holds.end(), sliding.holds.begin(), sliding.holds.end());
   const std::vector<Relation> relations = relations_at(sliding, lead.motion.X_W0, X_Wt);
   if (!relations.empty()) query.guides = guide_rows({relations, center_W, query.lever_mm, {}});
-  const TangentMove move = on_tangent_cone(query);
+  const TangentMove move = on_arc(query, sliding.lift_mm);
   counters.slide_holds += query.holds.size();
   if (!move.possible ||
       travel_mm(move.twist, sliding.body.radius_mm) < (banded ? kLeastBandLeg_mm : kLeastLeg_mm))
@@ -249,9 +265,10 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& slid
   Twist away{sliding.wanted.shift_mm - sliding.given.shift_mm,
              sliding.wanted.turn_rad - sliding.given.turn_rad};
   const double length_mm = travel_mm(away, sliding.body.radius_mm);
-  if (length_mm < kTry_mm) return;
-  away.shift_mm *= kTry_mm / length_mm;
-  away.turn_rad *= kTry_mm / length_mm;
+  const double try_mm = kTry_mm + 2.0 * sliding.lift_mm;
+  if (length_mm < try_mm) return;
+  away.shift_mm *= try_mm / length_mm;
+  away.turn_rad *= try_mm / length_mm;
   const Displacement tried = displacement_of(away);
 
   std::vector<PairWork*> holding;
