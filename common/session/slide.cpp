@@ -10,6 +10,8 @@ namespace mortise {
 namespace {
 
 constexpr int kMostLegs = 16;
+// With bands every leg is a search for the time at which it becomes real.
+constexpr int kMostBandLegs = 4;
 // Legs in a row that end where they begin: what holds the body is not known well enough.
 constexpr int kMostStalls = 4;
 constexpr double kStalled = 1e-9;  // share of the tick
@@ -29,8 +31,8 @@ constexpr double kLeastBandLeg_mm = 10.0 * kBandLift_mm;
 constexpr double kTry_mm = 2e-3;
 constexpr double kLookEvery_mm = 0.01;
 constexpr int kMostLooks = 64;
-constexpr int kMostBandLooks = 6;
-constexpr std::uint64_t kHoldWorkCap = 2'000;
+constexpr int kMostBandLooks = 3;
+constexpr std::uint64_t kHoldWorkCap = 1'000;
 
 const Move& move_at(const Scratch::Impl& work, std::int32_t index) {
   return work.moves[static_cast<std::size_t>(index)];
@@ -218,16 +220,23 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
     const Side side = side_of(pair, work, number);
-    if (!side.of_body || !pair.asked || pair.placed || pair.no_inside()) continue;
+    if (!side.of_body || pair.placed || pair.no_inside()) continue;
+    // A leg that only leans on a part is free of it: what held the body before is looked at again.
+    if (!pair.asked && !pair.blocked) continue;
     if (pair.blocks && pair.undecided) return false;  // nothing is known beyond
     const Pose X_WA = pose_at(work, world, pair.move_a, pair.a, t);
     const Pose X_WB = pose_at(work, world, pair.move_b, pair.b, t);
     if (pair.plain() && !pair.overlaps_at_start) {
-      if (pair.near || pair.touching) add_plain_holds(pair, X_WA, X_WB, side.a, ccd, plain);
+      add_plain_holds(pair, X_WA, X_WB, side.a, ccd, plain);
     } else {
       banded = true;
       if (pair.blocks) add_banded_holds(pair, X_WA, X_WB, side.a, ccd, sliding.holds);
     }
+  }
+
+  if (banded && sliding.legs >= kMostBandLegs) {
+    ++counters.slides_cut_short;
+    return false;
   }
 
   // 2. what they leave of the rest of the increments
@@ -277,7 +286,6 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& slid
     PairWork& pair = work.pairs[i];
     if (!side_of(pair, work, number).of_body || pair.placed || pair.no_inside()) continue;
     if (!pair.asked && !pair.blocked) continue;
-    if (!pair.near && !pair.touching && !pair.blocked) continue;
     holding.push_back(&pair);
     banded |= !pair.plain();
   }

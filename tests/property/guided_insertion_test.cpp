@@ -16,7 +16,7 @@ namespace mortise {
 namespace {
 
 constexpr double kTremor_mm = 0.2, kTremor_rad = 0.5 * 3.14159265358979323846 / 180.0;
-constexpr int kTicks = 45;
+constexpr int kTicks = 32;
 // The bearing stands from z = 2.5 to 13.5; the hand goes from above it to 11 mm inside.
 constexpr double kFrom_mm = 16.0, kGoal_mm = 2.5, kInserted_mm = 3.0;
 
