@@ -201,7 +201,7 @@ SessionFigures figures_of(const TickLoop& loop, const ChannelCounters& channel,
   const TickMetrics& metrics = loop.metrics();
   SessionFigures f;
   f.session = session;
-  f.policy = world.policy == Policy::kReport ? "report" : "stop";
+  f.policy = name_of(world.policy);
   f.tick_rate_hz = world.tick_rate_hz;
   f.seconds = loop.seconds();
   f.tick = world.tick;
