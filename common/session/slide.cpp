@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/broadphase/swept_box.h"
 #include "common/ccd/contact_places.h"
 #include "common/math/rotation.h"
 
@@ -179,21 +180,33 @@ TangentMove on_arc(TangentQuery query, double& lift_mm) {
 }
 
 // Puts the body on its next leg, kept exactly on what guides it.
-void set_out(const World& world, Scratch::Impl& work, SlidingBody& sliding, const Vec3& center_W,
+bool set_out(const World& world, Scratch::Impl& work, SlidingBody& sliding, const Vec3& center_W,
              const std::vector<Relation>& relations, double t) {
   Displacement by = displacement_of(sliding.given);
   if (!relations.empty())
     by = guided({relations, center_W, std::max(sliding.body.radius_mm, 1e-3), by}).displacement;
+  std::vector<Motion> legs;
   for (const std::int32_t index : sliding.moves) {
-    Move& move = work.moves[static_cast<std::size_t>(index)];
+    const Move& move = move_at(work, index);
     const Pose X_Wt = pose_at(work, world, index, move.part, t);
-    move.leg = rigid_motion(X_Wt, center_W, by);
-    move.leg.reference_P = X_Wt.inverse() * center_W;
+    Motion leg = rigid_motion(X_Wt, center_W, by);
+    leg.reference_P = X_Wt.inverse() * center_W;
+    const Solid& solid = *world.parts[move.part].solid;
+    const Box box = swept_box({solid.bounds(), solid.sphere()}, leg);
+    if ((box.lo.array() < move.reach.lo.array()).any() ||
+        (box.hi.array() > move.reach.hi.array()).any())
+      return false;  // what is there was not looked for
+    legs.push_back(leg);
+  }
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    Move& move = work.moves[static_cast<std::size_t>(sliding.moves[i])];
+    move.leg = legs[i];
     move.leg_start = t;
     move.X_WP_end = move.leg.X_W1;
   }
   sliding.look_due = true;
   sliding.look = 2.0;
+  return true;
 }
 
 }  // namespace
@@ -257,12 +270,15 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
     return false;
 
   // 3. on its way
+  sliding.wanted = query.wanted;
+  sliding.given = move.twist;
+  if (!set_out(world, work, sliding, center_W, relations, t)) {
+    ++counters.slides_cut_short;
+    return false;
+  }
   if (sliding.legs == 0) counters.slid_parts += sliding.moves.size();
   ++sliding.legs;
   ++counters.slide_legs;
-  sliding.wanted = query.wanted;
-  sliding.given = move.twist;
-  set_out(world, work, sliding, center_W, relations, t);
   return true;
 }
 

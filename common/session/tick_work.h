@@ -27,6 +27,7 @@ struct Move {
   /// leg_start of the tick to its end.
   Motion leg;
   double leg_start = 0.0;
+  Box reach;                  ///< no pair is asked for what the part does outside of it
   std::int32_t sliding = -1;  ///< index among the sliding bodies; -1: it does not slide
 };
 
@@ -37,7 +38,7 @@ struct SlidingBody {
   std::vector<Relation> relations;  ///< that guide it, at the start of the tick
   std::vector<Hold> holds;          ///< of pairs with bands, as they are at the start of the leg
   Twist wanted, given;              ///< of the present leg, whole; about its centre
-  double lift_mm = 0.0;  ///< by which a turning leg gets away from what holds it
+  double lift_mm = 0.0;             ///< by which a turning leg gets away from what holds it
   int legs = 0, stalls = 0;
   double look = 2.0;  ///< time at which what holds it lets go; 2: it does not
   bool look_due = false;

@@ -61,7 +61,7 @@ void tell(const char* what, const Outcome& o) {
 
 TEST(SlideProperty, OneMoverNeverEndsDeeperThanUnderStop) {
   Outcome outcome;
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(12)); ++seed)
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(24)); ++seed)
     ASSERT_NO_FATAL_FAILURE(play(seed, 50, 1, outcome));
   tell("one mover", outcome);
   EXPECT_GT(outcome.slid, outcome.pushes / 8);
