@@ -12,6 +12,7 @@
 #include "common/io/mcap_format.h"
 #include "common/io/mcap_reader.h"
 #include "common/io/mcap_writer.h"
+#include "tests/fuzz/mutated.h"
 #include "tests/support/effort.h"
 #include "tests/unit/io/log_samples.h"
 
@@ -29,38 +30,6 @@ std::string sample_log(bool compress) {
   const test::TemporaryFile file("fuzz_seed.mcap");
   const LogOptions options{.compress = compress, .chunk_bytes = 2048};
   return test::write_sample(file.path(), kTicks, options) ? bytes_of(file.path()) : "";
-}
-
-// One to four changes: bits, bytes, runs, lengths, cuts, insertions, and repeated pieces.
-std::string mutated(std::string bytes, std::mt19937_64& random) {
-  const auto below = [&](std::size_t n) { return n == 0 ? 0 : random() % n; };
-  for (std::uint64_t changes = 1 + below(4); changes > 0 && !bytes.empty(); --changes) {
-    const std::size_t at = below(bytes.size());
-    switch (below(7)) {
-      case 0:
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-        break;
-      case 1:
-        bytes[at] = static_cast<char>(below(256));
-        break;
-      case 2:  // an interesting number where a length may be
-        for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i)
-          bytes[i] = static_cast<char>(below(2) == 0 ? 0x00 : 0xff);
-        break;
-      case 3:
-        bytes.resize(at);
-        break;
-      case 4:
-        bytes.insert(at, below(64), static_cast<char>(below(256)));
-        break;
-      case 5:
-        bytes.erase(at, below(256));
-        break;
-      default:
-        bytes.insert(at, bytes.substr(below(bytes.size()), below(2048)));
-    }
-  }
-  return bytes;
 }
 
 // The checksums would keep most mutations out of the decoders: this handler takes the bytes of the
@@ -90,7 +59,7 @@ Outcome run(const std::string& seed_log, std::uint64_t seed, int count, bool che
   const test::TemporaryFile file("fuzz.mcap");
   Outcome outcome;
   for (int i = 0; i < count; ++i) {
-    const std::string bytes = mutated(seed_log, random);
+    const std::string bytes = test::mutated(seed_log, random);
     std::ofstream(file.path(), std::ios::binary) << bytes;
     const auto log = read_session_log(file.path());
     if (!log) {

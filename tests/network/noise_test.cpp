@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstring>
 #include <random>
 
@@ -92,8 +93,8 @@ Datagram mutate(Datagram datagram, std::mt19937_64& random) {
   return datagram;
 }
 
-TEST(NetworkNoise, ServerOutlivesMutatedDatagrams) {
-  const DdsOptions options = options_for_test("ServerOutlivesMutatedDatagrams");
+TEST(NetworkNoise, ServerAndClientsOutliveMutatedDatagrams) {
+  const DdsOptions options = options_for_test("ServerAndClientsOutliveMutatedDatagrams");
   const int port = 7402 + 250 * options.domain;
   std::mt19937_64 random(31337);
   std::vector<Datagram> seeds;
@@ -112,6 +113,7 @@ TEST(NetworkNoise, ServerOutlivesMutatedDatagrams) {
 
   // The server is a child: were it to die, this test says so and does not die with it.
   Child server("server", options, "noisy", effort(60));
+  Child victim("client", options, "victim", effort(60));
   auto channel = open_client_channel(options);
   ASSERT_TRUE(channel) << channel.error().text;
   Client client(**channel);
@@ -120,21 +122,32 @@ TEST(NetworkNoise, ServerOutlivesMutatedDatagrams) {
   const auto turn = [&] { events += client.poll().events.size(); };
   ASSERT_TRUE(until(
       8.0, [&] { return client.join_state(0) == JoinState::kJoined; }, turn));
+  const auto users = [&] { return client.users().size(); };
+  ASSERT_TRUE(until(
+      8.0, [&] { return users() == 2; }, turn))
+      << "the victim has not joined";
   Socket mouth(0);
-  const int kDatagrams = effort(20'000);
+  // Half to the server's two ports, half to those that the first participants of a domain take: the
+  // victim's, and this process's own.
+  const int kDatagrams = effort(25'000);
   for (int i = 0; i < kDatagrams; ++i) {
-    mouth.send(mutate(seeds[random() % seeds.size()], random),
-               port + static_cast<int>(random() % 2));
+    const int to = i % 2 == 0 ? port + static_cast<int>(random() % 2)
+                              : port + 8 + static_cast<int>(random() % 6);
+    mouth.send(mutate(seeds[random() % seeds.size()], random), to);
     if (i % 200 == 0) {
       turn();
       sleep_s(0.01);  // or the socket's buffer overflows, and nothing is tested
     }
   }
+  std::printf("%d mutated datagrams; dropped by this process's guard: %llu\n", kDatagrams,
+              static_cast<unsigned long long>((*channel)->counters().guard_dropped));
+  EXPECT_GT((*channel)->counters().guard_dropped, 0u) << "the noise does not reach the clients";
   const std::uint64_t before = events;
   ASSERT_TRUE(until(
       5.0, [&] { return events > before + 3; }, turn))
       << "the server is gone";
   EXPECT_EQ(server.wait(0.1), -1);  // still running
+  EXPECT_EQ(victim.wait(0.1), -1);
   client.add_user("bert", "designer");
   EXPECT_TRUE(until(
       5.0, [&] { return client.join_state(1) == JoinState::kJoined; }, turn));

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// What a fuzzer feeds: each takes any bytes, and ends the process (MORTISE_CHECK) when something
+/// that must hold for all inputs does not.
+namespace mortise::test {
+
+/// A datagram for the guard; and, behind a first byte that picks the type, a serialized sample for
+/// the door, as SafeType and from_wire() meet it. Says whether it came through the door.
+bool fuzz_wire(std::span<const std::uint8_t> input);
+
+/// A script of what clients send, for the inbox. Says whether an increment was taken.
+bool fuzz_inbox(std::span<const std::uint8_t> input);
+
+/// Good inputs, made by our own writers: the start of all mutations.
+std::vector<std::string> wire_seeds();
+std::vector<std::string> inbox_seeds();
+
+}  // namespace mortise::test

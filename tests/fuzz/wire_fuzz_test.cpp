@@ -1,0 +1,79 @@
+// The door under broken bytes: a bounded run of the fuzz targets, from their seeds and the kept
+// corpus, with mutations of our own. The same targets run under libFuzzer: see CMakeLists.txt.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/fuzz/mutated.h"
+#include "tests/fuzz/targets.h"
+#include "tests/support/effort.h"
+
+namespace mortise::test {
+namespace {
+
+using Target = bool (*)(std::span<const std::uint8_t>);
+
+bool feed(Target target, const std::string& bytes) {
+  return target({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+/// Seeds of today, and what was kept: inputs that once went a new way.
+std::vector<std::string> corpus(const std::string& name, std::vector<std::string> seeds) {
+  const auto folder = std::filesystem::path(MORTISE_SOURCE_DIR) / "tests/fuzz/corpus" / name;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  EXPECT_FALSE(files.empty()) << folder;
+  for (const auto& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    seeds.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  }
+  return seeds;
+}
+
+void run(Target target, const std::vector<std::string>& from, int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  int passed = 0;
+  for (const std::string& bytes : from) (void)feed(target, bytes);
+  for (int i = 0; i < count; ++i) {
+    std::string bytes = mutated(from[random() % from.size()], random);
+    if (random() % 4 == 0) bytes = mutated(std::move(bytes), random);
+    passed += feed(target, bytes);
+  }
+  std::printf("%d mutated inputs, %d of them pass\n", count, passed);
+  EXPECT_GT(passed, count / 100) << "hardly anything gets through: the run tests only the refusals";
+  EXPECT_LT(passed, count - count / 20) << "hardly anything is refused: the mutations are too mild";
+}
+
+TEST(WireFuzz, EverySeedPasses) {
+  for (const std::string& seed : wire_seeds()) EXPECT_TRUE(feed(fuzz_wire, seed)) << int{seed[0]};
+  for (const std::string& seed : inbox_seeds()) EXPECT_TRUE(feed(fuzz_inbox, seed));
+}
+
+/// Run by hand when the wire has changed: puts today's seeds into the kept corpus.
+TEST(WireFuzz, DISABLED_WriteSeeds) {
+  const auto write = [](const std::string& name, const std::vector<std::string>& seeds) {
+    const auto folder = std::filesystem::path(MORTISE_SOURCE_DIR) / "tests/fuzz/corpus" / name;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      std::ofstream(folder / ("seed" + std::to_string(i)), std::ios::binary) << seeds[i];
+    }
+  };
+  write("wire", wire_seeds());
+  write("inbox", inbox_seeds());
+}
+
+TEST(WireFuzz, TheDoorHoldsUnderMutatedSamples) {
+  run(fuzz_wire, corpus("wire", wire_seeds()), effort(60'000), 4242);
+}
+
+TEST(WireFuzz, TheInboxHoldsUnderMutatedScripts) {
+  run(fuzz_inbox, corpus("inbox", inbox_seeds()), effort(20'000), 4243);
+}
+
+}  // namespace
+}  // namespace mortise::test
