@@ -57,6 +57,8 @@ std::uint64_t Client::command(LocalUser index, PartId part, CommandKind kind) {
     ++statistics_.not_joined;
     return 0;
   }
+  // A release must not overtake the end of the drag: once more what is not acknowledged yet.
+  if (!user.unacknowledged.empty()) channel_.send(user.unacknowledged.repeat(now_ns_));
   channel_.send(Command{user.id, part, ++user.command_seq, kind});
   return user.command_seq;
 }

@@ -1,5 +1,6 @@
 #include "server/tick_loop.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -9,6 +10,14 @@ namespace mortise {
 namespace {
 
 std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+/// a - b, also when a sender's clock says nonsense and the difference does not fit.
+std::int64_t difference_ns(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+
+/// No datagram is so late; a clock that was set is.
+constexpr double kClockJump_s = 10.0;
 
 }  // namespace
 
@@ -82,10 +91,13 @@ void TickLoop::record() {
 void TickLoop::measure_delay() {
   for (const Ack& ack : intake_.acks) {
     if (ack.sent_ns == 0) continue;
-    const std::int64_t took_ns = now_ns_ - ack.sent_ns;
+    const std::int64_t took_ns = difference_ns(now_ns_, ack.sent_ns);
     const auto [fastest, is_first] = fastest_ns_.emplace(ack.user, took_ns);
-    if (took_ns < fastest->second) fastest->second = took_ns;
-    if (!is_first) metrics_.delay.add(took_ns - fastest->second);
+    const std::int64_t later_ns = difference_ns(took_ns, fastest->second);
+    // The sender's clock was set: what was fastest before means nothing any more.
+    const bool clock_was_set = later_ns > in_ns(kClockJump_s) || later_ns < -in_ns(kClockJump_s);
+    if (clock_was_set || later_ns < 0) fastest->second = took_ns;
+    if (!is_first && !clock_was_set) metrics_.delay.add(std::max<std::int64_t>(later_ns, 0));
   }
   for (const Decision& decision : intake_.decisions) {
     if (decision.kind == Decision::Kind::kJoin) fastest_ns_.erase(decision.user);  // another clock

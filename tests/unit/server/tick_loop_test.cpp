@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -314,6 +315,29 @@ TEST_F(TickLoopTest, NonsenseIsRefusedWithAReasonAndTheSessionGoesOn) {
   EXPECT_EQ(loop_->pulse().refused, 4U);
   EXPECT_FALSE(anna.refused.empty());
   EXPECT_FALSE(ben.refused.empty());
+}
+
+TEST_F(TickLoopTest, AJumpOfTheSendersClockChangesNoFigureAndNoMotion) {
+  Participant anna = join("anna");
+  anna.grab(kRed);
+  tick();
+  const std::int64_t hour_ns = 3600 * kSecond_ns;
+  const std::int64_t jumps[] = {0,
+                                hour_ns,
+                                -hour_ns,
+                                std::numeric_limits<std::int64_t>::min(),
+                                std::numeric_limits<std::int64_t>::max(),
+                                0};
+  for (const std::int64_t jump_ns : jumps) {
+    for (std::int64_t i = 1; i <= 3; ++i) {
+      const Increment increment{anna.user, kRed, ++anna.seq, {0, 1, 0}, Vec3::Zero()};
+      anna.channel->send(batch_of(increment, jump_ns == 0 ? clock_.now_ns() : jump_ns));
+      tick();
+    }
+  }
+  EXPECT_EQ(world_.find(kRed)->X_WP.p.y(), 18.0);
+  EXPECT_EQ(loop_->inbox().counters().accepted, 18U);
+  EXPECT_LT(loop_->metrics().delay.max_us(), 1e6);
 }
 
 TEST_F(TickLoopTest, DeadlinesAreAbsoluteAndOverloadIsCounted) {
