@@ -115,10 +115,12 @@ void add_banded_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool i
   for (const OverlapRegion& region : overlap.regions) {
     if (region.certain_mm.hi < -kReach_mm) continue;
     const Vec3 n = best_normal(pair, region, X_WA, X_WB);
-    // What interferes already may not go deeper; nobody has to push it out.
-    const double gap_mm =
-        region.certain_mm.lo > kDeepeningSlack_mm ? 0.0 : -region.certain_mm.hi - kBandLift_mm;
-    holds.push_back({region.point_W, is_a ? n : Vec3(-n), gap_mm});
+    // What interferes already may not go deeper; nobody has to push it out. Where the search was
+    // given up, what it has found counts, not what it could not rule out.
+    const Interval& certain_mm = region.certain_mm;
+    const double depth_mm = certain_mm.width() > kReach_mm ? certain_mm.lo : certain_mm.hi;
+    const double gap_mm = certain_mm.lo > kDeepeningSlack_mm ? 0.0 : -depth_mm - kBandLift_mm;
+    holds.push_back({region.point_W, is_a ? n : Vec3(-n), std::max(gap_mm, -kReach_mm)});
   }
 }
 

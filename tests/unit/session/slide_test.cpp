@@ -190,6 +190,24 @@ TEST(Slide, TwoMoversKeepOffEachOther) {
   EXPECT_NEAR(b.y(), -0.5, kOff_mm);
 }
 
+// With bands the search for the time at which a pair becomes real may end a leg before its time: it
+// gets on, and not deeper.
+TEST(Slide, WithBandsItGetsOnWhereEvenTheLeastPartsTouch) {
+  for (const Pose& X : frames()) {
+    Scene s(X);
+    const PartId floor = s.wall({-50, -50, -2}, {50, 50, 0});
+    const PartId block = s.mover(cube_mesh(2), {0, 0, 1.5});
+    s.session.set_tolerance(floor, 0.02);
+    s.session.set_tolerance(block, 0.03);
+    const StepReport report = s.push(block, {3, 1, -2});
+    EXPECT_EQ(report.counters.slid_parts, 1U);
+    // Real from 0.05 mm on, what the tolerances may take away; stop leaves it at x = 0.825.
+    EXPECT_GT(s.place(block).x(), 1.5) << s.place(block).transpose();
+    EXPECT_NEAR(s.place(block).z(), 0.95, 2e-3);
+    EXPECT_GE(s.place(block).z(), 0.95 - 1e-4);
+  }
+}
+
 TEST(Slide, TheSameAtOneAndTwoThreads) {
   Scratch one(1), two(2);
   Scene a, b;
