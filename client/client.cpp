@@ -96,15 +96,6 @@ std::uint64_t Client::send(LocalUser index, PartId part, const Vec3& translation
   return increment.seq;
 }
 
-ClientStatistics Client::statistics() const {
-  ClientStatistics statistics = statistics_;
-  for (const LocalUserState& user : users_) {
-    statistics.increments_repeated += user.unacknowledged.repeated();
-    statistics.increments_given_up += user.unacknowledged.given_up();
-  }
-  return statistics;
-}
-
 PartId Client::find_part(const std::string& name) const {
   for (const auto& [id, part] : parts_) {
     if (part.info.name == name) return id;
