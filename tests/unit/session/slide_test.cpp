@@ -212,7 +212,7 @@ TEST(Slide, TheSameAtOneAndTwoThreads) {
   Scratch one(1), two(2);
   Scene a, b;
   const PartId peg_a = plate_and_peg(a), peg_b = plate_and_peg(b);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 25; ++i) {
     const Vec3 by(0.3, 0.01 * (i % 3 - 1), -0.3), turn(0, 0, 0.001 * (i % 5 - 2));
     const StepReport x = play_tick(a.session.world, {a.session.push(a.ada, peg_a, by, turn)}, one);
     const StepReport y = play_tick(b.session.world, {b.session.push(b.ada, peg_b, by, turn)}, two);
