@@ -69,7 +69,8 @@ bool Inbox::take_token(Seat& seat, std::int64_t now_ns) {
 
 bool Inbox::hand_is_full(const World& world, const Command& grab) const {
   std::uint32_t held = 0;
-  for (const Part& part : world.parts) {
+  for (const std::uint32_t i : moving_) {
+    const Part& part = world.parts[i];
     if (part.holder != grab.user) continue;
     if (part.id == grab.part) return false;  // held already
     ++held;
@@ -78,14 +79,20 @@ bool Inbox::hand_is_full(const World& world, const Command& grab) const {
 }
 
 void Inbox::renew(World& world, UserId user, std::int64_t now_ns) {
-  for (const Part& part : world.parts) {
-    if (part.holder == user) renewed_ns_[part.id.value - 1] = now_ns;
+  for (const std::uint32_t i : moving_) {
+    if (world.parts[i].holder == user) renewed_ns_[i] = now_ns;
   }
 }
 
 void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake) {
   intake.clear();
-  renewed_ns_.resize(world.parts.size(), now_ns);
+  if (renewed_ns_.size() != world.parts.size()) {
+    renewed_ns_.resize(world.parts.size(), now_ns);
+    moving_.clear();
+    for (std::uint32_t i = 0; i < world.parts.size(); ++i) {
+      if (world.parts[i].moving) moving_.push_back(i);
+    }
+  }
   for (Seat& seat : seats_) seat.told = 0;
   told_strangers_ = 0;
 
@@ -212,8 +219,9 @@ void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) 
 
 void Inbox::end_leases(World& world, std::int64_t now_ns, Intake& intake) {
   const auto lease_ns = static_cast<std::int64_t>(world.lease_s * 1e9);
-  for (const Part& part : world.parts) {
-    if (!part.holder || now_ns - renewed_ns_[part.id.value - 1] <= lease_ns) continue;
+  for (const std::uint32_t i : moving_) {
+    const Part& part = world.parts[i];
+    if (!part.holder || now_ns - renewed_ns_[i] <= lease_ns) continue;
     ++counters_.lease_ends;
     Decision decision;
     decision.kind = Decision::Kind::kLeaseEnd;

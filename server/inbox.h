@@ -149,7 +149,8 @@ class Inbox {
   std::vector<UserCounters> user_counters_;
   UserCounters strangers_;
   std::vector<Seat> seats_;
-  std::vector<std::int64_t> renewed_ns_;    ///< by part index: when its lease was last renewed
+  std::vector<std::uint32_t> moving_;     ///< parts that can be held, by index: not all of a scene
+  std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
   std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
   std::vector<ReceivedIncrement> ready_;    ///< in order now, of one arrival
   std::vector<std::uint32_t> taken_;        ///< by user index, in this tick

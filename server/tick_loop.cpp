@@ -30,7 +30,11 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
       options_(options),
       inbox_(options.inbox),
       scratch_(options.threads) {
-  for (const Part& part : world_.parts) published_.push_back({part.id, part.holder, part.X_WP});
+  for (std::uint32_t i = 0; i < world_.parts.size(); ++i) {
+    const Part& part = world_.parts[i];
+    published_.push_back({part.id, part.holder, part.X_WP});
+    if (part.moving) moving_.push_back(i);
+  }
 }
 
 void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> departures) {
@@ -114,7 +118,7 @@ void TickLoop::publish() {
   PoseBatch batch;
   if (!intake_.decisions.empty() || !report_.moved.empty()) {
     changed_since_snapshot_ = true;
-    for (std::size_t i = 0; i < world_.parts.size(); ++i) {
+    for (const std::uint32_t i : moving_) {
       const Part& part = world_.parts[i];
       PartPose& last = published_[i];
       if (last.holder == part.holder && identical(last.X_WP, part.X_WP)) continue;

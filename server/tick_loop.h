@@ -85,6 +85,7 @@ class TickLoop {
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::vector<PartPose> published_;            ///< what the pose stream said last, by part index
+  std::vector<std::uint32_t> moving_;          ///< parts that can ever move, by index
   std::uint64_t event_seq_ = 0;
   std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0;
   bool changed_since_snapshot_ = false;

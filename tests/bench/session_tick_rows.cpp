@@ -57,9 +57,10 @@ class Workshop {
     for (int i = 0; i < fixed; ++i)
       add(solids[static_cast<std::size_t>(i) % solids.size()],
           Pose{dice_.orientation(), kPitch_mm * Vec3(i % n, i / n % n, i / (n * n))}, false);
+    Dice far_dice(32);  // of its own: what is near must be the same with and without
     for (int i = 0; i < far_away; ++i)
       add(solids[static_cast<std::size_t>(i) % solids.size()],
-          Pose{dice_.orientation(), Vec3(1e4 + kPitch_mm * (i % 100), kPitch_mm * (i / 100), 0)},
+          Pose{far_dice.orientation(), Vec3(1e4 + kPitch_mm * (i % 100), kPitch_mm * (i / 100), 0)},
           false);
     const int side = std::max(1, n - 1);
     for (int i = 0; i < movers; ++i) {
