@@ -51,31 +51,6 @@ JoinState Client::join_state(LocalUser user) const { return users_[user].state; 
 UserId Client::user_id(LocalUser user) const { return users_[user].id; }
 const std::string& Client::refusal_text(LocalUser user) const { return users_[user].refusal; }
 
-std::uint64_t Client::command(LocalUser index, PartId part, CommandKind kind) {
-  LocalUserState& user = users_[index];
-  if (user.state != JoinState::kJoined) {
-    ++statistics_.not_joined;
-    return 0;
-  }
-  // A release must not overtake the end of the drag: once more what is not acknowledged yet.
-  if (!user.unacknowledged.empty()) channel_.send(user.unacknowledged.repeat(now_ns_));
-  channel_.send(Command{user.id, part, ++user.command_seq, kind});
-  return user.command_seq;
-}
-
-std::uint64_t Client::grab(LocalUser user, PartId part) {
-  return command(user, part, CommandKind::kGrab);
-}
-std::uint64_t Client::release(LocalUser user, PartId part) {
-  return command(user, part, CommandKind::kRelease);
-}
-std::uint64_t Client::undo(LocalUser user, PartId part) {
-  return command(user, part, CommandKind::kUndo);
-}
-std::uint64_t Client::reset(LocalUser user, PartId part) {
-  return command(user, part, CommandKind::kReset);
-}
-
 std::uint64_t Client::send(LocalUser index, PartId part, const Vec3& translation_mm,
                            const Vec3& rotation_rad) {
   LocalUserState& user = users_[index];
@@ -117,6 +92,8 @@ ClientUpdate Client::poll() {
   for (const JoinReply& reply : input.join_replies) apply_join(reply, update);
   for (const Reply& reply : input.replies) apply_reply(reply, update);
   for (const RefusedIncrement& refused : input.refused) apply_refusal(refused, update);
+  // Snapshots after them: what they say is of the same tick or later.
+  for (const Decision& decision : input.decisions) apply_decision(decision, update);
   // Events before snapshots: a snapshot that only repeats them must not hide them.
   collect_events(input.events);
   apply_events(update);
@@ -215,6 +192,7 @@ void Client::apply_scene(const Snapshot& snapshot) {
   policy_ = snapshot.policy;
   tick_rate_hz_ = snapshot.tick_rate_hz;
   session_users_ = snapshot.users;
+  standing_ = snapshot.standing;
   for (const UserInfo& info : snapshot.users) {
     LocalUserState* user = own_user(info.user);
     if (user != nullptr && !info.present) user->in_doubt = true;

@@ -47,6 +47,7 @@ struct ClientUpdate {
   std::vector<PartId> changed;            ///< parts with a new pose or holder, by id, each once
   std::vector<ClashEvent> events;         ///< in order of seq, without gap and repeat
   std::vector<Reply> replies;             ///< to our users
+  std::vector<Decision> decisions;        ///< of the server about anybody, in order
   std::vector<RefusedIncrement> refused;  ///< of our users
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here
@@ -92,11 +93,32 @@ class Client {
   std::size_t user_count() const { return users_.size(); }
 
   /// Commands: the sequence number that the reply will echo, 0 when the user has not joined
-  /// (counted).
+  /// (counted). What a refusal says is in the reply; what was done is in ClientUpdate::decisions.
+  std::uint64_t command(LocalUser user, CommandKind kind, PartId part, Details details = {});
   std::uint64_t grab(LocalUser user, PartId part);
+  std::uint64_t grab(LocalUser user, std::vector<PartId> parts);  ///< all or none, as one body
   std::uint64_t release(LocalUser user, PartId part);
+  std::uint64_t release(LocalUser user, std::vector<PartId> parts);
   std::uint64_t undo(LocalUser user, PartId part);
+  std::uint64_t redo(LocalUser user, PartId part);
   std::uint64_t reset(LocalUser user, PartId part);
+  /// Asks its holder for a part; the answer is a decision kHandOver, kDecline or kAskEnd.
+  std::uint64_t ask_hand_over(LocalUser user, PartId part);
+  std::uint64_t consent(LocalUser user, PartId part);  ///< to whoever asks for it
+  std::uint64_t decline(LocalUser user, PartId part, const std::string& why = "");
+  std::uint64_t set_policy(LocalUser user, const std::string& policy);
+  /// text as in a scenario ("±0.05", "H7"), of the whole part or one feature; empty: nothing.
+  std::uint64_t set_tolerance(LocalUser user, PartId part, const std::string& feature,
+                              const std::string& text);
+  /// Of a pair, as a fit of a scenario ("H7/g6", "±0.05"); features may be empty.
+  std::uint64_t set_fit(LocalUser user, const FeatureOf& a, const FeatureOf& b,
+                        const std::string& text);
+  std::uint64_t exclude(LocalUser user, PartId a, PartId b, const std::string& reason);
+  std::uint64_t include(LocalUser user, PartId a, PartId b);  ///< drops the exclusion
+  std::uint64_t review(LocalUser user, ClashId clash, ReviewStatus status,
+                       const std::string& comment = "");
+  std::uint64_t add_constraint(LocalUser user, const Constraint& constraint);
+  std::uint64_t drop_constraint(LocalUser user, PartId held, ConstraintId constraint);
 
   /// Sends an increment (see increment.h), with the user's next sequence number, which is returned;
   /// 0 when the user has not joined (counted).
@@ -113,7 +135,10 @@ class Client {
   double tick_rate_hz() const { return tick_rate_hz_; }
   /// Before the first snapshot a part may be known by its pose alone, without a name.
   const std::map<PartId, KnownPart>& parts() const { return parts_; }
+  /// Everybody who was ever there, present or not, with the role of the last time.
   const std::vector<UserInfo>& users() const { return session_users_; }
+  /// Changes of policy, tolerances and exclusions that hold, constraints, and unanswered asks.
+  const std::vector<Decision>& standing() const { return standing_; }
   const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
   PartId find_part(const std::string& name) const;  ///< none when unknown
   ClientStatistics statistics() const;
@@ -132,7 +157,9 @@ class Client {
     std::string refusal;
   };
 
-  std::uint64_t command(LocalUser user, PartId part, CommandKind kind);
+  void apply_decision(const Decision& decision, ClientUpdate& update);
+  UserInfo& known_user(UserId id);
+  void let_go(UserId user, PartId part);
   LocalUserState* own_user(UserId id);
   void forget_server();
   void apply_join(const JoinReply& reply, ClientUpdate& update);
@@ -157,6 +184,7 @@ class Client {
   double tick_rate_hz_ = 0.0;
   std::map<PartId, KnownPart> parts_;
   std::vector<UserInfo> session_users_;
+  std::vector<Decision> standing_;
   std::map<ClashId, ClashEvent> open_clashes_;
   std::map<std::uint64_t, ClashEvent> pending_;  ///< events beyond a gap, by seq
   std::optional<Snapshot> held_snapshot_;        ///< ahead of the events, which may still come

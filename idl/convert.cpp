@@ -97,6 +97,7 @@ wire::Request to_wire(const Request& request) {
   out.nonce(request.nonce);
   out.name(clip(request.name, kMaxName_bytes));
   out.role(clip(request.role, kMaxName_bytes));
+  details_to_wire(request.command.details, out);
   return out;
 }
 
@@ -115,8 +116,7 @@ Result<Request> from_wire(const wire::Request& in) {
       break;
     case Request::Kind::kCommand:
       door.need(in.user() != 0, "user");
-      door.need(in.command() != 0 && in.command() <= static_cast<std::uint8_t>(CommandKind::kReset),
-                "command");
+      door.need(in.command() != 0 && in.command() < kCommandKindCount, "command");
       break;
     case Request::Kind::kSnapshot:
       break;
@@ -127,9 +127,14 @@ Result<Request> from_wire(const wire::Request& in) {
   if (request.kind == Request::Kind::kJoin) {
     request.name = in.name();
     request.role = in.role();
-  } else {
-    request.command = {UserId{in.user()}, PartId{in.part()}, in.seq(),
-                       static_cast<CommandKind>(in.command())};
+    return request;
+  }
+  request.command = {UserId{in.user()}, PartId{in.part()}, in.seq(),
+                     static_cast<CommandKind>(in.command())};
+  if (request.kind == Request::Kind::kCommand) {
+    Result<Details> details = details_from_wire(in);
+    if (!details) return details.error();
+    request.command.details = std::move(*details);
   }
   return request;
 }
@@ -169,8 +174,10 @@ Result<RefusedIncrement> from_wire(const wire::RefusedIncrement& in) {
 }
 
 wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
-                      std::span<const RefusedIncrement> refused) {
+                      std::span<const RefusedIncrement> refused,
+                      std::span<const Decision> decisions) {
   wire::Answers out;
+  for (const Decision& decision : decisions) out.decisions().push_back(to_wire(decision));
   for (const JoinReply& reply : joins) {
     wire::JoinReply& entry = out.joins().emplace_back();
     entry.client(clip(reply.client, kMaxName_bytes));
@@ -203,6 +210,7 @@ Result<Answers> from_wire(const wire::Answers& in) {
   if (Status read = read_all(in.joins(), answers.joins); !read) return read.error();
   if (Status read = read_all(in.replies(), answers.replies); !read) return read.error();
   if (Status read = read_all(in.refused(), answers.refused); !read) return read.error();
+  if (Status read = read_all(in.decisions(), answers.decisions); !read) return read.error();
   return answers;
 }
 

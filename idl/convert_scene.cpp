@@ -182,7 +182,7 @@ wire::ClashEvent to_wire(const ClashEvent& event) {
 
 Result<ClashEvent> from_wire(const wire::ClashEvent& in) {
   Door door("clash event");
-  door.need(in.kind() != 0 && in.kind() <= static_cast<std::uint8_t>(ClashEvent::Kind::kEnd),
+  door.need(in.kind() != 0 && in.kind() <= static_cast<std::uint8_t>(ClashEvent::Kind::kReview),
             "kind");
   door.need(in.seq() != 0, "seq");
   door.need(in.clash() != 0, "clash");
@@ -252,6 +252,16 @@ Result<Snapshot> from_wire(const wire::Snapshot& in) {
   if (Status read = read_all(in.parts(), snapshot.parts); !read) return read.error();
   if (Status read = read_all(in.users(), snapshot.users); !read) return read.error();
   if (Status read = read_all(in.open_clashes(), snapshot.open_clashes); !read) return read.error();
+  if (Status read = read_all(in.standing(), snapshot.standing); !read) return read.error();
+  door.need(in.roles().size() == in.users().size(), "roles");
+  door.need(in.clash_notes().size() == in.open_clashes().size(), "clash_notes");
+  for (const std::uint8_t role : in.roles()) door.need(role < kRoleCount, "roles");
+  if (!door.open()) return door.refusal();
+  for (std::size_t i = 0; i < snapshot.users.size(); ++i)
+    snapshot.users[i].role = static_cast<Role>(in.roles()[i]);
+  for (std::size_t i = 0; i < snapshot.open_clashes.size(); ++i)
+    if (Status noted = add_note(in.clash_notes()[i], snapshot.open_clashes[i]); !noted)
+      return noted.error();
   return snapshot;
 }
 

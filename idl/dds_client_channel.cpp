@@ -185,6 +185,7 @@ class DdsClientChannel final : public ClientChannel {
       }
       append(answers->replies, input.replies);
       append(answers->refused, input.refused);
+      append(answers->decisions, input.decisions);
     });
   }
 
@@ -211,6 +212,7 @@ class DdsClientChannel final : public ClientChannel {
         append(part.parts, into.parts);
         append(part.users, into.users);
         append(part.open_clashes, into.open_clashes);
+        append(part.standing, into.standing);
       });
       if (whole) input.snapshots.push_back(std::move(*whole));
     });
@@ -249,14 +251,9 @@ class DdsClientChannel final : public ClientChannel {
 
   void take_events(ClientInput& input) {
     take_all<wire::EventBatch>(events_, [&](const wire::EventBatch& sample) {
-      for (const wire::ClashEvent& entry : sample.events()) {
-        Result<ClashEvent> event = from_wire(entry);
-        if (event) {
-          input.events.push_back(std::move(event.value()));
-        } else {
-          ++counters_.malformed;  // its seq is now missing, which asks for a snapshot
-        }
-      }
+      // What is malformed is missing in seq, which asks for a snapshot.
+      std::vector<ClashEvent> events = events_from_wire(sample, counters_.malformed);
+      append(events, input.events);
     });
   }
 

@@ -87,6 +87,10 @@ class DdsServerChannel final : public ServerChannel {
   void publish_replies(std::span<const Reply> replies) override {
     in_slices(replies, [this](auto slice) { write(answers_, to_wire({}, slice, {})); });
   }
+  void publish_decisions(std::span<const Decision> decisions) override {
+    in_slices<kDecisionSlice>(decisions,
+                              [this](auto slice) { write(answers_, to_wire({}, {}, {}, slice)); });
+  }
   void publish_refusals(std::span<const RefusedIncrement> refused) override {
     in_slices(refused, [this](auto slice) { write(answers_, to_wire({}, {}, slice)); });
   }
@@ -140,9 +144,8 @@ class DdsServerChannel final : public ServerChannel {
   }
 
   /// Texts are clipped to about 1 kB, so a slice stays below a datagram.
-  template <class Entry, class Action>
+  template <std::size_t kSlice = 40, class Entry, class Action>
   static void in_slices(std::span<const Entry> entries, Action action) {
-    constexpr std::size_t kSlice = 40;
     for (std::size_t at = 0; at < entries.size(); at += kSlice) {
       action(entries.subspan(at, std::min(kSlice, entries.size() - at)));
     }
@@ -159,6 +162,9 @@ class DdsServerChannel final : public ServerChannel {
       action(sample, client_key(info.sample_identity.writer_guid()));
     }
   }
+
+  /// Names, texts and a group's parts make at most 3 kB of a decision.
+  static constexpr std::size_t kDecisionSlice = 15;
 
   bool owns(const ClientKey& client, UserId user) {
     const auto found = joined_.find(user);

@@ -1,7 +1,11 @@
 #include "server/inbox.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
+
+#include "common/messages/names.h"
+#include "common/session/rights.h"
 
 namespace mortise {
 namespace {
@@ -68,14 +72,16 @@ bool Inbox::take_token(Seat& seat, std::int64_t now_ns) {
 }
 
 bool Inbox::hand_is_full(const World& world, const Command& grab) const {
-  std::uint32_t held = 0;
+  std::vector<PartId> wanted = grab.details.parts;
+  if (wanted.empty()) wanted.push_back(grab.part);
+  std::size_t held = 0;
   for (const std::uint32_t i : moving_) {
     const Part& part = world.parts[i];
     if (part.holder != grab.user) continue;
-    if (part.id == grab.part) return false;  // held already
     ++held;
+    std::erase(wanted, part.id);  // held already
   }
-  return held >= limits_.parts_per_user;
+  return !wanted.empty() && held + wanted.size() > limits_.parts_per_user;
 }
 
 void Inbox::renew(World& world, UserId user, std::int64_t now_ns) {
@@ -93,6 +99,7 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
       if (world.parts[i].moving) moving_.push_back(i);
     }
   }
+  asked_ns_.resize(world.parts.size(), now_ns);
   for (Seat& seat : seats_) seat.told = 0;
   told_strangers_ = 0;
 
@@ -118,6 +125,35 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   // 4. Who says goodbye, and whose lease is over.
   depart(input.lost, true, world, intake);
   end_leases(world, now_ns, intake);
+  end_asks(world, now_ns, intake);
+}
+
+Refusal Inbox::check_join(const JoinRequest& request, const World& world, UserId known,
+                          std::string& text) const {
+  const std::optional<Role> role = role_named(request.role);
+  const Role wanted = role_wanted(world, request.name);
+  if (!printable(request.name)) {
+    text = "a name has 1 to 64 printable characters";
+    return Refusal::kNotAllowed;
+  }
+  if (!role) {
+    text = "'" + request.role + "' is no role; join as designer, observer or bot";
+    return Refusal::kNotAllowed;
+  }
+  if (wanted != Role::kUnknown && wanted != *role) {
+    text = "the scenario has '" + request.name + "' as " + std::string(name_of(wanted)) +
+           ", not as " + request.role;
+    return Refusal::kNotAllowed;
+  }
+  if (known && known.value <= seats_.size() && seats_[known.value - 1].present) {
+    text = "the name '" + request.name + "' is in use in this session; choose another";
+    return Refusal::kNotAllowed;
+  }
+  if (users_present() >= limits_.max_users) {
+    text = "the session has its " + std::to_string(limits_.max_users) + " users already";
+    return Refusal::kSessionFull;
+  }
+  return Refusal::kNone;
 }
 
 void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t now_ns,
@@ -136,16 +172,7 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
   for (const User& user : world.users) {
     if (user.name == request.name) known = user.id;
   }
-  if (!printable(request.name)) {
-    reply.refusal = Refusal::kNotAllowed;
-    reply.text = "a name has 1 to 64 printable characters";
-  } else if (known && known.value <= seats_.size() && seats_[known.value - 1].present) {
-    reply.refusal = Refusal::kNotAllowed;
-    reply.text = "the name '" + request.name + "' is in use in this session; choose another";
-  } else if (users_present() >= limits_.max_users) {
-    reply.refusal = Refusal::kSessionFull;
-    reply.text = "the session has its " + std::to_string(limits_.max_users) + " users already";
-  }
+  reply.refusal = check_join(request, world, known, reply.text);
   if (reply.refusal != Refusal::kNone) {
     ++counters_.joins_refused;
     intake.join_replies.push_back(std::move(reply));
@@ -156,13 +183,13 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
   decision.kind = Decision::Kind::kJoin;
   decision.user = known ? known : UserId{static_cast<std::uint32_t>(world.users.size()) + 1};
   decision.user_name = request.name;
+  decision.role = role_named(request.role).value_or(Role::kUnknown);
   apply_decision(world, decision);
   if (decision.user.value > seats_.size()) seats_.resize(decision.user.value);
   Seat& seat = seats_[decision.user.value - 1];
   seat = Seat{};
   seat.client = request.client;
   seat.nonce = request.nonce;
-  seat.role = request.role;
   seat.present = true;
   seat.tokens = limits_.messages_per_s;
   seat.tokens_at_ns = now_ns;
@@ -227,6 +254,22 @@ void Inbox::end_leases(World& world, std::int64_t now_ns, Intake& intake) {
     decision.kind = Decision::Kind::kLeaseEnd;
     decision.user = part.holder;
     decision.part = part.id;
+    apply_decision(world, decision);
+    intake.decisions.push_back(std::move(decision));
+  }
+}
+
+void Inbox::end_asks(World& world, std::int64_t now_ns, Intake& intake) {
+  const auto lease_ns = static_cast<std::int64_t>(world.lease_s * 1e9);
+  for (const std::uint32_t i : moving_) {
+    const Part& part = world.parts[i];
+    if (!part.asked_by || now_ns - asked_ns_[part.id.value - 1] <= lease_ns) continue;
+    ++counters_.ask_ends;
+    Decision decision;
+    decision.kind = Decision::Kind::kAskEnd;
+    decision.user = part.asked_by;
+    decision.part = part.id;
+    decision.details.other_user = part.holder;
     apply_decision(world, decision);
     intake.decisions.push_back(std::move(decision));
   }

@@ -43,7 +43,8 @@ struct UserCounters {
 };
 
 struct InboxCounters {
-  std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0;
+  std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0,
+                ask_ends = 0;
   std::uint64_t commands = 0, commands_refused = 0, commands_deferred = 0;
   std::uint64_t increments = 0, accepted = 0;  ///< arrived for the first time; of these taken
   std::uint64_t repeats = 0;   ///< arrived again, which is how a lossy link is made good
@@ -80,8 +81,8 @@ class Inbox {
   /// Checks `input`, applies joins, commands, leaves and lease ends to `world`, and puts the rest
   /// into `intake` (cleared first). now_ns never goes back.
   ///
-  /// A release, undo or reset waits until the increments of the same user and part that came before
-  /// it were carried out: decisions are applied before the increments of a tick.
+  /// A release, undo, redo, reset or consent waits until the increments of the same user and part
+  /// that came before it were carried out: decisions are applied before the increments of a tick.
   void admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake);
 
   const InboxCounters& counters() const { return counters_; }
@@ -94,7 +95,6 @@ class Inbox {
   struct Seat {  ///< what the inbox knows of one user; seats_[i] is user i + 1
     ClientKey client;
     std::uint64_t nonce = 0;
-    std::string role;
     bool present = false;
     IncrementOrder increments;
     std::uint64_t acknowledged = 0;  ///< of the increments
@@ -124,6 +124,8 @@ class Inbox {
   void admit_command(const ReceivedCommand& received, World& world, std::int64_t now_ns,
                      Intake& intake);
   void carry_out(const Command& command, World& world, std::int64_t now_ns, Intake& intake);
+  /// Leases and asks begin with the decision that makes them.
+  void note_times(const Decision& decision, std::int64_t now_ns);
   void carry_out_deferred(World& world, std::int64_t now_ns, Intake& intake);
   /// Who sent it, in which order, how fast: what can be said on arrival.
   void receive_increment(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
@@ -134,6 +136,10 @@ class Inbox {
   bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
   /// Does one about the same part wait already? Then this one waits behind it.
   static bool is_behind(const std::vector<DeferredCommand>& waiting, const Command& command);
+  /// What is wrong with a request to join; kNone: nothing.
+  Refusal check_join(const JoinRequest& request, const World& world, UserId known,
+                     std::string& text) const;
+  void end_asks(World& world, std::int64_t now_ns, Intake& intake);
   Refusal judge(const Increment& increment, const World& world) const;
   void refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake);
   void depart(const std::vector<LostUser>& lost, bool said_goodbye, World& world, Intake& intake);
@@ -151,6 +157,7 @@ class Inbox {
   std::vector<Seat> seats_;
   std::vector<std::uint32_t> moving_;     ///< parts that can be held, by index: not all of a scene
   std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
+  std::vector<std::int64_t> asked_ns_;    ///< by part index: since when somebody asks for it
   std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
   std::vector<ReceivedIncrement> ready_;    ///< in order now, of one arrival
   std::vector<std::uint32_t> taken_;        ///< by user index, in this tick

@@ -8,16 +8,32 @@
 namespace mortise {
 namespace {
 
+// What ends a drag, or looks at where it led.
 bool waits_for_increments(CommandKind kind) {
-  return kind == CommandKind::kRelease || kind == CommandKind::kUndo || kind == CommandKind::kReset;
+  switch (kind) {
+    case CommandKind::kRelease:
+    case CommandKind::kUndo:
+    case CommandKind::kRedo:
+    case CommandKind::kReset:
+    case CommandKind::kConsent:
+    case CommandKind::kAddConstraint:
+    case CommandKind::kDropConstraint:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Do both touch a part in common? A group, and what names no part, may touch any.
+bool touch_alike(const Command& x, const Command& y) {
+  return x.user == y.user && (x.part == y.part || !x.part || !y.part);
 }
 
 }  // namespace
 
 bool Inbox::is_behind(const std::vector<DeferredCommand>& waiting, const Command& command) {
   return std::any_of(waiting.begin(), waiting.end(), [&](const DeferredCommand& other) {
-    return other.received.command.user == command.user &&
-           other.received.command.part == command.part;
+    return touch_alike(other.received.command, command);
   });
 }
 
@@ -56,10 +72,8 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
   } else if (!take_token(*seat, now_ns)) {
     reply.refusal = Refusal::kRateTooHigh;
     reply.text = "more messages a second than the session takes from one user, or from all";
-  } else if (command.kind == CommandKind::kGrab && seat->role == "observer") {
-    reply.refusal = Refusal::kNotAllowed;
-    reply.text = "observers do not hold parts";
-  } else if (command.kind == CommandKind::kGrab && hand_is_full(world, command)) {
+  } else if ((command.kind == CommandKind::kGrab || command.kind == CommandKind::kAskHandOver) &&
+             hand_is_full(world, command)) {
     reply.refusal = Refusal::kNotAllowed;
     reply.text = "a user of this session holds at most " + std::to_string(limits_.parts_per_user) +
                  " parts; release one first";
@@ -88,10 +102,20 @@ void Inbox::carry_out(const Command& command, World& world, std::int64_t now_ns,
     ++counters_.commands_refused;
     ++counters_of(command.user).commands_refused;
   } else {
-    if (command.kind == CommandKind::kGrab) renewed_ns_[command.part.value - 1] = now_ns;
+    note_times(decision, now_ns);
     intake.decisions.push_back(std::move(decision));
   }
   intake.replies.push_back(std::move(reply));
+}
+
+void Inbox::note_times(const Decision& decision, std::int64_t now_ns) {
+  std::vector<PartId> parts = decision.details.parts;
+  if (parts.empty() && decision.part) parts.push_back(decision.part);
+  for (const PartId part : parts) {
+    if (decision.kind == Decision::Kind::kGrab || decision.kind == Decision::Kind::kHandOver)
+      renewed_ns_[part.value - 1] = now_ns;
+    if (decision.kind == Decision::Kind::kAskHandOver) asked_ns_[part.value - 1] = now_ns;
+  }
 }
 
 }  // namespace mortise

@@ -106,6 +106,8 @@ Refusal Inbox::judge(const Increment& increment, const World& world) const {
   const Part* part = increment.part ? world.find(increment.part) : nullptr;
   if (part == nullptr) return Refusal::kUnknownPart;
   if (!part->moving) return Refusal::kPartIsStatic;
+  const User* user = world.find(increment.user);
+  if (user != nullptr && user->role == Role::kObserver) return Refusal::kObserver;
   if (part->holder != increment.user) return Refusal::kNotHolder;
   return Refusal::kNone;
 }

@@ -111,6 +111,7 @@ void TickLoop::measure_delay() {
 void TickLoop::publish() {
   for (const JoinReply& reply : intake_.join_replies) channel_.publish_join_reply(reply);
   if (!intake_.replies.empty()) channel_.publish_replies(intake_.replies);
+  if (!intake_.decisions.empty()) channel_.publish_decisions(intake_.decisions);
   if (!intake_.refused.empty()) channel_.publish_refusals(intake_.refused);
   if (!report_.refused.empty()) channel_.publish_refusals(report_.refused);
   if (!report_.events.empty()) channel_.publish_events(report_.events);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "client/bot/people.h"
+
 namespace mortise {
 namespace {
 
@@ -249,6 +251,12 @@ std::unique_ptr<Behaviour> mixed(const BehaviourSpec& spec, std::uint64_t seed,
 
 }  // namespace
 
+const std::vector<std::string>& behaviour_names() {
+  static const std::vector<std::string> kNames{"insert", "wander", "shake", "fight", "share",
+                                               "revise", "review", "mixed", "script"};
+  return kNames;
+}
+
 std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec) {
   // Users of one bot differ by index, bots by seed.
   const std::uint64_t seed = spec.seed * 0x9e3779b97f4a7c15ULL + spec.index;
@@ -258,6 +266,16 @@ std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec) {
   if (spec.kind == "script") return std::make_unique<Script>(*spec.play, spec.user);
   if (spec.kind == "insert") {
     return std::make_unique<Carrier>(settings, std::make_unique<InsertPath>());
+  }
+  if (spec.kind == "share") {
+    return make_share({spec.part, 0.5, spec.index % 2 == 1},
+                      std::make_unique<SwingPath>(seed, kWander));
+  }
+  if (spec.kind == "revise") {
+    return make_revise(spec.index, spec.part, std::make_unique<SwingPath>(seed, kWander));
+  }
+  if (spec.kind == "review") {
+    return make_reviewer(std::make_unique<Carrier>(settings, std::make_unique<InsertPath>()));
   }
   if (spec.kind == "shake") {
     return std::make_unique<Carrier>(settings, std::make_unique<SwingPath>(seed, kShake));

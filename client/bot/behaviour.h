@@ -18,6 +18,8 @@ struct View {
   double beat_s = 0.0;  ///< since the last beat: what an increment stands for
   UserId self;
   const std::map<PartId, KnownPart>* parts = nullptr;
+  const std::map<ClashId, ClashEvent>* clashes = nullptr;  ///< that are open; may be null
+  const std::vector<Decision>* standing = nullptr;         ///< what is asked for; may be null
 
   const KnownPart* find(PartId part) const {
     const auto at = parts->find(part);
@@ -35,6 +37,13 @@ struct Wish {
   PartId move;  ///< the part of the increment
   Vec3 translation_mm = Vec3::Zero(), rotation_rad = Vec3::Zero();
   bool done = false;  ///< nothing more will come
+  /// Other commands, after the grab and the increment, before the release.
+  struct Ask {
+    CommandKind kind = CommandKind::kUnknown;
+    PartId part;
+    Details details = {};
+  };
+  std::vector<Ask> asks;
 };
 
 /// A designer without hands. Same seed and same view, same wishes.
@@ -105,13 +114,14 @@ class Script : public Behaviour {
 };
 
 struct BehaviourSpec {
-  std::string kind;  ///< insert | wander | shake | fight | mixed | script
+  std::string kind;  ///< one of behaviour_names()
   std::string user;
   std::size_t index = 0;  ///< of the user in the bot
   std::uint64_t seed = 1;
   PartId part;                 ///< none: by index
   const Play* play = nullptr;  ///< of script
 };
+const std::vector<std::string>& behaviour_names();
 std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec);
 
 }  // namespace mortise

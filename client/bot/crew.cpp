@@ -170,6 +170,8 @@ bool Crew::beat(double now_s, double beat_s) {
     view.beat_s = beat_s;
     view.self = client_.user_id(user);
     view.parts = &client_.parts();
+    view.clashes = &client_.open_clashes();
+    view.standing = &client_.standing();
     const Wish wish = behaviours_[user]->beat(view);
     all_done = all_done && wish.done;
     carry_out(user, wish);
@@ -184,6 +186,8 @@ void Crew::carry_out(LocalUser user, const Wish& wish) {
     const std::uint64_t seq = client_.send(user, wish.move, wish.translation_mm, wish.rotation_rad);
     if (seq != 0) sent_seq_[user] = seq;
   }
+  for (const Wish::Ask& ask : wish.asks)
+    sent_command(client_.command(user, ask.kind, ask.part, ask.details));
   if (wish.release) sent_command(client_.release(user, wish.release));
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "client/bot/behaviour.h"
 #include "client/bot/load_report.h"
 #include "common/base/result.h"
 
@@ -49,7 +50,7 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--names", o.names, "Their names, comma separated")->delimiter(',');
   app.add_option("--behaviour", o.behaviour, "What they do")
-      ->check(CLI::IsMember({"insert", "wander", "shake", "fight", "mixed", "script"}))
+      ->check(CLI::IsMember(behaviour_names()))
       ->capture_default_str();
   app.add_option("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)");
   app.add_option("--part", o.part, "Part to begin with (fight: the part that all want)");

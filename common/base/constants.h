@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 /// Every numerical constant of the library: value, unit, reason, reader. Nothing else holds a bare
@@ -66,6 +67,10 @@ static_assert(kClashHysteresis_mm <= kClashHysteresisMost_mm);
 /// session.
 inline constexpr double kClashGrowthShare = 0.1;
 inline constexpr std::uint64_t kClashQuietTicks = 15;
+
+/// Moves of one part that can be undone, and as many that can be repeated: more is forgotten, the
+/// oldest first, so that a session of days does not grow. Read by session/move_history.
+inline constexpr std::size_t kMostUndoMoves = 64;
 
 /// How far a part that already interferes may be pressed deeper before policy stop holds it, mm.
 /// Ten depth brackets, so that sliding at constant depth is not held by the search's own width. The

@@ -3,7 +3,7 @@
 
 #include "common/geometry/surface_band.h"
 #include "common/math/interval.h"
-#include "common/messages/event.h"
+#include "common/messages/verdict.h"
 
 namespace mortise {
 

@@ -5,7 +5,7 @@
 
 #include "common/math/interval.h"
 #include "common/math/types.h"
-#include "common/messages/event.h"
+#include "common/messages/verdict.h"
 
 namespace mortise {
 

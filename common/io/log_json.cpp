@@ -22,6 +22,13 @@ ordered_json vector(const Vec3& v) {
 }
 ordered_json interval(Interval i) { return {{"lo", number(i.lo)}, {"hi", number(i.hi)}}; }
 
+ordered_json json_of(const Review& review) {
+  return {{"status", name_of(review.status)},
+          {"comment", review.comment},
+          {"user", review.user.value},
+          {"tick", review.tick}};
+}
+
 ordered_json json_of(const ClashEvent& event) {
   const Verdict& v = event.verdict;
   return {{"tick", event.tick},
@@ -59,7 +66,10 @@ ordered_json json_of(const ClashEvent& event) {
           {"t_real", number(event.t_real)},
           {"begin_tick", event.begin_tick},
           {"worst_class", name_of(event.worst_class)},
-          {"worst_delta_mm", interval(event.worst_delta_mm)}};
+          {"worst_delta_mm", interval(event.worst_delta_mm)},
+          {"cause", name_of(event.cause)},
+          {"review", json_of(event.review)},
+          {"approval_lost", event.approval_lost}};
 }
 
 // Text that is not UTF-8 must not stop a log: replaced, never thrown.
@@ -278,7 +288,15 @@ bool decode(std::string_view text, ClashEvent& event) {
   in.integer("begin_tick", event.begin_tick);
   in.name("worst_class", event.worst_class);
   in.interval("worst_delta_mm", event.worst_delta_mm);
-  return in.ok;
+  if (!in.ok || !object.contains("review")) return in.ok;  // format 1 has no reviews
+  in.name("cause", event.cause);
+  in.flag("approval_lost", event.approval_lost);
+  Members review{object["review"]};
+  review.name("status", event.review.status);
+  review.text("comment", event.review.comment);
+  review.integer("user", event.review.user.value);
+  review.integer("tick", event.review.tick);
+  return in.ok && review.ok;
 }
 
 std::string first_difference(const ClashEvent& logged, const ClashEvent& computed) {

@@ -4,7 +4,9 @@
 namespace mortise::log_layout {
 
 inline constexpr const char* kProfile = "mortise";
-inline constexpr const char* kFormat = "1";  ///< of the records; another number: not read
+inline constexpr const char* kFormat = "2";  ///< of the records that are written
+/// Formats that are read; another one is refused.
+inline constexpr const char* kFormatsRead[] = {"1", "2"};
 
 inline constexpr const char* kSessionMetadata = "mortise.session";
 inline constexpr const char* kBuildMetadata = "mortise.build";

@@ -78,6 +78,97 @@ Increment get_increment(ByteReader& in) {
   return increment;
 }
 
+void put(ByteWriter& out, const std::string& text) {
+  out.varint(text.size());
+  out.raw(text);
+}
+
+std::string get_text(ByteReader& in) {
+  const auto text = in.raw(in.varint());
+  return {reinterpret_cast<const char*>(text.data()), text.size()};
+}
+
+// Most decisions say nothing of a constraint: one byte.
+void put(ByteWriter& out, const Constraint& constraint) {
+  out.u8(static_cast<std::uint8_t>(constraint.kind));
+  if (constraint.kind == ConstraintKind::kUnknown) return;
+  for (const FeatureOf& end : {constraint.held, constraint.other}) {
+    out.varint(end.part.value);
+    put(out, end.feature);
+  }
+  out.f64(constraint.distance_mm);
+  out.u8(constraint.snap ? 1 : 0);
+}
+
+bool get_constraint(ByteReader& in, Constraint& constraint) {
+  const std::uint8_t kind = in.u8();
+  if (kind >= kConstraintKindCount) return false;
+  constraint.kind = static_cast<ConstraintKind>(kind);
+  if (constraint.kind == ConstraintKind::kUnknown) return in.ok();
+  for (FeatureOf* end : {&constraint.held, &constraint.other}) {
+    end->part.value = in.varint32();
+    end->feature = get_text(in);
+  }
+  constraint.distance_mm = in.f64();
+  constraint.snap = in.u8() != 0;
+  return in.ok();
+}
+
+// Kinds of format 1 are written as they were then; the high bit of the kind says that more follows.
+constexpr std::uint8_t kHasDetails = 0x80;
+
+void put(ByteWriter& out, const Decision& decision) {
+  const Details& d = decision.details;
+  out.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(decision.kind) | kHasDetails));
+  out.varint(decision.user.value);
+  out.varint(decision.part.value);
+  put(out, decision.user_name);
+  out.u8(static_cast<std::uint8_t>(decision.role));
+  out.varint(d.parts.size());
+  for (const PartId part : d.parts) out.varint(part.value);
+  out.varint(d.other_part.value);
+  put(out, d.feature);
+  put(out, d.other_feature);
+  out.varint(d.other_user.value);
+  out.varint(d.clash.value);
+  out.u8(static_cast<std::uint8_t>(d.status));
+  put(out, d.text);
+  put(out, d.constraint);
+  out.varint(d.constraint_id.value);
+}
+
+bool get_details(ByteReader& in, Decision& decision) {
+  Details& d = decision.details;
+  const std::uint8_t role = in.u8();
+  const std::uint64_t parts = in.varint();
+  if (role >= kRoleCount || !in.room_for(parts, 1)) return false;
+  decision.role = static_cast<Role>(role);
+  for (std::uint64_t i = 0; i < parts; ++i) d.parts.push_back(PartId{in.varint32()});
+  d.other_part.value = in.varint32();
+  d.feature = get_text(in);
+  d.other_feature = get_text(in);
+  d.other_user.value = in.varint32();
+  d.clash.value = in.varint32();
+  const std::uint8_t status = in.u8();
+  if (status >= kReviewStatusCount) return false;
+  d.status = static_cast<ReviewStatus>(status);
+  d.text = get_text(in);
+  if (!get_constraint(in, d.constraint)) return false;
+  d.constraint_id.value = in.varint32();
+  return in.ok();
+}
+
+bool get_decision(ByteReader& in, Decision& decision) {
+  const std::uint8_t byte = in.u8();
+  const auto kind = static_cast<std::uint8_t>(byte & ~kHasDetails);
+  if (kind >= kDecisionKindCount) return false;
+  decision.kind = static_cast<Decision::Kind>(kind);
+  decision.user.value = in.varint32();
+  decision.part.value = in.varint32();
+  decision.user_name = get_text(in);
+  return (byte & kHasDetails) == 0 ? in.ok() : get_details(in, decision);
+}
+
 constexpr std::uint64_t kLeastDecision = 4, kLeastIncrement = 4, kLeastPose = 22, kLeastRefused = 4;
 
 }  // namespace
@@ -86,13 +177,7 @@ std::vector<std::byte> encode(std::uint64_t tick, std::span<const Decision> deci
   ByteWriter out;
   out.varint(tick);
   out.varint(decisions.size());
-  for (const Decision& decision : decisions) {
-    out.u8(static_cast<std::uint8_t>(decision.kind));
-    out.varint(decision.user.value);
-    out.varint(decision.part.value);
-    out.varint(decision.user_name.size());
-    out.raw(decision.user_name);
-  }
+  for (const Decision& decision : decisions) put(out, decision);
   return out.take();
 }
 
@@ -104,13 +189,7 @@ bool decode(std::span<const std::byte> bytes, Decisions& out) {
   if (!in.room_for(count, kLeastDecision)) return false;
   for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
     Decision decision;
-    const std::uint8_t kind = in.u8();
-    if (kind > static_cast<std::uint8_t>(Decision::Kind::kReset)) return false;
-    decision.kind = static_cast<Decision::Kind>(kind);
-    decision.user.value = in.varint32();
-    decision.part.value = in.varint32();
-    const auto name = in.raw(in.varint());
-    decision.user_name.assign(reinterpret_cast<const char*>(name.data()), name.size());
+    if (!get_decision(in, decision)) return false;
     out.decisions.push_back(std::move(decision));
   }
   return in.at_end();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <set>
-#include <tuple>
 
 #include "common/io/scenario_parts.h"
 #include "common/io/scenario_yaml.h"
@@ -52,7 +51,7 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
     if (const auto known = policy_named(*policy))
       scenario.policy = *known;
     else
-      top.error("policy", "'" + *policy + "' is not known; write stop, slide or report");
+      top.error("policy", "'" + *policy + "' is not known; write " + std::string(kPolicyNames));
   }
   if (const auto undeclared = read_deviation(top)) scenario.undeclared = *undeclared;
   if (const auto jump = top.positive_length_mm("max_jump")) scenario.max_jump_mm = *jump;
@@ -96,21 +95,7 @@ void read_fit(YamlContext& context, const YAML::Node& node, Scenario& scenario) 
   const auto between = read_between(map);
   Scenario::FitSpec fit;
   fit.at.line = map.line();
-  if (const auto code = map.text("code")) {
-    double nominal = 0.0;
-    std::tie(nominal, fit.code) = split_nominal(*code);
-    fit.nominal_mm = nominal * context.unit_mm;
-  }
-  if (const auto nominal = map.positive_length_mm("nominal")) {
-    if (fit.nominal_mm > 0.0 && fit.nominal_mm != *nominal)
-      map.error("nominal", "contradicts the size in code; keep one");
-    fit.nominal_mm = *nominal;
-  }
-  const std::string way = map.one_of({"code", "plus_minus", "profile", "lower"});
-  if (way.empty())
-    map.error("say what holds between both: code: H7/g6, or plus_minus: 0.05, or profile: 0.1");
-  else if (way != "code")
-    fit.tolerance = tolerance_of(map);
+  const std::string way = read_fit_statement(context, map, fit);
   if (!between) return;
   const Side a = split_side((*between)[0]), b = split_side((*between)[1]);
   fit.part_a = a.part, fit.feature_a = a.feature;
@@ -138,7 +123,7 @@ void read_exclusion(YamlContext& context, const YAML::Node& node, Scenario& scen
 }
 
 void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
-  const YamlMap map(context, node, "user", {"name", "may_hold"});
+  const YamlMap map(context, node, "user", {"name", "may_hold", "may", "role"});
   if (!map.usable()) return;
   Scenario::UserSpec user;
   user.at.line = map.line();
@@ -150,6 +135,20 @@ void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario)
     user.may_hold = *may_hold;
   else if (!map.has("may_hold"))
     map.error("may_hold is missing: list part names ('*' allowed); [] makes an observer");
+  if (const auto may = map.texts("may")) {
+    user.may.emplace();
+    for (const std::string& word : *may) {
+      if (const auto right = right_named(word))
+        user.may->push_back(*right);
+      else
+        map.error("may", "'" + word + "' is not known; list policy, tolerance, exclusions, review");
+    }
+  }
+  if (const auto word = map.text("role")) {
+    const auto role = role_named(*word);
+    if (!role) map.error("role", "'" + *word + "' is not known; write designer, observer or bot");
+    user.role = role.value_or(Role::kUnknown);
+  }
   for (const auto& other : scenario.users)
     if (!user.name.empty() && other.name == user.name)
       map.error("user '" + user.name + "' stands here twice; keep one");
@@ -207,6 +206,7 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
         std::none_of(parts.begin(), parts.end(), [](auto& p) { return p.moving; }))
       context.warning(document, "no part has moving: true; nobody can move anything");
   }
+  reading.scenario.unit_mm = context.unit_mm;
   reading.findings = std::move(context.findings);
   return reading;
 }

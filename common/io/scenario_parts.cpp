@@ -237,23 +237,7 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
     else
       map.error("along", "expected [from, to] with from below to");
   }
-  if (const auto iso = map.text("iso")) {
-    double nominal = 0.0;
-    std::tie(nominal, feature.iso_class) = split_nominal(*iso);
-    feature.nominal_mm = nominal * context.unit_mm;
-  }
-  if (const auto nominal = map.positive_length_mm("nominal")) feature.nominal_mm = *nominal;
-  if (const YAML::Node position = map.find("position"))
-    feature.position =
-        read_position(context, position, "feature " + name + ": position").value_or(Position{});
-  if (const auto other = map.text("width_to")) feature.width_to = *other;
-  if (map.has("width_to") && feature.iso_class.empty())
-    map.error("width_to", "is the other plane of a width under iso:; add iso: or remove it");
-  if (map.has("nominal") && feature.iso_class.empty())
-    map.error("nominal", "is the size of an iso: class; add iso: or remove it");
-  map.one_of({"iso", "tolerance"});
-  if (const YAML::Node tolerance = map.find("tolerance"))
-    feature.tolerance = read_tolerance(context, tolerance, "feature " + name + ": tolerance");
+  read_feature_statement(context, map, feature);
   part.features.push_back(std::move(feature));
 }
 

@@ -1,6 +1,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <tuple>
 
 #include "common/evaluation/tolerance.h"
 #include "common/io/scenario_parts.h"
@@ -139,6 +140,47 @@ std::optional<Position> read_position(YamlContext& context, const YAML::Node& no
   if (!zone) return std::nullopt;
   position.zone_mm = *zone;
   return position;
+}
+
+void read_feature_statement(YamlContext& context, const YamlMap& map,
+                            Scenario::FeatureSpec& feature) {
+  if (const auto iso = map.text("iso")) {
+    double nominal = 0.0;
+    std::tie(nominal, feature.iso_class) = split_nominal(*iso);
+    feature.nominal_mm = nominal * context.unit_mm;
+  }
+  if (const auto nominal = map.positive_length_mm("nominal")) feature.nominal_mm = *nominal;
+  if (const YAML::Node position = map.find("position"))
+    feature.position = read_position(context, position, "feature " + feature.name + ": position")
+                           .value_or(Position{});
+  if (const auto other = map.text("width_to")) feature.width_to = *other;
+  if (map.has("width_to") && feature.iso_class.empty())
+    map.error("width_to", "is the other plane of a width under iso:; add iso: or remove it");
+  if (map.has("nominal") && feature.iso_class.empty())
+    map.error("nominal", "is the size of an iso: class; add iso: or remove it");
+  map.one_of({"iso", "tolerance"});
+  if (const YAML::Node tolerance = map.find("tolerance"))
+    feature.tolerance =
+        read_tolerance(context, tolerance, "feature " + feature.name + ": tolerance");
+}
+
+std::string read_fit_statement(YamlContext& context, const YamlMap& map, Scenario::FitSpec& fit) {
+  if (const auto code = map.text("code")) {
+    double nominal = 0.0;
+    std::tie(nominal, fit.code) = split_nominal(*code);
+    fit.nominal_mm = nominal * context.unit_mm;
+  }
+  if (const auto nominal = map.positive_length_mm("nominal")) {
+    if (fit.nominal_mm > 0.0 && fit.nominal_mm != *nominal)
+      map.error("nominal", "contradicts the size in code; keep one");
+    fit.nominal_mm = *nominal;
+  }
+  const std::string way = map.one_of({"code", "plus_minus", "profile", "lower"});
+  if (way.empty())
+    map.error("say what holds between both: code: H7/g6, or plus_minus: 0.05, or profile: 0.1");
+  else if (way != "code")
+    fit.tolerance = tolerance_of(map);
+  return way;
 }
 
 }  // namespace mortise

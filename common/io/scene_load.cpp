@@ -7,6 +7,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
+#include "common/io/live_rules.h"
 #include "common/io/scene_features.h"
 #include "common/io/scene_rules.h"
 #include "scenarios/generators/generators.h"
@@ -89,7 +90,13 @@ class SceneLoader {
     world.may_hold = scenario_.users;
     for (const auto& spec : scenario_.parts) add_part(spec);
     // Rules speak of features: with a part missing they would only repeat what is said already.
-    if (scene_.usable()) apply_rules(scenario_, stated_, scene_);
+    if (scene_.usable()) {
+      RuleOutcome rules = rules_of({scenario_, world.parts, stated_});
+      world.pair_rules = std::move(rules.pair_rules);
+      scene_.fits = std::move(rules.fits);
+      scene_.findings.insert(scene_.findings.end(), rules.findings.begin(), rules.findings.end());
+    }
+    if (scene_.usable()) world.rules = make_live_rules(scenario_, stated_);
     world.evaluates = evaluates();
     return std::move(scene_);
   }
@@ -246,6 +253,7 @@ class SceneLoader {
       }
       kind.stated.of_feature.push_back(std::move(statement).value());
     }
+    kind.stated.declared = std::move(specs);
     return good && share_out_triangles(spec, kind);
   }
 

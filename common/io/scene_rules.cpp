@@ -8,6 +8,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/io/scenario_yaml.h"
+#include "common/session/rights.h"
 
 namespace mortise {
 namespace {
@@ -16,20 +17,20 @@ namespace {
 /// large scene is rarely meant.
 constexpr std::size_t kMaxRulePairs = 2'000'000;
 
-using FeaturePair = std::tuple<PartId, std::size_t, PartId, std::size_t>;
-constexpr std::size_t kWholePart = static_cast<std::size_t>(-1);
-
 class RuleBook {
  public:
-  RuleBook(const Scenario& scenario, const std::vector<StatedPart>& stated, LoadedScene& scene)
-      : scenario_(scenario), stated_(stated), scene_(scene) {}
+  explicit RuleBook(const RuleInput& input)
+      : input_(input), scenario_(input.scenario), stated_(input.stated) {}
 
-  void run() {
+  RuleOutcome run() {
     for (const auto& fit : scenario_.fits) apply_fit(fit);
+    for (const LiveFit& live : input_.live) apply_live(live);
     make_bands();
     note_what_is_tighter();
+    if (input_.only) return std::move(out_);
     for (const auto& exclusion : scenario_.exclusions) apply_exclusion(exclusion);
     for (const auto& user : scenario_.users) check_user(user);
+    return std::move(out_);
   }
 
  private:
@@ -46,23 +47,23 @@ class RuleBook {
   };
 
   void error(SourceLine at, const std::string& text) {
-    scene_.findings.push_back({true, place_of(scenario_, at) + text});
+    out_.findings.push_back({true, place_of(scenario_, at) + text});
   }
 
-  Part& part(PartId id) { return scene_.world.parts[id.value - 1]; }
+  const Part& part(PartId id) { return input_.parts[id.value - 1]; }
 
   // 1. names
 
   std::vector<PartId> parts_matching(const std::string& pattern) {
     std::vector<PartId> ids;
-    for (const Part& candidate : scene_.world.parts)
-      if (matches_pattern(pattern, candidate.name)) ids.push_back(candidate.id);
+    for (const Part& candidate : input_.parts)
+      if (matches_name(pattern, candidate.name)) ids.push_back(candidate.id);
     return ids;
   }
 
   std::string no_such_part(const std::string& pattern) {
     std::vector<std::string> names;
-    for (const Part& candidate : scene_.world.parts) names.push_back(candidate.name);
+    for (const Part& candidate : input_.parts) names.push_back(candidate.name);
     return "no part is called '" + pattern + "'; did you mean '" + nearest_word(pattern, names) +
            "'?";
   }
@@ -72,7 +73,7 @@ class RuleBook {
     std::vector<std::size_t> found;
     const auto& features = part(id).features;
     for (std::size_t i = 0; i < features.size(); ++i)
-      if (matches_pattern(pattern, features[i].name)) found.push_back(i);
+      if (matches_name(pattern, features[i].name)) found.push_back(i);
     return found;
   }
 
@@ -121,18 +122,37 @@ class RuleBook {
     }
     std::set<FeaturePair> seen;  // `*` on both sides names every pair twice
     std::size_t applied = 0;
-    const std::size_t findings_before = scene_.findings.size();
+    const std::size_t findings_before = out_.findings.size();
     for (auto [id_a, feature_a] : *ends_a)
       for (auto [id_b, feature_b] : *ends_b) {
         if (id_a == id_b) continue;
         auto [a, fa, b, fb] = std::tuple(id_a, feature_a, id_b, feature_b);
         if (b < a) std::swap(a, b), std::swap(fa, fb);
+        if (!is_asked(a, b)) continue;
         if (!seen.insert({a, fa, b, fb}).second) continue;
         if (state_pair(fit, a, fa, b, fb)) ++applied;
-        if (scene_.findings.size() > findings_before + 20) return;  // the same mistake many times
+        if (out_.findings.size() > findings_before + 20) return;  // the same mistake many times
       }
-    if (applied == 0 && scene_.findings.size() == findings_before)
+    if (applied == 0 && out_.findings.size() == findings_before && !input_.only)
       error(fit.at, "fit: matches no pair of a hole and a shaft of two different parts");
+  }
+
+  bool is_asked(PartId a, PartId b) const {
+    return !input_.only || *input_.only == a || *input_.only == b;
+  }
+
+  // A statement of the running session takes the place of what the file says of the same ends.
+  bool is_replaced(const FeaturePair& ends) const {
+    return std::any_of(input_.live.begin(), input_.live.end(),
+                       [&](const LiveFit& live) { return live.ends == ends; });
+  }
+
+  void apply_live(const LiveFit& live) {
+    const auto [a, fa, b, fb] = live.ends;
+    if (!live.fit || !is_asked(a, b)) return;
+    in_live_ = true;
+    state_pair(*live.fit, a, fa, b, fb);
+    in_live_ = false;
   }
 
   FitSide side_of(PartId id, std::size_t feature) {
@@ -145,6 +165,7 @@ class RuleBook {
   // Returns whether the fit speaks of this pair of features.
   bool state_pair(const Scenario::FitSpec& fit, PartId a, std::size_t fa, PartId b,
                   std::size_t fb) {
+    if (!in_live_ && is_replaced({a, fa, b, fb})) return true;
     LoadedScene::ResolvedFit resolved;
     FaceStatement of_a, of_b;
     std::string text;
@@ -182,7 +203,7 @@ class RuleBook {
     if (fa != kWholePart) resolved.feature_a = part(a).features[fa].name;
     if (fb != kWholePart) resolved.feature_b = part(b).features[fb].name;
     resolved.code = text;
-    scene_.fits.push_back(std::move(resolved));
+    out_.fits.push_back(std::move(resolved));
     applied_.push_back({{a, fa, b, fb}, of_a, of_b, fit.at});
     return true;
   }
@@ -267,7 +288,7 @@ class RuleBook {
       const Result<PlacedStatement> of_a = statement_in_pair(a, pair.a, fa).all;
       const Result<PlacedStatement> of_b = statement_in_pair(b, pair.b, fb).all;
       if (!of_a || !of_b) continue;  // said where the bands were made
-      LoadedScene::ResolvedFit& resolved = scene_.fits[i];
+      LoadedScene::ResolvedFit& resolved = out_.fits[i];
       const FaceStatement all_a = for_band(*of_a), all_b = for_band(*of_b);
       if (all_a.source != fit.a.source)
         resolved.tighter.push_back(name_of_end(a, fa) + ": " + all_a.source);
@@ -283,7 +304,7 @@ class RuleBook {
 
   void make_bands() {
     for (const auto& [ids, pair] : pairs_) {
-      PairRule& rule = scene_.world.pair_rules[ids];
+      PairRule& rule = out_.pair_rules[ids];
       rule.a = ids.first, rule.b = ids.second;
       rule.band_a = band_of(ids.first, pair.a);
       rule.band_b = band_of(ids.second, pair.b);
@@ -308,7 +329,7 @@ class RuleBook {
       for (const PartId id_b : ids_b) {
         if (id_a == id_b) continue;
         const auto key = std::minmax(id_a, id_b);
-        PairRule& rule = scene_.world.pair_rules[{key.first, key.second}];
+        PairRule& rule = out_.pair_rules[{key.first, key.second}];
         rule.a = key.first, rule.b = key.second;
         any = true;
         if (rule.excluded) continue;  // the first reason stands
@@ -329,45 +350,24 @@ class RuleBook {
     }
   }
 
+  RuleInput input_;
   const Scenario& scenario_;
   const std::vector<StatedPart>& stated_;
-  LoadedScene& scene_;
+  RuleOutcome out_;
   std::map<std::pair<PartId, PartId>, PairStatements> pairs_;
   std::map<FeaturePair, int> fit_of_;
+  bool in_live_ = false;
   std::vector<AppliedFit> applied_;  // same index as LoadedScene::fits
   std::map<std::string, std::shared_ptr<const SurfaceBand>> bands_;
 };
 
 }  // namespace
 
-bool matches_pattern(std::string_view pattern, std::string_view name) {
-  // Greedy with one point to come back to: linear for every pattern people write.
-  std::size_t p = 0, n = 0, star = std::string_view::npos, star_n = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      star_n = n;
-    } else if (p < pattern.size() && pattern[p] == name[n]) {
-      ++p, ++n;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      n = ++star_n;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
 std::string place_of(const Scenario& scenario, SourceLine at) {
   const std::string file = scenario.file.empty() ? "scenario" : scenario.file;
   return at.line > 0 ? file + ":" + std::to_string(at.line) + ": " : file + ": ";
 }
 
-void apply_rules(const Scenario& scenario, const std::vector<StatedPart>& stated,
-                 LoadedScene& scene) {
-  RuleBook(scenario, stated, scene).run();
-}
+RuleOutcome rules_of(const RuleInput& input) { return RuleBook(input).run(); }
 
 }  // namespace mortise

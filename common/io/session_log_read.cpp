@@ -190,8 +190,9 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
   if (scan.profile != log_layout::kProfile)
     return bad(": an MCAP file, but no session log: its profile is \"" + scan.profile + "\"");
   if (!has_session_) return bad(": the record that names the session is missing or damaged");
-  if (format_ != log_layout::kFormat)
-    return bad(": written in log format " + format_ + ", this program reads format " +
+  if (std::find(std::begin(log_layout::kFormatsRead), std::end(log_layout::kFormatsRead),
+                format_) == std::end(log_layout::kFormatsRead))
+    return bad(": written in log format " + format_ + ", this program reads formats up to " +
                log_layout::kFormat);
   if (!has_scenario_) return bad(": the scenario is missing or damaged; nothing can be replayed");
   if (!as_list(mesh_of_part_, log_.mesh_of_part) || !as_list(imports_, log_.imports))

@@ -2,11 +2,37 @@
 #include <cstdint>
 #include <string>
 
+#include <vector>
+
 #include "common/base/ids.h"
+#include "common/messages/constraint.h"
+#include "common/messages/review.h"
+#include "common/messages/role.h"
 
 namespace mortise {
 
-enum class CommandKind : std::uint8_t { kUnknown = 0, kGrab, kRelease, kUndo, kReset };
+/// What a user may ask for. Goes over the wire, so numbers never change. Beside `part`, a kind uses
+/// the details that it names.
+enum class CommandKind : std::uint8_t {
+  kUnknown = 0,
+  kGrab = 1,         ///< parts: several, all or none of them
+  kRelease = 2,      ///< likewise
+  kUndo = 3,         ///< the user's own last move of the part
+  kReset = 4,        ///< back to where the scenario put it
+  kRedo = 5,         ///< the move that was undone last
+  kAskHandOver = 6,  ///< of whoever holds the part
+  kConsent = 7,      ///< the holder gives it to who asked
+  kDecline = 8,      ///< text: why, may be empty
+  kSetPolicy = 9,    ///< text: stop, report
+  kSetTolerance =
+      10,  ///< feature, other_part, other_feature; text as in a scenario, empty: nothing
+  kSetExclusion = 11,    ///< other_part; text: the reason
+  kDropExclusion = 12,   ///< other_part
+  kReview = 13,          ///< clash, status; text: the comment, may be empty
+  kAddConstraint = 14,   ///< constraint; its held.part is `part`
+  kDropConstraint = 15,  ///< constraint_id
+};
+inline constexpr std::uint8_t kCommandKindCount = 16;
 
 /// Why something was not done. Goes over the wire and into the log, so numbers never change.
 enum class Refusal : std::uint8_t {
@@ -30,14 +56,40 @@ enum class Refusal : std::uint8_t {
   kConstraintUnfit = 17,     ///< the kind cannot hold between these surfaces
   kConstraintConflict = 18,  ///< it contradicts those that hold already
   kUnknownConstraint = 19,
+  kObserver = 20,  ///< observers look only
+  kNothingToRedo = 21,
+  kNoRight = 22,       ///< the scenario does not let this user change this
+  kNotHeld = 23,       ///< nobody holds the part: grab it
+  kNotAsked = 24,      ///< nobody asked for the part
+  kAlreadyAsked = 25,  ///< somebody else has, and waits for an answer
+  kBadRule = 26,       ///< not understood, contradicts another statement, or changes nothing
+  kUnknownClash = 27,
+  kBadGroup = 28,  ///< a group of no parts, or with one twice
 };
-inline constexpr std::uint8_t kRefusalCount = 20;
+inline constexpr std::uint8_t kRefusalCount = 29;
+
+/// What commands and decisions say beside user and part.
+struct Details {
+  std::vector<PartId> parts;           ///< of a group; `part` is then none
+  PartId other_part;                   ///< the other one of a pair
+  std::string feature, other_feature;  ///< of part and other_part; empty: the whole part
+  UserId other_user;                   ///< to whom, from whom
+  ClashId clash;
+  ReviewStatus status = ReviewStatus::kNew;
+  std::string text;
+  Constraint constraint;
+  ConstraintId constraint_id;  ///< of a decision also with kAddConstraint
+};
+
+/// Most parts of one group: a sentence of refusal and a tick have to bear it.
+inline constexpr std::size_t kMostGroupParts = 256;
 
 struct Command {
   UserId user;
   PartId part;
   std::uint64_t seq = 0;  ///< per user, echoed in the reply
   CommandKind kind = CommandKind::kUnknown;
+  Details details = {};
 };
 
 struct Reply {
@@ -46,27 +98,42 @@ struct Reply {
   std::uint64_t seq = 0;
   Refusal refusal = Refusal::kNone;
   UserId holder;     ///< who holds the part now
-  std::string text;  ///< reason in words; empty when done
+  std::string text;  ///< reason in words; when done what there is to say of it, mostly nothing
 };
 
-/// A change of who holds what (or of a pose by undo/reset), decided by the server outside of `step`
-/// and applied before it. Logged, so that a replay can apply the same decisions.
+/// A change of the session that the server decided outside of `step` and applied before it. Logged,
+/// so that a replay can apply the same decisions, and told to everybody.
 struct Decision {
   enum class Kind : std::uint8_t {
     kUnknown = 0,
-    kJoin,
-    kLeave,
-    kGrab,
-    kRelease,
-    kLeaseEnd,
-    kLivelinessLost,
-    kUndo,
-    kReset
+    kJoin = 1,
+    kLeave = 2,
+    kGrab = 3,
+    kRelease = 4,
+    kLeaseEnd = 5,
+    kLivelinessLost = 6,
+    kUndo = 7,
+    kReset = 8,
+    kRedo = 9,
+    kAskHandOver = 10,  ///< user asks details.other_user, who holds the part
+    kHandOver = 11,     ///< user gives the part to details.other_user
+    kDecline = 12,      ///< user keeps the part that details.other_user asked for
+    kAskEnd = 13,       ///< what user asked for was answered by nobody in time
+    kSetPolicy = 14,
+    kSetTolerance = 15,
+    kSetExclusion = 16,
+    kDropExclusion = 17,
+    kReview = 18,
+    kAddConstraint = 19,
+    kDropConstraint = 20,
   };
   Kind kind = Kind::kUnknown;
   UserId user;
   PartId part;
-  std::string user_name;  ///< with kJoin
+  std::string user_name;       ///< with kJoin
+  Role role = Role::kUnknown;  ///< with kJoin
+  Details details = {};
 };
+inline constexpr std::uint8_t kDecisionKindCount = 21;
 
 }  // namespace mortise

@@ -18,6 +18,8 @@ enum class ConstraintKind : std::uint8_t {
   kTangent = 4,           ///< planes, cylinders, spheres touch along a line or at a point
 };
 
+inline constexpr std::uint8_t kConstraintKindCount = 5;
+
 /// A feature of a part by name: declared in the scenario, brought by a generator, or recognized.
 struct FeatureOf {
   PartId part;

@@ -1,86 +1,28 @@
 #pragma once
 #include <cstdint>
 #include <limits>
-#include <string>
 
 #include "common/base/ids.h"
 #include "common/math/interval.h"
-#include "common/math/types.h"
+#include "common/messages/command.h"
+#include "common/messages/verdict.h"
 
 namespace mortise {
-
-/// The paper's three classes. kNone: nothing to report (no overlap, nor any possible).
-enum class CollisionClass : std::uint8_t { kNone = 0, kFake = 1, kPotential = 2, kReal = 3 };
-
-/// Where the knowledge of the mesh error comes from, best first; a verdict names the worst grade it
-/// rests on.
-enum class DeviationGrade : std::uint8_t {
-  kUnknown = 0,
-  kPlanar = 1,  ///< planar faces: no error
-  kDeclaredFeature = 2,
-  kRecognizedFeature = 3,
-  kDeclaredChord = 4,
-  kEstimated = 5,  ///< never called guaranteed
-  kNominal = 6,    ///< nothing known: the mesh is taken for the surface
-};
-
-/// Shape of a face, or of the pair of faces of a region (concave-convex determination of the
-/// paper).
-enum class FaceShape : std::uint8_t { kUnknown = 0, kPlanar, kConvex, kConcave, kSaddle, kEdge };
-
-/// How part A comes free of part B by the shortest motion that was verified.
-enum class SeparationWay : std::uint8_t {
-  kNone = 0,    ///< none was found
-  kBack = 1,    ///< back along the tick's motion
-  kNormal = 2,  ///< along the normal of the region
-  kFitted = 3,  ///< a small turn and shift, fitted to the contact points
-  kAxis = 4,    ///< along the axis of a round face: drawn out of its hole
-};
-
-/// The judged collision of one region of one pair of parts. World frame, mm.
-/// delta: overlap of the meshes, -min_p(sd_A + sd_B), negative when apart. Class by the two
-/// thresholds: real iff delta > real_above, fake iff delta <= fake_below (over every pair of faces
-/// of the region), else potential.
-struct Verdict {
-  CollisionClass collision_class = CollisionClass::kNone;
-  Interval delta_mm;
-  Interval gpd_mm;  ///< generalized penetration depth, bracket
-  double fake_below_mm = 0.0;
-  double real_above_mm = 0.0;
-  double margin_mm =
-      0.0;  ///< distance of delta to the nearest threshold that would change the class, >= 0
-  double probability = 0.0;  ///< P(interference) for kPotential; 0 for fake, 1 for real
-  double travel_mm = 0.0;  ///< path length from contact to target, largest over the region's points
-  double normal_travel_mm = 0.0;  ///< its part along the normal
-  Vec3 point_W = Vec3::Zero();
-  Vec3 normal_W = Vec3::Zero();  ///< from B to A
-  double area_mm2 = 0.0;
-  bool has_witness = false;
-  Vec3 witness_W = Vec3::Zero();  ///< a point inside both real parts, for kReal
-  Vec3 separation_translation_mm =
-      Vec3::Zero();  ///< the motion of A that reaches gpd_mm.hi and separates
-  Vec3 separation_rotation_rad = Vec3::Zero();
-  SeparationWay separation_way = SeparationWay::kNone;
-  FaceShape shape_a = FaceShape::kUnknown;
-  FaceShape shape_b = FaceShape::kUnknown;
-  DeviationGrade grade = DeviationGrade::kUnknown;
-  std::string face_a, face_b;  ///< feature names, empty when none
-  std::string explanation;     ///< one sentence
-};
 
 /// A time that does not come within the tick.
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Begin, change or end of one clash. Same pair and near the same place is one clash for as long as
-/// it lasts.
+/// Begin, change, end or review of one clash. Same pair and near the same place is one clash for as
+/// long as it lasts.
 struct ClashEvent {
-  enum class Kind : std::uint8_t { kUnknown = 0, kBegin = 1, kChange = 2, kEnd = 3 };
+  enum class Kind : std::uint8_t { kUnknown = 0, kBegin = 1, kChange = 2, kEnd = 3, kReview = 4 };
   Kind kind = Kind::kUnknown;
   std::uint64_t seq = 0;  ///< per session, 1, 2, 3 ...: a gap means that events were lost
   std::uint64_t tick = 0;
   ClashId clash;
   PartId part_a, part_b;  ///< part_a < part_b
-  UserId user;            ///< who moved a part of the pair last, none when nobody did
+  UserId user;            ///< who moved a part of the pair last, none when nobody did; with a
+                          ///< cause: who decided
   Verdict verdict;
   double t_contact = 1.0;       ///< time of first contact of the meshes inside the tick, 0..1
   double t_potential = kNever;  ///< 0..1: before, no admissible pair of real surfaces interferes
@@ -89,6 +31,10 @@ struct ClashEvent {
   std::uint64_t begin_tick = 0;
   CollisionClass worst_class = CollisionClass::kNone;
   Interval worst_delta_mm;
+  /// The decision that put a part somewhere or changed a rule in this tick; kUnknown: a motion.
+  Decision::Kind cause = Decision::Kind::kUnknown;
+  Review review;               ///< as it stands after this event
+  bool approval_lost = false;  ///< by this event: the clash got worse than what was approved
 };
 
 }  // namespace mortise

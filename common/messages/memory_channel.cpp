@@ -165,6 +165,12 @@ class MemoryServer final : public ServerChannel {
       box.reliable.replies.insert(box.reliable.replies.end(), replies.begin(), replies.end());
     });
   }
+  void publish_decisions(std::span<const Decision> decisions) override {
+    each([&](ClientBox& box) {
+      box.reliable.decisions.insert(box.reliable.decisions.end(), decisions.begin(),
+                                    decisions.end());
+    });
+  }
   void publish_refusals(std::span<const RefusedIncrement> refused) override {
     each([&](ClientBox& box) {
       box.reliable.refused.insert(box.reliable.refused.end(), refused.begin(), refused.end());

@@ -112,6 +112,24 @@ std::string_view name_of(Refusal value) {
       return "constraint contradicts another";
     case Refusal::kUnknownConstraint:
       return "unknown constraint";
+    case Refusal::kObserver:
+      return "observers look only";
+    case Refusal::kNothingToRedo:
+      return "nothing to redo";
+    case Refusal::kNoRight:
+      return "not allowed to change this";
+    case Refusal::kNotHeld:
+      return "nobody holds the part";
+    case Refusal::kNotAsked:
+      return "nobody asked for the part";
+    case Refusal::kAlreadyAsked:
+      return "asked for by another user";
+    case Refusal::kBadRule:
+      return "not a rule that can hold";
+    case Refusal::kUnknownClash:
+      return "unknown clash";
+    case Refusal::kBadGroup:
+      return "no group of parts";
   }
   return "?";
 }
@@ -144,6 +162,28 @@ std::string_view name_of(CommandKind value) {
       return "undo";
     case CommandKind::kReset:
       return "reset";
+    case CommandKind::kRedo:
+      return "redo";
+    case CommandKind::kAskHandOver:
+      return "ask for hand-over";
+    case CommandKind::kConsent:
+      return "consent";
+    case CommandKind::kDecline:
+      return "decline";
+    case CommandKind::kSetPolicy:
+      return "set policy";
+    case CommandKind::kSetTolerance:
+      return "set tolerance";
+    case CommandKind::kSetExclusion:
+      return "set exclusion";
+    case CommandKind::kDropExclusion:
+      return "drop exclusion";
+    case CommandKind::kReview:
+      return "review";
+    case CommandKind::kAddConstraint:
+      return "add constraint";
+    case CommandKind::kDropConstraint:
+      return "drop constraint";
   }
   return "?";
 }
@@ -168,6 +208,30 @@ std::string_view name_of(Decision::Kind value) {
       return "undo";
     case Decision::Kind::kReset:
       return "reset";
+    case Decision::Kind::kRedo:
+      return "redo";
+    case Decision::Kind::kAskHandOver:
+      return "ask for hand-over";
+    case Decision::Kind::kHandOver:
+      return "hand-over";
+    case Decision::Kind::kDecline:
+      return "decline";
+    case Decision::Kind::kAskEnd:
+      return "ask unanswered";
+    case Decision::Kind::kSetPolicy:
+      return "set policy";
+    case Decision::Kind::kSetTolerance:
+      return "set tolerance";
+    case Decision::Kind::kSetExclusion:
+      return "set exclusion";
+    case Decision::Kind::kDropExclusion:
+      return "drop exclusion";
+    case Decision::Kind::kReview:
+      return "review";
+    case Decision::Kind::kAddConstraint:
+      return "add constraint";
+    case Decision::Kind::kDropConstraint:
+      return "drop constraint";
   }
   return "?";
 }
@@ -182,8 +246,46 @@ std::string_view name_of(ClashEvent::Kind value) {
       return "change";
     case ClashEvent::Kind::kEnd:
       return "end";
+    case ClashEvent::Kind::kReview:
+      return "review";
   }
   return "?";
+}
+
+std::string_view name_of(ReviewStatus value) {
+  switch (value) {
+    case ReviewStatus::kNew:
+      return "new";
+    case ReviewStatus::kActive:
+      return "active";
+    case ReviewStatus::kReviewed:
+      return "reviewed";
+    case ReviewStatus::kApproved:
+      return "approved";
+    case ReviewStatus::kResolved:
+      return "resolved";
+  }
+  return "?";
+}
+
+std::string_view name_of(Role value) {
+  switch (value) {
+    case Role::kUnknown:
+      return "unknown";
+    case Role::kDesigner:
+      return "designer";
+    case Role::kObserver:
+      return "observer";
+    case Role::kBot:
+      return "bot";
+  }
+  return "?";
+}
+
+std::optional<Role> role_named(std::string_view name) {
+  for (const Role role : {Role::kDesigner, Role::kObserver, Role::kBot})
+    if (name_of(role) == name) return role;
+  return std::nullopt;
 }
 
 }  // namespace mortise

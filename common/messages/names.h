@@ -17,5 +17,7 @@ std::string_view name_of(ConstraintKind value);
 std::string_view name_of(CommandKind value);
 std::string_view name_of(Decision::Kind value);
 std::string_view name_of(ClashEvent::Kind value);
+std::string_view name_of(ReviewStatus value);
+std::string_view name_of(Role value);
 
 }  // namespace mortise

@@ -24,6 +24,7 @@ struct UserInfo {
   UserId user;
   std::string name;
   bool present = false;
+  Role role = Role::kUnknown;
 };
 
 /// All that a late joiner needs; the live stream goes on from event_seq + 1.
@@ -36,6 +37,9 @@ struct Snapshot {
   std::vector<PartInfo> parts;
   std::vector<UserInfo> users;
   std::vector<ClashEvent> open_clashes;
+  /// Decisions of before that still hold: policy, tolerances, exclusions, and what was asked for
+  /// and not answered, in the order in which they were made.
+  std::vector<Decision> standing;
 };
 
 }  // namespace mortise

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "common/base/constants.h"
+#include "common/session/review.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
@@ -129,6 +130,15 @@ void tell(const World& world, SessionState& state, OpenClash& clash, ClashEvent:
   event.t_real = times.real;
   event.worst_class = clash.worst_class;
   event.worst_delta_mm = clash.worst_delta_mm;
+  event.cause = Decision::Kind::kUnknown;
+  for (const PartId part : {event.part_a, event.part_b}) {
+    const PartState& of = state.parts[part.value - 1];
+    if (of.cause_tick != world.tick) continue;
+    event.cause = of.cause;
+    event.user = of.cause_user;
+  }
+  event.approval_lost = is_worse_than_approved(clash, hysteresis_mm(clash.now));
+  if (event.approval_lost) take_back_approval(clash, world.tick);
   report.events.push_back(event);
 }
 
@@ -162,7 +172,8 @@ void update(const World& world, SessionState& state, const PairWork* pair,
     const Times times = known ? times_of(*pair) : Times{};
     if (seen) take_in(open[c], *seen);
     if (seen && !seen->passing) {
-      if (seen->tell) tell(world, state, open[c], ClashEvent::Kind::kChange, times, report);
+      if (seen->tell || is_worse_than_approved(open[c], hysteresis_mm(open[c].now)))
+        tell(world, state, open[c], ClashEvent::Kind::kChange, times, report);
       continue;
     }
     if (!seen && known && pair->keeps[c]) continue;

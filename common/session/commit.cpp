@@ -12,10 +12,7 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
       part_state.last_user = move.user;
     }
     if (!identical(part.X_WP, move.X_WP_end)) {
-      // What undo goes back to: where the part stood before its holder's first move.
-      if (!part.moved_since_grab) part.undo_X_WP = part.X_WP;
-      part.moved_since_grab = true;
-      part.last_mover = move.user;
+      part.history.note(move.user, part.X_WP);
       part.X_WP = move.X_WP_end;
       report.moved.push_back({part.id, part.holder, part.X_WP});
       state.rehash.push_back(move.part);

@@ -8,6 +8,7 @@
 #include "common/evaluation/tolerance.h"
 #include "common/geometry/feature.h"
 #include "common/math/pose.h"
+#include "common/messages/role.h"
 
 namespace mortise {
 
@@ -35,6 +36,16 @@ constexpr std::optional<Policy> policy_named(std::string_view name) {
 constexpr bool holds_back(Policy policy) {
   return policy == Policy::kStop || policy == Policy::kSlide;
 }
+
+/// All of them, for messages.
+inline constexpr std::string_view kPolicyNames = "stop, slide or report";
+
+/// What a user may change while the session runs.
+enum class Right : std::uint8_t { kUnknown = 0, kPolicy, kTolerance, kExclusions, kReview };
+
+/// "policy", "tolerance", "exclusions", "review".
+std::string_view name_of(Right value);
+std::optional<Right> right_named(std::string_view name);
 
 /// What is taken for known of surfaces of which nothing is declared.
 enum class UndeclaredSurface : std::uint8_t {
@@ -94,10 +105,13 @@ struct Scenario {
     std::string name;
     std::vector<std::string> may_hold;  ///< part names, '*' allowed; empty: nothing (observer)
     SourceLine at;
+    std::optional<std::vector<Right>> may = {};  ///< none: review, for who may hold something
+    Role role = Role::kUnknown;                  ///< kUnknown: as they ask to
   };
 
   std::string name;
-  std::string file;  ///< path it came from, for messages and relative meshes
+  std::string file;      ///< path it came from, for messages and relative meshes
+  double unit_mm = 1.0;  ///< of a length as its file writes it
   double tick_rate_hz = 60.0;
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;  ///< largest translation of one increment

@@ -44,6 +44,16 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
   return state;
 }
 
+double largest_offset_mm(const World& world, PartId part) {
+  double largest_mm = std::max(0.0, world.find(part)->band.largest_offset_mm);
+  for (const auto& [ids, rule] : world.pair_rules) {
+    const auto& band = ids.first == part ? rule.band_a : rule.band_b;
+    if ((ids.first == part || ids.second == part) && band)
+      largest_mm = std::max(largest_mm, band->largest_offset_mm);
+  }
+  return largest_mm;
+}
+
 void add(StateHash& hash, const Vec3& v) {
   for (int i = 0; i < 3; ++i) hash.add(v[i]);
 }
@@ -70,6 +80,11 @@ void add(StateHash& hash, const OpenClash& clash) {
     hash.add(x);
   add(hash, now.point_W);
   add(hash, now.normal_W);
+  const Review& review = clash.last.review;
+  if (review.tick == 0) return;  // nobody has said anything: as before there were reviews
+  hash.add(static_cast<std::uint64_t>(review.status));
+  hash.add(static_cast<std::uint64_t>(review.user.value));
+  hash.add(review.tick);
 }
 
 }  // namespace
@@ -81,10 +96,14 @@ SessionState& session_state(World& world, bool brute_force_pairs) {
   return *world.state;
 }
 
-void note_placed(World& world, std::uint32_t index) {
+void note_placed(World& world, std::uint32_t index, const Decision& by) {
   if (!world.state) return;
   SessionState& state = *world.state;
-  ++state.parts[index].placements;
+  PartState& part = state.parts[index];
+  ++part.placements;
+  part.cause = by.kind;
+  part.cause_user = by.user;
+  part.cause_tick = world.tick + 1;
   state.rehash.push_back(index);
   if (std::find(state.placed.begin(), state.placed.end(), index) == state.placed.end())
     state.placed.push_back(index);
@@ -92,6 +111,42 @@ void note_placed(World& world, std::uint32_t index) {
 
 void note_holder(World& world, std::uint32_t index) {
   if (world.state) world.state->rehash.push_back(index);
+}
+
+void note_surface(World& world, PartId part, PartId other, const Decision& by) {
+  if (!world.state) return;
+  SessionState& state = *world.state;
+  // 1. Boxes as large as what they now hold.
+  for (const PartId id : {part, other}) {
+    if (!world.find(id)) continue;
+    const std::uint32_t index = id.value - 1;
+    state.parts[index].growth_mm = largest_offset_mm(world, id) + kClashHysteresisMost_mm;
+    state.broad_phase->set_box(index, resting_box(world, state, index));
+  }
+  // 2. The moving parts of the pairs concerned count as put where they stand: that voids what is
+  //    remembered of them and has them judged.
+  std::vector<std::uint32_t> again;
+  const auto add = [&](PartId id) {
+    if (world.find(id)->moving) again.push_back(id.value - 1);
+    return world.find(id)->moving;
+  };
+  if (world.find(other)) {
+    if (!add(part)) add(other);
+  } else if (!add(part)) {
+    std::vector<IndexPair> pairs;
+    state.broad_phase->find_pairs(std::vector<std::uint32_t>{part.value - 1}, pairs);
+    for (const IndexPair pair : pairs)
+      add(PartId{(pair.a == part.value - 1 ? pair.b : pair.a) + 1});
+    for (const auto& [ids, clashes] : state.open)
+      if (ids.first == part || ids.second == part) add(ids.first == part ? ids.second : ids.first);
+  }
+  for (const std::uint32_t index : again) note_placed(world, index, by);
+}
+
+void note_policy(World& world) {
+  if (!world.state) return;
+  for (auto& [pair, memo] : world.state->memos)  // in any order: all become alike
+    memo.allowed_depth_mm = std::numeric_limits<double>::infinity();
 }
 
 Box resting_box(const World& world, const SessionState& state, std::uint32_t index) {

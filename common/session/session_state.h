@@ -41,6 +41,9 @@ struct OpenClash {
   CollisionClass worst_class = CollisionClass::kNone;
   Interval worst_delta_mm;
   Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< its place, as a point of either part, mm
+  /// As it was when people last said something of it.
+  CollisionClass approved_class = CollisionClass::kNone;
+  Interval approved_delta_mm;
 };
 
 /// What the session knows of a part beside the world's own record.
@@ -50,6 +53,10 @@ struct PartState {
   std::uint64_t last_tick = 0;   ///< of its last motion
   UserId last_user;              ///< whose motion that was
   std::uint64_t hash = 0;        ///< of pose and holder
+  /// The decision that makes its pairs be judged anew in tick cause_tick.
+  Decision::Kind cause = Decision::Kind::kUnknown;
+  UserId cause_user;
+  std::uint64_t cause_tick = 0;
 };
 
 using PartPair = std::pair<PartId, PartId>;
@@ -67,6 +74,7 @@ struct SessionState {
   std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
   std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
   std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
+  std::vector<ClashEvent> reviews;  ///< made since the last tick, told in the next
   bool clashes_changed = true;
   std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
   std::uint64_t clashes_hash = 0;
@@ -81,10 +89,15 @@ struct SessionState {
 /// of the broad phase.
 SessionState& session_state(World& world, bool brute_force_pairs = false);
 
-/// Puts part `index` at a pose without a motion. No-op before the first step.
-void note_placed(World& world, std::uint32_t index);
+/// Part `index` was put at a pose without a motion by this decision. No-op before the first step.
+void note_placed(World& world, std::uint32_t index, const Decision& by);
 /// The holder of part `index` changed.
 void note_holder(World& world, std::uint32_t index);
+/// What is stated of the surface of `part` changed, or, with `other`, of this pair alone: what
+/// leans on it is forgotten, and the pairs are judged anew in the next tick.
+void note_surface(World& world, PartId part, PartId other, const Decision& by);
+/// The response policy changed: how deep a pair may go is found out anew.
+void note_policy(World& world);
 
 /// World box of a resting part, grown by what may lie outside of its mesh.
 Box resting_box(const World& world, const SessionState& state, std::uint32_t index);

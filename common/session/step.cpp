@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/session/review.h"
 #include "common/session/statistics.h"
 #include "common/session/tick_work.h"
 
@@ -48,6 +49,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   state.tick = ++world.tick;
   StepReport report;
   report.tick = world.tick;
+  tell_reviews(world, state, report);
   gather(world, increments, work, report);
   find_candidates(world, state, work, report);
   if (!work.moves.empty()) {

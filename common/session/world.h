@@ -13,12 +13,14 @@
 #include "common/messages/constraint.h"
 #include "common/messages/report.h"
 #include "common/messages/scene.h"
+#include "common/session/move_history.h"
 #include "common/session/relation.h"
 #include "common/session/scenario.h"
 
 namespace mortise {
 
-/// One part of a session. Everything but pose, holder and the undo record is fixed after load.
+/// One part of a session. Everything but pose, holder and history is fixed after load, but
+/// for bands, which a decision may change.
 struct Part {
   PartId id;
   std::string name;
@@ -29,9 +31,8 @@ struct Part {
   Pose X_WP_scenario;  ///< where the scenario put it
   Pose X_WP;
   UserId holder;
-  UserId last_mover;              ///< who moved it last
-  std::optional<Pose> undo_X_WP;  ///< pose before the last mover's grab
-  bool moved_since_grab = false;  ///< the present holder has moved it: undo_X_WP is set
+  UserId asked_by;  ///< who waits for its holder to hand it over
+  MoveHistory history;
   GroupId group;  ///< parts of one group have one holder and move as one body; none: by itself
 };
 
@@ -49,6 +50,7 @@ struct User {
   std::string name;
   bool present = false;
   std::uint64_t last_seq = 0;  ///< highest applied increment sequence
+  Role role = Role::kDesigner;
 };
 
 /// One constraint that holds.
@@ -61,6 +63,7 @@ struct Guide {
   bool follows = false;
 };
 
+class SurfaceRules;   ///< session/surface_rules.h
 struct SessionState;  ///< caches and open clashes between ticks, session/session_state.h
 
 /// A session between two ticks: what `step` reads and, at its end, writes. Nothing here knows a
@@ -77,9 +80,11 @@ struct World {
   std::vector<Part> parts;  ///< parts[i].id.value == i + 1
   std::vector<User> users;  ///< users[i].id.value == i + 1
   std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
-  std::vector<Scenario::UserSpec> may_hold;  ///< by user name; empty: anyone
-  std::vector<Guide> guides;                 ///< by id, see session/guidance.h
-  std::uint32_t next_constraint = 1;
+  std::vector<Scenario::UserSpec> may_hold;  ///< who may hold and change what, see rights.h
+  std::vector<Decision> standing;  ///< changes of policy, tolerance and exclusions that hold now
+  std::shared_ptr<SurfaceRules> rules;  ///< null: tolerances cannot be changed
+  std::vector<Guide> guides;            ///< by id, see session/guidance.h
+  std::uint32_t next_constraint = 1, next_group = 1;
   /// What meshes show, by hash; filled when a constraint first names such a feature. A cache.
   mutable std::map<std::string, std::shared_ptr<const std::vector<Feature>>> recognized;
   bool evaluates = false;  ///< some part has deviation or tolerance: near pairs are examined
@@ -100,8 +105,8 @@ struct World {
 /// What the wire tells a participant of the world.
 Snapshot snapshot_of(const World& world);
 
-/// Checks and applies one request of a user (grab, release, undo, reset). On success `decision` is
-/// what to log.
+/// Checks and applies one request of a user. On success `decision` is what to log. What is refused
+/// changes nothing, and says why in a sentence.
 Reply apply_command(World& world, const Command& command, Decision& decision);
 
 /// Applies a decision without asking: join, leave (frees the user's parts), lease end, and, in a

@@ -128,7 +128,7 @@ TEST(Convert, RequestsAreRefused) {
   EXPECT_TRUE(passes([](wire::Request&) {}));
   EXPECT_FALSE(passes([](wire::Request& r) { r.user(0); }));
   EXPECT_FALSE(passes([](wire::Request& r) { r.command(0); }));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.command(5); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command(kCommandKindCount); }));
   EXPECT_FALSE(passes([](wire::Request& r) { r.kind(0); }));
   EXPECT_FALSE(passes([](wire::Request& r) { r.kind(5); }));
   EXPECT_FALSE(passes([](wire::Request& r) { r.kind(255); }));
@@ -239,7 +239,7 @@ TEST(Convert, EventsAreRefused) {
   using E = wire::ClashEvent;
   EXPECT_TRUE(passes([](E&) {}));
   EXPECT_FALSE(passes([](E& e) { e.kind(0); }));
-  EXPECT_FALSE(passes([](E& e) { e.kind(4); }));
+  EXPECT_FALSE(passes([](E& e) { e.kind(5); }));
   EXPECT_FALSE(passes([](E& e) { e.seq(0); }));
   EXPECT_FALSE(passes([](E& e) { e.clash(0); }));
   EXPECT_FALSE(passes([](E& e) { e.part_a(0); }));
@@ -350,10 +350,9 @@ TEST(Convert, MutatedSamplesNeverThrow) {
   std::mt19937_64 random(99);
   const test::Fuzzed events = test::fuzz<wire::EventBatchPubSubType>(
       test::some_event_batch(), 30'000, random, [](const wire::EventBatch& batch) {
-        for (const wire::ClashEvent& event : batch.events()) {
-          if (!from_wire(event)) return false;
-        }
-        return true;
+        std::uint64_t malformed = 0;
+        events_from_wire(batch, malformed);
+        return malformed == 0;
       });
   const test::Fuzzed requests = test::fuzz<wire::RequestPubSubType>(
       to_wire(test::some_join()), 30'000, random,
@@ -361,7 +360,19 @@ TEST(Convert, MutatedSamplesNeverThrow) {
   const test::Fuzzed snapshots = test::fuzz<wire::SnapshotPubSubType>(
       test::some_snapshot_chunk(), 30'000, random,
       [](const wire::Snapshot& chunk) { return static_cast<bool>(from_wire(chunk)); });
-  for (const test::Fuzzed& result : {events, requests, snapshots}) {
+  Request command;
+  command.kind = Request::Kind::kCommand;
+  command.command = {UserId{3}, PartId{4}, 5, CommandKind::kReview, test::some_details()};
+  const test::Fuzzed commands = test::fuzz<wire::RequestPubSubType>(
+      to_wire(command), 30'000, random,
+      [](const wire::Request& request) { return static_cast<bool>(from_wire(request)); });
+  Decision decision{Decision::Kind::kReview, UserId{2}, PartId{3}, "anna", Role::kBot};
+  decision.details = test::some_details();
+  const Decision decisions[] = {decision, decision};
+  const test::Fuzzed answers = test::fuzz<wire::AnswersPubSubType>(
+      to_wire({}, {}, {}, decisions), 30'000, random,
+      [](const wire::Answers& answer) { return static_cast<bool>(from_wire(answer)); });
+  for (const test::Fuzzed& result : {events, requests, snapshots, commands, answers}) {
     EXPECT_GT(result.unreadable, 100u);  // refused by SafeType, and counted there
     EXPECT_EQ(result.unreadable, result.counted);
     EXPECT_GT(result.refused, 100u);

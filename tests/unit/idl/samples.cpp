@@ -96,7 +96,50 @@ wire::Snapshot some_snapshot_chunk() {
   return cut(snapshot, 1)[0];
 }
 
+Details some_details() {
+  Details details;
+  details.parts = {PartId{1}, PartId{7}};
+  details.other_part = PartId{8};
+  details.feature = "bore";
+  details.other_feature = "journal";
+  details.other_user = UserId{4};
+  details.clash = ClashId{12};
+  details.status = ReviewStatus::kApproved;
+  details.text =
+      "\xc3\x98"
+      "20 H7/g6";
+  details.constraint = {
+      ConstraintKind::kParallelDistance, {PartId{1}, "top"}, {PartId{2}, "foot"}, -2.5, true};
+  details.constraint_id = ConstraintId{6};
+  return details;
+}
+
+void expect_same(const Details& a, const Details& b) {
+  EXPECT_EQ(a.parts, b.parts);
+  EXPECT_EQ(a.other_part, b.other_part);
+  EXPECT_EQ(a.feature, b.feature);
+  EXPECT_EQ(a.other_feature, b.other_feature);
+  EXPECT_EQ(a.other_user, b.other_user);
+  EXPECT_EQ(a.clash, b.clash);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.text, b.text);
+  EXPECT_EQ(a.constraint_id, b.constraint_id);
+  EXPECT_EQ(a.constraint.kind, b.constraint.kind);
+  EXPECT_EQ(a.constraint.held.part, b.constraint.held.part);
+  EXPECT_EQ(a.constraint.held.feature, b.constraint.held.feature);
+  EXPECT_EQ(a.constraint.other.part, b.constraint.other.part);
+  EXPECT_EQ(a.constraint.other.feature, b.constraint.other.feature);
+  EXPECT_EQ(a.constraint.distance_mm, b.constraint.distance_mm);
+  EXPECT_EQ(a.constraint.snap, b.constraint.snap);
+}
+
 void expect_same(const ClashEvent& a, const ClashEvent& b) {
+  EXPECT_EQ(a.cause, b.cause);
+  EXPECT_EQ(a.review.status, b.review.status);
+  EXPECT_EQ(a.review.comment, b.review.comment);
+  EXPECT_EQ(a.review.user, b.review.user);
+  EXPECT_EQ(a.review.tick, b.review.tick);
+  EXPECT_EQ(a.approval_lost, b.approval_lost);
   EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.seq, b.seq);
   EXPECT_EQ(a.tick, b.tick);

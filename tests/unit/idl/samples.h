@@ -17,6 +17,8 @@ ClashEvent some_clash(std::uint64_t seq = 4);
 Request some_join();
 wire::EventBatch some_event_batch();
 wire::Snapshot some_snapshot_chunk();
+Details some_details();
+void expect_same(const Details& a, const Details& b);
 void expect_same(const ClashEvent& a, const ClashEvent& b);
 
 struct Fuzzed {

@@ -68,6 +68,16 @@ inline TickRecord sample_tick(std::uint64_t tick, std::uint64_t seed) {
   record.report.state_hash = random();
   if (tick == 1)
     record.decisions.push_back({Decision::Kind::kJoin, UserId{1}, PartId{}, "Ada \xc3\x98"});
+  if (tick % 7 == 3) {
+    Decision decision{Decision::Kind::kReview, UserId{1}, PartId{}, "", Role::kBot};
+    decision.details = {
+        {PartId{3}, PartId{400}}, PartId{2},       "bore", "shaft",        UserId{9}, ClashId{77},
+        ReviewStatus::kResolved,  "text \xc3\x98", {},     ConstraintId{5}};
+    if (tick % 2 == 0)
+      decision.details.constraint = {
+          ConstraintKind::kTangent, {PartId{1}, "a"}, {PartId{2}, "b"}, -0.1, true};
+    record.decisions.push_back(decision);
+  }
   if (tick % 50 == 2) record.decisions.push_back({Decision::Kind::kGrab, UserId{1}, PartId{2}, ""});
   for (std::uint64_t i = 0; i < tick % 4; ++i) {
     Increment increment{UserId{1}, PartId{2}, tick * 4 + i, vector(), Vec3::Zero()};
@@ -106,6 +116,9 @@ inline TickRecord sample_tick(std::uint64_t tick, std::uint64_t seed) {
     event.begin_tick = tick;
     event.worst_class = CollisionClass::kReal;
     event.worst_delta_mm = {-1.0, 2.0};
+    event.cause = Decision::Kind::kSetTolerance;
+    event.review = {ReviewStatus::kActive, "no longer approved", UserId{2}, tick};
+    event.approval_lost = tick % 20 == 5;
     record.report.events.push_back(event);
   }
   record.report.counters.increments = {record.increments.size(), record.increments.size()};

@@ -29,6 +29,25 @@ bool same_bits(const Vec3& a, const Vec3& b) {
   return true;
 }
 
+void expect_same(const Details& read, const Details& written) {
+  EXPECT_EQ(read.parts, written.parts);
+  EXPECT_EQ(read.other_part, written.other_part);
+  EXPECT_EQ(read.feature, written.feature);
+  EXPECT_EQ(read.other_feature, written.other_feature);
+  EXPECT_EQ(read.other_user, written.other_user);
+  EXPECT_EQ(read.clash, written.clash);
+  EXPECT_EQ(read.status, written.status);
+  EXPECT_EQ(read.text, written.text);
+  EXPECT_EQ(read.constraint_id, written.constraint_id);
+  const Constraint &a = read.constraint, &b = written.constraint;
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.held.part, b.held.part);
+  EXPECT_EQ(a.held.feature, b.held.feature);
+  EXPECT_EQ(a.other.feature, b.other.feature);
+  EXPECT_EQ(a.distance_mm, b.distance_mm);
+  EXPECT_EQ(a.snap, b.snap);
+}
+
 void expect_same(const TickRecord& read, const TickRecord& written) {
   ASSERT_EQ(read.tick, written.tick);
   EXPECT_EQ(read.time_ns, written.time_ns);
@@ -40,6 +59,8 @@ void expect_same(const TickRecord& read, const TickRecord& written) {
     EXPECT_EQ(read.decisions[i].user, written.decisions[i].user);
     EXPECT_EQ(read.decisions[i].part, written.decisions[i].part);
     EXPECT_EQ(read.decisions[i].user_name, written.decisions[i].user_name);
+    EXPECT_EQ(read.decisions[i].role, written.decisions[i].role);
+    expect_same(read.decisions[i].details, written.decisions[i].details);
   }
   ASSERT_EQ(read.increments.size(), written.increments.size());
   for (std::size_t i = 0; i < read.increments.size(); ++i) {

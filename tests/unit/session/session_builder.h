@@ -57,10 +57,11 @@ struct SessionBuilder {
     world.evaluates = true;
   }
 
-  UserId join(const std::string& name) {
+  UserId join(const std::string& name, Role role = Role::kDesigner) {
     Decision decision;
     decision.kind = Decision::Kind::kJoin;
     decision.user_name = name;
+    decision.role = role;
     apply_decision(world, decision);
     next_seq.push_back(1);
     return world.users.back().id;
@@ -69,6 +70,10 @@ struct SessionBuilder {
   Reply command(UserId user, PartId part, CommandKind kind) {
     Decision decision;
     return apply_command(world, Command{user, part, 1, kind}, decision);
+  }
+  Reply command(UserId user, PartId part, CommandKind kind, Details details) {
+    Decision decision;
+    return apply_command(world, Command{user, part, 1, kind, std::move(details)}, decision);
   }
   Reply grab(UserId user, PartId part) { return command(user, part, CommandKind::kGrab); }
 

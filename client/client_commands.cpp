@@ -1,0 +1,194 @@
+// What a user may ask for, and what the server's decisions change in what a client knows.
+#include <algorithm>
+#include <utility>
+
+#include "client/client.h"
+
+namespace mortise {
+namespace {
+
+Details of_group(std::vector<PartId> parts) {
+  Details details;
+  details.parts = std::move(parts);
+  return details;
+}
+
+Details of_pair(PartId other, const std::string& text) {
+  Details details;
+  details.other_part = other;
+  details.text = text;
+  return details;
+}
+
+Details of_text(const std::string& text) {
+  Details details;
+  details.text = text;
+  return details;
+}
+
+bool is_exclusion(Decision::Kind kind) {
+  return kind == Decision::Kind::kSetExclusion || kind == Decision::Kind::kDropExclusion;
+}
+
+// Do both speak of the same rule, so that the later one holds?
+bool same_rule(const Decision& x, const Decision& y) {
+  const Details &a = x.details, &b = y.details;
+  if (is_exclusion(x.kind) && is_exclusion(y.kind))
+    return std::minmax(x.part, a.other_part) == std::minmax(y.part, b.other_part);
+  return x.kind == y.kind && x.part == y.part && a.other_part == b.other_part &&
+         a.feature == b.feature && a.other_feature == b.other_feature &&
+         a.constraint_id == b.constraint_id;
+}
+
+}  // namespace
+
+std::uint64_t Client::command(LocalUser index, CommandKind kind, PartId part, Details details) {
+  LocalUserState& user = users_[index];
+  if (user.state != JoinState::kJoined) {
+    ++statistics_.not_joined;
+    return 0;
+  }
+  // A release must not overtake the end of the drag: once more what is not acknowledged yet.
+  if (!user.unacknowledged.empty()) channel_.send(user.unacknowledged.repeat(now_ns_));
+  channel_.send(Command{user.id, part, ++user.command_seq, kind, std::move(details)});
+  return user.command_seq;
+}
+
+std::uint64_t Client::grab(LocalUser user, PartId part) {
+  return command(user, CommandKind::kGrab, part);
+}
+std::uint64_t Client::grab(LocalUser user, std::vector<PartId> parts) {
+  return command(user, CommandKind::kGrab, PartId{}, of_group(std::move(parts)));
+}
+std::uint64_t Client::release(LocalUser user, PartId part) {
+  return command(user, CommandKind::kRelease, part);
+}
+std::uint64_t Client::release(LocalUser user, std::vector<PartId> parts) {
+  return command(user, CommandKind::kRelease, PartId{}, of_group(std::move(parts)));
+}
+std::uint64_t Client::undo(LocalUser user, PartId part) {
+  return command(user, CommandKind::kUndo, part);
+}
+std::uint64_t Client::redo(LocalUser user, PartId part) {
+  return command(user, CommandKind::kRedo, part);
+}
+std::uint64_t Client::reset(LocalUser user, PartId part) {
+  return command(user, CommandKind::kReset, part);
+}
+std::uint64_t Client::ask_hand_over(LocalUser user, PartId part) {
+  return command(user, CommandKind::kAskHandOver, part);
+}
+std::uint64_t Client::consent(LocalUser user, PartId part) {
+  return command(user, CommandKind::kConsent, part);
+}
+std::uint64_t Client::decline(LocalUser user, PartId part, const std::string& why) {
+  return command(user, CommandKind::kDecline, part, of_text(why));
+}
+std::uint64_t Client::set_policy(LocalUser user, const std::string& policy) {
+  return command(user, CommandKind::kSetPolicy, PartId{}, of_text(policy));
+}
+std::uint64_t Client::set_tolerance(LocalUser user, PartId part, const std::string& feature,
+                                    const std::string& text) {
+  Details details = of_text(text);
+  details.feature = feature;
+  return command(user, CommandKind::kSetTolerance, part, std::move(details));
+}
+std::uint64_t Client::set_fit(LocalUser user, const FeatureOf& a, const FeatureOf& b,
+                              const std::string& text) {
+  Details details = of_pair(b.part, text);
+  details.feature = a.feature;
+  details.other_feature = b.feature;
+  return command(user, CommandKind::kSetTolerance, a.part, std::move(details));
+}
+std::uint64_t Client::exclude(LocalUser user, PartId a, PartId b, const std::string& reason) {
+  return command(user, CommandKind::kSetExclusion, a, of_pair(b, reason));
+}
+std::uint64_t Client::include(LocalUser user, PartId a, PartId b) {
+  return command(user, CommandKind::kDropExclusion, a, of_pair(b, ""));
+}
+std::uint64_t Client::review(LocalUser user, ClashId clash, ReviewStatus status,
+                             const std::string& comment) {
+  Details details = of_text(comment);
+  details.clash = clash;
+  details.status = status;
+  return command(user, CommandKind::kReview, PartId{}, std::move(details));
+}
+std::uint64_t Client::add_constraint(LocalUser user, const Constraint& constraint) {
+  Details details;
+  details.constraint = constraint;
+  return command(user, CommandKind::kAddConstraint, constraint.held.part, std::move(details));
+}
+std::uint64_t Client::drop_constraint(LocalUser user, PartId held, ConstraintId constraint) {
+  Details details;
+  details.constraint_id = constraint;
+  return command(user, CommandKind::kDropConstraint, held, std::move(details));
+}
+
+UserInfo& Client::known_user(UserId id) {
+  const auto found = std::find_if(session_users_.begin(), session_users_.end(),
+                                  [id](const UserInfo& user) { return user.user == id; });
+  if (found != session_users_.end()) return *found;
+  session_users_.push_back({id, "", false, Role::kUnknown});
+  return session_users_.back();
+}
+
+// What was asked for a part that changes hands, and what guided it, is over.
+void Client::let_go(UserId user, PartId part) {
+  std::erase_if(standing_, [&](const Decision& decision) {
+    const bool of_part = part ? decision.part == part : decision.user == user;
+    return of_part && (decision.kind == Decision::Kind::kAskHandOver ||
+                       decision.kind == Decision::Kind::kAddConstraint);
+  });
+}
+
+void Client::apply_decision(const Decision& decision, ClientUpdate& update) {
+  const Details& details = decision.details;
+  switch (decision.kind) {
+    case Decision::Kind::kJoin: {
+      UserInfo& user = known_user(decision.user);
+      user.present = true;
+      user.role = decision.role;
+      user.name = decision.user_name;
+      break;
+    }
+    case Decision::Kind::kLeave:
+    case Decision::Kind::kLivelinessLost:
+      known_user(decision.user).present = false;
+      let_go(decision.user, PartId{});
+      break;
+    case Decision::Kind::kRelease:
+    case Decision::Kind::kLeaseEnd:
+    case Decision::Kind::kHandOver:
+      let_go(decision.user, decision.part);
+      for (const PartId part : details.parts) let_go(decision.user, part);
+      break;
+    case Decision::Kind::kDecline:
+    case Decision::Kind::kAskEnd:
+      std::erase_if(standing_, [&](const Decision& ask) {
+        return ask.kind == Decision::Kind::kAskHandOver && ask.part == decision.part;
+      });
+      break;
+    case Decision::Kind::kDropConstraint:
+      std::erase_if(standing_, [&](const Decision& added) {
+        return added.kind == Decision::Kind::kAddConstraint &&
+               added.details.constraint_id == details.constraint_id;
+      });
+      break;
+    case Decision::Kind::kSetPolicy:
+      policy_ = details.text;
+      [[fallthrough]];
+    case Decision::Kind::kSetTolerance:
+    case Decision::Kind::kSetExclusion:
+    case Decision::Kind::kDropExclusion:
+    case Decision::Kind::kAskHandOver:
+    case Decision::Kind::kAddConstraint:
+      std::erase_if(standing_, [&](const Decision& old) { return same_rule(old, decision); });
+      standing_.push_back(decision);
+      break;
+    default:
+      break;
+  }
+  update.decisions.push_back(decision);
+}
+
+}  // namespace mortise

@@ -1,0 +1,109 @@
+// The door for what people say and what is decided.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "idl/chunks.h"
+#include "idl/convert.h"
+#include "tests/unit/idl/samples.h"
+
+namespace mortise {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+TEST(Convert, DetailsOfACommandGoRound) {
+  Request command;
+  command.kind = Request::Kind::kCommand;
+  command.command = {UserId{3}, PartId{4}, 5, CommandKind::kSetTolerance, test::some_details()};
+  const Result<Request> back = from_wire(to_wire(command));
+  ASSERT_TRUE(back) << back.error().text;
+  test::expect_same(back->command.details, command.command.details);
+}
+
+TEST(Convert, DetailsAreRefused) {
+  const auto passes = [](auto change) {
+    Request command;
+    command.kind = Request::Kind::kCommand;
+    command.command = {UserId{3}, PartId{4}, 5, CommandKind::kReview, test::some_details()};
+    wire::Request request = to_wire(command);
+    change(request);
+    return static_cast<bool>(from_wire(request));
+  };
+  using R = wire::Request;
+  EXPECT_TRUE(passes([](R&) {}));
+  EXPECT_FALSE(passes([](R& r) { r.parts().resize(kMostGroupParts + 1, 1); }));
+  EXPECT_FALSE(passes([](R& r) { r.parts() = {1, 0}; }));
+  EXPECT_FALSE(passes([](R& r) { r.feature(std::string(129, 'x')); }));
+  EXPECT_FALSE(passes([](R& r) { r.other_feature("a\nb"); }));
+  EXPECT_FALSE(passes([](R& r) { r.status(kReviewStatusCount); }));
+  EXPECT_FALSE(passes([](R& r) { r.text(std::string(1025, 'x')); }));
+  EXPECT_FALSE(passes([](R& r) { r.text("bell \a"); }));
+  EXPECT_FALSE(passes([](R& r) { r.constraint().kind(kConstraintKindCount); }));
+  EXPECT_FALSE(passes([](R& r) { r.constraint().distance_mm(kNan); }));
+  EXPECT_FALSE(passes([](R& r) { r.constraint().distance_mm(-kInf); }));
+  EXPECT_FALSE(passes([](R& r) { r.constraint().held_feature(std::string(129, 'x')); }));
+}
+
+TEST(Convert, DecisionsGoRoundAndAreRefused) {
+  Decision sent{Decision::Kind::kJoin, UserId{2}, PartId{3}, "anna", Role::kBot};
+  sent.details = test::some_details();
+  const Decision decisions[] = {sent};
+  const Result<Answers> got = from_wire(to_wire({}, {}, {}, decisions));
+  ASSERT_TRUE(got) << got.error().text;
+  ASSERT_EQ(got->decisions.size(), 1u);
+  EXPECT_EQ(got->decisions[0].kind, sent.kind);
+  EXPECT_EQ(got->decisions[0].role, sent.role);
+  EXPECT_EQ(got->decisions[0].user_name, sent.user_name);
+  test::expect_same(got->decisions[0].details, sent.details);
+  const auto passes = [&](auto change) {
+    wire::Decision decision = to_wire(sent);
+    change(decision);
+    return static_cast<bool>(from_wire(decision));
+  };
+  EXPECT_FALSE(passes([](wire::Decision& d) { d.kind(0); }));
+  EXPECT_FALSE(passes([](wire::Decision& d) { d.kind(kDecisionKindCount); }));
+  EXPECT_FALSE(passes([](wire::Decision& d) { d.role(kRoleCount); }));
+  EXPECT_FALSE(passes([](wire::Decision& d) { d.user_name("a\tb"); }));
+}
+
+TEST(Convert, ReviewsGoRoundInEventsAndSnapshots) {
+  ClashEvent sent = test::some_clash();
+  sent.kind = ClashEvent::Kind::kReview;
+  sent.cause = Decision::Kind::kReview;
+  sent.review = {ReviewStatus::kApproved, "press fit", UserId{7}, 12};
+  sent.approval_lost = true;
+  const ClashEvent events[] = {sent, test::some_clash(9)};
+  std::uint64_t malformed = 0;
+  wire::EventBatch batch = cut(events)[0];
+  std::vector<ClashEvent> got = events_from_wire(batch, malformed);
+  ASSERT_EQ(got.size(), 2u);
+  test::expect_same(got[0], sent);
+  EXPECT_EQ(got[1].review.status, ReviewStatus::kNew);
+  batch.notes()[0].status(kReviewStatusCount);
+  EXPECT_EQ(events_from_wire(batch, malformed).size(), 1u);
+  batch.notes().pop_back();
+  EXPECT_EQ(events_from_wire(batch, malformed).size(), 0u);
+  EXPECT_EQ(malformed, 2u);
+
+  Snapshot snapshot;
+  snapshot.session = "test";
+  snapshot.policy = "stop";
+  snapshot.users = {{UserId{1}, "anna", true, Role::kObserver}};
+  snapshot.open_clashes = {sent};
+  snapshot.standing = {{Decision::Kind::kSetPolicy, UserId{1}, PartId{}, ""}};
+  wire::Snapshot chunk = cut(snapshot, 1)[0];
+  const Result<Snapshot> back = from_wire(chunk);
+  ASSERT_TRUE(back) << back.error().text;
+  EXPECT_EQ(back->users[0].role, Role::kObserver);
+  test::expect_same(back->open_clashes[0], sent);
+  ASSERT_EQ(back->standing.size(), 1u);
+  chunk.roles()[0] = kRoleCount;
+  EXPECT_FALSE(from_wire(chunk));
+  chunk.roles().clear();
+  EXPECT_FALSE(from_wire(chunk));
+}
+
+}  // namespace
+}  // namespace mortise

@@ -1,0 +1,330 @@
+// What people may do to each other's parts and to the rules of a session, and what a replay makes
+// of it.
+#include <gtest/gtest.h>
+
+#include "common/session/session_state.h"
+#include "tests/unit/session/session_builder.h"
+
+namespace mortise {
+namespace {
+
+Details with_text(const std::string& text) {
+  Details details;
+  details.text = text;
+  return details;
+}
+Details with_parts(std::vector<PartId> parts) {
+  Details details;
+  details.parts = std::move(parts);
+  return details;
+}
+Details with_other(PartId other, const std::string& text) {
+  Details details = with_text(text);
+  details.other_part = other;
+  return details;
+}
+
+/// A wall of 10 mm about x = 20 and two cubes of 2 mm, at the origin and at y = 50; a twin of it
+/// gets the decisions only, as a replay does.
+struct PeopleTest : ::testing::Test {
+  SessionBuilder session, twin;
+  PartId wall, peg, pin;
+  UserId ada, bob, eve;
+  Scratch scratch, twin_scratch;
+
+  PeopleTest() {
+    for (SessionBuilder* one : {&session, &twin}) {
+      wall = one->add("wall", cube_mesh(10), at(20, 0, 0), false);
+      peg = one->add("peg", cube_mesh(2), at(0, 0, 0), true);
+      pin = one->add("pin", cube_mesh(2), at(0, 50, 0), true);
+      ada = one->join("ada");
+      bob = one->join("bob");
+      eve = one->join("eve", Role::kObserver);
+    }
+  }
+
+  Reply ask(UserId user, CommandKind kind, PartId part, Details details = {}) {
+    Decision decision;
+    Reply reply = apply_command(session.world, {user, part, 1, kind, std::move(details)}, decision);
+    EXPECT_EQ(reply.refusal == Refusal::kNone, decision.kind != Decision::Kind::kUnknown);
+    EXPECT_TRUE(reply.refusal == Refusal::kNone || !reply.text.empty());
+    if (reply.refusal == Refusal::kNone) apply_decision(twin.world, decision);
+    return reply;
+  }
+  Refusal refusal(UserId user, CommandKind kind, PartId part, Details details = {}) {
+    return ask(user, kind, part, std::move(details)).refusal;
+  }
+  StepReport tick(const std::vector<Increment>& increments = {}) {
+    const StepReport report = play_tick(session.world, increments, scratch);
+    const StepReport replayed = play_tick(twin.world, increments, twin_scratch);
+    EXPECT_EQ(report.state_hash, replayed.state_hash);
+    EXPECT_EQ(report.events.size(), replayed.events.size());
+    return report;
+  }
+  StepReport move(UserId user, PartId part, const Vec3& by) {
+    StepReport report = tick({session.push(user, part, by)});
+    EXPECT_TRUE(report.refused.empty());
+    return report;
+  }
+  /// Peg reaches 1 mm into the wall, held by ada.
+  ClashEvent clash() {
+    ask(ada, CommandKind::kGrab, peg);
+    const StepReport report = move(ada, peg, Vec3(15, 0, 0));
+    EXPECT_EQ(report.events.size(), 1U);
+    return report.events.at(0);
+  }
+  Details review_of(const ClashEvent& event, ReviewStatus status, const std::string& comment = "") {
+    Details details = with_text(comment);
+    details.clash = event.clash;
+    details.status = status;
+    return details;
+  }
+};
+
+// 1. roles and rights
+
+TEST_F(PeopleTest, AnObserverLooksOnly) {
+  for (std::uint8_t kind = 1; kind < kCommandKindCount; ++kind) {
+    const Reply reply = ask(eve, static_cast<CommandKind>(kind), peg, with_other(wall, "stop"));
+    EXPECT_EQ(reply.refusal, Refusal::kObserver) << int{kind};
+    EXPECT_NE(reply.text.find("'eve'"), std::string::npos);
+  }
+}
+
+TEST_F(PeopleTest, WithoutUsersInTheScenarioDesignersChangeRulesAndBotsDoNot) {
+  const UserId bot = session.join("bot", Role::kBot);
+  twin.join("bot", Role::kBot);
+  EXPECT_EQ(refusal(ada, CommandKind::kSetPolicy, PartId{}, with_text("stop")), Refusal::kNone);
+  EXPECT_EQ(refusal(bot, CommandKind::kSetPolicy, PartId{}, with_text("stop")), Refusal::kNoRight);
+  EXPECT_EQ(refusal(bot, CommandKind::kSetExclusion, peg, with_other(wall, "x")),
+            Refusal::kNoRight);
+  EXPECT_EQ(refusal(bot, CommandKind::kGrab, peg), Refusal::kNone);
+}
+
+TEST_F(PeopleTest, RightsComeFromTheScenario) {
+  session.world.may_hold = {{"ada", {"peg"}, {}, std::vector<Right>{Right::kPolicy}},
+                            {"bob", {"*"}, {}}};
+  EXPECT_EQ(refusal(ada, CommandKind::kSetPolicy, PartId{}, with_text("stop")), Refusal::kNone);
+  EXPECT_EQ(refusal(bob, CommandKind::kSetPolicy, PartId{}, with_text("stop")), Refusal::kNoRight);
+  EXPECT_EQ(refusal(ada, CommandKind::kSetExclusion, peg, with_other(wall, "x")),
+            Refusal::kNoRight);
+  const ClashEvent event = clash();
+  EXPECT_EQ(refusal(ada, CommandKind::kReview, {}, review_of(event, ReviewStatus::kReviewed)),
+            Refusal::kNoRight);
+  EXPECT_EQ(refusal(bob, CommandKind::kReview, {}, review_of(event, ReviewStatus::kReviewed)),
+            Refusal::kNone);
+}
+
+// 2. hand-over
+
+TEST_F(PeopleTest, APartIsHandedOverByConsent) {
+  EXPECT_EQ(refusal(bob, CommandKind::kAskHandOver, peg), Refusal::kNotHeld);
+  ask(ada, CommandKind::kGrab, peg);
+  move(ada, peg, Vec3(1, 0, 0));
+  EXPECT_EQ(refusal(ada, CommandKind::kConsent, peg), Refusal::kNotAsked);
+  EXPECT_EQ(refusal(bob, CommandKind::kAskHandOver, peg), Refusal::kNone);
+  EXPECT_EQ(session.world.find(peg)->holder, ada);
+  ASSERT_EQ(snapshot_of(session.world).standing.size(), 1U);
+  EXPECT_EQ(refusal(bob, CommandKind::kConsent, peg), Refusal::kNotHolder);
+  EXPECT_EQ(refusal(ada, CommandKind::kConsent, peg), Refusal::kNone);
+  EXPECT_EQ(session.world.find(peg)->holder, bob);
+  EXPECT_FALSE(session.world.find(peg)->asked_by);
+  tick();
+}
+
+TEST_F(PeopleTest, WhoIsDeclinedDoesNotGetIt) {
+  const UserId cid = session.join("cid");
+  twin.join("cid");
+  ask(ada, CommandKind::kGrab, peg);
+  ask(bob, CommandKind::kAskHandOver, peg);
+  const Reply second = ask(cid, CommandKind::kAskHandOver, peg);
+  EXPECT_EQ(second.refusal, Refusal::kAlreadyAsked);
+  EXPECT_NE(second.text.find("'bob'"), std::string::npos);
+  EXPECT_EQ(refusal(ada, CommandKind::kDecline, peg, with_text("not yet")), Refusal::kNone);
+  EXPECT_EQ(session.world.find(peg)->holder, ada);
+  EXPECT_EQ(refusal(cid, CommandKind::kAskHandOver, peg), Refusal::kNone);
+  ask(ada, CommandKind::kRelease, peg);  // the ask is over with the hold
+  EXPECT_FALSE(session.world.find(peg)->asked_by);
+}
+
+// 3. undo and redo
+
+TEST_F(PeopleTest, MovesAreTakenBackOneByOneAndRepeated) {
+  for (int i = 1; i <= 3; ++i) {
+    ask(ada, CommandKind::kGrab, peg);
+    move(ada, peg, Vec3(0, 0, 1));
+    move(ada, peg, Vec3(0, 0, 1));
+    ask(ada, CommandKind::kRelease, peg);
+  }
+  for (int i = 2; i >= 0; --i) {
+    EXPECT_EQ(refusal(ada, CommandKind::kUndo, peg), Refusal::kNone);
+    EXPECT_EQ(session.pose(peg).p.z(), 2.0 * i);
+    tick();
+  }
+  EXPECT_EQ(refusal(ada, CommandKind::kUndo, peg), Refusal::kNothingToUndo);
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_EQ(refusal(ada, CommandKind::kRedo, peg), Refusal::kNone);
+    EXPECT_EQ(session.pose(peg).p.z(), 2.0 * i);
+    tick();
+  }
+  EXPECT_EQ(refusal(ada, CommandKind::kRedo, peg), Refusal::kNothingToRedo);
+  EXPECT_EQ(refusal(ada, CommandKind::kUndo, peg), Refusal::kNone);
+  ask(ada, CommandKind::kGrab, peg);
+  move(ada, peg, Vec3(1, 0, 0));  // another way: the old one is forgotten
+  EXPECT_EQ(refusal(ada, CommandKind::kRedo, peg), Refusal::kNothingToRedo);
+}
+
+TEST_F(PeopleTest, RedoIsRefusedAfterAForeignMoveAndPossibleOnceThatIsTakenBack) {
+  ask(ada, CommandKind::kGrab, peg);
+  move(ada, peg, Vec3(0, 0, 1));
+  ask(ada, CommandKind::kUndo, peg);
+  ask(ada, CommandKind::kRelease, peg);
+  ask(bob, CommandKind::kGrab, peg);
+  move(bob, peg, Vec3(0, 3, 0));
+  ask(bob, CommandKind::kRelease, peg);
+  const Reply reply = ask(ada, CommandKind::kRedo, peg);
+  EXPECT_EQ(reply.refusal, Refusal::kMovedBySomeoneElse);
+  EXPECT_NE(reply.text.find("'bob'"), std::string::npos) << reply.text;
+  EXPECT_EQ(session.pose(peg).p, Vec3(0, 3, 0));
+  EXPECT_EQ(refusal(bob, CommandKind::kUndo, peg), Refusal::kNone);
+  EXPECT_EQ(refusal(ada, CommandKind::kRedo, peg), Refusal::kNone);
+  EXPECT_EQ(session.pose(peg).p, Vec3(0, 0, 1));
+  tick();
+}
+
+TEST(MoveHistory, ForgetsTheOldestAndStaysBounded) {
+  MoveHistory history;
+  for (int i = 0; i < 1000; ++i) {
+    history.end_move();
+    history.note(UserId{1}, at(i, 0, 0));
+  }
+  ASSERT_EQ(history.done.size(), 64U);
+  Pose X_WP = at(1000, 0, 0);
+  for (int i = 999; i >= 1000 - 64; --i) {
+    ASSERT_EQ(history.may_undo(UserId{1}).refusal, Refusal::kNone);
+    X_WP = history.undo(X_WP);
+    ASSERT_EQ(X_WP.p.x(), i);
+  }
+  EXPECT_EQ(history.may_undo(UserId{1}).refusal, Refusal::kNothingToUndo);
+  EXPECT_EQ(history.undone.size(), 64U);
+}
+
+// 4. groups
+
+TEST_F(PeopleTest, AGroupIsGrabbedWholeOrNotAtAll) {
+  ask(bob, CommandKind::kGrab, pin);
+  const Reply reply = ask(ada, CommandKind::kGrab, {}, with_parts({peg, pin}));
+  EXPECT_EQ(reply.refusal, Refusal::kHeldByOther);
+  EXPECT_NE(reply.text.find("'bob'"), std::string::npos);
+  EXPECT_FALSE(session.world.find(peg)->holder);
+  ask(bob, CommandKind::kRelease, pin);
+  EXPECT_EQ(refusal(ada, CommandKind::kGrab, {}, with_parts({peg, pin, peg})), Refusal::kBadGroup);
+  EXPECT_EQ(refusal(ada, CommandKind::kGrab, {}, with_parts({peg, wall})), Refusal::kPartIsStatic);
+  EXPECT_EQ(refusal(ada, CommandKind::kGrab, {}, with_parts({peg, pin})), Refusal::kNone);
+  EXPECT_EQ(session.world.find(peg)->holder, ada);
+  EXPECT_EQ(session.world.find(pin)->holder, ada);
+  EXPECT_TRUE(session.world.find(pin)->group);
+  EXPECT_EQ(session.world.find(pin)->group, session.world.find(peg)->group);
+  EXPECT_EQ(refusal(bob, CommandKind::kRelease, {}, with_parts({peg, pin})), Refusal::kNotHolder);
+  EXPECT_EQ(refusal(ada, CommandKind::kRelease, {}, with_parts({peg, pin})), Refusal::kNone);
+  EXPECT_FALSE(session.world.find(pin)->group);
+}
+
+// 5. rules of the session
+
+TEST_F(PeopleTest, PolicyChangesInMidSession) {
+  clash();  // policy report: 1 mm deep
+  EXPECT_EQ(refusal(ada, CommandKind::kSetPolicy, {}, with_text("glue")), Refusal::kBadRule);
+  EXPECT_EQ(refusal(ada, CommandKind::kSetPolicy, {}, with_text("stop")), Refusal::kNone);
+  EXPECT_EQ(snapshot_of(session.world).policy, "stop");
+  EXPECT_EQ(snapshot_of(session.world).standing.size(), 1U);
+  move(ada, peg, Vec3(1, 0, 0));
+  EXPECT_NEAR(session.pose(peg).p.x(), 15.0, 0.02);  // no deeper
+  move(ada, peg, Vec3(-3, 0, 0));
+  EXPECT_NEAR(session.pose(peg).p.x(), 12.0, 0.02);  // but out of it
+  EXPECT_EQ(refusal(ada, CommandKind::kSetPolicy, {}, with_text("report")), Refusal::kNone);
+  move(ada, peg, Vec3(5, 0, 0));
+  EXPECT_NEAR(session.pose(peg).p.x(), 17.0, 0.02);
+  // Deeper than it ever was under stop: from here on stop lets it go no deeper, but out.
+  EXPECT_EQ(refusal(ada, CommandKind::kSetPolicy, {}, with_text("stop")), Refusal::kNone);
+  EXPECT_EQ(snapshot_of(session.world).standing.size(), 1U);
+  move(ada, peg, Vec3(-4, 0, 0));
+  EXPECT_NEAR(session.pose(peg).p.x(), 13.0, 0.02);
+}
+
+TEST_F(PeopleTest, AnExclusionEndsTheClashAndItsEndBringsItBack) {
+  const ClashEvent begin = clash();
+  EXPECT_EQ(refusal(bob, CommandKind::kSetExclusion, wall, with_other(peg, "")), Refusal::kBadRule);
+  EXPECT_EQ(refusal(bob, CommandKind::kSetExclusion, wall, with_other(wall, "x")),
+            Refusal::kBadRule);
+  EXPECT_EQ(refusal(bob, CommandKind::kDropExclusion, wall, with_other(peg, "")),
+            Refusal::kBadRule);
+  EXPECT_EQ(refusal(bob, CommandKind::kSetExclusion, wall, with_other(peg, "glued")),
+            Refusal::kNone);
+  const StepReport without = tick();
+  ASSERT_EQ(without.events.size(), 1U);
+  EXPECT_EQ(without.events[0].kind, ClashEvent::Kind::kEnd);
+  EXPECT_EQ(without.events[0].clash, begin.clash);
+  EXPECT_EQ(without.events[0].cause, Decision::Kind::kSetExclusion);
+  EXPECT_EQ(without.events[0].user, bob);
+  EXPECT_EQ(session.world.rule(peg, wall)->reason, "glued");
+  EXPECT_EQ(refusal(bob, CommandKind::kDropExclusion, peg, with_other(wall, "")), Refusal::kNone);
+  const StepReport with = tick();
+  ASSERT_EQ(with.events.size(), 1U);
+  EXPECT_EQ(with.events[0].kind, ClashEvent::Kind::kBegin);
+  EXPECT_EQ(with.events[0].cause, Decision::Kind::kDropExclusion);
+  EXPECT_TRUE(tick().events.empty());
+}
+
+// 6. reviews
+
+TEST_F(PeopleTest, AReviewIsToldAndStandsApartFromTheClass) {
+  const ClashEvent event = clash();
+  EXPECT_EQ(event.review.status, ReviewStatus::kNew);
+  EXPECT_EQ(refusal(bob, CommandKind::kReview, {}, review_of(event, ReviewStatus::kApproved, "ok")),
+            Refusal::kNone);
+  const StepReport report = tick();
+  ASSERT_EQ(report.events.size(), 1U);
+  const ClashEvent& told = report.events[0];
+  EXPECT_EQ(told.kind, ClashEvent::Kind::kReview);
+  EXPECT_EQ(told.seq, event.seq + 1);
+  EXPECT_EQ(told.user, bob);
+  EXPECT_EQ(told.review.status, ReviewStatus::kApproved);
+  EXPECT_EQ(told.review.comment, "ok");
+  EXPECT_EQ(told.review.tick, report.tick);
+  EXPECT_EQ(told.verdict.collision_class, event.verdict.collision_class);
+  const Snapshot snapshot = snapshot_of(session.world);
+  ASSERT_EQ(snapshot.open_clashes.size(), 1U);
+  EXPECT_EQ(snapshot.open_clashes[0].review.status, ReviewStatus::kApproved);
+  ClashEvent unknown = event;
+  unknown.clash = ClashId{99};
+  EXPECT_EQ(refusal(bob, CommandKind::kReview, {}, review_of(unknown, ReviewStatus::kReviewed)),
+            Refusal::kUnknownClash);
+}
+
+TEST_F(PeopleTest, AWorsenedClashLosesItsApproval) {
+  const ClashEvent event = clash();
+  ask(bob, CommandKind::kReview, {}, review_of(event, ReviewStatus::kApproved, "press fit"));
+  move(ada, peg, Vec3(-0.5, 0, 0));  // better
+  EXPECT_EQ(snapshot_of(session.world).open_clashes[0].review.status, ReviewStatus::kApproved);
+  const StepReport worse = move(ada, peg, Vec3(0.6, 0, 0));
+  ASSERT_EQ(worse.events.size(), 1U);
+  EXPECT_TRUE(worse.events[0].approval_lost);
+  EXPECT_EQ(worse.events[0].review.status, ReviewStatus::kActive);
+  EXPECT_FALSE(worse.events[0].review.user);
+  EXPECT_NE(worse.events[0].review.comment.find("no longer approved"), std::string::npos);
+  EXPECT_NE(worse.events[0].review.comment.find("press fit"), std::string::npos);
+  for (const ClashEvent& later : move(ada, peg, Vec3(0.1, 0, 0)).events)
+    EXPECT_FALSE(later.approval_lost);
+}
+
+TEST_F(PeopleTest, OtherStatusesAreNotTakenBack) {
+  const ClashEvent event = clash();
+  ask(bob, CommandKind::kReview, {}, review_of(event, ReviewStatus::kReviewed));
+  for (const ClashEvent& later : move(ada, peg, Vec3(0.6, 0, 0)).events)
+    EXPECT_FALSE(later.kind == ClashEvent::Kind::kChange && later.approval_lost);
+  EXPECT_EQ(snapshot_of(session.world).open_clashes[0].review.status, ReviewStatus::kReviewed);
+}
+
+}  // namespace
+}  // namespace mortise
