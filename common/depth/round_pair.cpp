@@ -25,6 +25,13 @@ constexpr double kParallel_mm = 1e-9;
 constexpr int kFirstPieces = 16;
 constexpr int kMostPieces = 600;
 
+// A direction around the convex axis, and what is asked of it again and again.
+struct Turn {
+  explicit Turn(double angle_rad)
+      : angle(angle_rad), cosine(std::cos(angle_rad)), sine(std::sin(angle_rad)) {}
+  double angle, cosine, sine;
+};
+
 class Reach {
  public:
   Reach(const RoundFace& convex, const RoundFace& hollow)
@@ -34,23 +41,30 @@ class Reach {
         cosine_(1.0 / std::hypot(1.0, hollow.widening)),
         e1_(convex.axis.unitOrthogonal()),
         e2_(convex.axis.cross(e1_)),
-        rise_(e1_.dot(hollow.axis), e2_.dot(hollow.axis)) {}
+        rise_(e1_.dot(hollow.axis), e2_.dot(hollow.axis)),
+        flat1_(e1_ - rise_.x() * hollow.axis),
+        flat2_(e2_ - rise_.y() * hollow.axis),
+        square1_(flat1_.squaredNorm()),
+        square2_(flat2_.squaredNorm()),
+        second_(std::hypot(0.5 * (square1_ - square2_), flat1_.dot(flat2_))) {}
 
   std::optional<RoundReach> run(double margin_mm, double accuracy_mm) {
     margin_mm_ = margin_mm;
     if (const auto reach = parallel_cylinders()) return reach;
     struct Piece {
-      double from, to, bound;
+      Turn from, middle, to;
+      double bound;
     };
     std::vector<Piece> pieces;
-    const auto add = [&](double from, double to) {
+    const auto add = [&](const Turn& from, const Turn& to) {
+      const Turn middle(0.5 * (from.angle + to.angle));
       const double bound = upper(from, to);
-      if (bound > -kInfinity) pieces.push_back({from, to, bound});
-      look(0.5 * (from + to));
+      if (bound > -kInfinity) pieces.push_back({from, middle, to, bound});
+      look(middle);
     };
     constexpr double kTurn = 2.0 * std::numbers::pi;
     for (int i = 0; i < kFirstPieces; ++i)
-      add(kTurn * i / kFirstPieces, kTurn * (i + 1) / kFirstPieces);
+      add(Turn(kTurn * i / kFirstPieces), Turn(kTurn * (i + 1) / kFirstPieces));
     const auto lower = [](const Piece& a, const Piece& b) { return a.bound < b.bound; };
     std::make_heap(pieces.begin(), pieces.end(), lower);
     for (int looked = kFirstPieces; !pieces.empty() && looked < kMostPieces; looked += 2) {
@@ -58,8 +72,8 @@ class Reach {
       std::pop_heap(pieces.begin(), pieces.end(), lower);
       const Piece piece = pieces.back();
       pieces.pop_back();
-      const double middle = 0.5 * (piece.from + piece.to);
-      for (const auto& [from, to] : {std::pair(piece.from, middle), std::pair(middle, piece.to)}) {
+      for (const auto& [from, to] :
+           {std::pair(piece.from, piece.middle), std::pair(piece.middle, piece.to)}) {
         const std::size_t before = pieces.size();
         add(from, to);
         if (pieces.size() > before) std::push_heap(pieces.begin(), pieces.end(), lower);
@@ -101,7 +115,7 @@ class Reach {
     const Vec3 off = across(convex_.point);
     const double side = off.norm() > kParallel_mm ? std::atan2(off.dot(e2_), off.dot(e1_))
                                                   : std::numbers::pi / kFirstPieces;
-    look(side);
+    look(Turn(side));
     const double reach_mm = off.norm() + convex_.radius_mm - hollow_.radius_mm + tilt_mm;
     return reached(std::max(best_, reach_mm));
   }
@@ -111,10 +125,11 @@ class Reach {
     return d - d.dot(hollow_.axis) * hollow_.axis;
   }
   double height(const Vec3& x) const { return (x - hollow_.point).dot(hollow_.axis); }
-  Vec3 at(double t, double angle) const {
+  Vec3 at(double t, const Turn& turn) const {
     return convex_.point + t * convex_.axis +
-           convex_.radius_at(t) * (std::cos(angle) * e1_ + std::sin(angle) * e2_);
+           convex_.radius_at(t) * (turn.cosine * e1_ + turn.sine * e2_);
   }
+  double rise_at(const Turn& turn) const { return rise_.x() * turn.cosine + rise_.y() * turn.sine; }
   double beyond(const Vec3& x) const {
     return cosine_ * (across(x).norm() - hollow_.radius_at(height(x)));
   }
@@ -138,12 +153,12 @@ class Reach {
   }
 
   // A point of the convex face at both ends of its generator, and in the middle.
-  void look(double angle) {
-    const double rise = rise_.x() * std::cos(angle) + rise_.y() * std::sin(angle);
+  void look(const Turn& turn) {
+    const double rise = rise_at(turn);
     const Interval t = within({rise, rise}, hollow_.extent_mm);
     if (!(t.lo <= t.hi)) return;
     for (const double share : {0.5, kEndShare, 1.0 - kEndShare}) {
-      const Vec3 x = at(t.lo + share * (t.hi - t.lo), angle);
+      const Vec3 x = at(t.lo + share * (t.hi - t.lo), turn);
       const double reach = beyond(x);
       if (reach <= best_ + 1e-9 * convex_.radius_at(t.hi)) continue;
       best_ = reach;
@@ -152,11 +167,8 @@ class Reach {
   }
 
   // No point of the convex face between two angles is farther beyond the wall.
-  double upper(double from, double to) const {
-    const double width = to - from;
-    const auto rise_at = [&](double angle) {
-      return rise_.x() * std::cos(angle) + rise_.y() * std::sin(angle);
-    };
+  double upper(const Turn& from, const Turn& to) const {
+    const double width = to.angle - from.angle;
     const double r0 = rise_at(from), r1 = rise_at(to);
     const double bulge = rise_.norm() * width * width / 8.0;
     const Interval z{hollow_.extent_mm.lo - margin_mm_, hollow_.extent_mm.hi + margin_mm_};
@@ -166,17 +178,14 @@ class Reach {
   }
 
   // Upper bound of f over an arc of the circle at t: at most above its ends by the curvature.
-  double on_circle(double t, double from, double to) const {
+  double on_circle(double t, const Turn& from, const Turn& to) const {
     const double radius = convex_.radius_at(t);
     const Vec3 v0 = across(convex_.point + t * convex_.axis);
-    const auto flat = [&](const Vec3& e) -> Vec3 {
-      return radius * (e - e.dot(hollow_.axis) * hollow_.axis);
-    };
-    const Vec3 v1 = flat(e1_), v2 = flat(e2_);
-    // |v0 + v1 cos + v2 sin|^2 = mean + first harmonic + second harmonic.
-    const double mean = v0.squaredNorm() + 0.5 * (v1.squaredNorm() + v2.squaredNorm());
-    const double first = 2.0 * std::hypot(v0.dot(v1), v0.dot(v2));
-    const double second = std::hypot(0.5 * (v1.squaredNorm() - v2.squaredNorm()), v1.dot(v2));
+    // |v0 + r flat1 cos + r flat2 sin|^2 = mean + first harmonic + second harmonic.
+    const double mean = v0.squaredNorm() + 0.5 * radius * radius * (square1_ + square2_);
+    const double along1 = v0.dot(flat1_), along2 = v0.dot(flat2_);
+    const double first = 2.0 * radius * std::sqrt(along1 * along1 + along2 * along2);
+    const double second = radius * radius * second_;
     const double least = mean - first - second;
     if (!(least > 0.0)) return kInfinity;
     const double bend =
@@ -184,7 +193,8 @@ class Reach {
         (first + 2.0 * second) * (first + 2.0 * second) / (4.0 * least * std::sqrt(least)) +
         std::fabs(hollow_.widening) * radius * rise_.norm();
     const double ends = std::max(beyond(at(t, from)), beyond(at(t, to)));
-    return ends + cosine_ * bend * (to - from) * (to - from) / 8.0;
+    const double width = to.angle - from.angle;
+    return ends + cosine_ * bend * width * width / 8.0;
   }
 
   const RoundFace& convex_;
@@ -192,6 +202,8 @@ class Reach {
   const double slope_, cosine_;
   const Vec3 e1_, e2_;
   const Eigen::Vector2d rise_;  // of a turn about the convex axis, along the hollow one
+  const Vec3 flat1_, flat2_;    // e1 and e2 square to the hollow axis
+  const double square1_, square2_, second_;
   double margin_mm_ = 0.0;
   double best_ = -kInfinity;
   Vec3 point_ = Vec3::Zero();
