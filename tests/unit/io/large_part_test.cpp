@@ -1,24 +1,19 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
 #include "common/ccd/first_contact.h"
 #include "common/io/mesh_import.h"
 #include "common/io/scene_load.h"
+#include "tests/support/test_data.h"
 
 namespace mortise {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path large_part() {
-  const char* data = std::getenv("MORTISE_DATA");
-  const fs::path folder =
-      data != nullptr ? fs::path(data) : fs::path(MORTISE_SOURCE_DIR) / "../shared/data";
-  return folder / "large" / "nist_ctc_02_defl_0.02mm.ply";
-}
+fs::path large_part() { return test::data_folder() / "large" / "nist_ctc_02_defl_0.02mm.ply"; }
 
 // A real part of 263,730 triangles: what is built beside the mesh, and what an instance of it
 // costs.

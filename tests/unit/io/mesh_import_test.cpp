@@ -16,16 +16,13 @@
 #include "common/geometry/topology.h"
 #include "common/io/mesh_clean.h"
 #include "common/io/raw_soup.h"
+#include "tests/support/test_data.h"
 
 namespace mortise {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path data_folder() {
-  const char* named = std::getenv("MORTISE_DATA");
-  return named != nullptr ? fs::path(named) : fs::path(MORTISE_SOURCE_DIR) / "../shared/data";
-}
+using test::data_folder;
 
 #define NEEDS_DATA()                    \
   if (!fs::is_directory(data_folder())) \

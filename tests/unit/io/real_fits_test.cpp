@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,15 +12,12 @@
 #include "common/ccd/first_contact.h"
 #include "common/io/open_scene.h"
 #include "common/session/step.h"
+#include "tests/support/test_data.h"
 
 namespace mortise {
 namespace {
 
-std::filesystem::path data_folder() {
-  const char* chosen = std::getenv("MORTISE_DATA");
-  return chosen != nullptr ? std::filesystem::path(chosen)
-                           : std::filesystem::path(MORTISE_SOURCE_DIR) / "../shared/data";
-}
+using test::data_folder;
 
 // A published fit: meshes in metres, hole at its place, part moved along the common axis z.
 struct RealFit {

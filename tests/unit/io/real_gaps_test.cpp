@@ -3,7 +3,6 @@
 // axis.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 
@@ -11,17 +10,14 @@
 #include "common/io/mesh_import.h"
 #include "common/io/scene_load.h"
 #include "common/session/step.h"
+#include "tests/support/test_data.h"
 
 namespace mortise {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path fits_folder() {
-  const char* data = std::getenv("MORTISE_DATA");
-  return (data != nullptr ? fs::path(data) : fs::path(MORTISE_SOURCE_DIR) / "../shared/data") /
-         "fits";
-}
+fs::path fits_folder() { return test::data_folder() / "fits"; }
 
 struct Gap {
   const char* name;

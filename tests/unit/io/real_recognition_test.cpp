@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,15 +9,12 @@
 #include "common/geometry/recognition.h"
 #include "common/io/mesh_import.h"
 #include "common/io/obj_exact.h"
+#include "tests/support/test_data.h"
 
 namespace mortise {
 namespace {
 
-std::filesystem::path data_folder() {
-  const char* chosen = std::getenv("MORTISE_DATA");
-  return chosen != nullptr ? std::filesystem::path(chosen)
-                           : std::filesystem::path(MORTISE_SOURCE_DIR) / "../shared/data";
-}
+using test::data_folder;
 
 struct StatedRound {
   const char* file;
