@@ -1,8 +1,4 @@
 // Judgement: real, potential, fake against analytic truth; run time against error. See README.md.
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <fstream>
-
 #include "tests/bench/judgement_sections.h"
 
 namespace mortise::bench {
@@ -21,19 +17,13 @@ const std::vector<JudgementSection>& judgement_sections() {
 
 namespace {
 
-constexpr int kFigureNotMet = 5;
-
 int run(int argc, char** argv) {
   JudgementOptions options;
   CLI::App app("Judgement: real, potential, fake against exact truth; run time against error");
-  std::vector<std::string> names;
-  for (const JudgementSection& section : judgement_sections()) names.push_back(section.name);
-  app.add_option("--json", options.json_file, "write all tables and bars to this file");
+  add_bench_options(app, options, judgement_sections());
   app.add_option("--plot", options.plot_file, "draw time against error to this SVG file");
-  app.add_option("--only", options.only, "these sections only")->check(CLI::IsMember(names));
   app.add_option("--cases", options.cases, "random cases of the section truth");
   app.add_option("--case", options.one_case, "FAMILY:SEED as the run named it: only this, in full");
-  app.add_flag("--quick", options.quick, "fewer cases, about a minute; rougher figures");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -47,21 +37,7 @@ int run(int argc, char** argv) {
                  options.one_case.c_str());
     return 2;
   }
-  Report report;
-  for (const JudgementSection& section : judgement_sections())
-    if (options.only.empty() ||
-        std::find(options.only.begin(), options.only.end(), section.name) != options.only.end())
-      section.run(report, options);
-  report.print_bars();
-  if (!options.json_file.empty()) {
-    std::ofstream out(options.json_file);
-    out << report.json().dump(2) << "\n";
-    if (!out.flush()) {
-      std::fprintf(stderr, "cannot write %s\n", options.json_file.c_str());
-      return 1;
-    }
-  }
-  return report.all_bars_hold() ? 0 : kFigureNotMet;
+  return run_sections(options, judgement_sections());
 }
 
 }  // namespace

@@ -2,14 +2,12 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/report.h"
+#include "tests/bench/bench_main.h"
 
 namespace mortise::bench {
 
-struct Options {
-  std::string json_file, plot_file;  ///< empty: not written
-  std::vector<std::string> only;     ///< names of sections; empty: all
-  bool quick = false;                ///< fewer queries; the figures are rougher
+struct Options : BenchOptions {
+  std::string plot_file;  ///< empty: not drawn
 };
 
 /// Each adds its tables, notes and bars to the report.
@@ -20,11 +18,7 @@ void section_triangles(Report& report, const Options& options);
 void section_threads(Report& report, const Options& options);
 void section_tick(Report& report, const Options& options);
 
-struct Section {
-  const char* name;
-  const char* asks;  ///< one line for --help
-  void (*run)(Report&, const Options&);
-};
+using Section = BenchSection<Options>;
 const std::vector<Section>& sections();
 
 }  // namespace mortise::bench

@@ -2,15 +2,12 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/report.h"
+#include "tests/bench/bench_main.h"
 
 namespace mortise::bench {
 
-struct SessionOptions {
-  std::string json_file;          ///< empty: not written
-  std::vector<std::string> only;  ///< names of sections; empty: all
-  bool quick = false;             ///< shorter runs; the figures are rougher
-  bool soak = false;              ///< the load for ten minutes
+struct SessionOptions : BenchOptions {
+  bool soak = false;  ///< the load for ten minutes
   double load_seconds() const { return soak ? 600.0 : quick ? 8.0 : 30.0; }
 };
 
@@ -22,11 +19,7 @@ void section_idle(Report& report, const SessionOptions& options);
 void section_reader(Report& report, const SessionOptions& options);
 void section_join(Report& report, const SessionOptions& options);
 
-struct SessionSection {
-  const char* name;
-  const char* asks;  ///< one line for --help
-  void (*run)(Report&, const SessionOptions&);
-};
+using SessionSection = BenchSection<SessionOptions>;
 const std::vector<SessionSection>& session_sections();
 
 }  // namespace mortise::bench
