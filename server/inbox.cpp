@@ -71,13 +71,20 @@ bool Inbox::take_token(Seat& seat, std::int64_t now_ns) {
   return true;
 }
 
-bool Inbox::hand_is_full(const World& world, const Command& grab) const {
-  std::vector<PartId> wanted = grab.details.parts;
-  if (wanted.empty()) wanted.push_back(grab.part);
+bool Inbox::hand_is_full(const World& world, const Command& command) const {
+  UserId taker;
+  if (command.kind == CommandKind::kGrab || command.kind == CommandKind::kAskHandOver)
+    taker = command.user;
+  else if (const Part* part = world.find(command.part);
+           part != nullptr && command.kind == CommandKind::kConsent)
+    taker = part->asked_by;
+  if (!taker) return false;
+  std::vector<PartId> wanted = command.details.parts;
+  if (wanted.empty()) wanted.push_back(command.part);
   std::size_t held = 0;
   for (const std::uint32_t i : moving_) {
     const Part& part = world.parts[i];
-    if (part.holder != grab.user) continue;
+    if (part.holder != taker) continue;
     ++held;
     std::erase(wanted, part.id);  // held already
   }

@@ -117,7 +117,8 @@ class Inbox {
   UserId first_user_of(const ClientKey& client) const;
   bool take_token(Seat& seat, std::int64_t now_ns);
   /// Would the grab put more parts into the user's hand than the session lets one hold?
-  bool hand_is_full(const World& world, const Command& grab) const;
+  /// Would a grab, an ask or a consent give its taker more parts than a user may hold?
+  bool hand_is_full(const World& world, const Command& command) const;
   void renew(World& world, UserId user, std::int64_t now_ns);
 
   void admit_join(const JoinRequest& request, World& world, std::int64_t now_ns, Intake& intake);

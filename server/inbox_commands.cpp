@@ -72,8 +72,7 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
   } else if (!take_token(*seat, now_ns)) {
     reply.refusal = Refusal::kRateTooHigh;
     reply.text = "more messages a second than the session takes from one user, or from all";
-  } else if ((command.kind == CommandKind::kGrab || command.kind == CommandKind::kAskHandOver) &&
-             hand_is_full(world, command)) {
+  } else if (hand_is_full(world, command)) {
     reply.refusal = Refusal::kNotAllowed;
     reply.text = "a user of this session holds at most " + std::to_string(limits_.parts_per_user) +
                  " parts; release one first";

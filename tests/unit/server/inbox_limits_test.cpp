@@ -59,6 +59,19 @@ TEST_F(InboxLimitsTest, AHandHoldsSoManyPartsAndNoMore) {
   EXPECT_EQ(inbox().user_counters()[0].commands_refused, 1U);
 }
 
+// Two asks may stand while the hand is empty; the second consent would fill it beyond the limit.
+TEST_F(InboxLimitsTest, WhatIsHandedOverCountsAsWell) {
+  limits_.parts_per_user = 1;
+  const UserId anna = join("anna"), ben = join("ben"), cid = join("cid");
+  EXPECT_EQ(command("anna", anna, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
+  EXPECT_EQ(command("cid", cid, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
+  EXPECT_EQ(command("ben", ben, kRed, CommandKind::kAskHandOver).refusal, Refusal::kNone);
+  EXPECT_EQ(command("ben", ben, kBlue, CommandKind::kAskHandOver).refusal, Refusal::kNone);
+  EXPECT_EQ(command("anna", anna, kRed, CommandKind::kConsent).refusal, Refusal::kNone);
+  EXPECT_EQ(command("cid", cid, kBlue, CommandKind::kConsent).refusal, Refusal::kNotAllowed);
+  EXPECT_EQ(world_.find(kBlue)->holder, cid);
+}
+
 // Each below the limit of one user, together above that of the session.
 TEST_F(InboxLimitsTest, ASessionTakesSoManyMessagesOfAllTogether) {
   limits_.messages_per_s = 100.0;
