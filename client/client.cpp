@@ -27,13 +27,20 @@ Client::Client(ClientChannel& channel, const ClientOptions& options, Clock clock
 }
 
 LocalUser Client::add_user(const std::string& name, const std::string& role) {
-  LocalUserState& user = users_.emplace_back();
-  user.name = name;
-  user.role = role;
-  user.state = JoinState::kJoining;
+  // The place of one who left, unless the server may still let that one in.
+  auto free = std::find_if(users_.begin(), users_.end(), [](const LocalUserState& user) {
+    return user.state == JoinState::kLeft && !user.awaits_answer;
+  });
+  if (free == users_.end()) free = users_.insert(free, LocalUserState{});
+  statistics_.increments_repeated += free->unacknowledged.repeated();
+  statistics_.increments_given_up += free->unacknowledged.given_up();
+  *free = LocalUserState{};
+  free->name = name;
+  free->role = role;
+  free->state = JoinState::kJoining;
   // The same nonce for every try: a server that has already said yes says it again.
-  user.nonce = next_nonce_++;
-  return users_.size() - 1;
+  free->nonce = next_nonce_++;
+  return static_cast<LocalUser>(free - users_.begin());
 }
 
 void Client::leave(LocalUser index) {
@@ -43,6 +50,7 @@ void Client::leave(LocalUser index) {
     if (!user.unacknowledged.empty()) channel_.send(user.unacknowledged.repeat(now_ns_));
     channel_.leave(user.id);
   }
+  user.awaits_answer = !user.id && user.join_sent_ns && user.state == JoinState::kJoining;
   user.state = JoinState::kLeft;
   user.id = UserId{};
 }
@@ -124,6 +132,7 @@ Client::LocalUserState* Client::own_user(UserId id) {
 void Client::forget_server() {
   ++statistics_.server_losses;
   for (LocalUserState& user : users_) {
+    user.awaits_answer = false;
     if (user.state != JoinState::kJoined) continue;
     user.state = JoinState::kJoining;
     user.id = UserId{};
@@ -144,8 +153,13 @@ void Client::forget_server() {
 void Client::apply_join(const JoinReply& reply, ClientUpdate& update) {
   for (LocalUser index = 0; index < users_.size(); ++index) {
     LocalUserState& user = users_[index];
-    const bool asked = user.state == JoinState::kJoining || user.state == JoinState::kJoined;
-    if (user.nonce != reply.nonce || !asked) continue;
+    if (user.nonce != reply.nonce) continue;
+    if (user.state == JoinState::kLeft) {
+      // Let in after it had gone: it would stay there for as long as this client.
+      if (reply.refusal == Refusal::kNone && user.awaits_answer) channel_.leave(reply.user);
+      user.awaits_answer = false;
+    }
+    if (user.state != JoinState::kJoining && user.state != JoinState::kJoined) continue;
     if (reply.refusal == Refusal::kNone) {
       user.in_doubt = false;
       if (user.state == JoinState::kJoined && user.id == reply.user) continue;

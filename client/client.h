@@ -24,7 +24,7 @@ struct ClientOptions {
   double pose_resync_s = 2.0;    ///< so long may lost poses wait for a keyframe
 };
 
-/// A user of this client, in the order of add_user().
+/// A user of this client, in the order of add_user(); one who left makes room for the next.
 using LocalUser = std::size_t;
 
 enum class JoinState : std::uint8_t { kUnknown = 0, kJoining, kJoined, kRefused, kLeft };
@@ -90,7 +90,7 @@ class Client {
   JoinState join_state(LocalUser user) const;
   UserId user_id(LocalUser user) const;  ///< none while not joined
   const std::string& refusal_text(LocalUser user) const;
-  std::size_t user_count() const { return users_.size(); }
+  std::size_t user_count() const { return users_.size(); }  ///< those who left included
 
   /// Commands: the sequence number that the reply will echo, 0 when the user has not joined
   /// (counted). What a refusal says is in the reply; what was done is in ClientUpdate::decisions.
@@ -150,8 +150,9 @@ class Client {
     UserId id;
     std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
     Unacknowledged unacknowledged;
-    bool was_joined = false;  ///< joins again by itself, also when refused
-    bool in_doubt = false;    ///< the server may have taken us for gone: ask to join again
+    bool was_joined = false;     ///< joins again by itself, also when refused
+    bool awaits_answer = false;  ///< left while the server was being asked
+    bool in_doubt = false;       ///< the server may have taken us for gone: ask to join again
     std::optional<std::int64_t> join_sent_ns, unacked_since_ns;
     std::int64_t heartbeat_at_ns = 0;
     std::string refusal;

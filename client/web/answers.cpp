@@ -1,0 +1,175 @@
+#include "client/web/answers.h"
+
+#include <optional>
+
+#include "client/web/admission.h"
+#include "common/messages/names.h"
+
+namespace mortise::web {
+namespace {
+
+namespace http = boost::beast::http;
+using http::status;
+
+constexpr char kJson[] = "application/json";
+constexpr std::string_view kMeshes = "/mesh/", kMeshEnding = ".bin";
+
+std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+// Rows of /proc/self/statm are pages.
+std::uint64_t resident_bytes() {
+  std::uint64_t size = 0, resident = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%lu %lu", &size, &resident) != 2) resident = 0;
+    std::fclose(file);
+  }
+  return resident * 4096;
+}
+
+Answer mesh(GatewayState& state, std::string_view path) {
+  const std::string hash(path.substr(0, path.size() - kMeshEnding.size()));
+  const MeshAnswer found = state.feed.mesh(hash);
+  if (found.state == MeshAnswer::State::kHere) {
+    return {status::ok,
+            "application/octet-stream",
+            found.bytes,
+            {{"Cache-Control", "private, max-age=31536000, immutable"}}};
+  }
+  if (found.state == MeshAnswer::State::kAwaited) {
+    Answer answer = sentence(status::service_unavailable, "this mesh has not come yet");
+    answer.fields.emplace_back("Retry-After", "1");
+    return answer;
+  }
+  return sentence(status::not_found, "no part of the session has this mesh");
+}
+
+Answer statistics(const GatewayState& state) {
+  const Traffic& t = state.traffic;
+  Json json{{"browsers", state.browsers.size()},
+            {"connections", state.connections},
+            {"resident_bytes", resident_bytes()},
+            {"in_all",
+             {{"connections", t.connections},
+              {"requests", t.requests},
+              {"browsers", t.browsers},
+              {"closed", t.closed},
+              {"messages_in", t.messages_in},
+              {"texts_out", t.texts_out},
+              {"frames_out", t.frames_out},
+              {"bytes_out", t.bytes_out},
+              {"frames_folded", t.frames_folded}}},
+            {"incidents", state.incidents.counts()},
+            {"feed", state.feed.statistics()}};
+  return {status::ok, kJson, text_of(json), {{"Cache-Control", "no-store"}}};
+}
+
+Answer health(const GatewayState& state) {
+  const std::string trouble = state.feed.trouble();
+  return trouble.empty() ? sentence(status::ok, "ok")
+                         : sentence(status::service_unavailable, trouble);
+}
+
+Answer file(const GatewayState& state, const Request& request, bool tls) {
+  const std::string_view target = view_of(request.target());
+  const auto found = state.page.find(target);
+  if (!found) {
+    if (target.starts_with("/three/") && !state.page.has_three()) {
+      return sentence(
+          status::not_found,
+          "three.js is not installed: run `npm ci --omit=dev` in the folder of the page");
+    }
+    return sentence(status::not_found, "no such file of the page");
+  }
+  Answer answer{status::ok,
+                found->type,
+                found->bytes,
+                {{"Cache-Control", "no-cache"}, {"ETag", found->etag}}};
+  if (found->is_page) {
+    answer.fields.emplace_back(
+        "Content-Security-Policy",
+        content_security_policy(*found->bytes, view_of(request[http::field::host]), tls));
+  }
+  if (view_of(request[http::field::if_none_match]) == found->etag) {
+    answer.status = status::not_modified;
+    answer.body = nullptr;
+  }
+  return answer;
+}
+
+bool is_own(GatewayState& state, const Request& request, const std::string& from) {
+  const std::string_view host = view_of(request[http::field::host]);
+  if (is_own_host(host, state.options.names)) return true;
+  state.incidents.note(Incident::kWrongHost, from, "asked for under a name that is not ours",
+                       state.now_s());
+  return false;
+}
+
+Answer wrong_host() {
+  return sentence(status::misdirected_request,
+                  "asked for under a name that is not ours; --name makes it so");
+}
+
+}  // namespace
+
+Answer sentence(status code, const std::string& text) {
+  return {code, "text/plain; charset=utf-8", std::make_shared<const std::string>(text + "\n"), {}};
+}
+
+Answer answer_to(GatewayState& state, const Request& request, bool tls, const std::string& from) {
+  ++state.traffic.requests;
+  if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    state.incidents.note(Incident::kBadRequest, from, "a method other than GET and HEAD",
+                         state.now_s());
+    Answer answer = sentence(status::method_not_allowed, "only GET and HEAD");
+    answer.fields.emplace_back("Allow", "GET, HEAD");
+    return answer;
+  }
+  if (!is_own(state, request, from)) return wrong_host();
+  const std::string_view target = view_of(request.target());
+  if (target == "/healthz") return health(state);
+  if (target == "/ws") return sentence(status::upgrade_required, "this is a WebSocket");
+  const bool is_mesh = target.starts_with(kMeshes) && target.ends_with(kMeshEnding) &&
+                       target.size() > kMeshes.size() + kMeshEnding.size();
+  if (!is_mesh && target != "/statistics") return file(state, request, tls);
+  if (!role_of(state.tokens, bearer_token(view_of(request[http::field::authorization])))) {
+    state.incidents.note(Incident::kWrongToken, from, "a request without a token that is good",
+                         state.now_s());
+    Answer answer = sentence(status::unauthorized, "the token is missing or wrong");
+    answer.fields.emplace_back("WWW-Authenticate", "Bearer");
+    return answer;
+  }
+  return is_mesh ? mesh(state, target.substr(kMeshes.size())) : statistics(state);
+}
+
+std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
+                                         const std::string& from) {
+  ++state.traffic.requests;
+  const auto refuse = [&](Incident incident, status code, const std::string& text) {
+    state.incidents.note(incident, from, text, state.now_s());
+    return sentence(code, text);
+  };
+  if (!is_own(state, request, from)) return wrong_host();
+  if (request.target() != "/ws") return sentence(status::not_found, "the WebSocket is /ws");
+  const std::string_view origin = view_of(request[http::field::origin]);
+  if (!is_own_origin(origin, view_of(request[http::field::host]), tls, state.options.origins)) {
+    return refuse(Incident::kWrongOrigin, status::forbidden,
+                  "a WebSocket from a page that is not ours; --origin lets one in");
+  }
+  const auto token = subprotocol_token(view_of(request[http::field::sec_websocket_protocol]));
+  if (!token) {
+    return refuse(Incident::kBadRequest, status::bad_request,
+                  "a WebSocket that does not speak mortise.1");
+  }
+  const auto role = role_of(state.tokens, *token);
+  if (!role) {
+    return refuse(Incident::kWrongToken, status::unauthorized,
+                  "a WebSocket whose token is missing or wrong");
+  }
+  if (state.ending || state.browsers.size() >= state.options.limits.browsers) {
+    return refuse(Incident::kTooManyBrowsers, status::service_unavailable,
+                  "there are " + std::to_string(state.browsers.size()) + " browsers already");
+  }
+  return *role;
+}
+
+}  // namespace mortise::web

@@ -1,0 +1,34 @@
+#pragma once
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/status.hpp>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "client/web/gateway_state.h"
+
+namespace mortise::web {
+
+using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+
+/// What is answered to a request, before it is written.
+struct Answer {
+  boost::beast::http::status status = boost::beast::http::status::ok;
+  std::string type = "text/plain; charset=utf-8";
+  SharedBytes body;
+  std::vector<std::pair<std::string, std::string>> fields = {};
+};
+
+/// One sentence as an answer.
+Answer sentence(boost::beast::http::status status, const std::string& text);
+
+/// Everything but WebSockets. `from` names the asker in messages.
+Answer answer_to(GatewayState& state, const Request& request, bool tls, const std::string& from);
+
+/// May this request become a WebSocket, and as what? An answer when not.
+std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
+                                         const std::string& from);
+
+}  // namespace mortise::web

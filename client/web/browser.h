@@ -1,0 +1,65 @@
+#pragma once
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "client/web/feed.h"
+#include "client/web/gateway_state.h"
+#include "client/web/limits.h"
+#include "client/web/stream.h"
+
+namespace mortise::web {
+
+/// One page: a WebSocket with a token that was good. Lives until its connection ends; the feed
+/// then hears of it at once.
+class Browser final : public Viewer, public std::enable_shared_from_this<Browser> {
+ public:
+  using Request = beast::http::request<beast::http::empty_body>;
+  using CloseCode = beast::websocket::close_code;
+
+  Browser(GatewayState& state, Stream stream, Role role);
+  void start(Request request);
+
+  Role role() const override { return role_; }
+  void say(SharedBytes text) override;
+  void say_views(SharedBytes text) override;
+  void changed(const std::vector<PartId>& parts, SharedBytes frame) override;
+  void show_scene(SharedBytes scene) override;
+  std::uint64_t folded_frames() const override { return outbox_.folded(); }
+
+  /// Says why, and closes once what is being written is written; at the latest a moment later.
+  void end(CloseCode code, const std::string& reason);
+  /// Looks whether it is still worth waiting for. Called every so often.
+  void check(double now_s);
+
+ private:
+  void read();
+  void take(const std::string& text);
+  void refuse(const std::string& what);
+  void write_next();
+  void write(Outbox::Message message);
+  void close();
+  void failed(beast::error_code error);
+  void drop();
+  void note(Incident incident, const std::string& what);
+
+  GatewayState& state_;
+  beast::websocket::stream<Stream> socket_;
+  const Role role_;
+  const std::string peer_;
+  Request request_;
+  beast::flat_buffer buffer_;
+  Outbox outbox_;
+  Outbox::Message writing_;  ///< bytes: being written now
+  Rate messages_, bad_;
+  double writing_since_s_ = 0.0, close_by_s_ = 0.0;
+  CloseCode close_code_ = CloseCode::none;
+  std::string close_reason_;  ///< not empty: to be closed
+  bool entered_ = false, closing_ = false, gone_ = false;
+};
+
+}  // namespace mortise::web

@@ -1,0 +1,51 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "client/web/json_in.h"
+#include "client/web/json_out.h"
+#include "client/web/outbox.h"
+#include "common/messages/role.h"
+
+namespace mortise::web {
+
+/// One connected page, as what feeds it sees it. Nothing here waits: what a page does not take is
+/// kept in its outbox.
+class Viewer {
+ public:
+  virtual ~Viewer() = default;
+  virtual Role role() const = 0;  ///< what its token allows
+  virtual void say(SharedBytes text) = 0;
+  virtual void say_views(SharedBytes text) = 0;
+  virtual void changed(const std::vector<PartId>& parts, SharedBytes frame) = 0;
+  /// Says `scene`, which covers all changes so far.
+  virtual void show_scene(SharedBytes scene) = 0;
+  virtual std::uint64_t folded_frames() const = 0;
+};
+
+/// A mesh, as asked for by its hash.
+struct MeshAnswer {
+  enum class State : std::uint8_t { kUnknown = 0, kHere, kAwaited };
+  State state = State::kUnknown;
+  SharedBytes bytes;
+};
+
+/// Where pages get their session from: a live one, or a log. Used from one thread.
+class Feed {
+ public:
+  virtual ~Feed() = default;
+  virtual const char* mode() const = 0;  ///< "live" or "replay"
+  virtual void enter(Viewer& viewer) = 0;
+  virtual void leave(Viewer& viewer) = 0;  ///< frees what it held
+  /// Fails with a sentence for the page when this cannot be meant.
+  virtual Status take(Viewer& viewer, const PageMessage& message) = 0;
+  /// Brings viewers what is new. Called every few milliseconds, by a clock that never goes back.
+  virtual void turn(double now_s) = 0;
+  virtual SharedBytes frame(const Viewer& viewer, const std::vector<PartId>& parts) const = 0;
+  virtual MeshAnswer mesh(const std::string& hash) const = 0;
+  virtual std::string trouble() const = 0;  ///< why there is no session; empty: there is one
+  virtual Json statistics() const = 0;
+};
+
+}  // namespace mortise::web

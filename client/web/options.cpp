@@ -1,0 +1,64 @@
+#include "client/web/options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace mortise::web {
+namespace {
+
+void add_web(CLI::App& app, GatewayOptions& o) {
+  app.add_option("--address", o.address, "IPv4 address to listen on; 0.0.0.0: every interface")
+      ->capture_default_str();
+  app.add_option("--port", o.port, "Port to listen on; 0: a free one")->check(CLI::Range(0, 65535));
+  app.add_option(
+      "--name", o.names,
+      "Host name that browsers may ask for, beside numbers and localhost; again for more");
+  app.add_option("--origin", o.origins,
+                 "Origin (https://host:port) of another page that may connect; again for more");
+  auto* certificate =
+      app.add_option("--certificate", o.certificate, "Speak TLS with this certificate chain (PEM)");
+  auto* key = app.add_option("--key", o.key, "Its private key (PEM)");
+  certificate->needs(key);
+  key->needs(certificate);
+  app.add_option("--browsers", o.limits.browsers, "Browsers at one time")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--max-messages", o.limits.messages_per_s, "Messages a second of one browser")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+WebCommandLine read_web_command_line(int argc, char** argv) {
+  WebCommandLine line;
+  WebOptions& o = line.options;
+  CLI::App app{"mortise-web: lets browsers take part in a session"};
+  app.add_option("--session", o.session, "Name of the session")->capture_default_str();
+  app.add_option("--domain", o.domain, "DDS domain")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  app.add_option("--interface", o.interface, "IPv4 address of the own interface towards the server")
+      ->capture_default_str();
+  app.add_option("--server", o.server, "IPv4 address of the server; default: the own interface");
+  app.add_option("--server-port", o.discovery_port,
+                 "Discovery port of the server; 0: the domain's own")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--page", o.page, "Folder of the page")->capture_default_str();
+  app.add_option("--tokens", o.tokens,
+                 "File of two lines, the tokens of designers and of observers; made when it is not "
+                 "there. Default: new ones for this run");
+  add_web(app, o.gateway);
+  app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
+  app.footer(
+      "Prints two addresses, one for designers and one for who only looks on; whoever has one may "
+      "come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 usage, 3 bad file (no page, "
+      "tokens, certificate).");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return line;
+}
+
+}  // namespace mortise::web

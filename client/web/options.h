@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+#include "client/web/gateway.h"
+
+namespace mortise::web {
+
+struct WebOptions {
+  std::string session = "default";
+  int domain = 0;
+  std::string interface = "127.0.0.1";
+  std::string server;  ///< empty: on the same machine
+  int discovery_port = 0;
+  std::string page = "client/web/page";
+  std::string tokens;  ///< file; empty: made for this run
+  GatewayOptions gateway;
+  bool quiet = false;
+};
+
+struct WebCommandLine {
+  WebOptions options;
+  int exit_code = -1;  ///< -1: go on
+};
+WebCommandLine read_web_command_line(int argc, char** argv);
+
+}  // namespace mortise::web
