@@ -54,25 +54,6 @@ Vec3 Body::normal(std::uint32_t triangle) const {
   return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
 }
 
-const Interval& Body::extent_of(std::uint16_t face) const {
-  std::vector<Interval>& extents = index_->extents;
-  if (extents.empty()) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    extents.assign(band->faces.size(), Interval{kInfinity, -kInfinity});
-    for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
-      const std::uint16_t f = face_index(t);
-      const auto& surface = band->faces[f].surface;
-      if (!surface) continue;
-      for (int k = 0; k < 3; ++k) {
-        const double z = (mesh->corner(t, k) - surface->point).dot(surface->axis);
-        extents[f].lo = std::min(extents[f].lo, z);
-        extents[f].hi = std::max(extents[f].hi, z);
-      }
-    }
-  }
-  return extents[face];
-}
-
 namespace {
 
 // How far a point of a declared surface may be from the triangles that stand for it.

@@ -34,8 +34,9 @@ struct Body {
     return band->face_of_triangle.empty() ? std::uint16_t{0} : band->face_of_triangle[triangle];
   }
   Vec3 normal(std::uint32_t triangle) const;
+  const FaceEnds& ends_of(std::uint16_t face) const;
   /// Extent of a face along the axis of its declared surface, from the surface's point, mm.
-  const Interval& extent_of(std::uint16_t face) const;
+  const Interval& extent_of(std::uint16_t face) const { return ends_of(face).extent_mm; }
 
   /// The face of all triangles below each child of each node of the tree; kMixed: several.
   static constexpr std::int32_t kMixed = -1;

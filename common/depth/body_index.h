@@ -7,8 +7,17 @@
 
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
+#include "common/math/interval.h"
 
 namespace mortise {
+
+/// Where a face with a surface ends along the axis of that surface, from its point, mm.
+struct FaceEnds {
+  Interval extent_mm;  ///< of its corners
+  /// At the lower and the upper end: a whole circle of corners in one plane that ends the face, so
+  /// that the true face goes no farther either.
+  bool level[2] = {false, false};
+};
 
 /// What depth works out of one part and its band, and asks again at every pose. Filled in by Body
 /// when it is first needed; holds nothing that depends on anything but the part and the band.
@@ -16,9 +25,9 @@ struct BodyIndex {
   struct Range {
     std::uint32_t first = Topology::kNone, count = 0;
   };
-  std::vector<Range> sharp_range;    ///< by triangle, into `sharp`
-  std::vector<std::uint32_t> sharp;  ///< see Body::sharp_neighbours
-  std::vector<Interval> extents;     ///< by face, see Body::extent_of
+  std::vector<Range> sharp_range;                                    ///< by triangle, into `sharp`
+  std::vector<std::uint32_t> sharp;                                  ///< see Body::sharp_neighbours
+  std::vector<FaceEnds> ends;                                        ///< by face, see Body::ends_of
   std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;  ///< see Body::face_of_child
 };
 

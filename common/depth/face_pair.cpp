@@ -50,19 +50,21 @@ std::optional<FacePairOverlap> ball_in_socket(const Surface& ball, const Surface
                                               const FaceExtent& extent, double margin_mm) {
   const Vec3 d = ball.point - socket.point;
   const double z = d.dot(socket.axis);
-  const auto reach = [&](double beyond) -> std::optional<Vec3> {
-    const auto u = farthest_direction(d, socket.axis,
-                                      {(extent.lo_mm - beyond - z) / ball.radius_mm,
-                                       (extent.hi_mm + beyond - z) / ball.radius_mm});
+  const auto reach = [&](double below, double above) -> std::optional<Vec3> {
+    const auto u = farthest_direction(
+        d, socket.axis,
+        {(extent.lo_mm - below - z) / ball.radius_mm, (extent.hi_mm + above - z) / ball.radius_mm});
     if (!u) return std::nullopt;
     return Vec3(ball.point + ball.radius_mm * *u);
   };
   const auto overlap = [&](const Vec3& x) { return (x - socket.point).norm() - socket.radius_mm; };
   FacePairOverlap found;
   found.lo_mm = found.hi_mm = found.near_hi_mm = -std::numeric_limits<double>::infinity();
-  if (const auto end = reach(extent.beyond_mm)) found.hi_mm = overlap(*end);
-  if (const auto far = reach(margin_mm + extent.beyond_mm)) found.near_hi_mm = overlap(*far);
-  if (const auto near = reach(0.0)) {
+  const auto& [below, above] = extent.beyond_mm;
+  if (const auto end = reach(below, above)) found.hi_mm = overlap(*end);
+  if (const auto far = reach(margin_mm + below, margin_mm + above))
+    found.near_hi_mm = overlap(*far);
+  if (const auto near = reach(0.0, 0.0)) {
     found.lo_mm = overlap(*near);
     found.point_B = *near;
     found.normal_B = (*near - socket.point).stableNormalized();
@@ -73,15 +75,20 @@ std::optional<FacePairOverlap> ball_in_socket(const Surface& ball, const Surface
 }  // namespace
 
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface) {
-  const Interval& extent = body.extent_of(face);
+  const FaceEnds& ends = body.ends_of(face);
+  // A face goes on where the one that ends it moves outward.
+  double moved_mm = 0.0;
+  for (std::size_t i = 0; i < body.band->faces.size(); ++i)
+    if (i != face)
+      moved_mm = std::max(moved_mm, Body::offset_of(body.band->faces[i], Layer::kUpper));
+  FaceExtent extent{ends.extent_mm.lo, ends.extent_mm.hi, {moved_mm, moved_mm}};
   // The pole of a sphere need not be a corner.
   const Interval& off = body.band->faces[face].deviation_mm;
-  double beyond =
-      surface.kind == SurfaceKind::kSphere ? std::max(std::fabs(off.lo), std::fabs(off.hi)) : 0.0;
-  // A face goes on where the one that ends it moves outward.
-  for (std::size_t i = 0; i < body.band->faces.size(); ++i)
-    if (i != face) beyond = std::max(beyond, Body::offset_of(body.band->faces[i], Layer::kUpper));
-  return {extent.lo, extent.hi, beyond};
+  if (surface.kind == SurfaceKind::kSphere)
+    for (int end = 0; end < 2; ++end)
+      if (!ends.level[end])
+        extent.beyond_mm[end] = std::max({moved_mm, std::fabs(off.lo), std::fabs(off.hi)});
+  return extent;
 }
 
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
@@ -100,8 +107,9 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
     const auto face = RoundFace::of(convex, {along.lo_mm, along.hi_mm});
     const auto wall = RoundFace::of(hollow, {of_hollow.lo_mm, of_hollow.hi_mm});
     if (!face || !wall) return std::nullopt;
-    const auto reach = round_reach(*face, *wall, of_hollow.beyond_mm, kRoundAccuracy_mm);
-    const auto near = round_reach(*face, *wall, margin_mm + of_hollow.beyond_mm, kRoundAccuracy_mm);
+    const double beyond = std::max(of_hollow.beyond_mm[0], of_hollow.beyond_mm[1]);
+    const auto reach = round_reach(*face, *wall, beyond, kRoundAccuracy_mm);
+    const auto near = round_reach(*face, *wall, margin_mm + beyond, kRoundAccuracy_mm);
     if (!reach || !near || !std::isfinite(near->reach_mm.hi)) return std::nullopt;
     found = FacePairOverlap{reach->reach_mm.lo, reach->reach_mm.hi, near->reach_mm.hi, reach->point,
                             -reach->outward};
@@ -109,6 +117,20 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   // Now out of the convex face; B's own normal is asked for.
   if (found && !a.inward) found->normal_B = -found->normal_B;
   return found;
+}
+
+std::optional<BeyondSocket> beyond_socket(const Surface& ball, const Surface& socket,
+                                          const FaceExtent& extent, double margin_mm) {
+  const auto& [below, above] = extent.beyond_mm;
+  const Interval along{extent.lo_mm - below - margin_mm, extent.hi_mm + above + margin_mm};
+  const Vec3 d = ball.point - socket.point;
+  // What lies between two planes and not within a sphere comes nearest to a place within it on the
+  // sphere.
+  if (!(d.norm() < socket.radius_mm)) return std::nullopt;
+  const auto u = farthest_direction(d, socket.axis,
+                                    {along.lo / socket.radius_mm, along.hi / socket.radius_mm});
+  if (!u) return std::nullopt;
+  return BeyondSocket{ball.radius_mm - (socket.radius_mm * *u - d).norm(), along};
 }
 
 bool is_round_in_bore(const Surface& a, const Surface& b) {

@@ -11,7 +11,8 @@ namespace mortise {
 /// Extent of a face along the axis of its surface, from `point`, mm.
 struct FaceExtent {
   double lo_mm = 0.0, hi_mm = 0.0;
-  double beyond_mm = 0.0;  ///< by which the face may go on beyond its outermost corners
+  /// By which the face may go on beyond its outermost corners, at the lower and the upper end.
+  double beyond_mm[2] = {0.0, 0.0};
 };
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface);
 
@@ -31,6 +32,16 @@ struct FacePairOverlap {
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm);
+
+/// How deep in a ball a point may lie that is not within the sphere of its socket, mm, and between
+/// which heights along the socket's axis that holds: the ends of its face and `margin_mm` more.
+/// Nothing when it holds nowhere.
+struct BeyondSocket {
+  double depth_mm = 0.0;
+  Interval along_mm;
+};
+std::optional<BeyondSocket> beyond_socket(const Surface& ball, const Surface& socket,
+                                          const FaceExtent& extent_of_socket, double margin_mm);
 
 /// Upper bounds for a convex round face in a bore with a nearly parallel axis, mm: how far the
 /// surface of its face (`face_mm`), and any point that is not outside of its surface continued

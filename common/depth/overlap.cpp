@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/depth/candidates.h"
+#include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
 
@@ -78,10 +79,15 @@ class Overlap {
     const Surface& a = *pair_.bodies[0].band->faces[known.face[0]].surface;
     const Surface& b = *pair_.bodies[1].band->faces[known.face[1]].surface;
     if (a.kind == SurfaceKind::kSphere) {
-      // A point beyond the socket's wall is no deeper in the ball than the centres' distance
-      // allows.
-      row.within_mm = (pair_.X_KS[0] * a.point - b.point).norm() + (a.inward ? b : a).radius_mm -
-                      (a.inward ? a : b).radius_mm;
+      const int hollow = a.inward ? 0 : 1;
+      Surface ball = a.inward ? b : a;
+      ball.point = pair_.X_KS[1 - hollow] * ball.point;
+      const Surface& socket = a.inward ? a : b;
+      const FaceExtent extent = extent_of(pair_.bodies[hollow], known.face[hollow], socket);
+      if (const auto beyond = beyond_socket(ball, socket, extent, pair_.near_mm)) {
+        row.within_mm = beyond->depth_mm;
+        row.within_extent_mm = beyond->along_mm;
+      }
     }
     if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.near_hi_mm)) {
       // Between its ends the inside of a cone is the hull of its end circles, over which the convex
@@ -358,6 +364,9 @@ class Overlap {
 
 }  // namespace
 
-OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) { return Overlap(query).run(); }
+OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
+  if (b_comes_first(query)) return mirrored(Overlap(mirrored(query)).run());
+  return Overlap(query).run();
+}
 
 }  // namespace mortise

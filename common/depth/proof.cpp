@@ -202,24 +202,24 @@ class Neighbourhood {
     return least + facet.offset_mm;
   }
 
-  // Is the patch between the ends of the row's convex face?
+  // Is the patch between the heights for which the row speaks?
   bool keeps_within(const KnownOverlaps::Row& row) const {
     const Interval& extent = row.within_extent_mm;
     if (!std::isfinite(extent.lo)) return true;
-    const SurfaceBand::Face& face_s = proof_.s->band->faces[row.face[proof_.role]];
-    const SurfaceBand::Face& face_k = k_.band->faces[row.face[1 - proof_.role]];
-    const auto is_between = [&](const Surface& convex, const Vec3& x) {
-      const double z = (x - convex.point).dot(convex.axis);
+    const Surface& of_s = *proof_.s->band->faces[row.face[proof_.role]].surface;
+    const Surface& of_k = *k_.band->faces[row.face[1 - proof_.role]].surface;
+    const auto is_between = [&](const Surface& surface, const Vec3& x) {
+      const double z = (x - surface.point).dot(surface.axis);
       return z >= extent.lo - proof_.rounding_mm && z <= extent.hi + proof_.rounding_mm;
     };
-    if (!face_s.surface->inward) {
+    const bool along_hollow = of_s.kind == SurfaceKind::kSphere;
+    if (of_s.inward == along_hollow) {
       for (int i = 0; i < 3; ++i)
-        if (!is_between(*face_s.surface, proof_.s->mesh->corner(proof_.triangle_s, i)))
-          return false;
+        if (!is_between(of_s, proof_.s->mesh->corner(proof_.triangle_s, i))) return false;
       return true;
     }
     for (int i = 0; i < patch_.count; ++i)
-      if (!is_between(*face_k.surface, patch_.points[i])) return false;
+      if (!is_between(of_k, patch_.points[i])) return false;
     return true;
   }
 

@@ -30,7 +30,8 @@ struct KnownOverlaps {
     double overlap_mm;  ///< of the two faces
     /// Of any point not outside of the convex face's surface; faces that end on it keep to it.
     double within_mm = std::numeric_limits<double>::infinity();
-    /// Where `within_mm` holds: between these heights along the axis of the convex face.
+    /// Where `within_mm` holds: between these heights along the axis of the convex face (of a ball:
+    /// of its socket).
     Interval within_extent_mm{-std::numeric_limits<double>::infinity(),
                               std::numeric_limits<double>::infinity()};
     /// The pair is reported by its closed form. Else the row only serves proofs.

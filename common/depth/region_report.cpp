@@ -16,6 +16,10 @@ constexpr double kSameWay = 0.99;
 // overlap is deep.
 constexpr double kWitnessShares[] = {0.5, 0.25, 0.1, 0.02, 2e-3, 2e-4, 2e-5, 2e-6};
 
+// Steps uphill to a witness start at so many times the overlap and are halved so many times.
+constexpr double kFirstClimb = 8.0;
+constexpr int kWitnessHalvings = 16;
+
 double distance_from_axis(const Surface& surface, const Vec3& x) {
   const Vec3 d = x - surface.point;
   return (d - d.dot(surface.axis) * surface.axis).norm();
@@ -25,6 +29,30 @@ double distance_from_axis(const Surface& surface, const Vec3& x) {
 double least_depth(const Body& body, const Vec3& x) {
   return body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower);
 }
+
+// Depth of a point of frame K in both least real parts.
+double least_in_both(const PairFrame& pair, int role, const Vec3& x_K) {
+  return std::min(least_depth(pair.k(role), x_K),
+                  least_depth(pair.s(role), pair.X_KS[1 - role] * x_K));
+}
+
+// The point that lies deepest in both so far.
+struct Climb {
+  const PairFrame& pair;
+  int role;
+  Vec3 x_K;
+  double depth_mm;
+
+  // Goes there when it is deeper; true: inside both, beyond rounding.
+  bool better(const Vec3& to_K) {
+    const double there = least_in_both(pair, role, to_K);
+    if (!(there > depth_mm)) return false;
+    x_K = to_K;
+    depth_mm = there;
+    return depth_mm > pair.rounding_mm;
+  }
+  Vec3 at_W() const { return pair.in_world(role, x_K); }
+};
 
 }  // namespace
 
@@ -74,7 +102,6 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
   if (distance > std::max(pair.rounding_mm, 1e-3 * least.depth_mm))
     out = (least.at.depth_mm > 0.0 ? 1.0 : -1.0) * to_surface / distance;
   const Vec3 into_s = -(pair.X_KS[role].q * pair.s(role).normal(least.triangle));
-  const Pose X_SK = pair.X_KS[1 - role];
   // At a corner or edge of S a move along a face normal stays on the next face; from the middle of
   // the triangle it goes inside.
   const TriangleMesh& mesh_s = *pair.s(role).mesh;
@@ -83,14 +110,20 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
                               mesh_s.corner(least.triangle, 2)) /
                              3.0);
   const Vec3 inwards = ((middle_K - p).stableNormalized() + into_s).stableNormalized();
+  Climb climb{pair, role, p, least_in_both(pair, role, p)};
   for (const double share : kWitnessShares)
     for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized()), inwards,
-                              Vec3((out + inwards).stableNormalized())}) {
-      const Vec3 w = p + share * least.depth_mm * along;
-      if (least_depth(pair.k(role), w) > pair.rounding_mm &&
-          least_depth(pair.s(role), X_SK * w) > pair.rounding_mm)
-        return pair.in_world(role, w);
-    }
+                              Vec3((out + inwards).stableNormalized())})
+      if (climb.better(p + share * least.depth_mm * along)) return climb.at_W();
+  // Near an edge there may be room in no one of these directions: uphill from the best of them,
+  // along the wall of K to the middle of the triangle, across, and off the wall.
+  const Vec3 to_middle = middle_K - p;
+  const Vec3 u = Vec3(to_middle - to_middle.dot(out) * out).stableNormalized();
+  const Vec3 v = out.cross(u);
+  double step_mm = kFirstClimb * least.depth_mm;
+  for (int i = 0; i < kWitnessHalvings; ++i, step_mm *= 0.5)
+    for (const Vec3& along : {out, Vec3(-out), u, Vec3(-u), v, Vec3(-v), inwards})
+      if (climb.better(climb.x_K + step_mm * along)) return climb.at_W();
   return std::nullopt;
 }
 

@@ -1,13 +1,12 @@
 #include "common/geometry/recognition_finish.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 
 #include "common/base/constants.h"
+#include "common/geometry/recognition_names.h"
 
 namespace mortise {
 namespace {
@@ -52,7 +51,7 @@ class Finisher {
     drop_doubtful_rows();
     emit_curved();
     if (planes) emit_planes();
-    order_and_name();
+    name_features(out_);
     for (const Feature& f : out_.features) out_.triangles_recognized += f.triangles.size();
     out_.triangles_left = mesh_.triangles.size() - out_.triangles_recognized;
     return std::move(out_);
@@ -177,6 +176,20 @@ class Finisher {
            measures_[static_cast<std::size_t>(i)].one_row;
   }
 
+  // All corners of the row lie on the ball or torus beside it: it may be a part of that, however
+  // sharp the edge between them.
+  bool lies_on_neighbour(const Region& row, std::int32_t neighbour) const {
+    const Region& other = regions_[static_cast<std::size_t>(neighbour)];
+    if (other.surface.kind != SurfaceKind::kSphere && other.surface.kind != SurfaceKind::kTorus)
+      return false;
+    return std::all_of(row.triangles.begin(), row.triangles.end(), [&](std::uint32_t t) {
+      for (int k = 0; k < 3; ++k)
+        if (std::fabs(other.surface.signed_distance_mm(mesh_.corner(t, k))) > other.allowed_mm)
+          return false;
+      return true;
+    });
+  }
+
   bool doubtful(std::int32_t i) const {
     const Region& r = regions_[static_cast<std::size_t>(i)];
     const Interval along = measures_[static_cast<std::size_t>(i)].along_mm;
@@ -185,7 +198,10 @@ class Finisher {
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t other = solid_.topology().neighbor[t][k];
         if (other == Topology::kNone || owner_[other] == i) continue;
-        if (owner_[other] != kNobody && !row(owner_[other])) continue;
+        if (owner_[other] != kNobody && !row(owner_[other])) {
+          if (lies_on_neighbour(r, owner_[other])) return true;
+          continue;
+        }
         if (owner_[other] == kNobody && facets_.triangles(facets_.of_triangle[other]).size() > 64)
           continue;
         if (!may_be_step({t, other, k}, chord_mm_[static_cast<std::size_t>(i)])) continue;
@@ -320,60 +336,6 @@ class Finisher {
       out_.features.push_back(std::move(feature));
       out_.measures.push_back(m);
     }
-  }
-
-  // 6. order and names
-
-  static const char* stem_of(const Surface& s) {
-    switch (s.kind) {
-      case SurfaceKind::kCylinder:
-        return s.inward ? "bore" : "shaft";
-      case SurfaceKind::kCone:
-        return "cone";
-      case SurfaceKind::kSphere:
-        return "sphere";
-      case SurfaceKind::kTorus:
-        return "torus";
-      default:
-        return "plane";
-    }
-  }
-
-  static int rank_of(const Surface& s) {
-    constexpr std::array<int, 6> kRank{9, 6, 1, 3, 4, 5};  // by SurfaceKind
-    return s.kind == SurfaceKind::kCylinder && s.inward ? 0 : kRank[static_cast<int>(s.kind)];
-  }
-
-  void order_and_name() {
-    // Rounded, so that the last digits of a fit do not decide.
-    const auto rounded = [](double x) { return std::llround(x * 1e3); };
-    const auto key = [&](std::size_t i) {
-      const Surface& s = out_.features[i].surface;
-      const FeatureMeasure& m = out_.measures[i];
-      const bool open = m.arc_rad < 2.0 * std::numbers::pi;
-      const double size = s.kind == SurfaceKind::kPlane ? m.area_mm2
-                          : s.kind == SurfaceKind::kCone
-                              ? m.along_mm.hi * std::tan(s.half_angle_rad)
-                              : s.radius_mm;
-      return std::tuple(rank_of(s), open, -rounded(size), rounded(s.point.x()),
-                        rounded(s.point.y()), rounded(s.point.z()),
-                        out_.features[i].triangles.front());
-    };
-    std::vector<std::size_t> order(out_.features.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-    std::vector<Feature> features;
-    std::vector<FeatureMeasure> measures;
-    std::array<int, 10> number{};
-    for (const std::size_t i : order) {
-      features.push_back(std::move(out_.features[i]));
-      measures.push_back(out_.measures[i]);
-      const Surface& s = features.back().surface;
-      features.back().name = std::string(stem_of(s)) + "_" + std::to_string(++number[rank_of(s)]);
-    }
-    out_.features = std::move(features);
-    out_.measures = std::move(measures);
   }
 
   const Solid& solid_;

@@ -15,6 +15,9 @@ namespace {
 constexpr double kLooksAlong = 0.906;
 // A facet spans no more of the surface than this (50 degrees: the diagonal of a quad of 30 by 30).
 constexpr double kSpanCosine = 0.643;
+// Over an edge as sharp as this (50 degrees) a ball still goes on: that all corners beyond lie on
+// it is no chance. The cap at the pole meets its neighbours more sharply than other rows meet.
+constexpr double kBallEdge_rad = 0.8727;
 // A facet this many times as deep as the middle one is three times as wide: a flat cut.
 constexpr double kDeepFacet = 9.0;
 // The residual is less than this share of the height of the whole arc, else the surface is not told
@@ -78,6 +81,12 @@ bool RegionGrower::smooth(std::uint32_t facet_a, std::uint32_t facet_b) const {
   return facets_.angle_rad(facet_a, facet_b) <= kSmoothEdge_rad;
 }
 
+bool RegionGrower::goes_on(const Surface& surface, std::uint32_t t, std::uint32_t other) const {
+  const std::uint32_t f = facets_.of_triangle[t], g = facets_.of_triangle[other];
+  return surface.kind == SurfaceKind::kSphere ? facets_.angle_rad(f, g) <= kBallEdge_rad
+                                              : smooth(f, g);
+}
+
 bool RegionGrower::belongs(std::uint32_t t, const Surface& surface, double allowed_mm) const {
   for (int k = 0; k < 3; ++k)
     if (!(std::fabs(surface.signed_distance_mm(mesh_.corner(t, k))) <= allowed_mm)) return false;
@@ -105,8 +114,7 @@ void RegionGrower::spread(const Surface& surface, double allowed_mm, std::size_t
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t other = topology_.neighbor[t][k];
       if (other == Topology::kNone || triangle_mark_[other] == mark_ ||
-          topology_.edge_kind[t][k] == EdgeKind::kNonManifold ||
-          !smooth(facets_.of_triangle[t], facets_.of_triangle[other]))
+          topology_.edge_kind[t][k] == EdgeKind::kNonManifold || !goes_on(surface, t, other))
         continue;
       if (!belongs(other, surface, allowed_mm)) continue;
       triangle_mark_[other] = mark_;

@@ -44,6 +44,7 @@ class RegionGrower {
   bool smooth(std::uint32_t facet_a, std::uint32_t facet_b) const;
 
  private:
+  bool goes_on(const Surface& surface, std::uint32_t t, std::uint32_t other) const;
   bool belongs(std::uint32_t t, const Surface& surface, double allowed_mm) const;
   void spread(const Surface& surface, double allowed_mm, std::size_t limit,
               std::vector<std::uint32_t>& triangles);

@@ -98,8 +98,12 @@ class Run {
       note(name_of(grade), c, truth, word);
       if (grade == Grade::kDeclared && i % kOrderStride == 0) {
         ++order_asked;
-        order_changes += ask_ours(c, *pair, {Refinement::kDecided, !swapped}).collision_class !=
-                         word.collision_class;
+        const Word other = ask_ours(c, *pair, {Refinement::kDecided, !swapped});
+        if (other.collision_class != word.collision_class) {
+          ++order_changes;
+          tell("in one order", name_of(grade), c, truth, word);
+          tell("in the other order", name_of(grade), c, truth, other);
+        }
       }
       if (i % full_stride_ == 0) {
         errors[kOurs + name_of(grade) + kDecided].add_ours(c, truth, word);

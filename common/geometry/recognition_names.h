@@ -1,0 +1,10 @@
+#pragma once
+#include "common/geometry/recognition.h"
+
+/// Private to recognition.
+namespace mortise {
+
+/// Puts features and measures in the order that Recognition promises, and names them.
+void name_features(Recognition& recognition);
+
+}  // namespace mortise
