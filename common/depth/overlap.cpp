@@ -71,6 +71,7 @@ class Overlap {
     for (const KnownFacePair& known : candidates.known) add_row(known, true);
     for (const KnownFacePair& known : candidates.bounded) add_row(known, false);
     add_in_bore_rows(pair_, known_);
+    known_.X_BA = pair_.X_KS[0];
   }
 
   void add_row(const KnownFacePair& known, bool told) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/depth/face_pair.h"
+
 namespace mortise {
 namespace {
 
@@ -193,13 +195,42 @@ class Neighbourhood {
       const KnownOverlaps::Row* row = proof_.known->find(proof_.role, s.face_index(t), face_k);
       if (row == nullptr) return;
       const bool within = std::isfinite(row->within_mm) && keeps_within(*row);
-      const double overlap =
+      double overlap =
           std::min(itself ? row->overlap_mm : kInfinity, within ? row->within_mm : kInfinity);
-      least = std::min(least, overlap + Body::offset_of(s.face(t), proof_.layer));
+      const double offset = Body::offset_of(s.face(t), proof_.layer);
+      if (overlap + offset + facet.offset_mm > proof_.limit_mm)
+        overlap = std::min(overlap, within_here(*row));
+      least = std::min(least, overlap + offset);
     };
     bound(proof_.triangle_s, true);
     for (const std::uint32_t t : s.sharp_neighbours(proof_.triangle_s)) bound(t, false);
     return least + facet.offset_mm;
+  }
+
+  // Row::within_mm of a shaft in a bore, where the patch is: a tilted shaft comes nearer elsewhere.
+  double within_here(const KnownOverlaps::Row& row) const {
+    if (!proof_.known->X_BA) return kInfinity;
+    const Surface* of[2];
+    for (int i = 0; i < 2; ++i)
+      of[i] = &*(i == proof_.role ? *proof_.s : k_).band->faces[row.face[i]].surface;
+    if (of[0]->kind != SurfaceKind::kCylinder || !is_round_in_bore(*of[0], *of[1]))
+      return kInfinity;
+    const int bore = of[0]->inward ? 0 : 1;
+    const Pose& X_BA = *proof_.known->X_BA;
+    const Pose X_KS = proof_.role == 0 ? X_BA : X_BA.inverse();
+    const bool bore_in_k = bore != proof_.role;
+    const Vec3 point = bore_in_k ? of[bore]->point : Vec3(X_KS * of[bore]->point);
+    const Vec3 axis = bore_in_k ? of[bore]->axis : Vec3(X_KS.q * of[bore]->axis);
+    InBoreQuery query{of[0], of[1], {}, {}, 0.0, patch_.thickness() + proof_.rounding_mm};
+    FaceExtent& along = bore == 0 ? query.extent_a : query.extent_b;
+    along.lo_mm = kInfinity;
+    along.hi_mm = -kInfinity;
+    for (int i = 0; i < patch_.count; ++i) {
+      const double z = (patch_.points[i] - point).dot(axis);
+      along.lo_mm = std::min(along.lo_mm, z);
+      along.hi_mm = std::max(along.hi_mm, z);
+    }
+    return in_bore_bound(query, X_BA).within_mm;
   }
 
   // Is the patch between the heights for which the row speaks?

@@ -38,6 +38,8 @@ struct KnownOverlaps {
     bool told = true;
   };
   std::vector<Row> rows;
+  /// Where neither part moves: then a shaft in a bore is also bounded where a patch is.
+  std::optional<Pose> X_BA;
   /// Of face_s of body `role` with face_k of the other; null when not known.
   const Row* find(int role, std::uint16_t face_s, std::uint16_t face_k) const;
 };
