@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/depth/face_pair.h"
+#include "common/depth/known_depth.h"
 
 namespace mortise {
 namespace {
@@ -21,8 +21,6 @@ constexpr double kLeastFacing = 1e-3;
 
 // Cosines of normals of one plane differ from one by less than this.
 constexpr double kOnePlane = 1e-9;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
@@ -152,7 +150,7 @@ class Neighbourhood {
     }
     deepest += facet.offset_mm;
     if (proof_.known == nullptr || proof_.known->rows.empty()) return deepest;
-    return std::min(deepest, known_depth(facet));
+    return std::min(deepest, known_depth_mm(proof_, patch_, facet.triangle));
   }
 
   // The tangent plane where the hull of the patch comes nearest to the axis: for a flat patch that
@@ -183,75 +181,6 @@ class Neighbourhood {
       point = surface.point;  // all tangent planes meet in the apex
     }
     return patch_.depth_below_plane(normal, point, 0.0);
-  }
-
-  // By closed form. What holds for a declared face holds for its sharp neighbours too, which end on
-  // it: no point of theirs is outside of it.
-  double known_depth(const Facet& facet) const {
-    const Body& s = *proof_.s;
-    const std::uint16_t face_k = k_.face_index(facet.triangle);
-    double least = std::numeric_limits<double>::infinity();
-    const auto bound = [&](std::uint32_t t, bool itself) {
-      const KnownOverlaps::Row* row = proof_.known->find(proof_.role, s.face_index(t), face_k);
-      if (row == nullptr) return;
-      const bool within = std::isfinite(row->within_mm) && keeps_within(*row);
-      double overlap =
-          std::min(itself ? row->overlap_mm : kInfinity, within ? row->within_mm : kInfinity);
-      const double offset = Body::offset_of(s.face(t), proof_.layer);
-      if (overlap + offset + facet.offset_mm > proof_.limit_mm)
-        overlap = std::min(overlap, within_here(*row));
-      least = std::min(least, overlap + offset);
-    };
-    bound(proof_.triangle_s, true);
-    for (const std::uint32_t t : s.sharp_neighbours(proof_.triangle_s)) bound(t, false);
-    return least + facet.offset_mm;
-  }
-
-  // Row::within_mm of a shaft in a bore, where the patch is: a tilted shaft comes nearer elsewhere.
-  double within_here(const KnownOverlaps::Row& row) const {
-    if (!proof_.known->X_BA) return kInfinity;
-    const Surface* of[2];
-    for (int i = 0; i < 2; ++i)
-      of[i] = &*(i == proof_.role ? *proof_.s : k_).band->faces[row.face[i]].surface;
-    if (of[0]->kind != SurfaceKind::kCylinder || !is_round_in_bore(*of[0], *of[1]))
-      return kInfinity;
-    const int bore = of[0]->inward ? 0 : 1;
-    const Pose& X_BA = *proof_.known->X_BA;
-    const Pose X_KS = proof_.role == 0 ? X_BA : X_BA.inverse();
-    const bool bore_in_k = bore != proof_.role;
-    const Vec3 point = bore_in_k ? of[bore]->point : Vec3(X_KS * of[bore]->point);
-    const Vec3 axis = bore_in_k ? of[bore]->axis : Vec3(X_KS.q * of[bore]->axis);
-    InBoreQuery query{of[0], of[1], {}, {}, 0.0, patch_.thickness() + proof_.rounding_mm};
-    FaceExtent& along = bore == 0 ? query.extent_a : query.extent_b;
-    along.lo_mm = kInfinity;
-    along.hi_mm = -kInfinity;
-    for (int i = 0; i < patch_.count; ++i) {
-      const double z = (patch_.points[i] - point).dot(axis);
-      along.lo_mm = std::min(along.lo_mm, z);
-      along.hi_mm = std::max(along.hi_mm, z);
-    }
-    return in_bore_bound(query, X_BA).within_mm;
-  }
-
-  // Is the patch between the heights for which the row speaks?
-  bool keeps_within(const KnownOverlaps::Row& row) const {
-    const Interval& extent = row.within_extent_mm;
-    if (!std::isfinite(extent.lo)) return true;
-    const Surface& of_s = *proof_.s->band->faces[row.face[proof_.role]].surface;
-    const Surface& of_k = *k_.band->faces[row.face[1 - proof_.role]].surface;
-    const auto is_between = [&](const Surface& surface, const Vec3& x) {
-      const double z = (x - surface.point).dot(surface.axis);
-      return z >= extent.lo - proof_.rounding_mm && z <= extent.hi + proof_.rounding_mm;
-    };
-    const bool along_hollow = of_s.kind == SurfaceKind::kSphere;
-    if (of_s.inward == along_hollow) {
-      for (int i = 0; i < 3; ++i)
-        if (!is_between(of_s, proof_.s->mesh->corner(proof_.triangle_s, i))) return false;
-      return true;
-    }
-    for (int i = 0; i < patch_.count; ++i)
-      if (!is_between(of_k, patch_.points[i])) return false;
-    return true;
   }
 
   bool covered(std::uint32_t t, const Corners& c) const {
@@ -409,13 +338,6 @@ class Neighbourhood {
 };
 
 }  // namespace
-
-const KnownOverlaps::Row* KnownOverlaps::find(int role, std::uint16_t face_s,
-                                              std::uint16_t face_k) const {
-  for (const Row& row : rows)
-    if (row.face[role] == face_s && row.face[1 - role] == face_k) return &row;
-  return nullptr;
-}
 
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch) {
   if (proof.k->depth_in(patch.center, proof.at_center, proof.layer) >
