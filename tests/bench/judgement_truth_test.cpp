@@ -1,6 +1,7 @@
 // The truth that the benchmark judges by, itself held against dense sampling and against depths of
 // meshes found by brute force.
 #include "tests/bench/judgement_truth.h"
+#include "common/geometry/recognition.h"
 
 #include <gtest/gtest.h>
 
@@ -92,6 +93,20 @@ TEST(JudgementTruth, KnownFits) {
   EXPECT_NEAR(polygon_depth_mm({10, 10, {32, std::numbers::pi / 32}, {32, 0}, Vec3::Zero(), 0}),
               0.048152733, 1e-9);
   EXPECT_NEAR(polygon_depth_mm({10.01, 10, {32, 0}, {32, 0}, Vec3::Zero(), 0}), 0.01, 1e-12);
+}
+
+// Twelve facets around, and the fan at the pole meets its neighbours more sharply than other rows
+// do: still one ball, with no cone at its end.
+TEST(JudgementParts, TheSocketOfFewestFacetsIsOneBall) {
+  for (const double rim_mm : {57.0, 0.0, -20.0, 100.0}) {
+    const JudgedPart part = make_socket(237.0, rim_mm, 356.0, {12, 0.1});
+    for (const Feature& f : recognize_features(*part.solid).features) {
+      EXPECT_NE(f.surface.kind, SurfaceKind::kCone) << rim_mm;
+      if (f.surface.kind == SurfaceKind::kSphere) {
+        EXPECT_NEAR(f.surface.radius_mm, 237.0, 1e-6) << rim_mm;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -238,7 +238,10 @@ TEST(Overlap, DeterministicAndSymmetric) {
     if (once.regions.empty()) continue;
     EXPECT_EQ(once.regions[0].delta_mm, twice.regions[0].delta_mm);
     ASSERT_FALSE(swapped.regions.empty());
-    EXPECT_NEAR(once.regions[0].delta_mm.lo, swapped.regions[0].delta_mm.lo, 2.2e-4);
+    ASSERT_EQ(once.regions.size(), swapped.regions.size());
+    EXPECT_EQ(once.regions[0].delta_mm, swapped.regions[0].delta_mm);
+    EXPECT_EQ(once.regions[0].normal_W, -swapped.regions[0].normal_W);
+    EXPECT_EQ(once.regions[0].triangle_a, swapped.regions[0].triangle_b);
   }
 }
 
