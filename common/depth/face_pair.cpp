@@ -9,9 +9,6 @@
 namespace mortise {
 namespace {
 
-// Axes farther apart in angle are no sliding fit: the bound would be far from tight.
-constexpr double kLeastCosine = 0.95;
-
 // How closely a closed form is followed around its circles.
 constexpr double kRoundAccuracy_mm = 1e-5;
 
@@ -152,7 +149,7 @@ InBoreBound in_bore_bound(const InBoreQuery& query, const Pose& X_BA) {
   const FaceExtent& extent = a.inward ? query.extent_b : query.extent_a;
   const FaceExtent& bore_extent = a.inward ? query.extent_a : query.extent_b;
   const double slope = round.direction.dot(bore.direction);
-  if (std::fabs(slope) < kLeastCosine) return bound;
+  if (std::fabs(slope) < kSlidingFitCosine) return bound;
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
   if (surface.kind == SurfaceKind::kCylinder) {
     // The circles around the axis that may be near the bore, wherever the face ends.

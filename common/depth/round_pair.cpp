@@ -12,9 +12,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Axes farther apart in angle are no sliding fit.
-constexpr double kLeastCosine = 0.95;
-
 // At the very end of a face its neighbour is as near: a point is named that is a little inside.
 constexpr double kEndShare = 1e-4;
 
@@ -223,7 +220,7 @@ std::optional<RoundFace> RoundFace::of(const Surface& surface, const Interval& e
 std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
                                       double margin_mm, double accuracy_mm) {
   const double slope = convex.axis.dot(hollow.axis);
-  if (std::fabs(slope) < kLeastCosine) return std::nullopt;
+  if (std::fabs(slope) < kSlidingFitCosine) return std::nullopt;
   // A generator that runs square to the hollow axis meets no height of it.
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
   if (std::fabs(convex.widening) * tilt > 0.5 * std::fabs(slope)) return std::nullopt;

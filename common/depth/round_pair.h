@@ -6,6 +6,9 @@
 
 namespace mortise {
 
+/// Axes farther apart in angle are no sliding fit: bounds would be far from tight.
+inline constexpr double kSlidingFitCosine = 0.95;
+
 /// A cylinder or cone about its axis: radius = radius_mm + widening * z, z along the axis from
 /// `point` (the apex of a cone).
 struct RoundFace {
@@ -28,9 +31,9 @@ struct RoundReach {
 };
 
 /// Bracket of sup f over the convex face where the hollow one is near, f the distance beyond the
-/// wall. Both in one frame, axes nearly parallel (0.95 or better); nothing for others. hi is over
-/// the convex face within margin_mm of the hollow one's ends, lo within both; -infinity where there
-/// is no such point.
+/// wall. Both in one frame, axes nearly parallel (kSlidingFitCosine); nothing for others. hi is
+/// over the convex face within margin_mm of the hollow one's ends, lo within both; -infinity where
+/// there is no such point.
 ///
 /// f is convex, so that along a generator it is largest at an end; around the ends it is a square
 /// root of a trigonometric polynomial of second degree, whose curvature is small where the axes

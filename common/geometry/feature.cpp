@@ -115,6 +115,17 @@ double distance_to_flat_triangle(const Vec3& x, const Vec3& normal, const Corner
   return left || right ? 0.0 : least;
 }
 
+// A triangle cut in two across its longest edge.
+std::array<Corners, 2> halves_of(const Corners& c) {
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if ((c[(k + 1) % 3] - c[k]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm())
+      longest = k;
+  const Vec3 half = 0.5 * (c[longest] + c[(longest + 1) % 3]);
+  const Vec3& apex = c[(longest + 2) % 3];
+  return {Corners{c[longest], half, apex}, Corners{half, c[(longest + 1) % 3], apex}};
+}
+
 struct LeastSearch {
   const Surface& surface;
   double accuracy_mm;
@@ -139,14 +150,9 @@ double least_over(LeastSearch& search, const Corners& c, int depth) {
   const double bend = concave_bend(search.surface, middle, reach);
   bound = std::max(at_middle - reach, bound - 0.5 * bend * reach * reach);
   if (bound >= search.best - search.accuracy_mm || depth == 0) return bound;
-  int longest = 0;
-  for (int k = 1; k < 3; ++k)
-    if ((c[(k + 1) % 3] - c[k]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm())
-      longest = k;
-  const Vec3 half = 0.5 * (c[longest] + c[(longest + 1) % 3]);
-  const Vec3& apex = c[(longest + 2) % 3];
-  return std::min(least_over(search, {c[longest], half, apex}, depth - 1),
-                  least_over(search, {half, c[(longest + 1) % 3], apex}, depth - 1));
+  const auto halves = halves_of(c);
+  return std::min(least_over(search, halves[0], depth - 1),
+                  least_over(search, halves[1], depth - 1));
 }
 
 // Is the outside distance, a convex function, nowhere less than the limit? By tangents, halving
@@ -163,14 +169,9 @@ bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int dept
   }
   if (std::max(bound, at_middle - reach) >= limit_mm) return true;
   if (depth == 0) return false;
-  int longest = 0;
-  for (int k = 1; k < 3; ++k)
-    if ((c[(k + 1) % 3] - c[k]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm())
-      longest = k;
-  const Vec3 half = 0.5 * (c[longest] + c[(longest + 1) % 3]);
-  const Vec3& apex = c[(longest + 2) % 3];
-  return nowhere_below(s, limit_mm, {c[longest], half, apex}, depth - 1) &&
-         nowhere_below(s, limit_mm, {half, c[(longest + 1) % 3], apex}, depth - 1);
+  const auto halves = halves_of(c);
+  return nowhere_below(s, limit_mm, halves[0], depth - 1) &&
+         nowhere_below(s, limit_mm, halves[1], depth - 1);
 }
 
 }  // namespace

@@ -19,9 +19,4 @@ struct Mark {
 /// why when it cannot, and returns false.
 bool draw_time_against_error(const std::vector<Mark>& marks, const std::string& svg_file);
 
-/// A text in gnuplot's single quotes, which know one escape: a quote is written twice.
-std::string quoted_for_gnuplot(const std::string& text);
-/// Runs a script; says on stderr why when it cannot, and returns false.
-bool run_gnuplot(const std::string& script);
-
 }  // namespace mortise::bench
