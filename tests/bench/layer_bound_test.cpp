@@ -1,0 +1,177 @@
+// Proofs against points: whatever the faces of two parts state, no point of either real surface
+// lies deeper in the other part than the brackets say. Random parts, statements and poses.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/depth/overlap.h"
+#include "common/depth/search.h"
+#include "common/evaluation/band.h"
+#include "common/math/rotation.h"
+#include "tests/bench/judgement_parts.h"
+#include "tests/support/effort.h"
+#include "tests/support/shapes.h"
+
+namespace mortise::bench {
+namespace {
+
+constexpr double kTouch_mm = 1e-6;
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  double in(double lo, double hi) {
+    return lo + (hi - lo) * static_cast<double>(random_() >> 11) * 0x1.0p-53;
+  }
+  int up_to(int n) { return static_cast<int>(random_() % static_cast<std::uint64_t>(n)); }
+  Vec3 vector(double size) { return {in(-size, size), in(-size, size), in(-size, size)}; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+struct Stated {
+  JudgedPart part;
+  SurfaceBand band;
+};
+
+// Statements of either sign, of every face and of the rest.
+Stated state(JudgedPart part, double largest_mm, Draw& draw) {
+  const auto zone = [&]() -> FaceStatement {
+    const double middle = draw.in(-largest_mm, largest_mm), half = draw.in(0.0, 0.3 * largest_mm);
+    return {{middle - half, middle + half}, "zone"};
+  };
+  Stated made;
+  made.part = std::move(part);
+  BandInput input;
+  input.solid = made.part.solid.get();
+  input.features = made.part.features;
+  for (std::size_t i = 0; i < made.part.features.size(); ++i) input.of_feature.push_back(zone());
+  if (draw.up_to(2) == 0) input.rest = zone();
+  made.band = build_band(input);
+  return made;
+}
+
+struct Pair {
+  JudgedPart a, b;
+  Pose X_BA;
+};
+
+// About as deep in each other as the statements are wide.
+Pair draw_pair(Draw& draw, double largest_mm) {
+  const Around coarse{12 + draw.up_to(20), draw.in(0.0, 0.3)}, fine{12 + draw.up_to(30), 0.0};
+  const double r = draw.in(5.0, 20.0), slack = draw.in(-1.0, 2.0) * largest_mm;
+  const Vec3 off = draw.vector(largest_mm), turn = draw.vector(1e-3);
+  const Pose near{rotation_exp(turn), off};
+  switch (draw.up_to(5)) {
+    case 0:
+      return {
+          make_shaft({r - slack, -5.0, r - slack, draw.in(5.0, 25.0)}, 1 + draw.up_to(3), coarse),
+          make_ring({r, 0.0, r, 20.0}, 1.6 * r, 1, fine), near};
+    case 1:
+      return {make_shaft({r - slack, 0.0, 1.2 * r - slack, 12.0}, 1, coarse),
+              make_ring({r, 0.0, 1.2 * r, 12.0}, 1.9 * r, 1, fine), near};
+    case 2:
+      return {make_ball(r - slack, coarse), make_socket(r, draw.in(-0.3, 0.3) * r, 1.5 * r, fine),
+              near};
+    case 3: {
+      const Slot slot{0.5 * r, r, 1.5 * r, 0.4 * r};
+      const double half = 0.5 * r - 0.5 * slack;
+      Pose X = near;
+      X.p.y() += half;
+      return {make_block({half, half, r}, 1 + draw.up_to(2)), make_slot(slot), X};
+    }
+    default: {
+      // Anyhow: a corner or an edge of a block against whatever the other shows.
+      Pair pair{make_block({0.4 * r, 0.5 * r, 0.6 * r}, 1 + draw.up_to(2)), {}, {}};
+      pair.b = draw.up_to(2) == 0 ? make_slot({0.5 * r, r, 1.5 * r, 0.4 * r})
+                                  : make_shaft({r, -5.0, 0.8 * r, 15.0}, 1, coarse);
+      pair.X_BA = {rotation_exp(draw.vector(3.0)), draw.vector(1.2 * r)};
+      return pair;
+    }
+  }
+}
+
+// A face that is moved outward ends where its neighbour, moved inward, cuts it: what is beyond is
+// no point of the part.
+bool is_of_part(const PairFrame& pair, Layer layer, const Sample& at) {
+  const Body& s = pair.s(at.role);
+  const Vec3 x_S = pair.X_KS[1 - at.role] * at.point_K;
+  return s.depth_in(x_S, nearest_surface(*s.solid, x_S), layer) > -kTouch_mm;
+}
+
+double deepest_point_mm(const PairFrame& pair, Layer layer, Draw& draw, int points) {
+  double deepest = -1e9;
+  for (int role = 0; role < 2; ++role) {
+    const TriangleMesh& mesh = *pair.s(role).mesh;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      // Only those that may reach the other part.
+      const Vec3 middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0;
+      const double reach =
+          std::max({(mesh.corner(t, 0) - middle).norm(), (mesh.corner(t, 1) - middle).norm(),
+                    (mesh.corner(t, 2) - middle).norm()});
+      const auto look = [&](const Vec3& x) {
+        const Sample at = sample_at(pair, layer, role, t, x);
+        if (at.depth_mm > deepest && is_of_part(pair, layer, at)) deepest = at.depth_mm;
+        return at;
+      };
+      const Sample at = look(middle);
+      if (at.depth_mm < -reach - 1.0) continue;
+      for (int i = 0; i < points; ++i) {
+        double u = draw.in(0.0, 1.0), v = draw.in(0.0, 1.0);
+        if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+        if (i % 3 == 0) v = 0.0;  // edges: there the proofs have most to say
+        const Vec3 x = mesh.corner(t, i % 3) +
+                       u * (mesh.corner(t, (i + 1) % 3) - mesh.corner(t, i % 3)) +
+                       v * (mesh.corner(t, (i + 2) % 3) - mesh.corner(t, i % 3));
+        look(x);
+      }
+    }
+  }
+  return deepest;
+}
+
+TEST(LayerBound, NoPointOfARealSurfaceIsDeeperThanTheBrackets) {
+  Draw draw(20261);
+  int regions = 0, deep[3] = {0, 0, 0}, bounded[3] = {0, 0, 0};
+  for (int i = 0; i < test::effort(250); ++i) {
+    const double largest_mm = draw.in(0.005, 0.2);
+    const Pair pair = draw_pair(draw, largest_mm);
+    const Stated a = state(pair.a, largest_mm, draw), b = state(pair.b, largest_mm, draw);
+    OverlapQuery query;
+    query.a = a.part.solid.get();
+    query.b = b.part.solid.get();
+    query.band_a = &a.band;
+    query.band_b = &b.band;
+    query.X_WA = pair.X_BA;
+    query.refinement = Refinement::kDecided;
+    query.prove_not_certain = i % 2 == 0;
+    query.work_cap = 20'000;
+    CcdScratch scratch;
+    const OverlapResult result = find_overlap(query, scratch);
+    const PairFrame frame(query);
+    Interval worst[3];  // by layer
+    for (Interval& x : worst) x = {-1e9, frame.touch_mm};
+    for (const OverlapRegion& region : result.regions) {
+      ++regions;
+      const Interval* found[3] = {&region.delta_mm, &region.certain_mm, &region.possible_mm};
+      for (int k = 0; k < 3; ++k) worst[k].hi = std::max(worst[k].hi, found[k]->hi);
+    }
+    for (const Layer layer : {Layer::kMesh, Layer::kLower, Layer::kUpper}) {
+      const int k = static_cast<int>(layer);
+      // Where nothing may interfere no more is said than that.
+      if (result.regions.empty() && layer != Layer::kUpper) continue;
+      const double deepest = deepest_point_mm(frame, layer, draw, 24);
+      EXPECT_LE(deepest, worst[k].hi + 2e-4) << "case " << i << ", layer " << k;
+      deep[k] += deepest > frame.touch_mm;
+      bounded[k] += worst[k].hi < deepest + largest_mm;
+    }
+  }
+  std::printf("%d regions; overlaps and tight bounds by layer: %d %d, %d %d, %d %d\n", regions,
+              deep[0], bounded[0], deep[1], bounded[1], deep[2], bounded[2]);
+  EXPECT_GT(deep[1], 20);
+  EXPECT_GT(bounded[2], 20);
+}
+
+}  // namespace
+}  // namespace mortise::bench
