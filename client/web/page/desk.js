@@ -1,0 +1,66 @@
+// Puts the page together: what is known, what is shown, what is asked. Each panel takes from the desk what it needs.
+import { Connection, tokenOf } from './session/connection.js';
+import { Choice } from './session/choice.js';
+import { Commands } from './session/commands.js';
+import { readPoseFrame } from './session/frames.js';
+import { Mover } from './session/mover.js';
+import { Session } from './session/session.js';
+import { Stage } from './view/stage.js';
+import { Camera } from './view/camera.js';
+import { ClashMarks } from './view/clash_marks.js';
+import { Handles } from './view/handles.js';
+import { Heat } from './view/heat.js';
+import { Labels } from './view/labels.js';
+import { PartsView } from './view/parts_view.js';
+import { SectionPlane } from './view/section_plane.js';
+import { makeFlights } from './view/flights.js';
+import { byId } from './panels/dom.js';
+import { say } from './panels/said.js';
+
+/**
+ * The line to the gateway as people see it.
+ * @typedef {{state: import('./session/connection.js').LineState, text: string, roundTrip: number, frames: number, onChange: () => void}} Line
+ */
+
+export function makeDesk() {
+  const session = new Session();
+  const choice = new Choice();
+  /** @type {Line} */
+  const line = { state: 'connecting', text: '', roundTrip: 0, frames: 0, onChange: () => {} };
+  const connection = new Connection(tokenOf(location.hash), {
+    message: (message) => (message.type === 'reply' ? commands.take(message) : session.apply(message)),
+    poses: (buffer) => {
+      const frame = readPoseFrame(buffer);
+      if (!frame) return;
+      ++line.frames;
+      session.applyPoses(frame);
+    },
+    roundTrip: (ms) => (line.roundTrip = ms),
+    state: (state, text) => {
+      if (line.state === 'open' && state !== 'open') {
+        session.lost();
+        commands.lost();
+        mover.dropAll();
+      }
+      Object.assign(line, { state, text });
+      line.onChange();
+    },
+  });
+  const send = (/** @type {object} */ message) => connection.send(message);
+  const commands = new Commands(send, say);
+  const mover = new Mover((part, { t, r }) => send({ type: 'move', part, t, r }));
+
+  const stage = new Stage(/** @type {HTMLCanvasElement} */ (byId('canvas')));
+  const partsView = new PartsView(stage, (hash) => connection.mesh(hash), (text) => say(text, 'bad'));
+  const camera = new Camera(stage, (view) => line.state === 'open' && send({ type: 'view', ...view }));
+  const marks = new ClashMarks(stage);
+  const heat = new Heat(stage, partsView, session);
+  const section = new SectionPlane(partsView);
+  const handles = new Handles(stage, camera, (part, increment) => mover.push(part.id, increment));
+  const labels = new Labels(stage, session, byId('labels'));
+  labels.sources.push(() => marks.notes);
+  const flights = makeFlights({ session, choice, camera, partsView, section });
+  return { session, choice, line, connection, send, commands, mover, stage, partsView, camera, marks, heat, section, handles, labels, say, ...flights };
+}
+
+/** @typedef {ReturnType<typeof makeDesk>} Desk */

@@ -1,0 +1,51 @@
+// The page begins here.
+import { makeDesk } from './desk.js';
+import { makeAlign } from './panels/align.js';
+import { makeClashDetail } from './panels/clash_detail.js';
+import { makeClashList } from './panels/clash_list.js';
+import { makeHand } from './panels/hand.js';
+import { makeJoin } from './panels/join.js';
+import { makeKeyboard } from './panels/keyboard.js';
+import { makeNews } from './panels/news.js';
+import { makePeople } from './panels/people.js';
+import { makeSectionBar } from './panels/section_bar.js';
+import { makeStatistics } from './panels/statistics.js';
+import { makeStatus } from './panels/status.js';
+import { makeTheme } from './panels/theme.js';
+import { makeTimeline } from './panels/timeline.js';
+import { makeToolbar } from './panels/toolbar.js';
+import { makeTree } from './panels/tree.js';
+import { byId } from './panels/dom.js';
+import { drawCompass } from './view/compass.js';
+import { followSession } from './view/follow_session.js';
+import { makePointer } from './view/pointer.js';
+
+makeTheme();
+const desk = makeDesk();
+const { session, choice, camera, section } = desk;
+makeStatus(desk);
+followSession(desk);
+drawCompass(desk.stage, /** @type {HTMLCanvasElement} */ (byId('compass')));
+makeTree(desk);
+makePeople(desk);
+makeClashList(desk);
+makeClashDetail(desk);
+makeStatistics(desk);
+makeNews(desk);
+makeSectionBar(section, () => session.emit('clashes', undefined));
+const toolbar = makeToolbar(desk);
+const hand = makeHand(desk);
+const timeline = makeTimeline(session, desk.send);
+const join = makeJoin(session, desk.send);
+makePointer(desk, makeAlign(desk).pick);
+makeKeyboard({
+  grab: hand.toggle, step: hand.stepBy, stepSize: hand.changeStep, tool: toolbar.chooseTool, section: toolbar.toggleSection, cancel: toolbar.cancel,
+  undo: () => toolbar.change('undo'), redo: () => toolbar.change('redo'), ghost: () => choice.setGhost(!choice.ghost), play: timeline.toggle,
+  fit: () => desk.showAll(), part: () => desk.showPart(choice.part), from: (side) => desk.showAll(side),
+  turnView: (right, up) => camera.turn(right, up), closer: (times) => camera.closer(times),
+  nextClash: () => desk.goClash(1), lastClash: () => desk.goClash(-1),
+});
+byId('line_state').onclick = () => join.ask();
+session.on('join_refused', (text) => join.refused(text));
+session.on('welcome', () => join.welcome());
+desk.connection.open();

@@ -1,0 +1,56 @@
+// The overlap of a clash against its two thresholds: up to the first it is fake, from the second on real, potential between.
+import { small } from '../session/words.js';
+import { el } from './dom.js';
+
+/** @typedef {import('../session/session.js').Clash} Clash */
+
+/** What the bar spans: both thresholds and the overlap, with room about them. @param {Clash} clash @returns {[number, number]} */
+export function spanOf(clash) {
+  const marks = [clash.fake_below, clash.real_above, clash.delta[0], clash.delta[1]].filter(Number.isFinite);
+  const lo = Math.min(0, ...marks);
+  const hi = Math.max(...marks);
+  // One that has gone far beyond must not press the thresholds into one line.
+  const wide = Math.max(clash.real_above - Math.min(0, clash.fake_below), 1e-4);
+  return [Math.max(lo, -wide), Math.min(hi + 0.15 * (hi - lo || 1e-3), clash.real_above + 2.5 * wide)];
+}
+
+/** @param {Clash} clash @param {(mm: number) => number} share */
+function zones(clash, share) {
+  const [fake, real] = [share(clash.fake_below), share(clash.real_above)];
+  return /** @type {const} */ ([['fake', 0, fake], ['potential', fake, real], ['real', real, 1]]);
+}
+
+/** @param {HTMLElement} bar filled anew @param {Clash} clash */
+export function fillDepthBar(bar, clash) {
+  const [lo, hi] = spanOf(clash);
+  const share = (/** @type {number} */ mm) => Math.min(1, Math.max(0, (mm - lo) / (hi - lo)));
+  const children = zones(clash, share).filter(([, from, to]) => to > from).map(([name, from, to]) => {
+    const zone = el('span', { class: `zone is-${name}` });
+    zone.style.left = `${100 * from}%`;
+    zone.style.width = `${100 * (to - from)}%`;
+    return zone;
+  });
+  const at = el('span', { class: 'at' });
+  const [from, to] = [share(clash.delta[0] ?? 0), share(clash.delta[1] ?? clash.delta[0] ?? 0)];
+  at.style.left = `min(${100 * from}%, 100% - 3px)`;
+  at.style.width = `${100 * (to - from)}%`;
+  bar.replaceChildren(...children, at);
+  bar.setAttribute('role', 'img');
+  bar.setAttribute('aria-label', `overlap ${small(clash.delta[1])}, fake up to ${small(clash.fake_below)}, real above ${small(clash.real_above)}`);
+}
+
+/** The figures under the bar. @param {HTMLElement} scale filled anew @param {Clash} clash */
+export function fillScale(scale, clash) {
+  const [lo, hi] = spanOf(clash);
+  const shares = [clash.fake_below, clash.real_above].map((mm) => (mm - lo) / (hi - lo));
+  const texts = [`fake ≤ ${small(clash.fake_below)}`, `real > ${small(clash.real_above)}`];
+  const [left, right] = texts.map((text) => el('span', {}, text));
+  // The left one ends, the right one begins at its threshold, unless it would leave the bar.
+  left.style.right = `${Math.min(52, 100 * (1 - shares[0]))}%`;
+  if (shares[0] < 0.4) {
+    left.style.right = 'auto';
+    left.style.left = '0';
+  }
+  right.style.left = `${Math.min(58, Math.max(50, 100 * shares[1]))}%`;
+  scale.replaceChildren(left, right);
+}

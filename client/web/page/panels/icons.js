@@ -1,0 +1,70 @@
+// Small drawings, made of paths of our own.
+
+const NS = 'http://www.w3.org/2000/svg';
+
+/** @type {Record<string, string>} on a field of 20 × 20 */
+const PATHS = {
+  select: 'M5 3l10 6.2-4.4 1 2.6 5-2 1-2.6-5L5 14.6z',
+  move: 'M10 2v16M2 10h16M10 2L7.8 4.4M10 2l2.2 2.4M10 18l-2.2-2.4M10 18l2.2-2.4M2 10l2.4-2.2M2 10l2.4 2.2M18 10l-2.4-2.2M18 10l-2.4 2.2',
+  rotate: 'M16 10a6 6 0 1 1-2-4.5M14.4 2.2V6h-3.8',
+  align: 'M3 17h14M10 3v9M6.5 8.5L10 12l3.5-3.5M5 14.5h10',
+  section: 'M4 4h12v12H4zM2 18L18 2M8.5 16L16 8.5M12 16l4-4',
+  ghost: 'M10 3c3.6 0 6 2.6 6 6v8l-2-1.6-2 1.6-2-1.6L8 17l-2-1.6L4 17V9c0-3.4 2.4-6 6-6zM8 8.5v1M12 8.5v1',
+  fit: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4M7.5 7.5h5v5h-5z',
+  zoom: 'M8.5 3.5a5 5 0 1 0 0 10 5 5 0 0 0 0-10zM12.2 12.2L17 17',
+  undo: 'M7 4L3.5 7.5 7 11M3.5 7.5H12a4.5 4.5 0 0 1 0 9H7',
+  redo: 'M13 4l3.5 3.5L13 11M16.5 7.5H8a4.5 4.5 0 0 0 0 9h5',
+  reset: 'M10 4v4M4.2 8A6.2 6.2 0 1 1 4 12M4 4v4h4',
+  grab: 'M6 10V5.5a1.2 1.2 0 0 1 2.4 0V9M8.4 9V4a1.2 1.2 0 0 1 2.4 0v5M10.8 9V4.8a1.2 1.2 0 0 1 2.4 0V10M13.2 10V7a1.2 1.2 0 0 1 2.4 0v5c0 3-1.8 5-4.8 5-2.4 0-3.4-1-4.6-3.2L4.4 10.6c-.6-1 .8-2 1.6-1.2z',
+  theme: 'M10 4a6 6 0 1 0 0 12V4z',
+  help: 'M7.5 7.5a2.5 2.5 0 1 1 3.6 2.2c-.8.4-1.1.9-1.1 1.8M10 14.2v.4',
+  eye: 'M2.5 10S5 5 10 5s7.5 5 7.5 5-2.5 5-7.5 5-7.5-5-7.5-5zM10 7.8a2.2 2.2 0 1 0 0 4.4 2.2 2.2 0 0 0 0-4.4z',
+  follow: 'M3 10s2-4.5 7-4.5 7 4.5 7 4.5-2 4.5-7 4.5S3 10 3 10zM10 8.4a1.6 1.6 0 1 0 0 3.2 1.6 1.6 0 0 0 0-3.2zM3 3v2M17 3v2M3 17v-2M17 17v-2',
+  close: 'M5 5l10 10M15 5L5 15',
+  link: 'M8 12l4-4M7 9L5 11a2.8 2.8 0 0 0 4 4l2-2M13 11l2-2a2.8 2.8 0 0 0-4-4L9 7',
+  statistics: 'M4 16V9M8 16V5M12 16v-4M16 16V7',
+  play: 'M6 4l10 6-10 6z',
+  pause: 'M6 4v12M14 4v12',
+};
+
+/** @param {string} name @returns {SVGSVGElement} */
+export function icon(name) {
+  const svg = document.createElementNS(NS, 'svg');
+  svg.setAttribute('viewBox', '0 0 20 20');
+  svg.setAttribute('aria-hidden', 'true');
+  svg.classList.add('icon');
+  const path = document.createElementNS(NS, 'path');
+  path.setAttribute('d', PATHS[name] ?? '');
+  svg.append(path);
+  return svg;
+}
+
+/** Octagon, triangle, circle: the shape of a class. */
+const SHAPES = {
+  real: 'M7 2h6l5 5v6l-5 5H7l-5-5V7z',
+  potential: 'M10 1.5L19 18H1z',
+  fake: 'M10 2a8 8 0 1 1 0 16 8 8 0 0 1 0-16z',
+};
+
+/** The mark of a class: its shape in its colour with its letter. @param {string} name @returns {SVGSVGElement} */
+export function classMark(name) {
+  const svg = document.createElementNS(NS, 'svg');
+  svg.setAttribute('viewBox', '0 0 20 20');
+  svg.setAttribute('aria-hidden', 'true');
+  svg.classList.add('mark', `is-${name}`);
+  const shape = document.createElementNS(NS, 'path');
+  shape.setAttribute('d', /** @type {Record<string, string>} */ (SHAPES)[name] ?? 'M4 9h12v2H4z');
+  const letter = document.createElementNS(NS, 'text');
+  letter.setAttribute('x', '10');
+  letter.setAttribute('y', name === 'potential' ? '16' : '14');
+  letter.textContent = name === 'none' ? '' : name[0].toUpperCase();
+  svg.append(shape, letter);
+  return svg;
+}
+
+/** Puts its drawing into each element that names one by data-icon. @param {ParentNode} root */
+export function drawIcons(root) {
+  for (const element of root.querySelectorAll('[data-icon]')) {
+    element.prepend(icon(element.getAttribute('data-icon') ?? ''));
+  }
+}

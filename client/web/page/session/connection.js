@@ -1,0 +1,107 @@
+// The line to the gateway: one WebSocket, opened again when it breaks, and meshes over HTTP. Knows the token and nothing of
+// what the messages mean.
+
+const FIRST_WAIT_MS = 500;
+const LONGEST_WAIT_MS = 8000;
+const PING_MS = 5000;
+const SILENCE_MS = 15000;
+const MESH_TRIES = 40;
+
+/** @typedef {'connecting' | 'open' | 'waiting' | 'refused'} LineState */
+
+/** @param {string} hash of the address: `#token=T` */
+export function tokenOf(hash) {
+  const token = new URLSearchParams(hash.replace(/^#/, '')).get('token') ?? '';
+  return /^[A-Za-z0-9_-]{1,128}$/.test(token) ? token : '';
+}
+
+export class Connection {
+  /** @type {WebSocket | null} */
+  #socket = null;
+  #wait = FIRST_WAIT_MS;
+  #heard = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #again;
+
+  /**
+   * @param {string} token
+   * @param {{message: (message: any) => void, poses: (buffer: ArrayBuffer) => void,
+   *          state: (state: LineState, text: string) => void, roundTrip: (ms: number) => void}} on
+   */
+  constructor(token, on) {
+    this.token = token;
+    this.on = on;
+    setInterval(() => this.#ping(), PING_MS);
+  }
+
+  open() {
+    clearTimeout(this.#again);
+    if (!this.token) {
+      this.on.state('refused', 'This address carries no token: open the one that mortise-web printed');
+      return;
+    }
+    this.on.state('connecting', 'Connecting');
+    const address = new URL('ws', location.href.replace(/#.*$/, ''));
+    address.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+    const socket = new WebSocket(address, ['mortise.1', `token.${this.token}`]);
+    socket.binaryType = 'arraybuffer';
+    let opened = false;
+    socket.onopen = () => {
+      opened = true;
+      this.#wait = FIRST_WAIT_MS;
+      this.#heard = performance.now();
+      this.on.state('open', 'Connected');
+    };
+    socket.onmessage = ({ data }) => this.#take(data);
+    socket.onclose = ({ code, reason }) => {
+      if (this.#socket !== socket) return;
+      this.#socket = null;
+      const why = reason || (opened ? `closed (${code})` : 'the gateway does not answer or refuses this address');
+      const seconds = Math.round(this.#wait / 1000);
+      this.on.state('waiting', `Not connected: ${why}. Trying again ${seconds < 1 ? 'now' : `in ${seconds} s`}`);
+      this.#again = setTimeout(() => this.open(), this.#wait);
+      this.#wait = Math.min(this.#wait * 2, LONGEST_WAIT_MS);
+    };
+    this.#socket = socket;
+  }
+
+  /** @param {string | ArrayBuffer} data */
+  #take(data) {
+    this.#heard = performance.now();
+    if (typeof data !== 'string') {
+      this.on.poses(data);
+      return;
+    }
+    const message = JSON.parse(data);
+    if (message.type === 'pong') this.on.roundTrip(performance.now() - message.at);
+    else this.on.message(message);
+  }
+
+  #ping() {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return;
+    if (performance.now() - this.#heard > SILENCE_MS) {
+      this.#socket.close(4000, 'silent');
+      return;
+    }
+    this.send({ type: 'ping', at: performance.now() });
+  }
+
+  /** @param {object} message @returns {boolean} whether there was a line to send it on */
+  send(message) {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return false;
+    this.#socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  /** @param {string} hash @returns {Promise<ArrayBuffer>} */
+  async mesh(hash) {
+    const headers = { Authorization: `Bearer ${this.token}` };
+    for (let tries = 0; tries < MESH_TRIES; ++tries) {
+      const answer = await fetch(`mesh/${encodeURIComponent(hash)}.bin`, { headers });
+      if (answer.ok) return answer.arrayBuffer();
+      if (answer.status !== 503) throw new Error(`mesh ${hash}: ${answer.status}`);
+      await new Promise((done) => setTimeout(done, 1000 * Number(answer.headers.get('Retry-After') ?? 1)));
+    }
+    throw new Error(`mesh ${hash} did not come`);
+  }
+}

@@ -1,0 +1,254 @@
+// What is known of the session: parts, people, clashes, rules, as the gateway tells it. No picture, no network.
+import { Signals } from './signals.js';
+
+/** @typedef {import('./motion.js').Vec3} Vec3 */
+/** @typedef {import('./motion.js').Quat} Quat */
+/**
+ * @typedef {object} Part
+ * @property {number} id @property {string} name @property {string} mesh
+ * @property {boolean} moving @property {number} holder user, 0 nobody
+ * @property {Vec3} p @property {Quat} q pose in the world, mm
+ * @property {number} radius @property {Vec3} reference @property {number} classes bits: 1 fake, 2 potential, 4 real
+ */
+/** @typedef {{id: number, name: string, present: boolean, role: string}} User */
+/** @typedef {'real' | 'potential' | 'fake' | 'none'} ClashClass */
+/**
+ * @typedef {object} Clash an event of protocol.md, the latest of this clash
+ * @property {string} kind @property {number} seq @property {number} tick @property {number} clash @property {number} a @property {number} b
+ * @property {number} user @property {ClashClass} class @property {[number, number]} delta @property {[number, number]} gpd
+ * @property {number} fake_below @property {number} real_above @property {number} margin @property {number} probability
+ * @property {number} area @property {Vec3} point @property {Vec3} normal @property {Vec3 | null} witness
+ * @property {{t: Vec3, r: Vec3, way: string}} separation @property {[string, string]} shapes @property {[string, string]} faces
+ * @property {string} grade @property {string} explanation @property {number | null} t_contact @property {number | null} t_real
+ * @property {number} begin_tick @property {ClashClass} worst_class @property {[number, number]} worst_delta @property {string} cause
+ * @property {{status: string, comment: string, user: number, tick: number}} review @property {boolean} approval_lost
+ * @property {boolean} [ended]
+ */
+/**
+ * @typedef {object} Feature of a part, in its frame
+ * @property {string} name @property {string} origin @property {string} kind @property {boolean} inward
+ * @property {Vec3} point @property {Vec3} axis @property {number} radius @property {number} tube_radius @property {number} half_angle
+ * @property {[number, number]} along @property {Vec3} middle
+ */
+/** @typedef {{id: number, done: boolean, refusal: string, text: string, part?: number, holder?: number}} Reply */
+/** @typedef {{user: number, p: Vec3, target: Vec3, up: Vec3}} View */
+
+const MOST_ENDED = 200;
+
+/**
+ * @typedef {object} Said
+ * @property {void} scene @property {Iterable<Part>} poses @property {Part} holder @property {void} clashes @property {Clash} event
+ * @property {void} users @property {any} decision @property {void} standing @property {any} pulse @property {void} server
+ * @property {void} me @property {Array<{part: number, reason: string, count: number}>} refused @property {View[]} views
+ * @property {void} features @property {any} timeline @property {any} replay @property {string} mesh @property {string} error
+ * @property {void} welcome @property {string} join_refused
+ */
+
+/** @extends {Signals<Said>} */
+export class Session extends Signals {
+  name = '';
+  mode = 'live';
+  role = 'designer';
+  policy = '';
+  tick = 0;
+  tickRate = 60;
+  serverPresent = false;
+  me = 0;
+  myName = '';
+  /** @type {Map<number, Part>} */ parts = new Map();
+  /** @type {Map<number, User>} */ users = new Map();
+  /** @type {Map<number, Clash>} */ clashes = new Map();
+  /** @type {any[]} */ standing = [];
+  /** @type {Map<number, Feature[]>} */ features = new Map();
+  /** @type {Map<number, View>} */ views = new Map();
+  /** @type {any} */ timeline = null;
+  /** @type {any} */ replay = null;
+
+  get mayAct() {
+    return this.mode === 'live' && this.role === 'designer' && this.me !== 0;
+  }
+
+  /** @param {number} id */
+  userName(id) {
+    return this.users.get(id)?.name ?? (id ? `user ${id}` : 'nobody');
+  }
+
+  /** @param {number} id */
+  partName(id) {
+    return this.parts.get(id)?.name || `part ${id}`;
+  }
+
+  /** @param {Part} part */
+  isMine(part) {
+    return this.me !== 0 && part.holder === this.me;
+  }
+
+  heldByMe() {
+    return [...this.parts.values()].filter((part) => this.isMine(part));
+  }
+
+  openClashes() {
+    return [...this.clashes.values()].filter((clash) => !clash.ended);
+  }
+
+  /** The line broke: nobody is joined and nothing is held until a scene says so again. */
+  lost() {
+    this.me = 0;
+    this.serverPresent = false;
+    this.views.clear();
+    this.emit('me', undefined);
+    this.emit('server', undefined);
+  }
+
+  /** @param {import('./frames.js').PoseFrame} frame */
+  applyPoses(frame) {
+    this.tick = Math.max(this.tick, frame.tick);
+    const changed = [];
+    for (let k = 0; k < frame.count; ++k) {
+      const part = this.parts.get(frame.words[16 * k]);
+      if (!part) continue;
+      for (let i = 0; i < 3; ++i) part.p[i] = frame.doubles[8 * k + 1 + i];
+      for (let i = 0; i < 4; ++i) part.q[i] = frame.floats[16 * k + 8 + i];
+      part.classes = frame.words[16 * k + 12];
+      this.#hold(part, frame.words[16 * k + 1]);
+      changed.push(part);
+    }
+    this.emit('poses', changed);
+  }
+
+  /** @param {Part} part @param {number} holder */
+  #hold(part, holder) {
+    if (part.holder === holder) return;
+    part.holder = holder;
+    this.emit('holder', part);
+  }
+
+  /** @param {any} message */
+  apply(message) {
+    const apply = this.#ways[message.type];
+    if (apply) apply(message); // what is not known is skipped: the gateway may be newer
+  }
+
+  /** @type {Record<string, (message: any) => void>} */
+  #ways = {
+    welcome: (m) => {
+      this.mode = m.mode;
+      this.role = m.role;
+      this.emit('me', undefined);
+      this.emit('welcome', undefined);
+    },
+    join_refused: (m) => this.emit('join_refused', m.text),
+    server: (m) => {
+      this.serverPresent = m.present;
+      if (!m.present) this.me = 0;
+      this.emit('server', undefined);
+      this.emit('me', undefined);
+    },
+    scene: (m) => this.#scene(m),
+    joined: (m) => {
+      this.me = m.user;
+      this.myName = m.name;
+      if (m.role) this.role = m.role;
+      this.emit('me', undefined);
+    },
+    events: (m) => m.events.forEach((/** @type {Clash} */ event) => this.#event(event)),
+    decisions: (m) => m.decisions.forEach((/** @type {any} */ decision) => this.#decision(decision)),
+    users: (m) => {
+      for (const user of m.users) this.users.set(user.id, user);
+      this.emit('users', undefined);
+    },
+    features: (m) => this.#features(m),
+    views: (m) => {
+      for (const view of m.views) this.views.set(view.user, view);
+      this.emit('views', m.views);
+    },
+    refused: (m) => this.emit('refused', m.increments),
+    pulse: (m) => this.emit('pulse', m),
+    mesh: (m) => this.emit('mesh', m.hash),
+    error: (m) => this.emit('error', m.text),
+    timeline: (m) => {
+      this.timeline = m;
+      this.mode = 'replay';
+      this.emit('timeline', m);
+    },
+    replay: (m) => {
+      this.replay = m;
+      this.emit('replay', m);
+    },
+  };
+
+  /** @param {any} m */
+  #scene(m) {
+    this.name = m.session;
+    this.tick = m.tick;
+    this.tickRate = m.tick_rate_hz;
+    this.policy = m.policy;
+    this.parts = new Map(m.parts.map((/** @type {Part} */ part) => [part.id, part]));
+    for (const user of m.users) this.users.set(user.id, user);
+    this.clashes = new Map(m.clashes.map((/** @type {Clash} */ clash) => [clash.clash, clash]));
+    this.standing = m.standing ?? [];
+    for (const part of m.parts) if (part.features?.length) this.features.set(part.id, part.features);
+    this.serverPresent = true;
+    for (const what of /** @type {const} */ (['scene', 'server', 'users', 'clashes', 'standing'])) this.emit(what, undefined);
+  }
+
+  /** @param {any} m */
+  #features(m) {
+    this.features = new Map();
+    for (const set of m.sets) {
+      for (const part of set.parts) {
+        this.features.set(part, [...(this.features.get(part) ?? []), ...set.features]);
+      }
+    }
+    this.emit('features', undefined);
+  }
+
+  /** @param {Clash} event */
+  #event(event) {
+    event.ended = event.kind === 'end' || (event.kind === 'review' && this.clashes.get(event.clash)?.ended);
+    // The end of a clash says nothing of how it looked: what it was stays to be read.
+    const before = this.clashes.get(event.clash);
+    this.clashes.set(event.clash, event.kind === 'end' && before ? { ...before, kind: 'end', ended: true, review: event.review } : event);
+    const ended = [...this.clashes.values()].filter((clash) => clash.ended);
+    for (const clash of ended.slice(0, Math.max(0, ended.length - MOST_ENDED))) this.clashes.delete(clash.clash);
+    this.emit('event', event);
+    this.emit('clashes', undefined);
+  }
+
+  /** @param {any} decision */
+  #decision(decision) {
+    if (decision.kind === 'set_policy') this.policy = decision.text;
+    const parts = decision.parts?.length ? decision.parts : [decision.part];
+    for (const id of parts) this.#holders(decision, id);
+    this.#keepStanding(decision);
+    this.emit('decision', decision);
+  }
+
+  /** @param {any} decision @param {number} id */
+  #holders(decision, id) {
+    const part = this.parts.get(id);
+    if (!part) return;
+    if (decision.kind === 'grab') this.#hold(part, decision.user);
+    if (decision.kind === 'hand_over') this.#hold(part, decision.other_user);
+    if (['release', 'lease_end'].includes(decision.kind)) this.#hold(part, 0);
+  }
+
+  /** Rules and asks in force. @param {any} decision */
+  #keepStanding(decision) {
+    const { kind, part } = decision;
+    const same = (/** @type {any} */ other) => other.part === part && (!decision.user || other.user === decision.user);
+    if (kind === 'drop_constraint') {
+      this.standing = this.standing.filter((d) => d.constraint_id !== decision.constraint_id);
+    } else if (kind === 'drop_exclusion') {
+      const pair = [part, decision.other].sort().join();
+      this.standing = this.standing.filter((d) => d.kind !== 'set_exclusion' || [d.part, d.other].sort().join() !== pair);
+    } else if (['hand_over', 'decline', 'ask_end', 'release', 'lease_end'].includes(kind)) {
+      this.standing = this.standing.filter((d) => d.kind !== 'ask_hand_over' || (kind === 'ask_end' ? !same(d) : d.part !== part));
+    } else if (['set_policy', 'set_tolerance', 'set_exclusion', 'ask_hand_over', 'add_constraint'].includes(kind)) {
+      this.standing = [...this.standing, decision];
+    } else {
+      return;
+    }
+    this.emit('standing', undefined);
+  }
+}

@@ -1,0 +1,140 @@
+// Where one looks from: orbit, fits, flights, and looking along with somebody else.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+const FLIGHT_MS = 450;
+const TELL_MS = 150;
+
+/** From where, seen from the target. @type {Record<string, [number, number, number]>} */
+const SIDES = {
+  iso: [0.72, -1, 0.72],
+  top: [0, -0.0001, 1],
+  bottom: [0, -0.0001, -1],
+  front: [0, -1, 0],
+  back: [0, 1, 0],
+  right: [1, 0, 0],
+  left: [-1, 0, 0],
+};
+
+export class Camera {
+  /** @type {{from: THREE.Vector3, to: THREE.Vector3, fromTarget: THREE.Vector3, toTarget: THREE.Vector3, begin: number} | null} */
+  #flight = null;
+  #told = 0;
+  /** @type {() => void} when somebody takes the view in hand */
+  onHand = () => {};
+
+  /** @param {import('./stage.js').Stage} stage @param {(view: {p: number[], target: number[], up: number[]}) => void} tell */
+  constructor(stage, tell) {
+    this.stage = stage;
+    this.tell = tell;
+    this.controls = new OrbitControls(stage.camera, stage.canvas);
+    this.controls.zoomToCursor = true;
+    this.controls.mouseButtons = { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.PAN };
+    this.controls.addEventListener('change', () => {
+      this.stage.ask();
+      this.#tellSeldom();
+    });
+    this.controls.addEventListener('start', () => {
+      this.#flight = null;
+      this.onHand();
+    });
+    stage.beforePicture((now) => this.#fly(now));
+  }
+
+  get target() {
+    return this.controls.target;
+  }
+
+  /** @param {THREE.Vector3} position @param {THREE.Vector3} target @param {boolean} [atOnce] */
+  flyTo(position, target, atOnce = matchMedia('(prefers-reduced-motion: reduce)').matches) {
+    const { camera } = this.stage;
+    const begin = atOnce ? -Infinity : performance.now();
+    this.#flight = { from: camera.position.clone(), to: position.clone(), fromTarget: this.target.clone(), toTarget: target.clone(), begin };
+    this.stage.ask();
+  }
+
+  /** @param {number} now */
+  #fly(now) {
+    if (!this.#flight) return false;
+    const { from, to, fromTarget, toTarget, begin } = this.#flight;
+    const s = Math.min(1, Math.max(0, (now - begin) / FLIGHT_MS));
+    const eased = s * s * (3 - 2 * s);
+    this.stage.camera.position.lerpVectors(from, to, eased);
+    this.target.lerpVectors(fromTarget, toTarget, eased);
+    this.controls.update();
+    if (s === 1) this.#flight = null;
+    return s < 1;
+  }
+
+  /** So that the box fills the view. @param {THREE.Box3} box @param {string} [side] of SIDES; else as now @param {boolean} [atOnce] */
+  fit(box, side, atOnce) {
+    const { camera } = this.stage;
+    const target = box.getCenter(new THREE.Vector3());
+    const back = side ? new THREE.Vector3(...SIDES[side]) : camera.position.clone().sub(this.target);
+    back.normalize();
+    const half = THREE.MathUtils.degToRad(camera.fov / 2);
+    // The corners of the box, seen along the way of the eye: the farthest that one of them asks for.
+    const view = new THREE.Matrix4().lookAt(back, new THREE.Vector3(), camera.up).invert();
+    let distance = 1;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new THREE.Vector3(
+        corner & 1 ? box.max.x : box.min.x,
+        corner & 2 ? box.max.y : box.min.y,
+        corner & 4 ? box.max.z : box.min.z,
+      );
+      at.sub(target).applyMatrix4(view);
+      const high = Math.abs(at.y) / Math.tan(half);
+      const wide = Math.abs(at.x) / (Math.tan(half) * camera.aspect);
+      distance = Math.max(distance, at.z + 1.12 * Math.max(high, wide));
+    }
+    this.setDepth(box);
+    this.flyTo(target.clone().addScaledVector(back, distance), target, atOnce);
+  }
+
+  /** Near and far for a scene of this size. @param {THREE.Box3} box */
+  setDepth(box) {
+    const size = box.getSize(new THREE.Vector3()).length();
+    const { camera } = this.stage;
+    camera.far = Math.max(camera.far, size * 40);
+    camera.near = Math.max(camera.far / 200_000, 0.02);
+    camera.updateProjectionMatrix();
+  }
+
+  /** To a place, from the side that `towards` says, else as now. @param {THREE.Vector3} point @param {number} distance @param {THREE.Vector3} [towards] */
+  visit(point, distance, towards) {
+    const back = towards ? towards.clone() : this.stage.camera.position.clone().sub(this.target);
+    if (back.lengthSq() === 0) back.set(0.7, -1, 0.7);
+    this.flyTo(point.clone().addScaledVector(back.normalize(), distance), point);
+  }
+
+  /** Looks along with somebody. @param {import('../session/session.js').View} view */
+  follow(view) {
+    this.flyTo(new THREE.Vector3(...view.p), new THREE.Vector3(...view.target));
+  }
+
+  /** @param {number} right @param {number} up rad */
+  turn(right, up) {
+    const back = this.stage.camera.position.clone().sub(this.target);
+    const ball = new THREE.Spherical().setFromVector3(new THREE.Vector3(back.x, back.z, -back.y));
+    ball.theta += right;
+    ball.phi = THREE.MathUtils.clamp(ball.phi - up, 0.01, Math.PI - 0.01);
+    const turned = new THREE.Vector3().setFromSpherical(ball);
+    this.flyTo(new THREE.Vector3(turned.x, -turned.z, turned.y).add(this.target), this.target, true);
+    this.onHand();
+  }
+
+  /** @param {number} times */
+  closer(times) {
+    const back = this.stage.camera.position.clone().sub(this.target);
+    this.flyTo(back.divideScalar(times).add(this.target), this.target, true);
+    this.onHand();
+  }
+
+  #tellSeldom() {
+    const now = performance.now();
+    if (now - this.#told < TELL_MS) return;
+    this.#told = now;
+    const { camera } = this.stage;
+    this.tell({ p: camera.position.toArray(), target: this.target.toArray(), up: camera.up.toArray() });
+  }
+}

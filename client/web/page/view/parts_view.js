@@ -1,0 +1,168 @@
+// The parts in the picture: geometry once a mesh, a pose for each part, how it looks (plain, chosen, ghost), and what a ray hits.
+import * as THREE from 'three';
+import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
+import { readMesh } from '../session/frames.js';
+import { Looks } from './looks.js';
+
+/** @typedef {import('../session/session.js').Part} Part */
+/** @typedef {import('./looks.js').Look} Look */
+/** @typedef {{mesh: import('../session/frames.js').Mesh, faces: THREE.BufferGeometry, edges: THREE.BufferGeometry | null}} Shape */
+/** @typedef {{part: Part, faces: THREE.Mesh, edges: THREE.LineSegments | null, inside: THREE.Mesh, look: Look, seen: boolean}} Shown */
+
+/** Facets that meet at less are one round face: 24 facets meet at 15°. */
+const CREASE = THREE.MathUtils.degToRad(32);
+/** Above, edges and creases cost more than they show. */
+const MOST_CREASED = 150_000;
+
+export class PartsView {
+  /** @type {Map<string, Promise<Shape>>} */
+  #shapes = new Map();
+  /** @type {Map<number, Shown>} */
+  shown = new Map();
+  looks = new Looks();
+  /** Its children carry matrices of their own: no walk over them in each picture. */
+  group = new THREE.Group();
+  #generation = 0;
+
+  /**
+   * @param {import('./stage.js').Stage} stage
+   * @param {(hash: string) => Promise<ArrayBuffer>} fetchMesh
+   * @param {(text: string) => void} problem
+   */
+  constructor(stage, fetchMesh, problem) {
+    this.stage = stage;
+    this.fetchMesh = fetchMesh;
+    this.problem = problem;
+    this.group.updateMatrixWorld = () => {};
+    stage.scene.add(this.group);
+  }
+
+  /** @param {string} hash @returns {Promise<Shape>} */
+  #shapeOf(hash) {
+    let shape = this.#shapes.get(hash);
+    if (!shape) {
+      shape = this.fetchMesh(hash).then(shapeOf);
+      shape.catch(() => this.#shapes.delete(hash));
+      this.#shapes.set(hash, shape);
+    }
+    return shape;
+  }
+
+  /** All parts anew; those with a known mesh stand in the next picture. @param {Iterable<Part>} parts @returns {Promise<void>} */
+  async setParts(parts) {
+    const generation = ++this.#generation;
+    this.group.clear();
+    this.shown.clear();
+    const waiting = [...parts].map(async (part) => {
+      try {
+        const shape = await this.#shapeOf(part.mesh);
+        if (generation === this.#generation) this.#add(part, shape);
+      } catch (error) {
+        this.problem(`${part.name || `part ${part.id}`} is not shown: ${error instanceof Error ? error.message : error}`);
+      }
+    });
+    await Promise.all(waiting);
+  }
+
+  /** @param {Part} part @param {Shape} shape */
+  #add(part, shape) {
+    const colour = this.looks.colourOf(part);
+    const faces = new THREE.Mesh(shape.faces, this.looks.faces(colour, 'plain'));
+    const edges = shape.edges && new THREE.LineSegments(shape.edges, /** @type {THREE.LineBasicMaterial} */ (this.looks.edges('plain')));
+    const inside = new THREE.Mesh(shape.faces, this.looks.inside(colour, 'plain'));
+    inside.visible = this.looks.clipping.length > 0;
+    for (const object of [faces, edges, inside]) {
+      if (!object) continue;
+      object.matrixAutoUpdate = false;
+      object.matrixWorldAutoUpdate = false;
+      object.matrixWorld = faces.matrixWorld; // one pose for all three
+      object.userData.part = part.id;
+      this.group.add(object);
+    }
+    const shown = { part, faces, edges, inside, look: /** @type {Look} */ ('plain'), seen: true };
+    this.shown.set(part.id, shown);
+    place(shown);
+    this.stage.ask();
+  }
+
+  /** @param {Iterable<Part>} parts */
+  movePoses(parts) {
+    for (const part of parts) {
+      const shown = this.shown.get(part.id);
+      if (shown) place(shown);
+    }
+    this.stage.ask();
+  }
+
+  /** @param {(part: Part) => Look} lookOf */
+  setLooks(lookOf) {
+    for (const shown of this.shown.values()) {
+      const look = lookOf(shown.part);
+      if (look === shown.look) continue;
+      shown.look = look;
+      const colour = this.looks.colourOf(shown.part);
+      shown.faces.material = this.looks.faces(colour, look);
+      shown.inside.material = this.looks.inside(colour, look);
+      if (shown.edges) shown.edges.material = this.looks.edges(look);
+      // What is seen through is drawn after what is not.
+      shown.faces.renderOrder = look === 'ghost' ? 1 : 0;
+    }
+    this.stage.ask();
+  }
+
+  /** @param {THREE.Plane[]} planes */
+  cutBy(planes) {
+    this.looks.cutBy(planes);
+    for (const { inside } of this.shown.values()) inside.visible = planes.length > 0;
+    this.stage.ask();
+  }
+
+  /** The nearest part that is not ghosted or cut away. @param {THREE.Raycaster} ray */
+  hit(ray) {
+    const solid = [...this.shown.values()].filter((shown) => shown.look !== 'ghost').map((shown) => shown.faces);
+    const hits = ray.intersectObjects(solid, false);
+    return hits.find(({ point }) => this.looks.clipping.every((plane) => plane.distanceToPoint(point) >= 0)) ?? null;
+  }
+
+  /** Sphere about these parts. @param {Iterable<Part>} parts */
+  boundsOf(parts) {
+    const box = new THREE.Box3();
+    for (const part of parts) {
+      const shown = this.shown.get(part.id);
+      if (!shown) continue;
+      const own = shown.faces.geometry.boundingBox?.clone().applyMatrix4(shown.faces.matrixWorld);
+      if (own) box.union(own);
+    }
+    return box.isEmpty() ? null : box;
+  }
+
+  /** @param {Part} part @returns {Promise<import('../session/frames.js').Mesh | null>} */
+  async meshOf(part) {
+    return this.#shapeOf(part.mesh).then((shape) => shape.mesh, () => null);
+  }
+}
+
+/** @param {ArrayBuffer} buffer @returns {Shape} */
+function shapeOf(buffer) {
+  const mesh = readMesh(buffer);
+  if (!mesh) throw new Error('its mesh is not readable');
+  const plain = new THREE.BufferGeometry();
+  plain.setAttribute('position', new THREE.BufferAttribute(mesh.points, 3));
+  plain.setIndex(new THREE.BufferAttribute(mesh.triangles, 1));
+  const creased = mesh.triangles.length / 3 <= MOST_CREASED;
+  if (!creased) plain.computeVertexNormals();
+  const faces = creased ? toCreasedNormals(plain, CREASE) : plain;
+  faces.computeBoundingBox();
+  faces.computeBoundingSphere();
+  const edges = creased ? new THREE.EdgesGeometry(plain, THREE.MathUtils.radToDeg(CREASE)) : null;
+  return { mesh, faces, edges };
+}
+
+const position = new THREE.Vector3();
+const turn = new THREE.Quaternion();
+const one = new THREE.Vector3(1, 1, 1);
+
+/** @param {Shown} shown */
+function place({ part, faces }) {
+  faces.matrixWorld.compose(position.fromArray(part.p), turn.fromArray(part.q), one);
+}

@@ -1,0 +1,31 @@
+// The pointer on the picture: a click chooses a part, a mark or a feature; a drag is the camera's or the handles'.
+
+const STILL_PIXELS = 4;
+
+/**
+ * @param {import('../desk.js').Desk} desk
+ * @param {(part: import('../session/session.js').Part, point: import('three').Vector3) => boolean} pickFeature
+ */
+export function makePointer({ session, choice, stage, partsView, marks, handles, showPart }, pickFeature) {
+  const { canvas } = stage;
+  let down = { x: 0, y: 0, grips: false };
+
+  canvas.addEventListener('pointerdown', (event) => {
+    down = { x: event.clientX, y: event.clientY, grips: handles.grips };
+  }, { capture: true });
+  canvas.addEventListener('pointerup', (event) => {
+    const still = Math.hypot(event.clientX - down.x, event.clientY - down.y) < STILL_PIXELS;
+    if (!still || down.grips || event.button !== 0) return;
+    const clash = choice.tool === 'align' ? 0 : marks.hit(event);
+    if (clash) {
+      choice.chooseClash(clash);
+      return;
+    }
+    const hit = partsView.hit(stage.rayAt(event));
+    const part = hit ? (session.parts.get(hit.object.userData.part) ?? null) : null;
+    if (part && hit && pickFeature(part, hit.point)) return;
+    if (choice.clash && !part) choice.chooseClash(0);
+    else choice.choosePart(part?.id ?? 0);
+  });
+  canvas.addEventListener('dblclick', () => choice.part && showPart(choice.part));
+}
