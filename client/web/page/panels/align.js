@@ -1,6 +1,6 @@
 // Align: a feature of the held part, one of another part, and what they keep to each other. Picked in the view or from lists.
 import * as THREE from 'three';
-import { placed, rotate } from '../session/motion.js';
+import { conjugate, placed, rotate } from '../session/motion.js';
 import { plain } from '../session/words.js';
 import { offSurface } from '../view/heat.js';
 import { byId, el, setText } from './dom.js';
@@ -12,7 +12,7 @@ import { byId, el, setText } from './dom.js';
 const KINDS = /** @type {const} */ ([['coaxial', 'Coaxial'], ['coplanar', 'Coplanar'], ['parallel_distance', 'Parallel at'], ['tangent', 'Tangent']]);
 
 /** @param {import('../desk.js').Desk} desk */
-export function makeAlign({ session, choice, commands, partsView, labels, stage, say }) {
+export function makeAlign({ session, choice, commands, labels, stage, say }) {
   const box = byId('align_bar');
   const own = el('select', { class: 'wide', 'aria-label': 'Feature of the part in your hand' });
   const otherPart = el('select', { class: 'wide', 'aria-label': 'Other part' });
@@ -91,10 +91,9 @@ export function makeAlign({ session, choice, commands, partsView, labels, stage,
     refreshState();
   };
 
-  /** The feature of the part whose surface is nearest to the hit; @param {Part} part @param {THREE.Vector3} hit */
+  /** The feature of the part whose surface is nearest to the hit. @param {Part} part @param {THREE.Vector3} hit */
   function featureAt(part, hit) {
-    const [x, y, z, w] = part.q;
-    const at = rotate([-x, -y, -z, w], [hit.x - part.p[0], hit.y - part.p[1], hit.z - part.p[2]]);
+    const at = rotate(conjugate(part.q), [hit.x - part.p[0], hit.y - part.p[1], hit.z - part.p[2]]);
     let best = null;
     let nearest = Math.max(0.3, part.radius * 0.02);
     for (const feature of featuresOf(part.id)) {
@@ -141,6 +140,5 @@ export function makeAlign({ session, choice, commands, partsView, labels, stage,
   choice.on('tool', refresh);
   choice.on('part', refresh);
   for (const what of /** @type {const} */ (['scene', 'features', 'standing', 'holder'])) session.on(what, () => !box.hidden && refresh());
-  void partsView;
   return { pick };
 }

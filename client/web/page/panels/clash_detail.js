@@ -23,9 +23,9 @@ export function makeClashDetail(desk) {
   const comment = el('textarea', { 'aria-label': 'Comment', placeholder: 'Comment', maxLength: 500 });
   const save = el('button', { type: 'button', class: 'primary' }, 'Save review');
   const by = el('span', { class: 'quiet' });
-  const fly = el('button', { type: 'button', title: 'Fly there (Enter)', onclick: () => flyToClash(choice.clash) }, icon('zoom'), 'Show');
+  const fly = el('button', { type: 'button', title: 'Fly there (Enter)', onclick: () => flyToClash(choice.clash) }, icon('zoom'), 'Go');
   const cut = el('button', { type: 'button', title: 'Cut the view here', onclick: () => cutAtClash(choice.clash) }, icon('section'), 'Cut here');
-  const turn = el('button', { type: 'button', title: 'Section across or along', onclick: () => drawing.turn() }, icon('rotate'), 'Other section');
+  const turn = el('button', { type: 'button', title: 'Section across or along', onclick: () => drawing.turn() }, icon('rotate'), 'Turn section');
   panel.append(el('h3', {}, mark, title, close), bar, scale, figures, el('div', { class: 'row' }, fly, cut, turn), drawing.canvas, drawing.caption, why,
     el('div', { class: 'row' }, status, save), comment, by);
   let edited = false;

@@ -41,16 +41,6 @@ export function fillDepthBar(bar, clash) {
 
 /** The figures under the bar. @param {HTMLElement} scale filled anew @param {Clash} clash */
 export function fillScale(scale, clash) {
-  const [lo, hi] = spanOf(clash);
-  const shares = [clash.fake_below, clash.real_above].map((mm) => (mm - lo) / (hi - lo));
-  const texts = [`fake ≤ ${small(clash.fake_below)}`, `real > ${small(clash.real_above)}`];
-  const [left, right] = texts.map((text) => el('span', {}, text));
-  // The left one ends, the right one begins at its threshold, unless it would leave the bar.
-  left.style.right = `${Math.min(52, 100 * (1 - shares[0]))}%`;
-  if (shares[0] < 0.4) {
-    left.style.right = 'auto';
-    left.style.left = '0';
-  }
-  right.style.left = `${Math.min(58, Math.max(50, 100 * shares[1]))}%`;
-  scale.replaceChildren(left, right);
+  const texts = [`fake up to ${small(clash.fake_below)}`, `real above ${small(clash.real_above)}`];
+  scale.replaceChildren(...texts.map((text) => el('span', {}, text)));
 }

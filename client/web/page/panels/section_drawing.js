@@ -1,7 +1,7 @@
 // The section through a clash, drawn flat: both meshes as they are cut, the surfaces that they stand for, the point, and a scale.
 // Near enough that micrometres show.
 import { placed, rotate } from '../session/motion.js';
-import { across, chains, cross, dot, slice, unit } from '../session/slice.js';
+import { across, chains, cross, dot, near, slice, unit } from '../session/slice.js';
 import { small } from '../session/words.js';
 import { el, setText } from './dom.js';
 
@@ -42,14 +42,14 @@ export class SectionDrawing {
     if (this.#again && this.#clash) await this.show(this.#clash);
   }
 
-  /** Across the axis of a round face of the pair, where one is named; else any way that has the normal in it. @param {Clash} clash */
-  #planeOf(clash) {
+  /** Across the axis of a round face of the pair, where one is named, or along it; both hold the normal. @param {Clash} clash @param {boolean} turned */
+  #planeOf(clash, turned) {
     const u = unit(clash.normal);
     const axis = this.#axisOf(clash) ?? across(u);
     /** @type {Vec3} the part of the axis across u */
     const flat = [axis[0] - dot(axis, u) * u[0], axis[1] - dot(axis, u) * u[1], axis[2] - dot(axis, u) * u[2]];
     const along = Math.hypot(...flat) > 0.1 ? unit(flat) : across(u);
-    return { origin: clash.point, u, v: this.#turned ? along : cross(along, u) };
+    return { origin: clash.point, u, v: turned ? along : cross(along, u) };
   }
 
   /** @param {Clash} clash @returns {Vec3 | null} */
@@ -66,16 +66,26 @@ export class SectionDrawing {
   async #draw(clash) {
     const parts = [this.session.parts.get(clash.a), this.session.parts.get(clash.b)];
     const meshes = await Promise.all(parts.map((part) => part && this.partsView.meshOf(part)));
-    const plane = this.#planeOf(clash);
     const view = this.#frame(clash);
     const names = parts.map((part) => part?.name ?? '?');
     this.canvas.setAttribute('aria-label', `Section through the clash of ${names[0]} (blue) and ${names[1]} (amber, hatched)`);
-    const cuts = parts.map((part, i) => {
+    const cutBy = (/** @type {import('../session/slice.js').Plane} */ plane) => parts.map((part, i) => {
       const mesh = meshes[i];
-      return part && mesh ? chains(slice(mesh, part, plane)) : [];
+      return part && mesh ? slice(mesh, part, plane) : [];
     });
-    this.#paint(cuts, view, plane, clash, parts);
-    setText(this.caption, `${this.#turned ? 'Along' : 'Across'}: ${names[0]} blue, ${names[1]} amber and hatched; dashed: the surfaces that the facets stand for.`);
+    // A plane that only touches one of the two shows nothing of it: then the other one.
+    const reach = this.canvas.height / view.scale;
+    let plane = this.#planeOf(clash, this.#turned);
+    let cuts = cutBy(plane);
+    const misses = (/** @type {import('../session/slice.js').Segment[][]} */ found) => found.some((segments) => !segments.some((s) => near(s, reach)));
+    let turned = this.#turned;
+    if (misses(cuts)) {
+      const other = this.#planeOf(clash, !turned);
+      const otherCuts = cutBy(other);
+      if (!misses(otherCuts)) [plane, cuts, turned] = [other, otherCuts, !turned];
+    }
+    this.#paint(cuts.map((segments) => chains(segments)), view, plane, clash, parts);
+    setText(this.caption, `${turned ? 'Along' : 'Across'}: ${names[0]} blue, ${names[1]} amber and hatched; dashed: the surfaces that the facets stand for.`);
   }
 
   /** So near that the overlap is a fifth of the picture, within reason. @param {Clash} clash */

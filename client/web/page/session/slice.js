@@ -28,12 +28,11 @@ export function across(v) {
 }
 
 /**
- * Where the plane cuts the mesh, as directed segments with the material on their left; only triangles that come within `reach`
- * of the origin of the plane. A corner in the plane counts as above it, so that no segment comes twice.
- * @param {import('./frames.js').Mesh} mesh @param {{p: Vec3, q: Quat}} pose @param {Plane} plane @param {number} reach
+ * Where the plane cuts the mesh, as directed segments with the material on their left. A corner in the plane counts as above it, so that no segment comes twice.
+ * @param {import('./frames.js').Mesh} mesh @param {{p: Vec3, q: Quat}} pose @param {Plane} plane
  * @returns {Segment[]}
  */
-export function slice(mesh, pose, plane, reach = Infinity) {
+export function slice(mesh, pose, plane) {
   // The plane goes into the frame of the part: three vectors instead of all points.
   const back = conjugate(pose.q);
   const origin = rotate(back, [plane.origin[0] - pose.p[0], plane.origin[1] - pose.p[1], plane.origin[2] - pose.p[2]]);
@@ -52,7 +51,7 @@ export function slice(mesh, pose, plane, reach = Infinity) {
   for (let k = 0; k < triangles.length; k += 3) {
     const corners = [seen(triangles[k]), seen(triangles[k + 1]), seen(triangles[k + 2])];
     const segment = cut(corners);
-    if (segment && near(segment, reach)) segments.push(segment);
+    if (segment) segments.push(segment);
   }
   return segments;
 }
@@ -74,8 +73,8 @@ function cut(corners) {
   return [...down[0], ...up[0]];
 }
 
-/** @param {Segment} s @param {number} reach */
-function near([x0, y0, x1, y1], reach) {
+/** Does the segment come within reach of the origin of the plane? @param {Segment} s @param {number} reach */
+export function near([x0, y0, x1, y1], reach) {
   const length2 = (x1 - x0) ** 2 + (y1 - y0) ** 2;
   const s = length2 === 0 ? 0 : Math.min(1, Math.max(0, -(x0 * (x1 - x0) + y0 * (y1 - y0)) / length2));
   return Math.hypot(x0 + s * (x1 - x0), y0 + s * (y1 - y0)) <= reach;

@@ -4,7 +4,9 @@ import { rankOf } from '../session/words.js';
 
 /** @typedef {import('../session/session.js').Clash} Clash */
 
-const MARK_PIXELS = 26;
+/** What can be left alone is drawn smaller. @type {Record<string, number>} */
+const MARK_SIZES = { real: 1.2, potential: 1, fake: 0.8 };
+const MARK_PIXELS = 22;
 const ARROW_PIXELS = 74;
 const CLASS_COLOUR = { real: '#e5484d', potential: '#f0a92e', fake: '#3f97e0', none: '#888888' };
 
@@ -73,7 +75,7 @@ export class ClashMarks {
       const sprite = new THREE.Sprite(this.#material(clash.class));
       sprite.position.set(...clash.point);
       sprite.renderOrder = 10 + rankOf(clash.class);
-      sprite.userData.clash = clash.clash;
+      sprite.userData = { clash: clash.clash, size: MARK_SIZES[clash.class] ?? 1 };
       this.group.add(sprite);
     }
     this.#showFocus();
@@ -115,7 +117,8 @@ export class ClashMarks {
     const { camera, canvas } = this.stage;
     const scale = (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * MARK_PIXELS) / canvas.clientHeight;
     for (const sprite of this.group.children) {
-      sprite.scale.setScalar(scale * (sprite.userData.clash === this.chosen?.clash ? 1.3 : 1));
+      const chosen = sprite.userData.clash === this.chosen?.clash;
+      sprite.scale.setScalar(scale * sprite.userData.size * (chosen ? 1.3 : 1));
     }
     const pixel = this.stage.pixelSize(this.#focus.position);
     this.notes = [];

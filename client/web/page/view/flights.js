@@ -34,7 +34,7 @@ export function makeFlights({ session, choice, camera, partsView, section }) {
     const normal = new THREE.Vector3(...clash.normal);
     // An arrow that points at the eye is a dot: look at it from the side.
     if (Math.abs(back.dot(normal)) > 0.9) back.addScaledVector(new THREE.Vector3(...across(clash.normal)), 0.8).normalize();
-    camera.visit(new THREE.Vector3(...clash.point), Math.max(8, 3.4 * Math.min(...radii)), back);
+    camera.visit(new THREE.Vector3(...clash.point), Math.max(8, 5 * Math.min(...radii)), back);
   }
 
   /** The plane holds the normal of the clash, and faces the eye as far as that allows. @param {number} id */

@@ -1,6 +1,6 @@
 // Heat on faces: the faces that clash, coloured by how far the clash has gone between the two thresholds and beyond.
 import * as THREE from 'three';
-import { rotate } from '../session/motion.js';
+import { conjugate, rotate } from '../session/motion.js';
 import { cross, dot, unit } from '../session/slice.js';
 
 /** @typedef {import('../session/session.js').Clash} Clash */
@@ -55,10 +55,14 @@ export function facetsOf(mesh, feature) {
 
 /** A plane face has one side; the end of a bore lies on the bore's rim but is no part of it. @param {Feature} feature @param {Vec3[]} corners */
 function facesAlike(feature, [a, b, c]) {
-  const normal = unit(cross([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]));
-  const along = dot(normal, feature.axis);
+  const along = dot(normalOf([a, b, c]), feature.axis);
   if (feature.kind === 'plane') return along > 0.99;
   return feature.kind !== 'cylinder' || Math.abs(along) < 0.1;
+}
+
+/** @param {Vec3[]} corners */
+function normalOf([a, b, c]) {
+  return unit(cross([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]));
 }
 
 /** @param {import('../session/frames.js').Mesh} mesh @param {number} i @returns {Vec3} */
@@ -66,17 +70,35 @@ function pointOf(mesh, i) {
   return [mesh.points[3 * i], mesh.points[3 * i + 1], mesh.points[3 * i + 2]];
 }
 
-/** Without a named face: what lies about the point. @param {import('../session/frames.js').Mesh} mesh @param {Vec3} point @param {number} reach */
-function facetsAbout(mesh, point, reach) {
+/**
+ * Without a known face: what comes near the point and looks the way of the clash.
+ * @param {import('../session/frames.js').Mesh} mesh @param {Vec3} point @param {Vec3} normal in the frame of the part @param {number} reach
+ */
+function facetsAbout(mesh, point, normal, reach) {
   const found = [];
   for (let k = 0; k < mesh.triangles.length; k += 3) {
-    const middle = [0, 1, 2].map((axis) => {
-      const at = (/** @type {number} */ i) => mesh.points[3 * mesh.triangles[k + i] + axis];
-      return (at(0) + at(1) + at(2)) / 3 - point[axis];
+    const corners = [0, 1, 2].map((i) => pointOf(mesh, mesh.triangles[k + i]));
+    const beside = [0, 1, 2].some((axis) => {
+      const along = corners.map((x) => x[axis] - point[axis]);
+      return Math.min(...along) > reach || Math.max(...along) < -reach;
     });
-    if (Math.hypot(...middle) <= reach) found.push(k);
+    if (!beside && Math.abs(dot(normalOf(corners), normal)) > 0.5) found.push(k);
   }
   return found;
+}
+
+/** Only what is within reach of the centre is drawn, fading towards its rim. @param {THREE.Material} material @param {Vec3} centre @param {number} reach */
+function fade(material, centre, reach) {
+  material.transparent = true;
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, { centre: { value: new THREE.Vector3(...centre) }, reach: { value: reach } });
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nvarying vec3 inPart;')
+      .replace('#include <begin_vertex>', '#include <begin_vertex>\ninPart = position;');
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', '#include <common>\nvarying vec3 inPart;\nuniform vec3 centre;\nuniform float reach;')
+      .replace('#include <opaque_fragment>', '#include <opaque_fragment>\ngl_FragColor.a *= 1.0 - smoothstep(0.55, 1.0, distance(inPart, centre) / reach);');
+  };
 }
 
 /** 0 … 1 blue to amber between nothing and the upper threshold, to red beyond. @param {Clash} clash */
@@ -166,13 +188,17 @@ export class Heat {
     const mesh = part && (await this.partsView.meshOf(part));
     if (!mesh || !shown || this.#patches.has(key)) return this.#patches.get(key);
     const feature = this.session.features.get(id)?.find((f) => f.name === face);
-    const facets = feature ? facetsOf(mesh, feature) : facetsAbout(mesh, inPart(part, clash.point), Math.max(2, part.radius * 0.12));
+    const point = inPart(part, clash.point);
+    const normal = rotate(conjugate(part.q), clash.normal);
+    const reach = Math.max(2, part.radius * 0.15);
+    const facets = feature ? facetsOf(mesh, feature) : facetsAbout(mesh, point, normal, reach);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(mesh.points, 3));
     geometry.setIndex(facets.flatMap((k) => [mesh.triangles[k], mesh.triangles[k + 1], mesh.triangles[k + 2]]));
     const material = new THREE.MeshStandardMaterial({
       roughness: 0.6, flatShading: true, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1,
     });
+    if (!feature) fade(material, point, reach);
     const patch = new THREE.Mesh(geometry, material);
     patch.matrixAutoUpdate = patch.matrixWorldAutoUpdate = false;
     patch.matrixWorld = shown.faces.matrixWorld;
@@ -185,6 +211,5 @@ export class Heat {
 
 /** @param {{p: Vec3, q: import('../session/motion.js').Quat}} part @param {Vec3} point @returns {Vec3} */
 function inPart(part, point) {
-  const [x, y, z, w] = part.q;
-  return rotate([-x, -y, -z, w], [point[0] - part.p[0], point[1] - part.p[1], point[2] - part.p[2]]);
+  return rotate(conjugate(part.q), [point[0] - part.p[0], point[1] - part.p[1], point[2] - part.p[2]]);
 }

@@ -80,9 +80,8 @@ export class Looks {
   /** What a cut opens: the insides, flat, so that they read as the cut face. @param {number} colour @param {Look} look */
   inside(colour, look) {
     return this.#kept(`inside ${colour} ${look}`, () => {
-      const ghost = look === 'ghost';
       const shade = new THREE.Color(colour).multiplyScalar(look === 'chosen' ? 0.8 : 0.62);
-      return new THREE.MeshBasicMaterial({ color: shade, side: THREE.BackSide, transparent: ghost, opacity: ghost ? GHOST : 1, depthWrite: !ghost });
+      return new THREE.MeshBasicMaterial({ color: shade, side: THREE.BackSide });
     });
   }
 

@@ -70,7 +70,6 @@ export class PartsView {
     const faces = new THREE.Mesh(shape.faces, this.looks.faces(colour, 'plain'));
     const edges = shape.edges && new THREE.LineSegments(shape.edges, /** @type {THREE.LineBasicMaterial} */ (this.looks.edges('plain')));
     const inside = new THREE.Mesh(shape.faces, this.looks.inside(colour, 'plain'));
-    inside.visible = this.looks.clipping.length > 0;
     for (const object of [faces, edges, inside]) {
       if (!object) continue;
       object.matrixAutoUpdate = false;
@@ -81,6 +80,7 @@ export class PartsView {
     }
     const shown = { part, faces, edges, inside, look: /** @type {Look} */ ('plain'), seen: true };
     this.shown.set(part.id, shown);
+    this.#showInside(shown);
     place(shown);
     this.stage.ask();
   }
@@ -103,6 +103,7 @@ export class PartsView {
       const colour = this.looks.colourOf(shown.part);
       shown.faces.material = this.looks.faces(colour, look);
       shown.inside.material = this.looks.inside(colour, look);
+      this.#showInside(shown);
       if (shown.edges) shown.edges.material = this.looks.edges(look);
       // What is seen through is drawn after what is not.
       shown.faces.renderOrder = look === 'ghost' ? 1 : 0;
@@ -110,10 +111,15 @@ export class PartsView {
     this.stage.ask();
   }
 
+  /** The cut face of a ghost says nothing. @param {Shown} shown */
+  #showInside({ inside, look }) {
+    inside.visible = this.looks.clipping.length > 0 && look !== 'ghost';
+  }
+
   /** @param {THREE.Plane[]} planes */
   cutBy(planes) {
     this.looks.cutBy(planes);
-    for (const { inside } of this.shown.values()) inside.visible = planes.length > 0;
+    for (const shown of this.shown.values()) this.#showInside(shown);
     this.stage.ask();
   }
 

@@ -1,0 +1,145 @@
+// Two people and a late one share a session through their browsers; the server, the gateway and the engine are the real ones.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { joinAs, openBrowser, openPage } from '../support/browser.mjs';
+import { PATIENCE, choose, grab, moveBy, position, settled, whenListed } from '../support/people.mjs';
+import { PEGS } from '../support/scenario.mjs';
+import { LiveSession } from '../support/session.mjs';
+
+const session = new LiveSession();
+let browser, addresses, ann, bob;
+
+before(async () => {
+  await session.serve(PEGS);
+  addresses = await session.open();
+  browser = await openBrowser();
+  ann = await openPage(browser, addresses.designer, { name: 'ann' });
+  bob = await openPage(browser, addresses.designer, { name: 'bob', scheme: 'light' });
+}, { timeout: 90_000 });
+
+after(async () => {
+  await browser?.close();
+  await session.end();
+});
+
+test('two people join and see each other', async () => {
+  await whenListed(ann, 'parts', 'peg_k6');
+  await ann.locator('#people > li', { hasText: 'bob' }).waitFor(PATIENCE);
+  await bob.locator('#people > li', { hasText: 'ann' }).waitFor(PATIENCE);
+});
+
+test('one moves a peg into its bore, both see the same classified clash within a second', async () => {
+  await grab(ann, 'peg_k6');
+  await bob.locator('#labels > div', { hasText: 'peg_k6 – ann' }).waitFor(PATIENCE);
+  const seen = [whenListed(ann, 'clashes', 'potential, plate_k6 × peg_k6'), whenListed(bob, 'clashes', 'potential, plate_k6 × peg_k6')];
+  await moveBy(ann, [0, 0, -28]);
+  const times = await Promise.all(seen);
+  assert.ok(Math.abs(times[0] - times[1]) < 1000, `seen ${Math.abs(times[0] - times[1])} ms apart`);
+  console.log(`  both browsers list the clash ${Math.abs(times[0] - times[1])} ms apart`);
+  const end = await settled(ann);
+  assert.ok(Math.abs(end[2] - -3) < 1e-3, `the peg is at z = ${end[2]}`);
+  await choose(bob, 'peg_k6');
+  assert.deepEqual(await settled(bob), end);
+  const labels = await Promise.all([ann, bob].map((page) => page.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').getAttribute('aria-label')));
+  assert.equal(labels[0], labels[1]);
+});
+
+test('keys move in micrometres, undo takes the move back', async () => {
+  await grab(bob, 'block');
+  await bob.focus('#canvas');
+  const [x, y, z] = await settled(bob);
+  for (let i = 0; i < 3; ++i) await bob.keyboard.press('[');
+  await bob.keyboard.press('ArrowRight');
+  await bob.waitForFunction((text) => document.querySelector('#hand .pose')?.textContent?.startsWith(text), (x + 0.001).toFixed(4), PATIENCE);
+  for (let i = 0; i < 4; ++i) await bob.keyboard.press(']');
+  await bob.keyboard.press('PageUp');
+  await bob.waitForFunction((text) => document.querySelector('#hand .pose')?.textContent?.includes(text), `${(z + 10).toFixed(4)} mm`, PATIENCE);
+  await bob.keyboard.press('Shift+PageUp');
+  await bob.waitForFunction(() => document.querySelector('#hand .pose')?.textContent?.includes('0.00, 0.00, 10.00°'), undefined, PATIENCE);
+  await bob.keyboard.press('Control+z');
+  await bob.waitForFunction((text) => !document.querySelector('#hand .pose')?.textContent?.includes(text), '0.00, 0.00, 10.00°', PATIENCE);
+  assert.equal((await settled(bob))[1], y);
+});
+
+test('a handle drags the part', async () => {
+  const from = await settled(bob);
+  await bob.click('#tool_move');
+  await bob.keyboard.press('z');
+  await bob.waitForTimeout(800);
+  const box = await bob.locator('#canvas').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  // The upward handle begins above the middle of the part.
+  await bob.mouse.move(x, y - 30);
+  await bob.mouse.move(x, y - 50, { steps: 3 });
+  await bob.mouse.down();
+  await bob.mouse.move(x, y - 120, { steps: 6 });
+  await bob.mouse.up();
+  await bob.waitForTimeout(500);
+  const to = await settled(bob);
+  assert.ok(to[2] > from[2] + 1, `dragged from ${from} to ${to}`);
+  assert.ok(Math.abs(to[0] - from[0]) < 1e-3 && Math.abs(to[1] - from[1]) < 1e-3, `dragged from ${from} to ${to}`);
+});
+
+test('a part stops at a real contact', async () => {
+  await grab(ann, 'peg_p6');
+  const real = whenListed(ann, 'clashes', 'real, plate_p6 × peg_p6');
+  await moveBy(ann, [0, 0, -28]);
+  await real;
+  const [, , z] = await settled(ann);
+  assert.ok(z > 9 && z < 25, `stopped at z = ${z}`);
+  await ann.getByText('Real clash: plate_p6 × peg_p6').first().waitFor(PATIENCE);
+});
+
+test('a review in one browser shows in the other', async () => {
+  await bob.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
+  await bob.getByLabel('Review status').selectOption('approved');
+  await bob.getByLabel('Comment').fill('pressed in by <b>hand</b>');
+  await bob.click('text=Save review');
+  await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]', { hasText: 'approved' }).waitFor(PATIENCE);
+  await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
+  assert.equal(await ann.getByLabel('Comment').inputValue(), 'pressed in by <b>hand</b>');
+  await ann.getByText('approved by bob').waitFor(PATIENCE);
+  await ann.click('#clash button[aria-label="Close"]');
+  await bob.click('#clash button[aria-label="Close"]');
+});
+
+test('who comes late sees all; a name is text, whatever it says', async () => {
+  const late = await openPage(browser, addresses.designer);
+  await joinAs(late, '<img src=x onerror=hacked=1>');
+  await whenListed(late, 'clashes', 'approved');
+  await whenListed(late, 'clashes', 'real, plate_p6 × peg_p6');
+  await choose(late, 'peg_p6');
+  await choose(ann, 'peg_p6');
+  assert.deepEqual(await position(late), await position(ann));
+  await ann.locator('#people > li', { hasText: '<img src=x onerror=hacked=1>' }).waitFor(PATIENCE);
+  for (const page of [ann, bob, late]) {
+    assert.equal(await page.evaluate(() => 'hacked' in window), false);
+    assert.equal(await page.locator('#people img, #labels img, #said img').count(), 0);
+  }
+  await late.context().close();
+});
+
+test('a reload in mid-drag frees the part', async () => {
+  await choose(ann, 'peg_k6'); // still in her hand
+  await moveBy(ann, [0, 0, 300]);
+  await ann.waitForTimeout(200);
+  await ann.reload();
+  await bob.waitForFunction(() => !document.querySelector('#parts')?.textContent?.includes('ann'), undefined, PATIENCE);
+  await choose(bob, 'peg_k6');
+  await bob.locator('#hand .quiet', { hasText: 'free' }).waitFor(PATIENCE);
+  await joinAs(ann, 'ann');
+});
+
+test('the read-only address looks on', async () => {
+  const guest = await openPage(browser, addresses.observer);
+  await whenListed(guest, 'parts', 'peg_k6');
+  await choose(guest, 'peg_k6');
+  assert.equal(await guest.locator('#hand button:visible').count(), 0);
+  assert.equal(await guest.locator('#join[open]').count(), 0);
+  assert.equal(await guest.textContent('#line_text'), 'Looking on');
+  await guest.context().close();
+});
+
+test('nothing was complained of', () => {
+  assert.deepEqual([...ann.complaints, ...bob.complaints], []);
+});

@@ -1,0 +1,45 @@
+// Debian's chromium without a screen, pictures by software.
+import { existsSync } from 'node:fs';
+
+const CHROMIUM = process.env.MORTISE_CHROMIUM ?? '/usr/bin/chromium';
+export const VIEW = { width: 1280, height: 720 };
+
+/** Why there can be no browser here; empty when there can. */
+export async function whyNoBrowser() {
+  if (Number(process.versions.node.split('.')[0]) < 20) return `node ${process.versions.node} is older than 20`;
+  if (!existsSync(CHROMIUM)) return `${CHROMIUM} is not there: apt-get install chromium`;
+  try {
+    await import('playwright-core');
+  } catch {
+    return 'playwright-core is not there: npm ci --prefix tests/web';
+  }
+  if (!existsSync(new URL('../../../client/web/page/node_modules/three/build/three.module.js', import.meta.url))) {
+    return 'three is not there: npm ci --omit=dev --prefix client/web/page';
+  }
+  return '';
+}
+
+export async function openBrowser() {
+  const { chromium } = await import('playwright-core');
+  // The sandbox of chromium refuses to run as root; nothing but our own page is opened.
+  const sandbox = process.getuid?.() === 0 ? ['--no-sandbox'] : [];
+  return chromium.launch({ executablePath: CHROMIUM, headless: true, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage', ...sandbox] });
+}
+
+/** A page of its own profile. What it complains of is collected. @param {import('playwright-core').Browser} browser */
+export async function openPage(browser, address, { scheme = 'dark', name } = {}) {
+  const context = await browser.newContext({ viewport: VIEW, colorScheme: scheme, reducedMotion: 'reduce' });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.on('pageerror', (error) => page.complaints.push(`${error}`));
+  page.on('console', (message) => message.type() === 'error' && page.complaints.push(message.text()));
+  await page.goto(address);
+  if (name) await joinAs(page, name);
+  return page;
+}
+
+export async function joinAs(page, name) {
+  await page.fill('#join_name', name);
+  await page.click('#join_go');
+  await page.waitForFunction((n) => document.getElementById('status_server')?.textContent === `You are ${n}`, name);
+}

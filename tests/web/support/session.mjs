@@ -1,0 +1,77 @@
+// A session as people have it: server, gateway, and bots where asked for, each a process of its own; ended by their ids.
+import { spawn } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+
+const root = resolve(import.meta.dirname, '../../..');
+const bin = process.env.MORTISE_BIN_DIR ?? join(root, 'build/release/bin');
+
+export class LiveSession {
+  #children = [];
+  folder = mkdtempSync(join(tmpdir(), 'mortise-web-'));
+  name = `web${process.pid}`;
+  domain = 100 + (process.pid % 100);
+
+  /** @param {string} program @param {string[]} args @param {(text: string) => unknown} [seen] of its output; truthy ends the waiting */
+  async start(program, args, seen) {
+    const child = spawn(join(bin, `mortise-${program}`), args, { cwd: root, stdio: ['ignore', 'pipe', 'pipe'] });
+    child.text = '';
+    this.#children.push(child);
+    const ready = new Promise((done, fail) => {
+      const take = (data) => {
+        child.text += data;
+        const found = seen?.(child.text);
+        if (found) done(found);
+      };
+      child.stdout.on('data', take);
+      child.stderr.on('data', take);
+      child.once('error', fail);
+      child.once('exit', (code) => fail(new Error(`mortise-${program} ended with ${code}:\n${child.text.slice(-2000)}`)));
+      if (!seen) done(child);
+    });
+    ready.catch(() => {});
+    child.ready = await ready;
+    return child;
+  }
+
+  /** @param {string} scenario a file of scenarios/, or YAML @param {string[]} [more] */
+  async serve(scenario, more = []) {
+    const file = scenario.includes('\n') ? join(this.folder, 'scenario.yaml') : join(root, 'scenarios', scenario);
+    if (scenario.includes('\n')) writeFileSync(file, scenario);
+    this.server = await this.start('server', [file, '--session', this.name, '--domain', `${this.domain}`, ...more]);
+  }
+
+  /** @param {string[]} [more] @returns the two addresses */
+  async open(more = []) {
+    const args = ['--session', this.name, '--domain', `${this.domain}`, '--port', '0', '--page', join(root, 'client/web/page'), ...more];
+    this.gateway = await this.start('web', args, (text) => {
+      const designer = /^designer (http\S+)$/m.exec(text);
+      const observer = /^observer (http\S+)$/m.exec(text);
+      return designer && observer && { designer: designer[1], observer: observer[1] };
+    });
+    return this.gateway.ready;
+  }
+
+  /** @param {string} play a file of scenarios/ @param {number} seconds */
+  async play(play, seconds) {
+    const args = ['--session', this.name, '--domain', `${this.domain}`, '--wait', '10', '--behaviour', 'script', '--play', join(root, 'scenarios', play), '--quiet', '--duration', `${seconds}`];
+    return this.start('bot', args);
+  }
+
+  /** @param {import('node:child_process').ChildProcess} child */
+  async stop(child) {
+    child.removeAllListeners('exit');
+    if (child.exitCode !== null || child.signalCode !== null) return;
+    const gone = new Promise((done) => child.once('exit', done));
+    child.kill('SIGINT');
+    const late = setTimeout(() => child.kill('SIGKILL'), 4000);
+    await gone;
+    clearTimeout(late);
+  }
+
+  async end() {
+    for (const child of this.#children.reverse()) await this.stop(child);
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}

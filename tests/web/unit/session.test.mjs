@@ -1,0 +1,82 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { tokenOf } from '../../../client/web/page/session/connection.js';
+import { readPoseFrame } from '../../../client/web/page/session/frames.js';
+import { Session } from '../../../client/web/page/session/session.js';
+import { bracket, small } from '../../../client/web/page/session/words.js';
+import { poseFrame } from '../support/frames.mjs';
+
+const part = (id, more = {}) => ({ id, name: `p${id}`, mesh: 'm', moving: true, holder: 0, p: [0, 0, 0], q: [0, 0, 0, 1], radius: 1, reference: [0, 0, 0], classes: 0, ...more });
+const clash = (id, more = {}) => ({ kind: 'begin', seq: id, clash: id, a: 1, b: 2, class: 'potential', delta: [0.1, 0.1], worst_class: 'potential', review: { status: 'new', comment: '', user: 0, tick: 0 }, ...more });
+
+function begun() {
+  const session = new Session();
+  session.apply({ type: 'welcome', mode: 'live', role: 'designer', limits: {} });
+  session.apply({ type: 'scene', session: 's', tick: 5, tick_rate_hz: 60, policy: 'stop', parts: [part(1), part(2)], users: [{ id: 9, name: 'ann', present: true, role: 'designer' }], clashes: [clash(3)], standing: [] });
+  session.apply({ type: 'joined', user: 9, name: 'ann', role: 'designer' });
+  return session;
+}
+
+test('poses, holders and classes follow the frames; parts that nobody spoke of are skipped', () => {
+  const session = begun();
+  const held = [];
+  session.on('holder', (p) => held.push([p.id, p.holder]));
+  session.applyPoses(readPoseFrame(poseFrame(8, [{ part: 1, holder: 9, p: [1, 2, 3], q: [0, 0, 1, 0], classes: 4 }, { part: 77, holder: 1, p: [0, 0, 0], q: [0, 0, 0, 1], classes: 0 }])));
+  assert.deepEqual(session.parts.get(1).p, [1, 2, 3]);
+  assert.equal(session.tick, 8);
+  assert.deepEqual(held, [[1, 9]]);
+  assert.deepEqual(session.heldByMe().map((p) => p.id), [1]);
+});
+
+test('an ended clash stays to be read, a review of it too, and leaves the open ones', () => {
+  const session = begun();
+  session.apply({ type: 'events', events: [clash(4, { class: 'real' }), clash(3, { kind: 'end', class: 'none', delta: [0, 0] })] });
+  assert.deepEqual(session.openClashes().map((c) => c.clash), [4]);
+  assert.equal(session.clashes.get(3).class, 'potential');
+  session.apply({ type: 'events', events: [clash(4, { kind: 'review', class: 'real', review: { status: 'approved', comment: 'x', user: 9, tick: 9 } })] });
+  assert.equal(session.clashes.get(4).review.status, 'approved');
+  assert.deepEqual(session.openClashes().map((c) => c.clash), [4]);
+});
+
+test('ended clashes do not pile up', () => {
+  const session = begun();
+  for (let id = 10; id < 1000; ++id) session.apply({ type: 'events', events: [clash(id), clash(id, { kind: 'end' })] });
+  assert.ok(session.clashes.size <= 202);
+  assert.equal(session.openClashes().length, 1);
+});
+
+test('rules in force come and go with the decisions', () => {
+  const session = begun();
+  const decide = (decision) => session.apply({ type: 'decisions', decisions: [decision] });
+  decide({ kind: 'add_constraint', user: 9, part: 1, constraint_id: 6, constraint: { part: 1 } });
+  decide({ kind: 'ask_hand_over', user: 8, part: 1, other_user: 9 });
+  decide({ kind: 'set_exclusion', user: 9, part: 1, other: 2, text: 'why' });
+  assert.equal(session.standing.length, 3);
+  decide({ kind: 'drop_constraint', user: 9, part: 1, constraint_id: 6 });
+  decide({ kind: 'hand_over', user: 9, part: 1, other_user: 8 });
+  decide({ kind: 'drop_exclusion', user: 9, part: 2, other: 1 });
+  assert.deepEqual(session.standing, []);
+  assert.equal(session.parts.get(1).holder, 8);
+});
+
+test('messages that the page does not know are skipped; a lost line leaves nobody joined', () => {
+  const session = begun();
+  session.apply({ type: 'from_a_newer_gateway', x: 1 });
+  assert.equal(session.mayAct, true);
+  session.lost();
+  assert.equal(session.mayAct, false);
+});
+
+test('figures read as people say them', () => {
+  assert.equal(small(0.0482), '48.2 µm');
+  assert.equal(small(12.5), '12.500 mm');
+  assert.equal(small(null), '–');
+  assert.equal(bracket([0.04821, 0.04822]), '48.2 µm');
+  assert.equal(bracket([0.0482, 0.0491]), '48.2 µm … 49.1 µm');
+});
+
+test('a token is taken from the address only when it is one', () => {
+  assert.equal(tokenOf('#token=abc_-1'), 'abc_-1');
+  assert.equal(tokenOf('#token=a b'), '');
+  assert.equal(tokenOf(''), '');
+});
