@@ -45,7 +45,7 @@ makeKeyboard({
   turnView: (right, up) => camera.turn(right, up), closer: (times) => camera.closer(times),
   nextClash: () => desk.goClash(1), lastClash: () => desk.goClash(-1),
 });
-byId('line_state').onclick = () => join.ask();
+byId('line_state').onclick = join.ask;
 session.on('join_refused', (text) => join.refused(text));
 session.on('welcome', () => join.welcome());
 desk.connection.open();

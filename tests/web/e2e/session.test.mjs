@@ -83,18 +83,18 @@ test('a handle drags the part', async () => {
 test('a part stops at a real contact', async () => {
   await grab(ann, 'peg_p6');
   const real = whenListed(ann, 'clashes', 'real, plate_p6 × peg_p6');
+  const told = ann.getByText('Real clash: plate_p6 × peg_p6').first().waitFor(PATIENCE);
   await moveBy(ann, [0, 0, -28]);
-  await real;
+  await Promise.all([real, told]);
   const [, , z] = await settled(ann);
   assert.ok(z > 9 && z < 25, `stopped at z = ${z}`);
-  await ann.getByText('Real clash: plate_p6 × peg_p6').first().waitFor(PATIENCE);
 });
 
 test('a review in one browser shows in the other', async () => {
   await bob.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
   await bob.getByLabel('Review status').selectOption('approved');
   await bob.getByLabel('Comment').fill('pressed in by <b>hand</b>');
-  await bob.click('text=Save review');
+  await bob.click('#clash button:has-text("Save")');
   await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]', { hasText: 'approved' }).waitFor(PATIENCE);
   await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
   assert.equal(await ann.getByLabel('Comment').inputValue(), 'pressed in by <b>hand</b>');

@@ -10,8 +10,12 @@ const bin = process.env.MORTISE_BIN_DIR ?? join(root, 'build/release/bin');
 export class LiveSession {
   #children = [];
   folder = mkdtempSync(join(tmpdir(), 'mortise-web-'));
-  name = `web${process.pid}`;
   domain = 100 + (process.pid % 100);
+
+  /** @param {string} [name] */
+  constructor(name = `web${process.pid}`) {
+    this.name = name;
+  }
 
   /** @param {string} program @param {string[]} args @param {(text: string) => unknown} [seen] of its output; truthy ends the waiting */
   async start(program, args, seen) {

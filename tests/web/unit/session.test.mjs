@@ -48,13 +48,13 @@ test('ended clashes do not pile up', () => {
 test('rules in force come and go with the decisions', () => {
   const session = begun();
   const decide = (decision) => session.apply({ type: 'decisions', decisions: [decision] });
-  decide({ kind: 'add_constraint', user: 9, part: 1, constraint_id: 6, constraint: { part: 1 } });
-  decide({ kind: 'ask_hand_over', user: 8, part: 1, other_user: 9 });
-  decide({ kind: 'set_exclusion', user: 9, part: 1, other: 2, text: 'why' });
+  decide({ kind: 'add constraint', user: 9, part: 1, constraint_id: 6, constraint: { part: 1 } });
+  decide({ kind: 'ask for hand-over', user: 8, part: 1, other_user: 9 });
+  decide({ kind: 'set exclusion', user: 9, part: 1, other: 2, text: 'why' });
   assert.equal(session.standing.length, 3);
-  decide({ kind: 'drop_constraint', user: 9, part: 1, constraint_id: 6 });
-  decide({ kind: 'hand_over', user: 9, part: 1, other_user: 8 });
-  decide({ kind: 'drop_exclusion', user: 9, part: 2, other: 1 });
+  decide({ kind: 'drop constraint', user: 9, part: 1, constraint_id: 6 });
+  decide({ kind: 'hand-over', user: 9, part: 1, other_user: 8 });
+  decide({ kind: 'drop exclusion', user: 9, part: 2, other: 1 });
   assert.deepEqual(session.standing, []);
   assert.equal(session.parts.get(1).holder, 8);
 });

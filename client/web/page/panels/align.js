@@ -29,7 +29,7 @@ export function makeAlign({ session, choice, commands, labels, stage, say }) {
     return chosen && session.isMine(chosen) ? chosen : null;
   };
   const featuresOf = (/** @type {number} */ id) => session.features.get(id) ?? [];
-  const constraintsOf = (/** @type {number} */ id) => session.standing.filter((d) => d.kind === 'add_constraint' && d.constraint.part === id);
+  const constraintsOf = (/** @type {number} */ id) => session.standing.filter((d) => d.kind === 'add constraint' && d.constraint.part === id);
   const find = (/** @type {number} */ id, /** @type {string} */ name) => featuresOf(id).find((f) => f.name === name) ?? null;
 
   /** @param {HTMLSelectElement} list @param {Array<[string, string]>} options @param {string} first */

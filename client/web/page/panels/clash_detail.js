@@ -11,7 +11,7 @@ import { SectionDrawing } from './section_drawing.js';
 export function makeClashDetail(desk) {
   const { session, choice, commands, flyToClash, cutAtClash, say } = desk;
   const panel = byId('clash');
-  const title = el('span');
+  const title = el('span', { class: 'grow' });
   const mark = el('span');
   const close = el('button', { class: 'small', type: 'button', 'aria-label': 'Close', title: 'Close', onclick: () => choice.chooseClash(0) }, icon('close'));
   const bar = el('div', { class: 'depth' });
@@ -20,14 +20,13 @@ export function makeClashDetail(desk) {
   const why = el('p');
   const drawing = new SectionDrawing(desk);
   const status = el('select', { 'aria-label': 'Review status' }, ...STATUSES.map((name) => el('option', { value: name }, plain(name))));
-  const comment = el('textarea', { 'aria-label': 'Comment', placeholder: 'Comment', maxLength: 500 });
-  const save = el('button', { type: 'button', class: 'primary' }, 'Save review');
+  const comment = el('input', { type: 'text', 'aria-label': 'Comment', placeholder: 'Comment', maxLength: 500 });
+  const save = el('button', { type: 'button', class: 'primary' }, 'Save');
   const by = el('span', { class: 'quiet' });
-  const fly = el('button', { type: 'button', title: 'Fly there (Enter)', onclick: () => flyToClash(choice.clash) }, icon('zoom'), 'Go');
-  const cut = el('button', { type: 'button', title: 'Cut the view here', onclick: () => cutAtClash(choice.clash) }, icon('section'), 'Cut here');
-  const turn = el('button', { type: 'button', title: 'Section across or along', onclick: () => drawing.turn() }, icon('rotate'), 'Turn section');
-  panel.append(el('h3', {}, mark, title, close), bar, scale, figures, el('div', { class: 'row' }, fly, cut, turn), drawing.canvas, drawing.caption, why,
-    el('div', { class: 'row' }, status, save), comment, by);
+  const fly = el('button', { type: 'button', class: 'small', 'aria-label': 'Fly there', title: 'Fly there (Enter)', onclick: () => flyToClash(choice.clash) }, icon('zoom'));
+  const cut = el('button', { type: 'button', class: 'small', 'aria-label': 'Cut the view here', title: 'Cut the view here', onclick: () => cutAtClash(choice.clash) }, icon('section'));
+  const turn = el('button', { type: 'button', class: 'small', 'aria-label': 'Section across or along', title: 'Section across or along', onclick: () => drawing.turn() }, icon('rotate'));
+  panel.append(el('h3', {}, mark, title, fly, cut, turn, close), bar, scale, figures, drawing.canvas, drawing.caption, el('div', { class: 'row' }, status, comment, save), by, why);
   let edited = false;
 
   function current() {
@@ -36,20 +35,18 @@ export function makeClashDetail(desk) {
 
   /** @param {Clash} clash */
   function rows(clash) {
-    const overlap = clash.gpd[1] === null ? bracket(clash.delta) : `${bracket(clash.delta)}; way out ${bracket(clash.gpd)}`;
-    const margin = { real: 'beyond the real threshold', fake: 'to spare', potential: 'to the nearer threshold', none: '' }[clash.class];
+        const margin = { real: 'beyond the real threshold', fake: 'to spare', potential: 'to the nearer threshold', none: '' }[clash.class];
     const faces = clash.faces.map((face) => face || 'unnamed face').join(' × ');
-    const moved = clash.user ? session.userName(clash.user) : '';
+    const moved = clash.user ? `, moved by ${session.userName(clash.user)}` : '';
     const worst = clash.worst_class !== clash.class ? `${clash.worst_class}, ${bracket(clash.worst_delta)}` : '';
     return [
-      ['Overlap', overlap],
+      ['Overlap', bracket(clash.delta)],
       ['Margin', `${small(clash.margin)} ${margin}`],
       ['Interference', clash.class === 'potential' ? percent(clash.probability) : ''],
       ['Faces', faces],
-      ['Moved by', moved],
-      ['Comes free', clash.separation.way === 'none' ? '' : `${small(Math.hypot(...clash.separation.t))} ${{ back: 'back the way it came', normal: 'along the normal', fitted: 'by a fitted motion', axis: 'along its axis' }[clash.separation.way] ?? ''}`],
+      ['Comes free', clash.separation.way === 'none' ? '' : `${small(Math.hypot(...clash.separation.t))} ${clash.separation.way}`],
       ['Worst so far', worst],
-      ['Since', clash.begin_tick ? `${Math.max(0, (session.tick - clash.begin_tick) / session.tickRate).toFixed(1)} s` : ''],
+      ['Since', `${Math.max(0, (session.tick - clash.begin_tick) / session.tickRate).toFixed(1)} s${moved}`],
     ].filter(([, text]) => text);
   }
 
@@ -58,7 +55,9 @@ export function makeClashDetail(desk) {
     panel.hidden = clash === null;
     if (!clash) return;
     mark.replaceChildren(classMark(clash.class));
-    setText(title, `${session.partName(clash.a)} × ${session.partName(clash.b)} – ${clash.ended ? 'ended' : clash.class}`);
+    setText(title, `${session.partName(clash.a)} × ${session.partName(clash.b)}`);
+    title.title = title.textContent ?? '';
+    panel.setAttribute('aria-label', `${clash.ended ? 'Ended' : clash.class} clash of ${title.title}`);
     fillDepthBar(bar, clash);
     fillScale(scale, clash);
     figures.replaceChildren(...rows(clash).flatMap(([name, text]) => [el('dt', {}, name), el('dd', {}, text)]));

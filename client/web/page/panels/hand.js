@@ -32,7 +32,7 @@ export function makeHand({ session, choice, commands, mover }) {
   box.append(el('div', { class: 'title' }, name, state, pose, el('span', { class: 'spring' }), give, keep, ask, grab), form);
 
   const part = () => session.parts.get(choice.part) ?? null;
-  const asked = () => session.standing.find((d) => d.kind === 'ask_hand_over' && d.part === choice.part);
+  const asked = () => session.standing.find((d) => d.kind === 'ask for hand-over' && d.part === choice.part);
 
   function showPose() {
     const shown = part();

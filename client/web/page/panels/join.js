@@ -46,7 +46,7 @@ export function makeJoin(session, send) {
       if (!dialog.open) dialog.showModal();
     },
     ask() {
-      if (session.me === 0 && session.mode !== 'replay' && !dialog.open) dialog.showModal();
+      if (session.me === 0 && session.role === 'designer' && session.mode === 'live' && !dialog.open) dialog.showModal();
     },
   };
 }

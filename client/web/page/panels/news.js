@@ -12,25 +12,25 @@ export function makeNews({ session, say }) {
       case 'join':
         return mine ? '' : `${d.name ?? who} is here`;
       case 'leave':
-      case 'liveliness_lost':
+      case 'liveliness lost':
         return mine ? '' : `${who} is gone`;
-      case 'lease_end':
+      case 'lease end':
         return `${who} let ${part} lie too long: it is free`;
-      case 'ask_hand_over':
+      case 'ask for hand-over':
         return d.other_user === session.me ? `${who} asks you for ${part}` : mine ? `You asked ${session.userName(d.other_user)} for ${part}` : '';
-      case 'hand_over':
+      case 'hand-over':
         return `${who} gave ${part} to ${session.userName(d.other_user)}`;
       case 'decline':
         return d.other_user === session.me ? `${who} keeps ${part}${d.text ? `: ${d.text}` : ''}` : '';
-      case 'ask_end':
+      case 'ask unanswered':
         return mine ? `Nobody answered about ${part}` : '';
-      case 'set_policy':
+      case 'set policy':
         return `${who}: at a real contact now ${d.text}`;
-      case 'set_tolerance':
+      case 'set tolerance':
         return `${who} set ${part}${d.feature ? `.${d.feature}` : ''}${d.other ? ` with ${session.partName(d.other)}` : ''} to ${d.text || 'nothing'}`;
-      case 'set_exclusion':
+      case 'set exclusion':
         return `${who} leaves out ${part} × ${session.partName(d.other)}: ${d.text}`;
-      case 'drop_exclusion':
+      case 'drop exclusion':
         return `${who} judges ${part} × ${session.partName(d.other)} again`;
       case 'undo':
       case 'redo':
@@ -45,9 +45,14 @@ export function makeNews({ session, say }) {
     const text = sentence(decision);
     if (text) say(text);
   });
+  /** Clashes that were said to be real: said once, and again when they come back. @type {Set<number>} */
+  const real = new Set();
   session.on('event', (event) => {
     const pair = `${session.partName(event.a)} × ${session.partName(event.b)}`;
-    if (event.kind === 'begin' && event.class === 'real') say(`Real clash: ${pair}, ${small(event.delta[1])}`, 'bad');
+    const isReal = event.class === 'real' && !event.ended;
+    if (isReal && !real.has(event.clash)) say(`Real clash: ${pair}, ${small(event.delta[1])}`, 'bad');
+    if (isReal) real.add(event.clash);
+    else real.delete(event.clash);
     if (event.approval_lost) say(`${pair} got worse: its approval is lost`, 'bad');
   });
   session.on('refused', (increments) => {

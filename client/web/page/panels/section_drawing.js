@@ -1,7 +1,7 @@
 // The section through a clash, drawn flat: both meshes as they are cut, the surfaces that they stand for, the point, and a scale.
 // Near enough that micrometres show.
 import { placed, rotate } from '../session/motion.js';
-import { across, chains, cross, dot, near, slice, unit } from '../session/slice.js';
+import { across, chains, cross, distance, dot, slice, unit } from '../session/slice.js';
 import { small } from '../session/words.js';
 import { el, setText } from './dom.js';
 
@@ -13,7 +13,7 @@ const COLOURS = ['#5d9fd6', '#d9a45a'];
 
 export class SectionDrawing {
   canvas = el('canvas', { role: 'img' });
-  caption = el('p', { class: 'quiet' });
+  caption = el('p', { class: 'caption' });
   #turned = false;
   /** @type {Clash | null} */
   #clash = null;
@@ -66,36 +66,37 @@ export class SectionDrawing {
   async #draw(clash) {
     const parts = [this.session.parts.get(clash.a), this.session.parts.get(clash.b)];
     const meshes = await Promise.all(parts.map((part) => part && this.partsView.meshOf(part)));
-    const view = this.#frame(clash);
     const names = parts.map((part) => part?.name ?? '?');
     this.canvas.setAttribute('aria-label', `Section through the clash of ${names[0]} (blue) and ${names[1]} (amber, hatched)`);
-    const cutBy = (/** @type {import('../session/slice.js').Plane} */ plane) => parts.map((part, i) => {
-      const mesh = meshes[i];
-      return part && mesh ? slice(mesh, part, plane) : [];
-    });
-    // A plane that only touches one of the two shows nothing of it: then the other one.
-    const reach = this.canvas.height / view.scale;
-    let plane = this.#planeOf(clash, this.#turned);
-    let cuts = cutBy(plane);
-    const misses = (/** @type {import('../session/slice.js').Segment[][]} */ found) => found.some((segments) => !segments.some((s) => near(s, reach)));
-    let turned = this.#turned;
-    if (misses(cuts)) {
-      const other = this.#planeOf(clash, !turned);
-      const otherCuts = cutBy(other);
-      if (!misses(otherCuts)) [plane, cuts, turned] = [other, otherCuts, !turned];
+    const cutBy = (/** @type {boolean} */ turned) => {
+      const plane = this.#planeOf(clash, turned);
+      const cuts = parts.map((part, i) => {
+        const mesh = meshes[i];
+        return part && mesh ? slice(mesh, part, plane) : [];
+      });
+      return { turned, plane, cuts, apart: Math.max(...cuts.map(distance)) };
+    };
+    // A plane that misses one of the two shows nothing of it: then the other way. A part that was stopped stands off the point.
+    let cut = cutBy(this.#turned);
+    let view = this.#frame(clash, 0);
+    if (cut.apart > view.height / 2) {
+      const other = cutBy(!this.#turned);
+      if (other.apart < cut.apart) cut = other;
+      if (Number.isFinite(cut.apart)) view = this.#frame(clash, cut.apart);
     }
+    const { plane, cuts, turned } = cut;
     this.#paint(cuts.map((segments) => chains(segments)), view, plane, clash, parts);
-    setText(this.caption, `${turned ? 'Along' : 'Across'}: ${names[0]} blue, ${names[1]} amber and hatched; dashed: the surfaces that the facets stand for.`);
+    setText(this.caption, `${turned ? 'Along' : 'Across'}: ${names[0]} blue, ${names[1]} hatched; dashed: true surfaces`);
   }
 
-  /** So near that the overlap is a fifth of the picture, within reason. @param {Clash} clash */
-  #frame(clash) {
+  /** So near that the overlap is a seventh of the picture, within reason, and that what is `apart` from the point is seen. @param {Clash} clash @param {number} apart */
+  #frame(clash, apart) {
     const ratio = Math.min(2, devicePixelRatio);
     this.canvas.width = Math.max(10, this.canvas.clientWidth * ratio);
     this.canvas.height = Math.max(10, this.canvas.clientHeight * ratio);
     const depth = Math.max(Math.abs(clash.delta[1] ?? 0), Math.abs(clash.real_above), 1e-3);
-    const height = Math.min(20, Math.max(0.05, depth * 7));
-    return { scale: this.canvas.height / height, ratio };
+    const height = Math.max(3 * apart, Math.min(20, Math.max(0.05, depth * 7)));
+    return { scale: this.canvas.height / height, ratio, height };
   }
 
   /**

@@ -8,9 +8,9 @@ export function makeStatus({ session, line }) {
 
   function refresh() {
     pill.dataset.state = line.state;
-    const words = { open: session.serverPresent ? session.role === 'observer' ? 'Looking on' : 'Connected' : 'No server', connecting: 'Connecting', waiting: 'Not connected', refused: 'No access' };
+    const words = { open: session.serverPresent ? session.me === 0 && session.mode === 'live' ? 'Looking on' : 'Connected' : 'No server', connecting: 'Connecting', waiting: 'Not connected', refused: 'No access' };
     setText(byId('line_text'), session.mode === 'replay' && line.state === 'open' ? 'Replay' : words[line.state]);
-    pill.title = line.text;
+    pill.title = line.state === 'open' && session.me === 0 && session.role === 'designer' && session.mode === 'live' ? 'Looking on: click to join' : line.text;
     if (line.state === 'open' && !session.serverPresent) pill.dataset.state = 'waiting';
     const trouble = line.state === 'open' ? (session.serverPresent || session.mode === 'replay' ? '' : 'The gateway waits for the server of the session') : line.state === 'connecting' ? '' : line.text;
     banner.hidden = trouble === '';

@@ -217,7 +217,7 @@ export class Session extends Signals {
 
   /** @param {any} decision */
   #decision(decision) {
-    if (decision.kind === 'set_policy') this.policy = decision.text;
+    if (decision.kind === 'set policy') this.policy = decision.text;
     const parts = decision.parts?.length ? decision.parts : [decision.part];
     for (const id of parts) this.#holders(decision, id);
     this.#keepStanding(decision);
@@ -229,22 +229,22 @@ export class Session extends Signals {
     const part = this.parts.get(id);
     if (!part) return;
     if (decision.kind === 'grab') this.#hold(part, decision.user);
-    if (decision.kind === 'hand_over') this.#hold(part, decision.other_user);
-    if (['release', 'lease_end'].includes(decision.kind)) this.#hold(part, 0);
+    if (decision.kind === 'hand-over') this.#hold(part, decision.other_user);
+    if (['release', 'lease end'].includes(decision.kind)) this.#hold(part, 0);
   }
 
   /** Rules and asks in force. @param {any} decision */
   #keepStanding(decision) {
     const { kind, part } = decision;
     const same = (/** @type {any} */ other) => other.part === part && (!decision.user || other.user === decision.user);
-    if (kind === 'drop_constraint') {
+    if (kind === 'drop constraint') {
       this.standing = this.standing.filter((d) => d.constraint_id !== decision.constraint_id);
-    } else if (kind === 'drop_exclusion') {
+    } else if (kind === 'drop exclusion') {
       const pair = [part, decision.other].sort().join();
-      this.standing = this.standing.filter((d) => d.kind !== 'set_exclusion' || [d.part, d.other].sort().join() !== pair);
-    } else if (['hand_over', 'decline', 'ask_end', 'release', 'lease_end'].includes(kind)) {
-      this.standing = this.standing.filter((d) => d.kind !== 'ask_hand_over' || (kind === 'ask_end' ? !same(d) : d.part !== part));
-    } else if (['set_policy', 'set_tolerance', 'set_exclusion', 'ask_hand_over', 'add_constraint'].includes(kind)) {
+      this.standing = this.standing.filter((d) => d.kind !== 'set exclusion' || [d.part, d.other].sort().join() !== pair);
+    } else if (['hand-over', 'decline', 'ask unanswered', 'release', 'lease end'].includes(kind)) {
+      this.standing = this.standing.filter((d) => d.kind !== 'ask for hand-over' || (kind === 'ask unanswered' ? !same(d) : d.part !== part));
+    } else if (['set policy', 'set tolerance', 'set exclusion', 'ask for hand-over', 'add constraint'].includes(kind)) {
       this.standing = [...this.standing, decision];
     } else {
       return;

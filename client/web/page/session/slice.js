@@ -73,11 +73,15 @@ function cut(corners) {
   return [...down[0], ...up[0]];
 }
 
-/** Does the segment come within reach of the origin of the plane? @param {Segment} s @param {number} reach */
-export function near([x0, y0, x1, y1], reach) {
-  const length2 = (x1 - x0) ** 2 + (y1 - y0) ** 2;
-  const s = length2 === 0 ? 0 : Math.min(1, Math.max(0, -(x0 * (x1 - x0) + y0 * (y1 - y0)) / length2));
-  return Math.hypot(x0 + s * (x1 - x0), y0 + s * (y1 - y0)) <= reach;
+/** From the origin of the plane to the nearest of the segments; infinite without any. @param {Segment[]} segments */
+export function distance(segments) {
+  let least = Infinity;
+  for (const [x0, y0, x1, y1] of segments) {
+    const length2 = (x1 - x0) ** 2 + (y1 - y0) ** 2;
+    const s = length2 === 0 ? 0 : Math.min(1, Math.max(0, -(x0 * (x1 - x0) + y0 * (y1 - y0)) / length2));
+    least = Math.min(least, Math.hypot(x0 + s * (x1 - x0), y0 + s * (y1 - y0)));
+  }
+  return least;
 }
 
 /**

@@ -71,7 +71,8 @@ export class ClashMarks {
     this.group.clear();
     this.chosen = chosen;
     for (const clash of clashes) {
-      if (clash.class === 'none' || clash.ended) continue;
+      // Beside the chosen one the others would hide what it shows; the list has them.
+      if (clash.class === 'none' || clash.ended || (chosen && clash.clash !== chosen.clash)) continue;
       const sprite = new THREE.Sprite(this.#material(clash.class));
       sprite.position.set(...clash.point);
       sprite.renderOrder = 10 + rankOf(clash.class);
