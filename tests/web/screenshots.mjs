@@ -41,7 +41,8 @@ try {
   await tom.keyboard.press('x');
   await tom.keyboard.press('f');
   await tom.waitForTimeout(1500);
-  await tom.screenshot({ path: join(folder, 'section.png') });
+  await tom.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
+  await shoot(tom, 'section');
   await tom.keyboard.press('Escape');
 
   await choose(tom, 'screw_1');

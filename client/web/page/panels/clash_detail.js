@@ -26,7 +26,8 @@ export function makeClashDetail(desk) {
   const fly = el('button', { type: 'button', class: 'small', 'aria-label': 'Fly there', title: 'Fly there (Enter)', onclick: () => flyToClash(choice.clash) }, icon('zoom'));
   const cut = el('button', { type: 'button', class: 'small', 'aria-label': 'Cut the view here', title: 'Cut the view here', onclick: () => cutAtClash(choice.clash) }, icon('section'));
   const turn = el('button', { type: 'button', class: 'small', 'aria-label': 'Section across or along', title: 'Section across or along', onclick: () => drawing.turn() }, icon('rotate'));
-  panel.append(el('h3', {}, mark, title, fly, cut, turn, close), bar, scale, figures, drawing.canvas, drawing.caption, el('div', { class: 'row' }, status, comment, save), by, why);
+  panel.append(el('h3', {}, mark, title, close), bar, scale, figures, drawing.canvas,
+    el('div', { class: 'row' }, drawing.caption, fly, cut, turn), el('div', { class: 'row' }, status, comment, save), by, why);
   let edited = false;
 
   function current() {
@@ -83,6 +84,8 @@ export function makeClashDetail(desk) {
   choice.on('clash', () => {
     edited = false;
     refresh();
+    // The list has become shorter.
+    document.querySelector('#clashes [aria-selected="true"]')?.scrollIntoView({ block: 'nearest' });
   });
   session.on('event', (event) => event.clash === choice.clash && refresh());
   session.on('scene', refresh);

@@ -9,6 +9,8 @@ import { el, setText } from './dom.js';
 /** @typedef {import('../session/session.js').Part} Part */
 /** @typedef {import('../session/motion.js').Vec3} Vec3 */
 
+/** Other way or not, and how far beside the point, mm. @type {Array<[boolean, number]>} */
+const TRIES = [[false, 0.05], [false, -0.05], [false, 0.5], [false, -0.5], [true, 0], [true, 0.5], [true, -0.5], [false, 2], [false, -2], [false, 6], [false, -6], [false, 15], [false, -15]];
 const COLOURS = ['#5d9fd6', '#d9a45a'];
 
 export class SectionDrawing {
@@ -42,14 +44,17 @@ export class SectionDrawing {
     if (this.#again && this.#clash) await this.show(this.#clash);
   }
 
-  /** Across the axis of a round face of the pair, where one is named, or along it; both hold the normal. @param {Clash} clash @param {boolean} turned */
-  #planeOf(clash, turned) {
+  /** Across the axis of a round face of the pair, where one is named, or along it; both hold the normal. 
+   * @param {Clash} clash @param {boolean} turned @param {number} beside the point, mm */
+  #planeOf(clash, turned, beside) {
     const u = unit(clash.normal);
     const axis = this.#axisOf(clash) ?? across(u);
     /** @type {Vec3} the part of the axis across u */
     const flat = [axis[0] - dot(axis, u) * u[0], axis[1] - dot(axis, u) * u[1], axis[2] - dot(axis, u) * u[2]];
     const along = Math.hypot(...flat) > 0.1 ? unit(flat) : across(u);
-    return { origin: clash.point, u, v: turned ? along : cross(along, u) };
+    const v = turned ? along : cross(along, u);
+    const n = cross(u, v);
+    return { origin: /** @type {Vec3} */ (clash.point.map((x, i) => x + beside * n[i])), u, v };
   }
 
   /** @param {Clash} clash @returns {Vec3 | null} */
@@ -68,22 +73,23 @@ export class SectionDrawing {
     const meshes = await Promise.all(parts.map((part) => part && this.partsView.meshOf(part)));
     const names = parts.map((part) => part?.name ?? '?');
     this.canvas.setAttribute('aria-label', `Section through the clash of ${names[0]} (blue) and ${names[1]} (amber, hatched)`);
-    const cutBy = (/** @type {boolean} */ turned) => {
-      const plane = this.#planeOf(clash, turned);
+    const cutBy = (/** @type {boolean} */ turned, /** @type {number} */ beside) => {
+      const plane = this.#planeOf(clash, turned, beside);
       const cuts = parts.map((part, i) => {
         const mesh = meshes[i];
         return part && mesh ? slice(mesh, part, plane) : [];
       });
       return { turned, plane, cuts, apart: Math.max(...cuts.map(distance)) };
     };
-    // A plane that misses one of the two shows nothing of it: then the other way. A part that was stopped stands off the point.
-    let cut = cutBy(this.#turned);
+    // Overlaps end at rims, where a plane misses one of the two: then a little beside, or the other way. A part that was stopped stands off.
     let view = this.#frame(clash, 0);
-    if (cut.apart > view.height / 2) {
-      const other = cutBy(!this.#turned);
+    let cut = cutBy(this.#turned, 0);
+    for (const [turned, beside] of TRIES) {
+      if (cut.apart <= view.height / 2) break;
+      const other = cutBy(this.#turned !== turned, beside);
       if (other.apart < cut.apart) cut = other;
-      if (Number.isFinite(cut.apart)) view = this.#frame(clash, cut.apart);
     }
+    if (cut.apart > view.height / 2 && Number.isFinite(cut.apart)) view = this.#frame(clash, cut.apart);
     const { plane, cuts, turned } = cut;
     this.#paint(cuts.map((segments) => chains(segments)), view, plane, clash, parts);
     setText(this.caption, `${turned ? 'Along' : 'Across'}: ${names[0]} blue, ${names[1]} hatched; dashed: true surfaces`);

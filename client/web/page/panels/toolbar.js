@@ -31,7 +31,7 @@ export function makeToolbar({ session, choice, commands, section, mover, showAll
   }
 
   function toggleSection() {
-    section.bounds = partsView.boundsOf(session.parts.values()) ?? section.bounds;
+    section.bounds = partsView.bounds();
     section.set(!section.on);
   }
 

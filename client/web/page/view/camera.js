@@ -4,6 +4,8 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const FLIGHT_MS = 450;
 const TELL_MS = 150;
+/** Room about what is shown. */
+const MARGIN = 1.1;
 
 /** From where, seen from the target. @type {Record<string, [number, number, number]>} */
 const SIDES = {
@@ -66,28 +68,24 @@ export class Camera {
     return s < 1;
   }
 
-  /** So that the box fills the view. @param {THREE.Box3} box @param {string} [side] of SIDES; else as now @param {boolean} [atOnce] */
-  fit(box, side, atOnce) {
+  /** So that these boxes fill the view. @param {THREE.Box3[]} boxes @param {string} [side] of SIDES; else as now @param {boolean} [atOnce] */
+  fit(boxes, side, atOnce) {
     const { camera } = this.stage;
-    const target = box.getCenter(new THREE.Vector3());
+    const whole = boxes.reduce((sum, box) => sum.union(box), new THREE.Box3());
+    const target = whole.getCenter(new THREE.Vector3());
     const back = side ? new THREE.Vector3(...SIDES[side]) : camera.position.clone().sub(this.target);
     back.normalize();
     const half = THREE.MathUtils.degToRad(camera.fov / 2);
-    // The corners of the box, seen along the way of the eye: the farthest that one of them asks for.
+    // The corners of the boxes as the eye will see them: the farthest that one of them asks for.
     const view = new THREE.Matrix4().lookAt(back, new THREE.Vector3(), camera.up).invert();
     let distance = 1;
-    for (let corner = 0; corner < 8; ++corner) {
-      const at = new THREE.Vector3(
-        corner & 1 ? box.max.x : box.min.x,
-        corner & 2 ? box.max.y : box.min.y,
-        corner & 4 ? box.max.z : box.min.z,
-      );
+    for (const at of boxes.flatMap(cornersOf)) {
       at.sub(target).applyMatrix4(view);
       const high = Math.abs(at.y) / Math.tan(half);
       const wide = Math.abs(at.x) / (Math.tan(half) * camera.aspect);
-      distance = Math.max(distance, at.z + 1.12 * Math.max(high, wide));
+      distance = Math.max(distance, at.z + MARGIN * Math.max(high, wide));
     }
-    this.setDepth(box);
+    this.setDepth(whole);
     this.flyTo(target.clone().addScaledVector(back, distance), target, atOnce);
   }
 
@@ -137,4 +135,9 @@ export class Camera {
     const { camera } = this.stage;
     this.tell({ p: camera.position.toArray(), target: this.target.toArray(), up: camera.up.toArray() });
   }
+}
+
+/** @param {THREE.Box3} box */
+function cornersOf({ min, max }) {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((k) => new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
 }

@@ -115,8 +115,8 @@ export class ClashMarks {
   }
 
   #keepSizes() {
-    const { camera, canvas } = this.stage;
-    const scale = (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * MARK_PIXELS) / canvas.clientHeight;
+    const { camera, height } = this.stage;
+    const scale = (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * MARK_PIXELS) / height;
     for (const sprite of this.group.children) {
       const chosen = sprite.userData.clash === this.chosen?.clash;
       sprite.scale.setScalar(scale * sprite.userData.size * (chosen ? 1.3 : 1));

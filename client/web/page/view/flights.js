@@ -9,19 +9,15 @@ import { across, cross, unit } from '../session/slice.js';
 export function makeFlights({ session, choice, camera, partsView, section }) {
   /** @param {string} [side] @param {boolean} [atOnce] */
   function showAll(side, atOnce) {
-    const box = partsView.boundsOf(session.parts.values());
-    if (!box) return;
-    section.bounds = box;
-    camera.fit(box, side, atOnce);
+    const boxes = partsView.boxesOf(session.parts.values());
+    if (boxes.length > 0) camera.fit(boxes, side, atOnce);
   }
 
   /** @param {number} id */
   function showPart(id) {
     const part = session.parts.get(id);
-    const box = part && partsView.boundsOf([part]);
-    if (!box) return;
-    box.expandByScalar(part.radius * 0.35);
-    camera.fit(box);
+    const boxes = part ? partsView.boxesOf([part]) : [];
+    if (part && boxes.length > 0) camera.fit(boxes.map((box) => box.expandByScalar(part.radius * 0.35)));
   }
 
   /** So near that the smaller of the two parts fills the view, from where its point is not looked at along the face. @param {number} id */
@@ -47,7 +43,7 @@ export function makeFlights({ session, choice, camera, partsView, section }) {
     const side = cross(u, /** @type {[number, number, number]} */ (back));
     const n = Math.hypot(...side) > 0.05 ? unit(cross(unit(side), u)) : across(u);
     // What is before the plane, on the side of the eye, goes: three keeps the side of the normal.
-    section.bounds = partsView.boundsOf(session.parts.values()) ?? section.bounds;
+    section.bounds = partsView.bounds();
     section.cutAt(new THREE.Vector3(...clash.point), new THREE.Vector3(...n).negate());
   }
 

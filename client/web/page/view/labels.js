@@ -44,7 +44,7 @@ export class Labels {
       ...this.#held(),
       ...notes.map((note, i) => ({ key: `n${i}`, at: note.at, text: note.text, kind: 'note', colour: '' })),
     ];
-    const { clientWidth, clientHeight } = this.stage.canvas;
+    const { width, height } = this.stage;
     keepRows(
       this.layer,
       words,
@@ -59,8 +59,8 @@ export class Labels {
         row.style.setProperty('--who', word.colour);
         // Within the view: estimated from the text, so that nothing is measured and laid out in a picture.
         const half = word.text.length * 3.4 + 10;
-        const left = Math.min(clientWidth - half, Math.max(half, x));
-        const top = Math.min(clientHeight - 14, Math.max(14, y));
+        const left = Math.min(width - half, Math.max(half, x));
+        const top = Math.min(height - 14, Math.max(14, y));
         row.style.transform = `translate(${left.toFixed(1)}px, ${top.toFixed(1)}px) translate(-50%, -50%)`;
       },
     );

@@ -130,16 +130,15 @@ export class PartsView {
     return hits.find(({ point }) => this.looks.clipping.every((plane) => plane.distanceToPoint(point) >= 0)) ?? null;
   }
 
-  /** Sphere about these parts. @param {Iterable<Part>} parts */
-  boundsOf(parts) {
-    const box = new THREE.Box3();
-    for (const part of parts) {
-      const shown = this.shown.get(part.id);
-      if (!shown) continue;
-      const own = shown.faces.geometry.boundingBox?.clone().applyMatrix4(shown.faces.matrixWorld);
-      if (own) box.union(own);
-    }
-    return box.isEmpty() ? null : box;
+  /** Boxes of these parts as they stand, of those that are shown. @param {Iterable<Part>} parts @returns {THREE.Box3[]} */
+  boxesOf(parts) {
+    const shown = [...parts].flatMap((part) => this.shown.get(part.id) ?? []);
+    return shown.flatMap(({ faces }) => faces.geometry.boundingBox?.clone().applyMatrix4(faces.matrixWorld) ?? []);
+  }
+
+  /** Box of all parts. */
+  bounds() {
+    return this.boxesOf([...this.shown.values()].map(({ part }) => part)).reduce((sum, box) => sum.union(box), new THREE.Box3());
   }
 
   /** @param {Part} part @returns {Promise<import('../session/frames.js').Mesh | null>} */

@@ -6,6 +6,9 @@ export class Stage {
   /** @type {Array<(now: number) => boolean | void>} before a picture; true: and again after it */
   #before = [];
   #asked = false;
+  /** Of the view, in pixels of the page; kept, since to ask for it may lay out the page. */
+  width = 1;
+  height = 1;
 
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
@@ -36,6 +39,7 @@ export class Stage {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
+    Object.assign(this, { width, height });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
@@ -69,8 +73,8 @@ export class Stage {
   onScreen(point) {
     point.project(this.camera);
     return {
-      x: ((point.x + 1) / 2) * this.canvas.clientWidth,
-      y: ((1 - point.y) / 2) * this.canvas.clientHeight,
+      x: ((point.x + 1) / 2) * this.width,
+      y: ((1 - point.y) / 2) * this.height,
       seen: point.z < 1 && Math.abs(point.x) < 1.05 && Math.abs(point.y) < 1.05,
     };
   }
@@ -78,7 +82,7 @@ export class Stage {
   /** How many mm one pixel is at this point. @param {THREE.Vector3} point */
   pixelSize(point) {
     const distance = this.camera.position.distanceTo(point);
-    return (2 * distance * Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2))) / this.canvas.clientHeight;
+    return (2 * distance * Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2))) / this.height;
   }
 
   /** @param {PointerEvent | MouseEvent} event @returns {THREE.Raycaster} */
