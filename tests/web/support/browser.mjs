@@ -27,9 +27,10 @@ export async function openBrowser() {
 }
 
 /** A page of its own profile. What it complains of is collected. @param {import('playwright-core').Browser} browser */
-export async function openPage(browser, address, { scheme = 'dark', name } = {}) {
+export async function openPage(browser, address, { scheme = 'dark', name, first } = {}) {
   const context = await browser.newContext({ viewport: VIEW, colorScheme: scheme, reducedMotion: 'reduce' });
   const page = await context.newPage();
+  if (first) await page.addInitScript(first);
   page.complaints = [];
   page.on('pageerror', (error) => page.complaints.push(`${error}`));
   page.on('console', (message) => message.type() === 'error' && page.complaints.push(message.text()));

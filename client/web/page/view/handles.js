@@ -29,7 +29,6 @@ export class Handles {
     this.controls = new TransformControls(stage.camera, stage.canvas);
     this.controls.setSpace('world');
     this.controls.setSize(0.85);
-    stage.scene.add(this.controls.getHelper());
     this.#lag = new THREE.Line(
       new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]),
       new THREE.LineDashedMaterial({ color: 0xf0892e, dashSize: 2, gapSize: 1.5, depthTest: false }),
@@ -51,8 +50,14 @@ export class Handles {
     this.controls.setMode(mode);
     if (part === this.part) return;
     this.part = part;
-    if (part) this.controls.attach(this.#standIn);
-    else this.controls.detach();
+    // In the scene only while there is a part to move: it works out all its handles in each picture.
+    if (part) {
+      this.controls.attach(this.#standIn);
+      this.stage.scene.add(this.controls.getHelper());
+    } else {
+      this.controls.detach();
+      this.stage.scene.remove(this.controls.getHelper());
+    }
     this.dragging = false;
     this.follow();
   }

@@ -61,7 +61,6 @@ export class Stage {
 
   /** @param {number} now */
   #picture(now) {
-    performance.mark('picture');
     this.#asked = false;
     let again = false;
     for (const what of this.#before) again = what(now) === true || again;
