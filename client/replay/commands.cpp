@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "client/replay/output.h"
 #include "common/io/build_info.h"
 #include "common/io/replay.h"
 #include "common/io/report_json.h"
@@ -17,25 +18,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-int say(const Error& error) {
-  std::cerr << "mortise-replay: " << error.text << '\n';
-  return exit_code_of(error.code);
-}
-
 // A log that cannot be opened or read is bad input, whatever the reason.
-int say_bad_log(const Error& error) {
-  say(error);
-  return kExitBadInput;
-}
-
-void print(const ordered_json& document) {
-  std::cout << document.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
-}
-
-void print_notes(const SessionLog& log) {
-  if (!log.complete) std::cerr << "the log was not closed: its tail is missing\n";
-  for (const std::string& note : log.notes) std::cerr << note << '\n';
-}
+int say_bad_log(const Error& error) { return say(error, kExitBadInput); }
 
 ordered_json gaps_of(const SessionLog& log) {
   ordered_json gaps = ordered_json::array();
@@ -197,8 +181,9 @@ int run_info(const InfoOptions& options) {
 int run_recover(const RecoverOptions& options) {
   const auto recovery = recover_session_log(options.log, options.out);
   if (!recovery)
-    return recovery.error().code == Code::kRuntime ? say(recovery.error())
-                                                   : say_bad_log(recovery.error());
+    return recovery.error().code == Code::kRuntime
+               ? say(recovery.error(), exit_code_of(Code::kRuntime))
+               : say_bad_log(recovery.error());
   if (options.json) {
     print({{"log", options.log.string()},
            {"out", options.out.string()},

@@ -98,52 +98,86 @@ Result<LoadedScene> scene_of(const SessionLog& log) {
   return scene;
 }
 
-Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
-                            const OnReplayedTick& on_tick) {
-  Scratch scratch(threads);
-  ReplayReport report;
-  report.ticks_logged = log.ticks.size();
-  report.same_build = log.build_fingerprint == build_fingerprint();
-  report.verified_to_tick = world.tick;
+namespace {
 
+// Steps through a log: the record's tick, and those before it that had no input, for which `logged`
+// is null. visit says whether to go on. Returns why the log ends before its last tick, or nothing.
+Result<std::string> walk(World& world, const SessionLog& log, int threads,
+                         const std::function<bool(const ReplayedTick&)>& visit) {
+  Scratch scratch(threads);
   auto gap = log.gaps.begin();
   for (const TickRecord& record : log.ticks) {
     // 1. What was lost before this tick cannot be computed, nor anything after it.
-    if (gap != log.gaps.end() && gap->until_tick == record.tick) {
-      report.not_verifiable = "ticks between " + std::to_string(gap->after_tick) + " and " +
-                              std::to_string(gap->until_tick) + " are missing: " + gap->reason;
-      return report;
-    }
+    if (gap != log.gaps.end() && gap->until_tick == record.tick)
+      return "ticks between " + std::to_string(gap->after_tick) + " and " +
+             std::to_string(gap->until_tick) + " are missing: " + gap->reason;
     if (record.tick <= world.tick || record.tick - world.tick > kMostIdleTicks)
       return fail(Code::kInvalidInput, "tick " + std::to_string(record.tick) + " follows tick " +
                                            std::to_string(world.tick) + ": the log is damaged");
-    const auto differs = [&](std::uint64_t tick, std::string what) {
-      if (what.empty()) return false;
-      report.difference = ReplayDifference{tick, std::move(what)};
-      return true;
-    };
     // 2. Ticks in between had no input; they still count for how long a clash lasts.
     while (world.tick + 1 < record.tick) {
       const StepReport idle = step(world, {}, scratch);
-      ++report.idle_ticks;
-      if (on_tick) on_tick({world, idle, nullptr});
-      if (differs(idle.tick, compare_events({}, idle))) return report;
+      if (!visit({world, idle, nullptr})) return std::string();
     }
     // 3. The tick itself.
     for (const Decision& decision : record.decisions) apply_decision(world, decision);
     const StepReport computed = step(world, record.increments, scratch);
-    report.increments += record.increments.size();
-    report.decisions += record.decisions.size();
-    report.events_compared += record.report.events.size();
-    ++report.ticks_compared;
-    if (on_tick) on_tick({world, computed, &record});
-    if (differs(record.tick, compare_refusals(record.report, computed)) ||
-        differs(record.tick, compare_events(record.report, computed)) ||
-        differs(record.tick, compare_hash(record.report, computed, world)))
-      return report;
-    report.verified_to_tick = record.tick;
+    if (!visit({world, computed, &record})) return std::string();
   }
+  return std::string();
+}
+
+// Nothing where they agree.
+std::string difference_of(const ReplayedTick& tick) {
+  if (tick.logged == nullptr) return compare_events({}, tick.computed);
+  const StepReport& logged = tick.logged->report;
+  std::string what = compare_refusals(logged, tick.computed);
+  if (what.empty()) what = compare_events(logged, tick.computed);
+  if (what.empty()) what = compare_hash(logged, tick.computed, tick.world);
+  return what;
+}
+
+}  // namespace
+
+Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
+                            const OnReplayedTick& on_tick) {
+  ReplayReport report;
+  report.ticks_logged = log.ticks.size();
+  report.same_build = log.build_fingerprint == build_fingerprint();
+  report.verified_to_tick = world.tick;
+  const auto end = walk(world, log, threads, [&](const ReplayedTick& tick) {
+    if (tick.logged == nullptr) {
+      ++report.idle_ticks;
+    } else {
+      report.increments += tick.logged->increments.size();
+      report.decisions += tick.logged->decisions.size();
+      report.events_compared += tick.logged->report.events.size();
+      ++report.ticks_compared;
+    }
+    if (on_tick) on_tick(tick);
+    if (std::string what = difference_of(tick); !what.empty()) {
+      report.difference = ReplayDifference{tick.computed.tick, std::move(what)};
+      return false;
+    }
+    if (tick.logged != nullptr) report.verified_to_tick = tick.computed.tick;
+    return true;
+  });
+  if (!end) return end.error();
+  report.not_verifiable = *end;
   return report;
+}
+
+Result<Recomputation> recompute(World& world, const SessionLog& log, int threads,
+                                const OnReplayedTick& on_tick) {
+  Recomputation done;
+  const auto end = walk(world, log, threads, [&](const ReplayedTick& tick) {
+    ++done.ticks;
+    on_tick(tick);
+    return true;
+  });
+  if (!end) return end.error();
+  done.stopped_early = *end;
+  return done;
 }
 
 Result<ReplayReport> verify(const SessionLog& log, int threads,

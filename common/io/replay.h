@@ -46,7 +46,16 @@ using OnReplayedTick = std::function<void(const ReplayedTick&)>;
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
                             const OnReplayedTick& on_tick = {});
 
-/// The same in a world of its own. `on_tick` sees every computed tick, idle ones included, and the
+/// The same without comparing: what the log's decisions and increments come to in a world that is
+/// not as it was (another policy, tolerance, mesh). Stops at the first gap, and says so.
+struct Recomputation {
+  std::uint64_t ticks = 0;    ///< idle ones included
+  std::string stopped_early;  ///< why ticks of the log were left out, or empty
+};
+Result<Recomputation> recompute(World& world, const SessionLog& log, int threads,
+                                const OnReplayedTick& on_tick);
+
+/// Replay in a world of its own. `on_tick` sees every computed tick, idle ones included, and the
 /// world after it.
 Result<ReplayReport> verify(
     const SessionLog& log, int threads,

@@ -101,5 +101,26 @@ TEST_F(ReplayProgram, RecoversALogWithoutTail) {
       << "an existing file is never overwritten";
 }
 
+// A sweep in two shards, put together, is the sweep.
+TEST_F(ReplayProgram, ShardsOfASweepComeTogether) {
+  const TemporaryFile file("sweep.mcap"), first("first.json"), second("second.json");
+  ASSERT_TRUE(test::write_log(*session_, file.path()));
+  const std::string sweep =
+      "whatif --json --sweep 'policy = [stop, slide, report]' " + quoted(file);
+  const Outcome whole = run(sweep);
+  ASSERT_EQ(whole.exit_code, 0) << whole.out;
+  ASSERT_EQ(whole.document()["variants"].size(), 3U);
+  EXPECT_EQ(whole.document()["variants"][0]["changed"].size(), 0U);
+  std::ofstream(first.path()) << run(sweep + " --shard 1/2").document();
+  std::ofstream(second.path()) << run(sweep + " --shard 2/2").document();
+  const Outcome merged = run("merge " + quoted(second) + " " + quoted(first));
+  ASSERT_EQ(merged.exit_code, 0) << merged.out;
+  EXPECT_EQ(merged.document(), whole.document());
+  EXPECT_EQ(run("merge " + quoted(first)).exit_code, 3);
+  EXPECT_EQ(run("merge " + quoted(file)).exit_code, 3);
+  EXPECT_EQ(run(sweep + " --shard 3/2").exit_code, 2);
+  EXPECT_EQ(run("whatif --set 'policy = bounce' " + quoted(file)).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace mortise

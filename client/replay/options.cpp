@@ -1,0 +1,115 @@
+#include "client/replay/options.h"
+
+#include <CLI/CLI.hpp>
+#include <thread>
+
+#include "client/replay/commands.h"
+#include "common/base/result.h"
+
+namespace mortise {
+namespace {
+
+constexpr const char* kJson = "one JSON document on stdout";
+constexpr const char* kChanges = R"(
+Changes:
+  policy = report                            stop, slide, report
+  tolerance PART[.FEATURE] = ±0.02           as behind tolerance: or iso: of a scenario; empty: nothing
+  fit PART[.FEATURE], PART[.FEATURE] = H7/p6
+  exclude PART, PART = reason                include PART, PART
+  mesh PART = FILE                           numbers in mm
+A sweep has values in brackets: 'tolerance peg = ±[0.01, 0.02]', 'tolerance peg = ±[0.01..0.05/5]'.)";
+
+void add_verify(CLI::App& app, int& code) {
+  auto options = std::make_shared<VerifyOptions>();
+  auto* command = app.add_subcommand(
+      "verify", "compute the session again and compare every tick; exit 4 at the first difference");
+  command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("--threads", options->threads, "threads; the result does not depend on it")
+      ->check(CLI::Range(1, 256));
+  command->add_flag("--json", options->json, kJson);
+  command->callback([options, &code] { code = run_verify(*options); });
+}
+
+void add_report(CLI::App& app, int& code) {
+  auto options = std::make_shared<VerifyOptions>();
+  auto* command = app.add_subcommand(
+      "report", "verify, and print the statistics of the session: collisions by pair and user");
+  command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("--threads", options->threads, "as with verify")->check(CLI::Range(1, 256));
+  command->add_flag("--json", options->json, kJson);
+  command->callback([options, &code] { code = run_report(*options); });
+}
+
+void add_info(CLI::App& app, int& code) {
+  auto options = std::make_shared<InfoOptions>();
+  auto* command = app.add_subcommand("info", "what a log holds, and what it lost");
+  command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_flag("--json", options->json, kJson);
+  command->callback([options, &code] { code = run_info(*options); });
+}
+
+void add_recover(CLI::App& app, int& code) {
+  auto options = std::make_shared<RecoverOptions>();
+  auto* command = app.add_subcommand("recover", "copy all that is whole into a new, closed log");
+  command->add_option("log", options->log, "damaged session log")->required();
+  command->add_option("--out", options->out, "new log; must not exist")->required();
+  command->add_flag("--json", options->json, kJson);
+  command->callback([options, &code] { code = run_recover(*options); });
+}
+
+void add_what_if(CLI::App& app, int& code) {
+  auto options = std::make_shared<WhatIfOptions>();
+  auto* command = app.add_subcommand(
+      "whatif", "compute the session with changes: which clashes have another class, and why");
+  command->footer(kChanges);
+  command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("--set", options->set, "a change; may be given again")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--sweep", options->sweep,
+                   "a change with values in brackets; again: each with each")
+      ->allow_extra_args(false);
+  command->add_option("--jobs", options->jobs, "variants computed at a time; default: the cores")
+      ->default_val(std::max(1U, std::thread::hardware_concurrency()))
+      ->check(CLI::Range(1, 256));
+  command->add_option_function<std::string>(
+      "--shard",
+      [options](const std::string& text) {
+        char rest = 0;
+        if (std::sscanf(text.c_str(), "%d/%d%c", &options->shard, &options->shards, &rest) != 2 ||
+            options->shard < 1 || options->shard > options->shards)
+          throw CLI::ValidationError("--shard", text + ": I/N, I from 1 to N");
+      },
+      "I/N: of all variants only every N-th, for several machines; see merge");
+  command->add_flag("--json", options->json, kJson);
+  command->callback([options, &code] { code = run_what_if(*options); });
+}
+
+void add_merge(CLI::App& app, int& code) {
+  auto options = std::make_shared<MergeOptions>();
+  auto* command = app.add_subcommand("merge", "put the JSON of all shards of one sweep together");
+  command->add_option("files", options->files, "documents of whatif --json --shard")->required();
+  command->callback([options, &code] { code = run_merge(*options); });
+}
+
+}  // namespace
+
+int run_replay_program(int argc, char** argv) {
+  CLI::App app("mortise-replay: computes recorded sessions again, and looks into their logs");
+  app.require_subcommand(1);
+  int code = kExitOk;
+  add_verify(app, code);
+  add_report(app, code);
+  add_info(app, code);
+  add_recover(app, code);
+  add_what_if(app, code);
+  add_merge(app, code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return code;
+}
+
+}  // namespace mortise

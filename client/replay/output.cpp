@@ -1,0 +1,21 @@
+#include "client/replay/output.h"
+
+#include <iostream>
+
+namespace mortise {
+
+int say(const Error& error, int exit_code) {
+  std::cerr << "mortise-replay: " << error.text << '\n';
+  return exit_code;
+}
+
+void print(const Json& document) {
+  std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+void print_notes(const SessionLog& log) {
+  if (!log.complete) std::cerr << "the log was not closed: its tail is missing\n";
+  for (const std::string& note : log.notes) std::cerr << note << '\n';
+}
+
+}  // namespace mortise

@@ -1,0 +1,15 @@
+#pragma once
+#include "common/base/result.h"
+#include "common/io/report_json.h"
+#include "common/io/session_log.h"
+
+namespace mortise {
+
+/// One line on stderr; returns the code.
+int say(const Error& error, int exit_code);
+/// One document on stdout.
+void print(const Json& document);
+/// What a log lacks, on stderr.
+void print_notes(const SessionLog& log);
+
+}  // namespace mortise

@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "client/replay/commands.h"
+#include "client/replay/output.h"
+#include "client/replay/what_if.h"
+#include "common/io/build_info.h"
+
+namespace mortise {
+namespace {
+
+// Every combination of the sweeps, each behind the fixed changes.
+Result<std::vector<std::vector<std::string>>> combinations(const WhatIfOptions& options) {
+  std::vector<std::vector<std::string>> all{options.set};
+  for (const std::string& sweep : options.sweep) {
+    const auto variants = variants_of(sweep);
+    if (!variants) return variants.error();
+    std::vector<std::vector<std::string>> grown;
+    for (const auto& changes : all)
+      for (const std::string& variant : *variants) {
+        grown.push_back(changes);
+        grown.back().push_back(variant);
+      }
+    all = std::move(grown);
+  }
+  return all;
+}
+
+Result<std::vector<Change>> read_changes(const std::vector<std::string>& texts) {
+  std::vector<Change> changes;
+  for (const std::string& text : texts) {
+    auto change = read_change(text);
+    if (!change) return change.error();
+    changes.push_back(std::move(*change));
+  }
+  return changes;
+}
+
+void compute(const SessionLog& log, Variant& variant) {
+  const auto changes = read_changes(variant.changes);
+  auto clashes = changes ? clashes_with(log, *changes) : Result<Clashes>(changes.error());
+  if (clashes)
+    variant.clashes = std::move(*clashes);
+  else
+    variant.error = clashes.error().text;
+}
+
+void compute_all(const SessionLog& log, std::vector<Variant>& variants, int jobs) {
+  std::atomic<std::size_t> next{0}, done{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < variants.size(); i = next++) {
+      compute(log, variants[i]);
+      if (variants.size() > 1)
+        std::cerr << "variant " + std::to_string(++done) + " of " +
+                         std::to_string(variants.size()) + "\n";
+    }
+  };
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < jobs && static_cast<std::size_t>(i) < variants.size(); ++i)
+    helpers.emplace_back(work);
+  work();
+}
+
+Json document_of(const WhatIfOptions& options, const SessionLog& log, const Clashes& before,
+                 const std::vector<Variant>& variants, std::size_t all) {
+  Json document = {{"log", options.log.string()},
+                   {"session", log.session},
+                   {"engine_version", log.engine_version},
+                   {"build_fingerprint", build_fingerprint()},
+                   {"set", options.set},
+                   {"sweep", options.sweep},
+                   {"variants_in_all", all},
+                   {"before", json_of(Variant{0, {}, before, ""}, before)},
+                   {"variants", Json::array()}};
+  document["before"].erase("index");
+  document["before"].erase("changed");
+  for (const Variant& variant : variants) document["variants"].push_back(json_of(variant, before));
+  return document;
+}
+
+}  // namespace
+
+int run_what_if(const WhatIfOptions& options) {
+  const auto all = combinations(options);
+  if (!all) return say(all.error(), kExitUsage);
+  const auto log = read_session_log(options.log);
+  if (!log) return say(log.error(), kExitBadInput);
+  print_notes(*log);
+  std::vector<Variant> variants;
+  for (std::size_t i = 0; i < all->size(); ++i)
+    if (i % static_cast<std::size_t>(options.shards) == static_cast<std::size_t>(options.shard - 1))
+      variants.push_back({i, (*all)[i], {}, ""});
+  // Before is what this program computes, so that no difference is one of builds.
+  const auto before = clashes_with(*log, {});
+  if (!before) return say(before.error(), kExitBadInput);
+  compute_all(*log, variants, options.jobs);
+  if (options.json)
+    print(document_of(options, *log, *before, variants, all->size()));
+  else
+    for (const Variant& variant : variants) std::cout << text_of(variant, *before);
+  for (const Variant& variant : variants)
+    if (!variant.error.empty()) return say(fail(Code::kInvalidInput, variant.error), kExitUsage);
+  return kExitOk;
+}
+
+int run_merge(const MergeOptions& options) {
+  Json merged;
+  std::vector<Json> variants;
+  for (const auto& file : options.files) {
+    std::ifstream in(file);
+    const Json shard = Json::parse(in, nullptr, false);
+    if (!in || shard.is_discarded() || !shard.is_object() || !shard.contains("variants"))
+      return say(fail(Code::kInvalidInput, file.string() + ": not the --json of a whatif"),
+                 kExitBadInput);
+    if (merged.is_null()) merged = shard;
+    for (const char* key : {"session", "build_fingerprint", "set", "sweep", "before"})
+      if (merged[key] != shard[key])
+        return say(fail(Code::kInvalidInput, file.string() + ": another " + key + " than in " +
+                                                 options.files.front().string()),
+                   kExitBadInput);
+    for (const Json& variant : shard["variants"]) variants.push_back(variant);
+  }
+  std::sort(variants.begin(), variants.end(),
+            [](const Json& x, const Json& y) { return x["index"] < y["index"]; });
+  const auto wanted = merged["variants_in_all"].get<std::size_t>();
+  for (std::size_t i = 0; i < std::max(wanted, variants.size()); ++i)
+    if (i >= variants.size() || variants[i]["index"] != i)
+      return say(fail(Code::kInvalidInput, "variant " + std::to_string(i) + " of " +
+                                               std::to_string(wanted) +
+                                               " is missing or there twice: are all shards here?"),
+                 kExitBadInput);
+  merged["variants"] = variants;
+  print(merged);
+  return kExitOk;
+}
+
+}  // namespace mortise
