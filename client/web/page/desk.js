@@ -57,7 +57,7 @@ export function makeDesk() {
   const heat = new Heat(stage, partsView, session);
   const section = new SectionPlane(partsView);
   const handles = new Handles(stage, camera, (part, increment) => mover.push(part.id, increment));
-  const labels = new Labels(stage, session, byId('labels'));
+  const labels = new Labels(stage, session, partsView, byId('labels'));
   labels.sources.push(() => marks.notes);
   const flights = makeFlights({ session, choice, camera, partsView, section });
   return { session, choice, line, connection, send, commands, mover, stage, partsView, camera, marks, heat, section, handles, labels, say, ...flights };

@@ -46,9 +46,10 @@ export class LiveSession {
     this.server = await this.start('server', [file, '--session', this.name, '--domain', `${this.domain}`, ...more]);
   }
 
-  /** @param {string[]} [more] @returns the two addresses */
-  async open(more = []) {
-    const args = ['--session', this.name, '--domain', `${this.domain}`, '--port', '0', '--page', join(root, 'client/web/page'), ...more];
+  /** @param {string} [log] a recorded session, from the root of the project; else the running one @returns the two addresses */
+  async open(log) {
+    const from = log ? ['--log', join(root, log)] : ['--session', this.name, '--domain', `${this.domain}`];
+    const args = [...from, '--port', '0', '--page', join(root, 'client/web/page')];
     this.gateway = await this.start('web', args, (text) => {
       const designer = /^designer (http\S+)$/m.exec(text);
       const observer = /^observer (http\S+)$/m.exec(text);

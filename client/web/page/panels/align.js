@@ -1,8 +1,8 @@
 // Align: a feature of the held part, one of another part, and what they keep to each other. Picked in the view or from lists.
 import * as THREE from 'three';
-import { conjugate, placed, rotate } from '../session/motion.js';
+import { inPart, placed } from '../session/motion.js';
 import { plain } from '../session/words.js';
-import { offSurface } from '../view/heat.js';
+import { offSurface } from '../session/surfaces.js';
 import { byId, el, setText } from './dom.js';
 
 /** @typedef {import('../session/session.js').Part} Part */
@@ -93,7 +93,7 @@ export function makeAlign({ session, choice, commands, labels, stage, say }) {
 
   /** The feature of the part whose surface is nearest to the hit. @param {Part} part @param {THREE.Vector3} hit */
   function featureAt(part, hit) {
-    const at = rotate(conjugate(part.q), [hit.x - part.p[0], hit.y - part.p[1], hit.z - part.p[2]]);
+    const at = inPart(part, hit.toArray());
     let best = null;
     let nearest = Math.max(0.3, part.radius * 0.02);
     for (const feature of featuresOf(part.id)) {

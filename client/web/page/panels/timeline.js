@@ -2,6 +2,7 @@
 import { plain, rankOf } from '../session/words.js';
 import { byId, el, setText } from './dom.js';
 import { classMark, icon } from './icons.js';
+import { say } from './said.js';
 
 /** @param {import('../session/session.js').Session} session @param {(message: object) => boolean} send */
 export function makeTimeline(session, send) {
@@ -46,6 +47,7 @@ export function makeTimeline(session, send) {
   }
 
   session.on('timeline', (line) => {
+    for (const note of line.notes ?? []) say(note);
     box.hidden = false;
     slider.min = `${line.first_tick}`;
     slider.max = `${line.last_tick}`;

@@ -56,6 +56,11 @@ export function placed(pose, point) {
   return [pose.p[0] + turned[0], pose.p[1] + turned[1], pose.p[2] + turned[2]];
 }
 
+/** @param {{p: Vec3, q: Quat}} pose @param {Readonly<Vec3>} point of the world @returns {Vec3} in the frame of the part */
+export function inPart(pose, point) {
+  return rotate(conjugate(pose.q), [point[0] - pose.p[0], point[1] - pose.p[1], point[2] - pose.p[2]]);
+}
+
 /**
  * First `first`, then `then`, as one increment. Both turn about the same reference point, which the first carries along:
  * so shifts add, and turns are composed.

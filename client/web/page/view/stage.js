@@ -27,7 +27,7 @@ export class Stage {
 
   /** Sky and ground, and two lamps that go with the eye: nothing that is looked at is ever black. */
   #light() {
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8f99, 1.25));
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xa9adb5, 1.55));
     const key = new THREE.DirectionalLight(0xffffff, 1.9);
     key.position.set(-0.5, 0.8, 0.9);
     const rim = new THREE.DirectionalLight(0xcfe0ff, 0.55);

@@ -1,0 +1,77 @@
+// A recorded session in the same page: a timeline, forwards and backwards, alone.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openBrowser, openPage } from '../support/browser.mjs';
+import { PATIENCE, choose, position, whenListed } from '../support/people.mjs';
+import { LiveSession } from '../support/session.mjs';
+
+const session = new LiveSession();
+let browser, page;
+
+before(async () => {
+  const { designer } = await session.open('tests/golden/thin_wall.mcap');
+  browser = await openBrowser();
+  page = await openPage(browser, designer);
+}, { timeout: 60_000 });
+
+after(async () => {
+  await browser?.close();
+  await session.end();
+});
+
+const tick = () => page.evaluate(() => Number(/** @type {HTMLInputElement} */ (document.querySelector('#timeline input')).value));
+
+async function seek(to) {
+  await page.evaluate((n) => {
+    const slider = /** @type {HTMLInputElement} */ (document.querySelector('#timeline input'));
+    slider.value = `${n}`;
+    slider.dispatchEvent(new Event('input'));
+    slider.dispatchEvent(new Event('change'));
+  }, to);
+}
+
+test('a log opens with a timeline and marks, and asks nobody to join', async () => {
+  await page.locator('#timeline:not([hidden])').waitFor(PATIENCE);
+  await whenListed(page, 'parts', 'moving');
+  assert.equal(await page.locator('#join[open]').count(), 0);
+  assert.equal(await page.textContent('#line_text'), 'Replay');
+  assert.ok((await page.locator('#timeline .marks .mark').count()) >= 1);
+});
+
+test('parts and clashes are those of the moment', async () => {
+  await page.keyboard.press('Escape');
+  const moving = await page.evaluate(() => [...document.querySelectorAll('#parts > li')].find((li) => li.getAttribute('aria-label')?.includes('moving'))?.querySelector('.grow')?.textContent ?? '');
+  await choose(page, moving);
+  await seek(0);
+  await page.waitForFunction(() => document.querySelector('#clashes')?.textContent?.includes('No clash is open'), undefined, PATIENCE);
+  await page.waitForTimeout(500);
+  const begin = await position(page);
+  await seek(1e6);
+  await whenListed(page, 'clashes', 'real');
+  await page.waitForTimeout(500);
+  const end = await position(page);
+  assert.ok(Math.hypot(...end.map((x, i) => x - begin[i])) > 1, `${begin} and ${end}`);
+  await seek(0);
+  await page.waitForFunction(() => document.querySelector('#clashes')?.textContent?.includes('No clash is open'), undefined, PATIENCE);
+  await page.waitForTimeout(500);
+  assert.deepEqual(await position(page), begin);
+});
+
+test('it plays and pauses', async () => {
+  await page.getByLabel('Speed').selectOption('0.25');
+  await page.click('#timeline button[aria-label="Play"]');
+  await page.locator('#timeline button[aria-label="Pause"]').waitFor(PATIENCE);
+  const from = await tick();
+  await page.waitForTimeout(1500);
+  assert.ok((await tick()) > from);
+  await page.click('#timeline button[aria-label="Pause"]');
+  await page.locator('#timeline button[aria-label="Play"]').waitFor(PATIENCE);
+  await page.getByRole('button', { name: 'Clash ▸' }).click();
+  await whenListed(page, 'clashes', 'real');
+});
+
+test('nobody takes a part in hand', async () => {
+  assert.equal(await page.locator('#hand button:visible').count(), 0);
+  assert.equal(await page.isDisabled('#tool_move'), true);
+  assert.deepEqual(page.complaints, []);
+});
