@@ -32,8 +32,11 @@ void add_web(CLI::App& app, GatewayOptions& o) {
 WebCommandLine read_web_command_line(int argc, char** argv) {
   WebCommandLine line;
   WebOptions& o = line.options;
-  CLI::App app{"mortise-web: lets browsers take part in a session"};
-  app.add_option("--session", o.session, "Name of the session")->capture_default_str();
+  CLI::App app{"mortise-web: lets browsers take part in a session, or look at a log of one"};
+  auto* session =
+      app.add_option("--session", o.session, "Name of the session")->capture_default_str();
+  app.add_option("--log", o.log, "Show this session log (MCAP) with a timeline, without a server")
+      ->excludes(session);
   app.add_option("--domain", o.domain, "DDS domain")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();
@@ -51,8 +54,8 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
   app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
   app.footer(
       "Prints two addresses, one for designers and one for who only looks on; whoever has one may "
-      "come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 usage, 3 bad file (no page, "
-      "tokens, certificate).");
+      "come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 usage, 3 bad file (page, "
+      "tokens, certificate, log).");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

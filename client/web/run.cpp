@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "client/web/live_feed.h"
+#include "client/web/replay_feed.h"
 #include "idl/dds_channel.h"
 
 namespace mortise::web {
@@ -58,15 +59,23 @@ void say_addresses(const Gateway& gateway, const PageFiles& page) {
   }
 }
 
-}  // namespace
-
-int run_web(const WebOptions& options) {
-  StopSignal stop_signal;  // before any thread
+// Serves a feed until a signal comes.
+int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   auto page = PageFiles::open(options.page);
   if (!page) return fail_with(page.error());
   auto tokens = tokens_of(options);
   if (!tokens) return fail_with(tokens.error());
+  const auto say = [](const std::string& line) { spdlog::warn("{}", line); };
+  auto gateway = Gateway::open(options.gateway, *tokens, *page, feed, say);
+  if (!gateway) return fail_with(gateway.error());
+  say_addresses(**gateway, *page);
+  stop_signal.then_stop(**gateway);
+  (*gateway)->run();
+  spdlog::info("ended; {}", feed.statistics().dump());
+  return kExitOk;
+}
 
+int serve_session(const WebOptions& options, StopSignal& stop_signal) {
   DdsOptions dds;
   dds.session = options.session;
   dds.domain = options.domain;
@@ -77,17 +86,30 @@ int run_web(const WebOptions& options) {
   if (!channel) return fail_with(channel.error());
   Client client(**channel);
   LiveFeed feed(client, options.gateway.limits);
-  const auto say = [](const std::string& line) { spdlog::warn("{}", line); };
-  auto gateway = Gateway::open(options.gateway, *tokens, *page, feed, say);
-  if (!gateway) return fail_with(gateway.error());
-
-  say_addresses(**gateway, *page);
   spdlog::info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.session,
                options.domain);
-  stop_signal.then_stop(**gateway);
-  (*gateway)->run();
-  spdlog::info("ended; {}", feed.statistics().dump());
-  return kExitOk;
+  return serve(options, feed, stop_signal);
+}
+
+int serve_log(const WebOptions& options, StopSignal& stop_signal) {
+  spdlog::info("computing {} again", options.log);
+  auto recording = read_recording(options.log);
+  if (!recording) return fail_with(recording.error());
+  for (const std::string& note : recording->notes) spdlog::warn("{}: {}", options.log, note);
+  spdlog::info(
+      "{:.1f} s of session '{}' for browsers; Ctrl-C ends it",
+      static_cast<double>(recording->last_tick - recording->first_tick) / recording->tick_rate_hz,
+      recording->session);
+  ReplayFeed feed(std::move(*recording));
+  return serve(options, feed, stop_signal);
+}
+
+}  // namespace
+
+int run_web(const WebOptions& options) {
+  StopSignal stop_signal;  // before any thread
+  return options.log.empty() ? serve_session(options, stop_signal)
+                             : serve_log(options, stop_signal);
 }
 
 }  // namespace mortise::web

@@ -32,8 +32,9 @@ class Stream {
   bool has_tls() const { return tls_ != nullptr; }
 
   template <class Handler>
-  void async_handshake(Handler&& handler) {
-    tls_->async_handshake(asio::ssl::stream_base::server, std::forward<Handler>(handler));
+  void async_handshake(Handler&& handler,
+                       asio::ssl::stream_base::handshake_type as = asio::ssl::stream_base::server) {
+    tls_->async_handshake(as, std::forward<Handler>(handler));
   }
   template <class Buffers, class Handler>
   void async_read_some(const Buffers& buffers, Handler&& handler) {

@@ -37,10 +37,14 @@ const std::vector<Room> kRooms = {
     {"client/", {"common/messages/", "idl/"}},
     {"client/bot/", {"client/", "common/io/play_file"}},
     {"client/web/", {"client/"}},
+    {"client/web/recording", {"client/web/", "common/io/"}},
+    {"client/web/replay_feed", {"client/web/recording"}},
+    {"client/web/run", {"client/web/replay_feed"}},
     {"client/replay/", {"client/", "common/io/"}},
     {"client/tools/", {"client/", "common/io/"}},
     {"tests/",
-     {"server/", "client/bot/", "client/web/", "client/replay/", "client/tools/", "tests/"}},
+     {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/replay/",
+      "client/tools/", "tests/"}},
 };
 
 // A library that is named in some places only. Tests may use what they test against.
@@ -59,7 +63,10 @@ const std::vector<NamedHere>& named_here() {
       {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
       {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/"}},
-      {"Boost.Beast", std::regex("boost/(beast|asio).*"), {"client/web/", "server/metrics_endpoint."}},
+      {"Boost.Beast",
+       std::regex("boost/(beast|asio).*"),
+       {"client/web/", "server/metrics_endpoint.", "tests/network/page_client."}},
+      {"OpenSSL", std::regex("openssl/.*"), {"client/web/", "tests/network/page_client."}},
       {"Cairo", std::regex("cairo.*"), {"client/tools/judge/canvas.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
   };

@@ -1,0 +1,314 @@
+// Pages on a session: the real server loop and the real client over memory, pages without a socket.
+#include "client/web/live_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/io/scene_load.h"
+#include "common/messages/memory_channel.h"
+#include "common/messages/names.h"
+#include "server/tick_loop.h"
+#include "tests/unit/web/page.h"
+
+namespace mortise::web {
+namespace {
+
+constexpr const char* kScenario = R"(
+name: pages
+units: mm
+policy: report
+parts:
+  - name: plate
+    generator: {kind: plate_with_bore, bore: 20, facets: 32}
+  - name: peg
+    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
+    pose: {position: [0, 0, 60]}
+    moving: true
+  - name: block
+    generator: {kind: block, x: 4, y: 4, z: 4}
+    pose: {position: [100, 0, 0]}
+    moving: true
+)";
+constexpr PartId kPeg{2}, kBlock{3};
+
+struct PagesOnASession : testing::Test {
+  MemoryHub hub;
+  std::unique_ptr<ServerChannel> server;
+  std::unique_ptr<ClientChannel> channel;
+  LoadedScene scene;
+  SystemClock clock;
+  std::unique_ptr<TickLoop> loop;
+  std::unique_ptr<Client> client;
+  std::unique_ptr<LiveFeed> feed;
+  Page ann{Role::kDesigner}, bob{Role::kDesigner}, eve{Role::kObserver};
+  double now_s = 1.0;
+
+  void SetUp() override {
+    auto reading = read_scenario_text(kScenario, "pages.yaml");
+    ASSERT_TRUE(reading) << reading.error().text;
+    start_server(*reading);
+    channel = hub.open_client();
+    client = std::make_unique<Client>(*channel);
+    feed = std::make_unique<LiveFeed>(*client, Limits{});
+  }
+  void start_server(const ScenarioReading& reading) {
+    loop.reset();
+    auto loaded = load_scene(reading.scenario, default_meshes());
+    ASSERT_TRUE(loaded) << loaded.error().text;
+    scene = std::move(*loaded);
+    server = hub.open_server();
+    TickLoopOptions options;
+    options.session = "pages";
+    loop = std::make_unique<TickLoop>(scene.world, *server, clock, nullptr, options);
+    loop->open();
+  }
+  void turn(int times = 1) {
+    for (int i = 0; i < times; ++i) {
+      loop->tick();
+      now_s += 1.0 / 60.0;
+      feed->turn(now_s);
+      for (Page* page : {&ann, &bob, &eve})
+        if (page->reads) page->take(*feed);
+    }
+  }
+  void say(Page& page, const std::string& text) {
+    const auto message = read_page_message(text);
+    ASSERT_TRUE(message) << message.error().text;
+    const Status taken = feed->take(page, *message);
+    EXPECT_TRUE(taken) << taken.error().text;
+  }
+  void come(Page& page, const std::string& name) {
+    feed->enter(page);
+    say(page, R"({"type":"join","name":")" + name + R"("})");
+    turn(4);
+    ASSERT_EQ(page.last("joined")["name"], name);
+  }
+  void grab(Page& page, PartId part) {
+    say(page, R"({"type":"command","id":1,"do":"grab","part":)" + std::to_string(part.value) + "}");
+    turn(2);
+    ASSERT_EQ(page.last("reply")["done"], true) << page.last("reply");
+  }
+  void move(Page& page, PartId part, double z_mm) {
+    say(page, R"({"type":"move","part":)" + std::to_string(part.value) + R"(,"t":[0,0,)" +
+                  std::to_string(z_mm) + "]}");
+  }
+};
+
+TEST_F(PagesOnASession, SeeTheSceneThenEachOther) {
+  come(ann, "ann");
+  come(bob, "bob");
+  const Json told = ann.last("scene");
+  EXPECT_EQ(told["session"], "pages");
+  ASSERT_EQ(told["parts"].size(), 3u);
+  EXPECT_EQ(told["parts"][1]["name"], "peg");
+  EXPECT_EQ(told["parts"][1]["p"], Json::parse("[0.0, 0.0, 60.0]"));
+  EXPECT_EQ(ann.last("users")["users"].size(), 2u);
+  const MeshAnswer mesh = feed->mesh(told["parts"][1]["mesh"]);
+  ASSERT_EQ(mesh.state, MeshAnswer::State::kHere);
+  EXPECT_EQ(mesh.bytes->substr(0, 4), "MSH1");
+  EXPECT_EQ(feed->mesh("0123").state, MeshAnswer::State::kUnknown);
+
+  grab(ann, kPeg);
+  EXPECT_EQ(bob.seen[kPeg].holder.value, ann.last("joined")["user"]);
+  move(ann, kPeg, -2.5);
+  turn(2);
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p, Vec3(0, 0, 57.5));
+  EXPECT_EQ(ann.seen[kPeg].X_WP.p, Vec3(0, 0, 57.5));
+  EXPECT_EQ(bob.last("decisions")["decisions"][0]["kind"], "grab");
+}
+
+TEST_F(PagesOnASession, AreToldTheSameClashAndItsClass) {
+  come(ann, "ann");
+  come(bob, "bob");
+  grab(ann, kPeg);
+  move(ann, kPeg, -50.0);  // the facets cross, the round parts do not
+  turn(2);
+  ASSERT_EQ(ann.count("events"), 1u);
+  const Json event = ann.last("events")["events"][0];
+  EXPECT_EQ(event["kind"], "begin");
+  EXPECT_EQ(event, bob.last("events")["events"][0]);
+  EXPECT_EQ(event["class"], "fake");
+  EXPECT_EQ(bob.seen[kPeg].classes, 1u);
+  EXPECT_EQ(bob.seen[PartId{1}].classes, 1u);  // the plate never moved, yet is shown as it stands
+  say(bob, R"({"type":"command","id":77,"do":"review","clash":1,"status":"reviewed","text":"hm"})");
+  turn(2);
+  EXPECT_EQ(bob.last("reply")["id"], 77);
+  EXPECT_EQ(ann.last("events")["events"][0]["review"]["comment"], "hm");
+  feed->enter(eve);  // late
+  turn();
+  EXPECT_EQ(eve.last("scene")["clashes"][0]["review"]["comment"], "hm");
+  EXPECT_EQ(eve.last("scene")["parts"][0]["classes"], 1u);
+  move(ann, kPeg, 50.0);
+  turn(2);
+  EXPECT_EQ(eve.last("events")["events"][0]["kind"], "end");
+  EXPECT_EQ(eve.seen[kPeg].classes, 0u);
+  EXPECT_EQ(eve.seen[PartId{1}].classes, 0u);
+}
+
+TEST_F(PagesOnASession, ThatGoAwayLetGoAtOnce) {
+  come(ann, "ann");
+  come(bob, "bob");
+  grab(ann, kPeg);
+  move(ann, kPeg, -1.0);
+  feed->leave(ann);  // a crash looks no different
+  turn(2);
+  EXPECT_EQ(bob.seen[kPeg].holder.value, 0u);
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 59.0);  // what was sent before still counts
+  // Loaded anew: the same name, the same user, and its increments count from the first.
+  ann = Page(Role::kDesigner);
+  come(ann, "ann");
+  grab(ann, kPeg);
+  move(ann, kPeg, -1.0);
+  turn(2);
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 58.0);
+}
+
+TEST_F(PagesOnASession, LoadedAnewWithinOneTickAreLetInUnderTheirName) {
+  come(ann, "ann");
+  feed->leave(ann);
+  ann = Page(Role::kDesigner);
+  feed->enter(ann);
+  say(ann, R"({"type":"join","name":"ann"})");
+  turn(20);
+  EXPECT_EQ(ann.last("joined")["name"], "ann");
+  EXPECT_EQ(ann.count("join_refused"), 0u);
+}
+
+TEST_F(PagesOnASession, OfTwoWithOneNameTheSecondIsRefusedAndMayTryAgain) {
+  come(ann, "ann");
+  feed->enter(bob);
+  say(bob, R"({"type":"join","name":"ann"})");
+  turn(4);
+  ASSERT_EQ(bob.count("join_refused"), 1u);
+  EXPECT_NE(bob.last("join_refused")["text"].get<std::string>().find("in use"), std::string::npos);
+  say(bob, R"({"type":"join","name":"bob"})");
+  turn(4);
+  EXPECT_EQ(bob.last("joined")["name"], "bob");
+}
+
+TEST_F(PagesOnASession, WhoGoesBeforeTheServerAnswersIsNoGhost) {
+  come(bob, "bob");
+  feed->enter(ann);
+  say(ann, R"({"type":"join","name":"ann"})");
+  feed->turn(now_s);  // the question goes out
+  feed->leave(ann);
+  turn(5);
+  for (const Json& user : bob.last("users")["users"])
+    EXPECT_EQ(user["present"], user["name"] == "bob") << user;
+}
+
+TEST_F(PagesOnASession, LookOnlyWithTheLinkForIt) {
+  come(eve, "eve");
+  EXPECT_EQ(eve.last("joined")["role"], "observer");
+  say(eve, R"({"type":"command","id":5,"do":"grab","part":2})");
+  EXPECT_EQ(Json::parse(*eve.outbox.next({})->bytes)["done"], false);
+  move(eve, kPeg, -1.0);
+  turn(10);
+  EXPECT_EQ(eve.last("refused")["increments"][0]["reason"], name_of(Refusal::kObserver));
+  EXPECT_EQ(scene.world.parts[1].X_WP.p.z(), 60.0);
+  EXPECT_FALSE(scene.world.parts[1].holder);
+}
+
+TEST_F(PagesOnASession, WithoutANameNothingIsMoved) {
+  feed->enter(ann);
+  turn(2);
+  EXPECT_FALSE(feed->take(ann, MoveWish{kPeg, Vec3(1, 0, 0), Vec3::Zero()}));
+  say(ann, R"({"type":"command","id":3,"do":"grab","part":2})");
+  turn();
+  EXPECT_EQ(ann.last("reply")["done"], false);
+  EXPECT_FALSE(feed->take(ann, ReplayWish{}));
+}
+
+TEST_F(PagesOnASession, RefusedMovesAreCountedToTheirPage) {
+  come(ann, "ann");
+  come(bob, "bob");
+  grab(ann, kPeg);
+  for (int i = 0; i < 30; ++i) {
+    move(bob, kPeg, 1.0);
+    turn();
+  }
+  turn(10);
+  std::uint64_t refused = 0;
+  for (const Json& message : bob.told) {
+    if (message["type"] == "refused") refused += message["increments"][0]["count"].get<int>();
+  }
+  EXPECT_EQ(refused, 30u);
+  EXPECT_LE(bob.count("refused"), 8u);  // not one each
+  EXPECT_EQ(ann.count("refused"), 0u);
+}
+
+TEST_F(PagesOnASession, AStoppedPageIsBehindByOneFrameAndNoEvent) {
+  come(ann, "ann");
+  come(bob, "bob");
+  grab(ann, kPeg);
+  grab(ann, kBlock);
+  bob.reads = false;
+  const std::size_t before = bob.frames;
+  for (int i = 0; i < 100; ++i) {
+    move(ann, kPeg, i % 2 == 0 ? -50.0 : 50.0);  // in and out: two events each time
+    if (i < 50) move(ann, kBlock, 1.0);
+    turn();
+  }
+  turn(2);
+  EXPECT_GT(bob.folded_frames(), 90u);
+  bob.reads = true;
+  turn();
+  EXPECT_EQ(bob.frames, before + 1);
+  for (const auto& [part, state] : ann.seen) {
+    EXPECT_EQ(bob.seen[part].X_WP.p, state.X_WP.p) << part.value;
+    EXPECT_EQ(bob.seen[part].holder, state.holder);
+    EXPECT_EQ(bob.seen[part].classes, state.classes);
+  }
+  EXPECT_EQ(bob.seen[kBlock].X_WP.p.z(), 50.0);
+  EXPECT_GE(ann.count("events"), 50u);
+  EXPECT_EQ(bob.count("events"), ann.count("events"));
+}
+
+TEST_F(PagesOnASession, ShowEachOtherWhereTheyLookFrom) {
+  come(ann, "ann");
+  come(bob, "bob");
+  for (int i = 0; i < 60; ++i) {
+    say(ann,
+        R"({"type":"view","p":[1,2,)" + std::to_string(i) + R"(],"target":[0,0,0],"up":[0,0,1]})");
+    turn();
+  }
+  turn(10);
+  EXPECT_EQ(bob.last("views")["views"][0]["p"][2], 59.0);
+  EXPECT_LE(bob.count("views"), 12u);
+  EXPECT_EQ(ann.count("views"), 0u);
+}
+
+TEST_F(PagesOnASession, AreToldWhenTheServerGoesAndComesBack) {
+  come(ann, "ann");
+  grab(ann, kPeg);
+  say(ann, R"({"type":"command","id":40,"do":"undo","part":2})");
+  auto reading = read_scenario_text(kScenario, "pages.yaml");
+  ASSERT_TRUE(reading);
+  const std::size_t scenes = ann.count("scene");
+  start_server(*reading);
+  turn(200);
+  EXPECT_EQ(ann.last("reply")["id"], 40);
+  EXPECT_EQ(ann.last("reply")["done"], false);
+  EXPECT_GT(ann.count("scene"), scenes);
+  EXPECT_EQ(ann.count("joined"), 2u);
+  EXPECT_EQ(ann.last("scene")["parts"][1]["holder"], 0);
+  grab(ann, kPeg);
+}
+
+TEST_F(PagesOnASession, ManyComingsAndGoingsLeaveNothingBehind) {
+  come(ann, "ann");
+  for (int i = 0; i < 50; ++i) {
+    bob = Page(Role::kDesigner);
+    feed->enter(bob);
+    say(bob, R"({"type":"join","name":"bob)" + std::to_string(i % 3) + R"("})");
+    turn(3);
+    feed->leave(bob);
+    turn(2);
+  }
+  EXPECT_LE(client->user_count(), 3u);
+  EXPECT_EQ(ann.last("users")["users"].size(), 4u);
+}
+
+}  // namespace
+}  // namespace mortise::web

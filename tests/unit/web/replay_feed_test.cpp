@@ -1,0 +1,197 @@
+// A log through the eyes of a page: any moment at once, and on from there as it was.
+#include "client/web/replay_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "client/client.h"
+#include "common/io/scene_load.h"
+#include "common/io/session_log.h"
+#include "common/messages/memory_channel.h"
+#include "server/tick_loop.h"
+#include "tests/unit/web/page.h"
+
+namespace mortise::web {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScenario = R"(
+name: replayed
+units: mm
+policy: report
+parts:
+  - name: plate
+    generator: {kind: plate_with_bore, bore: 20, facets: 32}
+  - name: peg
+    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
+    pose: {position: [0, 0, 60]}
+    moving: true
+)";
+constexpr PartId kPeg{2};
+
+/// What the session was like, tick by tick.
+struct Truth {
+  std::map<std::uint64_t, Vec3> peg_mm;
+  std::map<std::uint64_t, std::size_t> open;
+};
+
+/// Ann moves the peg into the plate and out again, undoes that, lets go.
+Truth play_session(const fs::path& file) {
+  Truth truth;
+  auto reading = read_scenario_text(kScenario, "replayed.yaml");
+  auto scene = load_scene(reading->scenario, default_meshes());
+  MemoryHub hub;
+  auto server = hub.open_server();
+  SystemClock clock;
+  LogHeader header;
+  header.session = "replayed";
+  header.scenario_name = "replayed.yaml";
+  header.scenario_yaml = kScenario;
+  for (const Part& part : scene->world.parts) {
+    header.meshes.emplace_back(part.solid->hash(), &part.solid->mesh());
+    header.mesh_of_part.push_back(part.solid->hash());
+  }
+  auto log = SessionLogWriter::create(file, header);
+  EXPECT_TRUE(log) << log.error().text;
+  TickLoopOptions options;
+  options.session = "replayed";
+  TickLoop loop(scene->world, *server, clock, log->get(), options);
+  loop.open();
+  auto channel = hub.open_client();
+  Client client(*channel);
+  const LocalUser ann = client.add_user("ann", "designer");
+  const auto turn = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      loop.tick();
+      client.poll();
+      truth.peg_mm[scene->world.tick] = scene->world.parts[1].X_WP.p;
+      truth.open[scene->world.tick] = client.open_clashes().size();
+    }
+  };
+  turn(4);
+  client.grab(ann, kPeg);
+  turn(3);
+  for (int i = 0; i < 50; ++i) {
+    client.send(ann, kPeg, Vec3(0, 0, i < 25 ? -2.0 : 2.0));
+    turn(1);
+  }
+  turn(10);
+  client.undo(ann, kPeg);
+  turn(5);
+  client.release(ann, kPeg);
+  turn(20);
+  EXPECT_TRUE((*log)->close());
+  return truth;
+}
+
+struct ReplayOfASession : testing::Test {
+  void SetUp() override {
+    file = fs::path(testing::TempDir()) / "mortise_replay_feed_test.mcap";
+    fs::remove(file);
+    truth = play_session(file);
+    auto read = read_recording(file);
+    ASSERT_TRUE(read) << read.error().text;
+    EXPECT_TRUE(read->notes.empty()) << testing::PrintToString(read->notes);
+    recording = *read;
+  }
+  void TearDown() override { fs::remove(file); }
+
+  fs::path file;
+  Truth truth;
+  Recording recording;
+};
+
+TEST_F(ReplayOfASession, ShowsEachMomentAsItWas) {
+  ASSERT_GT(recording.last_tick, 60u);
+  std::size_t with_clash = 0;
+  for (std::uint64_t tick = 1; tick <= recording.last_tick; ++tick) {
+    const Scene scene = recording.scene_at(tick);
+    EXPECT_EQ(scene.parts[1].X_WP.p, truth.peg_mm[tick]) << tick;
+    with_clash += scene.clashes.size();
+  }
+  EXPECT_GT(with_clash, 5u);
+  EXPECT_TRUE(recording.scene_at(0).users.empty());
+  EXPECT_EQ(recording.scene_at(20).users[0].name, "ann");
+  EXPECT_TRUE(recording.scene_at(20).parts[1].holder);
+  EXPECT_FALSE(recording.scene_at(recording.last_tick).parts[1].holder);
+}
+
+TEST_F(ReplayOfASession, PlaysOnFromAnywhere) {
+  for (const std::uint64_t from : {std::uint64_t{0}, std::uint64_t{25}, recording.last_tick - 3}) {
+    ReplayFeed feed(recording);
+    Page page(Role::kObserver);
+    feed.enter(page);
+    page.take(feed);
+    EXPECT_EQ(page.last("timeline")["last_tick"], recording.last_tick);
+    EXPECT_GE(page.last("timeline")["marks"].size(), 2u);
+    ASSERT_TRUE(feed.take(page, ReplayWish{ReplayWish::Do::kSeek, from, 1.0}));
+    ASSERT_TRUE(feed.take(page, ReplayWish{ReplayWish::Do::kPlay, 0, 1.0}));
+    page.take(feed);
+    EXPECT_EQ(page.last("scene")["tick"], from);
+    Vec3 peg_mm = truth.peg_mm.contains(from) ? truth.peg_mm[from] : Vec3(0, 0, 60);
+    std::size_t open = page.last("scene")["clashes"].size();
+    page.told.clear();
+    for (int i = 0; i < 200; ++i) {
+      feed.turn(1.0 + i / 60.0);
+      page.take(feed);
+      if (page.seen.contains(kPeg)) peg_mm = page.seen[kPeg].X_WP.p;
+    }
+    EXPECT_EQ(page.last("replay")["tick"], recording.last_tick);
+    EXPECT_EQ(page.last("replay")["playing"], false);
+    EXPECT_EQ(peg_mm, truth.peg_mm[recording.last_tick]);
+    for (const Json& message : page.told) {
+      if (message["type"] != "events") continue;
+      for (const Json& event : message["events"]) {
+        if (event["kind"] == "begin") ++open;
+        if (event["kind"] == "end") --open;
+      }
+    }
+    EXPECT_EQ(open, recording.scene_at(recording.last_tick).clashes.size()) << from;
+  }
+}
+
+TEST_F(ReplayOfASession, EachPageHasATimelineOfItsOwn) {
+  ReplayFeed feed(recording);
+  Page one(Role::kObserver), other(Role::kDesigner);
+  feed.enter(one);
+  feed.enter(other);
+  ASSERT_TRUE(feed.take(one, ReplayWish{ReplayWish::Do::kSeek, 30, 1.0}));
+  feed.turn(1.0);
+  one.take(feed);
+  other.take(feed);
+  EXPECT_EQ(one.last("scene")["tick"], 30);
+  EXPECT_EQ(other.last("scene")["tick"], 0);
+  ASSERT_TRUE(feed.take(other, ReplayWish{ReplayWish::Do::kSeek, 1'000'000, 1.0}));
+  other.take(feed);
+  EXPECT_EQ(other.last("scene")["tick"], recording.last_tick);
+  ASSERT_TRUE(feed.take(one, ReplayWish{ReplayWish::Do::kSpeed, 0, 4.0}));
+  ASSERT_TRUE(feed.take(one, ReplayWish{ReplayWish::Do::kPlay, 0, 1.0}));
+  feed.turn(1.5);
+  one.take(feed);
+  EXPECT_EQ(one.last("replay")["speed"], 4.0);
+  feed.leave(one);
+  feed.turn(2.0);
+}
+
+TEST_F(ReplayOfASession, NothingIsDoneInIt) {
+  ReplayFeed feed(recording);
+  Page page(Role::kDesigner);
+  feed.enter(page);
+  EXPECT_TRUE(feed.take(page, JoinWish{"ann"}));
+  EXPECT_TRUE(feed.take(page, CommandWish{3, CommandKind::kGrab, kPeg, {}}));
+  EXPECT_FALSE(feed.take(page, MoveWish{kPeg, Vec3(1, 0, 0), Vec3::Zero()}));
+  page.take(feed);
+  EXPECT_EQ(page.count("join_refused"), 1u);
+  EXPECT_EQ(page.last("reply")["done"], false);
+}
+
+TEST(ReplayOfNoLog, IsRefusedInOneLine) {
+  const auto none = read_recording("nowhere.mcap");
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().text.find('\n'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mortise::web
