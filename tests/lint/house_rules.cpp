@@ -40,6 +40,7 @@ const std::vector<Room> kRooms = {
     {"client/web/recording", {"client/web/", "common/io/"}},
     {"client/web/replay_feed", {"client/web/recording"}},
     {"client/web/run", {"client/web/replay_feed"}},
+    {"client/web/main", {"client/web/run"}},
     {"client/replay/", {"client/", "common/io/"}},
     {"client/tools/", {"client/", "common/io/"}},
     {"tests/",

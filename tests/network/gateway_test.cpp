@@ -144,7 +144,7 @@ TEST_F(GatewayFixture, TwoPagesJoinMoveAndSeeTheSameClash) {
   EXPECT_EQ(good.ann.told.front()["type"], "welcome");
   EXPECT_EQ(good.ann.told.front()["role"], "designer");
   good.expect_to_go_on();
-  good.ann.move(kPeg, 0, 0, -50.5);
+  good.ann.move(kPeg, 0, 0, -50.0);
   const Json here = good.ann.await("events"), there = good.bob.await("events");
   ASSERT_TRUE(here.is_object() && there.is_object());
   EXPECT_EQ(here["events"][0], there["events"][0]);

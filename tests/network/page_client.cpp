@@ -43,6 +43,7 @@ std::string own_host(int port) { return "127.0.0.1:" + std::to_string(port); }
 
 void run_for(asio::io_context& io, double seconds) {
   io.restart();
+  io.poll();  // what is ready, also when there is no time at all
   io.run_for(std::chrono::microseconds(static_cast<std::int64_t>(seconds * 1e6)));
 }
 

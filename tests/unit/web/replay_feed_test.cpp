@@ -111,7 +111,7 @@ TEST_F(ReplayOfASession, ShowsEachMomentAsItWas) {
     EXPECT_EQ(scene.parts[1].X_WP.p, truth.peg_mm[tick]) << tick;
     with_clash += scene.clashes.size();
   }
-  EXPECT_GT(with_clash, 5u);
+  EXPECT_GE(with_clash, 3u);
   EXPECT_TRUE(recording.scene_at(0).users.empty());
   EXPECT_EQ(recording.scene_at(20).users[0].name, "ann");
   EXPECT_TRUE(recording.scene_at(20).parts[1].holder);
