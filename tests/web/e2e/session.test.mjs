@@ -90,6 +90,22 @@ test('a part stops at a real contact', async () => {
   assert.ok(z > 9 && z < 25, `stopped at z = ${z}`);
 });
 
+test('one looks along with the other', async () => {
+  await bob.getByLabel('Look along with ann').click(PATIENCE);
+  await ann.focus('#canvas');
+  await ann.keyboard.press('1');
+  const places = () => Promise.all([ann, bob].map((page) => page.locator('#labels > div', { hasText: 'peg_k6' }).evaluate((word) => word.style.transform.match(/-?[\d.]+/g)?.slice(0, 2).map(Number) ?? [])));
+  let last;
+  for (let i = 0; i < 60; ++i) {
+    await bob.waitForTimeout(200);
+    last = await places();
+    if (Math.hypot(last[0][0] - last[1][0], last[0][1] - last[1][1]) < 2) break;
+  }
+  assert.ok(Math.hypot(last[0][0] - last[1][0], last[0][1] - last[1][1]) < 2, `the same word stands at ${last}`);
+  await bob.keyboard.press('0'); // from where one likes: no longer along with her
+  await bob.getByLabel('Stop looking along with ann').click(PATIENCE);
+});
+
 test('a review in one browser shows in the other', async () => {
   await bob.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
   await bob.getByLabel('Review status').selectOption('approved');
@@ -128,6 +144,52 @@ test('a reload in mid-drag frees the part', async () => {
   await choose(bob, 'peg_k6');
   await bob.locator('#hand .quiet', { hasText: 'free' }).waitFor(PATIENCE);
   await joinAs(ann, 'ann');
+});
+
+test('with keys alone: find a part, take it, move it, let it go', async () => {
+  const labelled = () => bob.evaluate(() => [...document.querySelectorAll('button, input, select, textarea, [role=listbox], canvas[tabindex]')]
+    .filter((control) => control.checkVisibility() && !control.getAttribute('aria-label') && !control.getAttribute('aria-labelledby')
+      && !control.textContent?.trim() && /** @type {any} */ (control).labels?.length !== 1).map((control) => control.outerHTML.slice(0, 120)));
+  assert.deepEqual(await labelled(), []);
+  await bob.reload();
+  await joinAs(bob, 'bob');
+  for (let tabs = 0; tabs < 60 && (await bob.evaluate(() => document.activeElement?.id)) !== 'parts_search'; ++tabs) await bob.keyboard.press('Tab');
+  await bob.keyboard.type('block');
+  await bob.keyboard.press('Tab');
+  await bob.keyboard.press('Tab');
+  assert.equal(await bob.evaluate(() => document.activeElement?.id), 'parts');
+  await bob.keyboard.press('ArrowDown');
+  await bob.waitForFunction(() => document.querySelector('#hand strong')?.textContent === 'block', undefined, PATIENCE);
+  await bob.keyboard.press('g');
+  await bob.locator('#hand .quiet', { hasText: 'in your hand' }).waitFor(PATIENCE);
+  const [x] = await settled(bob);
+  await bob.keyboard.press('Tab');
+  await bob.keyboard.press('ArrowRight');
+  await bob.waitForFunction((text) => document.querySelector('#hand .pose')?.textContent?.startsWith(text), (x + 1).toFixed(4), PATIENCE);
+  await bob.keyboard.press('g');
+  await bob.locator('#hand .quiet', { hasText: 'free' }).waitFor(PATIENCE);
+  await bob.fill('#parts_search', '');
+});
+
+test('nothing is cut off or covers another at 1280 × 720', async () => {
+  for (const page of [ann, bob]) {
+    const wrong = await page.evaluate(() => {
+      const bad = [];
+      const controls = [...document.querySelectorAll('.bar > *, .bar button, .bar select, .status > span, .tabs button, .panel h2, #hand button, #hand input')].filter((c) => c.checkVisibility() && c.getBoundingClientRect().width > 0);
+      for (const control of controls) {
+        const { left, right, top, bottom } = control.getBoundingClientRect();
+        if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight) bad.push(`out of view: ${control.outerHTML.slice(0, 80)}`);
+        for (const other of controls) {
+          if (other === control || other.contains(control) || control.contains(other)) continue;
+          const o = other.getBoundingClientRect();
+          if (Math.min(right, o.right) - Math.max(left, o.left) > 1 && Math.min(bottom, o.bottom) - Math.max(top, o.top) > 1) bad.push(`covers: ${control.outerHTML.slice(0, 60)} and ${other.outerHTML.slice(0, 60)}`);
+        }
+      }
+      if (document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight) bad.push('the page scrolls');
+      return bad;
+    });
+    assert.deepEqual(wrong, []);
+  }
 });
 
 test('the read-only address looks on', async () => {

@@ -39,6 +39,9 @@ export function makePeople({ session, choice, camera, say }) {
 
   const soon = seldom(refresh, 120);
   for (const what of /** @type {const} */ (['users', 'me', 'holder', 'scene'])) session.on(what, soon);
+  // Who comes later has not heard where one looks from.
+  session.on('me', () => session.me !== 0 && camera.tellSoon());
+  session.on('users', () => session.me !== 0 && camera.tellSoon());
   session.on('views', (views) => {
     soon();
     const followed = views.find((view) => view.user === choice.following);

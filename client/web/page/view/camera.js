@@ -21,7 +21,8 @@ const SIDES = {
 export class Camera {
   /** @type {{from: THREE.Vector3, to: THREE.Vector3, fromTarget: THREE.Vector3, toTarget: THREE.Vector3, begin: number} | null} */
   #flight = null;
-  #told = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #telling;
   /** @type {() => void} when somebody takes the view in hand */
   onHand = () => {};
 
@@ -34,7 +35,7 @@ export class Camera {
     this.controls.mouseButtons = { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.PAN };
     this.controls.addEventListener('change', () => {
       this.stage.ask();
-      this.#tellSeldom();
+      this.tellSoon();
     });
     this.controls.addEventListener('start', () => {
       this.#flight = null;
@@ -128,12 +129,13 @@ export class Camera {
     this.onHand();
   }
 
-  #tellSeldom() {
-    const now = performance.now();
-    if (now - this.#told < TELL_MS) return;
-    this.#told = now;
-    const { camera } = this.stage;
-    this.tell({ p: camera.position.toArray(), target: this.target.toArray(), up: camera.up.toArray() });
+  /** Soon, and the last one always: others look along. */
+  tellSoon() {
+    this.#telling ??= setTimeout(() => {
+      this.#telling = undefined;
+      const { camera } = this.stage;
+      this.tell({ p: camera.position.toArray(), target: this.target.toArray(), up: camera.up.toArray() });
+    }, TELL_MS);
   }
 }
 
