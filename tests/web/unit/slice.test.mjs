@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { quaternionOf, rotate } from '../../../client/web/page/session/motion.js';
-import { across, chains, cross, dot, slice } from '../../../client/web/page/session/slice.js';
+import { across, chains, cross, dot, nearest, slice } from '../../../client/web/page/session/slice.js';
 
 /** A box of these half lengths. */
 function box([x, y, z]) {
@@ -45,4 +45,12 @@ test('across is across, of length one', () => {
     assert.ok(Math.abs(Math.hypot(...across(v)) - 1) < 1e-15);
     assert.ok(Math.abs(Math.hypot(...cross(v, across(v))) - 1) < 1e-15);
   }
+});
+
+test('the nearest point of some segments', () => {
+  const segments = [[1, -1, 1, 1], [5, 0, 6, 0], [0, 3, 0, 3]];
+  assert.deepEqual(nearest(segments), { apart: 1, at: [1, 0] });
+  assert.deepEqual(nearest(segments, [7, 1]), { apart: Math.SQRT2, at: [6, 0] });
+  assert.deepEqual(nearest(segments, [0, 4]), { apart: 1, at: [0, 3] });
+  assert.equal(nearest([]).apart, Infinity);
 });

@@ -68,7 +68,8 @@ export function makeClashDetail(desk) {
       status.value = review.status;
       comment.value = review.comment;
     }
-    const reviewer = review.user ? `${review.status} by ${session.userName(review.user)}` : clash.approval_lost ? 'approval lost: it got worse' : 'nobody has reviewed it';
+    const reviewer = review.user ? `${review.status} by ${session.userName(review.user)}` : clash.approval_lost ? 'approval lost: it got worse' : '';
+    by.hidden = reviewer === '';
     setText(by, reviewer);
     for (const control of [status, comment, save]) control.disabled = !session.mayAct || clash.ended === true;
     drawing.show(clash);

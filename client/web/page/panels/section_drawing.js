@@ -1,7 +1,7 @@
 // The section through a clash, drawn flat: both meshes as they are cut, the surfaces that they stand for, the point, and a scale.
 // Near enough that micrometres show.
 import { placed, rotate } from '../session/motion.js';
-import { across, chains, cross, distance, dot, slice, unit } from '../session/slice.js';
+import { across, chains, cross, dot, nearest, slice, unit } from '../session/slice.js';
 import { small } from '../session/words.js';
 import { el, setText } from './dom.js';
 
@@ -79,7 +79,7 @@ export class SectionDrawing {
         const mesh = meshes[i];
         return part && mesh ? slice(mesh, part, plane) : [];
       });
-      return { turned, plane, cuts, apart: Math.max(...cuts.map(distance)) };
+      return { turned, plane, cuts, apart: Math.max(...cuts.map((cut) => nearest(cut).apart)) };
     };
     // Overlaps end at rims, where a plane misses one of the two: then a little beside, or the other way. A part that was stopped stands off.
     let view = this.#frame(clash, 0);
@@ -89,9 +89,18 @@ export class SectionDrawing {
       const other = cutBy(this.#turned !== turned, beside);
       if (other.apart < cut.apart) cut = other;
     }
-    if (cut.apart > view.height / 2 && Number.isFinite(cut.apart)) view = this.#frame(clash, cut.apart);
+    /** @type {[number, number]} */
+    let middle = [0, 0];
+    if (cut.apart > view.height / 2 && Number.isFinite(cut.apart)) {
+      // The clash is told where it was judged last, and the part has moved on since, or was stopped before: to where the two are nearest.
+      const far = nearest(cut.cuts[0]).apart === cut.apart ? 0 : 1;
+      const there = nearest(cut.cuts[far]).at;
+      const here = nearest(cut.cuts[1 - far], there);
+      middle = [(there[0] + here.at[0]) / 2, (there[1] + here.at[1]) / 2];
+      view = this.#frame(clash, here.apart);
+    }
     const { plane, cuts, turned } = cut;
-    this.#paint(cuts.map((segments) => chains(segments)), view, plane, clash, parts);
+    this.#paint(cuts.map((segments) => chains(segments)), { ...view, middle }, plane, clash, parts);
     setText(this.caption, `${turned ? 'Along' : 'Across'}: ${names[0]} blue, ${names[1]} hatched; dashed: true surfaces`);
   }
 
@@ -106,16 +115,16 @@ export class SectionDrawing {
   }
 
   /**
-   * @param {Array<Array<Array<[number, number]>>>} cuts @param {{scale: number, ratio: number}} view
+   * @param {Array<Array<Array<[number, number]>>>} cuts @param {{scale: number, ratio: number, middle: [number, number]}} view
    * @param {import('../session/slice.js').Plane} plane @param {Clash} clash @param {Array<Part | undefined>} parts
    */
-  #paint(cuts, { scale, ratio }, plane, clash, parts) {
+  #paint(cuts, { scale, ratio, middle }, plane, clash, parts) {
     const { width, height } = this.canvas;
     const pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext('2d'));
     const text = getComputedStyle(this.canvas).color;
     pen.clearRect(0, 0, width, height);
     pen.save();
-    pen.translate(width / 2, height / 2);
+    pen.translate(width / 2 - middle[0] * scale, height / 2 + middle[1] * scale);
     cuts.forEach((loops, i) => {
       pen.beginPath();
       for (const loop of loops) {

@@ -73,15 +73,22 @@ function cut(corners) {
   return [...down[0], ...up[0]];
 }
 
-/** From the origin of the plane to the nearest of the segments; infinite without any. @param {Segment[]} segments */
-export function distance(segments) {
-  let least = Infinity;
+/**
+ * The point of the segments that is nearest to `to`, and how far it is; infinitely far without any.
+ * @param {Segment[]} segments @param {[number, number]} [to]
+ */
+export function nearest(segments, [x, y] = [0, 0]) {
+  let apart = Infinity;
+  /** @type {[number, number]} */
+  let at = [x, y];
   for (const [x0, y0, x1, y1] of segments) {
     const length2 = (x1 - x0) ** 2 + (y1 - y0) ** 2;
-    const s = length2 === 0 ? 0 : Math.min(1, Math.max(0, -(x0 * (x1 - x0) + y0 * (y1 - y0)) / length2));
-    least = Math.min(least, Math.hypot(x0 + s * (x1 - x0), y0 + s * (y1 - y0)));
+    const s = length2 === 0 ? 0 : Math.min(1, Math.max(0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / length2));
+    const [px, py] = [x0 + s * (x1 - x0), y0 + s * (y1 - y0)];
+    const off = Math.hypot(px - x, py - y);
+    if (off < apart) [apart, at] = [off, [px, py]];
   }
-  return least;
+  return { apart, at };
 }
 
 /**

@@ -70,7 +70,7 @@ export class Labels {
         const wanted = Math.min(height - 14, Math.max(14, word.kind === 'note' ? y : y - ABOVE));
         const top = free(taken, left, wanted, half);
         taken.push({ left, top, half });
-        row.style.transform = `translate(${left.toFixed(1)}px, ${top.toFixed(1)}px) translate(-50%, -50%)`;
+        row.style.transform = `translate(${Math.round(left)}px, ${Math.round(top)}px) translate(-50%, -50%)`;
       },
     );
   }
