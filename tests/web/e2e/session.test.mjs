@@ -202,6 +202,22 @@ test('the read-only address looks on', async () => {
   await guest.context().close();
 });
 
+test('a server that goes and comes back, a gateway that goes and comes back', async () => {
+  await session.stop(session.server);
+  await ann.locator('#banner', { hasText: 'waits for the server' }).waitFor(PATIENCE);
+  await session.serve(PEGS);
+  await ann.locator('#banner').waitFor({ ...PATIENCE, state: 'hidden' });
+  await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);
+  await session.stop(session.gateway);
+  await ann.locator('#line_state[data-state="waiting"]').waitFor(PATIENCE);
+  await session.open(undefined, new URL(addresses.designer).port);
+  await ann.locator('#line_state[data-state="open"]').waitFor(PATIENCE);
+  await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);
+  await grab(ann, 'block');
+  // What the browser itself says of a line that breaks is no complaint of the page.
+  for (const page of [ann, bob]) page.complaints = page.complaints.filter((text) => !/WebSocket|ERR_CONNECTION/.test(text));
+});
+
 test('nothing was complained of', () => {
   assert.deepEqual([...ann.complaints, ...bob.complaints], []);
 });

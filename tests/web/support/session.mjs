@@ -46,10 +46,13 @@ export class LiveSession {
     this.server = await this.start('server', [file, '--session', this.name, '--domain', `${this.domain}`, ...more]);
   }
 
-  /** @param {string} [log] a recorded session, from the root of the project; else the running one @returns the two addresses */
-  async open(log) {
+  /**
+   * @param {string} [log] a recorded session, from the root of the project; else the running one
+   * @param {string} [port] @returns the two addresses; their tokens stay the same
+   */
+  async open(log, port = '0') {
     const from = log ? ['--log', join(root, log)] : ['--session', this.name, '--domain', `${this.domain}`];
-    const args = [...from, '--port', '0', '--page', join(root, 'client/web/page')];
+    const args = [...from, '--port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens')];
     this.gateway = await this.start('web', args, (text) => {
       const designer = /^designer (http\S+)$/m.exec(text);
       const observer = /^observer (http\S+)$/m.exec(text);

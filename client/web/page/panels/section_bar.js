@@ -31,7 +31,7 @@ export function makeSectionBar(section, changed) {
   section.onChange = show;
   across.onchange = () => {
     section.across = /** @type {import('../view/section_plane.js').Across} */ (across.value);
-    section.share = 0.5;
+    section.centre();
     section.set(true);
   };
   slider.oninput = () => {

@@ -32,6 +32,7 @@ export function makeToolbar({ session, choice, commands, section, mover, showAll
 
   function toggleSection() {
     section.bounds = partsView.bounds();
+    if (!section.on && section.across !== 'clash') section.centre();
     section.set(!section.on);
   }
 

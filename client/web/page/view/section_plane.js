@@ -56,6 +56,17 @@ export class SectionPlane {
     return [lo, hi];
   }
 
+  /** Through the middle one of the parts: a plane through the axis of what is put together along it. */
+  centre() {
+    const n = this.#direction();
+    const { shown } = this.partsView;
+    const along = this.partsView.boxesOf([...shown.values()].map(({ part }) => part)).map((box) => box.getCenter(new THREE.Vector3()).dot(n));
+    along.sort((a, b) => a - b);
+    const [lo, hi] = this.#range();
+    const at = along[Math.floor(along.length / 2)] ?? (lo + hi) / 2;
+    this.share = hi > lo ? (at - lo) / (hi - lo) : 0.5;
+  }
+
   #direction() {
     if (this.across === 'clash') return this.normal.clone();
     return new THREE.Vector3(Number(this.across === 'x'), Number(this.across === 'y'), Number(this.across === 'z'));
