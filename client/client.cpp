@@ -117,6 +117,8 @@ ClientUpdate Client::poll() {
   statistics_.known_event_seq = std::max(known_event_seq_, event_seq_);
   if (!input.pulses.empty()) update.pulse = input.pulses.back();
   update.meshes = std::move(input.meshes);
+  update.features = !input.features.empty();
+  if (update.features) features_.take(input.features.back());
   update.changed.assign(changed_.begin(), changed_.end());
   send_what_is_due();
   return update;
@@ -141,6 +143,7 @@ void Client::forget_server() {
     user.unacknowledged.clear();
   }
   for (auto& [id, part] : parts_) part.tick = 0;  // another server counts anew
+  features_.clear();
   pending_.clear();
   held_snapshot_.reset();
   event_seq_ = known_event_seq_ = stale_tick_ = 0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/known_features.h"
 #include "client/unacknowledged.h"
 #include "common/messages/channel.h"
 
@@ -55,6 +56,7 @@ struct ClientUpdate {
   std::int64_t at_ns = 0;                 ///< our clock when this was taken
   std::optional<SessionPulse> pulse;      ///< the latest
   std::vector<MeshBytes> meshes;          ///< arrived
+  bool features = false;                  ///< features() is new
   bool resynced = false;                  ///< a snapshot took the place of what was known
   bool server_lost = false;               ///< users join again by themselves when it is back
 };
@@ -118,6 +120,12 @@ class Client {
   std::uint64_t review(LocalUser user, ClashId clash, ReviewStatus status,
                        const std::string& comment = "");
   std::uint64_t add_constraint(LocalUser user, const Constraint& constraint);
+  /// Constrains a held part to the nearest feature that fits, and has it set out for it. What is
+  /// none or empty the server chooses; the reply says what in words, the decision kAddConstraint in
+  /// values.
+  std::uint64_t snap(LocalUser user, PartId held, const FeatureOf& other = {},
+                     const std::string& feature = "",
+                     ConstraintKind kind = ConstraintKind::kUnknown);
   std::uint64_t drop_constraint(LocalUser user, PartId held, ConstraintId constraint);
 
   /// Sends an increment (see increment.h), with the user's next sequence number, which is returned;
@@ -140,6 +148,9 @@ class Client {
   /// Changes of policy, tolerances and exclusions that hold, constraints, and unanswered asks.
   const std::vector<Decision>& standing() const { return standing_; }
   const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
+  /// What constraints can name. Comes soon after the first snapshot, and once or twice more while
+  /// the server still looks at meshes.
+  const KnownFeatures& features() const { return features_; }
   PartId find_part(const std::string& name) const;  ///< none when unknown
   ClientStatistics statistics() const;
 
@@ -184,6 +195,7 @@ class Client {
   std::string session_, policy_;
   double tick_rate_hz_ = 0.0;
   std::map<PartId, KnownPart> parts_;
+  KnownFeatures features_;
   std::vector<UserInfo> session_users_;
   std::vector<Decision> standing_;
   std::map<ClashId, ClashEvent> open_clashes_;

@@ -50,7 +50,8 @@ std::uint64_t Client::command(LocalUser index, CommandKind kind, PartId part, De
   }
   // A release must not overtake the end of the drag: once more what is not acknowledged yet.
   if (!user.unacknowledged.empty()) channel_.send(user.unacknowledged.repeat(now_ns_));
-  channel_.send(Command{user.id, part, ++user.command_seq, kind, std::move(details)});
+  channel_.send(Command{user.id, part, ++user.command_seq, kind, std::move(details),
+                        user.unacknowledged.newest()});
   return user.command_seq;
 }
 
@@ -117,6 +118,12 @@ std::uint64_t Client::add_constraint(LocalUser user, const Constraint& constrain
   Details details;
   details.constraint = constraint;
   return command(user, CommandKind::kAddConstraint, constraint.held.part, std::move(details));
+}
+std::uint64_t Client::snap(LocalUser user, PartId held, const FeatureOf& other,
+                           const std::string& feature, ConstraintKind kind) {
+  Details details;
+  details.constraint = {kind, {held, feature}, other, 0.0, true};
+  return command(user, CommandKind::kSnap, held, std::move(details));
 }
 std::uint64_t Client::drop_constraint(LocalUser user, PartId held, ConstraintId constraint) {
   Details details;

@@ -22,6 +22,9 @@ class Unacknowledged {
   void clear();
 
   bool empty() const { return kept_.empty(); }
+  std::uint64_t newest() const {  ///< sequence; 0: none is kept
+    return kept_.empty() ? 0 : kept_.back().increment.seq;
+  }
   std::int64_t last_sent_ns() const { return last_sent_ns_; }
   std::uint64_t repeated() const { return repeated_; }
   std::uint64_t given_up() const { return given_up_; }

@@ -14,6 +14,9 @@ constexpr std::size_t kSampleOverhead_bytes = 64;
 // An entry's size depends on where it starts: at most this much more than counted from 0.
 constexpr std::size_t kAlignment_bytes = 8;
 
+// So many of a set in one entry stay below a sample: 16 kB of parts, 35 kB of features.
+constexpr std::size_t kSetParts = 4096, kSetFeatures = 128;
+
 template <class Entry>
 std::size_t size_of(const Entry& entry) {
   return Entry::getCdrSerializedSize(entry) + kAlignment_bytes;
@@ -139,6 +142,45 @@ std::vector<wire::EventBatch> cut(std::span<const ClashEvent> events) {
                note_to_wire(event), member<wire::EventNote>(&wire::EventBatch::notes));
   }
   return std::move(cutter).take();
+}
+
+std::vector<wire::Features> cut(const FeatureTable& table, std::uint64_t serial) {
+  wire::Features head;
+  head.serial(serial);
+  head.meshes_waiting(table.meshes_waiting);
+  head.meshes_too_large(table.meshes_too_large);
+  Cutter<wire::Features> cutter(head);
+  std::uint32_t left_out = table.left_out;
+  for (const FeatureSet& set : table.sets) {
+    std::vector<wire::Feature> features;
+    for (const FeatureInfo& feature : set.features) {
+      features.push_back(to_wire(feature));
+      // One that the door of the others would refuse must not cost them the whole table.
+      if (from_wire(features.back())) continue;
+      features.pop_back();
+      ++left_out;
+    }
+    for (std::size_t p = 0; p < set.parts.size(); p += kSetParts) {
+      for (std::size_t f = 0; f < features.size(); f += kSetFeatures) {
+        wire::FeatureSet entry;
+        for (std::size_t i = p; i < std::min(set.parts.size(), p + kSetParts); ++i)
+          entry.parts().push_back(set.parts[i].value);
+        const auto first = features.begin() + static_cast<std::ptrdiff_t>(f);
+        entry.features().assign(first, first + static_cast<std::ptrdiff_t>(
+                                                   std::min(kSetFeatures, features.size() - f)));
+        cutter.add(std::move(entry), member<wire::FeatureSet>(&wire::Features::sets));
+      }
+    }
+  }
+  std::vector<wire::Features> chunks = std::move(cutter).take();
+  while (chunks.size() > static_cast<std::size_t>(row_of(Topic::kFeatures).max_keys)) {
+    for (const wire::FeatureSet& set : chunks.back().sets())
+      left_out += static_cast<std::uint32_t>(set.features().size());
+    chunks.pop_back();
+  }
+  for (wire::Features& chunk : chunks) chunk.left_out(left_out);
+  number(chunks);
+  return chunks;
 }
 
 std::vector<wire::MeshChunk> cut_mesh(const std::string& hash, std::span<const std::byte> bytes) {

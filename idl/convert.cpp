@@ -97,6 +97,7 @@ wire::Request to_wire(const Request& request) {
   out.nonce(request.nonce);
   out.name(clip(request.name, kMaxName_bytes));
   out.role(clip(request.role, kMaxName_bytes));
+  out.after(request.command.after);
   details_to_wire(request.command.details, out);
   return out;
 }
@@ -135,6 +136,7 @@ Result<Request> from_wire(const wire::Request& in) {
     Result<Details> details = details_from_wire(in);
     if (!details) return details.error();
     request.command.details = std::move(*details);
+    request.command.after = in.after();
   }
   return request;
 }

@@ -17,8 +17,8 @@ namespace mortise {
 /// Nothing that people assemble lies further from the origin of the world, mm (1000 km); beyond, a
 /// double's rounding would pass a tolerance.
 inline constexpr double kMaxCoordinate_mm = 1e9;
-/// A quaternion further from unit length than this was not made by us.
-inline constexpr double kQuaternionNormAllowance = 1e-6;
+/// A quaternion or direction further from unit length than this was not made by us.
+inline constexpr double kUnitNormAllowance = 1e-6;
 inline constexpr std::size_t kMaxName_bytes = 128;   ///< names of parts, users, faces, hashes
 inline constexpr std::size_t kMaxText_bytes = 1024;  ///< sentences
 inline constexpr std::size_t kMaxSequence = 65536;   ///< entries of one sample
@@ -96,6 +96,12 @@ wire::UserInfo to_wire(const UserInfo& user);
 Result<UserInfo> from_wire(const wire::UserInfo& user);
 /// One chunk of a snapshot.
 Result<Snapshot> from_wire(const wire::Snapshot& chunk);
+
+wire::Feature to_wire(const FeatureInfo& feature);
+Result<FeatureInfo> from_wire(const wire::Feature& feature);
+Result<FeatureSet> from_wire(const wire::FeatureSet& set);
+/// One chunk of a table.
+Result<FeatureTable> from_wire(const wire::Features& chunk);
 
 wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial);
 Result<SessionPulse> from_wire(const wire::Pulse& pulse);

@@ -19,6 +19,7 @@ struct DdsOptions {
   double participant_lease_s = 2.0;  ///< a silent process is gone after this
   double heartbeat_period_s = 0.1;   ///< of reliable writers; 0.02 on lossy links
   bool meshes = true;                ///< client: receive meshes
+  bool features = true;              ///< client: receive what constraints can name
 };
 
 /// The server's end: the fixed point that clients look for. Fails in one line when the port is in

@@ -66,6 +66,10 @@ class DdsClientChannel final : public ClientChannel {
     if (options.meshes) {
       participant_->open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, nullptr, meshes_, status);
     }
+    if (options.features) {
+      participant_->open_reader<wire::FeaturesPubSubType>(Topic::kFeatures, nullptr, features_,
+                                                          status);
+    }
     participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
     participant_->open_writer<wire::IncrementBatchPubSubType>(Topic::kIncrement, increments_,
                                                               status);
@@ -127,6 +131,7 @@ class DdsClientChannel final : public ClientChannel {
     take_events(input);
     take_pulses(input);
     take_meshes(input);
+    take_features(input);
     return input;
   }
 
@@ -167,6 +172,7 @@ class DdsClientChannel final : public ClientChannel {
         snapshot_collector_.reset();
         keyframe_collector_.reset();
         mesh_collector_.reset();
+        feature_collector_.reset();
         pose_serial_ = 0;
       }
       action(sample);
@@ -279,6 +285,16 @@ class DdsClientChannel final : public ClientChannel {
     });
   }
 
+  void take_features(ClientInput& input) {
+    take_all<wire::Features>(features_, [&](const wire::Features& sample) {
+      const auto chunks = feature_collector_.add(sample);
+      if (!chunks) return;
+      auto whole = joined<FeatureTable>(
+          *chunks, [](FeatureTable& part, FeatureTable& into) { append(part.sets, into.sets); });
+      if (whole) input.features.push_back(std::move(*whole));
+    });
+  }
+
   template <class Entry>
   static void append(std::vector<Entry>& from, std::vector<Entry>& to) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
@@ -288,7 +304,8 @@ class DdsClientChannel final : public ClientChannel {
   std::unique_ptr<Participant> participant_;
   ClientKey key_;
   dds::DataReader *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
-                  *snapshots_ = nullptr, *pulses_ = nullptr, *meshes_ = nullptr;
+                  *snapshots_ = nullptr, *pulses_ = nullptr, *meshes_ = nullptr,
+                  *features_ = nullptr;
   dds::DataWriter *presence_ = nullptr, *increments_ = nullptr, *requests_ = nullptr;
   Clock::duration assert_period_{};
   Clock::time_point asserted_at_{};
@@ -297,6 +314,7 @@ class DdsClientChannel final : public ClientChannel {
   ChunkCollector<wire::Snapshot> snapshot_collector_;
   ChunkCollector<wire::PoseBatch> keyframe_collector_;
   MeshCollector mesh_collector_;
+  ChunkCollector<wire::Features> feature_collector_;
   std::uint64_t pose_serial_ = 0;
   ChannelCounters counters_;
 };

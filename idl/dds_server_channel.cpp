@@ -62,6 +62,7 @@ class DdsServerChannel final : public ServerChannel {
     participant_->open_writer<wire::EventBatchPubSubType>(Topic::kEvent, events_, status);
     participant_->open_writer<wire::SnapshotPubSubType>(Topic::kSnapshot, snapshots_, status);
     participant_->open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
+    participant_->open_writer<wire::FeaturesPubSubType>(Topic::kFeatures, features_, status);
     participant_->open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
     participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &departures_, presence_,
                                                         status);
@@ -123,6 +124,9 @@ class DdsServerChannel final : public ServerChannel {
       return;
     }
     for (const wire::MeshChunk& chunk : chunks) write(meshes_, chunk);
+  }
+  void publish_features(const FeatureTable& table) override {
+    for (const wire::Features& chunk : cut(table, ++feature_serial_)) write(features_, chunk);
   }
   void publish_pulse(const SessionPulse& pulse) override {
     write(pulses_, to_wire(pulse, pose_serial_));
@@ -243,9 +247,10 @@ class DdsServerChannel final : public ServerChannel {
   Departures departures_;  // before the participant, whose threads call it
   std::unique_ptr<Participant> participant_;
   dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
-                  *snapshots_ = nullptr, *meshes_ = nullptr, *pulses_ = nullptr;
+                  *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
+                  *pulses_ = nullptr;
   dds::DataReader *presence_ = nullptr, *requests_ = nullptr, *increments_ = nullptr;
-  std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0;
+  std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0, feature_serial_ = 0;
   std::size_t mesh_chunks_ = 0;
   std::map<UserId, ClientKey> joined_;
   std::set<ClientKey> present_;

@@ -36,7 +36,7 @@ class Door {
   }
   void pose(const wire::Quadruple& q, const wire::Triple& p_mm, const char* field) {
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    need(std::abs(norm - 1.0) <= kQuaternionNormAllowance, field);  // false when not finite
+    need(std::abs(norm - 1.0) <= kUnitNormAllowance, field);  // false when not finite
     position(p_mm, field);
   }
   void interval(double lo, double hi, const char* field) { need(lo <= hi, field); }

@@ -13,8 +13,9 @@ constexpr int kMaxUsers = 4096;
 constexpr int kMaxPoseChunks = 64;
 constexpr int kMaxSnapshotChunks = 1024;
 constexpr int kMaxMeshChunks = 32768;  // 1.9 GB of meshes
+constexpr int kMaxFeatureChunks = 1024;
 
-constexpr std::array<TopicRow, 10> kTopics = {{
+constexpr std::array<TopicRow, 11> kTopics = {{
     // topic, type, to server, key, reliable, transient local, writer depth, reader, depth, keys,
     // asynchronous, throttled, presence, large
     {"mortise_increment", "IncrementBatch", true, "user", false, false, 32, kAll, 128, kMaxUsers,
@@ -34,6 +35,8 @@ constexpr std::array<TopicRow, 10> kTopics = {{
     {"mortise_snapshot", "Snapshot", false, "chunk", true, true, 1, kLast, 1, kMaxSnapshotChunks,
      true, false, false, true},
     {"mortise_mesh", "MeshChunk", false, "mesh, chunk", true, true, 1, kLast, 1, kMaxMeshChunks,
+     true, true, false, true},
+    {"mortise_features", "Features", false, "chunk", true, true, 1, kLast, 1, kMaxFeatureChunks,
      true, true, false, true},
     {"mortise_pulse", "Pulse", false, "", true, true, 1, kLast, 1, 1, true, false, false, false},
 }};

@@ -35,6 +35,7 @@ enum class Topic {
   kEvent,
   kSnapshot,
   kMesh,
+  kFeatures,
   kPulse,
 };
 

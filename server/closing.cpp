@@ -27,6 +27,7 @@ Json json_of(const InboxCounters& c) {
   json["commands"] = c.commands;
   json["commands_refused"] = c.commands_refused;
   json["commands_deferred"] = c.commands_deferred;
+  json["commands_overdue"] = c.commands_overdue;
   json["increments"] = c.increments;
   json["accepted"] = c.accepted;
   json["repeats"] = c.repeats;
@@ -62,10 +63,11 @@ std::string inbox_lines(const InboxCounters& c) {
     text += fmt::format("; up to {} had to wait for a later tick", c.longest_backlog);
   }
   text += fmt::format(
-      "\n  commands {} (refused {}, deferred {}); joined {} (refused {}), left {}, lost {}, leases "
+      "\n  commands {} (refused {}, deferred {}, without what was sent before {}); joined {} "
+      "(refused {}), left {}, lost {}, leases "
       "ended {}, foreign {}\n",
-      c.commands, c.commands_refused, c.commands_deferred, c.joins, c.joins_refused, c.leaves,
-      c.liveliness_lost, c.lease_ends, c.foreign);
+      c.commands, c.commands_refused, c.commands_deferred, c.commands_overdue, c.joins,
+      c.joins_refused, c.leaves, c.liveliness_lost, c.lease_ends, c.foreign);
   return text;
 }
 

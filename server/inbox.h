@@ -31,6 +31,9 @@ struct InboxLimits {
   /// Parts in the hands of one user: more are refused at the grab. A hand needs one, a group move
   /// some; who takes all keeps the others from working.
   std::uint32_t parts_per_user = 64;
+  /// So long a command waits for increments that its sender sent before it and that have not come:
+  /// ten repetitions. Then it is carried out without them, and counted.
+  double after_wait_s = 0.5;
 };
 
 /// What one user sent since the session began here, and what became of it.
@@ -46,6 +49,7 @@ struct InboxCounters {
   std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0,
                 ask_ends = 0;
   std::uint64_t commands = 0, commands_refused = 0, commands_deferred = 0;
+  std::uint64_t commands_overdue = 0;  ///< carried out before increments that were sent before them
   std::uint64_t increments = 0, accepted = 0;  ///< arrived for the first time; of these taken
   std::uint64_t repeats = 0;   ///< arrived again, which is how a lossy link is made good
   std::uint64_t repaired = 0;  ///< arrived only by repetition
@@ -83,6 +87,8 @@ class Inbox {
   ///
   /// A release, undo, redo, reset or consent waits until the increments of the same user and part
   /// that came before it were carried out: decisions are applied before the increments of a tick.
+  /// It also waits for those that were sent before it and are still on their way (Command::after),
+  /// for at most after_wait_s.
   void admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake);
 
   const InboxCounters& counters() const { return counters_; }
@@ -103,10 +109,12 @@ class Inbox {
     std::int64_t tokens_at_ns = 0;
     std::uint32_t told = 0;  ///< refusals in this drain
   };
-  /// A command or goodbye that waits for increments with a sequence up to `after`.
+  /// A command or goodbye that waits for increments with a sequence up to `after`: a command until
+  /// until_ns also for those that have not come.
   struct DeferredCommand {
     ReceivedCommand received;
     std::uint64_t after = 0;
+    std::int64_t until_ns = 0;
   };
   struct DeferredGoodbye {
     UserId user;
@@ -116,7 +124,6 @@ class Inbox {
   Seat* seat_of(UserId user, const ClientKey& client);
   UserId first_user_of(const ClientKey& client) const;
   bool take_token(Seat& seat, std::int64_t now_ns);
-  /// Would the grab put more parts into the user's hand than the session lets one hold?
   /// Would a grab, an ask or a consent give its taker more parts than a user may hold?
   bool hand_is_full(const World& world, const Command& command) const;
   void renew(World& world, UserId user, std::int64_t now_ns);
@@ -135,6 +142,8 @@ class Inbox {
   /// Takes this tick's share from the backlog, against the holders as they are now.
   void take_increments(const World& world, std::int64_t now_ns, Intake& intake);
   bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
+  /// The same of a command; counts those that will not wait any longer.
+  bool waits(const DeferredCommand& deferred, std::int64_t now_ns);
   /// Does one about the same part wait already? Then this one waits behind it.
   static bool is_behind(const std::vector<DeferredCommand>& waiting, const Command& command);
   /// What is wrong with a request to join; kNone: nothing.

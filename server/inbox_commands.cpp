@@ -18,6 +18,7 @@ bool waits_for_increments(CommandKind kind) {
     case CommandKind::kConsent:
     case CommandKind::kAddConstraint:
     case CommandKind::kDropConstraint:
+    case CommandKind::kSnap:
       return true;
     default:
       return false;
@@ -41,7 +42,7 @@ void Inbox::carry_out_deferred(World& world, std::int64_t now_ns, Intake& intake
   std::vector<DeferredCommand> still_waiting;
   for (DeferredCommand& d : std::exchange(deferred_, {})) {
     const Command& command = d.received.command;
-    if (is_behind(still_waiting, command) || waits(command.user, command.part, d.after)) {
+    if (is_behind(still_waiting, command) || waits(d, now_ns)) {
       still_waiting.push_back(std::move(d));
     } else {
       carry_out(command, world, now_ns, intake);
@@ -72,10 +73,6 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
   } else if (!take_token(*seat, now_ns)) {
     reply.refusal = Refusal::kRateTooHigh;
     reply.text = "more messages a second than the session takes from one user, or from all";
-  } else if (hand_is_full(world, command)) {
-    reply.refusal = Refusal::kNotAllowed;
-    reply.text = "a user of this session holds at most " + std::to_string(limits_.parts_per_user) +
-                 " parts; release one first";
   }
   ++counters_of(reply.user).commands;
   if (reply.refusal != Refusal::kNone) {
@@ -84,19 +81,42 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
     intake.replies.push_back(std::move(reply));
     return;
   }
-  const std::uint64_t newest = seat->increments.newest();
+  DeferredCommand deferred{received, seat->increments.newest(), now_ns};
+  if (waits_for_increments(command.kind)) {
+    deferred.after = std::max(deferred.after, command.after);
+    deferred.until_ns = now_ns + static_cast<std::int64_t>(limits_.after_wait_s * 1e9);
+  }
   if (is_behind(deferred_, command) ||
-      (waits_for_increments(command.kind) && waits(command.user, command.part, newest))) {
+      (waits_for_increments(command.kind) && waits(deferred, now_ns))) {
     ++counters_.commands_deferred;
-    deferred_.push_back({received, newest});
+    deferred_.push_back(std::move(deferred));
   } else {
     carry_out(command, world, now_ns, intake);
   }
 }
 
+bool Inbox::waits(const DeferredCommand& deferred, std::int64_t now_ns) {
+  const Command& command = deferred.received.command;
+  if (waits(command.user, command.part, deferred.after)) return true;
+  const Seat& seat = seats_[command.user.value - 1];
+  if (!seat.present || seat.increments.newest() >= deferred.after) return false;
+  if (now_ns < deferred.until_ns) return true;
+  counters_.commands_overdue += waits_for_increments(command.kind);
+  return false;
+}
+
 void Inbox::carry_out(const Command& command, World& world, std::int64_t now_ns, Intake& intake) {
   Decision decision;
-  Reply reply = apply_command(world, command, decision);
+  Reply reply;
+  // Here, not where it arrived: what was carried out since may have filled the hand.
+  if (hand_is_full(world, command)) {
+    reply = {command.user, command.part, command.seq, Refusal::kNotAllowed, {}, {}};
+    if (const Part* part = world.find(command.part)) reply.holder = part->holder;
+    reply.text = "a user of this session holds at most " + std::to_string(limits_.parts_per_user) +
+                 " parts; release one first";
+  } else {
+    reply = apply_command(world, command, decision);
+  }
   if (reply.refusal != Refusal::kNone) {
     ++counters_.commands_refused;
     ++counters_of(command.user).commands_refused;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/messages/mesh_bytes.h"
+#include "common/session/feature_table.h"
 
 namespace mortise {
 namespace {
@@ -52,6 +53,10 @@ void TickLoop::open() {
     channel_.publish_mesh(part.solid->hash(), mesh_to_bytes(mesh.points_mm, mesh.triangles));
   }
   publish_snapshot();
+  channel_.publish_features(feature_table(world_));
+  features_ns_ = now_ns_;
+  std::vector<SolidPtr> meshes = unrecognized_meshes(world_);
+  if (!meshes.empty()) recognizer_ = std::make_unique<Recognizer>(std::move(meshes));
 }
 
 void TickLoop::tick() {
@@ -140,6 +145,7 @@ void TickLoop::publish() {
   snapshot_wanted_ |= has_readers && !had_readers_ && changed_since_snapshot_;
   had_readers_ = has_readers;
   publish_snapshot_when_due();
+  if (recognizer_) tell_features();
 
   if (now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
     pulse_ns_ = now_ns_;
@@ -162,6 +168,19 @@ void TickLoop::publish_snapshot() {
   snapshot_ns_ = now_ns_;
   changed_since_snapshot_ = false;
   snapshot_wanted_ = false;
+}
+
+void TickLoop::tell_features() {
+  const bool done = recognizer_->done();
+  for (auto& [mesh, features] : recognizer_->take()) {
+    world_.recognized[mesh] = std::move(features);
+    features_are_new_ = true;
+  }
+  if (!done && now_ns_ - features_ns_ < in_ns(options_.features_gap_s)) return;
+  if (features_are_new_) channel_.publish_features(feature_table(world_));
+  features_are_new_ = false;
+  features_ns_ = now_ns_;
+  if (done) recognizer_.reset();
 }
 
 void TickLoop::run(const std::function<bool()>& stop, const std::function<void()>& after_tick) {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "server/clock.h"
 #include "server/inbox.h"
 #include "server/metrics.h"
+#include "server/recognizer.h"
 
 namespace mortise {
 
@@ -24,6 +26,7 @@ struct TickLoopOptions {
   double pulse_s = 1.0;
   /// Requested snapshots come no closer than this: a client that asks in a loop costs little.
   double snapshot_gap_s = 0.1;
+  double features_gap_s = 1.0;  ///< likewise tables of features, while meshes are looked at
 };
 
 /// The beat of a session: at a fixed rate drain the channel, apply decisions, step, record,
@@ -70,6 +73,7 @@ class TickLoop {
   void publish();
   void publish_snapshot_when_due();
   void publish_snapshot();
+  void tell_features();
 
   World& world_;
   ServerChannel& channel_;
@@ -86,8 +90,10 @@ class TickLoop {
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::vector<PartPose> published_;            ///< what the pose stream said last, by part index
   std::vector<std::uint32_t> moving_;          ///< parts that can ever move, by index
+  std::unique_ptr<Recognizer> recognizer_;     ///< null: no mesh is to be looked at any more
   std::uint64_t event_seq_ = 0;
-  std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0;
+  std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0, features_ns_ = 0;
+  bool features_are_new_ = false;
   bool changed_since_snapshot_ = false;
   bool snapshot_wanted_ = false;
   bool had_readers_ = false;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "client/bot/guided.h"
 #include "client/bot/people.h"
+#include "client/bot/random.h"
 
 namespace mortise {
 namespace {
@@ -14,22 +16,6 @@ constexpr double kRegrab_s = 0.5;        // an answer takes a tick and a round t
 constexpr double kGiveUpAct_s = 5.0;     // a part that stays in other hands so long is left to them
 constexpr double kLongestBeat_s = 0.05;  // after a stall of the machine a part must not leap: its
                                          // path goes on from where it was
-
-/// mt19937_64 is the same everywhere; the library's distributions are not.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double lo, double hi) {
-    return lo + (hi - lo) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
-  }
-  Vec3 in_cube(double half) {
-    const double x = uniform(-half, half), y = uniform(-half, half), z = uniform(-half, half);
-    return {x, y, z};
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// Towards the nearest other part and back again, as one tries whether a part fits.
 class InsertPath : public Path {
@@ -252,8 +238,8 @@ std::unique_ptr<Behaviour> mixed(const BehaviourSpec& spec, std::uint64_t seed,
 }  // namespace
 
 const std::vector<std::string>& behaviour_names() {
-  static const std::vector<std::string> kNames{"insert", "wander", "shake", "fight", "share",
-                                               "revise", "review", "mixed", "script"};
+  static const std::vector<std::string> kNames{"insert", "wander", "shake", "fight",  "share",
+                                               "revise", "review", "mixed", "guided", "script"};
   return kNames;
 }
 
@@ -276,6 +262,13 @@ std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec) {
   }
   if (spec.kind == "review") {
     return make_reviewer(std::make_unique<Carrier>(settings, std::make_unique<InsertPath>()));
+  }
+  if (spec.kind == "guided") {
+    GuidedSettings guided = spec.guided;
+    guided.first = spec.index;
+    guided.only = spec.part;
+    guided.seed = seed;
+    return make_guided(guided);
   }
   if (spec.kind == "shake") {
     return std::make_unique<Carrier>(settings, std::make_unique<SwingPath>(seed, kShake));

@@ -20,6 +20,7 @@ struct View {
   const std::map<PartId, KnownPart>* parts = nullptr;
   const std::map<ClashId, ClashEvent>* clashes = nullptr;  ///< that are open; may be null
   const std::vector<Decision>* standing = nullptr;         ///< what is asked for; may be null
+  const KnownFeatures* features = nullptr;                 ///< may be null
 
   const KnownPart* find(PartId part) const {
     const auto at = parts->find(part);
@@ -46,6 +47,24 @@ struct Wish {
   std::vector<Ask> asks;
 };
 
+/// Tries of putting a shaft into a bore.
+struct Insertions {
+  std::uint64_t tries = 0, inserted = 0;
+  std::uint64_t not_aligned = 0;  ///< no constraint was set
+  std::uint64_t stuck = 0;        ///< it went no further
+  std::vector<double> seconds;    ///< of those inserted, from the first push
+};
+
+/// How the behaviour guided goes about it.
+struct GuidedSettings {
+  std::size_t first = 0;  ///< number of the moving part, of those that fit somewhere
+  PartId only, target;    ///< the part; the part with the bore. None: which fit, the nearest
+  std::uint64_t seed = 1;
+  std::uint64_t tries = 10;
+  double tremor_mm = 0.2, tremor_rad = 0.5 * 3.14159265358979323846 / 180.0;  ///< largest, each way
+  bool free_hand = false;  ///< without a constraint, by eye
+};
+
 /// A designer without hands. Same seed and same view, same wishes.
 class Behaviour {
  public:
@@ -53,6 +72,8 @@ class Behaviour {
   virtual Wish beat(const View& view) = 0;
   /// What could not be done, in words.
   virtual const std::vector<std::string>& troubles() const;
+  /// What became of tries to insert a part; null: it tries nothing of the kind.
+  virtual const Insertions* insertions() const { return nullptr; }
 };
 
 /// How a part is moved while it is held: the offset from where it was grabbed, as a function of the
@@ -120,6 +141,7 @@ struct BehaviourSpec {
   std::uint64_t seed = 1;
   PartId part;                 ///< none: by index
   const Play* play = nullptr;  ///< of script
+  GuidedSettings guided = {};  ///< of guided; first, only and seed are those above
 };
 const std::vector<std::string>& behaviour_names();
 std::unique_ptr<Behaviour> make_behaviour(const BehaviourSpec& spec);

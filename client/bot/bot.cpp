@@ -30,6 +30,7 @@ int run_crew(const BotOptions& options, std::optional<Play> play, ProcessReport&
   dds.server = options.server;
   dds.discovery_port = options.port;
   dds.meshes = false;  // a bot does not look at parts
+  dds.features = options.behaviour == "guided" && !options.observer;
   auto channel = open_client_channel(dds);
   if (!channel) {
     spdlog::error("{}", channel.error().text);

@@ -42,7 +42,7 @@ int Crew::run(ProcessReport& report) {
                  client_.policy());
   }
   listen(options_.delay_s);
-  if (Status found = find_part(); !found) {
+  if (Status found = find_parts(); !found) {
     spdlog::error("{}", found.error().text);
     return exit_code_of(found.error().code);
   }
@@ -111,11 +111,16 @@ void Crew::say_why_not_joined() const {
       options_.server.empty() ? options_.interface : options_.server, options_.wait_s);
 }
 
-Status Crew::find_part() {
-  if (options_.observer || options_.part.empty()) return ok();
-  part_ = client_.find_part(options_.part);
-  if (part_) return ok();
-  return fail(Code::kNotFound, "no part '" + options_.part + "' in the session");
+Status Crew::find_parts() {
+  guided_ = options_.guided;
+  if (options_.observer) return ok();
+  const auto find = [&](const std::string& name, PartId& part) {
+    part = client_.find_part(name);
+    return name.empty() || part;
+  };
+  const std::string& missing = find(options_.part, part_) ? options_.target : options_.part;
+  if ((options_.part.empty() || part_) && find(options_.target, guided_.target)) return ok();
+  return fail(Code::kNotFound, "no part '" + missing + "' in the session");
 }
 
 void Crew::poll(double pause_s) {
@@ -158,7 +163,7 @@ bool Crew::beat(double now_s, double beat_s) {
     if (user >= behaviours_.size()) {
       behaviours_.push_back(
           make_behaviour({options_.behaviour, names_[user], options_.first_part + user,
-                          options_.seed, part_, play_ ? &*play_ : nullptr}));
+                          options_.seed, part_, play_ ? &*play_ : nullptr, guided_}));
       sent_seq_.push_back(0);
     }
     if (options_.ramp_s > 0.0 && client_.join_state(user) != JoinState::kJoined) {
@@ -172,6 +177,7 @@ bool Crew::beat(double now_s, double beat_s) {
     view.parts = &client_.parts();
     view.clashes = &client_.open_clashes();
     view.standing = &client_.standing();
+    view.features = &client_.features();
     const Wish wish = behaviours_[user]->beat(view);
     all_done = all_done && wish.done;
     carry_out(user, wish);
@@ -236,6 +242,9 @@ Json Crew::document() const {
   json["troubles"] = Json::array();
   for (const auto& behaviour : behaviours_) {
     for (const std::string& trouble : behaviour->troubles()) json["troubles"].push_back(trouble);
+  }
+  if (const Json insertions = insertions_json(behaviours_); !insertions.is_null()) {
+    json["insertions"] = insertions;
   }
   return json;
 }

@@ -31,7 +31,7 @@ class Crew {
   void add_users_due(double now_s);
   bool wait_until_joined();
   void say_why_not_joined() const;
-  Status find_part();
+  Status find_parts();
   void poll(double pause_s);
   void listen(double seconds);
   void act();
@@ -45,6 +45,7 @@ class Crew {
   Client client_;
   std::optional<Play> play_;
   PartId part_;
+  GuidedSettings guided_;
   std::vector<std::string> names_;  ///< of those who are in, and of those who come later
   std::vector<std::unique_ptr<Behaviour>> behaviours_;  ///< of those who are in
   std::vector<std::uint64_t> sent_seq_;                 ///< newest increment, by user

@@ -39,6 +39,9 @@ double figure_of(const Json& d, const std::string& name) {
   if (name == "unanswered") return d["unanswered_commands"].get<double>();
   if (name == "unacknowledged") return d["unacknowledged_increments"].get<double>();
   if (name == "resyncs") return d["repaired"]["resyncs"].get<double>();
+  if (name == "not_inserted" && d.contains("insertions") && d["insertions"]["tries"] > 0) {
+    return d["insertions"]["tries"].get<double>() - d["insertions"]["inserted"].get<double>();
+  }
   if (name == "differing_streams") {
     return d.contains("streams") ? d["streams"]["differing_blocks"].get<double>() : 0.0;
   }
@@ -78,6 +81,7 @@ const std::vector<std::pair<std::string, std::string>>& limit_names() {
       {"unacknowledged", "increments without an acknowledgement"},
       {"resyncs", "snapshots that took the place of events"},
       {"missed_poses", "pose batches that did not come"},
+      {"not_inserted", "tries of the behaviour guided that did not insert the part"},
       {"differing_streams", "blocks of the event stream that participants saw differently"},
   };
   return names;
@@ -118,6 +122,27 @@ Json percentiles(std::vector<double> values) {
           {"max", at(1.0)}};
 }
 
+Json insertions_json(const std::vector<std::unique_ptr<Behaviour>>& behaviours) {
+  Insertions all;
+  bool any = false;
+  for (const auto& behaviour : behaviours) {
+    const Insertions* own = behaviour->insertions();
+    if (own == nullptr) continue;
+    any = true;
+    all.tries += own->tries;
+    all.inserted += own->inserted;
+    all.not_aligned += own->not_aligned;
+    all.stuck += own->stuck;
+    all.seconds.insert(all.seconds.end(), own->seconds.begin(), own->seconds.end());
+  }
+  if (!any) return nullptr;
+  return {{"tries", all.tries},
+          {"inserted", all.inserted},
+          {"not_aligned", all.not_aligned},
+          {"stuck", all.stuck},
+          {"seconds", percentiles(std::move(all.seconds))}};
+}
+
 Json merged(const std::vector<ProcessReport>& reports) {
   Json all;
   std::vector<double> latency_ms, event_latency_ms;
@@ -138,9 +163,11 @@ Json merged(const std::vector<ProcessReport>& reports) {
     for (const char* key : {"sent", "not_sent", "refused", "commands_sent", "replies",
                             "commands_accepted", "commands_refused", "commands_refused_by",
                             "unanswered_commands", "unacknowledged_increments", "lost", "repaired",
-                            "server_losses", "events_without_increment"}) {
+                            "server_losses", "events_without_increment", "insertions"}) {
       if (d.contains(key)) sums[key] = d[key];
     }
+    // Percentiles do not add up.
+    if (sums.contains("insertions")) sums["insertions"].erase("seconds");
     add_counts(counts, sums);
     participants.push_back({{"names", d["names"]},
                             {"sent", d["sent"]},

@@ -1,10 +1,12 @@
 #pragma once
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "client/bot/behaviour.h"
 #include "client/bot/options.h"
 
 namespace mortise {
@@ -23,6 +25,9 @@ bool from_bytes(const std::vector<std::uint8_t>& bytes, ProcessReport& report);
 
 /// p50, p90, p99, max by nearest rank, 0 when there is none; and how many.
 nlohmann::ordered_json percentiles(std::vector<double> values);
+
+/// What became of tries to insert parts; null when nobody tried.
+nlohmann::ordered_json insertions_json(const std::vector<std::unique_ptr<Behaviour>>& behaviours);
 
 /// One document of all processes: counts are sums, percentiles are of all samples, and
 /// `streams` says whether all saw the same sequence of events.

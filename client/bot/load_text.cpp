@@ -68,6 +68,12 @@ std::string load_text(const Json& d) {
       fmt::format("  lost         events {}, pose batches {}; repaired: {} resyncs for {} events\n",
                   count(d["lost"], "events"), count(d["lost"], "pose_batches"),
                   count(d["repaired"], "resyncs"), count(d["repaired"], "events_by_snapshot"));
+  if (d.contains("insertions")) {
+    const Json& i = d["insertions"];
+    text += fmt::format("  inserted     {} of {}, {} without alignment, {} stuck\n",
+                        count(i, "inserted"), count(i, "tries"), count(i, "not_aligned"),
+                        count(i, "stuck"));
+  }
   if (d.contains("streams")) {
     const Json& s = d["streams"];
     text += fmt::format("  streams      {} events compared in blocks, {} blocks differ\n",

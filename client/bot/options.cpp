@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <numbers>
 
 #include "client/bot/behaviour.h"
 #include "client/bot/load_report.h"
@@ -56,6 +57,19 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
   app.add_option("--part", o.part, "Part to begin with (fight: the part that all want)");
   app.add_option("--first-part", o.first_part,
                  "Number of the moving part that the first user begins with, from 0");
+  app.add_option("--target", o.target,
+                 "guided: the part with the bore; default: the nearest that fits");
+  app.add_option("--tries", o.guided.tries, "guided: insertions tried by each user")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--tremor", o.guided.tremor_mm, "guided: how far the hand trembles, mm, each way")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  double tremor_deg = o.guided.tremor_rad * 180.0 / std::numbers::pi;
+  app.add_option("--tremor-deg", tremor_deg, "guided: how far it turns, degrees, each way")
+      ->check(CLI::Range(0.0, 45.0))
+      ->capture_default_str();
+  app.add_flag("--free-hand", o.guided.free_hand, "guided: without a constraint, by eye");
   app.add_option("--seed", o.seed, "Seed of what is random")->capture_default_str();
   app.add_option("--rate", o.rate_hz, "Increments a second and user")
       ->check(CLI::Range(1.0, 1000.0))
@@ -96,6 +110,7 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
       "above its limit.");
   try {
     app.parse(argc, argv);
+    o.guided.tremor_rad = tremor_deg * std::numbers::pi / 180.0;
     for (const std::string& text : limits) o.limits.push_back(read_limit(text));
     if (o.processes > 1 && (!o.names.empty() || o.behaviour == "script")) {
       throw CLI::ValidationError("--processes makes up its users: without --names and script");

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "client/bot/behaviour.h"
 #include "common/math/types.h"
 
 namespace mortise {
@@ -24,6 +25,8 @@ struct BotOptions {
   std::string behaviour = "wander";
   std::string play;            ///< file for the behaviour script
   std::string part;            ///< the part to begin with; for fight the one that all want
+  std::string target;          ///< of guided: the part with the bore; empty: the nearest that fits
+  GuidedSettings guided;       ///< tries, tremor, free hand
   std::size_t first_part = 0;  ///< the moving part that the first user begins with, by number
   std::uint64_t seed = 1;
   double rate_hz = 60.0;

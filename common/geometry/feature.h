@@ -5,11 +5,10 @@
 
 #include "common/math/interval.h"
 #include "common/math/types.h"
+#include "common/messages/feature_info.h"
 #include "common/messages/verdict.h"
 
 namespace mortise {
-
-enum class SurfaceKind : std::uint8_t { kUnknown = 0, kPlane, kCylinder, kCone, kSphere, kTorus };
 
 /// The true surface of a face, part frame, mm. `inward` is true for a bore: the material lies
 /// outside the radius.
@@ -47,6 +46,7 @@ struct Feature {
   DeviationGrade grade = DeviationGrade::kDeclaredFeature;
   double residual_mm = 0.0;  ///< largest distance of a mesh corner of the face from the surface
   std::vector<std::uint32_t> triangles;
+  FeatureOrigin origin = FeatureOrigin::kDeclared;
 };
 
 }  // namespace mortise

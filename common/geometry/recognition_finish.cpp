@@ -287,6 +287,7 @@ class Finisher {
       Feature feature;
       feature.surface = r.surface;
       feature.grade = DeviationGrade::kRecognizedFeature;
+      feature.origin = FeatureOrigin::kRecognized;
       feature.residual_mm = r.residual_mm;
       out_.largest_residual_share = std::max(
           out_.largest_residual_share, r.residual_mm / size_mm(r.surface, mesh_, r.triangles));
@@ -323,6 +324,7 @@ class Finisher {
       Feature feature;
       feature.triangles.assign(triangles.begin(), triangles.end());
       feature.grade = DeviationGrade::kPlanar;
+      feature.origin = FeatureOrigin::kRecognized;
       Surface& s = feature.surface;
       s.kind = SurfaceKind::kPlane;
       s.axis = facets_.normal[f];

@@ -243,6 +243,8 @@ class SceneLoader {
         continue;
       }
       if (!match->note.empty()) finding(false, declared.at, who + match->note);
+      const bool in_file = &declared < specs.data() + spec.features.size();
+      match->feature.origin = in_file ? FeatureOrigin::kDeclared : FeatureOrigin::kGenerated;
       kind.features.push_back(std::move(match->feature));
       Result<PlacedStatement> statement =
           statement_of_feature(declared, specs, kind.features.back().residual_mm, kind.stated.rest);

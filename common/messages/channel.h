@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/messages/feature_info.h"
 #include "common/messages/increment.h"
 #include "common/messages/report.h"
 #include "common/messages/scene.h"
@@ -125,6 +126,7 @@ class ServerChannel {
   virtual void publish_snapshot(const Snapshot& snapshot) = 0;  ///< kept for late joiners
   virtual void publish_mesh(const std::string& hash,
                             std::span<const std::byte> bytes) = 0;  ///< kept
+  virtual void publish_features(const FeatureTable& table) = 0;     ///< kept; the last one counts
   virtual void publish_pulse(const SessionPulse& pulse) = 0;
   virtual bool has_readers() const = 0;
   virtual ChannelCounters counters() const = 0;
@@ -146,9 +148,10 @@ struct ClientInput {
   std::vector<ClashEvent> events;
   std::vector<SessionPulse> pulses;
   std::vector<MeshBytes> meshes;
-  std::uint64_t poses_missed = 0;  ///< pose batches known to be lost since the last take()
-  bool server_lost = false;        ///< noticed since the last take()
-  bool server_present = false;     ///< as of now
+  std::vector<FeatureTable> features;  ///< the last one counts
+  std::uint64_t poses_missed = 0;      ///< pose batches known to be lost since the last take()
+  bool server_lost = false;            ///< noticed since the last take()
+  bool server_present = false;         ///< as of now
 };
 
 /// A participant's end. Thread-compatible; take() never blocks.

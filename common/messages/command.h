@@ -31,8 +31,9 @@ enum class CommandKind : std::uint8_t {
   kReview = 13,          ///< clash, status; text: the comment, may be empty
   kAddConstraint = 14,   ///< constraint; its held.part is `part`
   kDropConstraint = 15,  ///< constraint_id
+  kSnap = 16,            ///< constraint: what of it is none or empty the server chooses
 };
-inline constexpr std::uint8_t kCommandKindCount = 16;
+inline constexpr std::uint8_t kCommandKindCount = 17;
 
 /// Why something was not done. Goes over the wire and into the log, so numbers never change.
 enum class Refusal : std::uint8_t {
@@ -64,9 +65,10 @@ enum class Refusal : std::uint8_t {
   kAlreadyAsked = 25,  ///< somebody else has, and waits for an answer
   kBadRule = 26,       ///< not understood, contradicts another statement, or changes nothing
   kUnknownClash = 27,
-  kBadGroup = 28,  ///< a group of no parts, or with one twice
+  kBadGroup = 28,     ///< a group of no parts, or with one twice
+  kNothingNear = 29,  ///< no feature to snap to
 };
-inline constexpr std::uint8_t kRefusalCount = 29;
+inline constexpr std::uint8_t kRefusalCount = 30;
 
 /// What commands and decisions say beside user and part.
 struct Details {
@@ -90,6 +92,9 @@ struct Command {
   std::uint64_t seq = 0;  ///< per user, echoed in the reply
   CommandKind kind = CommandKind::kUnknown;
   Details details = {};
+  /// The user's increments up to this sequence were sent before, and not all are known to have
+  /// arrived; 0: all have. What ends a drag waits for those that are still on their way.
+  std::uint64_t after = 0;
 };
 
 struct Reply {

@@ -87,6 +87,7 @@ struct MemoryHub::State {
   std::map<UserId, ClientKey> joined;
   std::optional<Snapshot> snapshot;
   std::vector<MeshBytes> meshes;
+  std::optional<FeatureTable> features;
   std::map<ClientKey, ClientBox> clients;
   std::uint64_t clients_opened = 0;
 
@@ -97,6 +98,7 @@ struct MemoryHub::State {
     joined.clear();
     snapshot.reset();
     meshes.clear();
+    features.reset();
     for (auto& [key, box] : clients) {
       box.reliable = {};
       box.poses.clear();
@@ -108,6 +110,7 @@ struct MemoryHub::State {
   void greet(ClientBox& box) const {
     if (snapshot) box.reliable.snapshots = {*snapshot};
     box.reliable.meshes = meshes;
+    if (features) box.reliable.features = {*features};
   }
 
   /// Null when the client was killed: what it sends goes nowhere.
@@ -200,6 +203,11 @@ class MemoryServer final : public ServerChannel {
     each([&](ClientBox& box) { box.reliable.meshes.push_back(mesh); });
     const std::lock_guard lock(state_->mutex);
     if (current()) state_->meshes.push_back(mesh);
+  }
+  void publish_features(const FeatureTable& table) override {
+    each([&](ClientBox& box) { box.reliable.features = {table}; });
+    const std::lock_guard lock(state_->mutex);
+    if (current()) state_->features = table;
   }
   void publish_pulse(const SessionPulse& pulse) override {
     each([&](ClientBox& box) { box.reliable.pulses = {pulse}; });

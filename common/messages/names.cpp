@@ -130,6 +130,8 @@ std::string_view name_of(Refusal value) {
       return "unknown clash";
     case Refusal::kBadGroup:
       return "no group of parts";
+    case Refusal::kNothingNear:
+      return "nothing near to snap to";
   }
   return "?";
 }
@@ -184,6 +186,8 @@ std::string_view name_of(CommandKind value) {
       return "add constraint";
     case CommandKind::kDropConstraint:
       return "drop constraint";
+    case CommandKind::kSnap:
+      return "snap";
   }
   return "?";
 }

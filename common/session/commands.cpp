@@ -221,6 +221,8 @@ Refused check(const World& world, const Command& command) {
       return check_exclusion(world, *user, command);
     case CommandKind::kReview:
       return check_review(world, *user, command);
+    case CommandKind::kSnap:
+      return check_holds(world, *user, command.part);
     case CommandKind::kAddConstraint:
     case CommandKind::kDropConstraint:
       return {};  // checked where they are done
@@ -259,6 +261,7 @@ Decision::Kind decision_of(CommandKind kind) {
     case CommandKind::kReview:
       return Decision::Kind::kReview;
     case CommandKind::kAddConstraint:
+    case CommandKind::kSnap:
       return Decision::Kind::kAddConstraint;
     case CommandKind::kDropConstraint:
       return Decision::Kind::kDropConstraint;
@@ -305,6 +308,16 @@ Decision decide(const World& world, const Command& command) {
   return decision;
 }
 
+// What the server chooses takes the place of what was left open: from then on it is as if the user
+// had named it.
+Refused choose(const World& world, Decision& decision) {
+  Constraint& constraint = decision.details.constraint;
+  constraint.held.part = decision.part;
+  SnapChoice choice = choose_snap(world, decision.user, constraint);
+  constraint = std::move(choice.constraint);
+  return {choice.refusal, std::move(choice.text)};
+}
+
 }  // namespace
 
 Reply apply_command(World& world, const Command& command, Decision& decision) {
@@ -313,7 +326,15 @@ Reply apply_command(World& world, const Command& command, Decision& decision) {
   Refused refused = check(world, command);
   if (refused.refusal == Refusal::kNone) {
     Decision decided = decide(world, command);
-    refused = carry_out(world, decided);
+    std::string chosen;
+    if (command.kind == CommandKind::kSnap) {
+      refused = choose(world, decided);
+      chosen = refused.text + "; ";
+    }
+    if (refused.refusal == Refusal::kNone) {
+      refused = carry_out(world, decided);
+      refused.text = chosen + refused.text;
+    }
     if (refused.refusal == Refusal::kNone) decision = std::move(decided);
   }
   reply.refusal = refused.refusal;

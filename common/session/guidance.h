@@ -66,10 +66,23 @@ struct SnapCandidate {
 };
 
 /// Features of like kind near those of the part, nearest first: a round outside with a round inside
-/// of nearly the same radius, planes that face each other. Only declared, generated and recognized
-/// features of the load are searched. O(features of the part times features of all others within
-/// reach).
+/// of nearly the same radius, planes that face each other. Searched are the features of the load
+/// and those of meshes that were looked at since (world.recognized). O(features of the part times
+/// features of all others within reach).
 std::vector<SnapCandidate> snap_candidates(const World& world, PartId part,
                                            const SnapLimits& limits);
+
+/// What a wish to snap comes to.
+struct SnapChoice {
+  Refusal refusal = Refusal::kNone;
+  std::string text;  ///< the reason of a refusal; else what was chosen, in words
+  Constraint constraint;
+};
+
+/// The nearest candidate that the wish allows, that agrees with the constraints that hold, and that
+/// takes some freedom away. Of the wish, whose held.part must be, everything else may be none or
+/// empty: then any. With other.part named, however far and askew it stands; else within the limits
+/// above. Changes nothing. Cost: the search, and a check of each candidate up to the chosen one.
+SnapChoice choose_snap(const World& world, UserId user, const Constraint& wish);
 
 }  // namespace mortise

@@ -11,6 +11,11 @@ const std::vector<SessionSection>& session_sections() {
       {"idle", "a session in which nothing happens", section_idle},
       {"reader", "ticks beside a reader that was stopped", section_reader},
       {"join", "who comes late", section_join},
+      {"presence", "who is killed without a goodbye", section_presence},
+      {"restart", "a server that is killed and started again", section_restart},
+      {"scene", "50 MB of meshes for eight at once", section_scene},
+      {"lossy", "a link that loses, delays, doubles and reorders", section_lossy},
+      {"guided", "shafts put into bores by hands that tremble", section_guided},
   };
   return all;
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -14,7 +15,8 @@ namespace {
 // A scenario of the house that anyone may play in: its list of users is left out, for it has fewer
 // than a load.
 std::string open_to_all(test::TestFolder& folder, const std::string& name) {
-  std::ifstream in(std::string(MORTISE_SOURCE_DIR) + "/scenarios/" + name);
+  const std::filesystem::path of_house = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
+  std::ifstream in(of_house / name);  // `name` as it is, when it is absolute
   std::string text, line;
   bool in_users = false;
   while (std::getline(in, line)) {
@@ -22,7 +24,7 @@ std::string open_to_all(test::TestFolder& folder, const std::string& name) {
     if (top_level) in_users = line.starts_with("users:");
     if (!in_users) text += line + "\n";
   }
-  return folder.write(name, text);
+  return folder.write(std::filesystem::path(name).filename().string(), text);
 }
 
 // A domain a server, so that none hears what an earlier one left behind.
@@ -53,16 +55,26 @@ void sleep_s(double seconds) {
 }
 
 BenchServer::BenchServer(const std::string& scenario, const std::vector<std::string>& more)
-    : domain_(next_domain()) {
-  std::vector<std::string> arguments = {open_to_all(folder_, scenario),
-                                        "--domain",
-                                        std::to_string(domain_),
-                                        "--log",
-                                        log(),
-                                        "--json",
-                                        "--quiet"};
+    : domain_(next_domain()), scenario_(open_to_all(folder_, scenario)) {
+  std::vector<std::string> arguments = {
+      scenario_, "--domain", std::to_string(domain_), "--log", log(), "--json", "--quiet"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   program_ = std::make_unique<test::Program>(folder_.path(), "mortise-server", arguments);
+}
+
+double BenchServer::restart(bool from_log) {
+  program_->signal(SIGKILL);
+  program_->wait(10.0);
+  std::vector<std::string> arguments = {"--domain", std::to_string(domain_), "--json", "--quiet"};
+  if (from_log) {
+    arguments.insert(arguments.end(),
+                     {"--restore", log(), "--log", (folder_.path() / "restored.mcap").string()});
+  } else {
+    arguments.insert(arguments.begin(), {scenario_, "--no-log"});
+  }
+  const double start_s = steady_s();
+  program_ = std::make_unique<test::Program>(folder_.path(), "mortise-server", arguments);
+  return start_s;
 }
 
 std::string BenchServer::log() const { return (folder_.path() / "session.mcap").string(); }

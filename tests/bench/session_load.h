@@ -29,12 +29,16 @@ class BenchServer {
   std::string errors() const { return program_->errors(); }
   /// A participant as a program, beside it.
   std::unique_ptr<test::Program> bots(std::vector<std::string> arguments);
+  /// Kills it without warning and starts it again in the same domain, from its own log or from the
+  /// scenario. Seconds of steady_s() when the new process was started.
+  double restart(bool from_log);
   /// Ends it in order: its closing document; null when it did not end well.
   Json close();
 
  private:
   test::TestFolder folder_;
   int domain_;
+  std::string scenario_;
   std::unique_ptr<test::Program> program_;
 };
 

@@ -18,6 +18,11 @@ void section_tick(Report& report, const SessionOptions& options);
 void section_idle(Report& report, const SessionOptions& options);
 void section_reader(Report& report, const SessionOptions& options);
 void section_join(Report& report, const SessionOptions& options);
+void section_presence(Report& report, const SessionOptions& options);
+void section_restart(Report& report, const SessionOptions& options);
+void section_scene(Report& report, const SessionOptions& options);
+void section_lossy(Report& report, const SessionOptions& options);
+void section_guided(Report& report, const SessionOptions& options);
 
 using SessionSection = BenchSection<SessionOptions>;
 const std::vector<SessionSection>& session_sections();

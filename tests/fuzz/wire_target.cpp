@@ -108,6 +108,22 @@ bool meshes(Bytes bytes) {
   return collector.add(sample).has_value();
 }
 
+bool features(Bytes bytes) {
+  wire::Features sample;
+  if (!read<wire::FeaturesPubSubType>(bytes, sample)) return false;
+  const auto table = from_wire(sample);
+  if (!table) return false;
+  for (const FeatureSet& set : table->sets) {
+    for (const PartId part : set.parts) MORTISE_CHECK(part, "a feature of no part");
+    for (const FeatureInfo& feature : set.features) {
+      MORTISE_CHECK(feature.point_P.allFinite() && feature.along_mm.lo <= feature.along_mm.hi,
+                    "feature");
+      MORTISE_CHECK(bool(from_wire(to_wire(feature))), "what came in must go out and in again");
+    }
+  }
+  return true;
+}
+
 bool pulses(Bytes bytes) {
   wire::Pulse sample;
   return read<wire::PulsePubSubType>(bytes, sample) && bool(from_wire(sample));
@@ -118,8 +134,8 @@ bool pulses(Bytes bytes) {
 bool fuzz_wire(std::span<const std::uint8_t> input) {
   MORTISE_CHECK(admissible_length(std::as_bytes(input)) <= input.size(), "guard");
   if (input.empty()) return false;
-  constexpr bool (*kDoors[])(Bytes) = {increments, requests,  answers, poses,
-                                       events,     snapshots, meshes,  pulses};
+  constexpr bool (*kDoors[])(Bytes) = {increments, requests, answers, poses,   events,
+                                       snapshots,  meshes,   pulses,  features};
   return kDoors[input[0] % std::size(kDoors)](input.subspan(1));
 }
 
@@ -136,6 +152,8 @@ std::vector<std::string> wire_seeds() {
   const JoinReply join{"client", 1, UserId{1}, Refusal::kNone, ""};
   const Reply reply{UserId{1}, PartId{2}, 3, Refusal::kHeldByOther, UserId{2}, "held by ben"};
   const RefusedIncrement refused{UserId{2}, PartId{3}, 6, Refusal::kNotHolder};
+  FeatureTable features;
+  features.sets.push_back({{PartId{1}, PartId{2}}, {some_feature()}});
   const std::string mesh = "sixteen bytes or so of a mesh";
   return {
       written<wire::IncrementBatchPubSubType>('\0', to_wire(batch)),
@@ -148,6 +166,7 @@ std::vector<std::string> wire_seeds() {
       written<wire::MeshChunkPubSubType>(
           '\6', cut_mesh("0123456789abcdef", std::as_bytes(std::span(mesh))).front()),
       written<wire::PulsePubSubType>('\7', to_wire(SessionPulse{}, 4)),
+      written<wire::FeaturesPubSubType>('\10', cut(features, 3).front()),
   };
 }
 

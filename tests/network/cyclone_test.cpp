@@ -11,19 +11,10 @@
 #include "client/client.h"
 #include "idl/dds_channel.h"
 #include "tests/network/program.h"
+#include "tests/support/small_scenarios.h"
 
 namespace mortise::test {
 namespace {
-
-constexpr char kScenario[] = R"(
-name: two blocks
-units: mm
-policy: report
-parts:
-  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
-  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
-     pose: {position: [0, 0, 20]}}
-)";
 
 /// What the peer said on a line that begins with `what`, by the name before the number.
 double said(const std::string& text, const std::string& what, const std::string& name) {
@@ -41,8 +32,8 @@ TEST(Cyclone, JoinsGrabsMovesAndSeesPosesAndClashes) {
   constexpr int kDomain = 218;
   const std::string domain = std::to_string(kDomain);
   Program server(folder.path(), "mortise-server",
-                 {folder.write("blocks.yaml", kScenario), "--domain", domain, "--no-log", "--json",
-                  "--duration", "40"});
+                 {folder.write("blocks.yaml", blocks_yaml({.blue = ""})), "--domain", domain,
+                  "--no-log", "--json", "--duration", "40"});
   DdsOptions options;
   options.domain = kDomain;
   auto channel = open_client_channel(options);

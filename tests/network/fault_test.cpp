@@ -8,6 +8,7 @@
 #include <set>
 
 #include "client/client.h"
+#include "tests/network/frozen_reader.h"
 #include "tests/network/small_server.h"
 
 namespace mortise::test {
@@ -46,8 +47,7 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
       5.0, [&] { return of(key, false) > 0; }, [&] { server.turn(); }));
   const double noticed_s = now_s() - killed_s;
   const double ratio = noticed_s / options.liveliness_lease_s;
-  std::printf("killed client of three noticed after %.3f s = %.2f leases (target 1.1: %s)\n",
-              noticed_s, ratio, ratio <= 1.1 ? "held" : "MISSED");
+  std::printf("killed client of three noticed after %.3f s = %.2f leases\n", noticed_s, ratio);
   RecordProperty("noticed_ms", static_cast<int>(noticed_s * 1e3));
   EXPECT_LT(noticed_s, options.liveliness_lease_s + 0.5);
   // Once only, though its participant's lease ends later; and the leaver says goodbye.
@@ -62,34 +62,20 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
 
 TEST(NetworkFault, FrozenReaderDoesNotHoldUpTheServer) {
   const DdsOptions options = options_for_this_test();
-  Child frozen("client", options, "frozen", 30.0);
-  auto channel = open_server_channel(options);
-  ASSERT_TRUE(channel) << channel.error().text;
-  SmallServer server(**channel, options.session, 100);
-  auto own_channel = open_client_channel(options);
-  ASSERT_TRUE(own_channel) << own_channel.error().text;
-  Client healthy(**own_channel);
-  healthy.add_user("healthy", "designer");
-  std::uint64_t events = 0;
-  const auto turn = [&] {
-    server.turn();
-    events += healthy.poll().events.size();
-  };
-  ASSERT_TRUE(until(
-      8.0, [&] { return server.users.size() == 2 && healthy.synced(); }, turn));
-  healthy.grab(0, PartId{1});
+  FrozenReader reader(options);
+  ASSERT_TRUE(reader.both_joined());
+  SmallServer& server = *reader.server;
+  reader.healthy->grab(0, PartId{1});
   until(
-      0.3, [] { return false; }, turn);
-  frozen.signal(SIGSTOP);
+      0.3, [] { return false; }, [&] { reader.turn(); });
+  reader.stop();
   server.longest_publish_s = 0.0;
   server.slow_publishes = 0;
   // 2.5 s at 240 Hz: far more than any history holds.
   std::uint64_t turns = 0;
   const double start_s = now_s();
   while (now_s() - start_s < 2.5) {
-    healthy.send(0, PartId{1}, Vec3(0, 0, 0.01));
-    server.publish_events(4);
-    turn();
+    reader.busy_turn();
     ++turns;
     sleep_s(std::max(0.0, start_s + static_cast<double>(turns) / 240.0 - now_s()));
   }
@@ -98,16 +84,15 @@ TEST(NetworkFault, FrozenReaderDoesNotHoldUpTheServer) {
       "frozen reader: %llu turns of 600, longest publish %.2f ms, slow ones %llu, failed %llu\n",
       static_cast<unsigned long long>(turns), longest_ms,
       static_cast<unsigned long long>(server.slow_publishes),
-      static_cast<unsigned long long>((*channel)->counters().send_failed));
+      static_cast<unsigned long long>(reader.channel->counters().send_failed));
   RecordProperty("longest_publish_us", static_cast<int>(longest_ms * 1e3));
   // A writer that waits for its reader waits at every publish once its history is full, and then
   // fails. A busy machine may take the processor away now and then, which is not that.
   EXPECT_LT(server.slow_publishes, turns / 10);
   EXPECT_GE(turns, 300u);
-  EXPECT_EQ((*channel)->counters().send_failed, 0u);
-  ASSERT_TRUE(until(
-      3.0, [&] { return events == server.event_seq; }, turn));
-  frozen.signal(SIGCONT);
+  EXPECT_EQ(reader.channel->counters().send_failed, 0u);
+  ASSERT_TRUE(reader.all_heard());
+  reader.go_on();
 }
 
 TEST(NetworkFault, KilledServerComesBackAndClientsJoinAgain) {
@@ -137,8 +122,7 @@ TEST(NetworkFault, KilledServerComesBackAndClientsJoinAgain) {
   ASSERT_TRUE(until(
       10.0, [&] { return joined == 2 && first_seq_after > 0; }, turn));
   const double gap_s = now_s() - restart_s;
-  std::printf("server restarted: joined again, with data, after %.3f s (target 1 s: %s)\n", gap_s,
-              gap_s <= 1.0 ? "held" : "MISSED");
+  std::printf("server restarted: joined again, with data, after %.3f s\n", gap_s);
   RecordProperty("rejoin_ms", static_cast<int>((now_s() - restart_s) * 1e3));
   EXPECT_EQ(lost, 1u);
   EXPECT_TRUE(client.synced());

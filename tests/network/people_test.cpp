@@ -4,112 +4,32 @@
 
 #include <algorithm>
 
-#include "client/client.h"
-#include "common/io/scene_load.h"
-#include "server/tick_loop.h"
+#include "tests/network/site.h"
 #include "tests/network/small_server.h"
+#include "tests/support/small_scenarios.h"
 
 namespace mortise::test {
 namespace {
 
-constexpr const char* kScenario = R"(
-name: people
-units: mm
-policy: report
-parts:
-  - name: plate
-    generator: {kind: plate_with_bore, bore: 20, facets: 32}
-  - name: peg
-    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
-    pose: {position: [0, 0, 25]}
-    moving: true
-    features:
-      chamfer_lower: {tolerance: {lower: -0.1, upper: -0.04}}
-      chamfer_upper: {tolerance: {lower: -0.1, upper: -0.04}}
-  - name: block
-    generator: {kind: block, x: 4, y: 4, z: 4}
-    pose: {position: [100, 0, 0]}
-    moving: true
-fits:
-  - {between: [plate.bore, peg.journal], code: Ø20 H7/g6}
-)";
-
-Result<LoadedScene> scene_of_test() {
-  auto reading = read_scenario_text(kScenario, "people.yaml");
-  if (!reading) return reading.error();
-  return load_scene(reading->scenario, default_meshes());
-}
-
-/// One participant and all that it was told.
-struct Person {
-  std::unique_ptr<ClientChannel> channel;
-  std::unique_ptr<Client> client;
-  std::vector<Reply> replies;
-  std::vector<Decision> decisions;
-  std::vector<ClashEvent> events;
-
-  bool was_decided(Decision::Kind kind) const {
-    return std::any_of(decisions.begin(), decisions.end(),
-                       [kind](const Decision& decision) { return decision.kind == kind; });
-  }
-  /// The answer to a command, none when it has not come.
-  const Reply* answer(std::uint64_t seq) const {
-    for (const Reply& reply : replies)
-      if (reply.seq == seq) return &reply;
-    return nullptr;
-  }
-};
-
 struct People : testing::Test {
-  DdsOptions options;
-  std::unique_ptr<ServerChannel> server;
-  LoadedScene scene;
-  SystemClock clock;
-  std::unique_ptr<TickLoop> loop;
+  std::unique_ptr<Site> site;
   Person anna, ben, eve;
 
   void SetUp() override {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    options = options_for_test(info->name());
-    auto loaded = scene_of_test();
-    ASSERT_TRUE(loaded) << loaded.error().text;
-    scene = std::move(*loaded);
-    auto opened = open_server_channel(options);
-    ASSERT_TRUE(opened) << opened.error().text;
-    server = std::move(*opened);
-    TickLoopOptions loop_options;
-    loop_options.session = options.session;
-    loop = std::make_unique<TickLoop>(scene.world, *server, clock, nullptr, loop_options);
-    loop->open();
-    enter(anna, "anna", "designer");
-    enter(ben, "ben", "designer");
-    enter(eve, "eve", "observer");
+    site = std::make_unique<Site>(options_for_test(info->name()), peg_yaml());
+    anna.enter(site->options, "anna");
+    ben.enter(site->options, "ben");
+    eve.enter(site->options, "eve", "observer");
     ASSERT_TRUE(wait([&] {
       for (const Person* person : {&anna, &ben, &eve})
-        if (person->client->join_state(0) != JoinState::kJoined || !person->client->synced())
-          return false;
+        if (!person->is_in()) return false;
       return anna.client->users().size() == 3;
     }));
   }
-  void enter(Person& person, const std::string& name, const std::string& role) const {
-    auto opened = open_client_channel(options);
-    ASSERT_TRUE(opened) << opened.error().text;
-    person.channel = std::move(*opened);
-    person.client = std::make_unique<Client>(*person.channel);
-    person.client->add_user(name, role);
-  }
   void turn() {
-    loop->tick();
-    for (Person* person : {&anna, &ben, &eve}) {
-      if (!person->client) continue;
-      ClientUpdate update = person->client->poll();
-      const auto append = [](auto& to, auto& from) {
-        to.insert(to.end(), from.begin(), from.end());
-      };
-      append(person->replies, update.replies);
-      append(person->decisions, update.decisions);
-      append(person->events, update.events);
-    }
+    site->loop->tick();
+    for (Person* person : {&anna, &ben, &eve}) person->listen();
   }
   bool wait(const std::function<bool()>& done) {
     return until(8.0, done, [this] { turn(); });
@@ -190,10 +110,10 @@ TEST_F(People, HandsOverReviewsAndChangesRulesWhileEverybodySeesIt) {
   ASSERT_TRUE(wait([&] { return anna.client->open_clashes().empty(); }));
   EXPECT_EQ(answer(ben, ben.client->redo(0, peg)).refusal, Refusal::kNone);
   Person late;
-  enter(late, "late", "observer");
+  late.enter(site->options, "late", "observer");
   ASSERT_TRUE(wait([&] {
-    late.client->poll();
-    return late.client->synced() && late.client->join_state(0) == JoinState::kJoined;
+    late.listen();
+    return late.is_in();
   }));
   EXPECT_EQ(late.client->policy(), "stop");
   EXPECT_EQ(late.client->standing().size(), 2u);  // the fit and the policy
@@ -210,7 +130,7 @@ TEST_F(People, HandsOverReviewsAndChangesRulesWhileEverybodySeesIt) {
     EXPECT_EQ(anna.events[i].seq, eve.events[i].seq);
     EXPECT_EQ(anna.events[i].review.status, eve.events[i].review.status);
   }
-  EXPECT_EQ(server->counters().malformed, 0u);
+  EXPECT_EQ(site->channel->counters().malformed, 0u);
   EXPECT_EQ(anna.channel->counters().malformed, 0u);
 }
 
@@ -226,7 +146,7 @@ TEST_F(People, PresenceFollowsWhoLeavesAndComesBack) {
   ASSERT_TRUE(wait([&] { return !present(anna, "ben") && !present(eve, "ben"); }));
   EXPECT_FALSE(holder(anna, PartId{3}));
   Person again;
-  enter(again, "ben", "designer");
+  again.enter(site->options, "ben");
   ASSERT_TRUE(wait([&] {
     again.client->poll();
     return again.client->join_state(0) == JoinState::kJoined && present(anna, "ben");

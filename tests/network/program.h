@@ -22,10 +22,10 @@ class Program {
   /// over.
   int wait(double limit_s);
   bool running();
-  std::string out() const;     ///< what it wrote to stdout so far
-  std::string errors() const;  ///< and to stderr
+  std::string out() const;            ///< what it wrote to stdout so far
+  std::string errors() const;         ///< and to stderr
   pid_t pid() const { return pid_; }  ///< -1: it has ended
-  double cpu_s() const;        ///< user and system time so far; only while it runs
+  double cpu_s() const;               ///< user and system time so far; only while it runs
 
  private:
   bool reap(int flags);

@@ -9,6 +9,7 @@
 #include "common/io/session_log.h"
 #include "tests/network/guest.h"
 #include "tests/network/program.h"
+#include "tests/support/small_scenarios.h"
 
 /// The server killed without warning and started again on its own log; and a disk that is full.
 namespace mortise::test {
@@ -16,25 +17,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr char kScenario[] = R"(
-name: two blocks
-units: mm
-policy: report
-parts:
-  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
-  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
-     pose: {position: [0, 0, 20]}}
-  - {name: blue, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
-     pose: {position: [30, 0, 20]}}
-)";
-
 class RestoreAfterCrash : public ::testing::Test {
  protected:
   std::unique_ptr<Program> serve(int domain, std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--domain", std::to_string(domain), "--json"});
     return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
   }
-  std::string scenario() const { return folder_.write("blocks.yaml", kScenario); }
+  std::string scenario() const { return folder_.write("blocks.yaml", blocks_yaml()); }
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
   static bool step_by(Guest& guest, const char* part, const Vec3& by_mm) {
     const PartId id = guest.client->find_part(part);

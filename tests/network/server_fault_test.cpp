@@ -13,6 +13,7 @@
 #include "idl/dds_channel.h"
 #include "tests/network/guest.h"
 #include "tests/network/program.h"
+#include "tests/support/small_scenarios.h"
 
 /// The real server under bad luck and bad company, over DDS on loopback.
 namespace mortise::test {
@@ -20,22 +21,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr char kScenario[] = R"(
-name: two blocks
-units: mm
-lease_s: 1
-parts:
-  - {name: base, generator: {kind: block, x: 100, y: 100, z: 10}}
-  - {name: red, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
-     pose: {position: [0, 0, 60]}}
-  - {name: blue, generator: {kind: block, x: 10, y: 10, z: 10}, moving: true,
-     pose: {position: [500, 0, 20]}}
-)";
+const Blocks kBlocks{"lease_s: 1\n", "[0, 0, 60]", "[500, 0, 20]"};
 
 class ServerFault : public ::testing::Test {
  protected:
   std::unique_ptr<Program> serve(int domain, std::vector<std::string> arguments = {"--no-log"}) {
-    const std::string scenario = folder_.write("blocks.yaml", kScenario);
+    const std::string scenario = folder_.write("blocks.yaml", blocks_yaml(kBlocks));
     arguments.insert(arguments.begin(), {scenario, "--domain", std::to_string(domain), "--json"});
     return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
   }
@@ -149,7 +140,7 @@ TEST_F(ServerFault, ATermSignalEndsInOrder) {
 }
 
 TEST_F(ServerFault, WhatCannotStartSaysSoInOneLine) {
-  const std::string scenario = folder_.write("blocks.yaml", kScenario);
+  const std::string scenario = folder_.write("blocks.yaml", blocks_yaml(kBlocks));
   auto first = serve(214);
   Guest anna(214, "anna");
   ASSERT_TRUE(anna.joined()) << first->errors();

@@ -213,6 +213,18 @@ TEST(Network, LargeSnapshotsAndMeshesArriveWhole) {
   std::vector<std::byte> mesh(1'500'000);
   for (std::size_t i = 0; i < mesh.size(); ++i) mesh[i] = static_cast<std::byte>(i * 7 + i / 251);
   session.channel->publish_mesh("00112233445566778899aabbccddeeff", mesh);
+  FeatureTable features;
+  FeatureSet& set = features.sets.emplace_back();
+  for (std::uint32_t i = 1; i <= 2000; ++i) set.parts.push_back(PartId{i});
+  for (int i = 0; i < 700; ++i) {
+    FeatureInfo bore;
+    bore.name = "bore_" + std::to_string(i);
+    bore.origin = FeatureOrigin::kRecognized;
+    bore.kind = SurfaceKind::kCylinder;
+    bore.radius_mm = i;
+    set.features.push_back(bore);
+  }
+  session.channel->publish_features(features);
   auto opened = open_client_channel(session.options);
   ASSERT_TRUE(opened) << opened.error().text;
   Client client(**opened);
@@ -220,8 +232,11 @@ TEST(Network, LargeSnapshotsAndMeshesArriveWhole) {
   ASSERT_TRUE(session.wait(8.0, [&] {
     ClientUpdate update = client.poll();
     for (MeshBytes& one : update.meshes) meshes.push_back(std::move(one));
-    return client.parts().size() == 2000 && !meshes.empty();
+    return client.parts().size() == 2000 && !meshes.empty() && client.features().told();
   }));
+  EXPECT_EQ(client.features().of(PartId{2000}).size(), 700u);
+  ASSERT_NE(client.features().find(PartId{1}, "bore_699"), nullptr);
+  EXPECT_EQ(client.features().find(PartId{1}, "bore_699")->radius_mm, 699.0);
   EXPECT_EQ(meshes[0].hash, "00112233445566778899aabbccddeeff");
   EXPECT_EQ(meshes[0].bytes, mesh);
   EXPECT_EQ(client.find_part("part2000"), PartId{2000});

@@ -130,6 +130,7 @@ ProcessReport report(const char* name, std::vector<double> latency_ms, std::uint
                 {"unacknowledged_increments", 1},
                 {"lost", {{"events", 0}, {"pose_batches", 3}, {"event_gaps", 1}}},
                 {"repaired", {{"resyncs", 1}, {"events_by_snapshot", 5}}},
+                {"insertions", {{"tries", 5}, {"inserted", 4}, {"not_aligned", 0}, {"stuck", 1}}},
                 {"latency_ms", percentiles(r.latency_ms)},
                 {"events", {{"count", 200}}},
                 {"state", {{"pose_hash", "a"}, {"clash_hash", "b"}}}};
@@ -150,6 +151,7 @@ TEST(LoadReportTest, ReportsOfProcessesAreAddedUp) {
   EXPECT_EQ(all["commands_refused_by"]["held by another user"], 2);
   EXPECT_EQ(all["lost"]["pose_batches"], 6);
   EXPECT_NE(load_text(all).find("2 users in 2 processes"), std::string::npos);
+  EXPECT_NE(load_text(all).find("8 of 10"), std::string::npos) << load_text(all);
   EXPECT_EQ(all["repaired"]["resyncs"], 2);
   EXPECT_EQ(all["latency_ms"]["count"], 5);
   EXPECT_EQ(all["latency_ms"]["max"], 20.0);
@@ -162,13 +164,38 @@ TEST(LoadReportTest, ReportsOfProcessesAreAddedUp) {
   EXPECT_FALSE(from_bytes({1, 2, 3}, none));
 }
 
+/// A behaviour that has tried so often.
+struct Tried : Behaviour {
+  explicit Tried(Insertions done) : done(std::move(done)) {}
+  Wish beat(const View&) override { return {}; }
+  const Insertions* insertions() const override { return &done; }
+  Insertions done;
+};
+struct Idle : Behaviour {
+  Wish beat(const View&) override { return {}; }
+};
+
+TEST(LoadReportTest, InsertionsOfAllUsersAreAddedUp) {
+  std::vector<std::unique_ptr<Behaviour>> behaviours;
+  behaviours.push_back(std::make_unique<Idle>());
+  EXPECT_TRUE(insertions_json(behaviours).is_null());
+  behaviours.push_back(std::make_unique<Tried>(Insertions{3, 2, 1, 0, {0.5, 0.7}}));
+  behaviours.push_back(std::make_unique<Tried>(Insertions{4, 3, 0, 1, {0.1, 0.2, 0.9}}));
+  const Json all = insertions_json(behaviours);
+  EXPECT_EQ(all["tries"], 7);
+  EXPECT_EQ(all["inserted"], 5);
+  EXPECT_EQ(all["not_aligned"], 1);
+  EXPECT_EQ(all["stuck"], 1);
+  EXPECT_EQ(all["seconds"]["p50"], 0.5);
+}
+
 TEST(LoadReportTest, EveryLimitReadsItsFigure) {
   const Json document = merged({report("a", {1, 2, 30}), report("b", {10, 20}, 130)});
   const std::map<std::string, double> expected = {
-      {"p50_ms", 10.0},    {"p90_ms", 30.0},        {"p99_ms", 30.0},      {"max_ms", 30.0},
-      {"event_p50_ms", 1}, {"event_p99_ms", 1},     {"event_max_ms", 1},   {"refused", 4},
-      {"lost_events", 0},  {"unanswered", 0},       {"unacknowledged", 2}, {"resyncs", 2},
-      {"missed_poses", 6}, {"differing_streams", 1}};
+      {"p50_ms", 10.0},    {"p90_ms", 30.0},         {"p99_ms", 30.0},      {"max_ms", 30.0},
+      {"event_p50_ms", 1}, {"event_p99_ms", 1},      {"event_max_ms", 1},   {"refused", 4},
+      {"lost_events", 0},  {"unanswered", 0},        {"unacknowledged", 2}, {"resyncs", 2},
+      {"missed_poses", 6}, {"differing_streams", 1}, {"not_inserted", 2}};
   ASSERT_EQ(expected.size(), limit_names().size());
   for (const auto& [name, meaning] : limit_names()) {
     const double figure = expected.at(name);
@@ -178,6 +205,9 @@ TEST(LoadReportTest, EveryLimitReadsItsFigure) {
     EXPECT_FALSE(results[1].holds) << name;
     EXPECT_EQ(results[0].meaning, meaning);
   }
+  Json untried = document;
+  untried.erase("insertions");
+  EXPECT_FALSE(check_limits(untried, {{"not_inserted", 0.0}})[0].holds) << "nobody tried";
   const Json nothing = merged({report("a", {})});
   EXPECT_FALSE(check_limits(nothing, {{"p99_ms", 1000.0}})[0].holds) << "nothing was measured";
 }

@@ -16,9 +16,10 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 TEST(Convert, DetailsOfACommandGoRound) {
   Request command;
   command.kind = Request::Kind::kCommand;
-  command.command = {UserId{3}, PartId{4}, 5, CommandKind::kSetTolerance, test::some_details()};
+  command.command = {UserId{3}, PartId{4}, 5, CommandKind::kSetTolerance, test::some_details(), 77};
   const Result<Request> back = from_wire(to_wire(command));
   ASSERT_TRUE(back) << back.error().text;
+  EXPECT_EQ(back->command.after, 77u);
   test::expect_same(back->command.details, command.command.details);
 }
 

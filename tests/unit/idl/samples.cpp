@@ -96,6 +96,22 @@ wire::Snapshot some_snapshot_chunk() {
   return cut(snapshot, 1)[0];
 }
 
+FeatureInfo some_feature() {
+  FeatureInfo cone;
+  cone.name = "countersink_4";
+  cone.origin = FeatureOrigin::kRecognized;
+  cone.kind = SurfaceKind::kCone;
+  cone.inward = true;
+  cone.point_P = {1.5, -2.5, 3.25};
+  cone.axis_P = {0.0, 0.6, -0.8};
+  cone.radius_mm = 4.5;
+  cone.tube_radius_mm = 0.5;
+  cone.half_angle_rad = 0.7;
+  cone.along_mm = {-2.0, 8.5};
+  cone.middle_P = {1.0, 2.0, 3.0};
+  return cone;
+}
+
 Details some_details() {
   Details details;
   details.parts = {PartId{1}, PartId{7}};

@@ -4,6 +4,7 @@
 
 #include "common/io/replay.h"
 #include "common/session/step.h"
+#include "tests/support/small_scenarios.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {
@@ -11,31 +12,11 @@ namespace {
 
 using test::TemporaryFile;
 
-// A peg of 32 facets that stands in its hole: as polygons they overlap by 48 um.
-constexpr const char* kScenario = R"(
-name: live
-units: mm
-policy: report
-parts:
-  - name: plate
-    generator: {kind: plate_with_bore, bore: 20, facets: 32}
-  - name: peg
-    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
-    pose: {position: [0, 0, 25]}
-    moving: true
-    features:
-      chamfer_lower: {tolerance: {lower: -0.1, upper: -0.04}}
-      chamfer_upper: {tolerance: {lower: -0.1, upper: -0.04}}
-  - name: block
-    generator: {kind: block, x: 4, y: 4, z: 4}
-    pose: {position: [100, 0, 0]}
-    moving: true
-  - name: wall
+// Beside the peg a wall, 0.05 mm from the block.
+const std::string kScenario = test::peg_yaml(R"(  - name: wall
     generator: {kind: block, x: 4, y: 40, z: 40}
     pose: {position: [104.05, 0, 0]}
-fits:
-  - {between: [plate.bore, peg.journal], code: Ø20 H7/g6}
-)";
+)");
 
 /// A session as a server would run it, recorded tick by tick.
 struct LiveRules : testing::Test {

@@ -30,6 +30,16 @@ class InboxLimitsTest : public ::testing::Test {
     inbox().admit(std::move(input), world_, now_ns_, intake_);
     return inbox().counters().accepted - before + inbox().waiting_increments();
   }
+  /// Anna holds the red part, Cid the blue one, and Ben, who may hold one, asks for both.
+  std::array<UserId, 3> ben_asks_for_both() {
+    limits_.parts_per_user = 1;
+    const UserId anna = join("anna"), ben = join("ben"), cid = join("cid");
+    EXPECT_EQ(command("anna", anna, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
+    EXPECT_EQ(command("cid", cid, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
+    EXPECT_EQ(command("ben", ben, kRed, CommandKind::kAskHandOver).refusal, Refusal::kNone);
+    EXPECT_EQ(command("ben", ben, kBlue, CommandKind::kAskHandOver).refusal, Refusal::kNone);
+    return {anna, ben, cid};
+  }
   Inbox& inbox() {
     if (!inbox_) inbox_ = std::make_unique<Inbox>(limits_);
     return *inbox_;
@@ -61,14 +71,33 @@ TEST_F(InboxLimitsTest, AHandHoldsSoManyPartsAndNoMore) {
 
 // Two asks may stand while the hand is empty; the second consent would fill it beyond the limit.
 TEST_F(InboxLimitsTest, WhatIsHandedOverCountsAsWell) {
-  limits_.parts_per_user = 1;
-  const UserId anna = join("anna"), ben = join("ben"), cid = join("cid");
-  EXPECT_EQ(command("anna", anna, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
-  EXPECT_EQ(command("cid", cid, kBlue, CommandKind::kGrab).refusal, Refusal::kNone);
-  EXPECT_EQ(command("ben", ben, kRed, CommandKind::kAskHandOver).refusal, Refusal::kNone);
-  EXPECT_EQ(command("ben", ben, kBlue, CommandKind::kAskHandOver).refusal, Refusal::kNone);
+  const auto [anna, ben, cid] = ben_asks_for_both();
   EXPECT_EQ(command("anna", anna, kRed, CommandKind::kConsent).refusal, Refusal::kNone);
   EXPECT_EQ(command("cid", cid, kBlue, CommandKind::kConsent).refusal, Refusal::kNotAllowed);
+  EXPECT_EQ(world_.find(kBlue)->holder, cid);
+}
+
+// Both consents wait for the end of a drag, and are carried out in the same tick.
+TEST_F(InboxLimitsTest, WhatIsHandedOverTogetherCountsTogether) {
+  const auto [anna, ben, cid] = ben_asks_for_both();
+  ServerInput input;
+  for (int i = 0; i < 9; ++i) {  // one more than a tick takes
+    input.increments.push_back({"anna", {anna, kRed, ++seq_, {0.01, 0, 0}, Vec3::Zero()}, 0});
+    input.increments.push_back({"cid", {cid, kBlue, ++seq_, {0.01, 0, 0}, Vec3::Zero()}, 0});
+  }
+  input.commands.push_back({"anna", {anna, kRed, ++seq_, CommandKind::kConsent}});
+  input.commands.push_back({"cid", {cid, kBlue, ++seq_, CommandKind::kConsent}});
+  inbox().admit(std::move(input), world_, now_ns_, intake_);
+  ASSERT_EQ(inbox().waiting_commands(), 2U);
+  for (int i = 0; i < 3; ++i) {
+    inbox().admit({}, world_, now_ns_, intake_);
+    if (!intake_.replies.empty()) break;
+  }
+  ASSERT_EQ(intake_.replies.size(), 2U);
+  EXPECT_EQ(intake_.replies[0].refusal, Refusal::kNone);
+  EXPECT_EQ(intake_.replies[1].refusal, Refusal::kNotAllowed);
+  EXPECT_EQ(intake_.replies[1].holder, cid);
+  EXPECT_EQ(world_.find(kRed)->holder, ben);
   EXPECT_EQ(world_.find(kBlue)->holder, cid);
 }
 

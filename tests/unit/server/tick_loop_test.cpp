@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <map>
 #include <memory>
+#include <thread>
 
 #include "common/messages/memory_channel.h"
 #include "common/messages/mesh_bytes.h"
@@ -56,6 +58,7 @@ struct Participant {
   std::vector<RefusedIncrement> refused;
   std::vector<SessionPulse> pulses;
   std::vector<MeshBytes> meshes;
+  std::vector<FeatureTable> features;
   std::size_t snapshots = 0, batches = 0;
   bool knows = false;
 
@@ -95,6 +98,7 @@ struct Participant {
     refused.insert(refused.end(), input.refused.begin(), input.refused.end());
     pulses.insert(pulses.end(), input.pulses.begin(), input.pulses.end());
     for (MeshBytes& mesh : input.meshes) meshes.push_back(std::move(mesh));
+    for (FeatureTable& table : input.features) features.push_back(std::move(table));
   }
   void grab(PartId part) { channel->send(Command{user, part, ++command_seq, CommandKind::kGrab}); }
   void release(PartId part) {
@@ -163,6 +167,29 @@ TEST_F(TickLoopTest, AJoinBringsSnapshotAndMeshOncePerContent) {
   ASSERT_TRUE(mesh);
   EXPECT_EQ(mesh->points_mm.size(), 8U);
   EXPECT_EQ(mesh->triangles, world_.parts[0].solid->mesh().triangles);
+}
+
+TEST_F(TickLoopTest, FeaturesAreToldAtOnceAndAgainWhenMeshesWereLookedAt) {
+  Participant anna = join("anna");
+  std::vector<FeatureTable> told = anna.features;
+  // The cube is looked at by another thread; what it shows is told with the next tick.
+  for (int i = 0; i < 2000 && (told.empty() || told.back().meshes_waiting > 0); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    tick();
+    anna.take();
+    told = anna.features;
+  }
+  ASSERT_FALSE(told.empty());
+  ASSERT_EQ(told.back().meshes_waiting, 0U);
+  ASSERT_EQ(told.back().sets.size(), 1U);
+  EXPECT_EQ(told.back().sets[0].parts.size(), 3U);
+  EXPECT_EQ(told.back().sets[0].features.size(), 6U) << "the faces of a cube";
+  const std::size_t tables = told.size();
+  for (int i = 0; i < 200; ++i) tick();
+  Participant ben = join("ben");
+  EXPECT_EQ(ben.features.size(), 1U) << "one table is kept for who comes late";
+  anna.take();
+  EXPECT_EQ(anna.features.size(), tables) << "what does not change is not told again";
 }
 
 TEST_F(TickLoopTest, MovesReachEveryoneWithHolderAndAck) {

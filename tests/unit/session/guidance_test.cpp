@@ -4,85 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
-#include "common/math/rotation.h"
-#include "tests/support/shapes.h"
-#include "tests/unit/session/session_builder.h"
+#include "tests/unit/session/guided_pair.h"
 
 namespace mortise {
 namespace {
 
-Feature feature(const std::string& name, const Surface& surface) {
-  Feature f;
-  f.name = name;
-  f.surface = surface;
-  return f;
-}
-
-Surface cylinder(double radius_mm, bool inward, const Vec3& point = Vec3::Zero(),
-                 const Vec3& axis = Vec3::UnitZ()) {
-  Surface s;
-  s.kind = SurfaceKind::kCylinder;
-  s.point = point;
-  s.axis = axis;
-  s.radius_mm = radius_mm;
-  s.inward = inward;
-  return s;
-}
-
-Surface plane(const Vec3& point, const Vec3& normal) {
-  Surface s;
-  s.kind = SurfaceKind::kPlane;
-  s.point = point;
-  s.axis = normal;
-  return s;
-}
-
-Surface ball(double radius_mm, bool inward, const Vec3& point = Vec3::Zero()) {
-  Surface s = cylinder(radius_mm, inward, point);
-  s.kind = SurfaceKind::kSphere;
-  return s;
-}
-
-constexpr double kKept_mm = 1e-9;
-
-struct Guidance : ::testing::Test {
-  SessionBuilder session{Policy::kStop};
-  Scratch scratch;
-  UserId ada = session.join("ada"), bob = session.join("bob");
-  PartId ring, pin;
-  std::mt19937_64 rng{11};
-  std::uniform_real_distribution<double> u{-1.0, 1.0};
-
-  Guidance() {
-    const Pose X{rotation_exp(Vec3(0.3, -0.7, 0.4)), Vec3(120, -40, 900)};
-    ring = session.add(
-        "ring", shapes::ring({10.01 / std::cos(std::acos(-1.0) / 48.0), -10.0, 10.0, 48}, 20.0), X,
-        true);
-    pin = session.add("pin", shapes::peg({10.0, 0.0, 40.0, 48}),
-                      X * Pose{rotation_exp(Vec3(0.05, 0.02, 0.5)), Vec3(1.5, -0.7, 14)}, true);
-    session.world.find(ring)->features = {feature("bore", cylinder(10.01, true)),
-                                          feature("top", plane(Vec3(0, 0, 10), Vec3::UnitZ())),
-                                          feature("socket", ball(5.0, true, Vec3(0, 0, 3)))};
-    session.world.find(pin)->features = {feature("shaft", cylinder(10.0, false)),
-                                         feature("end", plane(Vec3::Zero(), -Vec3::UnitZ())),
-                                         feature("side", plane(Vec3(10, 0, 0), Vec3::UnitX())),
-                                         feature("ball", ball(5.0, false, Vec3(0, 0, 20)))};
-    session.grab(ada, pin);
-  }
-  Constraint between(ConstraintKind kind, const std::string& of_pin, const std::string& of_ring,
-                     double distance_mm = 0.0, bool snap = true) {
-    return {kind, {pin, of_pin}, {ring, of_ring}, distance_mm, snap};
-  }
-  Vec3 any() { return {u(rng), u(rng), u(rng)}; }
-  StepReport tremble(double mm, double rad) {
-    return play_tick(session.world, {session.push(ada, pin, mm * any(), rad * any())}, scratch);
-  }
-  double off() { return guided_state(session.world, pin).residual_mm; }
-};
-
-TEST_F(Guidance, CoaxialLeavesAShiftAndATurnAndNeverDrifts) {
+TEST_F(GuidedPair, CoaxialLeavesAShiftAndATurnAndNeverDrifts) {
   const GuidanceReply reply =
       add_constraint(session.world, ada, between(ConstraintKind::kCoaxial, "shaft", "bore"));
   ASSERT_EQ(reply.refusal, Refusal::kNone) << reply.text;
@@ -100,7 +28,7 @@ TEST_F(Guidance, CoaxialLeavesAShiftAndATurnAndNeverDrifts) {
   EXPECT_GT(travelled, 50.0);  // along the axis it is free
 }
 
-TEST_F(Guidance, SeveralConstraintsLeaveWhatAllOfThemLeave) {
+TEST_F(GuidedPair, SeveralConstraintsLeaveWhatAllOfThemLeave) {
   auto& w = session.world;
   EXPECT_EQ(add_constraint(w, ada, between(ConstraintKind::kCoaxial, "shaft", "bore")).freedom, 2);
   EXPECT_EQ(add_constraint(w, ada, between(ConstraintKind::kCoplanar, "end", "top")).freedom, 1);
@@ -118,7 +46,7 @@ TEST_F(Guidance, SeveralConstraintsLeaveWhatAllOfThemLeave) {
   EXPECT_EQ(w.guides.size(), 3U);
 }
 
-TEST_F(Guidance, NoFreedomLeftIsSaid) {
+TEST_F(GuidedPair, NoFreedomLeftIsSaid) {
   auto& w = session.world;
   session.world.find(ring)->features.push_back(
       feature("flat", plane(Vec3(0, 20, 0), Vec3::UnitY())));
@@ -137,7 +65,7 @@ TEST_F(Guidance, NoFreedomLeftIsSaid) {
   EXPECT_LT(off(), kKept_mm);
 }
 
-TEST_F(Guidance, EveryKindIsKept) {
+TEST_F(GuidedPair, EveryKindIsKept) {
   const struct {
     Constraint constraint;
     int freedom;
@@ -164,7 +92,7 @@ TEST_F(Guidance, EveryKindIsKept) {
   }
 }
 
-TEST_F(Guidance, WhoMayAndWhatMayNot) {
+TEST_F(GuidedPair, WhoMayAndWhatMayNot) {
   auto& w = session.world;
   const Constraint good = between(ConstraintKind::kCoaxial, "shaft", "bore");
   EXPECT_EQ(add_constraint(w, bob, good).refusal, Refusal::kNotHolder);
@@ -190,7 +118,7 @@ TEST_F(Guidance, WhoMayAndWhatMayNot) {
   EXPECT_TRUE(w.guides.empty());
 }
 
-TEST_F(Guidance, AFeatureThatOnlyTheMeshShowsIsFound) {
+TEST_F(GuidedPair, AFeatureThatOnlyTheMeshShowsIsFound) {
   session.world.find(ring)->features.clear();
   const GuidanceReply reply =
       add_constraint(session.world, ada, between(ConstraintKind::kCoaxial, "shaft", "bore_1"));
@@ -199,7 +127,7 @@ TEST_F(Guidance, AFeatureThatOnlyTheMeshShowsIsFound) {
   EXPECT_LT(off(), kKept_mm);
 }
 
-TEST_F(Guidance, WhatStandsInTheWayOfASnapStopsIt) {
+TEST_F(GuidedPair, WhatStandsInTheWayOfASnapStopsIt) {
   // A wall between the pin and its place.
   const Part& p = *session.world.find(pin);
   const Vec3 side = session.pose(ring).q * Vec3::UnitX();
@@ -215,7 +143,7 @@ TEST_F(Guidance, WhatStandsInTheWayOfASnapStopsIt) {
   EXPECT_EQ(play_tick(session.world, {}, scratch).counters.moves.in, 0U);
 }
 
-TEST_F(Guidance, ThePartFollowsWhatItIsBoundTo) {
+TEST_F(GuidedPair, ThePartFollowsWhatItIsBoundTo) {
   add_constraint(session.world, ada, between(ConstraintKind::kCoaxial, "shaft", "bore"));
   play_tick(session.world, {}, scratch);
   session.grab(bob, ring);
@@ -225,7 +153,7 @@ TEST_F(Guidance, ThePartFollowsWhatItIsBoundTo) {
   EXPECT_LT(off(), kKept_mm);
 }
 
-TEST_F(Guidance, TheWayOfATurnKeepsToTheAxis) {
+TEST_F(GuidedPair, TheWayOfATurnKeepsToTheAxis) {
   add_constraint(session.world, ada, between(ConstraintKind::kCoaxial, "shaft", "bore"));
   play_tick(session.world, {}, scratch);
   // Down into the bore by turning hugely: 10 um of clearance, checked on the way.
@@ -238,7 +166,7 @@ TEST_F(Guidance, TheWayOfATurnKeepsToTheAxis) {
   EXPECT_LT((session.pose(ring).inverse() * session.pose(pin).p).z(), -1.0);
 }
 
-TEST_F(Guidance, CandidatesAreTheLikeAndNear) {
+TEST_F(GuidedPair, CandidatesAreTheLikeAndNear) {
   const auto candidates = snap_candidates(session.world, pin, {});
   ASSERT_FALSE(candidates.empty());
   bool coaxial = false, coplanar = false;
