@@ -132,7 +132,8 @@ class Guided : public Behaviour {
       begin(Stage::kGrab, view);
       return true;
     }
-    if (passed_s(view) > kGiveUp_s) {
+    const bool more_to_come = view.features != nullptr && view.features->meshes_waiting() > 0;
+    if (passed_s(view) > kGiveUp_s && !more_to_come) {
       troubles_.push_back("no moving part has a shaft that fits a bore of another");
       given_up_ = true;
     }

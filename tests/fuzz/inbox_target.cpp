@@ -61,7 +61,13 @@ void add(Script& script, ServerInput& input) {
       command.user = user;
       command.part = part;
       command.seq = script.number();
-      command.kind = static_cast<CommandKind>(1 + script.byte() % 4);
+      command.kind = static_cast<CommandKind>(1 + script.byte() % (kCommandKindCount - 1));
+      command.after = script.number();
+      const std::uint32_t more = script.byte();
+      for (std::uint32_t n = more % 4; n > 0; --n)
+        command.details.parts.push_back(PartId{script.byte() % 5});
+      command.details.other_user = UserId{more / 4 % 5};
+      command.details.other_part = PartId{more / 20 % 5};
       input.commands.push_back({client, command});
       break;
     }
@@ -90,7 +96,11 @@ void add(Script& script, ServerInput& input) {
 bool fuzz_inbox(std::span<const std::uint8_t> bytes) {
   Script script(bytes);
   World world = small_world();
-  Inbox inbox({.messages_per_s = 200.0, .max_users = 3, .increments_per_tick = 4});
+  constexpr std::uint32_t kMostParts = 1;
+  Inbox inbox({.messages_per_s = 200.0,
+               .max_users = 3,
+               .increments_per_tick = 4,
+               .parts_per_user = kMostParts});
   Intake intake;
   std::map<UserId, std::uint64_t> last;
   std::int64_t now_ns = 0;
@@ -108,8 +118,10 @@ bool fuzz_inbox(std::span<const std::uint8_t> bytes) {
       last[increment.user] = increment.seq;
       any = true;
     }
+    std::map<UserId, std::uint32_t> held;
     for (const Part& part : world.parts) {
       if (!part.holder) continue;
+      MORTISE_CHECK(++held[part.holder] <= kMostParts, "a hand that holds too much");
       MORTISE_CHECK(part.moving && world.find(part.holder)->present, "a part in nobody's hand");
     }
     const InboxCounters& counters = inbox.counters();
@@ -121,7 +133,8 @@ bool fuzz_inbox(std::span<const std::uint8_t> bytes) {
 
 std::vector<std::string> inbox_seeds() {
   // client, user, part, kind of message, and what it takes.
-  const std::string join("\x00\x00\x00\x00\x01\x00\x01", 7), grab("\x00\x01\x02\x03\x01\x00", 6);
+  const std::string join("\x00\x00\x00\x00\x01\x00\x01", 7),
+      grab("\x00\x01\x02\x03\x01\x00\x00\x00", 8);
   std::string session = std::string("\x01\x01", 2) + join + std::string("\x01\x01", 2) + grab;
   for (char seq = 1; seq < 12; ++seq) {
     session += std::string("\x01\x01", 2);                      // a drain with one message
@@ -129,7 +142,7 @@ std::vector<std::string> inbox_seeds() {
     session += seq;                                             // kept from
     session += std::string("\x00\x00\x00\x7e\x7d\x01\x00", 7);  // one of 1 mm
   }
-  const std::string release("\x01\x01\x00\x01\x02\x03\x02\x01", 8);
+  const std::string release("\x01\x01\x00\x01\x02\x03\x02\x01\x0c\x00", 10);
   return {session, session + release, session + session.substr(20) + release};
 }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "server/inbox.h"
 #include "tests/unit/server/small_world.h"
 
