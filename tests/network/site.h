@@ -18,12 +18,12 @@ namespace mortise::test {
 struct Site {
   Site(const DdsOptions& where, const std::string& yaml) : options(where) {
     auto reading = read_scenario_text(yaml, "site.yaml");
-    if (!reading) return fail_with(reading.error());
+    if (!reading) give_up(reading.error());
     auto loaded = load_scene(reading->scenario, default_meshes());
-    if (!loaded) return fail_with(loaded.error());
+    if (!loaded) give_up(loaded.error());
     scene = std::move(*loaded);
     auto opened = open_server_channel(options);
-    if (!opened) return fail_with(opened.error());
+    if (!opened) give_up(opened.error());
     channel = std::move(*opened);
     TickLoopOptions loop_options;
     loop_options.session = options.session;
@@ -38,7 +38,7 @@ struct Site {
   std::unique_ptr<TickLoop> loop;
 
  private:
-  static void fail_with(const Error& error) {
+  [[noreturn]] static void give_up(const Error& error) {
     ADD_FAILURE() << error.text;
     std::abort();
   }

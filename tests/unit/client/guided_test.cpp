@@ -102,22 +102,22 @@ std::vector<Insertions> insert(const std::string& policy, const GuidedSettings& 
 
 TEST(GuidedBots, InsertAlwaysWhenAligned) {
   GuidedSettings settings;
-  settings.tries = 5;
+  settings.tries = 2;
   for (const Insertions& count : insert("stop", settings)) {
-    EXPECT_EQ(count.tries, 5U);
-    EXPECT_EQ(count.inserted, 5U);
+    EXPECT_EQ(count.tries, 2U);
+    EXPECT_EQ(count.inserted, 2U);
     EXPECT_EQ(count.not_aligned + count.stuck, 0U);
-    EXPECT_EQ(count.seconds.size(), 5U);
+    EXPECT_EQ(count.seconds.size(), 2U);
   }
 }
 
 TEST(GuidedBots, GetStuckByFreeHandAtTheFirstContact) {
   GuidedSettings settings;
-  settings.tries = 2;
+  settings.tries = 1;
   settings.free_hand = true;
   for (const Insertions& count : insert("stop", settings)) {
-    EXPECT_EQ(count.tries, 2U);
-    EXPECT_EQ(count.stuck, 2U) << "a clearance of 10 um is below what a hand can do";
+    EXPECT_EQ(count.tries, 1U);
+    EXPECT_EQ(count.stuck, 1U) << "a clearance of 10 um is below what a hand can do";
   }
 }
 

@@ -166,7 +166,7 @@ TEST(LoadReportTest, ReportsOfProcessesAreAddedUp) {
 
 /// A behaviour that has tried so often.
 struct Tried : Behaviour {
-  explicit Tried(Insertions done) : done(std::move(done)) {}
+  explicit Tried(Insertions counted) : done(std::move(counted)) {}
   Wish beat(const View&) override { return {}; }
   const Insertions* insertions() const override { return &done; }
   Insertions done;

@@ -103,7 +103,9 @@ TEST_F(Snap, IsRefusedWithAReason) {
 
 // What was chosen is a decision like any other: applied to another world it gives the same ticks.
 TEST_F(Snap, ReplaysFromItsDecision) {
-  GuidedPair other;
+  struct Replayed : GuidedPair {
+    void TestBody() override {}
+  } other;
   ASSERT_EQ(snap(wish()).refusal, Refusal::kNone);
   apply_decision(other.session.world, decision);
   for (int i = 0; i < 20; ++i)
