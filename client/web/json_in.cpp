@@ -167,6 +167,17 @@ void read_constraint(Keys& keys, CommandWish& wish) {
   wish.part = constraint.held.part;
 }
 
+void read_snap(Keys& keys, CommandWish& wish) {
+  Constraint& constraint = wish.details.constraint;
+  constraint.held.part = wish.part = keys.id<PartId>("part");
+  if (keys.has("feature")) constraint.held.feature = keys.text("feature");
+  if (keys.has("other")) constraint.other.part = keys.id<PartId>("other");
+  if (keys.has("other_feature")) constraint.other.feature = keys.text("other_feature");
+  if (keys.has("kind"))
+    constraint.kind = keys.named<ConstraintKind>("kind", 1, kConstraintKindCount);
+  constraint.snap = true;
+}
+
 struct CommandRow {
   const char* name;
   CommandKind kind;
@@ -190,6 +201,7 @@ const std::vector<CommandRow>& command_rows() {
       {"include", kDropExclusion, {read_pair}},
       {"review", kReview, {read_review}},
       {"constrain", kAddConstraint, {read_constraint}},
+      {"snap", kSnap, {read_snap}},
       {"unconstrain",
        kDropConstraint,
        {read_part,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <set>
 
+#include "client/web/features_json.h"
 #include "common/messages/names.h"
 
 namespace mortise::web {
@@ -38,7 +39,9 @@ void LiveFeed::enter(Viewer& viewer) {
   seats_[&viewer];
   viewer.say(text_of(
       {{"type", "server"}, {"present", client_.server_present()}, {"session", client_.session()}}));
-  if (has_scene_) viewer.show_scene(scene());
+  if (!has_scene_) return;
+  viewer.show_scene(scene());
+  if (client_.features().told()) viewer.say(text_of(features_message(client_)));
 }
 
 void LiveFeed::leave(Viewer& viewer) {
@@ -119,6 +122,9 @@ void LiveFeed::turn(double now_s) {
     const SharedBytes text = scene();
     for (auto& [viewer, seat] : seats_) viewer->show_scene(text);
   }
+  // After a scene pages want all that belongs to it.
+  if (has_scene_ && client_.features().told() && (update.features || update.resynced))
+    tell_all(features_message(client_));
   tell_replies(update);
   if (has_scene_) {
     tell_decisions(update);

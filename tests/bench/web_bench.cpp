@@ -15,6 +15,8 @@ namespace mortise::bench {
 namespace {
 
 constexpr int kPages = 16;
+constexpr char kScene[] = "stress.yaml";  // forty parts to move, above forty plates
+constexpr double kSettled_s = 4.0;        // in each round as long, so that idle ticks are as many
 constexpr double kChangeBar = 1.05;
 constexpr double kFramesBar = 0.98;
 constexpr double kMemoryBar_mb_per_h = 1.0;
@@ -36,7 +38,8 @@ enum class Beside { kNobody, kPagesThatLook, kBotsThatMove, kPagesThatMove };
 
 Round round_of(Beside beside, double seconds) {
   Round round;
-  BenchServer server;
+  BenchServer server(kScene);
+  const double start_s = steady_s();
   const std::string last = std::to_string(seconds);
   // What lives beside the bot that measures is there before it, and after.
   std::unique_ptr<test::Program> movers;
@@ -46,7 +49,6 @@ Round round_of(Beside beside, double seconds) {
     movers =
         server.bots({"--users", std::to_string(kPages), "--behaviour", "shake", "--first-part", "1",
                      "--rate", "60", "--seed", "2", "--seconds", std::to_string(seconds + 30.0)});
-    sleep_s(3.0);
   } else if (beside != Beside::kNobody) {
     gateway = std::make_unique<BenchGateway>(server);
     PageLoad::Shape shape;
@@ -135,7 +137,7 @@ void section_move(Report& report, const WebOptions& options) {
 
 // Frames a page and second of 16 pages that move parts, with a stopped one beside them or without.
 std::pair<double, double> frames_with(int stopped, double seconds, std::string& why_not) {
-  BenchServer server;
+  BenchServer server(kScene);
   BenchGateway gateway(server);
   PageLoad::Shape shape;
   shape.pages = kPages;
@@ -187,7 +189,7 @@ void section_stopped(Report& report, const WebOptions& options) {
 
 void section_memory(Report& report, const WebOptions& options) {
   const double seconds = options.quick ? 40.0 : 180.0;
-  BenchServer server;
+  BenchServer server(kScene);
   BenchGateway gateway(server);
   std::vector<std::pair<double, double>> mb_at_s;
   const double start_s = steady_s();

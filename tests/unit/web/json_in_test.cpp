@@ -72,6 +72,12 @@ TEST(PageMessage, ReadsEveryCommand) {
   EXPECT_EQ(constrain.details.constraint.kind, ConstraintKind::kCoaxial);
   EXPECT_EQ(constrain.details.constraint.other.feature, "b");
   EXPECT_TRUE(constrain.details.constraint.snap);
+  const auto snap = command(R"("do":"snap","part":2,"other":1)");
+  EXPECT_EQ(snap.kind, CommandKind::kSnap);
+  EXPECT_EQ(snap.details.constraint.held.part, PartId{2});
+  EXPECT_EQ(snap.details.constraint.other.part, PartId{1});
+  EXPECT_EQ(snap.details.constraint.kind, ConstraintKind::kUnknown);
+  EXPECT_EQ(command(R"("do":"snap","part":2,"feature":"j")").details.constraint.held.feature, "j");
   EXPECT_EQ(command(R"("do":"unconstrain","part":2,"constraint":4)").details.constraint_id,
             ConstraintId{4});
 }

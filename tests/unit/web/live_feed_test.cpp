@@ -296,6 +296,38 @@ TEST_F(PagesOnASession, AreToldWhenTheServerGoesAndComesBack) {
   grab(ann, kPeg);
 }
 
+TEST_F(PagesOnASession, AreToldWhatCanBeAlignedAndAlignIt) {
+  come(ann, "ann");
+  turn(30);
+  const Json told = ann.last("features");
+  ASSERT_TRUE(told.is_object());
+  Json bore, journal;
+  for (const Json& set : told["sets"]) {
+    for (const Json& feature : set["features"]) {
+      if (set["parts"][0] == 1 && feature["name"] == "bore") bore = feature;
+      if (set["parts"][0] == kPeg.value && feature["name"] == "journal") journal = feature;
+    }
+  }
+  ASSERT_TRUE(bore.is_object() && journal.is_object()) << told;
+  EXPECT_EQ(bore["kind"], "cylinder");
+  EXPECT_EQ(bore["inward"], true);
+  EXPECT_EQ(journal["inward"], false);
+  EXPECT_DOUBLE_EQ(journal["radius"].get<double>(), 10.0);
+  feed->enter(eve);  // late
+  turn();
+  EXPECT_EQ(eve.last("features")["sets"], told["sets"]);
+
+  grab(ann, kPeg);
+  say(ann, R"({"type":"move","part":2,"t":[0.4,-0.3,0]})");
+  turn(2);
+  say(ann, R"({"type":"command","id":8,"do":"snap","part":2,"feature":"journal","other":1})");
+  turn(60);
+  EXPECT_EQ(ann.last("reply")["done"], true) << ann.last("reply");
+  EXPECT_EQ(ann.last("decisions")["decisions"][0]["constraint"]["other_feature"], "bore");
+  EXPECT_NEAR(ann.seen[kPeg].X_WP.p.x(), 0.0, 1e-6);
+  EXPECT_NEAR(ann.seen[kPeg].X_WP.p.y(), 0.0, 1e-6);
+}
+
 TEST_F(PagesOnASession, ManyComingsAndGoingsLeaveNothingBehind) {
   come(ann, "ann");
   for (int i = 0; i < 50; ++i) {
