@@ -60,12 +60,13 @@ Round round_of(Beside beside, double seconds) {
       return round;
     }
   }
+  sleep_s(std::max(kSettled_s - (steady_s() - start_s), 0.0));
   auto bot = server.bots(
       {"--users", "1", "--behaviour", "shake", "--rate", "60", "--seed", "1", "--seconds", last});
   if (pages) pages->mark();
-  const double start_s = steady_s(), cpu_s = gateway ? gateway->cpu_s() : 0.0;
+  const double begin_s = steady_s(), cpu_s = gateway ? gateway->cpu_s() : 0.0;
   const int exit_code = bot->wait(seconds + 60.0);
-  const double took_s = steady_s() - start_s;
+  const double took_s = steady_s() - begin_s;
   if (pages) {
     round.gateway_cpu_percent = 100.0 * (gateway->cpu_s() - cpu_s) / took_s;
     pages->stop();
