@@ -90,6 +90,27 @@ test('a part stops at a real contact', async () => {
   assert.ok(z > 9 && z < 25, `stopped at z = ${z}`);
 });
 
+test('two picked features are brought in line, and the part then moves along what freedom is left', async () => {
+  await grab(bob, 'stray');
+  await bob.click('#tool_align');
+  await bob.locator('#align_bar option[value="journal"]').first().waitFor({ ...PATIENCE, state: 'attached' });
+  await bob.getByLabel('Feature of the part in your hand').selectOption('journal');
+  await bob.getByLabel('Other part').selectOption({ label: 'plate_k6' });
+  await bob.getByLabel('Feature of the other part').selectOption('bore');
+  await bob.click('#align_bar button:has-text("Align")');
+  await bob.waitForFunction(() => document.querySelector('#hand .pose')?.textContent?.startsWith('0.0000, 0.0000, '), undefined, PATIENCE);
+  await ann.waitForTimeout(100);
+  const from = await settled(bob);
+  await moveBy(bob, [4, 3, 5]);
+  const to = await settled(bob);
+  assert.ok(Math.abs(to[0]) < 1e-3 && Math.abs(to[1]) < 1e-3, `off the axis: ${to}`);
+  assert.ok(Math.abs(to[2] - from[2] - 5) < 1e-3, `from ${from} to ${to}`);
+  await bob.getByText('Kept:').waitFor(PATIENCE);
+  await bob.click('#align_bar button:has-text("Free")');
+  await bob.getByText('Kept:').waitFor({ ...PATIENCE, state: 'hidden' });
+  await bob.click('#tool_select');
+});
+
 test('one looks along with the other', async () => {
   await bob.getByLabel('Look along with ann').click(PATIENCE);
   await ann.focus('#canvas');

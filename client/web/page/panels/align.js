@@ -20,9 +20,10 @@ export function makeAlign({ session, choice, commands, labels, stage, say }) {
   const kind = el('select', { 'aria-label': 'Relation' }, ...KINDS.map(([value, text]) => el('option', { value }, text)));
   const distance = el('input', { type: 'text', inputMode: 'decimal', value: '0', size: 4, 'aria-label': 'Distance in mm' });
   const apply = el('button', { type: 'button', class: 'primary' }, 'Align');
+  const snap = el('button', { type: 'button', title: 'Let the session find what fits nearby; what is chosen here is kept to' }, 'Snap');
   const drop = el('button', { type: 'button' }, 'Free');
   const hint = el('span', { class: 'quiet' });
-  box.append(el('div', { class: 'row' }, own, kind, distance, otherPart, other, apply, drop), hint);
+  box.append(el('div', { class: 'row' }, own, kind, distance, otherPart, other, apply, snap, drop), hint);
 
   const held = () => {
     const chosen = session.parts.get(choice.part);
@@ -66,10 +67,11 @@ export function makeAlign({ session, choice, commands, labels, stage, say }) {
     const part = held();
     distance.hidden = kind.value !== 'parallel_distance';
     apply.disabled = !(part && own.value && otherPart.value && other.value);
+    snap.disabled = !part;
     const kept = part ? constraintsOf(part.id) : [];
     drop.hidden = kept.length === 0;
     const state = kept.map((d) => `${plain(d.constraint.feature)} ${plain(d.constraint.kind)} with ${session.partName(d.constraint.other)} ${plain(d.constraint.other_feature)}`).join('; ');
-    const next = !part ? 'Choose a part and grab it' : !own.value ? `Click a feature of ${part.name}` : !other.value ? 'Click a feature of another part' : 'Align, then move along what freedom is left';
+    const next = !part ? 'Choose a part and grab it' : !own.value ? `Click a feature of ${part.name}, or let it snap` : !other.value ? 'Click a feature of another part, or let it snap' : 'Align, then move along what freedom is left';
     setText(hint, state ? `Kept: ${state}.` : `${next}.`);
     stage.ask();
   }
@@ -83,6 +85,13 @@ export function makeAlign({ session, choice, commands, labels, stage, say }) {
     if (!reply.done) return;
     if (!reply.text) say('Aligned', 'good');
     other.value = own.value = '';
+    refreshState();
+  };
+  snap.onclick = async () => {
+    const part = held();
+    if (!part) return;
+    const chosen = { feature: own.value, other: Number(otherPart.value), other_feature: other.value };
+    await commands.ask('snap', { part: part.id, ...Object.fromEntries(Object.entries(chosen).filter(([, value]) => value)) });
     refreshState();
   };
   drop.onclick = async () => {
