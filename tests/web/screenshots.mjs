@@ -52,6 +52,11 @@ try {
   await tom.waitForTimeout(1500);
   for (let i = 0; i < 4; ++i) await tom.keyboard.press('-');
   await shoot(tom, 'hand');
+  await tom.click('#tool_align');
+  await tom.getByLabel('Feature of the part in your hand').selectOption({ index: 1 });
+  await tom.getByLabel('Other part', { exact: true }).selectOption({ label: 'cover' });
+  await tom.getByLabel('Feature of the other part').selectOption({ index: 1 });
+  await shoot(tom, 'align');
   await tom.click('#tab_statistics');
   await shoot(tom, 'statistics');
   if (eve.complaints.length + tom.complaints.length > 0) throw new Error([...eve.complaints, ...tom.complaints].join('\n'));

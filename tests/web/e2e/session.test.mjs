@@ -95,7 +95,7 @@ test('two picked features are brought in line, and the part then moves along wha
   await bob.click('#tool_align');
   await bob.locator('#align_bar option[value="journal"]').first().waitFor({ ...PATIENCE, state: 'attached' });
   await bob.getByLabel('Feature of the part in your hand').selectOption('journal');
-  await bob.getByLabel('Other part').selectOption({ label: 'plate_k6' });
+  await bob.getByLabel('Other part', { exact: true }).selectOption({ label: 'plate_k6' });
   await bob.getByLabel('Feature of the other part').selectOption('bore');
   await bob.click('#align_bar button:has-text("Align")');
   await bob.waitForFunction(() => document.querySelector('#hand .pose')?.textContent?.startsWith('0.0000, 0.0000, '), undefined, PATIENCE);
