@@ -13,29 +13,13 @@
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/network/page_client.h"
+#include "tests/support/small_scenarios.h"
 
 namespace mortise::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScenario = R"(
-name: gateway
-units: mm
-policy: report
-parts:
-  - name: plate
-    generator: {kind: plate_with_bore, bore: 20, facets: 32}
-  - name: peg
-    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
-    pose: {position: [0, 0, 60]}
-    moving: true
-  - name: block
-    generator: {kind: block, x: 4, y: 4, z: 4}
-    pose: {position: [100, 0, 0]}
-    moving: true
-    repeat: {count: [20, 1, 1], step: [10, 0, 0]}
-)";
 constexpr std::uint32_t kPeg = 2, kBlock = 3;
 
 /// A session and a gateway, each in a thread of its own, over memory.
@@ -65,7 +49,7 @@ struct GatewayFixture : testing::Test {
     fs::create_directories(folder / "page");
     std::ofstream(folder / "page/index.html") << "<script type=\"importmap\">{}</script>page";
     std::ofstream(folder / "secret.txt") << "secret";
-    auto reading = read_scenario_text(kScenario, "gateway.yaml");
+    auto reading = read_scenario_text(peg_yaml(), "gateway.yaml");
     ASSERT_TRUE(reading) << reading.error().text;
     auto loaded = load_scene(reading->scenario, default_meshes());
     ASSERT_TRUE(loaded) << loaded.error().text;
@@ -135,7 +119,7 @@ struct GoodPages {
     EXPECT_TRUE(ann.is_open() && bob.is_open());
   }
   PageClient ann, bob;
-  double z_mm = 60.0;
+  double z_mm = 25.0;
 };
 
 TEST_F(GatewayFixture, TwoPagesJoinMoveAndSeeTheSameClash) {
@@ -144,7 +128,7 @@ TEST_F(GatewayFixture, TwoPagesJoinMoveAndSeeTheSameClash) {
   EXPECT_EQ(good.ann.told.front()["type"], "welcome");
   EXPECT_EQ(good.ann.told.front()["role"], "designer");
   good.expect_to_go_on();
-  good.ann.move(kPeg, 0, 0, -50.0);
+  good.ann.move(kPeg, 0, 0, -20.0);
   const Json here = good.ann.await("events"), there = good.bob.await("events");
   ASSERT_TRUE(here.is_object() && there.is_object());
   EXPECT_EQ(here["events"][0], there["events"][0]);
@@ -322,7 +306,7 @@ TEST_F(GatewayFixture, AStoppedPageCostsTheOthersNothingAndIsClosed) {
   // In and out of the plate: events all the time, until the buffers of the stopped one are full.
   for (int i = 0; i < 1500 && incidents("stalled") == 0; ++i) {
     for (int k = 0; k < 10; ++k) {
-      good.ann.move(kPeg, 0, 0, k % 2 == 0 ? -50.0 : 50.0);
+      good.ann.move(kPeg, 0, 0, k % 2 == 0 ? -20.0 : 20.0);
       good.ann.run(0.02);
       good.bob.run(0.0);
     }

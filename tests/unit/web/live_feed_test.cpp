@@ -9,27 +9,12 @@
 #include "common/messages/memory_channel.h"
 #include "common/messages/names.h"
 #include "server/tick_loop.h"
+#include "tests/support/small_scenarios.h"
 #include "tests/unit/web/page.h"
 
 namespace mortise::web {
 namespace {
 
-constexpr const char* kScenario = R"(
-name: pages
-units: mm
-policy: report
-parts:
-  - name: plate
-    generator: {kind: plate_with_bore, bore: 20, facets: 32}
-  - name: peg
-    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
-    pose: {position: [0, 0, 60]}
-    moving: true
-  - name: block
-    generator: {kind: block, x: 4, y: 4, z: 4}
-    pose: {position: [100, 0, 0]}
-    moving: true
-)";
 constexpr PartId kPeg{2}, kBlock{3};
 
 struct PagesOnASession : testing::Test {
@@ -45,7 +30,7 @@ struct PagesOnASession : testing::Test {
   double now_s = 1.0;
 
   void SetUp() override {
-    auto reading = read_scenario_text(kScenario, "pages.yaml");
+    auto reading = read_scenario_text(test::peg_yaml(), "pages.yaml");
     ASSERT_TRUE(reading) << reading.error().text;
     start_server(*reading);
     channel = hub.open_client();
@@ -102,7 +87,7 @@ TEST_F(PagesOnASession, SeeTheSceneThenEachOther) {
   EXPECT_EQ(told["session"], "pages");
   ASSERT_EQ(told["parts"].size(), 3u);
   EXPECT_EQ(told["parts"][1]["name"], "peg");
-  EXPECT_EQ(told["parts"][1]["p"], Json::parse("[0.0, 0.0, 60.0]"));
+  EXPECT_EQ(told["parts"][1]["p"], Json::parse("[0.0, 0.0, 25.0]"));
   EXPECT_EQ(ann.last("users")["users"].size(), 2u);
   const MeshAnswer mesh = feed->mesh(told["parts"][1]["mesh"]);
   ASSERT_EQ(mesh.state, MeshAnswer::State::kHere);
@@ -113,8 +98,8 @@ TEST_F(PagesOnASession, SeeTheSceneThenEachOther) {
   EXPECT_EQ(bob.seen[kPeg].holder.value, ann.last("joined")["user"]);
   move(ann, kPeg, -2.5);
   turn(2);
-  EXPECT_EQ(bob.seen[kPeg].X_WP.p, Vec3(0, 0, 57.5));
-  EXPECT_EQ(ann.seen[kPeg].X_WP.p, Vec3(0, 0, 57.5));
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p, Vec3(0, 0, 22.5));
+  EXPECT_EQ(ann.seen[kPeg].X_WP.p, Vec3(0, 0, 22.5));
   EXPECT_EQ(bob.last("decisions")["decisions"][0]["kind"], "grab");
 }
 
@@ -122,7 +107,7 @@ TEST_F(PagesOnASession, AreToldTheSameClashAndItsClass) {
   come(ann, "ann");
   come(bob, "bob");
   grab(ann, kPeg);
-  move(ann, kPeg, -50.0);  // the facets cross, the round parts do not
+  move(ann, kPeg, -20.0);  // the facets cross, the round parts do not
   turn(2);
   ASSERT_EQ(ann.count("events"), 1u);
   const Json event = ann.last("events")["events"][0];
@@ -139,7 +124,7 @@ TEST_F(PagesOnASession, AreToldTheSameClashAndItsClass) {
   turn();
   EXPECT_EQ(eve.last("scene")["clashes"][0]["review"]["comment"], "hm");
   EXPECT_EQ(eve.last("scene")["parts"][0]["classes"], 1u);
-  move(ann, kPeg, 50.0);
+  move(ann, kPeg, 20.0);
   turn(2);
   EXPECT_EQ(eve.last("events")["events"][0]["kind"], "end");
   EXPECT_EQ(eve.seen[kPeg].classes, 0u);
@@ -154,14 +139,14 @@ TEST_F(PagesOnASession, ThatGoAwayLetGoAtOnce) {
   feed->leave(ann);  // a crash looks no different
   turn(2);
   EXPECT_EQ(bob.seen[kPeg].holder.value, 0u);
-  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 59.0);  // what was sent before still counts
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 24.0);  // what was sent before still counts
   // Loaded anew: the same name, the same user, and its increments count from the first.
   ann = Page(Role::kDesigner);
   come(ann, "ann");
   grab(ann, kPeg);
   move(ann, kPeg, -1.0);
   turn(2);
-  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 58.0);
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 23.0);
 }
 
 TEST_F(PagesOnASession, LoadedAnewWithinOneTickAreLetInUnderTheirName) {
@@ -206,7 +191,7 @@ TEST_F(PagesOnASession, LookOnlyWithTheLinkForIt) {
   move(eve, kPeg, -1.0);
   turn(10);
   EXPECT_EQ(eve.last("refused")["increments"][0]["reason"], name_of(Refusal::kObserver));
-  EXPECT_EQ(scene.world.parts[1].X_WP.p.z(), 60.0);
+  EXPECT_EQ(scene.world.parts[1].X_WP.p.z(), 25.0);
   EXPECT_FALSE(scene.world.parts[1].holder);
 }
 
@@ -246,7 +231,7 @@ TEST_F(PagesOnASession, AStoppedPageIsBehindByOneFrameAndNoEvent) {
   bob.reads = false;
   const std::size_t before = bob.frames;
   for (int i = 0; i < 100; ++i) {
-    move(ann, kPeg, i % 2 == 0 ? -50.0 : 50.0);  // in and out: two events each time
+    move(ann, kPeg, i % 2 == 0 ? -20.0 : 20.0);  // in and out: two events each time
     if (i < 50) move(ann, kBlock, 1.0);
     turn();
   }
@@ -283,7 +268,7 @@ TEST_F(PagesOnASession, AreToldWhenTheServerGoesAndComesBack) {
   come(ann, "ann");
   grab(ann, kPeg);
   say(ann, R"({"type":"command","id":40,"do":"undo","part":2})");
-  auto reading = read_scenario_text(kScenario, "pages.yaml");
+  auto reading = read_scenario_text(test::peg_yaml(), "pages.yaml");
   ASSERT_TRUE(reading);
   const std::size_t scenes = ann.count("scene");
   start_server(*reading);

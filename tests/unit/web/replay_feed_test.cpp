@@ -10,6 +10,7 @@
 #include "common/io/session_log.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
+#include "tests/support/small_scenarios.h"
 #include "tests/unit/web/page.h"
 
 namespace mortise::web {
@@ -17,18 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScenario = R"(
-name: replayed
-units: mm
-policy: report
-parts:
-  - name: plate
-    generator: {kind: plate_with_bore, bore: 20, facets: 32}
-  - name: peg
-    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
-    pose: {position: [0, 0, 60]}
-    moving: true
-)";
 constexpr PartId kPeg{2};
 
 /// What the session was like, tick by tick.
@@ -40,7 +29,7 @@ struct Truth {
 /// Ann moves the peg into the plate and out again, undoes that, lets go.
 Truth play_session(const fs::path& file) {
   Truth truth;
-  auto reading = read_scenario_text(kScenario, "replayed.yaml");
+  auto reading = read_scenario_text(test::peg_yaml(), "replayed.yaml");
   auto scene = load_scene(reading->scenario, default_meshes());
   MemoryHub hub;
   auto server = hub.open_server();
@@ -48,7 +37,7 @@ Truth play_session(const fs::path& file) {
   LogHeader header;
   header.session = "replayed";
   header.scenario_name = "replayed.yaml";
-  header.scenario_yaml = kScenario;
+  header.scenario_yaml = test::peg_yaml();
   for (const Part& part : scene->world.parts) {
     header.meshes.emplace_back(part.solid->hash(), &part.solid->mesh());
     header.mesh_of_part.push_back(part.solid->hash());
@@ -130,7 +119,7 @@ TEST_F(ReplayOfASession, PlaysOnFromAnywhere) {
     ASSERT_TRUE(feed.take(page, ReplayWish{ReplayWish::Do::kPlay, 0, 1.0}));
     page.take(feed);
     EXPECT_EQ(page.last("scene")["tick"], from);
-    Vec3 peg_mm = truth.peg_mm.contains(from) ? truth.peg_mm[from] : Vec3(0, 0, 60);
+    Vec3 peg_mm = truth.peg_mm.contains(from) ? truth.peg_mm[from] : Vec3(0, 0, 25);
     std::size_t open = page.last("scene")["clashes"].size();
     page.told.clear();
     for (int i = 0; i < 200; ++i) {
