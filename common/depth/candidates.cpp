@@ -136,9 +136,12 @@ class Finder {
     KnownFacePair pair;
     pair.face[0] = static_cast<std::uint16_t>(face_a);
     pair.face[1] = static_cast<std::uint16_t>(face_b);
+    PairOffsets layers[2];
+    for (const Layer layer : {Layer::kLower, Layer::kUpper})
+      layers[layer == Layer::kUpper] = {Body::offset_of(fa, layer), Body::offset_of(fb, layer)};
     const auto overlap = face_pair_overlap(*sa, extent_of(pair_.bodies[0], pair.face[0], *sa), *sb,
                                            extent_of(pair_.bodies[1], pair.face[1], *sb),
-                                           pair_.X_KS[0], query_.margin_mm);
+                                           pair_.X_KS[0], query_.margin_mm, layers);
     if (!overlap) return cone_in_bore(pair);
     pair.overlap = *overlap;
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "common/depth/round_pair.h"
 
@@ -69,6 +71,41 @@ std::optional<FacePairOverlap> ball_in_socket(const Surface& ball, const Surface
   return found;
 }
 
+// Layer by layer, each with the radii that it has.
+FacePairOverlap ball_in_socket(const Surface& ball, const Surface& socket, const FaceExtent& extent,
+                               double margin_mm, std::span<const PairOffsets> layers) {
+  FacePairOverlap found = *ball_in_socket(ball, socket, extent, margin_mm);
+  const double off = (ball.point - socket.point).norm();
+  const double end =
+      std::min(0.99 * socket.radius_mm, std::max(std::fabs(extent.lo_mm), std::fabs(extent.hi_mm)));
+  const double steep = 1.0 + end / std::sqrt(socket.radius_mm * socket.radius_mm - end * end);
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo, near_hi = -lo;
+  for (const PairOffsets& layer : layers) {
+    Surface b = ball, s = socket;
+    b.radius_mm += layer.a_mm;
+    s.radius_mm -= layer.b_mm;
+    const double offsets = layer.a_mm + layer.b_mm;
+    const FacePairOverlap of_ball = *ball_in_socket(b, s, extent, margin_mm);
+    // Of the points of both parts: deepest on the rim, or a little behind it.
+    const auto of_both = [&](const FaceExtent& ends, double margin) {
+      const auto beyond = beyond_socket(b, s, ends, margin);
+      if (!beyond) return -std::numeric_limits<double>::infinity();
+      const bool on_rim = beyond->depth_mm < b.radius_mm - s.radius_mm + off;
+      return beyond->depth_mm +
+             (on_rim ? std::max(0.0, beyond->depth_mm) * steep * off / s.radius_mm : 0.0);
+    };
+    const auto at = beyond_socket(b, s, {extent.lo_mm, extent.hi_mm}, 0.0);
+    lo =
+        std::min(lo, (at && std::isfinite(of_ball.lo_mm) ? at->depth_mm : of_ball.lo_mm) - offsets);
+    hi = std::max(hi, std::max(of_ball.hi_mm, of_both(extent, 0.0)) - offsets);
+    near_hi = std::max(near_hi, std::max(of_ball.near_hi_mm, of_both(extent, margin_mm)) - offsets);
+  }
+  found.lo_mm = lo;
+  found.hi_mm = std::max(lo, hi);
+  found.near_hi_mm = std::max(found.hi_mm, near_hi);
+  return found;
+}
+
 }  // namespace
 
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface) {
@@ -88,9 +125,24 @@ FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surfac
   return extent;
 }
 
+std::optional<BeyondSocket> beyond_socket(const Surface& ball, const Surface& socket,
+                                          const FaceExtent& extent, double margin_mm) {
+  const auto& [below, above] = extent.beyond_mm;
+  const Interval along{extent.lo_mm - below - margin_mm, extent.hi_mm + above + margin_mm};
+  const Vec3 d = ball.point - socket.point;
+  // What lies between two planes and not within a sphere comes nearest to a place within it on the
+  // sphere.
+  if (!(d.norm() < socket.radius_mm)) return std::nullopt;
+  const auto u = farthest_direction(d, socket.axis,
+                                    {along.lo / socket.radius_mm, along.hi / socket.radius_mm});
+  if (!u) return std::nullopt;
+  return BeyondSocket{ball.radius_mm - (socket.radius_mm * *u - d).norm(), along};
+}
+
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
-                                                 const Pose& X_BA, double margin_mm) {
+                                                 const Pose& X_BA, double margin_mm,
+                                                 std::span<const PairOffsets> layers) {
   if (a.kind != b.kind || a.inward == b.inward) return std::nullopt;
   const Surface a_B = moved(a, X_BA);
   const Surface &convex = a.inward ? b : a_B, &hollow = a.inward ? a_B : b;
@@ -100,6 +152,12 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   if (a.kind == SurfaceKind::kSphere) {
     found = ball_in_socket(convex, hollow, of_hollow, margin_mm);
     if (found && !std::isfinite(found->near_hi_mm)) return std::nullopt;
+    if (found && !layers.empty()) {
+      std::vector<PairOffsets> of_ball(layers.begin(), layers.end());
+      if (a.inward)
+        for (PairOffsets& layer : of_ball) std::swap(layer.a_mm, layer.b_mm);
+      found = ball_in_socket(convex, hollow, of_hollow, margin_mm, of_ball);
+    }
   } else {
     const auto face = RoundFace::of(convex, {along.lo_mm, along.hi_mm});
     const auto wall = RoundFace::of(hollow, {of_hollow.lo_mm, of_hollow.hi_mm});
@@ -114,20 +172,6 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   // Now out of the convex face; B's own normal is asked for.
   if (found && !a.inward) found->normal_B = -found->normal_B;
   return found;
-}
-
-std::optional<BeyondSocket> beyond_socket(const Surface& ball, const Surface& socket,
-                                          const FaceExtent& extent, double margin_mm) {
-  const auto& [below, above] = extent.beyond_mm;
-  const Interval along{extent.lo_mm - below - margin_mm, extent.hi_mm + above + margin_mm};
-  const Vec3 d = ball.point - socket.point;
-  // What lies between two planes and not within a sphere comes nearest to a place within it on the
-  // sphere.
-  if (!(d.norm() < socket.radius_mm)) return std::nullopt;
-  const auto u = farthest_direction(d, socket.axis,
-                                    {along.lo / socket.radius_mm, along.hi / socket.radius_mm});
-  if (!u) return std::nullopt;
-  return BeyondSocket{ball.radius_mm - (socket.radius_mm * *u - d).norm(), along};
 }
 
 bool is_round_in_bore(const Surface& a, const Surface& b) {

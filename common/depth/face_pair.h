@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "common/depth/body.h"
 #include "common/math/pose.h"
@@ -25,13 +26,21 @@ struct FacePairOverlap {
   Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
 };
 
+/// Outward offsets of A's and B's surface in a layer, mm.
+struct PairOffsets {
+  double a_mm = 0.0, b_mm = 0.0;
+};
+
 /// Closed form for a shaft in a bore, a cone in a cone (nearly parallel axes; see round_reach) and
 /// a ball in a socket; nothing for other pairs. `margin_mm` is how far beyond its end a face still
 /// counts as near. Nothing either where no point of the convex face is within the
 /// margin; lo and hi are -infinity where none is within both faces' ends.
+/// `layers`: the brackets are to hold when the offsets of any of these layers are added; a ball at
+/// the rim of its socket is not offset alike.
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
-                                                 const Pose& X_BA, double margin_mm);
+                                                 const Pose& X_BA, double margin_mm,
+                                                 std::span<const PairOffsets> layers = {});
 
 /// How deep in a ball a point may lie that is not within the sphere of its socket, mm, and between
 /// which heights along the socket's axis that holds: the ends of its face and `margin_mm` more.

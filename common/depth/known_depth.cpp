@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/depth/face_pair.h"
 
@@ -10,43 +11,79 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Row::within_mm of a shaft in a bore, where the patch is: a tilted shaft comes nearer elsewhere.
-double within_here(const DepthProof& proof, const Patch& patch, const KnownOverlaps::Row& row) {
-  if (!proof.known->X_BA) return kInfinity;
-  const Surface* of[2];
+// A round face of S or K in a hollow one, and where the patch is along the axis of that.
+struct HereAlongHollow {
+  const Surface* of[2];  // of A, of B
+  int hollow;
+  FaceExtent along;
+};
+
+std::optional<HereAlongHollow> along_hollow(const DepthProof& proof, const Patch& patch,
+                                            const KnownOverlaps::Row& row) {
+  HereAlongHollow here{};
   for (int i = 0; i < 2; ++i)
-    of[i] = &*(i == proof.role ? *proof.s : *proof.k).band->faces[row.face[i]].surface;
-  if (of[0]->kind != SurfaceKind::kCylinder || !is_round_in_bore(*of[0], *of[1])) return kInfinity;
-  const int bore = of[0]->inward ? 0 : 1;
-  const Pose& X_BA = *proof.known->X_BA;
-  const Pose X_KS = proof.role == 0 ? X_BA : X_BA.inverse();
-  const bool bore_in_k = bore != proof.role;
-  const Vec3 point = bore_in_k ? of[bore]->point : Vec3(X_KS * of[bore]->point);
-  const Vec3 axis = bore_in_k ? of[bore]->axis : Vec3(X_KS.q * of[bore]->axis);
-  InBoreQuery query{of[0], of[1], {}, {}, 0.0, patch.thickness() + proof.rounding_mm};
-  FaceExtent& along = bore == 0 ? query.extent_a : query.extent_b;
-  along.lo_mm = kInfinity;
-  along.hi_mm = -kInfinity;
+    here.of[i] = &*(i == proof.role ? *proof.s : *proof.k).band->faces[row.face[i]].surface;
+  if (here.of[0]->inward == here.of[1]->inward) return std::nullopt;
+  here.hollow = here.of[0]->inward ? 0 : 1;
+  const Surface& hollow = *here.of[here.hollow];
+  const Pose X_KS = proof.role == 0 ? *proof.known->X_BA : proof.known->X_BA->inverse();
+  const bool in_k = here.hollow != proof.role;
+  const Vec3 point = in_k ? hollow.point : Vec3(X_KS * hollow.point);
+  const Vec3 axis = in_k ? hollow.axis : Vec3(X_KS.q * hollow.axis);
+  here.along.lo_mm = kInfinity;
+  here.along.hi_mm = -kInfinity;
   for (int i = 0; i < patch.count; ++i) {
     const double z = (patch.points[i] - point).dot(axis);
-    along.lo_mm = std::min(along.lo_mm, z);
-    along.hi_mm = std::max(along.hi_mm, z);
+    here.along.lo_mm = std::min(here.along.lo_mm, z);
+    here.along.hi_mm = std::max(here.along.hi_mm, z);
   }
-  return in_bore_bound(query, X_BA).within_mm;
+  return here;
 }
 
-// Is the patch between the heights for which the row speaks?
+// Row::within_mm where the patch is: a tilted shaft comes nearer to its bore elsewhere, and a ball
+// to its socket.
+double within_here(const DepthProof& proof, const Patch& patch, const KnownOverlaps::Row& row) {
+  if (!proof.known->X_BA) return kInfinity;
+  const auto here = along_hollow(proof, patch, row);
+  if (!here) return kInfinity;
+  const Surface &a = *here->of[0], &b = *here->of[1];
+  const Pose& X_BA = *proof.known->X_BA;
+  const double margin_mm = patch.thickness() + proof.rounding_mm;
+  const FaceExtent none, &along_a = here->hollow == 0 ? here->along : none,
+                         &along_b = here->hollow == 1 ? here->along : none;
+  if (a.kind == SurfaceKind::kCylinder && is_round_in_bore(a, b))
+    return in_bore_bound({&a, &b, along_a, along_b, 0.0, margin_mm}, X_BA).within_mm;
+  if (a.kind != SurfaceKind::kSphere || b.kind != SurfaceKind::kSphere) return kInfinity;
+  // With the radii of the layer: at a rim both are not offset alike.
+  const int ball = 1 - here->hollow;
+  const auto offset = [&](int i) {
+    const Body& body = i == proof.role ? *proof.s : *proof.k;
+    return Body::offset_of(body.band->faces[row.face[i]], proof.layer);
+  };
+  Surface round = *here->of[ball], socket = *here->of[here->hollow];
+  round.radius_mm += offset(ball);
+  socket.radius_mm -= offset(here->hollow);
+  round.point = ball == 0 ? Vec3(X_BA * round.point) : Vec3(X_BA.inverse() * round.point);
+  const double offsets = offset(0) + offset(1);
+  if (here->hollow != proof.role) {
+    const auto overlap = face_pair_overlap(round, none, socket, here->along, Pose(), margin_mm);
+    return overlap ? overlap->near_hi_mm - offsets : kInfinity;
+  }
+  const auto beyond = beyond_socket(round, socket, here->along, margin_mm);
+  return beyond ? beyond->depth_mm - offsets : kInfinity;
+}
+
+// Is the patch between the ends of the row's convex face?
 bool keeps_within(const DepthProof& proof, const Patch& patch, const KnownOverlaps::Row& row) {
   const Interval& extent = row.within_extent_mm;
   if (!std::isfinite(extent.lo)) return true;
   const Surface& of_s = *proof.s->band->faces[row.face[proof.role]].surface;
   const Surface& of_k = *proof.k->band->faces[row.face[1 - proof.role]].surface;
-  const auto is_between = [&](const Surface& surface, const Vec3& x) {
-    const double z = (x - surface.point).dot(surface.axis);
+  const auto is_between = [&](const Surface& convex, const Vec3& x) {
+    const double z = (x - convex.point).dot(convex.axis);
     return z >= extent.lo - proof.rounding_mm && z <= extent.hi + proof.rounding_mm;
   };
-  const bool along_hollow = of_s.kind == SurfaceKind::kSphere;
-  if (of_s.inward == along_hollow) {
+  if (!of_s.inward) {
     for (int i = 0; i < 3; ++i)
       if (!is_between(of_s, proof.s->mesh->corner(proof.triangle_s, i))) return false;
     return true;

@@ -78,18 +78,6 @@ class Overlap {
     KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
     row.told = told;
     const Surface& a = *pair_.bodies[0].band->faces[known.face[0]].surface;
-    const Surface& b = *pair_.bodies[1].band->faces[known.face[1]].surface;
-    if (a.kind == SurfaceKind::kSphere) {
-      const int hollow = a.inward ? 0 : 1;
-      Surface ball = a.inward ? b : a;
-      ball.point = pair_.X_KS[1 - hollow] * ball.point;
-      const Surface& socket = a.inward ? a : b;
-      const FaceExtent extent = extent_of(pair_.bodies[hollow], known.face[hollow], socket);
-      if (const auto beyond = beyond_socket(ball, socket, extent, pair_.near_mm)) {
-        row.within_mm = beyond->depth_mm;
-        row.within_extent_mm = beyond->along_mm;
-      }
-    }
     if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.near_hi_mm)) {
       // Between its ends the inside of a cone is the hull of its end circles, over which the convex
       // distance is no larger than on them.

@@ -30,15 +30,15 @@ struct KnownOverlaps {
     double overlap_mm;  ///< of the two faces
     /// Of any point not outside of the convex face's surface; faces that end on it keep to it.
     double within_mm = std::numeric_limits<double>::infinity();
-    /// Where `within_mm` holds: between these heights along the axis of the convex face (of a ball:
-    /// of its socket).
+    /// Where `within_mm` holds: between these heights along the axis of the convex face.
     Interval within_extent_mm{-std::numeric_limits<double>::infinity(),
                               std::numeric_limits<double>::infinity()};
     /// The pair is reported by its closed form. Else the row only serves proofs.
     bool told = true;
   };
   std::vector<Row> rows;
-  /// Where neither part moves: then a shaft in a bore is also bounded where a patch is.
+  /// Where neither part moves: then a shaft in a bore and a ball in a socket are also bounded where
+  /// a patch is.
   std::optional<Pose> X_BA;
   /// Of face_s of body `role` with face_k of the other; null when not known.
   const Row* find(int role, std::uint16_t face_s, std::uint16_t face_k) const;

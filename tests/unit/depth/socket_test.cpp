@@ -141,19 +141,24 @@ TEST(Socket, TheRimDecidesWhereTheBallIsPushedPastIt) {
     const Vec3 center = p.push_mm * Vec3(std::cos(kPush), 0.0, std::sin(kPush));
     const double truth = 10.0 - p.clearance_mm - (rim - center).norm();
     ASSERT_EQ(truth > 0.0, p.meets);
-    double certain = -1e9, possible = -1e9;
+    double certain = -1e9, certain_hi = -1e9, possible = -1e9;
     for (const OverlapRegion& region : result.regions) {
       EXPECT_FALSE(region.capped);
       certain = std::max(certain, region.certain_mm.lo);
+      certain_hi = std::max(certain_hi, region.certain_mm.hi);
       possible = std::max(possible, region.possible_mm.hi);
       if (region.certain_mm.lo > 0.0) {
         EXPECT_TRUE(region.has_witness);
       }
     }
-    if (p.meets)
-      EXPECT_NEAR(certain, truth, 2e-4) << p.push_mm;
-    else
+    if (p.meets) {
+      // Lazily the bracket may be wide, but it holds the truth.
+      EXPECT_NEAR(certain, truth, 0.05 * truth) << p.push_mm;
+      EXPECT_LE(certain, truth + 1e-9) << p.push_mm;
+      EXPECT_GE(certain_hi, truth - 1e-9) << p.push_mm;
+    } else {
       EXPECT_LE(possible, 0.0) << p.push_mm;
+    }
   }
 }
 
