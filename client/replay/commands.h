@@ -29,6 +29,15 @@ struct RecoverOptions {
 };
 int run_recover(const RecoverOptions& options);
 
+/// The session as tables (client/replay/session_tables.h); what is empty is not written.
+struct ExportOptions {
+  std::filesystem::path log;
+  std::filesystem::path csv;  ///< a folder
+  std::filesystem::path sqlite, html, json;
+  bool recompute = false;  ///< for coverage
+};
+int run_export(const ExportOptions& options);
+
 /// What the session would have been with changes (client/replay/change.h).
 struct WhatIfOptions {
   std::filesystem::path log;

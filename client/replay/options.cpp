@@ -57,6 +57,20 @@ void add_recover(CLI::App& app, int& code) {
   command->callback([options, &code] { code = run_recover(*options); });
 }
 
+void add_export(CLI::App& app, int& code) {
+  auto options = std::make_shared<ExportOptions>();
+  auto* command = app.add_subcommand(
+      "export", "the session as tables: clashes, events, users, decisions, sums");
+  command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("--csv", options->csv, "a folder for one CSV file a table");
+  command->add_option("--sqlite", options->sqlite, "a new SQLite database, with views");
+  command->add_option("--html", options->html, "one page that needs no other file");
+  command->add_option("--json", options->json, "one JSON document");
+  command->add_flag("--recompute", options->recompute,
+                    "compute the session again for what was examined and skipped");
+  command->callback([options, &code] { code = run_export(*options); });
+}
+
 void add_what_if(CLI::App& app, int& code) {
   auto options = std::make_shared<WhatIfOptions>();
   auto* command = app.add_subcommand(
@@ -102,6 +116,7 @@ int run_replay_program(int argc, char** argv) {
   add_report(app, code);
   add_info(app, code);
   add_recover(app, code);
+  add_export(app, code);
   add_what_if(app, code);
   add_merge(app, code);
   try {
