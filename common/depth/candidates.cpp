@@ -136,12 +136,12 @@ class Finder {
     KnownFacePair pair;
     pair.face[0] = static_cast<std::uint16_t>(face_a);
     pair.face[1] = static_cast<std::uint16_t>(face_b);
-    PairOffsets layers[2];
+    std::array<PairOffsets, 2> layers;
     for (const Layer layer : {Layer::kLower, Layer::kUpper})
       layers[layer == Layer::kUpper] = {Body::offset_of(fa, layer), Body::offset_of(fb, layer)};
     const auto overlap = face_pair_overlap(*sa, extent_of(pair_.bodies[0], pair.face[0], *sa), *sb,
                                            extent_of(pair_.bodies[1], pair.face[1], *sb),
-                                           pair_.X_KS[0], query_.margin_mm, layers);
+                                           pair_.X_KS[0], query_.margin_mm, &layers);
     if (!overlap) return cone_in_bore(pair);
     pair.overlap = *overlap;
     const double upper = Body::offset_of(fa, Layer::kUpper) + Body::offset_of(fb, Layer::kUpper);
@@ -162,6 +162,7 @@ class Finder {
     if (!(bound.face_mm + upper <= pair_.touch_mm)) return std::nullopt;
     pair.overlap.hi_mm = pair.overlap.near_hi_mm = bound.face_mm;
     pair.overlap.lo_mm = -std::numeric_limits<double>::infinity();
+    pair.overlap.of_layer_mm.fill({pair.overlap.lo_mm, pair.overlap.hi_mm});
     return pair;
   }
 
@@ -272,7 +273,8 @@ class Finder {
 }  // namespace
 
 bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
-  if (pair.overlap.hi_mm - pair.overlap.lo_mm > kDepthAccuracyDefault_mm) return false;
+  for (const Interval& of_layer : pair.overlap.of_layer_mm)
+    if (!(of_layer.hi - of_layer.lo <= kDepthAccuracyDefault_mm)) return false;
   const auto on_face = [&](int i, const Vec3& x) {
     const Body& body = frame.bodies[i];
     if (!body.stands_for(pair.face[i], x)) return false;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
-#include <vector>
 
 #include "common/depth/round_pair.h"
 
@@ -73,36 +73,38 @@ std::optional<FacePairOverlap> ball_in_socket(const Surface& ball, const Surface
 
 // Layer by layer, each with the radii that it has.
 FacePairOverlap ball_in_socket(const Surface& ball, const Surface& socket, const FaceExtent& extent,
-                               double margin_mm, std::span<const PairOffsets> layers) {
+                               double margin_mm, std::span<const PairOffsets, 2> layers) {
   FacePairOverlap found = *ball_in_socket(ball, socket, extent, margin_mm);
-  const double off = (ball.point - socket.point).norm();
   const double end =
       std::min(0.99 * socket.radius_mm, std::max(std::fabs(extent.lo_mm), std::fabs(extent.hi_mm)));
-  const double steep = 1.0 + end / std::sqrt(socket.radius_mm * socket.radius_mm - end * end);
+  const double steep = 1.0 / (1.0 - std::pow(end / socket.radius_mm, 2.0));
+  const double bend = steep * (ball.point - socket.point).norm() / std::pow(socket.radius_mm, 2.0);
   double lo = std::numeric_limits<double>::infinity(), hi = -lo, near_hi = -lo;
-  for (const PairOffsets& layer : layers) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
     Surface b = ball, s = socket;
-    b.radius_mm += layer.a_mm;
-    s.radius_mm -= layer.b_mm;
-    const double offsets = layer.a_mm + layer.b_mm;
+    b.radius_mm += layers[i].a_mm;
+    s.radius_mm -= layers[i].b_mm;
+    const double offsets = layers[i].a_mm + layers[i].b_mm;
     const FacePairOverlap of_ball = *ball_in_socket(b, s, extent, margin_mm);
-    // Of the points of both parts: deepest on the rim, or a little behind it.
-    const auto of_both = [&](const FaceExtent& ends, double margin) {
+    // Of the points of both parts the deepest is on the rim or above it on the ball; between them
+    // the depth is a line but for its bend.
+    const auto of_both = [&](const FaceExtent& ends, double margin, double on_ball_mm) {
       const auto beyond = beyond_socket(b, s, ends, margin);
-      if (!beyond) return -std::numeric_limits<double>::infinity();
-      const bool on_rim = beyond->depth_mm < b.radius_mm - s.radius_mm + off;
-      return beyond->depth_mm +
-             (on_rim ? std::max(0.0, beyond->depth_mm) * steep * off / s.radius_mm : 0.0);
+      const double most = std::max(
+          on_ball_mm, beyond ? beyond->depth_mm : -std::numeric_limits<double>::infinity());
+      return most + bend * std::pow(std::max(0.0, most), 2.0) - offsets;
     };
     const auto at = beyond_socket(b, s, {extent.lo_mm, extent.hi_mm}, 0.0);
-    lo =
-        std::min(lo, (at && std::isfinite(of_ball.lo_mm) ? at->depth_mm : of_ball.lo_mm) - offsets);
-    hi = std::max(hi, std::max(of_ball.hi_mm, of_both(extent, 0.0)) - offsets);
-    near_hi = std::max(near_hi, std::max(of_ball.near_hi_mm, of_both(extent, margin_mm)) - offsets);
+    Interval& of_layer = found.of_layer_mm[i];
+    of_layer.lo = (at && std::isfinite(of_ball.lo_mm) ? at->depth_mm : of_ball.lo_mm) - offsets;
+    of_layer.hi = std::max(of_layer.lo, of_both(extent, 0.0, of_ball.hi_mm));
+    lo = std::min(lo, of_layer.lo);
+    hi = std::max(hi, of_layer.hi);
+    near_hi = std::max(near_hi, of_both(extent, margin_mm, of_ball.near_hi_mm));
   }
   found.lo_mm = lo;
-  found.hi_mm = std::max(lo, hi);
-  found.near_hi_mm = std::max(found.hi_mm, near_hi);
+  found.hi_mm = hi;
+  found.near_hi_mm = std::max(hi, near_hi);
   return found;
 }
 
@@ -142,7 +144,7 @@ std::optional<BeyondSocket> beyond_socket(const Surface& ball, const Surface& so
 std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm,
-                                                 std::span<const PairOffsets> layers) {
+                                                 const std::array<PairOffsets, 2>* layers) {
   if (a.kind != b.kind || a.inward == b.inward) return std::nullopt;
   const Surface a_B = moved(a, X_BA);
   const Surface &convex = a.inward ? b : a_B, &hollow = a.inward ? a_B : b;
@@ -152,8 +154,8 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   if (a.kind == SurfaceKind::kSphere) {
     found = ball_in_socket(convex, hollow, of_hollow, margin_mm);
     if (found && !std::isfinite(found->near_hi_mm)) return std::nullopt;
-    if (found && !layers.empty()) {
-      std::vector<PairOffsets> of_ball(layers.begin(), layers.end());
+    if (layers != nullptr && found) {
+      std::array<PairOffsets, 2> of_ball = *layers;
       if (a.inward)
         for (PairOffsets& layer : of_ball) std::swap(layer.a_mm, layer.b_mm);
       found = ball_in_socket(convex, hollow, of_hollow, margin_mm, of_ball);
@@ -171,6 +173,8 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   }
   // Now out of the convex face; B's own normal is asked for.
   if (found && !a.inward) found->normal_B = -found->normal_B;
+  if (found && (layers == nullptr || a.kind != SurfaceKind::kSphere))
+    found->of_layer_mm.fill({found->lo_mm, found->hi_mm});
   return found;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 
 #include "common/depth/body.h"
 #include "common/math/pose.h"
@@ -24,6 +24,8 @@ struct FacePairOverlap {
   double near_hi_mm = 0.0;      ///< upper end over all that is within the margin of the faces' ends
   Vec3 point_B = Vec3::Zero();  ///< on the surface of the convex face, where lo is reached
   Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
+  /// lo and hi for each of the layers asked for (see there), without its offsets.
+  std::array<Interval, 2> of_layer_mm = {};
 };
 
 /// Outward offsets of A's and B's surface in a layer, mm.
@@ -35,12 +37,11 @@ struct PairOffsets {
 /// a ball in a socket; nothing for other pairs. `margin_mm` is how far beyond its end a face still
 /// counts as near. Nothing either where no point of the convex face is within the
 /// margin; lo and hi are -infinity where none is within both faces' ends.
-/// `layers`: the brackets are to hold when the offsets of any of these layers are added; a ball at
-/// the rim of its socket is not offset alike.
-std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExtent& extent_a,
-                                                 const Surface& b, const FaceExtent& extent_b,
-                                                 const Pose& X_BA, double margin_mm,
-                                                 std::span<const PairOffsets> layers = {});
+/// `layers`, may be null: the brackets are to hold when the offsets of these layers are added; a
+/// ball at the rim of its socket is not offset alike.
+std::optional<FacePairOverlap> face_pair_overlap(
+    const Surface& a, const FaceExtent& extent_a, const Surface& b, const FaceExtent& extent_b,
+    const Pose& X_BA, double margin_mm, const std::array<PairOffsets, 2>* layers = nullptr);
 
 /// How deep in a ball a point may lie that is not within the sphere of its socket, mm, and between
 /// which heights along the socket's axis that holds: the ends of its face and `margin_mm` more.

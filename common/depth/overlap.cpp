@@ -187,10 +187,9 @@ class Overlap {
     };
     const double lower = offsets(Layer::kLower), upper = offsets(Layer::kUpper);
     OverlapRegion region;
-    region.possible_mm =
-        without_touch({known.overlap.lo_mm + upper, known.overlap.hi_mm + upper}, pair_.touch_mm);
-    region.certain_mm =
-        without_touch({known.overlap.lo_mm + lower, known.overlap.hi_mm + lower}, pair_.touch_mm);
+    const auto [least, most] = known.overlap.of_layer_mm;
+    region.possible_mm = without_touch({most.lo + upper, most.hi + upper}, pair_.touch_mm);
+    region.certain_mm = without_touch({least.lo + lower, least.hi + lower}, pair_.touch_mm);
     Bracket mesh = mesh_overlap_of(known);
     // The meshes stand out of the true surfaces by no more than this.
     const double excess =
