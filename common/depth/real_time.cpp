@@ -155,11 +155,10 @@ class InterferenceSearch {
     if (excluded.first(within_over).t0 >= 1.0) row.within_mm = excluded.most_mm - offsets;
     const Span first = excluded.first(overlap_over);
     row.overlap_mm = excluded.most_mm - offsets;
-    answer_.evaluations += excluded.work();
-    // Only where the faces do meet is it worth while to ask whether the overlap is certain.
+    answer_.evaluations += excluded.work() + 2 * Exclusion::kWork;
+    // Only where the faces meet is it asked whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
-      answer_.evaluations += 2 * Exclusion::kWork;
       const auto overlap = face_pair_overlap(sa, ea, sb, eb, path_.pose(0, t), touch_mm_);
       if (!overlap || overlap->lo_mm + offsets <= -query_.accuracy_mm) return false;
       pair.overlap = *overlap;
