@@ -190,9 +190,9 @@ class Overlap {
     };
     const double lower = offsets(Layer::kLower), upper = offsets(Layer::kUpper);
     OverlapRegion region;
-    const auto [least, most] = known.overlap.of_layer_mm;
-    region.possible_mm = without_touch({most.lo + upper, most.hi + upper}, pair_.touch_mm);
-    region.certain_mm = without_touch({least.lo + lower, least.hi + lower}, pair_.touch_mm);
+    const auto [at_least, at_most] = known.overlap.of_layer_mm;
+    region.possible_mm = without_touch({at_most.lo + upper, at_most.hi + upper}, pair_.touch_mm);
+    region.certain_mm = without_touch({at_least.lo + lower, at_least.hi + lower}, pair_.touch_mm);
     Bracket mesh = mesh_overlap_of(known);
     // The meshes stand out of the true surfaces by no more than this.
     const double excess =
