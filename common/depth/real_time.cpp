@@ -45,9 +45,8 @@ constexpr double kSoonShare = 4.0;
 constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
 constexpr double kCloseEnough_mm = 0.02;
 
-// Steps back, doubling from the accuracy, from a time at which the overlap is certain already;
-// and the work of them and the search, in work caps, after which it is the start that counts.
-constexpr std::uint64_t kBackOff = 12, kBackOffCaps = 2;
+// Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
+constexpr int kBackOff = 12;
 
 struct Item {
   Span span;
@@ -83,8 +82,6 @@ class InterferenceSearch {
     add_roots(start);
     std::make_heap(heap_.begin(), heap_.end(), later);
     std::uint64_t next_look = answer_.evaluations + kFirstLook;
-    const std::uint64_t enough =
-        std::min(std::max(kEnoughLeast, at_.work_cap / kEnoughOfCap), at_.work_cap / 2);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), later);
       const Item item = std::move(heap_.back());
@@ -95,7 +92,7 @@ class InterferenceSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
-      if (answer_.evaluations >= enough &&
+      if (answer_.evaluations >= std::max(kEnoughLeast, at_.work_cap / kEnoughOfCap) &&
           (t_real_ - item.span.t0) * path_.speed_upper_bound() <= kCloseEnough_mm) {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
@@ -146,17 +143,15 @@ class InterferenceSearch {
     const auto overlap_over = [&](const Span& span, double t) {
       const Pose X_BA = path_.pose(0, t);
       in_bore.margin_mm = margin(span);
-      const double hi_mm =
-          near_overlap_upper_bound_mm(sa, ea, sb, eb, X_BA, in_bore.margin_mm, touch_mm_ - offsets);
-      return (std::isfinite(hi_mm) ? hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
+      const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, in_bore.margin_mm);
+      return (overlap ? overlap->near_hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
     };
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
     Exclusion excluded{path_, touch_mm_, moment()};
     if (excluded.first(within_over).t0 >= 1.0) row.within_mm = excluded.most_mm - offsets;
     const Span first = excluded.first(overlap_over);
     row.overlap_mm = excluded.most_mm - offsets;
-    answer_.evaluations += excluded.work() + 2 * Exclusion::kWork;
-    // Only where the faces meet is it asked whether the overlap is certain.
+    // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
       const auto overlap = face_pair_overlap(sa, ea, sb, eb, path_.pose(0, t), touch_mm_);
@@ -195,8 +190,7 @@ class InterferenceSearch {
   bool real_soon_after(double t) {
     const double soon =
         t + kSoonShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
-    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, std::min(at_.work_cap, kLookWorkCap)))
-      return false;
+    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, kLookWorkCap)) return false;
     t_real_ = soon;
     free_until_ = std::min(free_until_, t);
     return true;
@@ -206,7 +200,7 @@ class InterferenceSearch {
   bool is_real_at(double t) { return is_real_at(t, query_.at_target.work_cap); }
   bool is_real_at(double t, std::uint64_t work_cap) {
     OverlapQuery query = query_.at_target;
-    query.work_cap = work_cap;
+    query.work_cap = std::min(query.work_cap, work_cap);
     query.X_WA = path_.motions[0].pose_at(t);
     query.X_WB = path_.motions[1].pose_at(t);
     query.refinement = Refinement::kDecided;
@@ -216,10 +210,8 @@ class InterferenceSearch {
     answer_.evaluations += result.evaluations;
     for (const OverlapRegion& region : result.regions)
       if (layer_ == Layer::kUpper ? region.possible_mm.lo > 0.0
-                                  : region.certain_mm.lo > 0.0 && region.has_witness) {
-        answer_.certain_place = region.certain_place;
+                                  : region.certain_mm.lo > 0.0 && region.has_witness)
         return true;
-      }
     return false;
   }
 
@@ -312,10 +304,7 @@ class InterferenceSearch {
     sample.triangle = item.piece.triangle;
     sample.point_K = point_K;
     sample.at = at;
-    const PairFrame there(at_);
-    if (!find_witness(there, sample)) return false;
-    answer_.certain_place = {item.role, item.piece.triangle, there.X_KS[1 - item.role] * point_K};
-    return true;
+    return find_witness(PairFrame(at_), sample).has_value();
   }
 
   // In time when the piece stands clear at the start, else in space. What is small in time and not
@@ -360,11 +349,10 @@ class InterferenceSearch {
     answer_.t_free = std::min({1.0, free_until_, answer_.t_real});
     // Within the accuracy something may be certain already: back off until nothing is.
     double step = query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
-    for (std::uint64_t i = 0; i < kBackOff && answer_.becomes_real && answer_.t_free > 0.0; ++i) {
-      if (!is_real_at(answer_.t_free, std::max(at_.work_cap, kLookWorkCap))) break;
+    for (int i = 0; i < kBackOff && answer_.becomes_real && answer_.t_free > 0.0; ++i) {
+      if (!is_real_at(answer_.t_free)) break;
       answer_.t_real = std::min(answer_.t_real, answer_.t_free);
-      const bool last = i + 1 >= kBackOff || answer_.evaluations >= kBackOffCaps * at_.work_cap;
-      answer_.t_free = last ? 0.0 : std::max(0.0, answer_.t_free - step);
+      answer_.t_free = i + 1 < kBackOff ? std::max(0.0, answer_.t_free - step) : 0.0;
       step *= 2.0;
     }
     answer_.real_at_start = answer_.becomes_real && answer_.t_real <= 0.0;
