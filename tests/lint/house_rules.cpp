@@ -63,7 +63,7 @@ const std::vector<NamedHere>& named_here() {
       {"Fast DDS", std::regex("(fastdds|fastrtps|fastcdr)/.*"), {"idl/"}},
       {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
-      {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/"}},
+      {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/", "tests/unit/io/export_test."}},
       {"Boost.Beast",
        std::regex("boost/(beast|asio).*"),
        {"client/web/", "server/metrics_endpoint.", "tests/network/page_client."}},
