@@ -111,6 +111,63 @@ test('two picked features are brought in line, and the part then moves along wha
   await bob.click('#tool_select');
 });
 
+test('a feature picked in the picture and one from the list snap, and the part is dragged along the freedom that is left into its bore', async () => {
+  await grab(bob, 'peg_g6');
+  await bob.click('#tool_align');
+  await bob.locator('#align_bar option[value="journal"]').first().waitFor({ ...PATIENCE, state: 'attached' });
+  await bob.focus('#canvas');
+  await bob.keyboard.press('z'); // the part fills the picture: its middle is the journal
+  await bob.waitForTimeout(800);
+  const box = await bob.locator('#canvas').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await bob.mouse.click(x, y);
+  assert.equal(await bob.getByLabel('Feature of the part in your hand').inputValue(), 'journal');
+  await bob.getByLabel('Other part', { exact: true }).selectOption({ label: 'plate_g6' });
+  await bob.getByLabel('Feature of the other part').selectOption('bore');
+  await bob.click('#align_bar button:has-text("Snap")');
+  await bob.getByText('Kept: journal coaxial with plate_g6 bore').waitFor(PATIENCE);
+  const from = await settled(bob);
+  assert.ok(Math.abs(from[0] - 160) < 1e-3 && Math.abs(from[1]) < 1e-3, `not on the axis: ${from}`);
+  await bob.click('#tool_move');
+  await bob.focus('#canvas');
+  await bob.keyboard.press('z');
+  await bob.waitForTimeout(800);
+  await bob.mouse.move(x, y - 30);
+  await bob.mouse.move(x, y - 50, { steps: 3 });
+  await bob.mouse.down();
+  await bob.mouse.move(x + 60, y + 20, { steps: 8 });
+  await bob.mouse.up();
+  await bob.waitForTimeout(500);
+  const dragged = await settled(bob);
+  assert.ok(dragged[2] < from[2] - 1, `dragged from ${from} to ${dragged}`);
+  const fake = whenListed(ann, 'clashes', 'fake, plate_g6 × peg_g6');
+  await moveBy(bob, [3, -2, -dragged[2]]); // a hand that trembles
+  await fake;
+  const inside = await settled(bob);
+  for (const at of [dragged, inside]) assert.ok(Math.abs(at[0] - 160) < 1e-3 && Math.abs(at[1]) < 1e-3, `off the axis: ${at}`);
+  assert.ok(Math.abs(inside[2]) < 1e-3, `the peg is at z = ${inside[2]}, not in its bore`);
+  await bob.click('#hand button:has-text("Release")');
+});
+
+test('heat shows how deep each point of a face is, by a field worked out beside the page, and says its scale', async () => {
+  const legend = bob.locator('#heat_legend');
+  await bob.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
+  await bob.waitForFunction(() => document.getElementById('heat_legend')?.textContent?.includes('As they stand'), undefined, PATIENCE);
+  const said = await legend.getAttribute('aria-label');
+  assert.match(said, /fake from 0.0 µm to 40.7 µm, potential from 40.7 µm to 57.7 µm, real from 57.7 µm/);
+  // What the page's own field finds on the faces is what the session says the clash is deep.
+  const deep = Number(/As they stand ([\d.]+) µm deep/.exec(said)?.[1]);
+  assert.ok(Math.abs(deep - 48.2) <= 0.2, said);
+  assert.deepEqual(await legend.locator('.zone').allTextContents(), ['F', 'P', 'R']);
+  await bob.click('#clash_filters button:has-text("Heat")');
+  await legend.waitFor({ ...PATIENCE, state: 'hidden' });
+  await bob.click('#clash_filters button:has-text("Heat")');
+  await legend.waitFor(PATIENCE);
+  await bob.locator('#clashes > li[aria-label*="plate_p6 × peg_p6"]').click();
+  await bob.waitForFunction(() => document.getElementById('heat_legend')?.textContent?.includes('As they stand'), undefined, PATIENCE);
+  await bob.click('#clash button[aria-label="Close"]');
+});
+
 test('one looks along with the other', async () => {
   await bob.getByLabel('Look along with ann').click(PATIENCE);
   await ann.focus('#canvas');
@@ -196,7 +253,7 @@ test('nothing is cut off or covers another at 1280 × 720', async () => {
   for (const page of [ann, bob]) {
     const wrong = await page.evaluate(() => {
       const bad = [];
-      const controls = [...document.querySelectorAll('.bar > *, .bar button, .bar select, .status > span, .tabs button, .panel h2, #hand button, #hand input')].filter((c) => c.checkVisibility() && c.getBoundingClientRect().width > 0);
+      const controls = [...document.querySelectorAll('.bar > *, .bar button, .bar select, .status > span, .tabs button, .panel h2, #hand button, #hand input, #heat_legend, #compass')].filter((c) => c.checkVisibility() && c.getBoundingClientRect().width > 0);
       for (const control of controls) {
         const { left, right, top, bottom } = control.getBoundingClientRect();
         if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight) bad.push(`out of view: ${control.outerHTML.slice(0, 80)}`);

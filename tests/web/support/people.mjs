@@ -53,7 +53,7 @@ export function whenListed(page, list, text) {
     };
     const watch = new MutationObserver(look);
     watch.observe(document.getElementById(id), { childList: true, subtree: true, attributes: true });
-    setTimeout(() => fail(new Error(`${id} never said ${wanted}`)), 40_000);
+    setTimeout(() => fail(new Error(`${id} never said ${wanted}, but ${[...document.querySelectorAll(`#${id} > li`)].map((li) => li.getAttribute('aria-label') ?? li.textContent).join(' | ')}`)), 40_000);
     look();
   }), [list, text]);
 }

@@ -1,23 +1,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { facetsAbout, facetsOf, offSurface } from '../../../client/web/page/session/surfaces.js';
+import { prism } from '../support/solids.mjs';
 
 const face = (more) => ({ name: 'f', origin: 'declared', inward: false, point: [0, 0, 0], axis: [0, 0, 1], radius: 0, tube_radius: 0, half_angle: 0, along: [0, 0], middle: [0, 0, 0], ...more });
-
-/** A prism of many sides about z: side facets first, two each, then the fans of both ends. */
-function prism(sides, radius, height) {
-  const points = [0, 0, 0, 0, 0, height];
-  const around = [];
-  const ends = [];
-  for (let i = 0; i < sides; ++i) {
-    const angle = (2 * Math.PI * i) / sides;
-    for (const z of [0, height]) points.push(radius * Math.cos(angle), radius * Math.sin(angle), z);
-    const [a, b] = [2 + 2 * i, 2 + 2 * ((i + 1) % sides)];
-    around.push(a, b, b + 1, a, b + 1, a + 1);
-    ends.push(0, b, a, 1, a + 1, b + 1);
-  }
-  return { mesh: { points: new Float32Array(points), triangles: new Uint32Array([...around, ...ends]) }, around: around.length };
-}
 
 test('the distance to each kind of surface', () => {
   assert.equal(offSurface(face({ kind: 'plane', point: [0, 0, 2] }), [7, 8, 5]), 3);

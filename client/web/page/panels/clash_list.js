@@ -96,7 +96,7 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
   function showHeat() {
     const open = session.openClashes();
     open.sort((a, b) => rankOf(a.class) - rankOf(b.class));
-    heat.show(choice.clash ? open.filter((clash) => clash.clash === choice.clash) : open);
+    heat.show(choice.clash ? open.filter((clash) => clash.clash === choice.clash) : open, choice.clash !== 0);
   }
 
   const soon = seldom(() => {
@@ -110,6 +110,7 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
     heat.clear();
     soon();
   });
+  session.on('poses', seldom(() => heat.follow(), 150));
   session.on('me', soon);
   choice.on('part', soon);
   choice.on('clash', (clash) => {

@@ -1,7 +1,7 @@
 // Keeps the picture as the session and the choice have it.
 
 /** @param {import('../desk.js').Desk} desk */
-export function followSession({ session, choice, partsView, marks, handles, labels, showAll, flyToClash, section, stage, mover }) {
+export function followSession({ session, choice, partsView, marks, handles, labels, showAll, flyToClash, cutAtClash, section, stage, mover }) {
   let framed = '';
 
   function looks() {
@@ -64,6 +64,8 @@ export function followSession({ session, choice, partsView, marks, handles, labe
     looks();
     showMarks();
     if (clash) flyToClash(clash);
-    else if (section.across === 'clash') section.set(false);
+    if (section.across !== 'clash') return;
+    if (clash && section.on) cutAtClash(clash);
+    else section.set(false);
   });
 }

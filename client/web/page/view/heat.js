@@ -1,61 +1,37 @@
-// Heat on faces: the faces that clash, coloured by how far the clash has gone between the two thresholds and beyond.
+// Heat on faces: how deep each point of the faces that clash lies in the other part, on the scale of the clash's two thresholds.
 import * as THREE from 'three';
+import { liftOf, scaleOf } from '../session/heat_scale.js';
 import { conjugate, inPart, rotate } from '../session/motion.js';
-import { facetsAbout, facetsOf } from '../session/surfaces.js';
+import { HeatMaterial } from './heat_material.js';
 
 /** @typedef {import('../session/session.js').Clash} Clash */
-/** @typedef {import('../session/motion.js').Vec3} Vec3 */
+/** @typedef {import('../session/session.js').Part} Part */
+/**
+ * One face of one clash.
+ * @typedef {object} Patch
+ * @property {THREE.Mesh} mesh @property {THREE.Mesh | null} behind the same, seen through what covers it
+ * @property {Clash} clash @property {number} part @property {number} other @property {string} face
+ * @property {string} asked the poses and the clash that were asked for last @property {boolean} waiting @property {number} deepest
+ */
 
-/** Only what is within reach of the centre is drawn, fading towards its rim. @param {THREE.Material} material @param {Vec3} centre @param {number} reach */
-function fade(material, centre, reach) {
-  material.transparent = true;
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, { centre: { value: new THREE.Vector3(...centre) }, reach: { value: reach } });
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nvarying vec3 inPart;')
-      .replace('#include <begin_vertex>', '#include <begin_vertex>\ninPart = position;');
-    shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', '#include <common>\nvarying vec3 inPart;\nuniform vec3 centre;\nuniform float reach;')
-      .replace('#include <opaque_fragment>', '#include <opaque_fragment>\ngl_FragColor.a *= 1.0 - smoothstep(0.55, 1.0, distance(inPart, centre) / reach);');
-  };
-}
-
-/** 0 … 1 blue to amber between nothing and the upper threshold, to red beyond. @param {Clash} clash */
-export function heatOf(clash) {
-  const depth = (clash.delta[0] + clash.delta[1]) / 2;
-  if (clash.class === 'fake') return Math.min(0.3, Math.max(0, (0.3 * depth) / (clash.fake_below || 1)));
-  if (clash.class === 'potential') {
-    const width = clash.real_above - clash.fake_below;
-    return 0.4 + 0.25 * Math.min(1, Math.max(0, width > 0 ? (depth - clash.fake_below) / width : 0.5));
-  }
-  return 0.8 + 0.2 * Math.min(1, Math.max(0, clash.margin / 0.5));
-}
-
-const SCALE = [
-  [0, new THREE.Color(0x3f97e0)],
-  [0.35, new THREE.Color(0x49c3b1)],
-  [0.5, new THREE.Color(0xf0c02e)],
-  [0.65, new THREE.Color(0xf0892e)],
-  [0.8, new THREE.Color(0xe5484d)],
-  [1, new THREE.Color(0xa3123a)],
-];
-
-/** @param {number} heat */
-export function colourOfHeat(heat) {
-  for (let i = 1; i < SCALE.length; ++i) {
-    const [hi, to] = /** @type {[number, THREE.Color]} */ (SCALE[i]);
-    const [lo, from] = /** @type {[number, THREE.Color]} */ (SCALE[i - 1]);
-    if (heat <= hi) return from.clone().lerp(to, (heat - lo) / (hi - lo));
-  }
-  return /** @type {THREE.Color} */ (SCALE[SCALE.length - 1][1]).clone();
-}
+/** The worst ones have it; a picture of more would say nothing. */
+const MOST_CLASHES = 24;
+const POINTS = { one: 24_000, many: 5_000 };
+/** What is no nearer than this share of the part, or than what the clash is deep, needs no figure. */
+const FAR_SHARE = 0.15;
+const BEND_SHARE = 0.03;
 
 export class Heat {
   on = true;
   group = new THREE.Group();
-  /** @type {Map<string, THREE.Mesh>} */
+  /** @type {Map<string, Patch>} */
   #patches = new Map();
-  #generation = 0;
+  #sent = new Set();
+  /** @type {Worker | null} */
+  #worker = null;
+  #alone = false;
+  /** @type {() => void} when what is shown has changed */
+  onChange = () => {};
 
   /**
    * @param {import('./stage.js').Stage} stage @param {import('./parts_view.js').PartsView} partsView
@@ -68,62 +44,155 @@ export class Heat {
     stage.scene.add(this.group);
   }
 
-  /** @param {Clash[]} clashes the worse ones last, so that they lie on top */
-  async show(clashes) {
-    const generation = ++this.#generation;
+  /** @param {Clash[]} clashes the worse ones last, so that they lie on top @param {boolean} alone the one that is chosen: finer, and seen through what covers it */
+  show(clashes, alone) {
+    if (alone !== this.#alone) this.clear();
+    this.#alone = alone;
     const wanted = new Map();
-    for (const clash of this.on ? clashes : []) {
-      if (clash.class === 'none' || clash.ended) continue;
-      wanted.set(`${clash.a} ${clash.faces[0] || `at ${clash.clash}`}`, { part: clash.a, face: clash.faces[0], clash });
-      wanted.set(`${clash.b} ${clash.faces[1] || `at ${clash.clash}`}`, { part: clash.b, face: clash.faces[1], clash });
+    const shown = this.on ? clashes.filter((clash) => clash.class !== 'none' && !clash.ended).slice(-MOST_CLASHES) : [];
+    for (const clash of shown) {
+      wanted.set(`${clash.clash} ${clash.a}`, { clash, part: clash.a, other: clash.b, face: clash.faces[0] });
+      wanted.set(`${clash.clash} ${clash.b}`, { clash, part: clash.b, other: clash.a, face: clash.faces[1] });
     }
-    for (const [key, patch] of this.#patches) if (!wanted.has(key)) this.#drop(key, patch);
-    for (const [key, { part, face, clash }] of wanted) {
-      const patch = this.#patches.get(key) ?? (await this.#make(key, part, face, clash));
-      if (generation !== this.#generation) return;
-      const material = /** @type {THREE.MeshStandardMaterial | undefined} */ (patch?.material);
-      if (!material) continue;
-      material.color = colourOfHeat(heatOf(clash));
-      material.clippingPlanes = this.partsView.looks.clipping;
+    for (const [key, patch] of this.#patches) if (wanted.get(key)?.face !== patch.face) this.#drop(key, patch);
+    for (const [key, want] of wanted) {
+      const patch = this.#patches.get(key) ?? this.#make(key, want);
+      patch.clash = want.clash;
+      this.#colour(patch);
+      this.#ask(key, patch);
     }
     this.stage.ask();
+    this.onChange();
   }
 
-  /** @param {string} key @param {THREE.Mesh} patch */
-  #drop(key, patch) {
-    this.group.remove(patch);
-    patch.geometry.dispose();
-    this.#patches.delete(key);
+  /** Parts have moved: the fields of those are worked out anew. */
+  follow() {
+    for (const [key, patch] of this.#patches) this.#ask(key, patch);
   }
 
   clear() {
     for (const [key, patch] of this.#patches) this.#drop(key, patch);
   }
 
-  /** @param {string} key @param {number} id @param {string} face @param {Clash} clash */
-  async #make(key, id, face, clash) {
-    const part = this.session.parts.get(id);
-    const shown = this.partsView.shown.get(id);
-    const mesh = part && (await this.partsView.meshOf(part));
-    if (!mesh || !shown || this.#patches.has(key)) return this.#patches.get(key);
-    const feature = this.session.features.get(id)?.find((f) => f.name === face);
-    const point = inPart(part, clash.point);
-    const normal = rotate(conjugate(part.q), clash.normal);
-    const reach = Math.max(2, part.radius * 0.15);
-    const facets = feature ? facetsOf(mesh, feature) : facetsAbout(mesh, point, normal, reach);
+  /** The chosen clash, where its heat is shown; the deepest point of its faces, and by how much the field was lifted, mm. @returns {{clash: Clash, deepest: number, lift: number} | null} */
+  get legend() {
+    const [patch] = this.#patches.values();
+    return this.#alone && patch ? { clash: patch.clash, deepest: this.#deepestOf(patch.clash), lift: this.#liftOf(patch.clash) } : null;
+  }
+
+  get empty() {
+    return this.#patches.size === 0;
+  }
+
+  /** @param {string} key @param {Patch} patch */
+  #drop(key, patch) {
+    for (const mesh of [patch.mesh, patch.behind]) {
+      if (!mesh) continue;
+      this.group.remove(mesh);
+      /** @type {THREE.Material} */ (mesh.material).dispose();
+    }
+    patch.mesh.geometry.dispose();
+    this.#patches.delete(key);
+  }
+
+  /** @param {string} key @param {{clash: Clash, part: number, other: number, face: string}} want @returns {Patch} */
+  #make(key, want) {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(mesh.points, 3));
-    geometry.setIndex(facets.flatMap((k) => [mesh.triangles[k], mesh.triangles[k + 1], mesh.triangles[k + 2]]));
-    const material = new THREE.MeshStandardMaterial({
-      roughness: 0.6, flatShading: true, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1,
-    });
-    if (!feature) fade(material, point, reach);
-    const patch = new THREE.Mesh(geometry, material);
-    patch.matrixAutoUpdate = patch.matrixWorldAutoUpdate = false;
-    patch.matrixWorld = shown.faces.matrixWorld;
-    patch.frustumCulled = false;
+    const add = (/** @type {boolean} */ behind) => {
+      const mesh = new THREE.Mesh(geometry, new HeatMaterial(behind));
+      mesh.matrixAutoUpdate = mesh.matrixWorldAutoUpdate = false;
+      mesh.frustumCulled = false;
+      mesh.visible = false;
+      mesh.renderOrder = behind ? 3 : 2;
+      this.group.add(mesh);
+      return mesh;
+    };
+    const patch = { ...want, mesh: add(false), behind: this.#alone ? add(true) : null, asked: '', waiting: false, deepest: NaN };
     this.#patches.set(key, patch);
-    this.group.add(patch);
     return patch;
+  }
+
+  /** Of both faces; less than anything before the first field is there. @param {Clash} clash */
+  #deepestOf(clash) {
+    const both = [...this.#patches.values()].filter((patch) => patch.clash.clash === clash.clash && Number.isFinite(patch.deepest));
+    return Math.max(...both.map(({ deepest }) => deepest));
+  }
+
+  /** The deeper face is as deep as the clash. @param {Clash} clash */
+  #liftOf(clash) {
+    return liftOf(clash, this.#deepestOf(clash));
+  }
+
+  /** @param {Patch} patch */
+  #colour({ mesh, behind, clash }) {
+    for (const drawn of [mesh, behind]) {
+      const material = /** @type {HeatMaterial | undefined} */ (drawn?.material);
+      material?.show(scaleOf(clash), this.#liftOf(clash));
+      if (material) material.clippingPlanes = this.partsView.looks.clipping;
+    }
+  }
+
+  /** @param {string} key @param {Patch} patch */
+  async #ask(key, patch) {
+    const { clash } = patch;
+    const [part, other] = [patch.part, patch.other].map((id) => this.session.parts.get(id));
+    const shown = this.partsView.shown.get(patch.part);
+    if (!part || !other || !shown || patch.waiting) return;
+    patch.mesh.matrixWorld = shown.faces.matrixWorld;
+    if (patch.behind) patch.behind.matrixWorld = shown.faces.matrixWorld;
+    const asked = `${clash.seq} ${part.p} ${part.q} ${other.p} ${other.q}`;
+    if (asked === patch.asked) return;
+    Object.assign(patch, { asked, waiting: true });
+    const there = await Promise.all([this.#send(part), this.#send(other)]);
+    if (!there.every(Boolean)) {
+      patch.waiting = false;
+      return;
+    }
+    const { from, real, top } = scaleOf(clash);
+    this.#work().postMessage({
+      key, own: part.mesh, other: other.mesh, ownPose: { p: [...part.p], q: [...part.q] }, otherPose: { p: [...other.p], q: [...other.q] },
+      feature: this.session.features.get(part.id)?.find((f) => f.name === patch.face) ?? null,
+      point: inPart(part, clash.point), normal: rotate(conjugate(part.q), clash.normal), reach: Math.max(2, part.radius * 0.15),
+      far: Math.max(1.5 * top, FAR_SHARE * Math.min(part.radius, other.radius)), bend: Math.max(2e-4, BEND_SHARE * (real - from)),
+      most: this.#alone ? POINTS.one : POINTS.many,
+    });
+  }
+
+  /** A mesh goes to the worker once. @param {Part} part @returns {Promise<boolean>} */
+  async #send(part) {
+    const mesh = await this.partsView.meshOf(part);
+    if (mesh && !this.#sent.has(part.mesh)) {
+      this.#sent.add(part.mesh);
+      this.#work().postMessage({ mesh: part.mesh, points: mesh.points, triangles: mesh.triangles });
+    }
+    return mesh !== null;
+  }
+
+  #work() {
+    if (!this.#worker) {
+      this.#worker = new Worker(new URL('./field_worker.js', import.meta.url), { type: 'module' });
+      this.#worker.onmessage = ({ data }) => this.#take(data);
+    }
+    return this.#worker;
+  }
+
+  /** @param {{key: string, field: import('../session/overlap_field.js').Field | null}} answer */
+  #take({ key, field }) {
+    const patch = this.#patches.get(key);
+    if (!patch) return;
+    patch.waiting = false;
+    if (field) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(field.points, 3));
+      geometry.setAttribute('overlap', new THREE.BufferAttribute(field.overlap, 1));
+      geometry.setIndex(new THREE.BufferAttribute(field.triangles, 1));
+      patch.mesh.geometry.dispose();
+      patch.deepest = field.deepest;
+      for (const mesh of [patch.mesh, patch.behind]) if (mesh) Object.assign(mesh, { geometry, visible: field.triangles.length > 0 });
+    }
+    for (const other of this.#patches.values()) if (other.clash.clash === patch.clash.clash) this.#colour(other);
+    this.#ask(key, patch); // the parts may have moved on
+    this.stage.ask();
+    this.onChange();
   }
 }
