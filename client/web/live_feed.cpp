@@ -295,9 +295,10 @@ void LiveFeed::tell_views() {
     whose.push_back(viewer);
   }
   if (all.empty()) return;
+  const SharedBytes text = text_of({{"type", "views"}, {"views", all}});
   for (auto& [viewer, seat] : seats_) {
-    if (all.size() == 1 && whose.front() == viewer) continue;
-    viewer->say_views(text_of({{"type", "views"}, {"views", all}}));
+    if (whose.size() == 1 && whose.front() == viewer) continue;
+    viewer->say_views(text);
   }
 }
 

@@ -23,6 +23,7 @@ class BenchServer {
                        const std::vector<std::string>& more = {});
   int domain() const { return domain_; }
   double cpu_s() const { return program_->cpu_s(); }
+  pid_t pid() const { return program_->pid(); }
   double resident_mb() const;
   std::string log() const;
   test::TestFolder& folder() { return folder_; }

@@ -17,6 +17,7 @@ namespace {
 constexpr int kPages = 16;
 constexpr char kScene[] = "stress.yaml";  // forty parts to move, above forty plates
 constexpr double kSettled_s = 4.0;        // in each round as long, so that idle ticks are as many
+constexpr double kTickRate_hz = 60.0;     // of the scene
 constexpr double kChangeBar = 1.05;
 constexpr double kFramesBar = 0.98;
 constexpr double kMemoryBar_mb_per_h = 1.0;
@@ -32,9 +33,10 @@ struct Round {
   std::string why_not;
   double tick_p50_us = NAN, tick_p99_us = NAN, latency_p50_ms = NAN, latency_p90_ms = NAN;
   double frames_per_s = NAN, gateway_cpu_percent = NAN;
+  double server_cpu_us = NAN, tick_cpu_us = NAN, tick_waited_us = NAN;  ///< a tick
 };
 
-enum class Beside { kNobody, kPagesThatLook, kBotsThatMove, kPagesThatMove };
+enum class Beside { kNobody, kGatewayAlone, kPagesThatLook, kBotsThatMove, kPagesThatMove };
 
 Round round_of(Beside beside, double seconds) {
   Round round;
@@ -52,7 +54,7 @@ Round round_of(Beside beside, double seconds) {
   } else if (beside != Beside::kNobody) {
     gateway = std::make_unique<BenchGateway>(server);
     PageLoad::Shape shape;
-    shape.pages = kPages;
+    shape.pages = beside == Beside::kGatewayAlone ? 0 : kPages;
     shape.moves = beside == Beside::kPagesThatMove;
     pages = std::make_unique<PageLoad>(*gateway, shape);
     if (!pages->joined()) {
@@ -65,8 +67,15 @@ Round round_of(Beside beside, double seconds) {
       {"--users", "1", "--behaviour", "shake", "--rate", "60", "--seed", "1", "--seconds", last});
   if (pages) pages->mark();
   const double begin_s = steady_s(), cpu_s = gateway ? gateway->cpu_s() : 0.0;
+  const double server_cpu_s = server.cpu_s();
+  const ThreadTime ticking = first_thread_of(server.pid());
   const int exit_code = bot->wait(seconds + 60.0);
   const double took_s = steady_s() - begin_s;
+  const double us_a_tick = 1e6 / (took_s * kTickRate_hz);
+  const ThreadTime ticked = first_thread_of(server.pid());
+  round.server_cpu_us = (server.cpu_s() - server_cpu_s) * us_a_tick;
+  round.tick_cpu_us = (ticked.ran_s - ticking.ran_s) * us_a_tick;
+  round.tick_waited_us = (ticked.waited_s - ticking.waited_s) * us_a_tick;
   if (pages) {
     round.gateway_cpu_percent = 100.0 * (gateway->cpu_s() - cpu_s) / took_s;
     pages->stop();
@@ -101,39 +110,51 @@ double median_of(const std::vector<Round>& rounds, Get get) {
   return median(values);
 }
 
-/// Rounds of both in turn, so that what else the machine does strikes both.
-void compare(Report& report, const WebOptions& options, const std::string& what, Beside without,
-             Beside with) {
-  report.table(what,
-               {"beside a bot", "round", "tick p50 us", "tick p99 us", "to pose p50 ms",
-                "to pose p90 ms", "frames a page and second", "gateway CPU %", "load average"});
-  std::vector<Round> before, after;
+struct Kind {
+  const char* name;
+  Beside beside;
+  std::vector<Round> rounds = {};
+};
+
+/// Rounds of all kinds in turn, so that what else the machine does strikes all. The last is held
+/// against the first; what is between explains the difference.
+void compare(Report& report, const WebOptions& options, const std::string& what,
+             std::vector<Kind> kinds) {
+  report.table(
+      what, {"beside a bot", "round", "tick p50 us", "tick p99 us", "to pose p50 ms",
+             "to pose p90 ms", "tick thread CPU us a tick", "it waited for a core us a tick",
+             "server CPU us a tick", "frames a page and second", "gateway CPU %", "load average"});
   for (int i = 0; i < options.rounds(); ++i) {
-    for (const auto& [beside, rounds, name] :
-         {std::tuple(without, &before, "without"), std::tuple(with, &after, "with")}) {
-      const Round r = round_of(beside, options.seconds());
+    for (Kind& kind : kinds) {
+      const Round r = round_of(kind.beside, options.seconds());
       if (!r.ran) report.note("a round did not run: " + r.why_not);
-      report.row({std::string(name), static_cast<long long>(i + 1), r.tick_p50_us, r.tick_p99_us,
-                  r.latency_p50_ms, r.latency_p90_ms, r.frames_per_s, r.gateway_cpu_percent,
+      report.row({std::string(kind.name), static_cast<long long>(i + 1), r.tick_p50_us,
+                  r.tick_p99_us, r.latency_p50_ms, r.latency_p90_ms, r.tick_cpu_us,
+                  r.tick_waited_us, r.server_cpu_us, r.frames_per_s, r.gateway_cpu_percent,
                   fmt::format("{:.1f}", load_average())});
-      rounds->push_back(r);
+      kind.rounds.push_back(r);
     }
   }
   const auto bar = [&](const char* figure, auto get) {
     report.bar(fmt::format("{}: {}, median of rounds with / without", what, figure),
-               median_of(after, get) / median_of(before, get), kChangeBar, BoundKind::kAtMost);
+               median_of(kinds.back().rounds, get) / median_of(kinds.front().rounds, get),
+               kChangeBar, BoundKind::kAtMost);
   };
   bar("tick p50", [](const Round& r) { return r.tick_p50_us; });
+  bar("CPU of the tick thread", [](const Round& r) { return r.tick_cpu_us; });
   bar("to pose p50", [](const Round& r) { return r.latency_p50_ms; });
 }
 
 void section_look(Report& report, const WebOptions& options) {
-  compare(report, options, "16 pages that look on", Beside::kNobody, Beside::kPagesThatLook);
+  compare(report, options, "16 pages that look on",
+          {{"nobody", Beside::kNobody},
+           {"a gateway without pages", Beside::kGatewayAlone},
+           {"16 pages", Beside::kPagesThatLook}});
 }
 
 void section_move(Report& report, const WebOptions& options) {
-  compare(report, options, "16 users at 60 Hz as pages instead of as bots", Beside::kBotsThatMove,
-          Beside::kPagesThatMove);
+  compare(report, options, "16 users at 60 Hz as pages instead of as bots",
+          {{"16 bots", Beside::kBotsThatMove}, {"16 pages", Beside::kPagesThatMove}});
 }
 
 // Frames a page and second of 16 pages that move parts, with a stopped one beside them or without.

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <regex>
 
@@ -13,6 +14,14 @@ constexpr double kShake_mm = 0.02;
 constexpr double kPoll_s = 0.002;
 
 }  // namespace
+
+ThreadTime first_thread_of(pid_t process) {
+  const std::string id = std::to_string(process);
+  std::ifstream books("/proc/" + id + "/task/" + id + "/schedstat");
+  double ran_ns = 0.0, waited_ns = 0.0;
+  if (!(books >> ran_ns >> waited_ns)) return {NAN, NAN};
+  return {ran_ns * 1e-9, waited_ns * 1e-9};
+}
 
 BenchGateway::BenchGateway(BenchServer& server) {
   const std::string page = server.folder().write("index.html", "<!doctype html>");

@@ -10,6 +10,13 @@
 
 namespace mortise::bench {
 
+/// What the first thread of a process, in a server the one that ticks, spent on a core and in
+/// waiting for one, by the kernel's books. NAN where it keeps none.
+struct ThreadTime {
+  double ran_s, waited_s;
+};
+ThreadTime first_thread_of(pid_t process);
+
 /// The gateway as a program, beside a server.
 class BenchGateway {
  public:
