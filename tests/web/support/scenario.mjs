@@ -23,7 +23,7 @@ parts:
       - {name: peg_g6, pose: {position: [164, -3, 60]}}
   - {name: block, generator: {kind: block, x: 20, y: 20, z: 20}, moving: true, pose: {position: [-60, 0, 40]}}
   - {name: stray, generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32}, moving: true,
-     pose: {position: [3, 2, 60]}}
+     pose: {position: [3, 2, 72]}}
 fits:
   - {between: [plate_k6.bore, peg_k6.journal], code: Ø20 H7/k6}
   - {between: [plate_p6.bore, peg_p6.journal], code: Ø20 H7/p6}
