@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "client/replay/explain.h"
 #include "client/replay/output.h"
+#include "client/replay/progress.h"
 #include "common/io/build_info.h"
 #include "common/io/replay.h"
 #include "common/io/report_json.h"
@@ -41,7 +43,13 @@ Result<Verification> verification_of(
   auto log = read_session_log(options.log);
   if (!log) return log.error();
   print_notes(*log);
-  auto report = verify(*log, options.threads, on_tick);
+  Progress progress("computing again",
+                    log->ticks.empty() ? 1.0 : static_cast<double>(log->ticks.back().tick));
+  auto report = verify(*log, options.threads, [&](const World& world, const StepReport& tick) {
+    progress.show(static_cast<double>(tick.tick));
+    if (on_tick) on_tick(world, tick);
+  });
+  progress.end();
   if (!report) return fail(report.error().code, options.log.string() + ": " + report.error().text);
   if (!report->same_build)
     std::cerr << "recorded by another build (" << log->engine_version
@@ -120,6 +128,19 @@ int run_report(const VerifyOptions& options) {
               << stage_table(statistics.counters());
   }
   return verification->exit_code;
+}
+
+int run_explain(const ExplainOptions& options) {
+  auto log = read_session_log(options.log);
+  if (!log) return say_bad_log(log.error());
+  print_notes(*log);
+  const auto chain = explain_clash(std::move(*log), ClashId{options.clash}, options.tick);
+  if (!chain) return say_bad_log(chain.error());
+  if (options.json)
+    print(*chain);
+  else
+    std::cout << explain_text(*chain);
+  return kExitOk;
 }
 
 int run_info(const InfoOptions& options) {

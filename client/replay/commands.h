@@ -29,12 +29,32 @@ struct RecoverOptions {
 };
 int run_recover(const RecoverOptions& options);
 
-/// The session as tables (client/replay/session_tables.h); what is empty is not written.
+/// The whole chain of one clash (client/replay/explain.h).
+struct ExplainOptions {
+  std::filesystem::path log;
+  std::uint32_t clash = 0;
+  std::uint64_t tick = 0;  ///< 0: its worst moment
+  bool json = false;
+};
+int run_explain(const ExplainOptions& options);
+
+/// Plays a log to a live session (client/replay/play.h).
+struct PlayCommand {
+  std::filesystem::path log;
+  std::string session = "default", interface = "127.0.0.1", server;
+  int domain = 0, server_port = 0;
+  double speed = 1.0, from_s = 0.0, to_s = 0.0, wait_s = 10.0;  ///< to_s 0: to the end
+  bool json = false;
+};
+int run_play(const PlayCommand& command);
+
+/// The session as tables (client/report/session_tables.h); what is empty is not written.
 struct ExportOptions {
   std::filesystem::path log;
   std::filesystem::path csv;  ///< a folder
-  std::filesystem::path sqlite, html, json;
-  bool recompute = false;  ///< for coverage
+  std::filesystem::path sqlite, html, json, bcf;
+  std::vector<std::string> sweep;  ///< what-if of the page; see WhatIfOptions
+  bool recompute = false;          ///< for coverage
 };
 int run_export(const ExportOptions& options);
 

@@ -1,9 +1,14 @@
 #include <fstream>
 #include <iostream>
+#include <thread>
 
 #include "client/replay/commands.h"
-#include "client/replay/export.h"
 #include "client/replay/output.h"
+#include "client/replay/progress.h"
+#include "client/replay/sweep.h"
+#include "client/report/bcf.h"
+#include "client/report/export.h"
+#include "client/report/report.h"
 #include "common/io/replay.h"
 #include "common/session/statistics.h"
 
@@ -14,11 +19,44 @@ Result<StepCounters> coverage_of(const SessionLog& log) {
   auto scene = scene_of(log);
   if (!scene) return scene.error();
   StepCounters sum;
+  const double last = log.ticks.empty() ? 1.0 : static_cast<double>(log.ticks.back().tick);
+  Progress progress("computing again", last);
   const auto done = recompute(scene->world, log, 1, [&](const ReplayedTick& tick) {
     accumulate(sum, tick.computed.counters);
+    progress.show(static_cast<double>(tick.computed.tick));
   });
   if (!done) return done.error();
   return sum;
+}
+
+// The table of a what-if; nothing where none was asked for.
+Result<std::vector<Table>> what_if_tables(const SessionLog& log, const ExportOptions& options) {
+  if (options.sweep.empty()) return std::vector<Table>();
+  const auto all = combinations({}, options.sweep);
+  if (!all) return all.error();
+  std::vector<Variant> variants;
+  for (const auto& changes : *all) variants.push_back({variants.size(), changes, {}, ""});
+  const int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (const Status status = check_variants(log, variants, jobs); !status) return status.error();
+  const auto before = clashes_with(log, {});
+  if (!before) return before.error();
+  Progress progress("variants", static_cast<double>(variants.size()));
+  compute_variants(log, variants, jobs,
+                   [&](std::size_t done) { progress.show(static_cast<double>(done)); });
+  using Type = Table::Type;
+  Table table{"what_if",
+              "the session computed again with changes: clashes by class, and how many are of "
+              "another class, begun or gone",
+              {{"changes", Type::kText},
+               {"real", Type::kInteger},
+               {"potential", Type::kInteger},
+               {"fake", Type::kInteger},
+               {"changed", Type::kInteger},
+               {"no_answer", Type::kText}},
+              {}};
+  for (const WhatIfRow& row : rows_of(*before, variants))
+    table.rows.push_back({row.changes, row.real, row.potential, row.fake, row.changed, row.error});
+  return std::vector<Table>{table};
 }
 
 Status write_text(const std::filesystem::path& file, const std::string& text) {
@@ -30,8 +68,9 @@ Status write_text(const std::filesystem::path& file, const std::string& text) {
 }  // namespace
 
 int run_export(const ExportOptions& options) {
-  if (options.csv.empty() && options.sqlite.empty() && options.html.empty() && options.json.empty())
-    return say(fail(Code::kInvalidInput, "export what? --csv, --sqlite, --html or --json"),
+  if (options.csv.empty() && options.sqlite.empty() && options.html.empty() &&
+      options.json.empty() && options.bcf.empty())
+    return say(fail(Code::kInvalidInput, "export what? --csv, --sqlite, --html, --json or --bcf"),
                kExitUsage);
   const auto log = read_session_log(options.log);
   if (!log) return say(log.error(), kExitBadInput);
@@ -42,16 +81,24 @@ int run_export(const ExportOptions& options) {
     if (!counted) return say(counted.error(), kExitBadInput);
     coverage = *counted;
   }
-  const auto tables = tables_of(*log, coverage);
-  if (!tables) return say(tables.error(), kExitBadInput);
+  auto what_if = what_if_tables(*log, options);
+  if (!what_if) return say(what_if.error(), kExitUsage);
+  ReportWishes wishes;
+  wishes.coverage = coverage;
+  wishes.more = std::move(*what_if);
+  if (options.html.empty() && options.bcf.empty()) wishes.pictures = {0, 0};
+  wishes.pictures.png = !options.bcf.empty();
+  const auto report = report_of(*log, wishes);
+  if (!report) return say(report.error(), kExitBadInput);
+  const std::vector<Table>& tables = report->tables;
   Status status = ok();
-  if (!options.csv.empty()) status = write_csv(*tables, options.csv);
-  if (status && !options.sqlite.empty()) status = write_sqlite(*tables, options.sqlite);
-  if (status && !options.html.empty())
-    status = write_text(options.html, html_of(*tables, "Clashes of " + log->session));
+  if (!options.csv.empty()) status = write_csv(tables, options.csv);
+  if (status && !options.sqlite.empty()) status = write_sqlite(tables, options.sqlite);
+  if (status && !options.html.empty()) status = write_text(options.html, html_of(*report));
   if (status && !options.json.empty())
     status = write_text(options.json,
-                        json_of(*tables).dump(1, ' ', false, Json::error_handler_t::replace));
+                        json_of(tables).dump(1, ' ', false, Json::error_handler_t::replace));
+  if (status && !options.bcf.empty()) status = write_bcf(*report, *log, options.bcf);
   return status ? kExitOk : say(status.error(), kExitRuntime);
 }
 

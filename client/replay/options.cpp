@@ -66,9 +66,52 @@ void add_export(CLI::App& app, int& code) {
   command->add_option("--sqlite", options->sqlite, "a new SQLite database, with views");
   command->add_option("--html", options->html, "one page that needs no other file");
   command->add_option("--json", options->json, "one JSON document");
+  command->add_option("--bcf", options->bcf,
+                      "a new BCF 3.0 archive: each clash as an issue, with a picture");
+  command
+      ->add_option("--what-if", options->sweep,
+                   "changes as behind --sweep of whatif; their table goes with the others")
+      ->allow_extra_args(false);
   command->add_flag("--recompute", options->recompute,
                     "compute the session again for what was examined and skipped");
   command->callback([options, &code] { code = run_export(*options); });
+}
+
+void add_explain(CLI::App& app, int& code) {
+  auto options = std::make_shared<ExplainOptions>();
+  auto* command = app.add_subcommand(
+      "explain", "the whole chain that led to the verdict of one clash, in words and numbers");
+  command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("clash", options->clash, "its number, as in the tables")->required();
+  command->add_option("--tick", options->tick, "what was told in this tick; default: the worst");
+  command->add_flag("--json", options->json, kJson);
+  command->callback([options, &code] { code = run_explain(*options); });
+}
+
+void add_play([[maybe_unused]] CLI::App& app, [[maybe_unused]] int& code) {
+#ifdef MORTISE_WITH_DDS
+  auto options = std::make_shared<PlayCommand>();
+  PlayCommand& o = *options;
+  auto* command = app.add_subcommand(
+      "play", "send what the users of a log did to a live session with the same parts, again");
+  command->add_option("log", o.log, "session log (.mcap)")->required();
+  command->add_option("--session", o.session, "name of the session")->capture_default_str();
+  command->add_option("--domain", o.domain, "DDS domain")->check(CLI::Range(0, 232));
+  command->add_option("--interface", o.interface, "IPv4 address of the own interface")
+      ->capture_default_str();
+  command->add_option("--server", o.server, "IPv4 address of the server; default: the interface");
+  command->add_option("--server-port", o.server_port, "discovery port of the server")
+      ->check(CLI::Range(0, 65535));
+  command->add_option("--speed", o.speed, "times the recorded pace")
+      ->check(CLI::Range(0.1, 100.0))
+      ->capture_default_str();
+  command->add_option("--from", o.from_s, "s of the log; what lies before is played at ×100")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", o.to_s, "s of the log; default: its end")->check(CLI::PositiveNumber);
+  command->add_option("--wait", o.wait_s, "s to wait for the session")->check(CLI::PositiveNumber);
+  command->add_flag("--json", o.json, kJson);
+  command->callback([options, &code] { code = run_play(*options); });
+#endif
 }
 
 void add_what_if(CLI::App& app, int& code) {
@@ -117,6 +160,8 @@ int run_replay_program(int argc, char** argv) {
   add_info(app, code);
   add_recover(app, code);
   add_export(app, code);
+  add_explain(app, code);
+  add_play(app, code);
   add_what_if(app, code);
   add_merge(app, code);
   try {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <map>
+#include <optional>
 
 #include "common/io/replay.h"
 #include "common/messages/names.h"
@@ -56,12 +57,6 @@ CollisionClass class_of(const Clashes& clashes, std::size_t index) {
   return index == ClashPair::kNone ? CollisionClass::kNone : clashes.rows[index].worst_class;
 }
 
-std::array<std::uint64_t, 4> by_class(const Clashes& clashes) {
-  std::array<std::uint64_t, 4> count{};
-  for (const Row& row : clashes.rows) ++count[static_cast<std::size_t>(row.worst_class)];
-  return count;
-}
-
 Json json_of(const Clashes& clashes, std::size_t index) {
   if (index == ClashPair::kNone) return nullptr;
   const Row& row = clashes.rows[index];
@@ -90,7 +85,21 @@ std::string told(const Clashes& clashes, std::size_t index) {
   return std::string(name_of(row.worst_class)) + since + ": " + row.worst.explanation;
 }
 
-std::vector<ClashPair> changed(const Clashes& before, const Clashes& after) {
+std::string pair_name(const ClashPair& pair, const Clashes& before, const Clashes& after) {
+  const Row& row =
+      pair.after != ClashPair::kNone ? after.rows[pair.after] : before.rows[pair.before];
+  return before.names.pair(row.a, row.b);
+}
+
+}  // namespace
+
+std::array<std::uint64_t, 4> by_class(const Clashes& clashes) {
+  std::array<std::uint64_t, 4> count{};
+  for (const Row& row : clashes.rows) ++count[static_cast<std::size_t>(row.worst_class)];
+  return count;
+}
+
+std::vector<ClashPair> changed_clashes(const Clashes& before, const Clashes& after) {
   std::vector<ClashPair> pairs = matched(before, after);
   std::erase_if(pairs, [&](const ClashPair& pair) {
     return class_of(before, pair.before) == class_of(after, pair.after);
@@ -105,30 +114,39 @@ std::vector<ClashPair> changed(const Clashes& before, const Clashes& after) {
   return pairs;
 }
 
-std::string pair_name(const ClashPair& pair, const Clashes& before, const Clashes& after) {
-  const Row& row =
-      pair.after != ClashPair::kNone ? after.rows[pair.after] : before.rows[pair.before];
-  return before.names.pair(row.a, row.b);
+namespace {
+
+// The scene with which a changed session begins. A log with another mesh is a copy, kept in `own`.
+Result<LoadedScene> changed_scene(const SessionLog& log, const std::vector<Change>& changes,
+                                  std::optional<SessionLog>& own) {
+  for (const Change& change : changes) {
+    if (change.kind != Change::Kind::kMesh) continue;
+    if (!own) own = log;
+    if (const Status status = change_log(*own, change); !status) return status.error();
+  }
+  auto scene = scene_of(own ? *own : log);
+  if (!scene) return scene.error();
+  for (const Change& change : changes)
+    if (const Status status = change_world(scene->world, change); !status) return status.error();
+  return scene;
 }
 
 }  // namespace
 
+Status check_changes(const SessionLog& log, const std::vector<Change>& changes) {
+  std::optional<SessionLog> own;
+  const auto scene = changed_scene(log, changes, own);
+  return scene ? ok() : Status(scene.error());
+}
+
 Result<Clashes> clashes_with(const SessionLog& log, const std::vector<Change>& changes) {
-  const SessionLog* from = &log;
-  SessionLog changed_log;
-  for (const Change& change : changes) {
-    if (change.kind != Change::Kind::kMesh) continue;
-    if (from == &log) changed_log = log, from = &changed_log;
-    if (const Status status = change_log(changed_log, change); !status) return status.error();
-  }
-  auto scene = scene_of(*from);
+  std::optional<SessionLog> own;
+  auto scene = changed_scene(log, changes, own);
   if (!scene) return scene.error();
   World& world = scene->world;
-  for (const Change& change : changes)
-    if (const Status status = change_world(world, change); !status) return status.error();
   SessionStatistics statistics;
-  const auto done =
-      recompute(world, *from, 1, [&](const ReplayedTick& tick) { statistics.add(tick.computed); });
+  const auto done = recompute(world, own ? *own : log, 1,
+                              [&](const ReplayedTick& tick) { statistics.add(tick.computed); });
   if (!done) return done.error();
   return Clashes{statistics.clashes(),
                  names_of(world),
@@ -167,7 +185,7 @@ Json json_of(const Variant& variant, const Clashes& before) {
   document["not_examined"] = after.not_examined;
   document["stopped_early"] = after.stopped_early;
   document["changed"] = Json::array();
-  for (const ClashPair& pair : changed(before, after))
+  for (const ClashPair& pair : changed_clashes(before, after))
     document["changed"].push_back({{"pair", pair_name(pair, before, after)},
                                    {"before", json_of(before, pair.before)},
                                    {"after", json_of(after, pair.after)}});
@@ -184,7 +202,7 @@ std::string text_of(const Variant& variant, const Clashes& before) {
     text += "  " + std::to_string(after.not_examined) +
             " pairs of a tick were not examined to the end\n";
   if (!after.stopped_early.empty()) text += "  computed in part: " + after.stopped_early + "\n";
-  const auto pairs = changed(before, after);
+  const auto pairs = changed_clashes(before, after);
   if (pairs.empty()) text += "  no clash has another class\n";
   for (const ClashPair& pair : pairs)
     text += "  " + pair_name(pair, before, after) + "\n    was " + told(before, pair.before) +

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -23,6 +24,12 @@ struct Clashes {
 /// waiting. The log is copied only where a mesh changes.
 Result<Clashes> clashes_with(const SessionLog& log, const std::vector<Change>& changes);
 
+/// Can these changes hold in the session as it begins? Computes nothing of it.
+Status check_changes(const SessionLog& log, const std::vector<Change>& changes);
+
+/// How many clashes by worst class, the number of which is the index.
+std::array<std::uint64_t, 4> by_class(const Clashes& clashes);
+
 /// One clash in both, or in one of them (the other index is kNone).
 struct ClashPair {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -32,6 +39,9 @@ struct ClashPair {
 /// common; what has none in common is a clash of its own. A clash that fell into several is named
 /// with each.
 std::vector<ClashPair> matched(const Clashes& before, const Clashes& after);
+
+/// Those of another class, begun or gone; what matters most first.
+std::vector<ClashPair> changed_clashes(const Clashes& before, const Clashes& after);
 
 /// What one variant comes to.
 struct Variant {

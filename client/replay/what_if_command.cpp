@@ -1,68 +1,15 @@
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <iostream>
-#include <thread>
 
 #include "client/replay/commands.h"
 #include "client/replay/output.h"
-#include "client/replay/what_if.h"
+#include "client/replay/progress.h"
+#include "client/replay/sweep.h"
 #include "common/io/build_info.h"
 
 namespace mortise {
 namespace {
-
-// Every combination of the sweeps, each behind the fixed changes.
-Result<std::vector<std::vector<std::string>>> combinations(const WhatIfOptions& options) {
-  std::vector<std::vector<std::string>> all{options.set};
-  for (const std::string& sweep : options.sweep) {
-    const auto variants = variants_of(sweep);
-    if (!variants) return variants.error();
-    std::vector<std::vector<std::string>> grown;
-    for (const auto& changes : all)
-      for (const std::string& variant : *variants) {
-        grown.push_back(changes);
-        grown.back().push_back(variant);
-      }
-    all = std::move(grown);
-  }
-  return all;
-}
-
-Result<std::vector<Change>> read_changes(const std::vector<std::string>& texts) {
-  std::vector<Change> changes;
-  for (const std::string& text : texts) {
-    auto change = read_change(text);
-    if (!change) return change.error();
-    changes.push_back(std::move(*change));
-  }
-  return changes;
-}
-
-void compute(const SessionLog& log, Variant& variant) {
-  const auto changes = read_changes(variant.changes);
-  auto clashes = changes ? clashes_with(log, *changes) : Result<Clashes>(changes.error());
-  if (clashes)
-    variant.clashes = std::move(*clashes);
-  else
-    variant.error = clashes.error().text;
-}
-
-void compute_all(const SessionLog& log, std::vector<Variant>& variants, int jobs) {
-  std::atomic<std::size_t> next{0}, done{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < variants.size(); i = next++) {
-      compute(log, variants[i]);
-      if (variants.size() > 1)
-        std::cerr << "variant " + std::to_string(++done) + " of " +
-                         std::to_string(variants.size()) + "\n";
-    }
-  };
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < jobs && static_cast<std::size_t>(i) < variants.size(); ++i)
-    helpers.emplace_back(work);
-  work();
-}
 
 Json document_of(const WhatIfOptions& options, const SessionLog& log, const Clashes& before,
                  const std::vector<Variant>& variants, std::size_t all) {
@@ -84,7 +31,7 @@ Json document_of(const WhatIfOptions& options, const SessionLog& log, const Clas
 }  // namespace
 
 int run_what_if(const WhatIfOptions& options) {
-  const auto all = combinations(options);
+  const auto all = combinations(options.set, options.sweep);
   if (!all) return say(all.error(), kExitUsage);
   const auto log = read_session_log(options.log);
   if (!log) return say(log.error(), kExitBadInput);
@@ -93,10 +40,16 @@ int run_what_if(const WhatIfOptions& options) {
   for (std::size_t i = 0; i < all->size(); ++i)
     if (i % static_cast<std::size_t>(options.shards) == static_cast<std::size_t>(options.shard - 1))
       variants.push_back({i, (*all)[i], {}, ""});
+  // A slip of the pen is said at once, not after the session was computed.
+  if (const Status status = check_variants(*log, variants, options.jobs); !status)
+    return say(status.error(), kExitUsage);
   // Before is what this program computes, so that no difference is one of builds.
   const auto before = clashes_with(*log, {});
   if (!before) return say(before.error(), kExitBadInput);
-  compute_all(*log, variants, options.jobs);
+  Progress progress("variants", static_cast<double>(variants.size()));
+  compute_variants(*log, variants, options.jobs,
+                   [&](std::size_t done) { progress.show(static_cast<double>(done)); });
+  progress.end();
   if (options.json)
     print(document_of(options, *log, *before, variants, all->size()));
   else

@@ -104,6 +104,18 @@ bool is_own(GatewayState& state, const Request& request, const std::string& from
   return false;
 }
 
+// What to say to who has no good token.
+std::optional<Answer> without_token(GatewayState& state, const Request& request,
+                                    const std::string& from) {
+  if (role_of(state.tokens, bearer_token(view_of(request[http::field::authorization]))))
+    return std::nullopt;
+  state.incidents.note(Incident::kWrongToken, from, "a request without a token that is good",
+                       state.now_s());
+  Answer answer = sentence(status::unauthorized, "the token is missing or wrong");
+  answer.fields.emplace_back("WWW-Authenticate", "Bearer");
+  return answer;
+}
+
 Answer wrong_host() {
   return sentence(status::misdirected_request,
                   "asked for under a name that is not ours; --name makes it so");
@@ -131,14 +143,36 @@ Answer answer_to(GatewayState& state, const Request& request, bool tls, const st
   const bool is_mesh = target.starts_with(kMeshes) && target.ends_with(kMeshEnding) &&
                        target.size() > kMeshes.size() + kMeshEnding.size();
   if (!is_mesh && target != "/statistics") return file(state, request, tls);
-  if (!role_of(state.tokens, bearer_token(view_of(request[http::field::authorization])))) {
-    state.incidents.note(Incident::kWrongToken, from, "a request without a token that is good",
-                         state.now_s());
-    Answer answer = sentence(status::unauthorized, "the token is missing or wrong");
-    answer.fields.emplace_back("WWW-Authenticate", "Bearer");
-    return answer;
-  }
+  if (auto refused = without_token(state, request, from)) return *refused;
   return is_mesh ? mesh(state, target.substr(kMeshes.size())) : statistics(state);
+}
+
+bool asks_for_report(const Request& request) {
+  return request.method() == http::verb::get && request.target() == "/report.html";
+}
+
+std::optional<Answer> refusal_of_report(GatewayState& state, const Request& request,
+                                        const std::string& from) {
+  ++state.traffic.requests;
+  if (!is_own(state, request, from)) return wrong_host();
+  if (auto refused = without_token(state, request, from)) return refused;
+  if (!state.options.report)
+    return sentence(status::not_found, "there is no log to report on; see --session-log");
+  if (!state.reports.is_busy() && !state.ending) return std::nullopt;
+  Answer answer = sentence(status::service_unavailable, "a report is being made; ask again");
+  answer.fields.emplace_back("Retry-After", "2");
+  return answer;
+}
+
+Answer answer_with_report(Result<std::string> page) {
+  if (!page) return sentence(status::internal_server_error, "no report: " + page.error().text);
+  return {status::ok,
+          "text/html; charset=utf-8",
+          std::make_shared<const std::string>(std::move(*page)),
+          {{"Cache-Control", "no-store"},
+           {"Content-Disposition", "attachment; filename=\"report.html\""},
+           // It is a page of its own, wherever somebody opens it.
+           {"Content-Security-Policy", "sandbox allow-scripts"}}};
 }
 
 std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,

@@ -2,6 +2,7 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/status.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -26,6 +27,13 @@ Answer sentence(boost::beast::http::status status, const std::string& text);
 
 /// Everything but WebSockets. `from` names the asker in messages.
 Answer answer_to(GatewayState& state, const Request& request, bool tls, const std::string& from);
+
+/// The report takes seconds, so it is made beside (report_maker.h). An answer when this asker gets
+/// none now.
+bool asks_for_report(const Request& request);
+std::optional<Answer> refusal_of_report(GatewayState& state, const Request& request,
+                                        const std::string& from);
+Answer answer_with_report(Result<std::string> page);
 
 /// May this request become a WebSocket, and as what? An answer when not.
 std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,

@@ -62,6 +62,7 @@ void Browser::start(Request request) {
                        {"protocol", 1},
                        {"mode", self->state_.feed.mode()},
                        {"role", name_of(self->role_)},
+                       {"report", static_cast<bool>(self->state_.options.report)},
                        {"limits",
                         {{"message_bytes", l.message_bytes},
                          {"messages_per_s", l.messages_per_s},

@@ -30,7 +30,10 @@ class AsioGateway final : public Gateway {
       : state_(options, tokens, std::move(page), feed, std::move(say)) {}
 
   // Browsers know each other through the state, and their sockets need io_ to end.
-  ~AsioGateway() override { state_.browsers.clear(); }
+  ~AsioGateway() override {
+    state_.reports.finish();
+    state_.browsers.clear();
+  }
 
   Status start() {
     if (!state_.options.certificate.empty()) {

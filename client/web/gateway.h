@@ -19,6 +19,9 @@ struct GatewayOptions {
   std::vector<std::string> origins;   ///< of pages of others that may connect, "https://host:port"
   std::string certificate, key;       ///< PEM files; empty: no TLS
   Limits limits;
+  /// Makes the page that is downloaded as the report of the session; called in a thread of its own,
+  /// once at a time. Empty: there is none to download.
+  std::function<Result<std::string>()> report;
   double turn_s = 0.004;  ///< the feed is asked so often while somebody looks on
 };
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "client/web/gateway.h"
+#include "client/web/report_maker.h"
 
 namespace mortise::web {
 
@@ -40,6 +41,7 @@ struct GatewayState {
   std::list<HttpConnection*> waiting;  ///< for a request, the longest first
   std::size_t connections = 0;
   Traffic traffic;
+  ReportMaker reports;
   bool ending = false;
 };
 

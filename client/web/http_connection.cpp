@@ -98,12 +98,22 @@ void HttpConnection::failed(beast::error_code error) {
 
 void HttpConnection::take() {
   const Request& request = parser_->get();
+  if (asks_for_report(request)) return make_report();
   if (!beast::websocket::is_upgrade(request))
     return write(answer_to(state_, request, stream_.has_tls(), peer_));
   auto admitted = admit_browser(state_, request, stream_.has_tls(), peer_);
   if (const auto* refused = std::get_if<Answer>(&admitted)) return write(*refused);
   std::make_shared<Browser>(state_, std::move(stream_), std::get<Role>(admitted))
       ->start(parser_->release());
+}
+
+void HttpConnection::make_report() {
+  if (auto refused = refusal_of_report(state_, parser_->get(), peer_)) return write(*refused);
+  stream_.next_layer().expires_never();
+  state_.reports.start(stream_.get_executor(), state_.options.report,
+                       [self = shared_from_this()](Result<std::string> page) {
+                         self->write(answer_with_report(std::move(page)));
+                       });
 }
 
 void HttpConnection::write(const Answer& answer) {

@@ -27,6 +27,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   using Response = beast::http::response<beast::http::span_body<const char>>;
   void read(double patience_s);
   void take();
+  void make_report();
   void write(const Answer& answer);
   void failed(beast::error_code error);
   void wait_in_line();

@@ -37,6 +37,10 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
       app.add_option("--session", o.session, "Name of the session")->capture_default_str();
   app.add_option("--log", o.log, "Show this session log (MCAP) with a timeline, without a server")
       ->excludes(session);
+  app.add_option("--session-log", o.session_log,
+                 "Log that the server writes, where this machine can read it: pages can download a "
+                 "report of the session so far")
+      ->excludes("--log");
   app.add_option("--domain", o.domain, "DDS domain")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();

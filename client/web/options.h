@@ -11,7 +11,8 @@ struct WebOptions {
   std::string interface = "127.0.0.1";
   std::string server;  ///< empty: on the same machine
   int discovery_port = 0;
-  std::string log;  ///< play this session log instead; empty: a live session
+  std::string log;          ///< play this session log instead; empty: a live session
+  std::string session_log;  ///< of the live session, for reports; empty: there are none
   std::string page = "client/web/page";
   std::string tokens;  ///< file; empty: made for this run
   GatewayOptions gateway;

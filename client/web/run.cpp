@@ -8,6 +8,7 @@
 #include <iostream>
 #include <thread>
 
+#include "client/report/report.h"
 #include "client/web/live_feed.h"
 #include "client/web/replay_feed.h"
 #include "idl/dds_channel.h"
@@ -61,12 +62,16 @@ void say_addresses(const Gateway& gateway, const PageFiles& page) {
 
 // Serves a feed until a signal comes.
 int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
+  GatewayOptions gateway_options = options.gateway;
+  if (const std::string& log = options.log.empty() ? options.session_log : options.log;
+      !log.empty())
+    gateway_options.report = [log] { return report_page(log); };
   auto page = PageFiles::open(options.page);
   if (!page) return fail_with(page.error());
   auto tokens = tokens_of(options);
   if (!tokens) return fail_with(tokens.error());
   const auto say = [](const std::string& line) { spdlog::warn("{}", line); };
-  auto gateway = Gateway::open(options.gateway, *tokens, *page, feed, say);
+  auto gateway = Gateway::open(gateway_options, *tokens, *page, feed, say);
   if (!gateway) return fail_with(gateway.error());
   say_addresses(**gateway, *page);
   stop_signal.then_stop(**gateway);

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -78,7 +79,10 @@ struct SessionLog {
   std::vector<ImportReport> imports;  ///< by part index; may be empty
   std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
   bool complete = false;
-  std::vector<LogGap> gaps;        ///< in the order of the log
+  std::vector<LogGap> gaps;  ///< in the order of the log
+  /// Sums of /statistics by name: what was examined and skipped. What is lost of the log is not in
+  /// them.
+  std::map<std::string, std::uint64_t> counted;
   std::vector<std::string> notes;  ///< what was lost or skipped, in words
 };
 Result<SessionLog> read_session_log(const std::filesystem::path& file);

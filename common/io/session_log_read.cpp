@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "common/io/log_json.h"
@@ -17,6 +18,15 @@ constexpr std::size_t kMostTicks = 20'000'000;
 
 std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Adds the whole numbers of one record of /statistics. What is none is passed over: these are sums
+// for people, nothing is decided by them.
+void add_counts(const nlohmann::json& record, std::map<std::string, std::uint64_t>& sums) {
+  if (!record.is_object()) return;
+  for (const auto& [name, count] : record.items())
+    if (count.is_number_unsigned() && name != "first_tick" && name != "last_tick")
+      sums[name] += count.get<std::uint64_t>();
 }
 
 /// Puts the records of a log together, tick by tick: a tick is taken when its end record comes.
@@ -123,6 +133,8 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
       events_.push_back(std::move(event));
     else if (++bad_records_; true)
       loss("a record of " + channel.topic + " is not readable");
+  } else if (channel.topic == kStatistics) {
+    add_counts(nlohmann::json::parse(text_of(message.data), nullptr, false), log_.counted);
   } else if (channel.topic == kGaps) {
     Gap gap;
     open_gap(log_json::decode(text_of(message.data), gap)

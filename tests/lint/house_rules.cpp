@@ -39,13 +39,15 @@ const std::vector<Room> kRooms = {
     {"client/web/", {"client/"}},
     {"client/web/recording", {"client/web/", "common/io/"}},
     {"client/web/replay_feed", {"client/web/recording"}},
-    {"client/web/run", {"client/web/replay_feed"}},
+    {"client/web/run", {"client/web/replay_feed", "client/report/"}},
     {"client/web/main", {"client/web/run"}},
-    {"client/replay/", {"client/", "common/io/"}},
-    {"client/tools/", {"client/", "common/io/"}},
+    {"client/picture/", {"common/session/"}},
+    {"client/report/", {"client/picture/", "common/io/"}},
+    {"client/replay/", {"client/", "client/report/", "common/io/"}},
+    {"client/tools/", {"client/", "client/picture/", "common/io/"}},
     {"tests/",
      {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/replay/",
-      "client/tools/", "tests/"}},
+      "client/report/", "client/picture/", "client/tools/", "tests/"}},
 };
 
 // A library that is named in some places only. Tests may use what they test against.
@@ -63,12 +65,14 @@ const std::vector<NamedHere>& named_here() {
       {"Fast DDS", std::regex("(fastdds|fastrtps|fastcdr)/.*"), {"idl/"}},
       {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
-      {"SQLite", std::regex("sqlite3\\.h"), {"client/replay/", "tests/unit/io/export_test."}},
+      {"SQLite", std::regex("sqlite3\\.h"), {"client/report/", "tests/unit/io/export_test."}},
+      {"libzip", std::regex("zip\\.h"), {"client/report/bcf.", "tests/unit/io/"}},
+      {"pugixml", std::regex("pugixml\\.hpp"), {"client/report/bcf.", "tests/unit/io/"}},
       {"Boost.Beast",
        std::regex("boost/(beast|asio).*"),
        {"client/web/", "server/metrics_endpoint.", "tests/network/page_client."}},
       {"OpenSSL", std::regex("openssl/.*"), {"client/web/", "tests/network/page_client."}},
-      {"Cairo", std::regex("cairo.*"), {"client/tools/judge/canvas.cpp"}},
+      {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
   };
   return rules;

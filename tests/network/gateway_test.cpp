@@ -122,6 +122,41 @@ struct GoodPages {
   double z_mm = 25.0;
 };
 
+// The report is made beside: others are served meanwhile, and a second one waits its turn.
+TEST_F(GatewayFixture, OffersAReportToWhoHasAToken) {
+  std::atomic<bool> go{false};
+  options.report = [&]() -> Result<std::string> {
+    while (!go) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return std::string("<!DOCTYPE html>report");
+  };
+  serve();
+  const Fields bearer = {{"Authorization", "Bearer " + tokens.observer}};
+  EXPECT_EQ(http_request(port, "/report.html").status, 401);
+  EXPECT_EQ(http_request(port, "/report.html", {{"Host", "evil.example"}}).status, 421);
+  HttpAnswer answer;
+  std::thread asks([&] { answer = http_request(port, "/report.html", bearer); });
+  HttpAnswer second;
+  for (int i = 0; i < 400 && second.status != 503; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (i == 20) EXPECT_EQ(http_request(port, "/").status, 200);
+    if (i >= 20) second = http_request(port, "/report.html", bearer);
+  }
+  EXPECT_EQ(second.status, 503);
+  EXPECT_FALSE(second.field("Retry-After").empty());
+  go = true;
+  asks.join();
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body, "<!DOCTYPE html>report");
+  EXPECT_NE(answer.field("Content-Disposition").find("attachment"), std::string::npos);
+  EXPECT_EQ(http_request(port, "/report.html", bearer).status, 200);  // and again
+}
+
+TEST_F(GatewayFixture, SaysThatThereIsNoReport) {
+  serve();
+  const Fields bearer = {{"Authorization", "Bearer " + tokens.designer}};
+  EXPECT_EQ(http_request(port, "/report.html", bearer).status, 404);
+}
+
 TEST_F(GatewayFixture, TwoPagesJoinMoveAndSeeTheSameClash) {
   serve();
   GoodPages good(*this);

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "client/tools/judge/judge_report.h"
-#include "client/tools/judge/picture.h"
+#include "client/picture/picture.h"
 
 int main(int argc, char** argv) {
   std::string file, fail_on, picture;

@@ -1,5 +1,9 @@
 // The session as tables: CSV, JSON, SQLite and HTML say the same, and say it safely.
-#include "client/replay/export.h"
+#include "client/report/export.h"
+#include "client/report/report.h"
+#include "client/report/summary_tables.h"
+#include "common/geometry/signed_distance.h"
+#include "common/io/replay.h"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -94,7 +98,6 @@ TEST_F(Export, CountsWhatTheLogTells) {
   }
   EXPECT_EQ(table_named(*tables, "events").rows.size(), events);
   EXPECT_EQ(table_named(*tables, "clashes").rows.size(), begun);
-  EXPECT_TRUE(table_named(*tables, "coverage").rows.empty());
   std::size_t sent = 0;
   const Json document = json_of(*tables);
   for (const Json& user : document["tables"]["users"])
@@ -123,8 +126,7 @@ TEST_F(Export, SqliteHoldsTheTablesAndViews) {
     return found;
   };
   for (const Table& table : *tables)
-    EXPECT_EQ(count(table.name), static_cast<std::int64_t>(table.rows.size()))
-        << table.name;
+    EXPECT_EQ(count(table.name), static_cast<std::int64_t>(table.rows.size())) << table.name;
   for (const char* view : {"v_open", "v_to_review", "v_worst_by_pair", "v_by_user", "v_timeline"})
     EXPECT_GE(count(view), 0) << view;
   EXPECT_EQ(count("clashes WHERE class = 'real' AND overlap_lo_mm > 0"),
@@ -133,22 +135,115 @@ TEST_F(Export, SqliteHoldsTheTablesAndViews) {
 
 // Names come from people: none of them becomes a tag, a formula of the page or another field.
 TEST_F(Export, TextOfPeopleStaysText) {
-  auto tables = tables_of(*log_, std::nullopt);
-  ASSERT_TRUE(tables);
+  auto report = report_of(*log_);
+  ASSERT_TRUE(report);
+  std::vector<Table>& tables = report->tables;
+  report->pictures = {};
   const std::string evil = "</script><img src=x onerror=alert(1)>\",\"a\r\nb";
-  for (Table& table : *tables)
+  report->session = evil;
+  for (Table& table : tables)
     for (auto& row : table.rows)
       for (std::size_t i = 0; i < row.size(); ++i)
         if (table.columns[i].type == Table::Type::kText && table.columns[i].name != "class" &&
             table.columns[i].name != "key")
           row[i] = evil;
-  const std::string html = html_of(*tables, evil);
+  const std::string html = html_of(*report);
   EXPECT_EQ(html.find("<img"), std::string::npos);
   EXPECT_NE(html.find("&lt;img"), std::string::npos);
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page needs the network";
-  const auto lines = fields_of(csv_of(table_named(*tables, "clashes")));
+  const auto lines = fields_of(csv_of(table_named(tables, "clashes")));
   for (const auto& line : lines) EXPECT_EQ(line.size(), lines[0].size());
   EXPECT_NE(std::find(lines[1].begin(), lines[1].end(), evil), lines[1].end());
+}
+
+// A spreadsheet must not compute what somebody is called.
+TEST_F(Export, NoFieldIsAFormula) {
+  Table table{"t", "", {{"text", Table::Type::kText}, {"number", Table::Type::kNumber}}, {}};
+  for (const char* text : {"=1+1", "+x", "-x", "@x", "\tx", "\rx", "plain", ""})
+    table.rows.push_back({text, -1.5});
+  const auto lines = fields_of(csv_of(table));
+  ASSERT_EQ(lines.size(), 9U);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i][1], "-1.5");  // numbers stay numbers
+    const char first = lines[i][0].empty() ? 'x' : lines[i][0][0];
+    EXPECT_EQ(std::string("=+-@\t\r").find(first), std::string::npos) << lines[i][0];
+  }
+  EXPECT_EQ(lines[1][0], "'=1+1");
+  EXPECT_EQ(lines[7][0], "plain");
+}
+
+// The report draws each clash and each part that was touched, without any other file.
+TEST_F(Export, ThePageHasPicturesAndSaysItsLimits) {
+  const auto report = report_of(*log_);
+  ASSERT_TRUE(report) << report.error().text;
+  const Table& clashes = table_named(report->tables, "clashes");
+  EXPECT_EQ(report->pictures.missing, "");
+  EXPECT_EQ(report->pictures.of_clash.size(), clashes.rows.size());
+  EXPECT_EQ(report->pictures.of_part.size(), 2U);
+  const std::string html = html_of(*report);
+  for (const auto& [clash, svg] : report->pictures.of_clash) {
+    EXPECT_NE(svg.find("wall × cube"), std::string::npos);
+    EXPECT_NE(html.find("id=\"clash-" + std::to_string(clash)), std::string::npos);
+  }
+  for (const char* section : {"Where parts were touched", "By face", "If tolerances were other",
+                              "Coverage", "Limits", "data:image/png;base64,iVBOR"})
+    EXPECT_NE(html.find(section), std::string::npos) << section;
+  EXPECT_EQ(html.find("src=\"http"), std::string::npos);
+  // What is not drawn is counted.
+  ReportWishes few;
+  few.pictures = {0, 1};
+  const auto less = report_of(*log_, few);
+  ASSERT_TRUE(less);
+  EXPECT_EQ(less->pictures.clashes_left_out, clashes.rows.size());
+  EXPECT_EQ(less->pictures.parts_left_out, 1U);
+  EXPECT_NE(html_of(*less).find("clashes are not drawn"), std::string::npos);
+}
+
+// The place of a clash on a part is on the part.
+TEST_F(Export, PlacesAreOnTheirParts) {
+  const auto report = report_of(*log_);
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->pictures.touches.size(), table_named(report->tables, "clashes").rows.size());
+  auto scene = scene_of(*log_);
+  ASSERT_TRUE(scene);
+  const Table& faces = table_named(report->tables, "by_face");
+  ASSERT_GE(faces.rows.size(), 2U);
+  for (const auto& row : faces.rows) {
+    const Part* part = scene->world.find_part(row[0].get<std::string>());
+    ASSERT_NE(part, nullptr);
+    const Vec3 at(row[7].get<double>(), row[8].get<double>(), row[9].get<double>());
+    const double overlap_mm = row[5].get<double>();
+    EXPECT_LT(std::fabs(nearest_point(*part->solid, at).distance_mm), overlap_mm + 0.01)
+        << part->name;
+  }
+}
+
+TEST_F(Export, CoverageIsInTheLog) {
+  const auto tables = tables_of(*log_, std::nullopt);
+  ASSERT_TRUE(tables);
+  const Table& coverage = table_named(*tables, "coverage");
+  std::uint64_t ticks = 0, increments = 0, sent = 0;
+  for (const auto& row : coverage.rows) {
+    if (row[0] == "ticks") ticks = row[1].get<std::uint64_t>();
+    if (row[0] == "increments_in") increments = row[1].get<std::uint64_t>();
+  }
+  for (const TickRecord& record : log_->ticks) sent += record.increments.size();
+  EXPECT_EQ(ticks, log_->ticks.size());
+  EXPECT_EQ(increments, sent);
+}
+
+// Thresholds that move as the zones do; by hand.
+TEST_F(Export, WiderZonesMakeClassesPotential) {
+  const auto at = [](double widening_mm) {
+    return class_when_widened(0.010, 0.010, 0.004, 0.008, widening_mm);
+  };
+  EXPECT_EQ(at(0.0), "real");
+  EXPECT_EQ(at(0.0009), "real");
+  EXPECT_EQ(at(0.0011), "potential");
+  EXPECT_EQ(at(-0.1), "real");  // no zone at all: one threshold at 6 µm
+  EXPECT_EQ(class_when_widened(0.003, 0.003, 0.004, 0.008, 0.0), "fake");
+  EXPECT_EQ(class_when_widened(0.003, 0.003, 0.004, 0.008, 0.001), "potential");
+  EXPECT_EQ(class_when_widened(-0.003, -0.001, 0.004, 0.008, 0.0), "none");
 }
 
 TEST_F(Export, TheProgramWritesWhatIsAskedFor) {

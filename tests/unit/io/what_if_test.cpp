@@ -1,5 +1,7 @@
 // What a session would have been: replay with changes gives what playing it with them gives.
-#include "client/replay/what_if.h"
+#include "client/replay/sweep.h"
+#include "client/report/summary_tables.h"
+#include "common/messages/names.h"
 
 #include <gtest/gtest.h>
 
@@ -153,6 +155,55 @@ TEST(WhatIf, RefusesWhatItCannotDo) {
               std::string::npos)
         << answer.error().text;
   }
+}
+
+// A slip of the pen is found before the session is computed.
+TEST(WhatIf, IsCheckedBeforeItIsComputed) {
+  auto log = played("blocks_profile");
+  ASSERT_TRUE(log);
+  // A session that cannot be computed: only the check can answer.
+  for (TickRecord& record : log->ticks) record.tick = 1;
+  const auto variant = [](std::size_t index, const char* change) {
+    return Variant{index, {change}, {}, ""};
+  };
+  EXPECT_TRUE(check_variants(*log, {variant(0, "tolerance base_1 = ±0.2")}, 2));
+  const Status wrong = check_variants(
+      *log, {variant(0, "tolerance base_1 = ±0.2"), variant(1, "tolerance nobody = ±0.2")}, 2);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().text.find("nobody"), std::string::npos);
+  EXPECT_FALSE(clashes_with(*log, {}));
+}
+
+// The closed form of the report, against the session computed again with other tolerances.
+TEST(WhatIf, WiderZonesGiveTheClassesThatTheReportForetells) {
+  const auto log = played("blocks_profile");
+  ASSERT_TRUE(log);
+  const auto before = clashes_with(*log, {});
+  ASSERT_TRUE(before);
+  std::size_t compared = 0, other = 0;
+  for (const double widening_mm : {-0.04, -0.02, 0.05, 0.15}) {
+    char text[32];
+    std::snprintf(text, sizeof text, "±%g", 0.05 + widening_mm);
+    std::vector<std::string> texts;
+    for (const char* part :
+         {"base_1", "base_2", "base_3", "base_4", "overlap_200", "overlap_50", "gap_50", "gap_200"})
+      texts.push_back(std::string("tolerance ") + part + " = " + text);
+    const auto after = clashes_with(*log, changes(texts));
+    ASSERT_TRUE(after) << after.error().text;
+    for (const ClashPair& pair : matched(*before, *after)) {
+      if (pair.before == ClashPair::kNone || pair.after == ClashPair::kNone) continue;
+      const Verdict& was = before->rows[pair.before].worst;
+      const Verdict& is = after->rows[pair.after].worst;
+      if (was.delta_mm.lo != is.delta_mm.lo) continue;  // another moment is the worst one now
+      const std::string foretold = class_when_widened(
+          was.delta_mm.lo, was.delta_mm.hi, was.fake_below_mm, was.real_above_mm, widening_mm);
+      EXPECT_EQ(foretold, name_of(is.collision_class)) << is.explanation;
+      ++compared;
+      other += was.collision_class != is.collision_class;
+    }
+  }
+  EXPECT_GE(compared, 6U);
+  EXPECT_GE(other, 2U);
 }
 
 TEST(WhatIf, SweepsAreSpelledOut) {

@@ -1,5 +1,6 @@
 // A recorded session in the same page: a timeline, forwards and backwards, alone.
 import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage } from '../support/browser.mjs';
 import { PATIENCE, choose, position, whenListed } from '../support/people.mjs';
@@ -68,6 +69,23 @@ test('it plays and pauses', async () => {
   await page.locator('#timeline button[aria-label="Play"]').waitFor(PATIENCE);
   await page.getByRole('button', { name: 'Clash ▸' }).click();
   await whenListed(page, 'clashes', 'real');
+});
+
+test('the report is downloaded, and opens by itself', async () => {
+  const [download] = await Promise.all([page.waitForEvent('download', PATIENCE), page.click('#do_report')]);
+  assert.match(download.suggestedFilename(), /report\.html$/);
+  const text = await readFile(await download.path(), 'utf8');
+  assert.ok(text.startsWith('<!DOCTYPE html>'));
+  assert.match(text, /wall × cube/);
+  assert.match(text, /id="clash-1"/);
+  const report = await browser.newPage();
+  /** @type {string[]} */
+  const asked = [];
+  report.on('request', (request) => asked.push(request.url()));
+  await report.goto(`file://${await download.path()}`);
+  await report.locator('#clashes tbody tr').first().waitFor(PATIENCE);
+  assert.deepEqual(asked.filter((url) => !/^(file|data):/.test(url)), []);
+  await report.close();
 });
 
 test('nobody takes a part in hand', async () => {

@@ -93,6 +93,13 @@ export class Connection {
     return true;
   }
 
+  /** The report of the session. @returns {Promise<Blob>} */
+  async report() {
+    const answer = await fetch('report.html', { headers: { Authorization: `Bearer ${this.token}` } });
+    if (!answer.ok) throw new Error((await answer.text()).trim() || `no report: ${answer.status}`);
+    return answer.blob();
+  }
+
   /** @param {string} hash @returns {Promise<ArrayBuffer>} */
   async mesh(hash) {
     const headers = { Authorization: `Bearer ${this.token}` };

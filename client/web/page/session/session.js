@@ -49,6 +49,7 @@ export class Session extends Signals {
   name = '';
   mode = 'live';
   role = 'designer';
+  hasReport = false;
   policy = '';
   tick = 0;
   tickRate = 60;
@@ -134,6 +135,7 @@ export class Session extends Signals {
     welcome: (m) => {
       this.mode = m.mode;
       this.role = m.role;
+      this.hasReport = m.report === true;
       this.emit('me', undefined);
       this.emit('welcome', undefined);
     },

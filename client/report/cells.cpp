@@ -1,0 +1,53 @@
+#include "client/report/cells.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mortise {
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  for (const char c : text) switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += c;
+    }
+  return safe;
+}
+
+const Json& Cells::operator[](std::string_view name) const {
+  static const Json kNothing;
+  for (std::size_t i = 0; i < row_.size(); ++i)
+    if (table_.columns[i].name == name) return row_[i];
+  return kNothing;
+}
+
+std::string Cells::raw(std::string_view name) const {
+  const Json& value = (*this)[name];
+  if (value.is_null()) return "";
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+double Cells::number(std::string_view name) const {
+  const Json& value = (*this)[name];
+  return value.is_number() ? value.get<double>() : std::nan("");
+}
+
+std::string Cells::micrometres(std::string_view name) const {
+  const double mm = number(name);
+  return std::isfinite(mm) ? fmt::format("{:.1f}", 1e3 * mm) : "–";
+}
+
+}  // namespace mortise

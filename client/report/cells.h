@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/report/session_tables.h"
+
+namespace mortise {
+
+/// Text as text of a page.
+std::string escaped(std::string_view text);
+
+/// A row of a table by the names of its columns.
+class Cells {
+ public:
+  Cells(const Table& table, const std::vector<Json>& row) : table_(table), row_(row) {}
+
+  const Json& operator[](std::string_view name) const;  ///< null when there is no such column
+  std::string raw(std::string_view name) const;         ///< "" for null
+  std::string text(std::string_view name) const { return escaped(raw(name)); }
+  double number(std::string_view name) const;            ///< NaN for what is none
+  std::string micrometres(std::string_view name) const;  ///< one decimal; a dash for what is none
+
+ private:
+  const Table& table_;
+  const std::vector<Json>& row_;
+};
+
+}  // namespace mortise

@@ -1,0 +1,71 @@
+#include "client/report/html_page.h"
+
+namespace mortise {
+
+std::string_view report_style() {
+  return R"(
+:root { --ink: #1d2329; --dim: #5b6670; --line: #d5dbe1; --page: #ffffff; --band: #f4f6f8;
+        --real: #b3261e; --potential: #a15c00; --fake: #2e6b3a; }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e4e8ec; --dim: #9aa6b1; --line: #38424b; --page: #14181c; --band: #1c2228;
+          --real: #ff8a80; --potential: #ffb74d; --fake: #81c995; } }
+body { font: 15px/1.45 system-ui, sans-serif; color: var(--ink); background: var(--page);
+       max-width: 76rem; margin: 2rem auto; padding: 0 1.5rem; }
+h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
+p.dim, .dim { color: var(--dim); }
+.cards { display: flex; flex-wrap: wrap; gap: .8rem; }
+.card { border: 1px solid var(--line); border-radius: 6px; padding: .6rem 1rem; min-width: 7rem; }
+.card b { display: block; font-size: 1.6rem; font-weight: 600; }
+table { border-collapse: collapse; width: 100%; font-size: .87rem; }
+th, td { text-align: left; vertical-align: top; padding: .35rem .55rem;
+         border-bottom: 1px solid var(--line); }
+th { background: var(--band); position: sticky; top: 0; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.real { color: var(--real); } .potential { color: var(--potential); } .fake { color: var(--fake); }
+.letter { display: inline-block; width: 1.5em; text-align: center; font-weight: 700;
+          border: 1.5px solid currentColor; }
+.letter.real { border-radius: 0; } .letter.potential { border-radius: 50%; }
+.letter.fake { border-style: dotted; }
+.filters { display: flex; flex-wrap: wrap; gap: 1rem; margin: .6rem 0; }
+.wide svg text { font: 11px system-ui, sans-serif; fill: var(--ink); }
+.wide { overflow-x: auto; }
+figure { margin: 1.2rem 0; break-inside: avoid; }
+figure > svg, figure > img { max-width: 100%; height: auto; border: 1px solid var(--line); background: #fff; }
+figcaption { font-size: .87rem; color: var(--dim); }
+.parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
+tr.now td { font-weight: 700; background: var(--band); }
+td a { color: inherit; }
+@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; --real: #b3261e;
+    --potential: #a15c00; --fake: #2e6b3a; }
+  body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
+  .wide { overflow: visible; } table { font-size: 7.5pt; } .wide > svg { width: 100%; height: auto; }
+  figure > svg { width: 100%; } .parts { grid-template-columns: 1fr 1fr; }
+  th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
+)";
+}
+
+std::string_view report_script() {
+  return R"(
+const rows = [...document.querySelectorAll('#clashes tbody tr')];
+const boxes = [...document.querySelectorAll('.filters input[type=checkbox]')];
+const search = document.getElementById('search'), shown = document.getElementById('shown');
+function filter() {
+  const on = new Set(boxes.filter(b => b.checked).map(b => b.value));
+  const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+  let count = 0;
+  for (const row of rows) {
+    const text = row.textContent.toLowerCase();
+    const keep = on.has(row.dataset.class) && on.has(row.dataset.status) && words.every(w => text.includes(w));
+    row.hidden = !keep;
+    count += keep;
+  }
+  shown.textContent = count + ' of ' + rows.length + ' shown';
+}
+document.querySelector('.filters').hidden = false;
+for (const box of boxes) box.addEventListener('change', filter);
+search.addEventListener('input', filter);
+filter();
+)";
+}
+
+}  // namespace mortise

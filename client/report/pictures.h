@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "client/report/session_tables.h"
+#include "common/io/session_log.h"
+
+namespace mortise {
+
+/// How many pictures a page bears; the worst first. What is left out is counted.
+struct PictureLimits {
+  std::size_t clashes = 60, parts = 24;
+  bool png = false;  ///< each clash as PNG as well
+};
+
+/// Where the worst moment of a clash was, as a point of either part; part frames, mm.
+struct Touch {
+  Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();
+  double size_mm = 0.0;  ///< radius of the smaller part
+};
+
+struct PartPicture {
+  std::string part;
+  std::string png;
+  double deepest_mm = 0.0;
+  std::size_t clashes = 0;
+};
+
+struct Pictures {
+  std::map<std::uint64_t, std::string> of_clash;  ///< section as SVG, by clash
+  std::map<std::uint64_t, std::string> png_of_clash;
+  std::vector<PartPicture> of_part;        ///< by the deepest overlap
+  std::map<std::uint64_t, Touch> touches;  ///< by clash; all of them
+  std::size_t clashes_left_out = 0, parts_left_out = 0;
+  std::string missing;  ///< why there are none, or empty
+};
+
+/// Draws the worst moments of the table of clashes. Poses are those of the log, not computed again
+/// (client/report/moments.h). Cost: loading the scene, one pass, some 10 ms a picture.
+Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureLimits& limits);
+
+}  // namespace mortise

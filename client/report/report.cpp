@@ -1,0 +1,28 @@
+#include "client/report/report.h"
+
+#include "client/report/summary_tables.h"
+
+namespace mortise {
+
+Result<SessionReport> report_of(const SessionLog& log, const ReportWishes& wishes) {
+  auto tables = tables_of(log, wishes.coverage);
+  if (!tables) return tables.error();
+  SessionReport report{log.session, std::move(*tables), {}};
+  const Table& clashes = table_named(report.tables, "clashes");
+  report.pictures = pictures_of(log, clashes, wishes.pictures);
+  std::vector<Table> more{by_face_table(clashes, report.pictures.touches),
+                          tolerance_table(clashes)};
+  more.insert(more.end(), wishes.more.begin(), wishes.more.end());
+  for (Table& table : more) report.tables.push_back(std::move(table));
+  return report;
+}
+
+Result<std::string> report_page(const std::filesystem::path& log) {
+  const auto read = read_session_log(log);
+  if (!read) return read.error();
+  const auto report = report_of(*read);
+  if (!report) return report.error();
+  return html_of(*report);
+}
+
+}  // namespace mortise

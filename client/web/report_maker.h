@@ -1,0 +1,27 @@
+#pragma once
+#include <functional>
+#include <thread>
+
+#include "client/web/stream.h"
+#include "common/base/result.h"
+
+namespace mortise::web {
+
+/// Makes one report at a time, beside the gateway's thread: seconds for a long session.
+class ReportMaker {
+ public:
+  using Make = std::function<Result<std::string>()>;
+  using Done = std::function<void(Result<std::string>)>;
+
+  bool is_busy() const { return busy_; }
+  /// `done` runs where `where` runs what is posted. Not while busy.
+  void start(asio::any_io_executor where, Make make, Done done);
+  /// Waits for the one that is being made.
+  void finish();
+
+ private:
+  std::jthread thread_;
+  bool busy_ = false;  // touched by the gateway's thread only
+};
+
+}  // namespace mortise::web
