@@ -125,8 +125,12 @@ class PartView {
                                                                                       : "F";
       canvas.text(at + Vec2(0.0, 3.2), letter, {9.0, true, color, Canvas::Align::kMiddle});
       if (rank >= kLabels) continue;
-      canvas.text(at + Vec2(radius + 4.0, 4.0), um_text(mark.overlap_mm) + " µm",
-                  {11.0, true, kInk, Canvas::Align::kLeft});
+      const Canvas::Font font{11.0, true, kInk, Canvas::Align::kLeft};
+      const std::string label = um_text(mark.overlap_mm) + " µm";
+      const Vec2 from = at + Vec2(radius + 4.0, 4.0);
+      const double width = canvas.text_width(label, font);
+      canvas.rectangle({from.x() - 2.0, from.y() - 11.0, width + 4.0, 14.0}, {1, 1, 1, 0.75});
+      canvas.text(from, label, font);
     }
   }
 

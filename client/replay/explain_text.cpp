@@ -18,7 +18,7 @@ std::string um(const Json& value) {
 
 std::string range(const Json& interval) {
   const std::string lo = um(interval[0]), hi = um(interval[1]);
-  return lo == hi ? lo + " µm" : lo + " to " + hi + " µm";
+  return lo == hi ? fmt::format("{} µm", lo) : fmt::format("{} to {} µm", lo, hi);
 }
 
 std::string vector(const Json& v, int digits = 3) {
@@ -30,28 +30,36 @@ double length(const Json& v) { return std::hypot(real(v[0]), real(v[1]), real(v[
 
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
+// "seat.bore"; the part alone where the face has no name.
+std::string place(const Json& face) {
+  const std::string name = text(face["face"]);
+  return name.empty() ? text(face["part"]) : fmt::format("{}.{}", text(face["part"]), name);
+}
+
 std::string increments(const Json& chain) {
   std::string out = "1 Increments of this tick\n";
   if (chain["increments"].empty())
-    out += chain["cause"] == "motion"
-               ? "  none for these two parts: they stand, and what is told follows from before\n"
-               : "  none; the decision \"" + text(chain["cause"]) + "\" brought it about\n";
+    out +=
+        chain["cause"] == "motion"
+            ? std::string("  none for these two parts: what is told follows from before\n")
+            : fmt::format("  none; the decision \"{}\" brought it about\n", text(chain["cause"]));
   for (const Json& row : chain["increments"])
-    out += fmt::format("  {} by {}, number {}: {} mm, {} rad{}\n", text(row["part"]),
-                       text(row["user"]), row["seq"].dump(), vector(row["translation_mm"], 4),
-                       vector(row["rotation_rad"], 5),
-                       row["refused"].is_null() ? "" : "; refused: " + text(row["refused"]));
+    out += fmt::format(
+        "  {} by {}, number {}: {} mm, {} rad{}\n", text(row["part"]), text(row["user"]),
+        row["seq"].dump(), vector(row["translation_mm"], 4), vector(row["rotation_rad"], 5),
+        row["refused"].is_null() ? std::string()
+                                 : fmt::format("; refused: {}", text(row["refused"])));
   return out;
 }
 
 std::string motion(const Json& chain) {
-  std::string out = "2 Motion, policy " + text(chain["policy"]) + "\n";
+  std::string out = fmt::format("2 Motion, policy {}\n", text(chain["policy"]));
   for (const Json& part : chain["motion"])
     out += part["moved"].get<bool>()
                ? fmt::format("  {} went {:.4f} mm along {}, turned by {:.5f} rad\n",
                              text(part["part"]), length(part["translation_mm"]),
                              vector(part["translation_mm"], 4), length(part["rotation_rad"]))
-               : "  " + text(part["part"]) + " stayed where it was\n";
+               : fmt::format("  {} stayed where it was\n", text(part["part"]));
   const std::string sentence = text(chain["verdict"]["explanation"]);
   if (sentence.starts_with("stopped at"))
     out += "  what follows is judged where the increments would have led\n";
@@ -81,27 +89,24 @@ std::string region(const Json& chain) {
 
 std::string shapes(const Json& chain) {
   const Json &a = chain["faces"][0], &b = chain["faces"][1];
-  return fmt::format("5 Concave–convex\n  {}{} is {}, {}{} is {}\n", text(a["part"]),
-                     text(a["face"]).empty() ? "" : "." + text(a["face"]), text(a["shape"]),
-                     text(b["part"]), text(b["face"]).empty() ? "" : "." + text(b["face"]),
-                     text(b["shape"]));
+  return fmt::format("5 Concave–convex\n  {} is {}, {} is {}\n", place(a), text(a["shape"]),
+                     place(b), text(b["shape"]));
 }
 
 std::string faces(const Json& chain) {
   std::string out = "6 What the faces stand for";
-  if (!text(chain["fit"]).empty()) out += ", fit " + text(chain["fit"]);
+  if (!text(chain["fit"]).empty()) out += fmt::format(", fit {}", text(chain["fit"]));
   out += "\n";
   for (const Json& face : chain["faces"]) {
-    out += "  " + text(face["part"]) +
-           (text(face["face"]).empty() ? "" : "." + text(face["face"])) + ": ";
-    out += face["has_surface"].get<bool>()
-               ? fmt::format("a surface is known (radius {:.3f} mm)", real(face["radius_mm"]))
-               : std::string("no surface is known");
-    out += fmt::format(
-        "; mesh error {} ({}), tolerance {}{}; outward positive\n", range(face["deviation_mm"]),
-        text(face["mesh_error"]), range(face["tolerance_mm"]),
-        text(face["tolerance_source"]).empty() ? ", nothing declared"
-                                               : " of " + text(face["tolerance_source"]));
+    const std::string surface =
+        face["has_surface"].get<bool>()
+            ? fmt::format("a surface is known (radius {:.3f} mm)", real(face["radius_mm"]))
+            : std::string("no surface is known");
+    const std::string source = text(face["tolerance_source"]);
+    out += fmt::format("  {}: {}; mesh error {} ({}), tolerance {}, {}; outward positive\n",
+                       place(face), surface, range(face["deviation_mm"]), text(face["mesh_error"]),
+                       range(face["tolerance_mm"]),
+                       source.empty() ? "nothing declared" : fmt::format("of {}", source));
   }
   return out;
 }
@@ -123,8 +128,8 @@ std::string verdict(const Json& chain) {
   out += fmt::format("  margin {} µm; generalized penetration depth {}\n", um(v["margin_mm"]),
                      range(v["gpd_mm"]));
   const std::string logged = text(chain["as_logged"]);
-  return out + (logged.empty() ? "  the same as the log tells\n"
-                               : "  the log tells otherwise: " + logged + "\n");
+  return out + (logged.empty() ? std::string("  the same as the log tells\n")
+                               : fmt::format("  the log tells otherwise: {}\n", logged));
 }
 
 std::string history(const Json& chain) {
@@ -141,7 +146,8 @@ std::string history(const Json& chain) {
 std::string explain_text(const Json& chain) {
   return fmt::format("Clash {}: {}, tick {} ({:.2f} s){}\n", chain["clash"].dump(),
                      text(chain["pair"]), chain["tick"].dump(), real(chain["time_s"]),
-                     text(chain["user"]).empty() ? "" : ", by " + text(chain["user"])) +
+                     text(chain["user"]).empty() ? std::string()
+                                                 : fmt::format(", by {}", text(chain["user"]))) +
          increments(chain) + motion(chain) + contact(chain) + region(chain) + shapes(chain) +
          faces(chain) + thresholds(chain) + verdict(chain) + history(chain);
 }

@@ -27,6 +27,10 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
+std::string counted(std::size_t clashes) {
+  return clashes == 1 ? "1 clash" : fmt::format("{} clashes", clashes);
+}
+
 std::string signed_um(double mm) { return fmt::format("{:+.0f}", 1e3 * mm); }
 
 }  // namespace
@@ -96,10 +100,10 @@ std::string part_section(const SessionReport& report) {
         "its class; the deepest three in µm.</p>\n<div class=\"parts\">\n";
     for (const PartPicture& part : pictures.of_part)
       html += fmt::format(
-          "<figure><img alt=\"{0} with {1} clashes, the deepest {2:.1f} µm\" width=\"450\" "
-          "src=\"data:image/png;base64,{3}\"><figcaption>{0}: {1} clashes, at most {2:.1f} µm"
+          "<figure><img alt=\"{0}: {1}, the deepest {2:.1f} µm\" width=\"450\" "
+          "src=\"data:image/png;base64,{3}\"><figcaption>{0}: {1}, at most {2:.1f} µm"
           "</figcaption></figure>\n",
-          escaped(part.part), part.clashes, 1e3 * part.deepest_mm, base64(part.png));
+          escaped(part.part), counted(part.clashes), 1e3 * part.deepest_mm, base64(part.png));
     html += "</div>\n";
     if (pictures.parts_left_out > 0)
       html +=

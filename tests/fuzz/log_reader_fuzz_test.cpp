@@ -13,6 +13,7 @@
 #include "common/io/mcap_reader.h"
 #include "common/io/mcap_writer.h"
 #include "tests/fuzz/mutated.h"
+#include "tests/fuzz/targets.h"
 #include "tests/support/effort.h"
 #include "tests/unit/io/log_samples.h"
 
@@ -100,6 +101,32 @@ TEST(LogReaderFuzz, DecodersWithoutChecksums) {
   const Outcome outcome = run(log, 77, test::effort(2500), false);
   EXPECT_GT(outcome.read, 500u);
   EXPECT_GT(outcome.refused, 50u);
+}
+
+// The target of libFuzzer, here with mutations of our own. MORTISE_CORPUS=FOLDER writes its seeds.
+TEST(LogReaderFuzz, TheTargetHoldsWhatItPromises) {
+  const test::TemporaryFile file("fuzz_small.mcap");
+  std::vector<std::string> seeds;
+  for (const std::uint64_t ticks : {3, 12}) {
+    const LogOptions options{.compress = false, .chunk_bytes = 1024};
+    ASSERT_TRUE(test::write_sample(file.path(), ticks, options));
+    seeds.push_back(without_checksums(bytes_of(file.path())));
+    std::filesystem::remove(file.path());
+  }
+  if (const char* folder = std::getenv("MORTISE_CORPUS"))
+    for (std::size_t i = 0; i < seeds.size(); ++i)
+      std::ofstream(std::string(folder) + "/seed" + std::to_string(i), std::ios::binary)
+          << seeds[i];
+  const auto feed = [](const std::string& bytes) {
+    return test::fuzz_log({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  };
+  std::mt19937_64 random(12);
+  std::size_t read = 0;
+  for (const std::string& seed : seeds) {
+    EXPECT_TRUE(feed(seed));
+    for (int i = 0; i < test::effort(500); ++i) read += feed(test::mutated(seed, random));
+  }
+  EXPECT_GT(read, 100u);
 }
 
 // Shows that the test above notices: a tick that was changed with its checksum made good again is

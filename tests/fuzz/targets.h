@@ -16,6 +16,10 @@ bool fuzz_wire(std::span<const std::uint8_t> input);
 /// A script of what clients send, for the inbox. Says whether an increment was taken.
 bool fuzz_inbox(std::span<const std::uint8_t> input);
 
+/// A session log, as its reader meets it. Seeds have no checksums: they would keep most mutations
+/// out. Says whether it was read.
+bool fuzz_log(std::span<const std::uint8_t> input);
+
 /// Good inputs, made by our own writers: the start of all mutations.
 std::vector<std::string> wire_seeds();
 std::vector<std::string> inbox_seeds();

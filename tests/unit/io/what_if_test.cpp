@@ -83,7 +83,12 @@ TEST(WhatIf, GivesWhatPlayingItGives) {
        {"tolerance base_1 = +-0.2", "tolerance base_2 = +-0.2", "tolerance base_3 = +-0.2",
         "tolerance base_4 = +-0.2", "tolerance overlap_200 = +-0.2", "tolerance overlap_50 = +-0.2",
         "tolerance gap_50 = +-0.2", "tolerance gap_200 = +-0.2"}},
-      {"peg_in_hole", "policy: stop", "policy: report", {"policy = report"}}};
+      {"peg_in_hole", "policy: stop", "policy: report", {"policy = report"}},
+      // The demo: the press fit as one that goes together by hand.
+      {"gearbox",
+       "code: Ø35 H7/p6",
+       "code: Ø35 H7/h6",
+       {"fit cover.seat_out, bearing_out_upper.outer = Ø35 H7/h6"}}};
   for (const Live& live : lives) {
     const auto log = played(live.scenario), other = played(live.scenario, live.from, live.to);
     ASSERT_TRUE(log && other) << live.scenario;
