@@ -211,13 +211,15 @@ class Player {
   }
 
   void join(const Decision& decision) {
-    const LocalUser user =
-        client_.add_user(decision.user_name, std::string(name_of(decision.role)));
+    // Logs of format 1 know no roles.
+    const Role role = decision.role == Role::kUnknown ? Role::kDesigner : decision.role;
+    const LocalUser user = client_.add_user(decision.user_name, std::string(name_of(role)));
     users_[decision.user] = user;
-    if (until([&] { return client_.join_state(user) == JoinState::kJoined; }, options_.wait_s))
-      return;
+    until([&] { return client_.join_state(user) != JoinState::kJoining; }, options_.wait_s);
+    if (client_.join_state(user) == JoinState::kJoined) return;
+    ++outcome_.users_not_let_in;
     note(decision.user_name + " was not let in" +
-         (client_.refusal_text(user).empty() ? "" : ": " + client_.refusal_text(user)));
+         (client_.refusal_text(user).empty() ? std::string() : ": " + client_.refusal_text(user)));
   }
 
   void add(const Increment& increment) {

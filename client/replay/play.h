@@ -23,6 +23,7 @@ struct PlayOutcome {
   std::uint64_t increments = 0;       ///< of the log
   std::uint64_t increments_sent = 0;  ///< fewer when played fast: those of one period are composed
   std::uint64_t increments_refused = 0, commands = 0, commands_refused = 0;
+  std::uint64_t users_not_let_in = 0;
   std::uint64_t not_playable =
       0;                     ///< decisions that the server takes by itself, such as lease ends
   std::uint64_t events = 0;  ///< told while it played

@@ -43,6 +43,7 @@ int run_play(const PlayCommand& command) {
                          {"increments_refused", outcome->increments_refused},
                          {"commands", outcome->commands},
                          {"commands_refused", outcome->commands_refused},
+                         {"users_not_let_in", outcome->users_not_let_in},
                          {"not_playable", outcome->not_playable},
                          {"clash_events", outcome->events},
                          {"notes", outcome->notes}};

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-#include "common/io/scene_load.h"
+#include "common/io/open_scene.h"
 #include "common/messages/memory_channel.h"
 #include "common/session/statistics.h"
 #include "server/tick_loop.h"
@@ -39,13 +39,22 @@ struct Live {
   std::atomic<bool> stopping{false};
   std::thread thread;
 
+  test::TemporaryFile log_file{"play_live.mcap"};
+  std::unique_ptr<SessionLogWriter> log;
+
   bool start(const std::string& name) {
     auto opened = open_scene(scenario(name + ".yaml"));
     if (!opened || !opened->usable()) return false;
     scene = std::move(opened->scene);
     TickLoopOptions options;
     options.session = "play";
-    loop = std::make_unique<TickLoop>(scene.world, *server, clock, nullptr, options);
+    LogHeader header;
+    header.session = "play";
+    header.scenario_yaml = "none";
+    auto writer = SessionLogWriter::create(log_file.path(), header);
+    if (!writer) return false;
+    log = std::move(*writer);
+    loop = std::make_unique<TickLoop>(scene.world, *server, clock, log.get(), options);
     loop->open();
     thread = std::thread([this] { loop->run([this] { return stopping.load(); }, [] {}); });
     return true;
@@ -53,6 +62,7 @@ struct Live {
   void stop() {
     stopping = true;
     if (thread.joinable()) thread.join();
+    if (log) (void)log->close();
   }
   ~Live() { stop(); }
 };
@@ -81,6 +91,8 @@ TEST(Play, TheSameClashesAreFoundAgain) {
     ASSERT_TRUE(outcome) << outcome.error().text;
     EXPECT_EQ(outcome->increments_refused, 0U) << (outcome->notes.empty() ? "" : outcome->notes[0]);
     EXPECT_EQ(outcome->commands_refused, 0U);
+    EXPECT_EQ(outcome->users_not_let_in, 0U);
+    for (const std::string& note : outcome->notes) ADD_FAILURE() << note;
     EXPECT_EQ(outcome->ticks, log->ticks.size());
     EXPECT_GT(outcome->increments_sent, 0U);
     EXPECT_LE(outcome->increments_sent, outcome->increments);
@@ -93,8 +105,11 @@ TEST(Play, TheSameClashesAreFoundAgain) {
     for (const auto& [part, pose] : end)
       EXPECT_LT((live.scene.world.find(part)->X_WP.p - pose.p).norm(), speed > 1.0 ? 0.5 : 0.05)
           << part.value << " at x" << speed;
-    EXPECT_FALSE(worst_of(*log).empty());
     EXPECT_GT(outcome->events, 0U);
+    const auto lived = read_session_log(live.log_file.path());
+    ASSERT_TRUE(lived) << lived.error().text;
+    EXPECT_FALSE(worst_of(*log).empty());
+    EXPECT_EQ(worst_of(*lived), worst_of(*log)) << "at x" << speed;
   }
 }
 

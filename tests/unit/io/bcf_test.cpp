@@ -112,7 +112,7 @@ TEST_F(Bcf, WhatIsWrongIsNotValid) {
   const std::pair<const char*, std::pair<const char*, const char*>> faults[] = {
       {"markup.bcf", {"TopicStatus", "Status"}},
       {"markup.bcf", {"<Title>", "<Title> </Title><Title>"}},
-      {"markup.bcf", {"CreationDate>20", "CreationDate>x"}},
+      {"markup.bcf", {"<CreationDate>", "<CreationDate>x"}},
       {"viewpoint.bcfv", {"AspectRatio", "Aspect"}},
       {"viewpoint.bcfv", {"Guid=\"", "Guid=\"X"}},
       {"bcf.version", {"3.0", "2.1"}},

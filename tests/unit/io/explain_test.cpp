@@ -76,7 +76,8 @@ TEST(Explain, TellsWhereTheIncrementsLedAndWhereThePartWent) {
 }
 
 TEST(Explain, TheProgramSaysWhatItDoesNotHave) {
-  const std::string log = "'" + std::string(MORTISE_SOURCE_DIR) + "/tests/golden/thin_wall.mcap'";
+  const std::string log =
+      std::string("'").append(MORTISE_SOURCE_DIR).append("/tests/golden/thin_wall.mcap'");
   EXPECT_EQ(test::run("mortise-replay", "explain " + log + " 999").exit_code, 3);
   EXPECT_EQ(test::run("mortise-replay", "explain " + log + " 1 --tick 1").exit_code, 3);
   EXPECT_EQ(test::run("mortise-replay", "explain " + log).exit_code, 2);
