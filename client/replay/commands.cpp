@@ -193,9 +193,7 @@ int run_info(const InfoOptions& options) {
     print(document);
     return kExitOk;
   }
-  for (const auto& [key, value] : document.items())
-    std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
-              << '\n';
+  print_lines(document);
   return kExitOk;
 }
 

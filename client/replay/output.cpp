@@ -13,6 +13,12 @@ void print(const Json& document) {
   std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
+void print_lines(const Json& document) {
+  for (const auto& [key, value] : document.items())
+    std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
+              << '\n';
+}
+
 void print_notes(const SessionLog& log) {
   if (!log.complete) std::cerr << "the log was not closed: its tail is missing\n";
   for (const std::string& note : log.notes) std::cerr << note << '\n';

@@ -9,6 +9,8 @@ namespace mortise {
 int say(const Error& error, int exit_code);
 /// One document on stdout.
 void print(const Json& document);
+/// One key and its value a line, on stdout.
+void print_lines(const Json& document);
 /// What a log lacks, on stderr.
 void print_notes(const SessionLog& log);
 

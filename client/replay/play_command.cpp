@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <iostream>
-
 #include "client/replay/commands.h"
 #include "client/replay/output.h"
 #include "client/replay/play.h"
@@ -51,9 +48,7 @@ int run_play(const PlayCommand& command) {
     print(document);
     return kExitOk;
   }
-  for (const auto& [key, value] : document.items())
-    std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
-              << '\n';
+  print_lines(document);
   return kExitOk;
 }
 

@@ -63,4 +63,19 @@ int run_sections(const Options& options, const std::vector<BenchSection<Options>
   return report.all_bars_hold() ? 0 : kFigureNotMet;
 }
 
+/// A benchmark that is asked for no more than that: reads its command line and runs it.
+template <class Options>
+int run_bench(int argc, char** argv, const char* title,
+              const std::vector<BenchSection<Options>>& sections) {
+  Options options;
+  CLI::App app(title);
+  add_bench_options(app, options, sections);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return run_sections(options, sections);
+}
+
 }  // namespace mortise::bench

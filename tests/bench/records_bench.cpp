@@ -36,15 +36,7 @@ int run(int argc, char** argv) {
       {"killed", "logs whose writer was killed", section_killed},
       {"damaged", "logs that were cut short, and logs with a turned bit", section_damaged},
   };
-  RecordsOptions options;
-  CLI::App app("Session logs: size, cost, verification, export, crashes");
-  add_bench_options(app, options, sections);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  return run_sections(options, sections);
+  return run_bench(argc, argv, "Session logs: size, cost, verification, export, crashes", sections);
 }
 
 }  // namespace
