@@ -1,9 +1,22 @@
 #include "client/web/options.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 namespace mortise::web {
 namespace {
+
+/// Where the page lies: in the tree that one stands in, else where it was installed with the
+/// program.
+std::string default_page() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path here = "client/web/page";
+  const fs::path installed =
+      fs::read_symlink("/proc/self/exe", ignored).parent_path() / "../share/mortise/page";
+  if (fs::exists(here, ignored) || !fs::exists(installed, ignored)) return here.string();
+  return installed.lexically_normal().string();
+}
 
 void add_web(CLI::App& app, GatewayOptions& o) {
   app.add_option("--address", o.address, "IPv4 address to listen on; 0.0.0.0: every interface")
@@ -32,6 +45,7 @@ void add_web(CLI::App& app, GatewayOptions& o) {
 WebCommandLine read_web_command_line(int argc, char** argv) {
   WebCommandLine line;
   WebOptions& o = line.options;
+  o.page = default_page();
   CLI::App app{"mortise-web: lets browsers take part in a session, or look at a log of one"};
   auto* session =
       app.add_option("--session", o.session, "Name of the session")->capture_default_str();

@@ -13,8 +13,8 @@ struct WebOptions {
   int discovery_port = 0;
   std::string log;          ///< play this session log instead; empty: a live session
   std::string session_log;  ///< of the live session, for reports; empty: there are none
-  std::string page = "client/web/page";
-  std::string tokens;  ///< file; empty: made for this run
+  std::string page;         ///< folder
+  std::string tokens;       ///< file; empty: made for this run
   GatewayOptions gateway;
   bool quiet = false;
 };
