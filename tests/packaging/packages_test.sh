@@ -117,6 +117,6 @@ ip link set lo up 2>/dev/null || true
 exec chroot "$root" /usr/bin/env -i HOME=/tmp PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive MORTISE_APT="${MORTISE_APT:-}" bash /tmp/packages/inside.sh /tmp/packages "$2"
 MOUNT
 namespaces=(-m -p -f)
-check "installed, used and removed in a root of their own" timeout 300 unshare "${namespaces[@]}" sh "$work/mount.sh" "$work" "$source"
+check "installed, used and removed in a root of their own" timeout ${MORTISE_PATIENCE_S:-300} unshare "${namespaces[@]}" sh "$work/mount.sh" "$work" "$source"
 sed 's/^/       /' "$work/said.txt"
 exit $((failures > 0))
