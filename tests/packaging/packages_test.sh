@@ -42,7 +42,7 @@ fi
 completes() {  # completes WORDS…: what the completion offers for the last word
   PATH="$work/unpacked/usr/bin:$PATH" LD_LIBRARY_PATH='' bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _mortise; printf "%s\n" "${COMPREPLY[@]}"' _ "$work/unpacked/usr/share/bash-completion/completions/mortise-server" "$@"
 }
-offers() { local wanted=$1; shift; completes "$@" | grep -qx -- "$wanted"; }
+offers() { local wanted=$1 said; shift; said=$(completes "$@"); grep -qx -- "$wanted" <<<"$said"; }
 check "completion: options of the server" offers --metrics-port mortise-server --metr
 check "completion: values of an option" offers slide mortise-server --policy s
 check "completion: subcommands" offers verify mortise-replay ver
@@ -83,6 +83,7 @@ web=$!
 # Small roots leave documents out: the example is taken from the package itself.
 dpkg-deb -x "$inside"/libmortise-dev_*.deb /tmp/unpacked
 cp -r /tmp/unpacked/usr/share/doc/libmortise-dev/examples/example /tmp/example
+command -v make >/dev/null || export CMAKE_GENERATOR=Ninja
 cmake -S /tmp/example -B /tmp/example/build -DCMAKE_BUILD_TYPE=Release >/tmp/cmake.txt 2>&1 || { cat /tmp/cmake.txt; exit 1; }
 cmake --build /tmp/example/build >/tmp/cmake.txt 2>&1 || { tail -n 30 /tmp/cmake.txt; exit 1; }
 /tmp/example/build/watch packed $domain >/tmp/parts.txt || { cat /tmp/server.txt; exit 1; }
