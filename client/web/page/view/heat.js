@@ -11,7 +11,7 @@ import { HeatMaterial } from './heat_material.js';
  * @typedef {object} Patch
  * @property {THREE.Mesh} mesh @property {THREE.Mesh | null} behind the same, seen through what covers it
  * @property {Clash} clash @property {number} part @property {number} other @property {string} face
- * @property {string} asked the poses and the clash that were asked for last @property {boolean} waiting @property {number} deepest
+ * @property {string} asked the poses and the clash that were asked for last @property {number} deepest
  */
 
 /** The worst ones have it; a picture of more would say nothing. */
@@ -20,6 +20,8 @@ const POINTS = { one: 24_000, many: 5_000 };
 /** What is no nearer than this share of the part, or than what the clash is deep, needs no figure. */
 const FAR_SHARE = 0.15;
 const BEND_SHARE = 0.03;
+const LEAST_PAUSE_MS = 50;
+const PAUSE_SHARE = 2;
 
 export class Heat {
   on = true;
@@ -30,6 +32,10 @@ export class Heat {
   /** @type {Worker | null} */
   #worker = null;
   #alone = false;
+  /** @type {Set<string>} */
+  #queue = new Set();
+  #busy = false;
+  #began = 0;
   /** @type {() => void} when what is shown has changed */
   onChange = () => {};
 
@@ -107,7 +113,7 @@ export class Heat {
       this.group.add(mesh);
       return mesh;
     };
-    const patch = { ...want, mesh: add(false), behind: this.#alone ? add(true) : null, asked: '', waiting: false, deepest: NaN };
+    const patch = { ...want, mesh: add(false), behind: this.#alone ? add(true) : null, asked: '', deepest: NaN };
     this.#patches.set(key, patch);
     return patch;
   }
@@ -132,23 +138,40 @@ export class Heat {
     }
   }
 
-  /** @param {string} key @param {Patch} patch */
-  async #ask(key, patch) {
-    const { clash } = patch;
+  /** Wants the field of a patch anew where what it was worked out from has changed. @param {string} key @param {Patch} patch */
+  #ask(key, patch) {
     const [part, other] = [patch.part, patch.other].map((id) => this.session.parts.get(id));
     const shown = this.partsView.shown.get(patch.part);
-    if (!part || !other || !shown || patch.waiting) return;
-    patch.mesh.matrixWorld = shown.faces.matrixWorld;
-    if (patch.behind) patch.behind.matrixWorld = shown.faces.matrixWorld;
-    const asked = `${clash.seq} ${part.p} ${part.q} ${other.p} ${other.q}`;
+    if (!part || !other || !shown) return;
+    for (const mesh of [patch.mesh, patch.behind]) if (mesh) mesh.matrixWorld = shown.faces.matrixWorld;
+    const asked = `${patch.clash.seq} ${part.p} ${part.q} ${other.p} ${other.q}`;
     if (asked === patch.asked) return;
-    Object.assign(patch, { asked, waiting: true });
-    const there = await Promise.all([this.#send(part), this.#send(other)]);
-    if (!there.every(Boolean)) {
-      patch.waiting = false;
+    patch.asked = asked;
+    this.#queue.add(key);
+    this.#next();
+  }
+
+  /** One at a time, with pauses: however much moves, the worker leaves most of its core to others. */
+  async #next() {
+    if (this.#busy) return;
+    const [key] = this.#queue;
+    if (key === undefined) return;
+    this.#queue.delete(key);
+    const patch = this.#patches.get(key);
+    const [part, other] = patch ? [patch.part, patch.other].map((id) => this.session.parts.get(id)) : [];
+    if (!patch || !part || !other) {
+      this.#next();
       return;
     }
+    this.#busy = true;
+    const there = await Promise.all([this.#send(part), this.#send(other)]);
+    const { clash } = patch;
     const { from, real, top } = scaleOf(clash);
+    this.#began = performance.now();
+    if (!there.every(Boolean)) {
+      this.#take({ key, field: null });
+      return;
+    }
     this.#work().postMessage({
       key, own: part.mesh, other: other.mesh, ownPose: { p: [...part.p], q: [...part.q] }, otherPose: { p: [...other.p], q: [...other.q] },
       feature: this.session.features.get(part.id)?.find((f) => f.name === patch.face) ?? null,
@@ -178,9 +201,12 @@ export class Heat {
 
   /** @param {{key: string, field: import('../session/overlap_field.js').Field | null}} answer */
   #take({ key, field }) {
+    setTimeout(() => {
+      this.#busy = false;
+      this.#next();
+    }, Math.max(LEAST_PAUSE_MS, PAUSE_SHARE * (performance.now() - this.#began)));
     const patch = this.#patches.get(key);
     if (!patch) return;
-    patch.waiting = false;
     if (field) {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(field.points, 3));
