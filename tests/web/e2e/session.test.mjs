@@ -198,6 +198,37 @@ test('a review in one browser shows in the other', async () => {
   await bob.click('#clash button[aria-label="Close"]');
 });
 
+test('a fit is set and dropped in one browser, and both see the clash judged anew; a pair is left out', async () => {
+  const classed = (of) => Promise.all([ann, bob].map((page) => whenListed(page, 'clashes', `${of}, plate_k6 × peg_k6`)));
+  await bob.click('#tab_rules');
+  await bob.getByLabel('Part', { exact: true }).selectOption({ label: 'plate_k6' });
+  await bob.getByLabel('Feature', { exact: true }).selectOption('bore');
+  await bob.getByLabel('Second part', { exact: true }).selectOption({ label: 'peg_k6' });
+  await bob.getByLabel('Feature of the second part').selectOption('journal');
+  await bob.getByLabel('Value', { exact: true }).fill('H7/nonsense');
+  await bob.click('#rules_panel button:has-text("Set")');
+  await bob.locator('#said .bad').first().waitFor(PATIENCE); // a sentence, and nothing has changed
+  await bob.locator('#rules_panel li', { hasText: 'Nothing was changed' }).waitFor(PATIENCE);
+  await bob.getByLabel('Value', { exact: true }).fill('Ø20 H7/p6');
+  const real = classed('real');
+  await bob.click('#rules_panel button:has-text("Set")');
+  await bob.locator('#rules_panel li', { hasText: 'plate_k6.bore × peg_k6.journal Ø20 H7/p6' }).waitFor(PATIENCE);
+  await real;
+  await bob.getByLabel('Value', { exact: true }).fill('Ø20 H7/k6');
+  const potential = classed('potential');
+  await bob.click('#rules_panel button:has-text("Set")');
+  await potential;
+  await bob.getByLabel('Kind of rule').selectOption('exclude');
+  await bob.getByLabel('Value', { exact: true }).fill('pressed in on purpose');
+  await bob.click('#rules_panel button:has-text("Set")');
+  const out = bob.locator('#rules_panel li', { hasText: 'plate_k6 × peg_k6 left out: pressed in on purpose' });
+  await out.waitFor(PATIENCE);
+  await ann.getByText('bob leaves out plate_k6 × peg_k6').first().waitFor(PATIENCE);
+  await out.getByRole('button').click();
+  await out.waitFor({ ...PATIENCE, state: 'hidden' });
+  await bob.click('#tab_clashes');
+});
+
 test('who comes late sees all; a name is text, whatever it says', async () => {
   const late = await openPage(browser, addresses.designer);
   await joinAs(late, '<img src=x onerror=hacked=1>');

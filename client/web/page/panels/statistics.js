@@ -13,8 +13,8 @@ function table(caption, rows) {
 const microseconds = (us) => (us === undefined || us === null ? '–' : us < 1000 ? `${us.toFixed(0)} µs` : `${(us / 1000).toFixed(2)} ms`);
 const count = (/** @type {number | undefined} */ n) => (n === undefined ? '–' : n.toLocaleString('en'));
 
-/** @param {import('../desk.js').Desk} desk */
-export function makeStatistics({ session, line }) {
+/** @param {import('../desk.js').Desk} desk @param {() => void} shown some tab */
+export function makeStatistics({ session, line }, shown) {
   const panel = byId('statistics_panel');
   panel.classList.add('statistics');
   /** @type {any} */
@@ -59,7 +59,7 @@ export function makeStatistics({ session, line }) {
   });
   session.on('clashes', soon);
 
-  const tabs = ['clashes', 'statistics'];
+  const tabs = ['clashes', 'rules', 'statistics'];
   const show = (/** @type {string} */ name) => {
     for (const tab of tabs) {
       byId(`tab_${tab}`).setAttribute('aria-selected', String(tab === name));
@@ -67,12 +67,13 @@ export function makeStatistics({ session, line }) {
       byId(`${tab}_panel`).hidden = tab !== name;
     }
     refresh();
+    shown();
   };
   for (const tab of tabs) {
     byId(`tab_${tab}`).onclick = () => show(tab);
     byId(`tab_${tab}`).addEventListener('keydown', (event) => {
       if (event.key !== 'ArrowLeft' && event.key !== 'ArrowRight') return;
-      const to = tabs[1 - tabs.indexOf(tab)];
+      const to = tabs[(tabs.indexOf(tab) + (event.key === 'ArrowRight' ? 1 : tabs.length - 1)) % tabs.length];
       show(to);
       byId(`tab_${to}`).focus();
       event.stopPropagation();
