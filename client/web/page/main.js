@@ -44,7 +44,7 @@ const timeline = makeTimeline(session, desk.send);
 const join = makeJoin(session, desk.send);
 makePointer(desk, makeAlign(desk).pick);
 makeKeyboard({
-  grab: hand.toggle, step: hand.stepBy, stepSize: hand.changeStep, tool: toolbar.chooseTool, section: toolbar.toggleSection, cancel: toolbar.cancel,
+  grab: hand.toggle, gather: () => choice.part && choice.gather(choice.part), step: hand.stepBy, stepSize: hand.changeStep, tool: toolbar.chooseTool, section: toolbar.toggleSection, cancel: toolbar.cancel,
   undo: () => toolbar.change('undo'), redo: () => toolbar.change('redo'), ghost: () => choice.setGhost(!choice.ghost), play: timeline.toggle,
   fit: () => desk.showAll(), part: () => desk.showPart(choice.part), from: (side) => desk.showAll(side),
   turnView: (right, up) => camera.turn(right, up), closer: (times) => camera.closer(times),

@@ -155,10 +155,10 @@ test('heat shows how deep each point of a face is, by a field worked out beside 
   await bob.waitForFunction(() => document.getElementById('heat_legend')?.textContent?.includes('As they stand'), undefined, PATIENCE);
   const said = await legend.getAttribute('aria-label');
   assert.match(said, /fake from 0.0 µm to 40.7 µm, potential from 40.7 µm to [\d.]+ µm, real from [\d.]+ µm/);
-  // What the page's own field finds on the faces is what the session says the clash is deep.
+  // What the page's own field finds on the faces is what the session says the clash is deep, as far as its points are apart.
   const deep = Number(/As they stand ([\d.]+) µm deep/.exec(said)?.[1]);
   const bracket = /deepest ([\d.]+) µm(?: … ([\d.]+) µm)?/.exec(said).slice(1).map(Number);
-  assert.ok(deep >= bracket[0] - 0.2 && deep <= (bracket[1] || bracket[0]) + 0.2, said);
+  assert.ok(deep >= bracket[0] - 2 && deep <= (bracket[1] || bracket[0]) + 0.2, said);
   assert.deepEqual(await legend.locator('.zone').allTextContents(), ['F', 'P', 'R']);
   await bob.click('#clash_filters button:has-text("Heat")');
   await legend.waitFor({ ...PATIENCE, state: 'hidden' });
@@ -167,6 +167,31 @@ test('heat shows how deep each point of a face is, by a field worked out beside 
   await bob.locator('#clashes > li[aria-label*="plate_p6 × peg_p6"]').click();
   await bob.waitForFunction(() => document.getElementById('heat_legend')?.textContent?.includes('As they stand'), undefined, PATIENCE);
   await bob.click('#clash button[aria-label="Close"]');
+});
+
+test('two gathered parts are taken in hand together and move as one body', async () => {
+  await choose(bob, 'stray');
+  const stray = await settled(bob);
+  await choose(bob, 'block');
+  const block = await settled(bob);
+  if ((await bob.textContent('#hand button.primary:visible')) === 'Release') await bob.click('#hand button:has-text("Release")');
+  await bob.focus('#canvas');
+  await bob.keyboard.press('m');
+  await bob.locator('#parts > li', { hasText: 'stray' }).click({ modifiers: ['Control'] });
+  await bob.click('#hand button:has-text("Grab 2 parts")');
+  await bob.locator('#hand .quiet', { hasText: 'in your hand' }).waitFor(PATIENCE);
+  await ann.locator('#people > li', { hasText: 'holds 2' }).filter({ hasText: 'bob' }).waitFor(PATIENCE);
+  await moveBy(bob, [0, 0, 4]);
+  const moved = await settled(bob);
+  assert.ok(Math.abs(moved[2] - block[2] - 4) < 1e-3, `block from ${block} to ${moved}`);
+  await choose(ann, 'stray');
+  const along = await settled(ann);
+  assert.ok(along.every((x, i) => Math.abs(x - stray[i] - (i === 2 ? 4 : 0)) < 1e-3), `stray from ${stray} to ${along}`);
+  await bob.click('#hand button:has-text("Release 2 parts")');
+  await bob.locator('#hand .quiet', { hasText: 'free' }).waitFor(PATIENCE);
+  await bob.keyboard.press('m');
+  await bob.locator('#parts > li', { hasText: 'stray' }).click({ modifiers: ['Control'] });
+  assert.equal(await bob.locator('#parts > li.gathered').count(), 0);
 });
 
 test('one looks along with the other', async () => {
@@ -183,19 +208,6 @@ test('one looks along with the other', async () => {
   assert.ok(Math.hypot(last[0][0] - last[1][0], last[0][1] - last[1][1]) < 2, `the same word stands at ${last}`);
   await bob.keyboard.press('0'); // from where one likes: no longer along with her
   await bob.getByLabel('Stop looking along with ann').click(PATIENCE);
-});
-
-test('a review in one browser shows in the other', async () => {
-  await bob.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
-  await bob.getByLabel('Review status').selectOption('approved');
-  await bob.getByLabel('Comment').fill('pressed in by <b>hand</b>');
-  await bob.click('#clash button:has-text("Save")');
-  await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]', { hasText: 'approved' }).waitFor(PATIENCE);
-  await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
-  assert.equal(await ann.getByLabel('Comment').inputValue(), 'pressed in by <b>hand</b>');
-  await ann.getByText('approved by bob').waitFor(PATIENCE);
-  await ann.click('#clash button[aria-label="Close"]');
-  await bob.click('#clash button[aria-label="Close"]');
 });
 
 test('a fit is set and dropped in one browser, and both see the clash judged anew; a pair is left out', async () => {
@@ -227,6 +239,19 @@ test('a fit is set and dropped in one browser, and both see the clash judged ane
   await out.getByRole('button').click();
   await out.waitFor({ ...PATIENCE, state: 'hidden' });
   await bob.click('#tab_clashes');
+});
+
+test('a review in one browser shows in the other', async () => {
+  await bob.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
+  await bob.getByLabel('Review status').selectOption('approved');
+  await bob.getByLabel('Comment').fill('pressed in by <b>hand</b>');
+  await bob.click('#clash button:has-text("Save")');
+  await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]', { hasText: 'approved' }).waitFor(PATIENCE);
+  await ann.locator('#clashes > li[aria-label*="plate_k6 × peg_k6"]').click();
+  assert.equal(await ann.getByLabel('Comment').inputValue(), 'pressed in by <b>hand</b>');
+  await ann.getByText('approved by bob').waitFor(PATIENCE);
+  await ann.click('#clash button[aria-label="Close"]');
+  await bob.click('#clash button[aria-label="Close"]');
 });
 
 test('who comes late sees all; a name is text, whatever it says', async () => {

@@ -49,7 +49,8 @@ export function makeHand({ session, choice, commands, mover }) {
     setText(name, shown.name);
     name.title = shown.name;
     setText(state, !shown.moving ? 'fixed' : mine ? 'in your hand' : shown.holder ? `held by ${session.userName(shown.holder)}` : 'free');
-    setText(/** @type {Element} */ (grab.lastElementChild), mine ? 'Release' : 'Grab');
+    const count = choice.together.length;
+    setText(/** @type {Element} */ (grab.lastElementChild), `${mine ? 'Release' : 'Grab'}${count > 1 ? ` ${count} parts` : ''}`);
     grab.hidden = !session.mayAct || !shown.moving || (shown.holder !== 0 && !mine);
     ask.hidden = !session.mayAct || shown.holder === 0 || mine;
     ask.disabled = asked()?.user === session.me;
@@ -66,7 +67,8 @@ export function makeHand({ session, choice, commands, mover }) {
     if (!shown || !session.mayAct) return;
     const mine = session.isMine(shown);
     if (mine) mover.drop(shown.id);
-    const reply = await commands.ask(mine ? 'release' : 'grab', { part: shown.id });
+    const parts = choice.together;
+    const reply = await commands.ask(mine ? 'release' : 'grab', parts.length > 1 ? { parts } : { part: shown.id });
     if (reply.done && !mine && choice.tool === 'select') choice.chooseTool('move');
     if (reply.done && mine) choice.chooseTool('select');
   }
@@ -107,5 +109,6 @@ export function makeHand({ session, choice, commands, mover }) {
   session.on('poses', poseSoon);
   for (const what of /** @type {const} */ (['scene', 'holder', 'me', 'standing', 'users'])) session.on(what, refresh);
   choice.on('part', refresh);
+  choice.on('group', refresh);
   return { toggle, stepBy, changeStep };
 }

@@ -12,7 +12,7 @@ const plainKey = (key) => (/** @type {KeyboardEvent} */ event) => event.key.toLo
 const withCtrl = (key, shift = false) => (/** @type {KeyboardEvent} */ event) => event.key.toLowerCase() === key && (event.ctrlKey || event.metaKey) && event.shiftKey === shift;
 
 /**
- * @param {Record<'grab' | 'fit' | 'part' | 'section' | 'ghost' | 'undo' | 'redo' | 'cancel' | 'play' | 'nextClash' | 'lastClash', () => unknown>
+ * @param {Record<'grab' | 'gather' | 'fit' | 'part' | 'section' | 'ghost' | 'undo' | 'redo' | 'cancel' | 'play' | 'nextClash' | 'lastClash', () => unknown>
  *   & {tool: (tool: 'select' | 'move' | 'rotate' | 'align') => void, from: (side: string) => void, step: (axis: number, sign: number, turn: boolean) => boolean,
  *      stepSize: (by: number) => void, turnView: (right: number, up: number) => void, closer: (times: number) => void}} act
  */
@@ -20,6 +20,7 @@ export function makeKeyboard(act) {
   /** @type {Binding[]} */
   const bindings = [
     { keys: 'G', text: 'Grab or release the chosen part', is: plainKey('g'), run: act.grab },
+    { keys: 'M', text: 'Gather the chosen part, or leave it: gathered parts are taken in hand as one body (in the list: Ctrl+click)', is: plainKey('m'), run: act.gather },
     { keys: '← → ↑ ↓ PgUp PgDn', text: 'Step of the part in hand along −X +X +Y −Y +Z −Z; with Shift a turn about the axis. Without a part in hand: turn the view', is: (e) => e.key in ARROWS && !e.ctrlKey && !e.altKey, run: arrow },
     { keys: '[ ]', text: 'Smaller, larger steps: 1 µm … 10 mm', is: (e) => e.key === '[' || e.key === ']', run: (e) => act.stepSize(e.key === ']' ? 1 : -1) },
     { keys: 'V T E A', text: 'Select; move, turn by handles; align two features', is: (e) => ['v', 't', 'e', 'a'].some((key) => plainKey(key)(e)), run: tool },

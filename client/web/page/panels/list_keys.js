@@ -2,9 +2,9 @@
 
 /**
  * @param {HTMLElement} list of rows with data-key @param {() => string} chosen @param {(key: string) => void} choose
- * @param {(key: string) => void} [open] Enter, or a double click
+ * @param {(key: string) => void} [open] Enter, or a double click @param {(key: string) => void} [gather] a click with Ctrl
  */
-export function walkable(list, chosen, choose, open) {
+export function walkable(list, chosen, choose, open, gather) {
   const rows = () => /** @type {HTMLElement[]} */ ([...list.children]).filter((row) => row.dataset.key);
   list.addEventListener('keydown', (event) => {
     if (event.target !== list) return;
@@ -24,7 +24,8 @@ export function walkable(list, chosen, choose, open) {
   list.addEventListener('click', (event) => {
     if (/** @type {Element} */ (event.target).closest('button')) return;
     const key = keyOf(event);
-    if (key) choose(key);
+    if (key && gather && (event.ctrlKey || event.metaKey)) gather(key);
+    else if (key) choose(key);
   });
   list.addEventListener('dblclick', (event) => {
     const key = keyOf(event);

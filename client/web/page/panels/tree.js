@@ -51,7 +51,8 @@ export function makeTree({ session, choice, partsView, showPart }) {
       marks.dataset.worst = worst;
       marks.replaceChildren(...(rankOf(worst) ? [classMark(worst)] : []));
     }
-    const words = [part.name, part.moving ? 'moving' : 'fixed', part.holder ? `held by ${holder}` : '', rankOf(worst) ? `${worst} clash` : ''];
+    const words = [part.name, part.moving ? 'moving' : 'fixed', part.holder ? `held by ${holder}` : '', rankOf(worst) ? `${worst} clash` : '', choice.group.has(part.id) ? 'gathered' : ''];
+    row.classList.toggle('gathered', choice.group.has(part.id));
     const label = words.filter(Boolean).join(', ');
     if (row.getAttribute('aria-label') !== label) row.setAttribute('aria-label', label);
   }
@@ -66,7 +67,7 @@ export function makeTree({ session, choice, partsView, showPart }) {
   }
 
   const soon = seldom(refresh, 80);
-  walkable(list, () => `${choice.part}`, (key) => choice.choosePart(Number(key)), (key) => showPart(Number(key)));
+  walkable(list, () => `${choice.part}`, (key) => choice.choosePart(Number(key)), (key) => showPart(Number(key)), (key) => choice.gather(Number(key)));
   search.addEventListener('input', refresh);
   filter.addEventListener('change', refresh);
   session.on('scene', () => {
@@ -77,6 +78,7 @@ export function makeTree({ session, choice, partsView, showPart }) {
   session.on('clashes', soon);
   session.on('me', soon);
   session.on('users', soon);
+  choice.on('group', refresh);
   choice.on('part', (part) => markChosen(list, `${part}`, true));
   // Class bits come with poses, many times a second.
   const classes = seldom(refresh, 400);

@@ -9,7 +9,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
     const pair = clash && !clash.ended ? [clash.a, clash.b] : null;
     partsView.setLooks((part) => {
       if (pair) return pair.includes(part.id) ? 'plain' : 'ghost';
-      if (part.id === choice.part) return 'chosen';
+      if (choice.together.includes(part.id)) return 'chosen';
       return choice.ghost && choice.part ? 'ghost' : 'plain';
     });
   }
@@ -28,6 +28,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
 
   session.on('scene', async () => {
     if (!session.parts.has(choice.part)) choice.choosePart(0);
+    for (const id of [...choice.group]) if (!session.parts.has(id)) choice.gather(id);
     if (!session.clashes.has(choice.clash)) choice.chooseClash(0);
     handles.attach(null, 'translate');
     await partsView.setParts(session.parts.values());
@@ -60,6 +61,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
   });
   choice.on('tool', hand);
   choice.on('ghost', looks);
+  choice.on('group', looks);
   choice.on('clash', (clash) => {
     looks();
     showMarks();
