@@ -284,6 +284,20 @@ class Search {
   bool started_ = false;
 };
 
+// The corner of a triangle that just reaches into the other part is found at once, by halves late.
+bool corner_is_above(const RootQuery& query, const Piece& piece, RootAnswer& answer,
+                     std::uint64_t& evaluations) {
+  for (const Vec3& corner : piece.corners) {
+    const Sample sample = sample_at(*query.pair, query.layer, query.role, query.triangle, corner);
+    ++evaluations;
+    if (sample.depth_mm > answer.best.depth_mm) answer.best = sample;
+    if (sample.depth_mm <= query.limit_mm) continue;
+    answer.state = RootState::kAbove;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t triangle,
@@ -322,6 +336,7 @@ RootAnswer ask_root(const RootQuery& query, SearchScratch& scratch, std::uint64_
     const DepthProof proof = proof_for(pair, query.layer, query.known, query.role, piece.triangle,
                                        looked.sample.at, query.limit_mm);
     if (depth_at_most(proof, looked.patch, scratch.proof)) continue;
+    if (work == 0 && corner_is_above(query, piece, answer, evaluations)) return answer;
     for (const Piece& half : split(pair.s(query.role), query.layer, piece)) stack[top++] = half;
   }
   answer.state = RootState::kBelow;
