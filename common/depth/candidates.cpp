@@ -305,6 +305,24 @@ InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint
   return in_bore_bound(query, pair.X_KS[0]);
 }
 
+Candidates find_candidates(const CandidateQuery& query) { return Finder(query).run(); }
+
+namespace {
+
+KnownOverlaps::Row row_of(const PairFrame& pair, const KnownFacePair& known, bool told) {
+  KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
+  row.told = told;
+  const Surface& a = *pair.bodies[0].band->faces[known.face[0]].surface;
+  if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.near_hi_mm)) {
+    // Between its ends the inside of a cone is the hull of its end circles, over which the convex
+    // distance is no larger than on them.
+    const int convex = a.inward ? 1 : 0;
+    row.within_mm = known.overlap.near_hi_mm;
+    row.within_extent_mm = pair.bodies[convex].extent_of(known.face[convex]);
+  }
+  return row;
+}
+
 void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known) {
   if (pair.trivial) return;
   const auto& faces_a = pair.bodies[0].band->faces;
@@ -330,6 +348,17 @@ void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known) {
     }
 }
 
-Candidates find_candidates(const CandidateQuery& query) { return Finder(query).run(); }
+}  // namespace
+
+KnownOverlaps known_overlaps(const PairFrame& pair, const Candidates& candidates) {
+  KnownOverlaps known;
+  for (const KnownFacePair& face_pair : candidates.known)
+    known.rows.push_back(row_of(pair, face_pair, true));
+  for (const KnownFacePair& face_pair : candidates.bounded)
+    known.rows.push_back(row_of(pair, face_pair, false));
+  add_in_bore_rows(pair, known);
+  known.X_BA = pair.X_KS[0];
+  return known;
+}
 
 }  // namespace mortise

@@ -48,13 +48,13 @@ bool is_tight(const PairFrame& frame, const KnownFacePair& pair);
 InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint16_t face_b,
                           double margin_mm);
 
-/// Adds what is known of round faces in bores that cannot interfere in the upper layer, and fills
-/// in `within_mm` of rows that are there.
-void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known);
-
 /// Triangles of either part that are within the margin of the other part's boxes and planes: a
 /// superset of those within the margin. Pairs of declared faces with a closed form that is tight,
 /// or that shows that they cannot interfere, are not descended into.
 Candidates find_candidates(const CandidateQuery& query);
+
+/// What the closed forms of the candidates say, for proofs, and what is known of round faces in
+/// bores that cannot interfere in the upper layer.
+KnownOverlaps known_overlaps(const PairFrame& pair, const Candidates& candidates);
 
 }  // namespace mortise

@@ -35,7 +35,7 @@ class Overlap {
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
     const Candidates candidates = find_candidates(near);
-    find_known(candidates);
+    known_ = known_overlaps(pair_, candidates);
     for (const KnownFacePair& known : candidates.known)
       if (!told_by_another(known, candidates)) add_known(known);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
@@ -65,27 +65,6 @@ class Overlap {
           (other.face[0] == known.face[0] || other.face[1] == known.face[1]))
         return true;
     return false;
-  }
-
-  void find_known(const Candidates& candidates) {
-    for (const KnownFacePair& known : candidates.known) add_row(known, true);
-    for (const KnownFacePair& known : candidates.bounded) add_row(known, false);
-    add_in_bore_rows(pair_, known_);
-    known_.X_BA = pair_.X_KS[0];
-  }
-
-  void add_row(const KnownFacePair& known, bool told) {
-    KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
-    row.told = told;
-    const Surface& a = *pair_.bodies[0].band->faces[known.face[0]].surface;
-    if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.near_hi_mm)) {
-      // Between its ends the inside of a cone is the hull of its end circles, over which the convex
-      // distance is no larger than on them.
-      const int convex = a.inward ? 1 : 0;
-      row.within_mm = known.overlap.near_hi_mm;
-      row.within_extent_mm = pair_.bodies[convex].extent_of(known.face[convex]);
-    }
-    known_.rows.push_back(row);
   }
 
   std::uint64_t work_left() const {

@@ -340,9 +340,11 @@ class Neighbourhood {
 }  // namespace
 
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch) {
-  if (proof.k->depth_in(patch.center, proof.at_center, proof.layer) >
-      proof.limit_mm + proof.rounding_mm)
+  const double most = proof.limit_mm + proof.rounding_mm;
+  // depth_in may say too little; this deep inside the mesh no offset reaches.
+  if (proof.at_center.depth_mm - proof.k->largest_offset_mm[static_cast<int>(proof.layer)] > most)
     return false;
+  if (proof.k->depth_in(patch.center, proof.at_center, proof.layer) > most) return false;
   return Neighbourhood(proof, patch, scratch).holds_off();
 }
 

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "common/depth/candidates.h"
 #include "common/depth/overlap.h"
 #include "common/depth/search.h"
 #include "common/evaluation/band.h"
@@ -171,6 +172,111 @@ TEST(LayerBound, NoPointOfARealSurfaceIsDeeperThanTheBrackets) {
               deep[0], bounded[0], deep[1], bounded[1], deep[2], bounded[2]);
   EXPECT_GT(deep[1], 20);
   EXPECT_GT(bounded[2], 20);
+}
+
+// Where a sharp neighbour moves inward, a point beyond is taken back: it is none of this piece.
+bool is_over(const PairFrame& pair, Layer layer, const Sample& at, const Vec3& x) {
+  const Body& s = pair.s(at.role);
+  const SurfaceBand::Face& face = s.face(at.triangle);
+  const Surface* surface = Body::surface_of(face, layer);
+  const Vec3 n = surface != nullptr ? surface->outward_normal(x) : s.normal(at.triangle);
+  const double above = surface != nullptr ? surface->signed_distance_mm(x) : 0.0;
+  const Vec3 over = x + (Body::offset_of(face, layer) - above) * n;
+  return (pair.X_KS[at.role] * over - at.point_K).norm() < 1e-9;
+}
+
+// A piece of a triangle of S and the deepest of its points in K that was found.
+struct Probe {
+  Piece piece;
+  Patch patch;
+  SurfacePoint at_center;
+  double deepest_mm = -1e9;
+};
+
+std::optional<Probe> draw_probe(const PairFrame& pair, Layer layer, int role, Draw& draw) {
+  const Body& s = pair.s(role);
+  const auto t = static_cast<std::uint32_t>(draw.up_to(static_cast<int>(s.mesh->triangles.size())));
+  Probe probe;
+  probe.piece = {{s.mesh->corner(t, 0), s.mesh->corner(t, 1), s.mesh->corner(t, 2)}, t};
+  for (int i = draw.up_to(12); i > 0; --i)
+    probe.piece = split(s, layer, probe.piece)[static_cast<std::size_t>(draw.up_to(2))];
+  probe.patch = make_patch(s, layer, probe.piece, pair.X_KS[role]);
+  if (probe.patch.count == 0) return std::nullopt;
+  probe.at_center = nearest_surface(*pair.k(role).solid, probe.patch.center);
+  if (std::fabs(probe.at_center.depth_mm) > probe.patch.radius_mm + 1.0) return std::nullopt;
+  const std::array<Vec3, 3>& c = probe.piece.corners;
+  for (int i = 0; i < 24; ++i) {
+    double u = draw.in(0.0, 1.0), v = draw.in(0.0, 1.0);
+    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+    if (i < 12) v = 0.0;
+    const std::size_t k = static_cast<std::size_t>(i % 3);
+    const Vec3 x = c[k] + u * (c[(k + 1) % 3] - c[k]) + v * (c[(k + 2) % 3] - c[k]);
+    const Sample at = sample_at(pair, layer, role, t, x);
+    if (at.depth_mm > probe.deepest_mm && is_over(pair, layer, at, x) &&
+        is_of_part(pair, layer, at))
+      probe.deepest_mm = at.depth_mm;
+  }
+  return probe;
+}
+
+DepthProof proof_of(const PairFrame& pair, Layer layer, int role, const Probe& probe,
+                    const KnownOverlaps& known) {
+  DepthProof proof;
+  proof.known = layer == Layer::kMesh ? nullptr : &known;
+  proof.role = role;
+  proof.s = &pair.s(role);
+  proof.k = &pair.k(role);
+  proof.triangle_s = probe.piece.triangle;
+  proof.layer = layer;
+  proof.at_center = probe.at_center;
+  proof.rounding_mm = pair.rounding_mm;
+  return proof;
+}
+
+// Each proof by itself: of a piece of which a point lies deeper than the limit nothing may be
+// proven.
+TEST(LayerBound, NothingIsProvenBelowAPoint) {
+  Draw draw(20262);
+  ProofScratch scratch;
+  int wrong = 0, asked = 0, proven = 0;
+  for (int i = 0; i < test::effort(400); ++i) {
+    const double largest_mm = draw.in(0.005, 0.2);
+    const Pair drawn = draw_pair(draw, largest_mm);
+    const Stated a = state(drawn.a, largest_mm, draw), b = state(drawn.b, largest_mm, draw);
+    OverlapQuery query;
+    query.a = a.part.solid.get();
+    query.b = b.part.solid.get();
+    query.band_a = &a.band;
+    query.band_b = &b.band;
+    query.X_WA = drawn.X_BA;
+    const PairFrame pair(query);
+    const KnownOverlaps known =
+        known_overlaps(pair, find_candidates({&pair, pair.near_mm, false, false, nullptr}));
+    for (int j = 0; j < 400; ++j) {
+      const Layer layer = std::array{Layer::kMesh, Layer::kLower, Layer::kUpper}[j % 3];
+      const int role = draw.up_to(2);
+      const auto probe = draw_probe(pair, layer, role, draw);
+      if (!probe || probe->deepest_mm < pair.touch_mm) continue;
+      DepthProof proof = proof_of(pair, layer, role, *probe, known);
+      for (const double below_mm : {2e-6, 1e-3, 0.1}) {
+        // Outside, a depth is known by its sign only.
+        proof.limit_mm = probe->deepest_mm - below_mm;
+        if (proof.limit_mm < pair.touch_mm) continue;
+        ++asked;
+        if (!depth_at_most(proof, probe->patch, scratch)) continue;
+        if (++wrong <= 5)
+          ADD_FAILURE() << "case " << i << ", probe " << j << ", layer " << static_cast<int>(layer)
+                        << ": " << probe->deepest_mm << " mm deep, proven " << proof.limit_mm;
+      }
+      proof.limit_mm = probe->deepest_mm + 0.2 * largest_mm + probe->patch.thickness();
+      proven += depth_at_most(proof, probe->patch, scratch);
+    }
+  }
+  std::printf("%d claims that are wrong, %d of true ones proven, %d wrong ones\n", asked, proven,
+              wrong);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(asked, 1000);
+  EXPECT_GT(proven, 1000);
 }
 
 }  // namespace
