@@ -130,7 +130,13 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       const Vec3 normal_t = normal(t);
       if (normal_t.dot(n) > std::cos(kSharpEdge_rad) || normal_t.isZero(0.0)) continue;
       // However few triangles stand for it, a declared surface is smooth.
-      if (face_index(t) == face_index(triangle) && surface_of(face(t), Layer::kUpper) != nullptr)
+      const Surface* own = surface_of(face(triangle), Layer::kUpper);
+      const Surface* other = surface_of(face(t), Layer::kUpper);
+      if (face_index(t) == face_index(triangle) && own != nullptr) continue;
+      // Nor is one sharp towards another that goes on from it.
+      const Vec3& x = mesh->points_mm[point];
+      if (own != nullptr && other != nullptr &&
+          own->outward_normal(x).dot(other->outward_normal(x)) > std::cos(kSharpEdge_rad))
         continue;
       if (sharp.size() - first < kMostSharp && bounds(t, normal_t) && !known(t, normal_t))
         sharp.push_back(t);

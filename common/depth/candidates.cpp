@@ -312,6 +312,13 @@ namespace {
 KnownOverlaps::Row row_of(const PairFrame& pair, const KnownFacePair& known, bool told) {
   KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
   row.told = told;
+  for (int i = 0; i < 2; ++i) {
+    const Surface& surface = *pair.bodies[i].band->faces[known.face[i]].surface;
+    if (surface.kind == SurfaceKind::kSphere && !surface.inward) continue;  // all of the ball
+    const FaceExtent extent = extent_of(pair.bodies[i], known.face[i], surface);
+    row.holds_along_mm[i] = {extent.lo_mm - extent.beyond_mm[0] - pair.near_mm,
+                             extent.hi_mm + extent.beyond_mm[1] + pair.near_mm};
+  }
   const Surface& a = *pair.bodies[0].band->faces[known.face[0]].surface;
   if (a.kind == SurfaceKind::kCone && std::isfinite(known.overlap.near_hi_mm)) {
     // Between its ends the inside of a cone is the hull of its end circles, over which the convex
@@ -336,15 +343,19 @@ void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known) {
       });
       if (row != known.rows.end()) {
         row->within_mm = bound.within_mm;
+        row->along_mm = bound.along_mm;
         continue;
       }
       const double upper =
           Body::offset_of(faces_a[i], Layer::kUpper) + Body::offset_of(faces_b[j], Layer::kUpper);
-      if (bound.face_mm + upper <= pair.touch_mm)
-        known.rows.push_back({.face = {i, j},
-                              .overlap_mm = bound.face_mm,
-                              .within_mm = bound.within_mm,
-                              .told = false});
+      if (bound.face_mm + upper > pair.touch_mm) continue;
+      KnownOverlaps::Row found{.face = {i, j}, .overlap_mm = bound.face_mm};
+      found.within_mm = bound.within_mm;
+      found.along_mm = bound.along_mm;
+      found.holds_along_mm[0] = bound.holds_along_mm[0];
+      found.holds_along_mm[1] = bound.holds_along_mm[1];
+      found.told = false;
+      known.rows.push_back(found);
     }
 }
 

@@ -166,7 +166,12 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
     if (!face || !wall) return std::nullopt;
     const double beyond = std::max(of_hollow.beyond_mm[0], of_hollow.beyond_mm[1]);
     const auto reach = round_reach(*face, *wall, beyond, kRoundAccuracy_mm);
-    const auto near = round_reach(*face, *wall, margin_mm + beyond, kRoundAccuracy_mm);
+    // As far beyond its own ends the convex face counts as near, too; a cone to its apex at most.
+    RoundFace more = *face;
+    more.extent_mm.lo -= margin_mm + along.beyond_mm[0];
+    more.extent_mm.hi += margin_mm + along.beyond_mm[1];
+    if (a.kind == SurfaceKind::kCone) more.extent_mm.lo = std::max(0.0, more.extent_mm.lo);
+    const auto near = round_reach(more, *wall, margin_mm + beyond, kRoundAccuracy_mm);
     if (!reach || !near || !std::isfinite(near->reach_mm.hi)) return std::nullopt;
     found = FacePairOverlap{reach->reach_mm.lo, reach->reach_mm.hi, near->reach_mm.hi, reach->point,
                             -reach->outward};
@@ -201,12 +206,19 @@ InBoreBound in_bore_bound(const InBoreQuery& query, const Pose& X_BA) {
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
   if (surface.kind == SurfaceKind::kCylinder) {
     // The circles around the axis that may be near the bore, wherever the face ends.
-    const double beyond = query.margin_mm + surface.radius_mm * tilt;
+    const auto& [below, above] = bore_extent.beyond_mm;
+    const double beyond = query.margin_mm + std::max(below, above) + surface.radius_mm * tilt;
     const double z0 = (round.point - bore.point).dot(bore.direction);
     double farthest = 0.0;
     for (const double z : {bore_extent.lo_mm - beyond, bore_extent.hi_mm + beyond})
       farthest = std::max(farthest, bore.across(round.at((z - z0) / slope)).norm());
     bound.face_mm = bound.within_mm = farthest + surface.radius_mm - bore_radius;
+    bound.holds_along_mm[a.inward ? 0 : 1] = {bore_extent.lo_mm - below - query.margin_mm,
+                                              bore_extent.hi_mm + above + query.margin_mm};
+    double at_ends = 0.0;
+    for (const double z : {extent.lo_mm - extent.beyond_mm[0], extent.hi_mm + extent.beyond_mm[1]})
+      at_ends = std::max(at_ends, bore.across(round.at(z)).norm());
+    bound.along_mm = at_ends + surface.radius_mm - bore_radius;
     return bound;
   }
   if (!(extent.lo_mm >= 0.0)) return bound;
@@ -217,6 +229,8 @@ InBoreBound in_bore_bound(const InBoreQuery& query, const Pose& X_BA) {
         std::max(bound.face_mm, bore.across(round.at(z)).norm() + z * widening - bore_radius);
   bound.face_mm += query.most_inward_mm * (1.0 - std::cos(surface.half_angle_rad) +
                                            tilt * std::sin(surface.half_angle_rad));
+  bound.along_mm = bound.face_mm;
+  bound.holds_along_mm[a.inward ? 1 : 0] = {extent.lo_mm, extent.hi_mm};
   return bound;
 }
 

@@ -9,6 +9,9 @@
 
 namespace mortise {
 
+inline constexpr Interval kEverywhere_mm{-std::numeric_limits<double>::infinity(),
+                                         std::numeric_limits<double>::infinity()};
+
 /// Extent of a face along the axis of its surface, from `point`, mm.
 struct FaceExtent {
   double lo_mm = 0.0, hi_mm = 0.0;
@@ -64,6 +67,11 @@ std::optional<BeyondSocket> beyond_socket(const Surface& ball, const Surface& so
 struct InBoreBound {
   double face_mm = std::numeric_limits<double>::infinity();
   double within_mm = std::numeric_limits<double>::infinity();
+  /// As face_mm, beyond the wall continued beyond the bore's ends.
+  double along_mm = std::numeric_limits<double>::infinity();
+  /// Between these heights along the axis of a's and of b's surface the bounds hold for the surface
+  /// continued, too.
+  Interval holds_along_mm[2] = {kEverywhere_mm, kEverywhere_mm};
 };
 struct InBoreQuery {
   const Surface* a = nullptr;

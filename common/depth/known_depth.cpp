@@ -93,27 +93,57 @@ bool keeps_within(const DepthProof& proof, const Patch& patch, const KnownOverla
   return true;
 }
 
+// Does the row speak of K's surface wherever the patch is?
+bool holds_along(const DepthProof& proof, const Patch& patch, const KnownOverlaps::Row& row) {
+  const Interval& along = row.holds_along_mm[1 - proof.role];
+  if (!std::isfinite(along.lo)) return true;
+  const Surface& of_k = *proof.k->band->faces[row.face[1 - proof.role]].surface;
+  const double more = patch.thickness() + proof.rounding_mm;
+  for (int i = 0; i < patch.count; ++i) {
+    const double z = (patch.points[i] - of_k.point).dot(of_k.axis);
+    if (z < along.lo + more || z > along.hi - more) return false;
+  }
+  return true;
+}
+
+// What one face of S, which the patch is of or ends on, is known to keep to.
+KnownDepth depth_by_row(const DepthProof& proof, const Patch& patch, const KnownOverlaps::Row& row,
+                        bool itself, double limit_mm) {
+  KnownDepth known{kInfinity, kInfinity};
+  const bool convex = !proof.s->band->faces[row.face[proof.role]].surface->inward;
+  if (itself) known.face_mm = row.overlap_mm;
+  if (std::isfinite(row.within_mm) && keeps_within(proof, patch, row)) {
+    known.face_mm = std::min(known.face_mm, row.within_mm);
+    // A shaft is bounded wherever its face ends.
+    if (!convex && !std::isfinite(row.within_extent_mm.lo)) known.continued_mm = row.within_mm;
+  }
+  if (itself && convex) known.continued_mm = std::min(known.continued_mm, row.along_mm);
+  if (known.face_mm < known.continued_mm && holds_along(proof, patch, row))
+    known.continued_mm = known.face_mm;
+  if (known.continued_mm > limit_mm)
+    known.continued_mm = std::min(known.continued_mm, within_here(proof, patch, row));
+  known.face_mm = std::min(known.face_mm, known.continued_mm);
+  return known;
+}
+
 }  // namespace
 
-double known_depth_mm(const DepthProof& proof, const Patch& patch, std::uint32_t triangle_k) {
+KnownDepth known_depth(const DepthProof& proof, const Patch& patch, std::uint32_t triangle_k) {
   const Body& s = *proof.s;
   const std::uint16_t face_k = proof.k->face_index(triangle_k);
   const double offset_k = Body::offset_of(proof.k->face(triangle_k), proof.layer);
-  double least = kInfinity;
+  KnownDepth least{kInfinity, kInfinity};
   const auto bound = [&](std::uint32_t t, bool itself) {
     const KnownOverlaps::Row* row = proof.known->find(proof.role, s.face_index(t), face_k);
     if (row == nullptr) return;
-    const bool within = std::isfinite(row->within_mm) && keeps_within(proof, patch, *row);
-    double overlap =
-        std::min(itself ? row->overlap_mm : kInfinity, within ? row->within_mm : kInfinity);
-    const double offset = Body::offset_of(s.face(t), proof.layer);
-    if (overlap + offset + offset_k > proof.limit_mm)
-      overlap = std::min(overlap, within_here(proof, patch, *row));
-    least = std::min(least, overlap + offset);
+    const double offsets = offset_k + Body::offset_of(s.face(t), proof.layer);
+    const KnownDepth by_row = depth_by_row(proof, patch, *row, itself, proof.limit_mm - offsets);
+    least.face_mm = std::min(least.face_mm, by_row.face_mm + offsets);
+    least.continued_mm = std::min(least.continued_mm, by_row.continued_mm + offsets);
   };
   bound(proof.triangle_s, true);
   for (const std::uint32_t t : s.sharp_neighbours(proof.triangle_s)) bound(t, false);
-  return least + offset_k;
+  return least;
 }
 
 const KnownOverlaps::Row* KnownOverlaps::find(int role, std::uint16_t face_s,

@@ -4,10 +4,15 @@
 
 namespace mortise {
 
-/// No point of the patch lies deeper than this below the layer of K's face that has the triangle,
-/// mm, by the closed forms that the proof knows; infinity where none speaks of it. What holds for a
-/// declared face of S holds for its sharp neighbours too, which end on it: no point of theirs is
-/// outside of it.
-double known_depth_mm(const DepthProof& proof, const Patch& patch, std::uint32_t triangle_k);
+/// By the closed forms that a proof knows, no point of a patch lies deeper below the layer of a
+/// face of K than this, mm; infinity where none speaks of it.
+struct KnownDepth {
+  double face_mm;       ///< below the face between its ends
+  double continued_mm;  ///< below its surface, continued as far as the patch goes; >= face_mm
+};
+
+/// Of K's face that has the triangle. What holds for a declared face of S holds for its sharp
+/// neighbours too, which end on it: no point of theirs is outside of it.
+KnownDepth known_depth(const DepthProof& proof, const Patch& patch, std::uint32_t triangle_k);
 
 }  // namespace mortise

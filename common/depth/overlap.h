@@ -23,8 +23,8 @@ struct OverlapQuery {
   double accuracy_mm = kDepthAccuracyDefault_mm;
   /// False: only certain_mm and possible_mm are wanted; delta_mm may be wide.
   bool want_delta = true;
-  /// True: what is not certain is proven not to be, as far as work_cap goes. Else, under kDecided, a
-  /// glance at it may do, and the class is potential.
+  /// True: what is not certain is proven not to be, as far as work_cap goes. Else, under kDecided,
+  /// a glance at it may do, and the class is potential.
   bool prove_not_certain = false;
   std::uint64_t work_cap =
       200'000;  ///< branch-and-bound evaluations; on the cap brackets stay wide, never wrong

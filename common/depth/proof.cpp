@@ -109,12 +109,16 @@ class Neighbourhood {
     const SurfaceBand::Face& face = k_.face(t);
     facet.surface = Body::surface_of(face, proof_.layer);
     facet.offset_mm = Body::offset_of(face, proof_.layer);
-    const double depth = depth_below(facet, c);
+    const KnownDepth depth = depth_below(facet, c);
     if (facet.normal.isZero(0.0)) return true;  // without area: its neighbours are asked
     // The depth below a declared surface is a distance already: by itself it needs no direction.
     const bool moved = proof_.limit_mm > 0.0 && facet.surface == nullptr;
     const double along = moved ? facet.normal.dot(up_) : 1.0;
-    facet.slack_mm = proof_.limit_mm * along - depth;
+    facet.slack_mm = proof_.limit_mm * along - depth.continued_mm;
+    if (facet.slack_mm < -proof_.rounding_mm && depth.face_mm < depth.continued_mm) {
+      facet.covers = false;
+      facet.slack_mm = proof_.limit_mm * along - depth.face_mm;
+    }
     if (facet.slack_mm >= -proof_.rounding_mm) {
       if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);
       return true;
@@ -125,7 +129,16 @@ class Neighbourhood {
   }
 
   // Largest depth of the patch below a facet; sets its normal and point.
-  double depth_below(Facet& facet, const Corners& c) const {
+  KnownDepth depth_below(Facet& facet, const Corners& c) const {
+    const double deepest = depth_below_surface(facet, c);
+    if (facet.surface == nullptr || proof_.known == nullptr || proof_.known->rows.empty())
+      return {deepest, deepest};
+    const KnownDepth known = known_depth(proof_, patch_, facet.triangle);
+    return {std::min(deepest, known.face_mm), std::min(deepest, known.continued_mm)};
+  }
+
+  // By where the patch is and the facet's surface continued.
+  double depth_below_surface(Facet& facet, const Corners& c) const {
     if (facet.surface == nullptr) {
       const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
       const double length = n.norm();
@@ -148,9 +161,7 @@ class Neighbourhood {
       if (deepest + facet.offset_mm > std::min(0.0, proof_.limit_mm))
         deepest = std::min(deepest, depth_below_facing_tangent(surface));
     }
-    deepest += facet.offset_mm;
-    if (proof_.known == nullptr || proof_.known->rows.empty()) return deepest;
-    return std::min(deepest, known_depth_mm(proof_, patch_, facet.triangle));
+    return deepest + facet.offset_mm;
   }
 
   // The tangent plane where the hull of the patch comes nearest to the axis: for a flat patch that
@@ -190,6 +201,8 @@ class Neighbourhood {
   }
 
   bool below(std::uint32_t t, const Corners& c, const Facet& wall) const {
+    if (!wall.covers)
+      return wall.surface != nullptr && Body::surface_of(k_.face(t), proof_.layer) == wall.surface;
     return triangle_below(t, c, wall) || round_face_below(t, wall) || cut_back(t, wall);
   }
 
@@ -238,8 +251,14 @@ class Neighbourhood {
 
   bool triangle_below(std::uint32_t t, const Corners& c, const Facet& wall) const {
     const SurfaceBand::Face& face = k_.face(t);
-    if (wall.surface != nullptr && Body::surface_of(face, proof_.layer) == wall.surface)
-      return true;
+    const Surface* own = Body::surface_of(face, proof_.layer);
+    if (wall.surface != nullptr && own == wall.surface) return true;
+    // A surface that goes on from the wall's is a wall itself: its offset counts whole, and its
+    // triangles end on no chord of the other.
+    if (wall.surface != nullptr && own != nullptr &&
+        own->outward_normal(c[0]).dot(wall.surface->outward_normal(c[0])) >
+            std::cos(kSharpEdge_rad))
+      return false;
     double highest = -std::numeric_limits<double>::infinity();
     double allowed = wall.slack_mm + proof_.rounding_mm;
     if (wall.surface == nullptr) {
@@ -276,7 +295,7 @@ class Neighbourhood {
     const SurfaceBand::Face& face = k_.face(t);
     if (Body::surface_of(face, proof_.layer) != nullptr) return false;
     plane.offset_mm = Body::offset_of(face, proof_.layer);
-    if (depth_below(plane, c) <= -std::numeric_limits<double>::infinity()) return false;
+    if (depth_below_surface(plane, c) <= -std::numeric_limits<double>::infinity()) return false;
     if (plane.normal.isZero(0.0)) return false;
     for (const ProofScratch::Near& near : scratch_.near)
       if (!below(near.triangle, near.corners, plane)) return false;

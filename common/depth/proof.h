@@ -1,4 +1,5 @@
 #pragma once
+#include "common/depth/face_pair.h"
 #include "common/depth/patch.h"
 
 namespace mortise {
@@ -12,6 +13,8 @@ struct ProofScratch {
     Vec3 point = Vec3::Zero();
     double offset_mm = 0.0;
     double slack_mm = 0.0;  ///< how far the facet may rise before it meets the patch
+    /// False: known of the face between its ends only; its surface continued covers nothing else.
+    bool covers = true;
   };
   std::vector<Facet> walls;  ///< facets that hold the patch off
   struct Near {
@@ -28,11 +31,15 @@ struct KnownOverlaps {
   struct Row {
     std::uint16_t face[2];
     double overlap_mm;  ///< of the two faces
+    /// Of the convex face between its ends with the hollow surface continued beyond its own.
+    double along_mm = std::numeric_limits<double>::infinity();
+    /// Heights along the axis of A's and of B's surface: a patch of the other part between them is
+    /// no deeper below the surface, ended or not, than `overlap_mm`.
+    Interval holds_along_mm[2] = {kEverywhere_mm, kEverywhere_mm};
     /// Of any point not outside of the convex face's surface; faces that end on it keep to it.
     double within_mm = std::numeric_limits<double>::infinity();
     /// Where `within_mm` holds: between these heights along the axis of the convex face.
-    Interval within_extent_mm{-std::numeric_limits<double>::infinity(),
-                              std::numeric_limits<double>::infinity()};
+    Interval within_extent_mm = kEverywhere_mm;
     /// The pair is reported by its closed form. Else the row only serves proofs.
     bool told = true;
   };

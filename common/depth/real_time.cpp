@@ -140,6 +140,10 @@ class InterferenceSearch {
       in_bore.margin_mm = margin(span);
       return in_bore_bound(in_bore, path_.pose(0, t)).within_mm + offsets;
     };
+    const auto along_over = [&](const Span& span, double t) {
+      in_bore.margin_mm = margin(span);
+      return in_bore_bound(in_bore, path_.pose(0, t)).along_mm + offsets;
+    };
     const auto overlap_over = [&](const Span& span, double t) {
       const Pose X_BA = path_.pose(0, t);
       in_bore.margin_mm = margin(span);
@@ -149,6 +153,17 @@ class InterferenceSearch {
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
     Exclusion excluded{path_, touch_mm_, moment()};
     if (excluded.first(within_over).t0 >= 1.0) row.within_mm = excluded.most_mm - offsets;
+    if (excluded.first(along_over).t0 >= 1.0) row.along_mm = excluded.most_mm - offsets;
+    for (int i = 0; i < 2; ++i) {
+      const FaceExtent& extent = i == 0 ? ea : eb;
+      const bool ball = sa.kind == SurfaceKind::kSphere && (i == 0) != sa.inward;
+      // Bounds of a cone in a bore know no ends of the bore, and no margin.
+      const bool cone_in_bore = sa.kind != sb.kind;
+      const bool convex = (i == 0) != sa.inward;
+      if (ball || (cone_in_bore && !convex)) continue;
+      const double more = cone_in_bore ? 0.0 : touch_mm_;
+      row.holds_along_mm[i] = {extent.lo_mm - more, extent.hi_mm + more};
+    }
     const Span first = excluded.first(overlap_over);
     row.overlap_mm = excluded.most_mm - offsets;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
