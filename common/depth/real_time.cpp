@@ -152,8 +152,6 @@ class InterferenceSearch {
     };
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
     Exclusion excluded{path_, touch_mm_, moment()};
-    if (excluded.first(within_over).t0 >= 1.0) row.within_mm = excluded.most_mm - offsets;
-    if (excluded.first(along_over).t0 >= 1.0) row.along_mm = excluded.most_mm - offsets;
     for (int i = 0; i < 2; ++i) {
       const FaceExtent& extent = i == 0 ? ea : eb;
       const bool ball = sa.kind == SurfaceKind::kSphere && (i == 0) != sa.inward;
@@ -166,6 +164,9 @@ class InterferenceSearch {
     }
     const Span first = excluded.first(overlap_over);
     row.overlap_mm = excluded.most_mm - offsets;
+    // As long as the faces themselves keep clear nothing else need be known.
+    if (excluded.first(within_over).t0 >= first.t0) row.within_mm = excluded.most_mm - offsets;
+    if (excluded.first(along_over).t0 >= first.t0) row.along_mm = excluded.most_mm - offsets;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
