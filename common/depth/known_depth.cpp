@@ -109,7 +109,8 @@ bool holds_along(const DepthProof& proof, const Patch& patch, const KnownOverlap
 // What one face of S, which the patch is of or ends on, is known to keep to.
 KnownDepth depth_by_row(const DepthProof& proof, const Patch& patch, const KnownOverlaps::Row& row,
                         bool itself, double limit_mm) {
-  KnownDepth known{kInfinity, kInfinity};
+  KnownDepth known;
+  known.along_mm = row.holds_along_mm[1 - proof.role];
   const bool convex = !proof.s->band->faces[row.face[proof.role]].surface->inward;
   if (itself) known.face_mm = row.overlap_mm;
   if (std::isfinite(row.within_mm) && keeps_within(proof, patch, row)) {
@@ -132,13 +133,16 @@ KnownDepth known_depth(const DepthProof& proof, const Patch& patch, std::uint32_
   const Body& s = *proof.s;
   const std::uint16_t face_k = proof.k->face_index(triangle_k);
   const double offset_k = Body::offset_of(proof.k->face(triangle_k), proof.layer);
-  KnownDepth least{kInfinity, kInfinity};
+  KnownDepth least;
   const auto bound = [&](std::uint32_t t, bool itself) {
     const KnownOverlaps::Row* row = proof.known->find(proof.role, s.face_index(t), face_k);
     if (row == nullptr) return;
     const double offsets = offset_k + Body::offset_of(s.face(t), proof.layer);
     const KnownDepth by_row = depth_by_row(proof, patch, *row, itself, proof.limit_mm - offsets);
-    least.face_mm = std::min(least.face_mm, by_row.face_mm + offsets);
+    if (by_row.face_mm + offsets < least.face_mm) {
+      least.face_mm = by_row.face_mm + offsets;
+      least.along_mm = by_row.along_mm;
+    }
     least.continued_mm = std::min(least.continued_mm, by_row.continued_mm + offsets);
   };
   bound(proof.triangle_s, true);

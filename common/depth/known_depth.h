@@ -7,8 +7,10 @@ namespace mortise {
 /// By the closed forms that a proof knows, no point of a patch lies deeper below the layer of a
 /// face of K than this, mm; infinity where none speaks of it.
 struct KnownDepth {
-  double face_mm;       ///< below the face between its ends
-  double continued_mm;  ///< below its surface, continued as far as the patch goes; >= face_mm
+  double face_mm = std::numeric_limits<double>::infinity();  ///< below the face between its ends
+  Interval along_mm = kEverywhere_mm;  ///< heights along its surface's axis to which face_mm holds
+  /// Below its surface, continued as far as the patch goes; >= face_mm.
+  double continued_mm = std::numeric_limits<double>::infinity();
 };
 
 /// Of K's face that has the triangle. What holds for a declared face of S holds for its sharp

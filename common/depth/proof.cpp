@@ -116,7 +116,7 @@ class Neighbourhood {
     const double along = moved ? facet.normal.dot(up_) : 1.0;
     facet.slack_mm = proof_.limit_mm * along - depth.continued_mm;
     if (facet.slack_mm < -proof_.rounding_mm && depth.face_mm < depth.continued_mm) {
-      facet.covers = false;
+      facet.covers_along_mm = depth.along_mm;
       facet.slack_mm = proof_.limit_mm * along - depth.face_mm;
     }
     if (facet.slack_mm >= -proof_.rounding_mm) {
@@ -131,10 +131,12 @@ class Neighbourhood {
   // Largest depth of the patch below a facet; sets its normal and point.
   KnownDepth depth_below(Facet& facet, const Corners& c) const {
     const double deepest = depth_below_surface(facet, c);
-    if (facet.surface == nullptr || proof_.known == nullptr || proof_.known->rows.empty())
-      return {deepest, deepest};
-    const KnownDepth known = known_depth(proof_, patch_, facet.triangle);
-    return {std::min(deepest, known.face_mm), std::min(deepest, known.continued_mm)};
+    KnownDepth known;
+    if (facet.surface != nullptr && proof_.known != nullptr && !proof_.known->rows.empty())
+      known = known_depth(proof_, patch_, facet.triangle);
+    known.face_mm = std::min(known.face_mm, deepest);
+    known.continued_mm = std::min(known.continued_mm, deepest);
+    return known;
   }
 
   // By where the patch is and the facet's surface continued.
@@ -201,9 +203,20 @@ class Neighbourhood {
   }
 
   bool below(std::uint32_t t, const Corners& c, const Facet& wall) const {
-    if (!wall.covers)
-      return wall.surface != nullptr && Body::surface_of(k_.face(t), proof_.layer) == wall.surface;
+    if (!is_along(t, c, wall)) return false;
     return triangle_below(t, c, wall) || round_face_below(t, wall) || cut_back(t, wall);
+  }
+
+  // Is the facet where the wall is one?
+  bool is_along(std::uint32_t t, const Corners& c, const Facet& wall) const {
+    const Interval& along = wall.covers_along_mm;
+    if (!std::isfinite(along.lo) || Body::surface_of(k_.face(t), proof_.layer) == wall.surface)
+      return true;
+    for (const Vec3& x : c) {
+      const double z = (x - wall.surface->point).dot(wall.surface->axis);
+      if (z < along.lo - proof_.rounding_mm || z > along.hi + proof_.rounding_mm) return false;
+    }
+    return true;
   }
 
   // A facet that meets the wall at a sharp edge ends on the wall's own layer: where that lies

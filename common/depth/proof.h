@@ -13,8 +13,8 @@ struct ProofScratch {
     Vec3 point = Vec3::Zero();
     double offset_mm = 0.0;
     double slack_mm = 0.0;  ///< how far the facet may rise before it meets the patch
-    /// False: known of the face between its ends only; its surface continued covers nothing else.
-    bool covers = true;
+    /// Heights along the axis of the surface between which it is a wall: often those of the face.
+    Interval covers_along_mm = kEverywhere_mm;
   };
   std::vector<Facet> walls;  ///< facets that hold the patch off
   struct Near {
