@@ -26,7 +26,7 @@ try {
   const tom = await openPage(browser, designer, { name: 'tom', scheme: 'light' });
   await whenListed(eve, 'parts', 'input_shaft');
   await session.play('gearbox.play.yaml', 300);
-  await eve.waitForTimeout(9000);
+  await whenListed(eve, 'clashes', 'potential, input_shaft × gear_in');
   await eve.keyboard.press('f');
   await shoot(eve, 'people');
 
@@ -35,6 +35,7 @@ try {
   await eve.waitForTimeout(3000);
   await eve.keyboard.press('f');
   await eve.locator('#clashes > li[aria-label*="gear_in"]').first().click();
+  await eve.waitForFunction(() => document.getElementById('heat_legend')?.textContent?.includes('As they stand'), undefined, { timeout: 60_000 });
   await shoot(eve, 'clash');
 
   await tom.focus('#canvas');
