@@ -122,6 +122,16 @@ Pair draw_pair(Draw& draw, double largest_mm) {
   }
 }
 
+OverlapQuery query_of(const Stated& a, const Stated& b, const Pose& X_BA) {
+  OverlapQuery query;
+  query.a = a.part.solid.get();
+  query.b = b.part.solid.get();
+  query.band_a = &a.band;
+  query.band_b = &b.band;
+  query.X_WA = X_BA;
+  return query;
+}
+
 // A face that is moved outward ends where its neighbour, moved inward, cuts it: what is beyond is
 // no point of the part.
 bool is_of_part(const PairFrame& pair, Layer layer, const Sample& at) {
@@ -168,12 +178,7 @@ TEST(LayerBound, NoPointOfARealSurfaceIsDeeperThanTheBrackets) {
     const double largest_mm = draw.in(0.005, 0.2);
     const Pair pair = draw_pair(draw, largest_mm);
     const Stated a = state(pair.a, largest_mm, draw), b = state(pair.b, largest_mm, draw);
-    OverlapQuery query;
-    query.a = a.part.solid.get();
-    query.b = b.part.solid.get();
-    query.band_a = &a.band;
-    query.band_b = &b.band;
-    query.X_WA = pair.X_BA;
+    OverlapQuery query = query_of(a, b, pair.X_BA);
     query.refinement = Refinement::kDecided;
     query.prove_not_certain = i % 2 == 0;
     query.work_cap = 20'000;
@@ -285,12 +290,7 @@ TEST(LayerBound, NothingIsProvenBelowAPoint) {
     const double largest_mm = draw.in(0.005, 0.2);
     const Pair drawn = draw_pair(draw, largest_mm);
     const Stated a = state(drawn.a, largest_mm, draw), b = state(drawn.b, largest_mm, draw);
-    OverlapQuery query;
-    query.a = a.part.solid.get();
-    query.b = b.part.solid.get();
-    query.band_a = &a.band;
-    query.band_b = &b.band;
-    query.X_WA = drawn.X_BA;
+    const OverlapQuery query = query_of(a, b, drawn.X_BA);
     const PairFrame pair(query);
     const KnownOverlaps known =
         known_overlaps(pair, find_candidates({&pair, pair.near_mm, false, false, nullptr}));

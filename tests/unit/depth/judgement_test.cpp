@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "tests/unit/depth/depth_bands.h"
 
@@ -40,6 +41,24 @@ struct FitPair {
   }
   Part a, b;
 };
+
+// A thread keeps what it worked out of a part: a part whose faces are stated anew is another one.
+TEST(Judgement, APartStatedAnewIsJudgedAsInAFreshThread) {
+  FitPair pair("H7/g6");
+  const SurfaceBand of_shaft = pair.a.band, of_plate = pair.b.band;
+  pair.a.band = pair.b.band = uniform_band({0.0, 0.01}, {-0.01, 0.01});
+  pair.judge();
+  pair.a.band = of_shaft;
+  pair.b.band = of_plate;
+  const Judgement here = pair.judge();
+  Judgement fresh;
+  std::thread([&] { fresh = pair.judge(); }).join();
+  ASSERT_EQ(here.verdicts.size(), fresh.verdicts.size());
+  ASSERT_EQ(here.verdicts.size(), 1U);
+  EXPECT_EQ(here.verdicts[0].collision_class, CollisionClass::kFake);
+  EXPECT_EQ(here.verdicts[0].explanation, fresh.verdicts[0].explanation);
+  EXPECT_EQ(here.overlap.evaluations, fresh.overlap.evaluations);
+}
 
 TEST(Judgement, FakeFitInOneSentence) {
   const Judgement judgement = FitPair("H7/g6").judge();
