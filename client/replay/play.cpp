@@ -20,6 +20,7 @@ constexpr double kFastest = 100.0;  // what lies before the piece that is asked 
 constexpr double kPollEvery_s = 0.002;
 constexpr double kLeastPeriod_s = 1.0 / 120;  // between two increments of one user for one part
 constexpr double kReplyWait_s = 1.0;
+constexpr double kMostLate_s = 0.05;
 constexpr std::size_t kMostNotes = 10;
 
 // The command that a user gave, where the decision came from one.
@@ -158,10 +159,14 @@ class Player {
     return std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(s));
   }
 
-  // The log's own pace goes on while answers are waited for; what that costs is made up for later.
+  // What waiting for answers took is not made up for: increments that come in a heap are composed
+  // to other paths than those of the log.
   void wait_for(double s) {
     due_ += in(s);
-    outcome_.late_s = std::max(outcome_.late_s, seconds(SteadyClock::now() - due_));
+    if (const double late_s = seconds(SteadyClock::now() - due_); late_s > kMostLate_s) {
+      outcome_.waited_s += late_s;
+      due_ += in(late_s);
+    }
     while (SteadyClock::now() < due_) {
       listen();
       send_due();

@@ -27,8 +27,8 @@ struct PlayOutcome {
   std::uint64_t not_playable =
       0;                     ///< decisions that the server takes by itself, such as lease ends
   std::uint64_t events = 0;  ///< told while it played
-  double took_s = 0.0, late_s = 0.0;  ///< late: behind its own time at worst
-  std::vector<std::string> notes;     ///< refusals in words, the first few
+  double took_s = 0.0, waited_s = 0.0;  ///< waited: for answers, beyond its own time
+  std::vector<std::string> notes;       ///< refusals in words, the first few
 };
 
 /// Sends what the users of a log did to a live session again: the same users, commands and

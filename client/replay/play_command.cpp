@@ -33,7 +33,7 @@ int run_play(const PlayCommand& command) {
                          {"session", command.session},
                          {"speed", command.speed},
                          {"took_s", outcome->took_s},
-                         {"late_s", outcome->late_s},
+                         {"waited_s", outcome->waited_s},
                          {"ticks", outcome->ticks},
                          {"increments", outcome->increments},
                          {"increments_sent", outcome->increments_sent},

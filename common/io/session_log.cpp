@@ -18,6 +18,12 @@ namespace {
 
 using log_json::Gap;
 
+// Ticks are collected for so long, or until there are so many, before the writer takes them.
+constexpr auto kCollect = std::chrono::milliseconds(50);
+constexpr std::size_t kWakeTicks = 64;
+// Ticks that may stay with the caller while the writer has the queue, which it never has for long.
+constexpr std::size_t kMostKeptBack = 16;
+
 // Time between two records of /statistics, on the clock of the log.
 constexpr std::uint64_t kStatisticsPeriod_ns = 1'000'000'000;
 
@@ -41,6 +47,8 @@ class FileWriter final : public SessionLogWriter {
     TickRecord tick;
   };
   void write_header(const LogHeader& header);
+  void take_kept_back();
+  void queue(TickRecord record);
   void run();
   void write(const Item& item);
   void write(const TickRecord& tick);
@@ -63,7 +71,9 @@ class FileWriter final : public SessionLogWriter {
   std::uint32_t chunks_settled_ = 0;
 
   mutable std::mutex mutex_;
+  std::vector<TickRecord> kept_back_;  ///< of the thread that records
   std::condition_variable wake_;
+  std::size_t wake_ticks_ = 1;  ///< as many wake the writer before its time
   std::deque<Item> queue_;
   Gap gap_;  ///< dropped since the last queued tick
   bool closing_ = false;
@@ -77,6 +87,7 @@ class FileWriter final : public SessionLogWriter {
 FileWriter::FileWriter(std::unique_ptr<McapWriter> mcap, const LogHeader& header,
                        const LogOptions& options)
     : mcap_(std::move(mcap)), options_(options) {
+  wake_ticks_ = std::clamp<std::size_t>(options.queue_ticks / 2, 1, kWakeTicks);
   write_header(header);
 }
 
@@ -119,9 +130,25 @@ Status FileWriter::begin() {
   return ok();
 }
 
+// Never waits: where the writer has the queue, the tick stays with the caller until the next one.
 void FileWriter::record(TickRecord record) {
   if (record.tick == 0) record.tick = record.report.tick;
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock() && kept_back_.size() < kMostKeptBack) {
+    kept_back_.push_back(std::move(record));
+    return;
+  }
+  if (!lock.owns_lock()) lock.lock();
+  take_kept_back();
+  queue(std::move(record));
+}
+
+void FileWriter::take_kept_back() {
+  for (TickRecord& record : kept_back_) queue(std::move(record));
+  kept_back_.clear();
+}
+
+void FileWriter::queue(TickRecord record) {
   if (error_ || closing_ || queue_.size() >= options_.queue_ticks) {
     dropped_.fetch_add(1);
     if (gap_.ticks++ == 0) gap_.first_tick = record.tick;
@@ -130,7 +157,9 @@ void FileWriter::record(TickRecord record) {
     return;
   }
   queue_.push_back({std::exchange(gap_, {}), std::move(record)});
-  wake_.notify_one();
+  // The writer collects for a while: to wake it in each tick would cost the tick more than all
+  // else.
+  if (queue_.size() == 1 || queue_.size() == wake_ticks_) wake_.notify_one();
 }
 
 void FileWriter::run() {
@@ -147,6 +176,13 @@ void FileWriter::run() {
       wake_.wait_until(lock, next_flush, work);
     else
       wake_.wait(lock, work);
+    const auto enough = [&] {
+      return closing_ || queue_.size() >= wake_ticks_ || flushes_asked_ > flushes_done_;
+    };
+    if (!queue_.empty()) {
+      const auto collected = Clock::now() + kCollect;
+      wake_.wait_until(lock, unflushed ? std::min(collected, next_flush) : collected, enough);
+    }
     items.swap(queue_);
     const bool closing = closing_;
     const std::uint64_t flushes = flushes_asked_;
@@ -232,6 +268,7 @@ void FileWriter::message(std::uint16_t channel, const std::string& text) {
 
 Status FileWriter::flush() {
   std::unique_lock lock(mutex_);
+  take_kept_back();
   const std::uint64_t mine = ++flushes_asked_;
   wake_.notify_one();
   flushed_.wait(lock, [&] { return flushes_done_ >= mine || !thread_.joinable(); });
@@ -247,6 +284,7 @@ std::size_t FileWriter::queued_ticks() const {
 Status FileWriter::close() {
   {
     const std::lock_guard lock(mutex_);
+    take_kept_back();
     closing_ = true;
     wake_.notify_one();
   }

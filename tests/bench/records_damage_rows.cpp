@@ -17,8 +17,7 @@ namespace mortise::bench {
 namespace {
 
 constexpr int kKills = 20, kDamages = 1000;
-// A flush each second; what the writer had in hand when it was killed comes on top.
-constexpr double kMostLost_s = 1.5;
+constexpr double kMostLost_s = 1.0;
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
