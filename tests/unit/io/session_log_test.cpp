@@ -265,7 +265,12 @@ TEST(SessionLog, ReadableAfterTheWriterWasKilled) {
     }
   });
   ASSERT_GT(child, 0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  // In the middle of it, however slow the machine is.
+  for (int i = 0; i < 600; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const auto so_far = read_session_log(file.path());
+    if (so_far && so_far->ticks.size() > 150) break;
+  }
   ASSERT_EQ(::kill(child, SIGKILL), 0);
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
