@@ -160,6 +160,9 @@ void add_stages(Text& out, const SessionFigures& f) {
   out.value(s.pairs_excluded, "reason=\"excluded\"");
   out.value(s.pairs_boxes_apart, "reason=\"boxes apart\"");
   out.value(s.pairs_budget, "reason=\"motion budget\"");
+  out.one("mortise_pairs_waiting_total", "counter",
+          "Pairs left waiting for a search or a verdict: the tick had no work left",
+          s.pairs_waiting);
   out.one("mortise_not_examined_total", "counter",
           "Pairs given up by a work cap or overload; never reported as clear", s.not_examined);
   out.one("mortise_stopped_parts_total", "counter", "Parts stopped by a real contact",

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "common/depth/pair_path.h"
@@ -9,9 +10,13 @@ namespace mortise {
 /// Over which part of a tick a bound that is convex in the displacement keeps two faces from
 /// interfering.
 struct Exclusion {
+  static constexpr int kMostAsked = 200;  ///< bounds; then nothing more is excluded
   const PairPath& path;
   double touch_mm = 0.0;
-  double moment = 0.0;  ///< the briefest interval, of the tick
+  double moment = 0.0;                        ///< the briefest interval, of the tick
+  static constexpr std::uint64_t kWork = 10;  ///< evaluations that a bound counts for
+  std::uint64_t work() const { return kWork * static_cast<std::uint64_t>(asked); }
+  int asked = 0;  ///< bounds so far
   /// Largest bound over the intervals that were excluded, mm.
   double most_mm = -std::numeric_limits<double>::infinity();
 
@@ -30,6 +35,8 @@ struct Exclusion {
  private:
   template <class OverlapOver>
   Span first(const OverlapOver& overlap_over, const Span& span) {
+    if (asked >= kMostAsked) return span;
+    asked += 2;
     const double most = std::max(overlap_over(span, span.t0), overlap_over(span, span.t1)) +
                         path.spread(0, span) + path.spread(1, span);
     if (most <= touch_mm) {

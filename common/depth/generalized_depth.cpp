@@ -24,8 +24,8 @@ constexpr std::size_t kMostContacts = 96;
 // Share of the largest below which no normal has a part along a direction.
 constexpr double kSlides = 1e-3;
 
-// Work of one proof that a pose is free, and of all of them together.
-constexpr std::uint64_t kFreeWorkCap = 2'000, kAllFreeWorkCap = 4'000;
+// Work of one proof that a pose is free.
+constexpr std::uint64_t kFreeWorkCap = 2'000;
 
 struct Attempt {
   Vec3 translation = Vec3::Zero();  // of A's reference point
@@ -61,6 +61,7 @@ class Separation {
     try_normal();
     try_fitted();
     try_axis();
+    best_.evaluations += 2 * contacts_.size();
     return best_;
   }
 
@@ -144,14 +145,15 @@ class Separation {
       for (const Vec3& x : {contact.x_W, Vec3(X * contact.x_W)}) {
         if (in_b(x) + in_a(x, X) > query_.overlap.accuracy_mm) return false;
       }
-    if (work_ >= kAllFreeWorkCap) return false;
+    if (work_ >= query_.work_cap) return false;
     OverlapQuery query = query_.overlap;
     query.band_a = query.band_b = &nominal_;
     query.X_WA = X * query.X_WA;
     query.refinement = Refinement::kDecided;
-    query.work_cap = std::min(kFreeWorkCap, kAllFreeWorkCap - work_);
+    query.work_cap = std::min(kFreeWorkCap, query_.work_cap - work_);
     const OverlapResult result = find_overlap(query, scratch_);
     work_ += result.evaluations;
+    best_.evaluations += result.evaluations;
     for (const OverlapRegion& region : result.regions)
       if (region.delta_mm.hi > query_.overlap.accuracy_mm) return false;
     return !result.meshes_cross || !result.regions.empty();

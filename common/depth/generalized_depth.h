@@ -12,6 +12,7 @@ struct GpdQuery {
                                            ///< be empty
   Motion motion_a, motion_b;               ///< of the tick; still when judged without a motion
   double t_contact = 1.0;                  ///< of the pair
+  std::uint64_t work_cap = 4'000;          ///< evaluations of all proofs that a pose is free
 };
 
 /// Generalized penetration depth of a region (paper; Zhang et al. 2006; bracket ours, ALG 3.2).
@@ -29,6 +30,7 @@ struct GeneralizedDepth {
   Vec3 rotation_rad = Vec3::Zero();
   double travel_mm = 0.0;  ///< path length from contact to target, largest over the region's points
   double normal_travel_mm = 0.0;
+  std::uint64_t evaluations = 0;
 };
 
 GeneralizedDepth generalized_depth(const GpdQuery& query, CcdScratch& scratch);

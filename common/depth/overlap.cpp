@@ -129,7 +129,7 @@ class Overlap {
       for (const Sample& sample : d.samples)
         region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
       region.points_W.push_back(region.point_W);
-      if (region.certain_mm.lo > 0.0) set_witness(find_witness(pair_, c.best), region);
+      if (region.certain_mm.lo > 0.0) set_witness(find_witness(pair_, c.best), c.best, region);
       result_.regions.push_back(std::move(region));
     }
   }
@@ -151,9 +151,12 @@ class Overlap {
     return without_touch({bracket.best.depth_mm, bracket.hi_mm}, pair_.touch_mm);
   }
 
-  static void set_witness(const std::optional<Vec3>& witness_W, OverlapRegion& region) {
+  void set_witness(const std::optional<Vec3>& witness_W, const Sample& from,
+                   OverlapRegion& region) const {
     region.has_witness = witness_W.has_value();
-    if (witness_W) region.witness_W = *witness_W;
+    if (!witness_W) return;
+    region.witness_W = *witness_W;
+    region.certain_place = {from.role, from.triangle, pair_.X_KS[1 - from.role] * from.point_K};
   }
 
   // A pair of declared faces whose overlap has a closed form: only the overlap of the meshes is
@@ -166,9 +169,9 @@ class Overlap {
     };
     const double lower = offsets(Layer::kLower), upper = offsets(Layer::kUpper);
     OverlapRegion region;
-    const auto [least, most] = known.overlap.of_layer_mm;
-    region.possible_mm = without_touch({most.lo + upper, most.hi + upper}, pair_.touch_mm);
-    region.certain_mm = without_touch({least.lo + lower, least.hi + lower}, pair_.touch_mm);
+    const auto [at_least, at_most] = known.overlap.of_layer_mm;
+    region.possible_mm = without_touch({at_most.lo + upper, at_most.hi + upper}, pair_.touch_mm);
+    region.certain_mm = without_touch({at_least.lo + lower, at_least.hi + lower}, pair_.touch_mm);
     Bracket mesh = mesh_overlap_of(known);
     // The meshes stand out of the true surfaces by no more than this.
     const double excess =
@@ -187,12 +190,16 @@ class Overlap {
     for (const Sample& sample : mesh.samples)
       region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
     region.points_W.push_back(region.point_W);
-    if (region.certain_mm.lo > 0.0) set_witness(known_witness(known), region);
+    if (region.certain_mm.lo > 0.0) {
+      Sample least;
+      const auto witness_W = known_witness(known, least);
+      set_witness(witness_W, least, region);
+    }
     result_.regions.push_back(std::move(region));
   }
 
   // From the point that the closed form names, and from others farther from the end of its face.
-  std::optional<Vec3> known_witness(const KnownFacePair& known) const {
+  std::optional<Vec3> known_witness(const KnownFacePair& known, Sample& least) const {
     const int role = pair_.bodies[0].band->faces[known.face[0]].surface->inward ? 1 : 0;
     const SurfaceBand::Face& convex = pair_.s(role).band->faces[known.face[role]];
     const SurfaceBand::Face& hollow = pair_.k(role).band->faces[known.face[1 - role]];
@@ -205,7 +212,6 @@ class Overlap {
       Vec3 x = named_S + share * to_middle * surface.axis;
       const Vec3 n = surface.outward_normal(x);
       x += (Body::offset_of(convex, Layer::kLower) - surface.signed_distance_mm(x)) * n;
-      Sample least;
       least.role = role;
       least.point_K = pair_.X_KS[role] * x;
       least.depth_mm = Body::offset_of(hollow, Layer::kLower) -
@@ -334,6 +340,19 @@ class Overlap {
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
   if (b_comes_first(query)) return mirrored(Overlap(mirrored(query)).run());
   return Overlap(query).run();
+}
+
+bool is_certain_at(const OverlapQuery& query, const CertainPlace& place) {
+  const PairFrame pair(query);
+  Sample sample;
+  sample.role = place.role;
+  sample.triangle = place.triangle;
+  sample.point_K = pair.X_KS[place.role] * place.point_S;
+  sample.at = nearest_surface(*pair.k(place.role).solid, sample.point_K);
+  sample.depth_mm =
+      pair.k(place.role)
+          .depth_in(sample.point_K, sample.at, pair.trivial ? Layer::kMesh : Layer::kLower);
+  return sample.depth_mm > pair.touch_mm && find_witness(pair, sample).has_value();
 }
 
 }  // namespace mortise

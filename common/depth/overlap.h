@@ -30,6 +30,16 @@ struct OverlapQuery {
       200'000;  ///< branch-and-bound evaluations; on the cap brackets stay wide, never wrong
 };
 
+/// A point of the least surface of one part (of A for role 0, of B for role 1), near one of its
+/// triangles and in its frame, that was found inside the other part whatever the offsets.
+struct CertainPlace {
+  int role = -1;  ///< -1: none
+  std::uint32_t triangle = 0;
+  Vec3 point_S = Vec3::Zero();
+
+  bool known() const { return role >= 0; }
+};
+
 /// One connected component of the overlap (or of the near band where only offsets can make the
 /// parts meet). World frame.
 ///   delta_mm:     overlap of the meshes, -min(sd_A + sd_B) over the region; negative when apart (=
@@ -50,8 +60,9 @@ struct OverlapRegion {
   FaceShape shape_a = FaceShape::kUnknown, shape_b = FaceShape::kUnknown;
   bool has_witness = false;
   Vec3 witness_W =
-      Vec3::Zero();     ///< inside both real parts whatever the tolerances, when certain_mm.lo > 0
-  bool capped = false;  ///< work cap reached: brackets are wide
+      Vec3::Zero();  ///< inside both real parts whatever the tolerances, when certain_mm.lo > 0
+  CertainPlace certain_place;  ///< whose point the witness was found from
+  bool capped = false;         ///< work cap reached: brackets are wide
   std::vector<Vec3> points_W;  ///< sample of contact points for the fitted separating motion
 };
 
@@ -67,6 +78,10 @@ struct OverlapResult {
 /// within the band (sum of the largest offsets). Two movers, any poses; deterministic.
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 
+/// True implies: the overlap is certain at the poses of the query, for this place is inside. False
+/// says nothing. Two questions for the nearest point and a few for a witness.
+bool is_certain_at(const OverlapQuery& query, const CertainPlace& place);
+
 struct SweptQuery {
   OverlapQuery at_target;  ///< poses of the query are ignored
   Motion motion_a, motion_b;
@@ -81,6 +96,7 @@ struct RealTime {
   double t_real = 1.0;  ///< real at t_real, when becomes_real
   bool capped = false;  ///< t_free is still proven; beyond it nothing is said
   bool real_at_start = false;
+  CertainPlace certain_place;  ///< of t_real, where one was named
   std::uint64_t evaluations = 0;
 };
 

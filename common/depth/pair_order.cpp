@@ -64,6 +64,7 @@ OverlapResult mirrored(OverlapResult result) {
     std::swap(region.triangle_a, region.triangle_b);
     std::swap(region.deciding_triangle_a, region.deciding_triangle_b);
     std::swap(region.shape_a, region.shape_b);
+    if (region.certain_place.known()) region.certain_place.role = 1 - region.certain_place.role;
   }
   return result;
 }

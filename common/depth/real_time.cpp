@@ -45,8 +45,9 @@ constexpr double kSoonShare = 4.0;
 constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
 constexpr double kCloseEnough_mm = 0.02;
 
-// Steps back, doubling from the accuracy, from a time at which the overlap is certain already.
-constexpr int kBackOff = 12;
+// Steps back, doubling from the accuracy, from a time at which the overlap is certain already;
+// and the work of them and the search, in work caps, after which it is the start that counts.
+constexpr std::uint64_t kBackOff = 12, kBackOffCaps = 2;
 
 struct Item {
   Span span;
@@ -82,6 +83,8 @@ class InterferenceSearch {
     add_roots(start);
     std::make_heap(heap_.begin(), heap_.end(), later);
     std::uint64_t next_look = answer_.evaluations + kFirstLook;
+    const std::uint64_t enough =
+        std::min(std::max(kEnoughLeast, at_.work_cap / kEnoughOfCap), at_.work_cap / 2);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), later);
       const Item item = std::move(heap_.back());
@@ -92,7 +95,7 @@ class InterferenceSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
-      if (answer_.evaluations >= std::max(kEnoughLeast, at_.work_cap / kEnoughOfCap) &&
+      if (answer_.evaluations >= enough &&
           (t_real_ - item.span.t0) * path_.speed_upper_bound() <= kCloseEnough_mm) {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
@@ -147,8 +150,9 @@ class InterferenceSearch {
     const auto overlap_over = [&](const Span& span, double t) {
       const Pose X_BA = path_.pose(0, t);
       in_bore.margin_mm = margin(span);
-      const auto overlap = face_pair_overlap(sa, ea, sb, eb, X_BA, in_bore.margin_mm);
-      return (overlap ? overlap->near_hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
+      const double hi_mm =
+          near_overlap_upper_bound_mm(sa, ea, sb, eb, X_BA, in_bore.margin_mm, touch_mm_ - offsets);
+      return (std::isfinite(hi_mm) ? hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
     };
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
     Exclusion excluded{path_, touch_mm_, moment()};
@@ -167,6 +171,7 @@ class InterferenceSearch {
     // As long as the faces themselves keep clear nothing else need be known.
     if (excluded.first(within_over).t0 >= first.t0) row.within_mm = excluded.most_mm - offsets;
     if (excluded.first(along_over).t0 >= first.t0) row.along_mm = excluded.most_mm - offsets;
+    answer_.evaluations += excluded.work() + 3 * Exclusion::kWork;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
@@ -206,7 +211,8 @@ class InterferenceSearch {
   bool real_soon_after(double t) {
     const double soon =
         t + kSoonShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
-    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, kLookWorkCap)) return false;
+    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, std::min(at_.work_cap, kLookWorkCap)))
+      return false;
     t_real_ = soon;
     free_until_ = std::min(free_until_, t);
     return true;
@@ -216,7 +222,7 @@ class InterferenceSearch {
   bool is_real_at(double t) { return is_real_at(t, query_.at_target.work_cap); }
   bool is_real_at(double t, std::uint64_t work_cap) {
     OverlapQuery query = query_.at_target;
-    query.work_cap = std::min(query.work_cap, work_cap);
+    query.work_cap = work_cap;
     query.X_WA = path_.motions[0].pose_at(t);
     query.X_WB = path_.motions[1].pose_at(t);
     query.refinement = Refinement::kDecided;
@@ -226,8 +232,10 @@ class InterferenceSearch {
     answer_.evaluations += result.evaluations;
     for (const OverlapRegion& region : result.regions)
       if (layer_ == Layer::kUpper ? region.possible_mm.lo > 0.0
-                                  : region.certain_mm.lo > 0.0 && region.has_witness)
+                                  : region.certain_mm.lo > 0.0 && region.has_witness) {
+        answer_.certain_place = region.certain_place;
         return true;
+      }
     return false;
   }
 
@@ -320,7 +328,10 @@ class InterferenceSearch {
     sample.triangle = item.piece.triangle;
     sample.point_K = point_K;
     sample.at = at;
-    return find_witness(PairFrame(at_), sample).has_value();
+    const PairFrame there(at_);
+    if (!find_witness(there, sample)) return false;
+    answer_.certain_place = {item.role, item.piece.triangle, there.X_KS[1 - item.role] * point_K};
+    return true;
   }
 
   // In time when the piece stands clear at the start, else in space. What is small in time and not
@@ -365,10 +376,11 @@ class InterferenceSearch {
     answer_.t_free = std::min({1.0, free_until_, answer_.t_real});
     // Within the accuracy something may be certain already: back off until nothing is.
     double step = query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
-    for (int i = 0; i < kBackOff && answer_.becomes_real && answer_.t_free > 0.0; ++i) {
-      if (!is_real_at(answer_.t_free)) break;
+    for (std::uint64_t i = 0; i < kBackOff && answer_.becomes_real && answer_.t_free > 0.0; ++i) {
+      if (!is_real_at(answer_.t_free, std::max(at_.work_cap, kLookWorkCap))) break;
       answer_.t_real = std::min(answer_.t_real, answer_.t_free);
-      answer_.t_free = i + 1 < kBackOff ? std::max(0.0, answer_.t_free - step) : 0.0;
+      const bool last = i + 1 >= kBackOff || answer_.evaluations >= kBackOffCaps * at_.work_cap;
+      answer_.t_free = last ? 0.0 : std::max(0.0, answer_.t_free - step);
       step *= 2.0;
     }
     answer_.real_at_start = answer_.becomes_real && answer_.t_real <= 0.0;

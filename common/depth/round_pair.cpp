@@ -22,6 +22,9 @@ constexpr double kParallel_mm = 1e-9;
 constexpr int kFirstPieces = 16;
 constexpr int kMostPieces = 600;
 
+// Of what the reach lacks of a limit: a bracket as wide says that it is not reached.
+constexpr double kEnoughShare = 0.25;
+
 // A direction around the convex axis, and what is asked of it again and again.
 struct Turn {
   explicit Turn(double angle_rad)
@@ -45,7 +48,7 @@ class Reach {
         square2_(flat2_.squaredNorm()),
         second_(std::hypot(0.5 * (square1_ - square2_), flat1_.dot(flat2_))) {}
 
-  std::optional<RoundReach> run(double margin_mm, double accuracy_mm) {
+  std::optional<RoundReach> run(double margin_mm, double accuracy_mm, double limit_mm) {
     margin_mm_ = margin_mm;
     if (const auto reach = parallel_cylinders()) return reach;
     struct Piece {
@@ -65,7 +68,10 @@ class Reach {
     const auto lower = [](const Piece& a, const Piece& b) { return a.bound < b.bound; };
     std::make_heap(pieces.begin(), pieces.end(), lower);
     for (int looked = kFirstPieces; !pieces.empty() && looked < kMostPieces; looked += 2) {
-      if (pieces.front().bound <= best_ + accuracy_mm) break;
+      if (pieces.front().bound <= best_ + accuracy_mm || best_ > limit_mm) break;
+      if (std::isfinite(limit_mm) &&
+          pieces.front().bound <= best_ + kEnoughShare * (limit_mm - best_))
+        break;
       std::pop_heap(pieces.begin(), pieces.end(), lower);
       const Piece piece = pieces.back();
       pieces.pop_back();
@@ -218,13 +224,13 @@ std::optional<RoundFace> RoundFace::of(const Surface& surface, const Interval& e
 }
 
 std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
-                                      double margin_mm, double accuracy_mm) {
+                                      double margin_mm, double accuracy_mm, double limit_mm) {
   const double slope = convex.axis.dot(hollow.axis);
   if (std::fabs(slope) < kSlidingFitCosine) return std::nullopt;
   // A generator that runs square to the hollow axis meets no height of it.
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
   if (std::fabs(convex.widening) * tilt > 0.5 * std::fabs(slope)) return std::nullopt;
-  return Reach(convex, hollow).run(margin_mm, accuracy_mm);
+  return Reach(convex, hollow).run(margin_mm, accuracy_mm, limit_mm);
 }
 
 }  // namespace mortise

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <optional>
 
 #include "common/geometry/feature.h"
@@ -39,7 +40,11 @@ struct RoundReach {
 /// root of a trigonometric polynomial of second degree, whose curvature is small where the axes
 /// nearly meet: branch and bound over the angle closes the bracket to accuracy_mm in a few dozen
 /// steps. Exact to rounding; about 2 us.
+///
+/// With limit_mm it is only asked whether the reach is beyond that: the bracket stays wide where it
+/// certainly is, and a quarter of what it lacks wide where it is not.
 std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
-                                      double margin_mm, double accuracy_mm);
+                                      double margin_mm, double accuracy_mm,
+                                      double limit_mm = std::numeric_limits<double>::infinity());
 
 }  // namespace mortise

@@ -234,6 +234,8 @@ void each_counter(const StepCounters& counters, const Visit& visit) {
   visit("triangle_tests", counters.triangle_tests);
   visit("depth_evaluations", counters.depth_evaluations);
   visit("parts_without_inside", counters.parts_without_inside);
+  visit("pairs_waiting", counters.pairs_waiting);
+  visit("pairs_held_again", counters.pairs_held_again);
   visit("not_examined", counters.not_examined);
 }
 

@@ -164,6 +164,8 @@ Json json_of(const StepCounters& c) {
                     {"holds", c.slide_holds},
                     {"cut_short", c.slides_cut_short}};
   json["parts_without_inside"] = c.parts_without_inside;
+  json["waiting_for_work"] = c.pairs_waiting;
+  json["held_again"] = c.pairs_held_again;
   json["not_examined"] = c.not_examined;
   return json;
 }

@@ -43,6 +43,10 @@ struct StepCounters {
   std::uint64_t box_tests = 0, triangle_tests = 0, depth_evaluations = 0;
   std::uint64_t parts_without_inside =
       0;  ///< open or non-manifold parts that took part: crossing is found, depth is not
+  /// Pairs that were left waiting for a search or a verdict because the tick had no work left.
+  std::uint64_t pairs_waiting = 0;
+  /// Pairs that hold a part where the same place held it before: no search, no new verdict.
+  std::uint64_t pairs_held_again = 0;
   std::uint64_t not_examined =
       0;  ///< pairs given up by a work cap or overload; never reported as clear
 };

@@ -60,6 +60,7 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
     pair.memo->placements = placements;
     pair.memo->not_contained = false;
     pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
+    pair.memo->held.reset();
   }
   const auto open = state.open.find({a.id, b.id});
   if (open != state.open.end()) pair.open = &open->second;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "common/session/guidance.h"
 #include "common/session/tick_work.h"
 
@@ -20,6 +22,15 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
     state.broad_phase->set_box(move.part, resting_box(world, state, move.part));
   }
   state.placed.clear();
+  // What the tick had no work for is looked at as it stands, should it not move on.
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    const PairWork& pair = work.pairs[i];
+    const std::uint32_t part = pair.move_a >= 0 ? pair.a : pair.b;
+    if (pair.owed && (state.placed.empty() || state.placed.back() != part))
+      state.placed.push_back(part);
+  }
+  std::sort(state.placed.begin(), state.placed.end());
+  state.placed.erase(std::unique(state.placed.begin(), state.placed.end()), state.placed.end());
   if (world.guides.empty()) return;
   std::vector<PartId> moved, held_back;
   for (const Move& move : work.moves)

@@ -1,9 +1,13 @@
 #include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "common/base/constants.h"
 #include "common/session/motion_budget.h"
 #include "common/session/stop_time.h"
 #include "common/session/tick_work.h"
+#include "common/session/work_budget.h"
 
 namespace mortise {
 namespace {
@@ -49,7 +53,7 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
   if (pair.no_inside())
     t_stop = pair.undecided ? touch.t_clear : 1.0;
   else if (pair.overlaps_at_start)
-    t_stop = withdrawal_time(pair, ccd);
+    pair.wants_stop_time = true;
   if (!pair.overlaps_at_start)
     pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t_stop;
@@ -74,8 +78,10 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
   if (pair.meets) pair.t_contact = touch.t_contact;
   pair.t_enter = pair.entered ? near.t_contact : 0.0;
-  if (holds_back(world.policy))
-    pair.t_stop = pair.tau + (1.0 - pair.tau) * stop_time_with_bands(pair, touch, ccd);
+  if (!holds_back(world.policy)) return;
+  const SearchedTime time = stop_time_without_search(pair, touch);
+  pair.wants_stop_time = !time.known;
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * time.t;
 }
 
 double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_mm; }
@@ -122,12 +128,15 @@ DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, d
   return result;
 }
 
+namespace {
+
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {
   pair.asked = true;
   pair.near = pair.touching = pair.entered = pair.undecided = false;
   pair.meets = pair.overlaps_at_start = pair.blocks = false;
   pair.t_contact = pair.t_stop = 1.0;
-  pair.never_real = false;
+  pair.never_real = pair.held_again = pair.wants_stop_time = false;
+  pair.place = {};
   pair.t_enter = pair.apart_at_end_mm = 0.0;
   if (pair.together) {
     pair.asked = false;
@@ -150,10 +159,40 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     remember_apart(*pair.memo, pair.motion_a.X_W1, pair.motion_b.X_W1, pair.apart_at_end_mm);
 }
 
+// What is known of the stop without a search stands where there is no work left for one.
+void search_stop_time(PairWork& pair, CcdScratch& ccd) {
+  if (pair.cap == 0) {
+    pair.undecided = true;
+    return;
+  }
+  const bool was_undecided = std::exchange(pair.undecided, false);
+  const double t = pair.plain() ? withdrawal_time(pair, ccd) : stop_time_with_bands(pair, ccd);
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
+  note_effort(pair, WorkStage::kStop, pair.undecided);
+  pair.undecided |= was_undecided;
+}
+
+}  // namespace
+
+void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
+  const auto each = [&](std::span<const std::uint32_t> some, const auto& ask) {
+    work.pool.for_each(some.size(), [&](std::size_t i, int thread) {
+      ask(work.pairs[some[i]], work.ccd[static_cast<std::size_t>(thread)]);
+    });
+  };
+  each(pairs, [&](PairWork& pair, CcdScratch& ccd) { ask_pair(world, work.switches, pair, ccd); });
+  work.asked.clear();
+  for (const std::uint32_t i : pairs)
+    if (work.pairs[i].wants_stop_time) work.asked.push_back(i);
+  if (work.asked.empty()) return;
+  share_out(world, work, work.asked, WorkStage::kStop);
+  each(work.asked, [](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, ccd); });
+}
+
 void find_contacts(const World& world, Scratch::Impl& work) {
-  work.pool.for_each(work.pair_count, [&](std::size_t i, int thread) {
-    ask_pair(world, work.switches, work.pairs[i], work.ccd[static_cast<std::size_t>(thread)]);
-  });
+  work.again.resize(work.pair_count);
+  std::iota(work.again.begin(), work.again.end(), 0U);
+  ask_pairs(world, work, work.again);
 }
 
 }  // namespace mortise

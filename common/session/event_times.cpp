@@ -28,7 +28,7 @@ SweptQuery swept_query(const PairWork& pair) {
   query.at_target.b = pair.solid_b;
   query.at_target.band_a = pair.band_a;
   query.at_target.band_b = pair.band_b;
-  query.at_target.work_cap = kEventTimeWorkCap;
+  query.at_target.work_cap = pair.cap_of(kEventTimeWorkCap);
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
   return query;
@@ -51,7 +51,7 @@ bool interferes_at(PairWork& pair, const SweptQuery& swept, double t, Asked aske
   OverlapQuery query = swept.at_target;
   query.X_WA = swept.motion_a.pose_at(t);
   query.X_WB = swept.motion_b.pose_at(t);
-  query.work_cap = kLookWorkCap;
+  query.work_cap = pair.cap_of(kLookWorkCap);
   query.want_delta = false;
   const OverlapResult overlap = find_overlap(query, ccd);
   pair.counts.depth_evaluations += overlap.evaluations;
@@ -65,7 +65,7 @@ bool interferes_at(PairWork& pair, const SweptQuery& swept, double t, Asked aske
 double halved(PairWork& pair, const SweptQuery& swept, double clear, double known, Asked asked,
               CcdScratch& ccd) {
   if (!interferes_at(pair, swept, known, asked, ccd)) return kNever;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kHalvings && pair.left() > 0; ++i) {
     const double middle = 0.5 * (clear + known);
     (interferes_at(pair, swept, middle, asked, ccd) ? known : clear) = middle;
   }

@@ -98,7 +98,7 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
 
 void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& overlap,
                            std::span<const OverlapRegion> regions, const OverlapRegion& region,
-                           CcdScratch& scratch, Verdict& verdict) {
+                           CcdScratch& scratch, std::uint64_t& evaluations, Verdict& verdict) {
   GpdQuery gpd;
   gpd.overlap = overlap;
   gpd.region = &region;
@@ -106,7 +106,9 @@ void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& over
   gpd.motion_a = query.motion_a;
   gpd.motion_b = query.motion_b;
   gpd.t_contact = query.t_contact;
+  gpd.work_cap = std::min(gpd.work_cap, query.whole_cap - std::min(query.whole_cap, evaluations));
   const GeneralizedDepth depth = generalized_depth(gpd, scratch);
+  evaluations += depth.evaluations;
   verdict.gpd_mm = depth.gpd_mm;
   verdict.travel_mm = depth.travel_mm;
   verdict.normal_travel_mm = depth.normal_travel_mm;
@@ -143,7 +145,8 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
     if (verdict.collision_class == CollisionClass::kNone) continue;
     if (query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
         !judgement.overlap.no_inside)
-      add_generalized_depth(query, overlap, judgement.overlap.regions, region, scratch, verdict);
+      add_generalized_depth(query, overlap, judgement.overlap.regions, region, scratch,
+                            judgement.overlap.evaluations, verdict);
     judgement.verdicts.push_back(std::move(verdict));
   }
   // Worst first; the regions are sorted by depth already.

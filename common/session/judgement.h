@@ -19,6 +19,8 @@ struct JudgementQuery {
   Refinement refinement = Refinement::kDecided;
   bool want_gpd = true;
   std::uint64_t work_cap = 200'000;  ///< of the overlap, see OverlapQuery
+  /// Of everything; beyond it the generalized depth keeps the bracket that costs nothing.
+  std::uint64_t whole_cap = 1'000'000;
 };
 
 struct Judgement {

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/constants.h"
 #include "common/session/slide.h"
 #include "common/session/tick_work.h"
+#include "common/session/work_budget.h"
 
 namespace mortise {
 namespace {
@@ -146,8 +148,16 @@ class Response {
     if (!known) responding_.push_back(move);
   }
 
+  // A leg is looked for along what holds the body, which costs as much as a search.
+  bool may_slide() {
+    if (world_.policy != Policy::kSlide) return false;
+    if (work_left(work_) > 0 || !work_.switches.work_budget) return true;
+    ++counters_.slides_cut_short;
+    return false;
+  }
+
   void respond(std::int32_t index, double t) {
-    if (world_.policy == Policy::kSlide && start_leg(world_, work_, index, t, counters_)) return;
+    if (may_slide() && start_leg(world_, work_, index, t, counters_)) return;
     for (Move& move : work_.moves) {
       if (&move != &move_at(index) && !(move.group && move.group == move_at(index).group)) continue;
       if (!move.motion.moves() || move.stopped) continue;
@@ -173,14 +183,14 @@ class Response {
       if (!changed(pair.move_a) && !changed(pair.move_b)) continue;
       if (active(work_, pair.move_a) || active(work_, pair.move_b)) work_.again.push_back(i);
     }
-    work_.pool.for_each(work_.again.size(), [&](std::size_t k, int thread) {
-      PairWork& pair = work_.pairs[work_.again[k]];
+    for (const std::uint32_t i : work_.again) {
+      PairWork& pair = work_.pairs[i];
       remember(pair, t);
       pair.tau = t;
       if (pair.move_a >= 0) pair.motion_a = rest_of(move_at(pair.move_a), t);
       if (pair.move_b >= 0) pair.motion_b = rest_of(move_at(pair.move_b), t);
-      ask_pair(world_, work_.switches, pair, work_.ccd[static_cast<std::size_t>(thread)]);
-    });
+    }
+    ask_pairs(world_, work_, work_.again);
   }
 
   void remember(PairWork& pair, double t) {
@@ -213,6 +223,14 @@ class Response {
 
 void respond(const World& world, Scratch::Impl& work, StepReport& report) {
   if (holds_back(world.policy)) Response(world, work, report).run();
+}
+
+void note_held(const World& world, Scratch::Impl& work) {
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    const PairWork& pair = work.pairs[i];
+    if (!pair.blocks || !pair.place.known() || std::isfinite(pair.memo->allowed_depth_mm)) continue;
+    pair.memo->held = {world.parts[pair.a].X_WP, world.parts[pair.b].X_WP, pair.place};
+  }
 }
 
 }  // namespace mortise

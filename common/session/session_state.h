@@ -1,14 +1,17 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "common/broadphase/broad_phase.h"
 #include "common/ccd/first_contact.h"
+#include "common/depth/overlap.h"
 #include "common/session/world.h"
 
 namespace mortise {
@@ -32,6 +35,20 @@ struct PairMemo {
   /// Policy stop, pair real at the start of a tick: least certain overlap seen so far, mm; a motion
   /// may not go deeper. Infinite: not real.
   double allowed_depth_mm = std::numeric_limits<double>::infinity();
+  /// Where the pair last held a part back, and the poses at which they have stood since, proven not
+  /// to be real.
+  struct Held {
+    Pose X_WA, X_WB;
+    CertainPlace place;
+  };
+  std::optional<Held> held;
+  /// What a stage of the last ticks needed of depth, and for how many ticks it has waited for it;
+  /// see work_budget.h. By WorkStage.
+  struct Effort {
+    std::uint32_t wanted = 0;  ///< evaluations; 0: not yet asked
+    std::uint8_t waited = 0;
+  };
+  std::array<Effort, 2> effort;
 };
 
 /// One clash between begin and end.
@@ -76,7 +93,8 @@ struct SessionState {
   std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
   std::vector<ClashEvent> reviews;  ///< made since the last tick, told in the next
   bool clashes_changed = true;
-  std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
+  std::uint64_t saved_work = ~std::uint64_t{0};  ///< evaluations, see work_budget.h; capped there
+  std::uint64_t parts_hash = 0;                  ///< sum of PartState::hash
   std::uint64_t clashes_hash = 0;
 
   PairMemo& memo(std::uint32_t a, std::uint32_t b) {

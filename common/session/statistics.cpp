@@ -53,6 +53,8 @@ void accumulate(StepCounters& into, const StepCounters& from) {
   into.triangle_tests += from.triangle_tests;
   into.depth_evaluations += from.depth_evaluations;
   into.parts_without_inside += from.parts_without_inside;
+  into.pairs_waiting += from.pairs_waiting;
+  into.pairs_held_again += from.pairs_held_again;
   into.not_examined += from.not_examined;
 }
 

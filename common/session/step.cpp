@@ -52,14 +52,17 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   tell_reviews(world, state, report);
   gather(world, increments, work, report);
   find_candidates(world, state, work, report);
+  open_budget(world, state, work);
   if (!work.moves.empty()) {
     find_contacts(world, work);
     respond(world, work, report);
     judge_pairs(world, work);
     commit(world, state, work, report);
+    note_held(world, work);
     report_clashes(world, state, work, report);
     count_pairs_of(world, work, report.counters);
   }
+  close_budget(world, state, work);
   report.state_hash = state_hash(world, state);
   return report;
 }

@@ -23,6 +23,9 @@ constexpr std::uint64_t kLookWorkCap = 2'000;
 // needs many and is left to the search.
 constexpr double kAdvanceAccuracy_mm = 0.5 * kDepthAccuracyDefault_mm;
 constexpr int kAdvanceSteps = 12;
+// A part that is real within so much of its path stays where it stands. mm; the first is what the
+// search for the time is content with, too.
+constexpr double kHeldPaths_mm[] = {0.02, 0.004, 0.0008};
 // Parts that approach by less than this share of their speed slide.
 constexpr double kLeastApproach = 0.1;
 static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
@@ -78,7 +81,9 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
-  query.work_cap = kLookWorkCap;
+  // What is withdrawn is held against the least that is certain: half a look would let it deeper.
+  const bool whole = refinement == Refinement::kFull;
+  query.work_cap = whole ? kLookWorkCap : pair.cap_of(kLookWorkCap);
   query.prove_not_certain = true;
   query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
   const OverlapResult overlap = find_overlap(query, ccd);
@@ -170,14 +175,43 @@ double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
 
 namespace {
 
-double free_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
+// A part that is pushed on where its last push has left it: is it the same place that holds it? The
+// poses at the start are proven already, so that nothing has to be searched.
+bool is_held_again(PairWork& pair) {
+  const auto& held = pair.memo->held;
+  if (!held || std::isfinite(pair.memo->allowed_depth_mm) ||
+      !identical(held->X_WA, pair.motion_a.X_W0) || !identical(held->X_WB, pair.motion_b.X_W0))
+    return false;
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  OverlapQuery query = overlap_query(pair);
+  for (const double path_mm : kHeldPaths_mm) {
+    const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
+    query.X_WA = pair.motion_a.pose_at(t);
+    query.X_WB = pair.motion_b.pose_at(t);
+    ++pair.counts.depth_evaluations;
+    if (!is_certain_at(query, held->place)) continue;
+    pair.place = held->place;
+    return true;
+  }
+  return false;
+}
+
+SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
   double t_start = pair.t_enter;
   if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
     // Real needs an overlap of the meshes.
-    if (touch.state == ContactState::kFree) return 1.0;
-    if (touch.state == ContactState::kUndecided) return touch.t_clear;
+    if (touch.state == ContactState::kFree) return {1.0, true};
+    if (touch.state == ContactState::kUndecided) return {touch.t_clear, true};
     if (touch.state == ContactState::kContact) t_start = touch.t_contact;
   }
+  pair.held_again = is_held_again(pair);
+  if (pair.held_again) ++pair.counts.pairs_held_again;
+  return pair.held_again ? SearchedTime{0.0, true} : SearchedTime{t_start, false};
+}
+
+double free_time(PairWork& pair, CcdScratch& ccd) {
+  const double t_start = pair.t_stop_start;
   // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
   const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
   const Advance advance =
@@ -190,10 +224,11 @@ double free_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
   query.at_target = overlap_query(pair);
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
-  query.at_target.work_cap = kRealTimeWorkCap;
+  query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
   const RealTime real = find_real_time(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += real.evaluations;
+  pair.place = real.certain_place;
   if (real.real_at_start) return withdrawal_time(pair, ccd);
   if (real.capped) pair.undecided = true;
   return std::max(advance.t_free, real.t_free);
@@ -201,10 +236,18 @@ double free_time(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
 
 }  // namespace
 
-double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratch& ccd) {
+SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch) {
   // Without an inside there is no depth and so no real verdict: nobody is stopped.
-  if (pair.no_inside()) return touch.state == ContactState::kUndecided ? touch.t_clear : 1.0;
-  const double t_free = free_time(pair, touch, ccd);
+  if (pair.no_inside())
+    return {touch.state == ContactState::kUndecided ? touch.t_clear : 1.0, true};
+  const SearchedTime time = start_of_search(pair, touch);
+  pair.t_stop_start = time.t;
+  pair.never_real = time.known && time.t >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
+  return time;
+}
+
+double stop_time_with_bands(PairWork& pair, CcdScratch& ccd) {
+  const double t_free = free_time(pair, ccd);
   // Who withdraws is real all the while.
   pair.never_real = t_free >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
   return t_free;

@@ -4,8 +4,18 @@
 namespace mortise {
 
 /// Time of the pair's segment up to which it is proven not to be real; 1: for all of it. For pairs
-/// of which a part has a band; `touch` is the first contact of the meshes.
-double stop_time_with_bands(PairWork& pair, const FirstContact& touch, CcdScratch& ccd);
+/// of which a part has a band.
+struct SearchedTime {
+  double t = 0.0;
+  bool known = false;  ///< a search would say nothing else
+};
+
+/// As far as first contact knows it (`touch`: of the meshes), or the place that held the pair
+/// before: a few evaluations.
+SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch);
+
+/// By the search from there, at most PairWork::cap evaluations of it.
+double stop_time_with_bands(PairWork& pair, CcdScratch& ccd);
 
 /// How far a pair that is real at the start of its segment may go: as long as it gets no deeper.
 /// Looked at in quarters of the segment; between them it is not looked at.

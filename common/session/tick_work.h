@@ -61,6 +61,9 @@ struct SeenRegion {
   bool passing = false;  ///< begins and ends within the tick
 };
 
+/// What a pair is given work for: the time at which it stops, and its verdict.
+enum class WorkStage : std::uint8_t { kStop = 0, kVerdict = 1 };
+
 /// One candidate pair on its way through the tick; a < b.
 struct PairWork {
   std::uint32_t a = 0, b = 0;
@@ -90,11 +93,30 @@ struct PairWork {
   bool never_real = false;       ///< proven by the search for t_stop, over the whole segment
   double apart_at_end_mm = 0.0;  ///< lower bound, when neither near nor touching
   bool blocks = false;           ///< the response stopped a part because of this pair
+  bool held_again = false;       ///< at once, by the place that has held it back before
+  CertainPlace place;            ///< that makes it real, where one is known
 
   bool together = false;  ///< both move as one: what was said of them stays
   double t_left = 2.0;    ///< of the tick: the parts went other ways from then on; 2: they did not
   std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
                                                 ///< back; near, and left again
+
+  // Work on depth, in evaluations; see work_budget.h.
+  std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
+  bool wants_stop_time = false;  ///< its t_stop is what needs no search
+  double t_stop_start = 0.0;     ///< of the segment: where that search begins
+  bool owed = false;             ///< near, but not judged to the end: again in the next tick
+
+  /// What is left to it of the stage.
+  std::uint64_t left() const {
+    const std::uint64_t used = counts.depth_evaluations - stage_start;
+    return used < cap ? cap - used : 0;
+  }
+  /// The cap of one question: never nothing, so that an answer is at least a bracket.
+  std::uint64_t cap_of(std::uint64_t most) const {
+    constexpr std::uint64_t kGlance = 100;
+    return std::min(most, std::max(left(), kGlance));
+  }
 
   // Stage 4.
   Judgement judgement;
@@ -115,6 +137,7 @@ struct PairWork {
 struct StepSwitches {
   bool motion_budget = true;
   bool brute_force_pairs = false;  ///< at the first step of a world
+  bool work_budget = true;         ///< false: every pair has the most that one may have
 };
 
 struct Scratch::Impl {
@@ -129,11 +152,17 @@ struct Scratch::Impl {
   std::vector<IndexPair> candidates;
   std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
   std::size_t pair_count = 0;
+  std::uint64_t budget = 0;          ///< evaluations of depth in this tick
+  std::vector<std::uint32_t> asked;  ///< pairs that want work of the stage
   std::vector<std::uint32_t> again;  ///< pairs to ask again in a round of the response
   std::vector<SlidingBody> sliding;
 };
 
 // The stages, in the order of the tick. Each reads what the ones before have written.
+
+/// What the tick may spend on depth, and what is saved for later ones.
+void open_budget(const World& world, const SessionState& state, Scratch::Impl& work);
+void close_budget(const World& world, SessionState& state, const Scratch::Impl& work);
 
 /// 1. Increments to moves: checks, composition in order of arrival.
 void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
@@ -153,8 +182,11 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
 void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
                     StepReport& report);
 
-/// Asks one pair over the segment set in it; used by 3 and by the rounds of 3b.
-void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd);
+/// Notes for the next tick by which place each pair held its parts back.
+void note_held(const World& world, Scratch::Impl& work);
+
+/// Asks pairs over the segments set in them; used by 3 and by the rounds of 3b.
+void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs);
 
 /// Distance of the meshes of a pair at these poses, mm, up to limit_mm; counted, and begun where
 /// the last one was found.

@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "common/base/constants.h"
 #include "common/session/event_times.h"
 #include "common/session/tick_work.h"
+#include "common/session/work_budget.h"
 
 namespace mortise {
 namespace {
 
-// Evaluations of one overlap within a tick, some 30 ms of work. A pair at the very brink of a
-// threshold can take any number; where it ends, brackets stay wide, the verdict is potential and
-// the pair is counted as not examined to the end.
+// Evaluations of one overlap within a tick at most, whatever work there is. A pair at the very
+// brink of a threshold can take any number; where it ends, brackets stay wide, the verdict is
+// potential and the pair is counted as not examined to the end.
 constexpr std::uint64_t kTickOverlapCap = 10'000;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -37,7 +39,7 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
   query.motion_b = motion.b;
   query.t_contact = motion.t_contact;
   query.want_gpd = want_gpd;
-  query.work_cap = kTickOverlapCap;
+  query.work_cap = query.whole_cap = pair.cap_of(kTickOverlapCap);
   Judgement judgement = judge_pair(query, ccd);
   count(query, judgement, pair.counts);
   for (const OverlapRegion& region : judgement.overlap.regions)
@@ -122,6 +124,10 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Pair
   if (last.state == ContactState::kUndecided) pair.undecided = true;
   const double t_out = std::max(whole.t_enter, 1.0 - last.t_clear);
   for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
+    if (pair.left() == 0) {
+      pair.undecided = true;
+      break;
+    }
     const double t = whole.t_enter + share * (t_out - whole.t_enter);
     const PairMotion there = up_to(whole, t);
     const Judgement judgement = judge_along(world, pair, there, want_gpd, ccd);
@@ -141,12 +147,29 @@ void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch
   pair.judgement = judge_along(world, pair, asked, want_gpd, ccd);
   for (const Verdict& verdict : pair.judgement.verdicts)
     pair.seen.push_back(seen_at(verdict, asked.a.X_W1, asked.b.X_W1));
+  for (const OverlapRegion& region : pair.judgement.overlap.regions)
+    if (!pair.place.known()) pair.place = region.certain_place;
   if (pair.seen.empty() || pair.seen.front().verdict.collision_class != CollisionClass::kReal) {
     pair.seen.clear();
     if (auto region = passing(world, pair, asked, want_gpd, ccd))
       pair.seen.push_back(std::move(*region));
   }
   for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
+}
+
+// The place that holds a part holds it again: what was said of it holds on.
+bool stays_told(const PairWork& pair) {
+  return pair.near && pair.blocks && pair.held_again && pair.open &&
+         std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
+           return clash.now.collision_class == CollisionClass::kReal;
+         });
+}
+
+// Nobody looked: the open clashes stay as they are.
+void keep_told(PairWork& pair) {
+  pair.seen.clear();
+  pair.judgement = {};
+  if (pair.open) pair.keeps.assign(pair.open->size(), 1);
 }
 
 void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
@@ -191,27 +214,52 @@ bool anything_to_tell(const PairWork& pair) {
                      [](const SeenRegion& seen) { return seen.tell; });
 }
 
+void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  if (pair.cap == 0) {
+    keep_told(pair);
+    pair.undecided = true;
+    pair.owed = !pair.blocks;
+    return;
+  }
+  const bool was_undecided = std::exchange(pair.undecided, false);
+  // The separating motion is needed only where somebody is told of it.
+  judge_near(world, work, pair, pair.open == nullptr, ccd);
+  const bool capped = pair.undecided;
+  pair.owed = capped && !pair.blocks && may_have_more(pair, WorkStage::kVerdict);
+  // Half a verdict is none: the next ticks give it more.
+  if (pair.owed) keep_told(pair);
+  if (anything_to_tell(pair)) {
+    if (pair.open && pair.left() > 0) judge_near(world, work, pair, true, ccd);
+    find_event_times(pair, end_of(work, pair), ccd);
+  }
+  note_effort(pair, WorkStage::kVerdict, capped);
+  pair.undecided |= was_undecided;
+}
+
 }  // namespace
 
 void judge_pairs(const World& world, Scratch::Impl& work) {
-  work.pool.for_each(work.pair_count, [&](std::size_t i, int thread) {
+  work.asked.clear();
+  work.again.clear();
+  for (std::uint32_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    CcdScratch& ccd = work.ccd[static_cast<std::size_t>(thread)];
-    if (!pair.asked) return;
-    if (pair.near) {
-      // A part that was stopped before this pair came near is clear of it.
-      if (!pair.placed && !pair.blocks && as_moved(work, pair).t_enter >= 1.0) {
-        if (pair.open) judge_clear(world, work, pair, ccd);
-        return;
-      }
-      // The separating motion is needed only where somebody is told of it.
-      judge_near(world, work, pair, pair.open == nullptr, ccd);
-      if (!anything_to_tell(pair)) return;
-      if (pair.open) judge_near(world, work, pair, true, ccd);
-      find_event_times(pair, end_of(work, pair), ccd);
-      return;
-    }
-    if (pair.open) judge_clear(world, work, pair, ccd);
+    if (!pair.asked) continue;
+    // A part that was stopped before this pair came near is clear of it.
+    if (pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0))
+      (stays_told(pair) ? work.again : work.asked).push_back(i);
+    else if (pair.open)
+      work.again.push_back(i);
+  }
+  share_out(world, work, work.asked, WorkStage::kVerdict);
+  work.pool.for_each(work.again.size(), [&](std::size_t i, int thread) {
+    PairWork& pair = work.pairs[work.again[i]];
+    if (stays_told(pair))
+      keep_told(pair);
+    else
+      judge_clear(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);
+  });
+  work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
+    judge_asked(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
   });
 }
 

@@ -85,6 +85,7 @@ TEST(ReportProperty, OpenClashesAreThePairsThatOverlap) {
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(6)); ++seed) {
     RandomPlay play(Policy::kReport, seed, 6, false);
     Scratch scratch;
+    scratch.impl().switches.work_budget = false;  // a pair that waits keeps its clash for a while
     for (int i = 0; i < 40; ++i) {
       play.tick(scratch);
       const Snapshot snapshot = snapshot_of(play.session.world);

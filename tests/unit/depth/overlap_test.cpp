@@ -242,6 +242,8 @@ TEST(Overlap, DeterministicAndSymmetric) {
     EXPECT_EQ(once.regions[0].delta_mm, swapped.regions[0].delta_mm);
     EXPECT_EQ(once.regions[0].normal_W, -swapped.regions[0].normal_W);
     EXPECT_EQ(once.regions[0].triangle_a, swapped.regions[0].triangle_b);
+    ASSERT_TRUE(once.regions[0].certain_place.known());
+    EXPECT_EQ(once.regions[0].certain_place.role, 1 - swapped.regions[0].certain_place.role);
   }
 }
 

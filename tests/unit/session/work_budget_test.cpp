@@ -1,0 +1,104 @@
+// What a tick may spend on depth: pairs wait, are counted, and nothing is forgotten.
+#include <gtest/gtest.h>
+
+#include "common/session/tick_work.h"
+#include "tests/unit/session/session_builder.h"
+
+namespace mortise {
+namespace {
+
+// Pegs with tolerances, each in front of its own wall.
+struct Row {
+  SessionBuilder session;
+  Scratch scratch;
+  UserId ada;
+  std::vector<PartId> pegs;
+
+  explicit Row(Policy policy, bool budget, int pegs_wanted = 24) : session(policy) {
+    session.world.tick_rate_hz = 1000.0;  // the least work that a tick may have
+    ada = session.join("ada");
+    for (int i = 0; i < pegs_wanted; ++i) {
+      const double y = 10.0 * i;
+      session.add("wall", box_mesh(Vec3(0, -3, -3), Vec3(4, 3, 3)), at(0, y, 0), false);
+      pegs.push_back(session.add("peg", cube_mesh(2), at(-5, y, 0), true));
+      session.set_tolerance(pegs.back(), 0.05);
+      session.grab(ada, pegs.back());
+    }
+    scratch.impl().switches.work_budget = budget;
+  }
+  StepReport push(const Vec3& by) {
+    std::vector<Increment> increments;
+    for (const PartId peg : pegs) increments.push_back(session.push(ada, peg, by));
+    return play_tick(session.world, increments, scratch);
+  }
+  StepReport rest() { return play_tick(session.world, {}, scratch); }
+  std::size_t open_reals() {
+    std::size_t count = 0;
+    for (const ClashEvent& clash : snapshot_of(session.world).open_clashes)
+      count += clash.verdict.collision_class == CollisionClass::kReal ? 1 : 0;
+    return count;
+  }
+};
+
+TEST(WorkBudget, PairsThatWaitAreCountedAndJudgedLater) {
+  Row with(Policy::kReport, true), without(Policy::kReport, false);
+  with.push(Vec3(3.5, 0, 0));
+  without.push(Vec3(3.5, 0, 0));
+  const StepReport all = without.push(Vec3(1.0, 0, 0));
+  const StepReport some = with.push(Vec3(1.0, 0, 0));
+  EXPECT_EQ(all.events.size(), without.pegs.size());
+  EXPECT_EQ(all.counters.pairs_waiting, 0U);
+  EXPECT_LT(some.counters.depth_evaluations, all.counters.depth_evaluations);
+  EXPECT_GT(some.counters.pairs_waiting, 0U);
+  EXPECT_GE(some.counters.not_examined, some.counters.pairs_waiting);
+  EXPECT_LT(with.open_reals(), with.pegs.size());
+  // Nobody pushes any more: what was owed is told all the same.
+  for (int i = 0; i < 200 && with.open_reals() < with.pegs.size(); ++i) with.rest();
+  EXPECT_EQ(with.open_reals(), with.pegs.size());
+  EXPECT_EQ(with.rest().counters.depth_evaluations, 0U) << "nothing is owed any more";
+}
+
+TEST(WorkBudget, WhoWaitsIsNotLetIntoAnything) {
+  Row with(Policy::kStop, true);
+  std::uint64_t waiting = 0;
+  for (int i = 0; i < 60; ++i) waiting += with.push(Vec3(0.25, 0, 0)).counters.pairs_waiting;
+  EXPECT_GT(waiting, 0U);
+  for (const PartId peg : with.pegs) {
+    // Face to face at x = -1; least surfaces meet 0.05 mm later.
+    EXPECT_LE(with.session.pose(peg).p.x(), -0.95 + 1e-3);
+    EXPECT_GE(with.session.pose(peg).p.x(), -1.0 - 0.11) << "held back for ever";
+  }
+}
+
+TEST(WorkBudget, PushedOnAgainstTheSamePlaceNothingIsSearched) {
+  Row one(Policy::kStop, true, 1);
+  for (int i = 0; i < 40; ++i) one.push(Vec3(0.25, 0, 0));
+  const double stands = one.session.pose(one.pegs[0]).p.x();
+  std::uint64_t held = 0, evaluations = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = one.push(Vec3(0.25, 0.01, 0));
+    held += report.counters.pairs_held_again;
+    evaluations += report.counters.depth_evaluations;
+  }
+  EXPECT_GE(held, 15U);
+  EXPECT_LT(evaluations, 2'000U);
+  EXPECT_EQ(one.session.pose(one.pegs[0]).p.x(), stands);
+  EXPECT_EQ(one.open_reals(), 1U);
+  one.push(Vec3(-0.25, 0, 0));
+  EXPECT_NEAR(one.session.pose(one.pegs[0]).p.x(), stands - 0.25, 1e-9);
+}
+
+TEST(WorkBudget, ThreadsChangeNothing) {
+  Row one(Policy::kStop, true), two(Policy::kStop, true);
+  Scratch threads(3);
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Increment> same;
+    for (const PartId peg : two.pegs)
+      same.push_back(two.session.push(two.ada, peg, Vec3(0.25, 0, 0)));
+    EXPECT_EQ(one.push(Vec3(0.25, 0, 0)).state_hash,
+              play_tick(two.session.world, same, threads).state_hash);
+  }
+}
+
+}  // namespace
+}  // namespace mortise
