@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace mortise {
@@ -29,7 +30,30 @@ constexpr double kEnoughShare = 0.25;
 struct Turn {
   explicit Turn(double angle_rad)
       : angle(angle_rad), cosine(std::cos(angle_rad)), sine(std::sin(angle_rad)) {}
+  // Half-way between two that are less than half a turn apart.
+  Turn(const Turn& from, const Turn& to)
+      : angle(0.5 * (from.angle + to.angle)),
+        cosine(from.cosine + to.cosine),
+        sine(from.sine + to.sine) {
+    const double length = std::sqrt(cosine * cosine + sine * sine);
+    cosine /= length;
+    sine /= length;
+  }
   double angle, cosine, sine;
+};
+
+// Where the circle is cut first.
+const std::array<Turn, kFirstPieces + 1>& first_turns() {
+  static const auto kTurns = []<std::size_t... i>(std::index_sequence<i...>) {
+    return std::array{Turn(2.0 * std::numbers::pi * i / kFirstPieces)...};
+  }
+  (std::make_index_sequence<kFirstPieces + 1>());
+  return kTurns;
+}
+
+struct Piece {
+  Turn from, middle, to;
+  double bound;
 };
 
 class Reach {
@@ -51,26 +75,21 @@ class Reach {
   std::optional<RoundReach> run(double margin_mm, double accuracy_mm, double limit_mm) {
     margin_mm_ = margin_mm;
     if (const auto reach = parallel_cylinders()) return reach;
-    struct Piece {
-      Turn from, middle, to;
-      double bound;
-    };
     std::vector<Piece> pieces;
+    pieces.reserve(4 * kFirstPieces);
     const auto add = [&](const Turn& from, const Turn& to) {
-      const Turn middle(0.5 * (from.angle + to.angle));
-      const double bound = upper(from, to);
+      const Turn middle(from, to);
+      const double bound = upper(from, middle, to);
       if (bound > -kInfinity) pieces.push_back({from, middle, to, bound});
       look(middle);
     };
-    constexpr double kTurn = 2.0 * std::numbers::pi;
-    for (int i = 0; i < kFirstPieces; ++i)
-      add(Turn(kTurn * i / kFirstPieces), Turn(kTurn * (i + 1) / kFirstPieces));
+    for (std::size_t i = 0; i < kFirstPieces; ++i) add(first_turns()[i], first_turns()[i + 1]);
     const auto lower = [](const Piece& a, const Piece& b) { return a.bound < b.bound; };
     std::make_heap(pieces.begin(), pieces.end(), lower);
     for (int looked = kFirstPieces; !pieces.empty() && looked < kMostPieces; looked += 2) {
-      if (pieces.front().bound <= best_ + accuracy_mm || best_ > limit_mm) break;
+      if (pieces.front().bound <= most_ + accuracy_mm || most_ > limit_mm) break;
       if (std::isfinite(limit_mm) &&
-          pieces.front().bound <= best_ + kEnoughShare * (limit_mm - best_))
+          pieces.front().bound <= most_ + kEnoughShare * (limit_mm - most_))
         break;
       std::pop_heap(pieces.begin(), pieces.end(), lower);
       const Piece piece = pieces.back();
@@ -110,11 +129,10 @@ class Reach {
     const double tilt_mm = rise_.norm() * (farthest + convex_.radius_mm);
     if (tilt_mm > kParallel_mm) return std::nullopt;
     const double rise = rise_.norm();
-    const Interval near = within(
-        {-rise, rise}, {hollow_.extent_mm.lo - margin_mm_, hollow_.extent_mm.hi + margin_mm_});
+    const Interval along = within({-rise, rise}, near());
     RoundReach apart;
     apart.reach_mm = {-kInfinity, -kInfinity};
-    if (!(near.lo <= near.hi)) return apart;
+    if (!(along.lo <= along.hi)) return apart;
     const Vec3 off = across(convex_.point);
     const double side = off.norm() > kParallel_mm ? std::atan2(off.dot(e2_), off.dot(e1_))
                                                   : std::numbers::pi / kFirstPieces;
@@ -128,16 +146,17 @@ class Reach {
     return d - d.dot(hollow_.axis) * hollow_.axis;
   }
   double height(const Vec3& x) const { return (x - hollow_.point).dot(hollow_.axis); }
-  Vec3 at(double t, const Turn& turn) const {
+  Vec3 at(double t, const Turn& turn, double times = 1.0) const {
     return convex_.point + t * convex_.axis +
-           convex_.radius_at(t) * (turn.cosine * e1_ + turn.sine * e2_);
+           times * convex_.radius_at(t) * (turn.cosine * e1_ + turn.sine * e2_);
   }
   double rise_at(const Turn& turn) const { return rise_.x() * turn.cosine + rise_.y() * turn.sine; }
   double beyond(const Vec3& x) const {
     return cosine_ * (across(x).norm() - hollow_.radius_at(height(x)));
   }
 
-  // Where the generator whose direction rises by `rise` along the hollow axis meets a height.
+  // Where the generator whose direction rises by `rise` along the hollow axis meets a height; one
+  // that is some times as far from the axis, by as many times the rise.
   double cut(double rise, double z) const {
     const double z0 = height(convex_.point);
     const double along = slope_ + convex_.widening * rise;
@@ -155,9 +174,18 @@ class Reach {
     return {std::max(t.lo, convex_.extent_mm.lo), std::min(t.hi, convex_.extent_mm.hi)};
   }
 
-  // A point of the convex face at both ends of its generator, and in the middle.
+  // Heights along the hollow axis of what is near.
+  Interval near() const {
+    return {hollow_.extent_mm.lo - margin_mm_, hollow_.extent_mm.hi + margin_mm_};
+  }
+
+  // A point of the convex face at both ends of its generator, and in the middle; and how far it
+  // reaches at the very ends of what is near, to which the bounds come down.
   void look(const Turn& turn) {
     const double rise = rise_at(turn);
+    const Interval ends = within({rise, rise}, near());
+    if (ends.lo <= ends.hi)
+      most_ = std::max({most_, beyond(at(ends.lo, turn)), beyond(at(ends.hi, turn))});
     const Interval t = within({rise, rise}, hollow_.extent_mm);
     if (!(t.lo <= t.hi)) return;
     for (const double share : {0.5, kEndShare, 1.0 - kEndShare}) {
@@ -169,21 +197,69 @@ class Reach {
     }
   }
 
-  // No point of the convex face between two angles is farther beyond the wall.
-  double upper(const Turn& from, const Turn& to) const {
+  // No point of the convex face between two angles is farther beyond the wall: f is convex, so that
+  // it is largest at an end of a generator. Two bounds for what the ends run along, the less of
+  // which holds: that of the corners around it is close on a tilted face, that of the curvature
+  // where the axes nearly meet.
+  double upper(const Turn& from, const Turn& middle, const Turn& to) const {
     const double width = to.angle - from.angle;
     const double r0 = rise_at(from), r1 = rise_at(to);
     const double bulge = rise_.norm() * width * width / 8.0;
-    const Interval z{hollow_.extent_mm.lo - margin_mm_, hollow_.extent_mm.hi + margin_mm_};
-    const Interval t = within({std::min(r0, r1) - bulge, std::max(r0, r1) + bulge}, z);
+    const Interval rise{std::min(r0, r1) - bulge, std::max(r0, r1) + bulge};
+    const Interval z = near();
+    const Interval t = within(rise, z);
     if (!(t.lo <= t.hi)) return -kInfinity;
-    return std::max(on_circle(t.lo, from, to), on_circle(t.hi, from, to));
+    const bool along = slope_ > 0.0;
+    const double corners =
+        std::max(around(Edge::kLower, along ? z.lo : z.hi, rise, {from, middle, to}),
+                 around(Edge::kUpper, along ? z.hi : z.lo, rise, {from, middle, to}));
+    if (corners <= most_) return corners;
+    return std::min(corners, std::max(on_circle(t.lo, from, to), on_circle(t.hi, from, to)));
+  }
+
+  enum class Edge { kLower, kUpper };
+  struct Arc {
+    const Turn &from, &middle, &to;
+  };
+
+  // Upper bound of f over one end of the generators of an arc: that of the face, or the height z
+  // where the hollow face ends, whichever comes first.
+  double around(Edge edge, double z, const Interval& rise, const Arc& arc) const {
+    const double end = edge == Edge::kUpper ? convex_.extent_mm.hi : convex_.extent_mm.lo;
+    const double cut0 = cut(rise.lo, z), cut1 = cut(rise.hi, z);
+    const bool may_cut =
+        edge == Edge::kUpper ? std::min(cut0, cut1) < end : std::max(cut0, cut1) > end;
+    const bool may_end =
+        edge == Edge::kUpper ? std::max(cut0, cut1) > end : std::min(cut0, cut1) < end;
+    double most = -kInfinity;
+    if (may_cut || !may_end)
+      most = corners_of(arc, [&](double rise_of) { return cut(rise_of, z); });
+    if (may_end) most = std::max(most, corners_of(arc, [&](double) { return end; }));
+    return most;
+  }
+
+  // A plane section of the face between two generators lies within the triangle of its ends and
+  // the place where its tangents there meet: on the line in which the tangent planes of both meet,
+  // that many times as far from the axis as the face. along(rise): t on a generator.
+  template <class Along>
+  double corners_of(const Arc& arc, const Along& along) const {
+    const double half = 0.5 * (arc.to.angle - arc.from.angle);
+    const double times = 1.0 / std::cos(half);
+    const auto f = [&](const Turn& turn, double of) {
+      return beyond(at(along(of * rise_at(turn)), turn, of));
+    };
+    return std::max({f(arc.from, 1.0), f(arc.middle, times), f(arc.to, 1.0)});
   }
 
   // Upper bound of f over an arc of the circle at t: at most above its ends by the curvature.
   double on_circle(double t, const Turn& from, const Turn& to) const {
+    const double ends = std::max(beyond(at(t, from)), beyond(at(t, to)));
+    return ends + bulge(t, convex_.point + t * convex_.axis, 0.5 * (to.angle - from.angle));
+  }
+
+  double bulge(double t, const Vec3& center, double half) const {
     const double radius = convex_.radius_at(t);
-    const Vec3 v0 = across(convex_.point + t * convex_.axis);
+    const Vec3 v0 = across(center);
     // |v0 + r flat1 cos + r flat2 sin|^2 = mean + first harmonic + second harmonic.
     const double mean = v0.squaredNorm() + 0.5 * radius * radius * (square1_ + square2_);
     const double along1 = v0.dot(flat1_), along2 = v0.dot(flat2_);
@@ -195,9 +271,7 @@ class Reach {
         (first + 4.0 * second) / (2.0 * std::sqrt(least)) +
         (first + 2.0 * second) * (first + 2.0 * second) / (4.0 * least * std::sqrt(least)) +
         std::fabs(hollow_.widening) * radius * rise_.norm();
-    const double ends = std::max(beyond(at(t, from)), beyond(at(t, to)));
-    const double width = to.angle - from.angle;
-    return ends + cosine_ * bend * width * width / 8.0;
+    return cosine_ * bend * half * half / 2.0;
   }
 
   const RoundFace& convex_;
@@ -208,7 +282,7 @@ class Reach {
   const Vec3 flat1_, flat2_;    // e1 and e2 square to the hollow axis
   const double square1_, square2_, second_;
   double margin_mm_ = 0.0;
-  double best_ = -kInfinity;
+  double best_ = -kInfinity, most_ = -kInfinity;
   Vec3 point_ = Vec3::Zero();
 };
 

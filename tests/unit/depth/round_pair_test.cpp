@@ -70,6 +70,15 @@ double sampled(const Case& c, double margin_mm, int around, int along) {
   return most;
 }
 
+// Far from fitting: tilted by up to a quarter of a radian, off by up to the radius.
+Case far_case(std::mt19937_64& random) {
+  Case c = random_case(random, 0.25);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  c.convex.point +=
+      0.5 * c.convex.radius_at(c.convex.extent_mm.hi) * Vec3(unit(random), unit(random), 0.0);
+  return c;
+}
+
 struct Tally {
   int above_hi = 0, far_below_lo = 0, wide = 0;
 };
@@ -104,6 +113,27 @@ TEST(RoundPair, BracketHoldsAgainstDenseSampling) {
 }
 
 TEST(RoundPair, APlantedFaultIsSeen) { EXPECT_GT(play(1e-3).above_hi, 0); }
+
+TEST(RoundPair, BracketIsTightHoweverFarTheyAreFromFitting) {
+  std::mt19937_64 random(21);
+  int bounded = 0;
+  for (int i = 0; i < test::effort(300); ++i) {
+    const Case c = far_case(random);
+    const auto reach = round_reach(c.convex, c.hollow, 0.0, 1e-5);
+    if (!reach || !std::isfinite(reach->reach_mm.hi)) continue;
+    ++bounded;
+    EXPECT_LE(sampled(c, 0.0, 720, 200), reach->reach_mm.hi + 1e-9);
+    EXPECT_LE(reach->reach_mm.width(), 1e-2);
+    // What only asks about a limit may be wide, and is on the same side of it.
+    for (const double limit : {reach->reach_mm.lo - 0.1, reach->reach_mm.hi + 0.1}) {
+      const auto asked = round_reach(c.convex, c.hollow, 0.0, 1e-5, limit);
+      ASSERT_TRUE(asked);
+      EXPECT_GE(asked->reach_mm.hi, reach->reach_mm.lo);
+      EXPECT_EQ(asked->reach_mm.hi > limit, reach->reach_mm.hi > limit);
+    }
+  }
+  EXPECT_GE(bounded, test::effort(300) * 9 / 10);
+}
 
 TEST(RoundPair, CoaxialAndEccentricShaftsAreExact) {
   const RoundFace hole{Vec3::Zero(), Vec3::UnitZ(), 10.0, 0.0, {0.0, 20.0}};
