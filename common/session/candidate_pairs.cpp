@@ -61,6 +61,7 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
     pair.memo->not_contained = false;
     pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
     pair.memo->held.reset();
+    pair.memo->stalled.reset();
   }
   const auto open = state.open.find({a.id, b.id});
   if (open != state.open.end()) pair.open = &open->second;
@@ -78,6 +79,14 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
   pair.together = a.group && a.group == b.group && pair.move_a >= 0 && pair.move_b >= 0 &&
                   !work.moves[static_cast<std::size_t>(pair.move_a)].placed &&
                   !work.moves[static_cast<std::size_t>(pair.move_b)].placed;
+}
+
+// Does it move, or was it put somewhere? Who is only looked at for one of its pairs is not.
+bool changed(const Scratch::Impl& work, std::uint32_t part) {
+  const std::int32_t index = work.move_of_part[part];
+  if (index < 0) return false;
+  const Move& move = work.moves[static_cast<std::size_t>(index)];
+  return move.placed || move.motion.moves();
 }
 
 }  // namespace
@@ -103,6 +112,15 @@ void find_candidates(const World& world, SessionState& state, Scratch::Impl& wor
   state.broad_phase->find_pairs(work.moved_parts, work.candidates);
   counters.pairs_boxes_apart =
       census.all - census.both_static - census.both_still - work.candidates.size();
+  // Who waits for a verdict may have left each other meanwhile.
+  if (!state.owed.empty()) {
+    const auto found = static_cast<std::ptrdiff_t>(work.candidates.size());
+    work.candidates.insert(work.candidates.end(), state.owed.begin(), state.owed.end());
+    std::inplace_merge(work.candidates.begin(), work.candidates.begin() + found,
+                       work.candidates.end());
+    work.candidates.erase(std::unique(work.candidates.begin(), work.candidates.end()),
+                          work.candidates.end());
+  }
   for (const IndexPair indices : work.candidates) {
     const Part& a = world.parts[indices.a];
     const Part& b = world.parts[indices.b];
@@ -113,6 +131,11 @@ void find_candidates(const World& world, SessionState& state, Scratch::Impl& wor
     if (filter_pair(filter_part(indices.a), filter_part(indices.b), rule && rule->excluded) !=
         PairSkip::kAsk) {
       ++counters.pairs_excluded;
+      continue;
+    }
+    if (!changed(work, indices.a) && !changed(work, indices.b) &&
+        !std::binary_search(state.owed.begin(), state.owed.end(), indices)) {
+      ++counters.pairs_still;
       continue;
     }
     set_up(world, state, work, indices, rule, next_pair(work));

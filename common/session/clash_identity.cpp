@@ -244,13 +244,19 @@ void report_clashes(const World& world, SessionState& state, Scratch::Impl& work
         });
     return it != last && it->a == key.a && it->b == key.b ? &*it : nullptr;
   };
-  const auto is_still = [&](PartId part) { return work.move_of_part[part.value - 1] < 0; };
+  const auto is_still = [&](PartId part) {
+    const std::int32_t index = work.move_of_part[part.value - 1];
+    if (index < 0) return true;
+    const Move& move = work.moves[static_cast<std::size_t>(index)];
+    return !move.placed && !move.motion.moves();
+  };
 
   // 1. Clashes that were open. Two parts that are both still keep theirs.
   for (auto it = state.open.begin(); it != state.open.end();) {
     const auto& [a, b] = it->first;
-    if (!is_still(a) || !is_still(b)) {
-      update(world, state, pair_of(a, b), it->second, report);
+    const PairWork* pair = pair_of(a, b);
+    if (pair || !is_still(a) || !is_still(b)) {
+      update(world, state, pair, it->second, report);
       state.clashes_changed = true;
     }
     it = it->second.empty() ? state.open.erase(it) : std::next(it);

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "common/session/guidance.h"
 #include "common/session/tick_work.h"
 
@@ -23,14 +21,9 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
   }
   state.placed.clear();
   // What the tick had no work for is looked at as it stands, should it not move on.
-  for (std::size_t i = 0; i < work.pair_count; ++i) {
-    const PairWork& pair = work.pairs[i];
-    const std::uint32_t part = pair.move_a >= 0 ? pair.a : pair.b;
-    if (pair.owed && (state.placed.empty() || state.placed.back() != part))
-      state.placed.push_back(part);
-  }
-  std::sort(state.placed.begin(), state.placed.end());
-  state.placed.erase(std::unique(state.placed.begin(), state.placed.end()), state.placed.end());
+  state.owed.clear();
+  for (std::size_t i = 0; i < work.pair_count; ++i)
+    if (work.pairs[i].owed) state.owed.push_back({work.pairs[i].a, work.pairs[i].b});
   if (world.guides.empty()) return;
   std::vector<PartId> moved, held_back;
   for (const Move& move : work.moves)

@@ -136,6 +136,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.meets = pair.overlaps_at_start = pair.blocks = false;
   pair.t_contact = pair.t_stop = 1.0;
   pair.never_real = pair.held_again = pair.wants_stop_time = false;
+  pair.stop_gave_up = pair.short_of_work = pair.stalled = false;
   pair.place = {};
   pair.t_enter = pair.apart_at_end_mm = 0.0;
   if (pair.together) {
@@ -162,13 +163,18 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
 // What is known of the stop without a search stands where there is no work left for one.
 void search_stop_time(PairWork& pair, CcdScratch& ccd) {
   if (pair.cap == 0) {
-    pair.undecided = true;
+    pair.undecided = pair.stop_gave_up = true;
+    pair.stalled = is_stalled(pair) && pair.memo->stalled->in_full;
+    pair.short_of_work = !pair.stalled;
     return;
   }
   const bool was_undecided = std::exchange(pair.undecided, false);
   const double t = pair.plain() ? withdrawal_time(pair, ccd) : stop_time_with_bands(pair, ccd);
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
   note_effort(pair, WorkStage::kStop, pair.undecided);
+  pair.stop_gave_up = pair.undecided;
+  pair.short_of_work = pair.undecided && pair.may_have_more();
+  note_stalled(pair);
   pair.undecided |= was_undecided;
 }
 

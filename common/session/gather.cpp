@@ -210,13 +210,19 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
   for (std::size_t i = bodies; i < work.moves.size(); ++i)
     work.move_of_part[work.moves[i].part] = static_cast<std::int32_t>(i);
 
-  // 3. Parts that were put somewhere have to be looked at as well.
+  // 3. Parts that were put somewhere have to be looked at as well, and those of a pair that waits.
   for (const std::uint32_t part : world.state->placed) {
     const Part& placed = world.parts[part];
     move_of(work, {part, placed.X_WP, placed.solid->sphere().center_mm}).placed = true;
   }
+  for (const IndexPair owed : world.state->owed) {
+    const Part& part = world.parts[owed.a];
+    move_of(work, {owed.a, part.X_WP, part.solid->sphere().center_mm}).owed = true;
+  }
   for (const Move& move : work.moves) work.move_of_part[move.part] = -1;
-  std::erase_if(work.moves, [](const Move& move) { return !move.motion.moves() && !move.placed; });
+  std::erase_if(work.moves, [](const Move& move) {
+    return !move.motion.moves() && !move.placed && !move.owed;
+  });
   std::sort(work.moves.begin(), work.moves.end(),
             [](const Move& x, const Move& y) { return x.part < y.part; });
   work.moved_parts.clear();

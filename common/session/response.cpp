@@ -38,9 +38,10 @@ Motion rest_of(const Move& move, double t) {
 }
 
 AskedEarlier asked_until(const PairWork& pair, double t) {
-  AskedEarlier asked{pair.tau,     pair.t_contact, pair.t_enter,
-                     pair.t_stop,  pair.motion_a,  pair.motion_b,
-                     pair.entered, pair.meets,     pair.overlaps_at_start};
+  AskedEarlier asked{pair.tau,          pair.t_contact, pair.t_enter,
+                     pair.t_stop,       pair.motion_a,  pair.motion_b,
+                     pair.entered,      pair.meets,     pair.overlaps_at_start,
+                     pair.short_of_work};
   asked.t_end = t;
   return asked;
 }
@@ -58,6 +59,7 @@ void take_back(PairWork& pair, const AskedEarlier& asked) {
   pair.entered = asked.entered;
   pair.meets = asked.meets;
   pair.overlaps_at_start = asked.overlaps_at_start;
+  pair.short_of_work = asked.short_of_work;
 }
 
 class Response {
@@ -229,7 +231,8 @@ void note_held(const World& world, Scratch::Impl& work) {
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     const PairWork& pair = work.pairs[i];
     if (!pair.blocks || !pair.place.known() || std::isfinite(pair.memo->allowed_depth_mm)) continue;
-    pair.memo->held = {world.parts[pair.a].X_WP, world.parts[pair.b].X_WP, pair.place};
+    pair.memo->held = {world.parts[pair.a].X_WP, world.parts[pair.b].X_WP, pair.place,
+                       pair.stop_gave_up};
   }
 }
 

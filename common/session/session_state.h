@@ -40,8 +40,18 @@ struct PairMemo {
   struct Held {
     Pose X_WA, X_WB;
     CertainPlace place;
+    bool gave_up = false;  ///< the search that left them there did, at its cap
   };
   std::optional<Held> held;
+  /// Where a search for the stop has come to nothing: the poses, and the motion that was asked for,
+  /// of A against B, its rotation as way of the smaller part's rim.
+  struct Stalled {
+    Pose X_WA, X_WB;
+    Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();
+    bool in_full = false;  ///< it had all the work that it may have
+    bool judged = false;   ///< and what it would have led to was judged
+  };
+  std::optional<Stalled> stalled;
   /// What a stage of the last ticks needed of depth, and for how many ticks it has waited for it;
   /// see work_budget.h. By WorkStage.
   struct Effort {
@@ -88,13 +98,14 @@ struct SessionState {
   std::unique_ptr<BroadPhase> broad_phase;
   std::vector<PartState> parts;
   std::vector<std::uint32_t> placed;  ///< parts put somewhere since the last tick, no repeats
+  std::vector<IndexPair> owed;        ///< pairs that the last tick had no work to judge, sorted
   std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
   std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
   std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
   std::vector<ClashEvent> reviews;  ///< made since the last tick, told in the next
   bool clashes_changed = true;
-  std::uint64_t saved_work = ~std::uint64_t{0};  ///< evaluations, see work_budget.h; capped there
-  std::uint64_t parts_hash = 0;                  ///< sum of PartState::hash
+  std::int64_t saved_work = 0;   ///< evaluations, see work_budget.h; negative: overdrawn
+  std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
   std::uint64_t clashes_hash = 0;
 
   PairMemo& memo(std::uint32_t a, std::uint32_t b) {

@@ -26,6 +26,10 @@ constexpr int kAdvanceSteps = 12;
 // A part that is real within so much of its path stays where it stands. mm; the first is what the
 // search for the time is content with, too.
 constexpr double kHeldPaths_mm[] = {0.02, 0.004, 0.0008};
+// The same where the search had to give up: nothing closer is known of the stop anyway.
+constexpr double kHeldAfterGivingUp_mm[] = {0.2, 0.06};
+// Motions from the same place whose directions have a larger cosine are one push.
+constexpr double kSamePushCosine = 0.95;
 // Parts that approach by less than this share of their speed slide.
 constexpr double kLeastApproach = 0.1;
 static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
@@ -185,16 +189,29 @@ bool is_held_again(PairWork& pair) {
   const double speed_mm =
       relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
   OverlapQuery query = overlap_query(pair);
-  for (const double path_mm : kHeldPaths_mm) {
+  const auto holds_at = [&](double path_mm) {
     const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
     query.X_WA = pair.motion_a.pose_at(t);
     query.X_WB = pair.motion_b.pose_at(t);
     ++pair.counts.depth_evaluations;
-    if (!is_certain_at(query, held->place)) continue;
-    pair.place = held->place;
-    return true;
-  }
-  return false;
+    return is_certain_at(query, held->place);
+  };
+  const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
+                     (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),
+                                                   std::end(kHeldAfterGivingUp_mm), holds_at));
+  if (again) pair.place = held->place;
+  return again;
+}
+
+PairMemo::Stalled push_of(const PairWork& pair) {
+  const double rim_mm =
+      std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
+  return {pair.motion_a.X_W0,
+          pair.motion_b.X_W0,
+          pair.motion_a.v_W - pair.motion_b.v_W,
+          rim_mm * (pair.motion_a.w_W - pair.motion_b.w_W),
+          false,
+          false};
 }
 
 SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
@@ -235,6 +252,24 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
 }
 
 }  // namespace
+
+void note_stalled(PairWork& pair) {
+  pair.memo->stalled.reset();
+  if (!pair.undecided || pair.t_stop > 0.0) return;
+  pair.memo->stalled = push_of(pair);
+  pair.memo->stalled->in_full = !pair.short_of_work;
+}
+
+bool is_stalled(const PairWork& pair) {
+  const auto& before = pair.memo->stalled;
+  if (!before) return false;
+  const PairMemo::Stalled now = push_of(pair);
+  const auto dot = [](const PairMemo::Stalled& x, const PairMemo::Stalled& y) {
+    return x.shift.dot(y.shift) + x.turn.dot(y.turn);
+  };
+  return identical(before->X_WA, now.X_WA) && identical(before->X_WB, now.X_WB) &&
+         dot(*before, now) >= kSamePushCosine * std::sqrt(dot(*before, *before) * dot(now, now));
+}
 
 SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch) {
   // Without an inside there is no depth and so no real verdict: nobody is stopped.

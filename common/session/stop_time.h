@@ -17,6 +17,12 @@ SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch)
 /// By the search from there, at most PairWork::cap evaluations of it.
 double stop_time_with_bands(PairWork& pair, CcdScratch& ccd);
 
+/// Remembers that the search came to nothing, or that it did not.
+void note_stalled(PairWork& pair);
+
+/// Is it the push that came to nothing before, from the same place?
+bool is_stalled(const PairWork& pair);
+
 /// How far a pair that is real at the start of its segment may go: as long as it gets no deeper.
 /// Looked at in quarters of the segment; between them it is not looked at.
 double withdrawal_time(PairWork& pair, CcdScratch& ccd);

@@ -19,6 +19,7 @@ struct Move {
   Motion motion;            ///< as asked for
   double turned_rad = 0.0;  ///< sum of the rotations of its increments
   bool placed = false;      ///< was put somewhere: nothing is known of its pairs
+  bool owed = false;        ///< a pair of it waits for a verdict
   double stop = 1.0;        ///< time at which the response ends it
   bool stopped = false;
   Pose X_WP_end;  ///< after the response
@@ -48,7 +49,7 @@ struct SlidingBody {
 struct AskedEarlier {
   double tau = 0.0, t_contact = 1.0, t_enter = 0.0, t_stop = 1.0;
   Motion motion_a, motion_b;
-  bool entered = false, meets = false, overlaps_at_start = false;
+  bool entered = false, meets = false, overlaps_at_start = false, short_of_work = false;
   double t_end = 1.0;  ///< of the tick: until then
 };
 
@@ -103,10 +104,16 @@ struct PairWork {
 
   // Work on depth, in evaluations; see work_budget.h.
   std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
+  std::uint64_t most_work = 0;   ///< that a pair may have in the stage
   bool wants_stop_time = false;  ///< its t_stop is what needs no search
   double t_stop_start = 0.0;     ///< of the segment: where that search begins
+  bool stop_gave_up = false;     ///< that search came to the end of its work
+  bool short_of_work = false;    ///< and was given less of it than it may have
+  bool stalled = false;          ///< or none, because the same push has come to nothing before
   bool owed = false;             ///< near, but not judged to the end: again in the next tick
 
+  /// Was it given less than that?
+  bool may_have_more() const { return cap < most_work; }
   /// What is left to it of the stage.
   std::uint64_t left() const {
     const std::uint64_t used = counts.depth_evaluations - stage_start;
@@ -152,9 +159,9 @@ struct Scratch::Impl {
   std::vector<IndexPair> candidates;
   std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
   std::size_t pair_count = 0;
-  std::uint64_t budget = 0;          ///< evaluations of depth in this tick
-  std::vector<std::uint32_t> asked;  ///< pairs that want work of the stage
-  std::vector<std::uint32_t> again;  ///< pairs to ask again in a round of the response
+  std::uint64_t budget = 0, stock = 0;  ///< evaluations of depth: of this tick, and what was saved
+  std::vector<std::uint32_t> asked;     ///< pairs that want work of the stage
+  std::vector<std::uint32_t> again;     ///< pairs to ask again in a round of the response
   std::vector<SlidingBody> sliding;
 };
 

@@ -157,8 +157,10 @@ void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch
   for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
 }
 
-// The place that holds a part holds it again: what was said of it holds on.
+// The place that holds a part holds it again, or the same push comes to nothing again: what was
+// said of it holds on.
 bool stays_told(const PairWork& pair) {
+  if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
   return pair.near && pair.blocks && pair.held_again && pair.open &&
          std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
            return clash.now.collision_class == CollisionClass::kReal;
@@ -214,24 +216,30 @@ bool anything_to_tell(const PairWork& pair) {
                      [](const SeenRegion& seen) { return seen.tell; });
 }
 
+// Half a verdict is none: the next ticks look again, at the parts as they stand if they rest. What
+// stopped a part is not to be seen there, but for that there is nothing else.
+void put_off(PairWork& pair) {
+  keep_told(pair);
+  pair.undecided = true;
+  pair.owed = !pair.blocks || !pair.open;
+}
+
 void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   if (pair.cap == 0) {
-    keep_told(pair);
-    pair.undecided = true;
-    pair.owed = !pair.blocks;
+    put_off(pair);
     return;
   }
   const bool was_undecided = std::exchange(pair.undecided, false);
   // The separating motion is needed only where somebody is told of it.
   judge_near(world, work, pair, pair.open == nullptr, ccd);
   const bool capped = pair.undecided;
-  pair.owed = capped && !pair.blocks && may_have_more(pair, WorkStage::kVerdict);
-  // Half a verdict is none: the next ticks give it more.
-  if (pair.owed) keep_told(pair);
-  if (anything_to_tell(pair)) {
+  if (capped && pair.may_have_more()) {
+    put_off(pair);
+  } else if (anything_to_tell(pair)) {
     if (pair.open && pair.left() > 0) judge_near(world, work, pair, true, ccd);
     find_event_times(pair, end_of(work, pair), ccd);
   }
+  if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo->stalled->judged = true;
   note_effort(pair, WorkStage::kVerdict, capped);
   pair.undecided |= was_undecided;
 }
@@ -245,7 +253,12 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
     PairWork& pair = work.pairs[i];
     if (!pair.asked) continue;
     // A part that was stopped before this pair came near is clear of it.
-    if (pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0))
+    const bool looked_at =
+        pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0);
+    // Who was held back only because there was no work to let it go on has met nothing yet.
+    if (looked_at && pair.blocks && pair.short_of_work)
+      put_off(pair);
+    else if (looked_at)
       (stays_told(pair) ? work.again : work.asked).push_back(i);
     else if (pair.open)
       work.again.push_back(i);

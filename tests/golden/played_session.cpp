@@ -55,7 +55,7 @@ std::string text_of(const std::filesystem::path& file) {
 }  // namespace
 
 Result<PlayedSession> play_session(const std::string& scenario_name, const std::string& yaml,
-                                   const Play& play, int threads) {
+                                   const Play& play, int threads, const StepSwitches& switches) {
   auto reading = read_scenario_text(yaml, scenario_name);
   if (!reading) return reading.error();
   if (!reading->usable()) return fail(Code::kInvalidInput, reading->findings.front().text);
@@ -82,6 +82,7 @@ Result<PlayedSession> play_session(const std::string& scenario_name, const std::
   const auto wishes = schedule(play, world, users);
 
   Scratch scratch(threads);
+  scratch.impl().switches = switches;
   const std::uint64_t last_tick = wishes.empty() ? 1 : wishes.rbegin()->first;
   for (std::uint64_t tick = 1; tick <= last_tick; ++tick) {
     TickRecord record;
@@ -108,10 +109,11 @@ Result<PlayedSession> play_session(const std::string& scenario_name, const std::
 }
 
 Result<PlayedSession> play_session(const std::filesystem::path& scenario,
-                                   const std::filesystem::path& play, int threads) {
+                                   const std::filesystem::path& play, int threads,
+                                   const StepSwitches& switches) {
   auto acts = read_play(play);
   if (!acts) return acts.error();
-  return play_session(scenario.filename().string(), text_of(scenario), *acts, threads);
+  return play_session(scenario.filename().string(), text_of(scenario), *acts, threads, switches);
 }
 
 Status write_log(const PlayedSession& session, const std::filesystem::path& file) {

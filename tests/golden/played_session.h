@@ -7,6 +7,7 @@
 #include "common/io/play_file.h"
 #include "common/io/scene_load.h"
 #include "common/io/session_log.h"
+#include "common/session/tick_work.h"
 
 namespace mortise::test {
 
@@ -19,9 +20,11 @@ struct PlayedSession {
 };
 
 Result<PlayedSession> play_session(const std::string& scenario_name, const std::string& yaml,
-                                   const Play& play, int threads = 1);
+                                   const Play& play, int threads = 1,
+                                   const StepSwitches& switches = {});
 Result<PlayedSession> play_session(const std::filesystem::path& scenario,
-                                   const std::filesystem::path& play, int threads = 1);
+                                   const std::filesystem::path& play, int threads = 1,
+                                   const StepSwitches& switches = {});
 
 /// Writes a session to a log as the server does.
 Status write_log(const PlayedSession& session, const std::filesystem::path& file);

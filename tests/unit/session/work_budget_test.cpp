@@ -1,6 +1,10 @@
 // What a tick may spend on depth: pairs wait, are counted, and nothing is forgotten.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "common/session/tick_work.h"
 #include "tests/unit/session/session_builder.h"
 
@@ -32,6 +36,15 @@ struct Row {
     return play_tick(session.world, increments, scratch);
   }
   StepReport rest() { return play_tick(session.world, {}, scratch); }
+  // The open clashes, by part and class.
+  std::vector<std::string> told() {
+    std::vector<std::string> all;
+    for (const ClashEvent& clash : snapshot_of(session.world).open_clashes)
+      all.push_back(std::to_string(clash.part_b.value) + " " +
+                    std::to_string(static_cast<int>(clash.verdict.collision_class)));
+    std::sort(all.begin(), all.end());
+    return all;
+  }
   std::size_t open_reals() {
     std::size_t count = 0;
     for (const ClashEvent& clash : snapshot_of(session.world).open_clashes)
@@ -86,6 +99,61 @@ TEST(WorkBudget, PushedOnAgainstTheSamePlaceNothingIsSearched) {
   EXPECT_EQ(one.open_reals(), 1U);
   one.push(Vec3(-0.25, 0, 0));
   EXPECT_NEAR(one.session.pose(one.pegs[0]).p.x(), stands - 0.25, 1e-9);
+}
+
+// What was said of a clash holds while nobody has the work to look again: pegs stir in their walls,
+// and nothing begins, ends or changes its class, however few of them are looked at in a tick.
+TEST(WorkBudget, WhatIsNotJudgedStaysToldAsItWas) {
+  Row with(Policy::kReport, true), without(Policy::kReport, false);
+  for (Row* row : {&with, &without}) {
+    for (const double by : {3.5, 1.0}) row->push(Vec3(by, 0, 0));
+    for (int i = 0; i < 400 && row->open_reals() < row->pegs.size(); ++i) row->rest();
+    ASSERT_EQ(row->open_reals(), row->pegs.size());
+  }
+  std::uint64_t waiting = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 by(i % 2 == 0 ? 0.01 : -0.01, 0.001, 0);
+    without.push(by);
+    const StepReport report = with.push(by);
+    waiting += report.counters.pairs_waiting;
+    for (const ClashEvent& event : report.events)
+      ADD_FAILURE() << "tick " << event.tick << ": told again, as " << static_cast<int>(event.kind);
+  }
+  EXPECT_GT(waiting, 100U);
+  for (int i = 0; i < 400; ++i) with.rest();
+  without.rest();
+  EXPECT_EQ(with.told(), without.told());
+  // Out of the walls: who had no work to see it ends its clash later, and all do.
+  without.push(Vec3(-4, 0, 0));
+  with.push(Vec3(-4, 0, 0));
+  EXPECT_EQ(without.open_reals(), 0U);
+  for (int i = 0; i < 400; ++i) with.rest();
+  EXPECT_EQ(with.told(), without.told());
+}
+
+// Many pegs are to be looked at anew, one of them is in a hand: that one is not kept waiting.
+TEST(WorkBudget, WhatUsersHoldComesFirst) {
+  Row row(Policy::kReport, true);
+  for (const double by : {3.5, 1.0}) row.push(Vec3(by, 0, 0));
+  row.session.world.tick_rate_hz = 60.0;
+  const PartId held = row.pegs.back();
+  for (const PartId peg : row.pegs)
+    if (peg != held) row.session.command(row.ada, peg, CommandKind::kRelease);
+  for (int i = 0; i < 400; ++i) row.rest();
+  ASSERT_EQ(row.open_reals(), row.pegs.size());
+  // Its clash ends and begins with every push, but for those at which it needs more than it did.
+  int told = 0;
+  for (int i = 0; i < 20; ++i) {
+    Decision change;
+    for (const PartId peg : row.pegs)
+      if (peg != held) note_surface(row.session.world, peg, PartId{}, change);
+    const Vec3 out(i % 2 == 0 ? -2 : 2, 0, 0);
+    const StepReport report =
+        play_tick(row.session.world, {row.session.push(row.ada, held, out)}, row.scratch);
+    EXPECT_GT(report.counters.pairs_waiting, 0U);
+    for (const ClashEvent& event : report.events) told += event.part_b == held ? 1 : 0;
+  }
+  EXPECT_GE(told, 14) << "the peg in the hand waits behind others";
 }
 
 TEST(WorkBudget, ThreadsChangeNothing) {

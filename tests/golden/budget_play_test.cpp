@@ -1,0 +1,62 @@
+// The demo under the tick's budget of work: what is told is what is told without one, and its log
+// plays again.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/io/replay.h"
+#include "common/messages/names.h"
+#include "tests/golden/played_session.h"
+
+namespace mortise {
+namespace {
+
+Result<test::PlayedSession> gearbox(bool work_budget) {
+  const auto scenarios = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
+  StepSwitches switches;
+  switches.work_budget = work_budget;
+  return test::play_session(scenarios / "gearbox.yaml", scenarios / "gearbox.play.yaml", 1,
+                            switches);
+}
+
+// Begin, change and end of every pair of parts, in their order.
+using Told = std::map<std::string, std::vector<std::string>>;
+Told told_in(const test::PlayedSession& session) {
+  const auto name = [&](PartId part) { return session.scene.world.find(part)->name; };
+  Told told;
+  for (const TickRecord& record : session.ticks)
+    for (const ClashEvent& event : record.report.events)
+      told[name(event.part_a) + " - " + name(event.part_b)].push_back(
+          std::string(name_of(event.kind)) + " " +
+          std::string(name_of(event.verdict.collision_class)));
+  return told;
+}
+
+TEST(BudgetPlay, TheDemoTellsWhatItTellsWithout) {
+  const auto with = gearbox(true), without = gearbox(false);
+  ASSERT_TRUE(with) << with.error().text;
+  ASSERT_TRUE(without) << without.error().text;
+  std::uint64_t waiting = 0;
+  for (const TickRecord& record : with->ticks) waiting += record.report.counters.pairs_waiting;
+  EXPECT_GT(waiting, 0U) << "nobody had to wait: nothing is shown";
+  EXPECT_EQ(told_in(*with), told_in(*without));
+  // Who waits loses what it was pushed by meanwhile, and nothing else.
+  for (std::size_t i = 0; i < with->scene.world.parts.size(); ++i) {
+    const Part &a = with->scene.world.parts[i], &b = without->scene.world.parts[i];
+    EXPECT_LT((a.X_WP.p - b.X_WP.p).norm(), 2.0) << a.name;
+  }
+
+  const auto file = std::filesystem::path(testing::TempDir()) / "budget_play_test.mcap";
+  ASSERT_TRUE(test::write_log(*with, file));
+  const auto log = read_session_log(file);
+  ASSERT_TRUE(log) << log.error().text;
+  const auto report = verify(*log, 2);
+  ASSERT_TRUE(report) << report.error().text;
+  EXPECT_FALSE(report->difference) << report->difference->what;
+  EXPECT_EQ(report->ticks_compared, with->ticks.size());
+}
+
+}  // namespace
+}  // namespace mortise
