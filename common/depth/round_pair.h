@@ -36,10 +36,10 @@ struct RoundReach {
 /// over the convex face within margin_mm of the hollow one's ends, lo within both; -infinity where
 /// there is no such point.
 ///
-/// f is convex, so that along a generator it is largest at an end; around the ends it is a square
-/// root of a trigonometric polynomial of second degree, whose curvature is small where the axes
-/// nearly meet: branch and bound over the angle closes the bracket to accuracy_mm in a few dozen
-/// steps. Exact to rounding; about 2 us.
+/// f is convex, so that along a generator it is largest at an end. Around the ends it is at most
+/// what it is at the corners of the triangles about its arcs, and, a square root of a trigonometric
+/// polynomial of second degree, bends little where the axes nearly meet: branch and bound over the
+/// angle closes hi to accuracy_mm in a few dozen steps. Exact to rounding; some 5 us.
 ///
 /// With limit_mm it is only asked whether the reach is beyond that: the bracket stays wide where it
 /// certainly is, and a quarter of what it lacks wide where it is not.
