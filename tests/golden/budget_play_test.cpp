@@ -49,8 +49,10 @@ TEST(BudgetPlay, TheDemoTellsWhatItTellsWithout) {
   }
 
   const auto file = std::filesystem::path(testing::TempDir()) / "budget_play_test.mcap";
+  std::filesystem::remove(file);
   ASSERT_TRUE(test::write_log(*with, file));
   const auto log = read_session_log(file);
+  std::filesystem::remove(file);
   ASSERT_TRUE(log) << log.error().text;
   const auto report = verify(*log, 2);
   ASSERT_TRUE(report) << report.error().text;
