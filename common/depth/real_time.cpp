@@ -11,9 +11,12 @@
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
 #include "common/depth/search.h"
+#include "common/depth/search_effort.h"
 
 namespace mortise {
 namespace {
+
+using namespace search_effort;
 
 // Branch and bound over (piece of surface) x (interval of time), earliest first, in the layer of
 // the least surfaces (of the largest, where it is asked what is possible):
@@ -23,31 +26,6 @@ namespace {
 //      is certain: nothing later matters any more;
 //   4. else it is halved, in time when it stands clear at its start, else in space;
 //   5. the first item that is as brief as the accuracy and ends in a certain overlap is the answer.
-
-// Items are cut down to this share of the accuracy.
-constexpr double kSmallestShare = 0.25;
-
-// Paths longer than this many widths are cut in time without asking.
-constexpr double kLongPath = 4.0;
-
-// A closed form that stops excluding an overlap is followed by so many of the briefest intervals:
-// certain by then, it is so from there on as far as the search goes.
-constexpr double kSoon = 256.0;
-
-// After so many evaluations, and again when they have doubled, it is asked whether the parts are
-// about to interfere: this many times the accuracy of the path on. Where the last tick stopped it,
-// a part stands a little before.
-constexpr std::uint64_t kFirstLook = 400, kLookWorkCap = 2'000;
-constexpr double kSoonShare = 4.0;
-
-// After this share of the work cap what is proven need not come closer than this, mm of path, to a
-// time at which the parts do interfere: two rims at the brink take ten times the work for the rest.
-constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
-constexpr double kCloseEnough_mm = 0.02;
-
-// Steps back, doubling from the accuracy, from a time at which the overlap is certain already;
-// and the work of them and the search, in work caps, after which it is the start that counts.
-constexpr std::uint64_t kBackOff = 12, kBackOffCaps = 2;
 
 struct Item {
   Span span;
