@@ -21,16 +21,21 @@ Result<test::PlayedSession> gearbox(bool work_budget) {
                             switches);
 }
 
-// Begin, change and end of every pair of parts, in their order.
+// Begin, end and every other class of every pair of parts, in their order. That a depth has grown
+// since it was told is told as well, and depends on the tick in which it was.
 using Told = std::map<std::string, std::vector<std::string>>;
 Told told_in(const test::PlayedSession& session) {
   const auto name = [&](PartId part) { return session.scene.world.find(part)->name; };
   Told told;
   for (const TickRecord& record : session.ticks)
-    for (const ClashEvent& event : record.report.events)
-      told[name(event.part_a) + " - " + name(event.part_b)].push_back(
-          std::string(name_of(event.kind)) + " " +
-          std::string(name_of(event.verdict.collision_class)));
+    for (const ClashEvent& event : record.report.events) {
+      const std::string now(name_of(event.verdict.collision_class));
+      std::vector<std::string>& of_pair = told[name(event.part_a) + " - " + name(event.part_b)];
+      if (event.kind == ClashEvent::Kind::kChange && !of_pair.empty() &&
+          of_pair.back().ends_with(" " + now))
+        continue;
+      of_pair.push_back(std::string(name_of(event.kind)) + " " + now);
+    }
   return told;
 }
 
