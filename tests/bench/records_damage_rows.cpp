@@ -82,10 +82,14 @@ std::string silent_fault(const std::filesystem::path& file, const Truth& truth, 
   const auto log = read_session_log(file);
   opened = static_cast<bool>(log);
   if (!log) return log.error().text.empty() ? "an error without a word" : "";
+  // A channel's name stands outside of the chunks: with a bit of it turned its records are unknown,
+  // and the checksum of the data section says so.
+  const bool said = !log->notes.empty();
   for (const TickRecord& tick : log->ticks) {
     const auto known = truth.hash.find(tick.tick);
     if (known == truth.hash.end()) return "a tick that was never written";
     if (known->second != tick.report.state_hash) return "another state hash";
+    if (said) continue;
     if (truth.events.at(tick.tick) != tick.report.events.size()) return "other events";
     if (truth.increments.at(tick.tick) != tick.increments.size()) return "other increments";
   }
