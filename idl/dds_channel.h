@@ -20,6 +20,10 @@ struct DdsOptions {
   double heartbeat_period_s = 0.1;   ///< of reliable writers; 0.02 on lossy links
   bool meshes = true;                ///< client: receive meshes
   bool features = true;              ///< client: receive what constraints can name
+  /// Folder of an identity (see client/tools/keys): DDS-Security on. Empty: off. Participants with
+  /// and without never meet.
+  std::string keys = {};
+  bool check_keys = true;  ///< look at them first, to say what is wrong; else only the others judge
 };
 
 /// The server's end: the fixed point that clients look for. Fails in one line when the port is in

@@ -71,8 +71,11 @@ class DdsClientChannel final : public ClientChannel {
                                                           status);
     }
     participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
-    participant_->open_writer<wire::IncrementBatchPubSubType>(Topic::kIncrement, increments_,
-                                                              status);
+    // An observer's permissions have no increments.
+    if (!participant_->identity() || participant_->identity()->role != "observer") {
+      participant_->open_writer<wire::IncrementBatchPubSubType>(Topic::kIncrement, increments_,
+                                                                status);
+    }
     participant_->open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status);
     // Last: once the server's answers are matched, everything else is declared.
     participant_->open_reader<wire::AnswersPubSubType>(Topic::kAnswers, &watch_, answers_, status);
@@ -103,6 +106,10 @@ class DdsClientChannel final : public ClientChannel {
   }
   void send(const IncrementBatch& batch) override {
     assert_presence();
+    if (increments_ == nullptr) {
+      ++counters_.send_failed;
+      return;
+    }
     write(increments_, to_wire(batch));
   }
   void send(const Command& command) override {
@@ -123,8 +130,8 @@ class DdsClientChannel final : public ClientChannel {
     const ServerWatch::Answer watch = watch_.take();
     input.server_lost = watch.lost;
     // Answers can be heard; and what is sent from now on will be.
-    input.server_present =
-        watch.present && matched(requests_) && matched(increments_) && matched(presence_);
+    input.server_present = watch.present && matched(requests_) &&
+                           (increments_ == nullptr || matched(increments_)) && matched(presence_);
     take_answers(input);
     take_snapshots(input);
     take_poses(input);

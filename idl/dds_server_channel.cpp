@@ -15,16 +15,37 @@ namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// Hears of participants that are gone, in threads of Fast DDS; take() asks what it heard. Also the
-/// listener of the presence reader.
-class Departures final : public dds::DomainParticipantListener {
+/// Hears who comes and goes, in threads of Fast DDS; take() asks what it heard. Also the listener
+/// of the presence reader.
+class Doorman final : public dds::DomainParticipantListener {
  public:
+  using Time = std::chrono::steady_clock::time_point;
   void on_participant_discovery(dds::DomainParticipant*,
                                 rtps::ParticipantDiscoveryInfo&& info) override {
     using Info = rtps::ParticipantDiscoveryInfo;
+    const ClientKey client = client_key(info.info.m_guid);
     if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
       add(info.info.m_guid);
+      if (!identities_) return;
+      identities_->parted(client);
+      const std::lock_guard lock(mutex_);
+      unproven_since_.erase(client);
+    } else if (identities_) {
+      {
+        const std::lock_guard lock(mutex_);
+        unproven_since_.emplace(client, Time::clock::now());
+      }
+      const std::string* subject =
+          rtps::DataHolderHelper::find_property_value(info.info.identity_token_, "dds.cert.sn");
+      if (subject != nullptr) identities_->met(client, *subject);
     }
+  }
+  void onParticipantAuthentication(dds::DomainParticipant*,
+                                   rtps::ParticipantAuthenticationInfo&& info) override {
+    const std::lock_guard lock(mutex_);
+    unproven_since_[client_key(info.guid)] = Time::max();  // answered, either way
+    if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
+      turned_away_.push_back(client_key(info.guid));
   }
   /// MANUAL_BY_TOPIC: also when other clients live, unlike automatic liveliness (Fast DDS #4373).
   void on_liveliness_changed(dds::DataReader*,
@@ -37,6 +58,19 @@ class Departures final : public dds::DomainParticipantListener {
     const std::lock_guard lock(mutex_);
     return std::exchange(gone_, {});
   }
+  /// Also those of whom nothing was proven in time: where the other end is to begin the handshake
+  /// and does not like our certificate, nobody tells us.
+  std::vector<ClientKey> take_turned_away() {
+    constexpr auto kTimeToProve = std::chrono::seconds(2);
+    const std::lock_guard lock(mutex_);
+    for (auto& [client, since] : unproven_since_) {
+      if (since == Time::max() || Time::clock::now() - since < kTimeToProve) continue;
+      since = Time::max();  // said once
+      turned_away_.push_back(client);
+    }
+    return std::exchange(turned_away_, {});
+  }
+  void know(PeerIdentities* identities) { identities_ = identities; }
 
  private:
   void add(const rtps::GUID_t& guid) {
@@ -45,13 +79,20 @@ class Departures final : public dds::DomainParticipantListener {
   }
 
   std::mutex mutex_;
-  std::vector<ClientKey> gone_;
+  std::vector<ClientKey> gone_, turned_away_;
+  std::map<ClientKey, Time> unproven_since_;  ///< max: proven, or said
+  PeerIdentities* identities_ = nullptr;      ///< null: nobody proves anything
 };
 
 class DdsServerChannel final : public ServerChannel {
  public:
   Status open(const DdsOptions& options) {
-    auto participant = Participant::open(options, Participant::Side::kServer, &departures_);
+    if (!options.keys.empty()) {
+      const KeyFiles files(options.keys);
+      identities_ = std::make_unique<PeerIdentities>(files.authority, files.revocations);
+      doorman_.know(identities_.get());
+    }
+    auto participant = Participant::open(options, Participant::Side::kServer, &doorman_);
     if (!participant) return participant.error();
     participant_ = std::move(participant.value());
     Status status = ok();
@@ -64,7 +105,7 @@ class DdsServerChannel final : public ServerChannel {
     participant_->open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
     participant_->open_writer<wire::FeaturesPubSubType>(Topic::kFeatures, features_, status);
     participant_->open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
-    participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &departures_, presence_,
+    participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &doorman_, presence_,
                                                         status);
     participant_->open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
     participant_->open_reader<wire::IncrementBatchPubSubType>(Topic::kIncrement, nullptr,
@@ -78,6 +119,7 @@ class DdsServerChannel final : public ServerChannel {
     take_presence(input);
     take_increments(input);
     take_departures(input);
+    if (identities_) turn_away(input);
     return input;
   }
 
@@ -163,6 +205,10 @@ class DdsServerChannel final : public ServerChannel {
     while (reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       ++counters_.received;
+      if (revoked_.contains(client_key(info.sample_identity.writer_guid()))) {
+        ++counters_.foreign;
+        continue;
+      }
       action(sample, client_key(info.sample_identity.writer_guid()));
     }
   }
@@ -180,12 +226,33 @@ class DdsServerChannel final : public ServerChannel {
   /// Last: who asked to join and is gone already does not get in, or would stay for ever. (One that
   /// lives after all asks again.)
   void take_departures(ServerInput& input) {
-    for (const ClientKey& key : departures_.take()) {
+    for (const ClientKey& key : doorman_.take()) {
       // Only who has joined, and once: liveliness ends first, the participant's lease later.
       if (present_.erase(key) == 0) continue;
       std::erase_if(input.joins, [&](const JoinRequest& join) { return join.client == key; });
       input.lost.push_back({UserId{}, key, false});
     }
+  }
+
+  /// Fast DDS reads revocations once, when it begins: who was let in before stays. Here they go.
+  void turn_away(ServerInput& input) {
+    for (const ClientKey& key : identities_->newly_revoked()) {
+      revoked_.insert(key);
+      present_.erase(key);
+      input.lost.push_back({UserId{}, key, false});
+      input.turned_away.push_back(whose(key) +
+                                  " has been revoked: what comes from there is dropped");
+    }
+    for (const ClientKey& key : doorman_.take_turned_away()) {
+      input.turned_away.push_back(
+          whose(key) + " was not let in: without keys, of another site, expired or revoked");
+    }
+    counters_.turned_away += input.turned_away.size();
+  }
+  std::string whose(const ClientKey& key) const {
+    const std::optional<Identity> identity = identities_->identity_of(key);
+    return identity ? "the certificate of '" + identity->name + "' (" + identity->role + ")"
+                    : "a participant without a name (" + key + ")";
   }
 
   void take_requests(ServerInput& input) {
@@ -202,7 +269,8 @@ class DdsServerChannel final : public ServerChannel {
       switch (request->kind) {
         case Request::Kind::kJoin:
           present_.insert(key);
-          input.joins.push_back({key, request->nonce, request->name, request->role});
+          input.joins.push_back({key, request->nonce, request->name, request->role,
+                                 identities_ ? identities_->identity_of(key) : std::nullopt});
           break;
         case Request::Kind::kLeave:
           if (owns(key, request->command.user)) {
@@ -244,7 +312,8 @@ class DdsServerChannel final : public ServerChannel {
         });
   }
 
-  Departures departures_;  // before the participant, whose threads call it
+  std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
+  Doorman doorman_;                             // before the participant, whose threads call it
   std::unique_ptr<Participant> participant_;
   dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
@@ -253,7 +322,7 @@ class DdsServerChannel final : public ServerChannel {
   std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0, feature_serial_ = 0;
   std::size_t mesh_chunks_ = 0;
   std::map<UserId, ClientKey> joined_;
-  std::set<ClientKey> present_;
+  std::set<ClientKey> present_, revoked_;
   ChannelCounters counters_;
 };
 

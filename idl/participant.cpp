@@ -16,6 +16,7 @@
 #include <mutex>
 
 #include "idl/guard_transport.h"
+#include "idl/security_properties.h"
 
 namespace mortise {
 namespace {
@@ -164,7 +165,21 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   flow->max_bytes_per_period = kMeshBytesPerPeriod;
   flow->period_ms = kMeshPeriod_ms;
   qos.flow_controllers().push_back(flow);
+  if (!options.keys.empty()) add_security(qos, KeyFiles(options.keys));
   return qos;
+}
+
+/// Whose keys these are, and whether they are for this side.
+Result<Identity> own_identity(const DdsOptions& options, Participant::Side side) {
+  Result<Identity> identity = check_keys(options.keys);
+  if (!identity) return identity;
+  const bool is_servers = identity->role == "server";
+  if (is_servers == (side == Participant::Side::kServer)) return identity;
+  return bad(
+      options.keys + ": these are the keys of a" +
+      (is_servers ? " server" : "n ordinary " + identity->role) + ", '" + identity->name + "': " +
+      (is_servers ? "take part with those of a designer, observer, bot or gateway"
+                  : "a server needs some of its own: mortise keys issue NAME --role server"));
 }
 
 /// Settings of the process, made once: no shortcut between participants of one process, so that a
@@ -224,12 +239,18 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
   if (Status checked = check(options, side); !checked) return checked.error();
   set_up_process();
   std::unique_ptr<Participant> made(new Participant(options));
+  if (!options.keys.empty() && options.check_keys) {
+    Result<Identity> identity = own_identity(options, side);
+    if (!identity) return identity.error();
+    made->identity_ = *identity;
+  }
   made->participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, made->dropped_), listener,
       dds::StatusMask::none());
   if (made->participant_ == nullptr) {
     return broken("Fast DDS refused a participant on " + options.interface + ", domain " +
-                  std::to_string(options.domain));
+                  std::to_string(options.domain) +
+                  (options.keys.empty() ? "" : ", with the keys in " + options.keys));
   }
   const std::string partition = "session/" + options.session;
   dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;

@@ -12,11 +12,13 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/base/result.h"
 #include "common/messages/channel.h"
 #include "idl/dds_channel.h"
+#include "idl/identity.h"
 #include "idl/safe_type.h"
 #include "idl/topics.h"
 
@@ -57,6 +59,7 @@ class Participant {
 
   ClientKey key() const { return client_key(participant_->guid()); }
   std::uint64_t refused() const { return refused_->load(std::memory_order_relaxed); }
+  const std::optional<Identity>& identity() const { return identity_; }  ///< own; none: no security
   std::uint64_t dropped() const { return dropped_->load(std::memory_order_relaxed); }
 
  private:
@@ -76,6 +79,7 @@ class Participant {
                                        dds::DataReaderListener* listener);
 
   DdsOptions options_;
+  std::optional<Identity> identity_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;

@@ -12,9 +12,10 @@
 namespace mortise {
 namespace {
 
-constexpr double kTroubleEvery_s = 1.0;       // a flood of refusals must not flood the terminal
-constexpr double kTerminalRefresh_s = 0.2;    // as often as an eye follows
-constexpr double kLineEveryWithoutTty_s = 5;  // in a file, a line is kept for good
+constexpr double kTroubleEvery_s = 1.0;         // a flood of refusals must not flood the terminal
+constexpr std::uint64_t kMostTurnedAway = 100;  // in a session, each of them a line
+constexpr double kTerminalRefresh_s = 0.2;      // as often as an eye follows
+constexpr double kLineEveryWithoutTty_s = 5;    // in a file, a line is kept for good
 
 }  // namespace
 
@@ -95,6 +96,11 @@ void Announcer::say_clashes(const TickLoop& loop) {
 }
 
 void Announcer::say_trouble(const TickLoop& loop) {
+  for (const std::string& who : loop.last_intake().turned_away) {
+    if (++turned_away_said_ > kMostTurnedAway) break;  // counted in the closing document
+    clear_line();
+    spdlog::warn("{}", who);
+  }
   if (loop.seconds() - trouble_at_s_ < kTroubleEvery_s) return;
   trouble_at_s_ = loop.seconds();
   const SessionPulse pulse = loop.pulse();

@@ -31,6 +31,7 @@ class Announcer {
   bool log_failed_ = false;  ///< said once
   double trouble_at_s_ = 0.0, live_at_s_ = -1e9;
   std::uint64_t refused_ = 0, missed_ = 0, overloads_ = 0, not_examined_ = 0, dropped_ = 0;
+  std::uint64_t turned_away_said_ = 0;
 };
 
 }  // namespace mortise

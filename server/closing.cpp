@@ -166,8 +166,8 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
   const ChannelCounters& c = closing.channel;
   text += fmt::format(
       "  at the door: received {}, malformed {}, foreign {}, lost {}, not sent {}; datagrams cut "
-      "by the guard {} (Fast DDS adds a trailer to each)\n",
-      c.received, c.malformed, c.foreign, c.lost, c.send_failed, c.guard_dropped);
+      "by the guard {} (Fast DDS adds a trailer to each), participants turned away {}\n",
+      c.received, c.malformed, c.foreign, c.lost, c.send_failed, c.guard_dropped, c.turned_away);
   text += user_lines(loop);
   if (!closing.restored_from.empty()) {
     text += fmt::format("\nRestored from {}: {} ticks, {} left out\n", closing.restored_from,

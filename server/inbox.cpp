@@ -15,6 +15,22 @@ bool printable(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::none_of(name.begin(), name.end(), control);
 }
 
+// What a proven identity may join as; empty: as this.
+std::string why_not(const Identity& identity, const std::string& name, Role role) {
+  const std::string whose = "the certificate of '" + identity.name + "' ";
+  const bool looks_on = role == Role::kObserver;
+  // A gateway speaks for people whose tokens it knows; a bot has several hands under its own name.
+  const bool own_name = identity.role == "gateway" || name == identity.name ||
+                        (identity.role == "bot" && name.starts_with(identity.name + "-"));
+  if (!own_name) return whose + "does not let its owner join as '" + name + "'";
+  const bool own_role = identity.role == "gateway" || looks_on ||
+                        (identity.role == "designer" && role == Role::kDesigner) ||
+                        (identity.role == "bot" && role == Role::kBot);
+  if (!own_role)
+    return whose + "is one of role " + identity.role + ", not of " + std::string(name_of(role));
+  return {};
+}
+
 }  // namespace
 
 std::uint64_t InboxCounters::refused_in_all() const {
@@ -30,6 +46,7 @@ void Intake::clear() {
   replies.clear();
   refused.clear();
   acks.clear();
+  turned_away.clear();
   joined = false;
 }
 
@@ -99,6 +116,7 @@ void Inbox::renew(World& world, UserId user, std::int64_t now_ns) {
 
 void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake) {
   intake.clear();
+  intake.turned_away = std::move(input.turned_away);
   if (renewed_ns_.size() != world.parts.size()) {
     renewed_ns_.resize(world.parts.size(), now_ns);
     moving_.clear();
@@ -146,6 +164,10 @@ Refusal Inbox::check_join(const JoinRequest& request, const World& world, UserId
   if (!role) {
     text = "'" + request.role + "' is no role; join as designer, observer or bot";
     return Refusal::kNotAllowed;
+  }
+  if (request.identity) {
+    text = why_not(*request.identity, request.name, *role);
+    if (!text.empty()) return Refusal::kNotAllowed;
   }
   if (wanted != Role::kUnknown && wanted != *role) {
     text = "the scenario has '" + request.name + "' as " + std::string(name_of(wanted)) +

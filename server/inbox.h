@@ -69,8 +69,9 @@ struct Intake {
   std::vector<JoinReply> join_replies;
   std::vector<Reply> replies;
   std::vector<RefusedIncrement> refused;
-  std::vector<Ack> acks;  ///< one per user that sent increments, by user
-  bool joined = false;    ///< somebody came in: a snapshot is due
+  std::vector<Ack> acks;                 ///< one per user that sent increments, by user
+  std::vector<std::string> turned_away;  ///< by the transport, in words
+  bool joined = false;                   ///< somebody came in: a snapshot is due
 
   void clear();
 };

@@ -184,6 +184,8 @@ void add_process(Text& out, const SessionFigures& f, std::uint64_t resident) {
   out.value(c.send_failed, "fate=\"not sent\"");
   out.one("mortise_datagrams_cut_total", "counter", "Datagrams that the guard cut or dropped",
           c.guard_dropped);
+  out.one("mortise_participants_turned_away_total", "counter",
+          "Participants that could not prove who they are, or may not be here", c.turned_away);
   out.one("mortise_log_open", "gauge", "1: a session log is written, and the disk takes it",
           f.has_log && !f.log_failed ? 1 : 0);
   out.one("mortise_log_failed", "gauge", "1: the disk refused the log; ticks go unrecorded",

@@ -49,6 +49,10 @@ CommandLine read_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--port", o.port, "Discovery port; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
+  app.add_option(
+      "--keys", o.keys,
+      "Folder of this server's keys (mortise keys): only who has keys of the same site may "
+      "come in, and all is encrypted; needed on any --interface but loopback");
   auto* log = app.add_option("--log", o.log,
                              "Session log (MCAP), or a folder for it; default "
                              "sessions/<session>-<UTC time>.mcap");
@@ -74,6 +78,11 @@ CommandLine read_command_line(int argc, char** argv) {
     app.parse(argc, argv);
     if (o.scenario.empty() && o.restore.empty()) {
       throw CLI::ValidationError("a SCENARIO to play, or --restore LOG");
+    }
+    if (o.keys.empty() && !o.interface.starts_with("127.")) {
+      throw CLI::ValidationError("--interface " + o.interface +
+                                 " opens the session to other hosts: give this server keys with "
+                                 "--keys FOLDER (made by mortise keys), or stay on 127.0.0.1");
     }
     if (!o.restore.empty() && (!o.policy.empty() || o.rate_hz > 0.0)) {
       throw CLI::ValidationError("--restore goes on as the log says: without --policy and --rate");

@@ -13,6 +13,7 @@ struct ServerOptions {
   int domain = 0;
   std::string interface = "127.0.0.1";
   int port = 0;         ///< 0: the domain's own
+  std::string keys;     ///< folder of the server's identity; empty: no security
   std::string restore;  ///< log to go on from, or folder of logs; empty: begin anew
   std::string log;      ///< file or existing folder; empty: sessions/<session>-<UTC>.mcap
   bool no_log = false;

@@ -89,6 +89,7 @@ int serve(const ServerOptions& options) {
   dds.domain = options.domain;
   dds.interface = options.interface;
   dds.discovery_port = options.port;
+  dds.keys = options.keys;
   auto channel = open_server_channel(dds);
   if (!channel) return say(channel.error());
 

@@ -29,6 +29,7 @@ int run_crew(const BotOptions& options, std::optional<Play> play, ProcessReport&
   dds.interface = options.interface;
   dds.server = options.server;
   dds.discovery_port = options.port;
+  dds.keys = options.keys;
   dds.meshes = false;  // a bot does not look at parts
   dds.features = options.behaviour == "guided" && !options.observer;
   auto channel = open_client_channel(dds);

@@ -46,6 +46,8 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
   app.add_option("--server", o.server, "IPv4 address of the server; default: the own interface");
   app.add_option("--port", o.port, "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
+  app.add_option("--keys", o.keys,
+                 "Folder of the own keys (mortise keys), where the server asks for some");
   app.add_option("--users", o.users, "So many users in this process")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();

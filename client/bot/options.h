@@ -20,6 +20,7 @@ struct BotOptions {
   std::string interface = "127.0.0.1";
   std::string server;  ///< empty: on the same machine
   int port = 0;
+  std::string keys;  ///< folder; empty: no security
   std::vector<std::string> names;
   int users = 1;
   std::string behaviour = "wander";

@@ -107,7 +107,7 @@ bool is_own(GatewayState& state, const Request& request, const std::string& from
 // What to say to who has no good token.
 std::optional<Answer> without_token(GatewayState& state, const Request& request,
                                     const std::string& from) {
-  if (role_of(state.tokens, bearer_token(view_of(request[http::field::authorization]))))
+  if (bearer_of(state.tokens, bearer_token(view_of(request[http::field::authorization]))))
     return std::nullopt;
   state.incidents.note(Incident::kWrongToken, from, "a request without a token that is good",
                        state.now_s());
@@ -175,8 +175,8 @@ Answer answer_with_report(Result<std::string> page) {
            {"Content-Security-Policy", "sandbox allow-scripts"}}};
 }
 
-std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
-                                         const std::string& from) {
+std::variant<Bearer, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
+                                           const std::string& from) {
   ++state.traffic.requests;
   const auto refuse = [&](Incident incident, status code, const std::string& text) {
     state.incidents.note(incident, from, text, state.now_s());
@@ -194,8 +194,8 @@ std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& req
     return refuse(Incident::kBadRequest, status::bad_request,
                   "a WebSocket that does not speak mortise.1");
   }
-  const auto role = role_of(state.tokens, *token);
-  if (!role) {
+  const auto bearer = bearer_of(state.tokens, *token);
+  if (!bearer) {
     return refuse(Incident::kWrongToken, status::unauthorized,
                   "a WebSocket whose token is missing or wrong");
   }
@@ -203,7 +203,7 @@ std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& req
     return refuse(Incident::kTooManyBrowsers, status::service_unavailable,
                   "there are " + std::to_string(state.browsers.size()) + " browsers already");
   }
-  return *role;
+  return *bearer;
 }
 
 }  // namespace mortise::web

@@ -36,7 +36,7 @@ std::optional<Answer> refusal_of_report(GatewayState& state, const Request& requ
 Answer answer_with_report(Result<std::string> page);
 
 /// May this request become a WebSocket, and as what? An answer when not.
-std::variant<Role, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
-                                         const std::string& from);
+std::variant<Bearer, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
+                                           const std::string& from);
 
 }  // namespace mortise::web

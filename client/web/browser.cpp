@@ -26,10 +26,10 @@ std::chrono::milliseconds in_ms(double seconds) {
 
 }  // namespace
 
-Browser::Browser(GatewayState& state, Stream stream, Role role)
+Browser::Browser(GatewayState& state, Stream stream, Bearer bearer)
     : state_(state),
       socket_(std::move(stream)),
-      role_(role),
+      bearer_(std::move(bearer)),
       peer_(socket_.next_layer().peer()),
       messages_(state.options.limits.messages_per_s, 2.0 * state.options.limits.messages_per_s),
       bad_(static_cast<double>(state.options.limits.bad_messages) / 10.0,
@@ -61,7 +61,8 @@ void Browser::start(Request request) {
     self->say(text_of({{"type", "welcome"},
                        {"protocol", 1},
                        {"mode", self->state_.feed.mode()},
-                       {"role", name_of(self->role_)},
+                       {"role", name_of(self->bearer_.role)},
+                       {"name", self->bearer_.name},
                        {"report", static_cast<bool>(self->state_.options.report)},
                        {"limits",
                         {{"message_bytes", l.message_bytes},

@@ -21,10 +21,11 @@ class Browser final : public Viewer, public std::enable_shared_from_this<Browser
   using Request = beast::http::request<beast::http::empty_body>;
   using CloseCode = beast::websocket::close_code;
 
-  Browser(GatewayState& state, Stream stream, Role role);
+  Browser(GatewayState& state, Stream stream, Bearer bearer);
   void start(Request request);
 
-  Role role() const override { return role_; }
+  Role role() const override { return bearer_.role; }
+  const std::string& bound_name() const override { return bearer_.name; }
   void say(SharedBytes text) override;
   void say_views(SharedBytes text) override;
   void changed(const std::vector<PartId>& parts, SharedBytes frame) override;
@@ -49,7 +50,7 @@ class Browser final : public Viewer, public std::enable_shared_from_this<Browser
 
   GatewayState& state_;
   beast::websocket::stream<Stream> socket_;
-  const Role role_;
+  const Bearer bearer_;
   const std::string peer_;
   Request request_;
   beast::flat_buffer buffer_;

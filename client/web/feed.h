@@ -16,6 +16,8 @@ class Viewer {
  public:
   virtual ~Viewer() = default;
   virtual Role role() const = 0;  ///< what its token allows
+  /// The only name that its token lets it join under; empty: any.
+  virtual const std::string& bound_name() const = 0;
   virtual void say(SharedBytes text) = 0;
   virtual void say_views(SharedBytes text) = 0;
   virtual void changed(const std::vector<PartId>& parts, SharedBytes frame) = 0;

@@ -58,13 +58,13 @@ class AsioGateway final : public Gateway {
 
   int port() const override { return port_; }
 
-  std::string address(Role role) const override {
+  std::string address(const std::string& token) const override {
     const GatewayOptions& o = state_.options;
     const std::string host = !o.names.empty()         ? o.names.front()
                              : o.address == "0.0.0.0" ? "localhost"
                                                       : o.address;
     return (o.certificate.empty() ? "http://" : "https://") + host + ":" + std::to_string(port_) +
-           "/#token=" + (role == Role::kObserver ? state_.tokens.observer : state_.tokens.designer);
+           "/#token=" + token;
   }
 
   void run() override {

@@ -37,7 +37,7 @@ class Gateway {
 
   virtual int port() const = 0;
   /// What to give to people: "http://127.0.0.1:8080/#token=...".
-  virtual std::string address(Role role) const = 0;
+  virtual std::string address(const std::string& token) const = 0;
   /// Serves until stop(), then takes leave of everybody.
   virtual void run() = 0;
   virtual void stop() = 0;  ///< from any thread

@@ -103,7 +103,7 @@ void HttpConnection::take() {
     return write(answer_to(state_, request, stream_.has_tls(), peer_));
   auto admitted = admit_browser(state_, request, stream_.has_tls(), peer_);
   if (const auto* refused = std::get_if<Answer>(&admitted)) return write(*refused);
-  std::make_shared<Browser>(state_, std::move(stream_), std::get<Role>(admitted))
+  std::make_shared<Browser>(state_, std::move(stream_), std::get<Bearer>(admitted))
       ->start(parser_->release());
 }
 

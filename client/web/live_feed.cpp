@@ -77,6 +77,11 @@ Status LiveFeed::take(Viewer& viewer, const PageMessage& message) {
 }
 
 void LiveFeed::join(Viewer& viewer, Seat& seat, const JoinWish& wish) {
+  if (const std::string& bound = viewer.bound_name(); !bound.empty() && bound != wish.name) {
+    ++foreign_names_;
+    const std::string text = "this link is " + bound + "'s: join as " + bound;
+    return viewer.say(text_of({{"type", "join_refused"}, {"text", text}}));
+  }
   seat.name = wish.name;
   seat.user = client_.add_user(wish.name, std::string(name_of(viewer.role())));
   const auto left = left_s_.find(wish.name);
@@ -363,6 +368,7 @@ Json LiveFeed::statistics() const {
           {"increments_sent", s.increments_sent},
           {"increments_repeated", s.increments_repeated},
           {"server_losses", s.server_losses},
+          {"joins_under_another_name", foreign_names_},
           {"highest_tick", s.highest_tick}};
 }
 

@@ -67,6 +67,7 @@ class LiveFeed final : public Feed {
   Client& client_;
   Limits limits_;
   std::map<Viewer*, Seat> seats_;
+  std::uint64_t foreign_names_ = 0;  ///< joins under another name than the token is bound to
   MeshStore meshes_;
   ClassBits classes_;
   std::map<std::string, double> left_s_;  ///< names that left lately, and when

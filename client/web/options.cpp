@@ -64,10 +64,14 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
   app.add_option("--server-port", o.discovery_port,
                  "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
+  app.add_option("--keys", o.keys,
+                 "Folder of the gateway's keys (mortise keys), where the server asks for some");
   app.add_option("--page", o.page, "Folder of the page")->capture_default_str();
-  app.add_option("--tokens", o.tokens,
-                 "File of two lines, the tokens of designers and of observers; made when it is not "
-                 "there. Default: new ones for this run");
+  app.add_option(
+      "--tokens", o.tokens,
+      "File of two lines, the tokens of designers and of observers (made when it is not there), "
+      "or a line ROLE NAME TOKEN for each person (mortise keys token). Default: two new "
+      "ones for this run");
   add_web(app, o.gateway);
   app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
   app.footer(
@@ -76,6 +80,12 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
       "tokens, certificate, log).");
   try {
     app.parse(argc, argv);
+    if (o.gateway.certificate.empty() && !o.gateway.address.starts_with("127.")) {
+      throw CLI::ValidationError(
+          "--address " + o.gateway.address +
+          " opens the gateway to other hosts: give --certificate and --key, or "
+          "stay on 127.0.0.1 behind a proxy that speaks TLS");
+    }
   } catch (const CLI::ParseError& error) {
     line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

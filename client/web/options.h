@@ -11,6 +11,7 @@ struct WebOptions {
   std::string interface = "127.0.0.1";
   std::string server;  ///< empty: on the same machine
   int discovery_port = 0;
+  std::string keys;         ///< folder; empty: no security
   std::string log;          ///< play this session log instead; empty: a live session
   std::string session_log;  ///< of the live session, for reports; empty: there are none
   std::string page;         ///< folder

@@ -11,6 +11,7 @@
 #include "client/report/report.h"
 #include "client/web/live_feed.h"
 #include "client/web/replay_feed.h"
+#include "common/messages/names.h"
 #include "idl/dds_channel.h"
 
 namespace mortise::web {
@@ -49,9 +50,16 @@ Result<Tokens> tokens_of(const WebOptions& options) {
   return tokens_of_file(options.tokens);
 }
 
-void say_addresses(const Gateway& gateway, const PageFiles& page) {
-  std::cout << "designer " << gateway.address(Role::kDesigner) << "\nobserver "
-            << gateway.address(Role::kObserver) << std::endl;
+void say_addresses(const Gateway& gateway, const Tokens& tokens, const PageFiles& page) {
+  for (const Tokens::Personal& person : tokens.people) {
+    std::cout << name_of(person.bearer.role) << " " << person.bearer.name << " "
+              << gateway.address(person.token) << "\n";
+  }
+  if (tokens.people.empty()) {
+    std::cout << "designer " << gateway.address(tokens.designer) << "\nobserver "
+              << gateway.address(tokens.observer) << "\n";
+  }
+  std::cout << std::flush;
   if (!page.has_three()) {
     spdlog::warn(
         "three.js is not installed: the page has no 3D view until `npm ci --omit=dev` was run in "
@@ -73,7 +81,7 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   const auto say = [](const std::string& line) { spdlog::warn("{}", line); };
   auto gateway = Gateway::open(gateway_options, *tokens, *page, feed, say);
   if (!gateway) return fail_with(gateway.error());
-  say_addresses(**gateway, *page);
+  say_addresses(**gateway, *tokens, *page);
   stop_signal.then_stop(**gateway);
   (*gateway)->run();
   spdlog::info("ended; {}", feed.statistics().dump());
@@ -87,6 +95,7 @@ int serve_session(const WebOptions& options, StopSignal& stop_signal) {
   dds.interface = options.interface;
   dds.server = options.server;
   dds.discovery_port = options.discovery_port;
+  dds.keys = options.keys;
   auto channel = open_client_channel(dds);
   if (!channel) return fail_with(channel.error());
   Client client(**channel);

@@ -6,11 +6,13 @@
 #include <openssl/sha.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 namespace mortise::web {
 namespace {
@@ -49,6 +51,24 @@ bool is_token(std::string_view text) {
          text.find_first_not_of(kLetters) == std::string_view::npos;
 }
 
+/// Lines "ROLE NAME TOKEN"; nothing when a line is none, or a token is there twice.
+std::optional<std::vector<Tokens::Personal>> read_people(std::istream& in) {
+  std::vector<Tokens::Personal> people;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string role, name, token, more;
+    words >> role >> name >> token >> more;
+    if (role.empty() || role.starts_with('#')) continue;
+    const std::optional<Role> known = role_named(role);
+    const bool may = known == Role::kDesigner || known == Role::kObserver;
+    const bool twice = std::any_of(people.begin(), people.end(),
+                                   [&](const Tokens::Personal& p) { return p.token == token; });
+    if (!may || !is_token(token) || !more.empty() || twice) return std::nullopt;
+    people.push_back({{*known, name}, token});
+  }
+  return people;
+}
+
 Status write_new(const std::string& file, const Tokens& tokens) {
   const std::string text = tokens.designer + "\n" + tokens.observer + "\n";
   const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -73,22 +93,40 @@ Result<Tokens> tokens_of_file(const std::string& file) {
   }
   Tokens tokens;
   std::getline(in, tokens.designer);
+  if (tokens.designer.find(' ') != std::string::npos || tokens.designer.starts_with('#')) {
+    tokens.designer.clear();
+    in.seekg(0);
+    auto people = read_people(in);
+    if (people && !people->empty()) {
+      tokens.people = std::move(*people);
+      return tokens;
+    }
+    return fail(Code::kInvalidInput,
+                file +
+                    ": a line for each person is needed, ROLE NAME TOKEN, role designer or "
+                    "observer, each token once; `mortise keys token` makes them");
+  }
   std::getline(in, tokens.observer);
   if (!is_token(tokens.designer) || !is_token(tokens.observer) ||
       tokens.designer == tokens.observer) {
-    return fail(Code::kInvalidInput,
-                file +
-                    ": two different lines are needed, the tokens of designers and of "
-                    "observers, 16 to 128 characters A-Z a-z 0-9 - _ each");
+    return fail(
+        Code::kInvalidInput,
+        file +
+            ": two different lines are needed, the tokens of designers and of "
+            "observers, 16 to 128 characters A-Z a-z 0-9 - _ each; or lines ROLE NAME TOKEN");
   }
   return tokens;
 }
 
-std::optional<Role> role_of(const Tokens& tokens, std::string_view token) {
-  const bool designer = same(token, tokens.designer), observer = same(token, tokens.observer);
-  if (designer) return Role::kDesigner;
-  if (observer) return Role::kObserver;
-  return std::nullopt;
+std::optional<Bearer> bearer_of(const Tokens& tokens, std::string_view token) {
+  std::optional<Bearer> bearer;
+  const auto compare = [&](const std::string& known, const Bearer& whose) {
+    if (same(token, known) && !known.empty()) bearer = whose;
+  };
+  compare(tokens.designer, {Role::kDesigner, {}});
+  compare(tokens.observer, {Role::kObserver, {}});
+  for (const Tokens::Personal& person : tokens.people) compare(person.token, person.bearer);
+  return bearer;
 }
 
 }  // namespace mortise::web

@@ -1,11 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
 #include "common/messages/feature_info.h"
+#include "common/messages/identity.h"
 #include "common/messages/increment.h"
 #include "common/messages/report.h"
 #include "common/messages/scene.h"
@@ -21,7 +23,8 @@ struct JoinRequest {
   std::uint64_t nonce =
       0;  ///< chosen by the client, echoed in the reply: several users of one process
   std::string name;
-  std::string role;  ///< designer | observer | bot
+  std::string role;                       ///< designer | observer | bot
+  std::optional<Identity> identity = {};  ///< proven by the transport; none: it proves none
 };
 struct JoinReply {
   ClientKey client;
@@ -74,6 +77,7 @@ struct LostUser {
 struct ChannelCounters {
   std::uint64_t received = 0, malformed = 0, foreign = 0, lost = 0, send_failed = 0,
                 guard_dropped = 0;
+  std::uint64_t turned_away = 0;  ///< participants that could not prove who they are, or may not be
 };
 
 struct ServerInput {
@@ -83,6 +87,7 @@ struct ServerInput {
   std::vector<LostUser> lost;
   std::vector<UserId> heartbeats;
   std::vector<ClientKey> snapshot_requests;  ///< who missed something: publish a snapshot again
+  std::vector<std::string> turned_away;      ///< who was not let in by the transport, in words
 };
 
 struct Ack {

@@ -17,14 +17,16 @@ TEST(Tokens, SayWhoTheBearerMayBe) {
   EXPECT_EQ(tokens.designer.size(), 32u);
   EXPECT_NE(tokens.designer, tokens.observer);
   EXPECT_NE(tokens.designer, make_tokens().designer);
-  EXPECT_EQ(role_of(tokens, tokens.designer), Role::kDesigner);
-  EXPECT_EQ(role_of(tokens, tokens.observer), Role::kObserver);
-  EXPECT_FALSE(role_of(tokens, ""));
-  EXPECT_FALSE(role_of(tokens, tokens.designer + "0"));
-  EXPECT_FALSE(role_of(tokens, tokens.designer.substr(1)));
+  ASSERT_TRUE(bearer_of(tokens, tokens.designer) && bearer_of(tokens, tokens.observer));
+  EXPECT_EQ(bearer_of(tokens, tokens.designer)->role, Role::kDesigner);
+  EXPECT_EQ(bearer_of(tokens, tokens.observer)->role, Role::kObserver);
+  EXPECT_EQ(bearer_of(tokens, tokens.designer)->name, "");
+  EXPECT_FALSE(bearer_of(tokens, ""));
+  EXPECT_FALSE(bearer_of(tokens, tokens.designer + "0"));
+  EXPECT_FALSE(bearer_of(tokens, tokens.designer.substr(1)));
   std::string off_by_one = tokens.designer;
   off_by_one.back() = off_by_one.back() == '0' ? '1' : '0';
-  EXPECT_FALSE(role_of(tokens, off_by_one));
+  EXPECT_FALSE(bearer_of(tokens, off_by_one));
 }
 
 TEST(Tokens, AreKeptInAFileThatOnlyItsOwnerReads) {
@@ -45,6 +47,33 @@ TEST(Tokens, AreKeptInAFileThatOnlyItsOwnerReads) {
     ASSERT_FALSE(tokens) << bad;
     EXPECT_EQ(tokens.error().code, Code::kInvalidInput);
     EXPECT_NE(tokens.error().text.find(file.string()), std::string::npos);
+  }
+  fs::remove(file);
+}
+
+TEST(Tokens, AreBoundToAPersonAndARole) {
+  namespace fs = std::filesystem;
+  const fs::path file = fs::path(testing::TempDir()) / "mortise_people_tokens_test";
+  std::ofstream(file) << "# made by mortise keys\ndesigner anna 0123456789abcdef\n"
+                         "observer ben  fedcba9876543210\n";
+  const auto tokens = tokens_of_file(file);
+  ASSERT_TRUE(tokens) << tokens.error().text;
+  const auto anna = bearer_of(*tokens, "0123456789abcdef"),
+             ben = bearer_of(*tokens, "fedcba9876543210");
+  ASSERT_TRUE(anna && ben);
+  EXPECT_EQ(anna->name, "anna");
+  EXPECT_EQ(anna->role, Role::kDesigner);
+  EXPECT_EQ(ben->name, "ben");
+  EXPECT_EQ(ben->role, Role::kObserver);
+  EXPECT_FALSE(bearer_of(*tokens, "")) << "there is no token for everybody";
+  for (const char* bad :
+       {"designer anna short\n", "server anna 0123456789abcdef\n", "designer 0123456789abcdef\n",
+        "designer anna 0123456789abcdef more\n", "# nobody\n",
+        "designer anna 0123456789abcdef\nobserver ben 0123456789abcdef\n"}) {
+    std::ofstream(file) << bad;
+    const auto none = tokens_of_file(file);
+    ASSERT_FALSE(none) << bad;
+    EXPECT_NE(none.error().text.find("ROLE NAME TOKEN"), std::string::npos) << none.error().text;
   }
   fs::remove(file);
 }

@@ -14,6 +14,7 @@ namespace mortise::web {
 struct Page final : Viewer {
   explicit Page(Role r) : may_be(r) {}
   Role role() const override { return may_be; }
+  const std::string& bound_name() const override { return bound; }
   void say(SharedBytes text) override { outbox.say(std::move(text)); }
   void say_views(SharedBytes text) override { outbox.say_views(std::move(text)); }
   void changed(const std::vector<PartId>& parts, SharedBytes frame) override {
@@ -50,6 +51,7 @@ struct Page final : Viewer {
   }
 
   Role may_be;
+  std::string bound;
   Outbox outbox;
   std::vector<Json> told;
   std::map<PartId, PartState> seen;

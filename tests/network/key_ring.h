@@ -1,0 +1,44 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/network/program.h"
+
+namespace mortise::test {
+
+/// A site with keys of its own, made by the script that people use.
+class KeyRing {
+ public:
+  explicit KeyRing(const std::string& name) : site_(folder_.path() / name) { run({"init"}); }
+
+  void issue(const std::string& name, const std::string& role,
+             const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"issue", name, "--role", role};
+    words.insert(words.end(), more.begin(), more.end());
+    run(words);
+  }
+  void revoke(const std::string& name) { run({"revoke", name}); }
+  std::string operator[](const std::string& name) const { return (site_ / name).string(); }
+
+  /// A copy of somebody's keys: what is kept by who has to give them back.
+  std::string copy_of(const std::string& name, const std::string& kept) {
+    const std::filesystem::path elsewhere = folder_.path() / kept;  // no new list gets there
+    std::filesystem::copy(site_ / name, elsewhere, std::filesystem::copy_options::recursive);
+    return elsewhere.string();
+  }
+
+ private:
+  void run(std::vector<std::string> words) {
+    words.insert(words.end(), {"--keys", site_.string()});
+    Program keys(folder_.path(), "mortise-keys", words);
+    EXPECT_EQ(keys.wait(60), 0) << keys.errors();
+  }
+
+  TestFolder folder_;
+  std::filesystem::path site_;
+};
+
+}  // namespace mortise::test
