@@ -15,6 +15,7 @@ const std::vector<SessionSection>& session_sections() {
       {"restart", "a server that is killed and started again", section_restart},
       {"scene", "50 MB of meshes for eight at once", section_scene},
       {"lossy", "a link that loses, delays, doubles and reorders", section_lossy},
+      {"security", "what it costs to be met with keys", section_security},
       {"guided", "shafts put into bores by hands that tremble", section_guided},
   };
   return all;

@@ -22,6 +22,7 @@ void section_presence(Report& report, const SessionOptions& options);
 void section_restart(Report& report, const SessionOptions& options);
 void section_scene(Report& report, const SessionOptions& options);
 void section_lossy(Report& report, const SessionOptions& options);
+void section_security(Report& report, const SessionOptions& options);
 void section_guided(Report& report, const SessionOptions& options);
 
 using SessionSection = BenchSection<SessionOptions>;

@@ -363,7 +363,7 @@ TEST_F(GatewayFixture, TlsForThoseWhoWantIt) {
   options.key = folder / "key.pem";
   ASSERT_TRUE(write_certificate(options.certificate, options.key));
   serve();
-  EXPECT_EQ(gateway->address(Role::kDesigner).substr(0, 8), "https://");
+  EXPECT_EQ(gateway->address(tokens.designer).substr(0, 8), "https://");
   const HttpAnswer page = http_request(port, "/", {}, "GET", true);
   EXPECT_EQ(page.status, 200);
   EXPECT_NE(page.field("Content-Security-Policy").find("wss://"), std::string::npos);

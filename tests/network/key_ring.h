@@ -1,6 +1,4 @@
 #pragma once
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,6 +19,7 @@ class KeyRing {
     run(words);
   }
   void revoke(const std::string& name) { run({"revoke", name}); }
+  const std::string& trouble() const { return trouble_; }  ///< empty: all went well
   std::string operator[](const std::string& name) const { return (site_ / name).string(); }
 
   /// A copy of somebody's keys: what is kept by who has to give them back.
@@ -34,11 +33,12 @@ class KeyRing {
   void run(std::vector<std::string> words) {
     words.insert(words.end(), {"--keys", site_.string()});
     Program keys(folder_.path(), "mortise-keys", words);
-    EXPECT_EQ(keys.wait(60), 0) << keys.errors();
+    if (keys.wait(60) != 0) trouble_ += keys.errors();
   }
 
   TestFolder folder_;
   std::filesystem::path site_;
+  std::string trouble_;
 };
 
 }  // namespace mortise::test

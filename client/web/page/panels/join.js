@@ -35,6 +35,7 @@ export function makeJoin(session, send) {
   return {
     /** The gateway said welcome. */
     welcome() {
+      if (session.boundName) name = session.boundName;
       const observer = session.role === 'observer';
       if (session.mode === 'replay' || (observer && name === '')) return;
       if (!join() && !dialog.open) dialog.showModal();

@@ -50,6 +50,7 @@ export class Session extends Signals {
   mode = 'live';
   role = 'designer';
   hasReport = false;
+  boundName = ''; // the only one that this link lets us join under; empty: any
   policy = '';
   tick = 0;
   tickRate = 60;
@@ -136,6 +137,7 @@ export class Session extends Signals {
       this.mode = m.mode;
       this.role = m.role;
       this.hasReport = m.report === true;
+      this.boundName = m.name ?? '';
       this.emit('me', undefined);
       this.emit('welcome', undefined);
     },
