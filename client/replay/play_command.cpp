@@ -16,6 +16,7 @@ int run_play(const PlayCommand& command) {
   dds.interface = command.interface;
   dds.server = command.server;
   dds.discovery_port = command.server_port;
+  dds.keys = command.keys;
   dds.meshes = dds.features = false;
   const auto channel = open_client_channel(dds);
   if (!channel) return say(channel.error(), exit_code_of(channel.error().code));

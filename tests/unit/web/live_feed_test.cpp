@@ -172,6 +172,19 @@ TEST_F(PagesOnASession, OfTwoWithOneNameTheSecondIsRefusedAndMayTryAgain) {
   EXPECT_EQ(bob.last("joined")["name"], "bob");
 }
 
+TEST_F(PagesOnASession, ATokenIsGoodForItsOwnPersonOnly) {
+  ann.bound = "ann";
+  feed->enter(ann);
+  say(ann, R"({"type":"join","name":"bob"})");
+  turn(4);
+  ASSERT_EQ(ann.count("join_refused"), 1u);
+  EXPECT_EQ(ann.last("join_refused")["text"], "this link is ann's: join as ann");
+  EXPECT_EQ(feed->statistics()["joins_under_another_name"], 1);
+  say(ann, R"({"type":"join","name":"ann"})");
+  turn(4);
+  EXPECT_EQ(ann.last("joined")["name"], "ann");
+}
+
 TEST_F(PagesOnASession, WhoGoesBeforeTheServerAnswersIsNoGhost) {
   come(bob, "bob");
   feed->enter(ann);
