@@ -13,7 +13,9 @@ struct DdsOptions {
   std::string session = "default";      ///< partition "session/<name>"
   int domain = 0;                       ///< 0..232
   std::string interface = "127.0.0.1";  ///< own IPv4 address; nothing is sent or heard elsewhere
-  std::string server = "";              ///< client: IPv4 of the server; empty: same as interface
+  /// IPv4 of the server, or of all that may lead the session, comma between; empty: same as
+  /// interface.
+  std::string server = "";
   int discovery_port = 0;  ///< server's fixed UDP port (and the next one); 0: 7402 + 250 domain
   double liveliness_lease_s = 0.8;   ///< server and client: a silent client is gone after this
   double participant_lease_s = 2.0;  ///< a silent process is gone after this
@@ -29,6 +31,9 @@ struct DdsOptions {
 /// The server's end: the fixed point that clients look for. Fails in one line when the port is in
 /// use, the interface is not of this machine, or the domain is out of range.
 Result<std::unique_ptr<ServerChannel>> open_server_channel(const DdsOptions& options);
+
+/// The same of a server that stands by: at the server's port, or two above it where that is taken.
+Result<std::unique_ptr<StandbyChannel>> open_standby_channel(const DdsOptions& options);
 
 /// A participant's end. Returns at once; the server may come later (ClientInput::server_present).
 Result<std::unique_ptr<ClientChannel>> open_client_channel(const DdsOptions& options);

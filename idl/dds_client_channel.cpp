@@ -1,4 +1,5 @@
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -15,41 +16,85 @@ namespace {
 namespace rtps = eprosima::fastrtps::rtps;
 using Clock = std::chrono::steady_clock;
 
-/// Knows whether a server is there, by the match with its answers. A server that was killed and
-/// started again is matched before the old one's lease ends; the newest counts.
-class ServerWatch final : public dds::DataReaderListener {
+/// Knows which server leads the session, by the match with its answers and the term that its
+/// writers carry. The highest term counts, of equal ones the newest: one that was killed and
+/// started again is met before the old one's lease ends, and one that was overtaken may come back.
+/// What was led by a higher term is never led by a lower one again.
+class ServerWatch final : public dds::DomainParticipantListener {
  public:
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    const std::lock_guard lock(mutex_);
+    const std::uint64_t term = term_of(info.info.m_qos.m_userData.data_vec());
+    servers_[info.info.guid().guidPrefix].term = term;
+    highest_term_ = std::max(highest_term_, term);
+    choose();
+  }
   void on_subscription_matched(dds::DataReader*,
                                const dds::SubscriptionMatchedStatus& status) override {
     const std::lock_guard lock(mutex_);
-    const rtps::GUID_t guid = rtps::iHandle2GUID(status.last_publication_handle);
-    if (status.current_count_change > 0) {
-      lost_ = lost_ || present_;
-      present_ = true;
-      server_ = guid.guidPrefix;
-    } else if (guid.guidPrefix == server_) {
-      lost_ = lost_ || present_;
-      present_ = false;
-    }
+    Server& server = servers_[prefix_of(status.last_publication_handle)];
+    server.answers = status.current_count_change > 0;
+    if (server.answers) server.met = ++met_;
+    choose();
+  }
+  void on_publication_matched(dds::DataWriter*,
+                              const dds::PublicationMatchedStatus& status) override {
+    const std::lock_guard lock(mutex_);
+    servers_[prefix_of(status.last_subscription_handle)].readers += status.current_count_change;
   }
   struct Answer {
-    bool lost = false, present = false;
+    bool lost = false;     ///< since the last call
+    bool present = false;  ///< and hears us, on so many topics
   };
-  Answer take() {
+  Answer take(int topics) {
     const std::lock_guard lock(mutex_);
-    return {std::exchange(lost_, false), present_};
+    const auto leader = servers_.find(leader_);
+    const bool present = led_ && leader != servers_.end() && leader->second.readers >= topics;
+    return {std::exchange(lost_, false), present};
+  }
+  /// One that was overtaken: nothing that it says counts.
+  bool is_overtaken(const rtps::GuidPrefix_t& server) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = servers_.find(server);
+    return found != servers_.end() && found->second.term < highest_term_;
   }
 
  private:
-  std::mutex mutex_;
-  bool lost_ = false, present_ = false;
-  rtps::GuidPrefix_t server_;
+  struct Server {
+    std::uint64_t term = 0, met = 0;
+    bool answers = false;
+    int readers = 0;
+  };
+  static rtps::GuidPrefix_t prefix_of(const rtps::InstanceHandle_t& handle) {
+    return rtps::iHandle2GUID(handle).guidPrefix;
+  }
+  void choose() {
+    const Server* best = nullptr;
+    rtps::GuidPrefix_t leader;
+    for (const auto& [prefix, server] : servers_) {
+      if (!server.answers || server.term < highest_term_) continue;
+      if (best != nullptr && server.met < best->met) continue;
+      best = &server;
+      leader = prefix;
+    }
+    const bool same = led_ == (best != nullptr) && (!led_ || leader == leader_);
+    if (same) return;
+    lost_ = lost_ || led_;
+    led_ = best != nullptr;
+    leader_ = leader;
+  }
+
+  mutable std::mutex mutex_;
+  std::map<rtps::GuidPrefix_t, Server> servers_;
+  std::uint64_t highest_term_ = 0, met_ = 0;
+  bool lost_ = false, led_ = false;
+  rtps::GuidPrefix_t leader_;
 };
 
 class DdsClientChannel final : public ClientChannel {
  public:
   Status open(const DdsOptions& options) {
-    auto participant = Participant::open(options, Participant::Side::kClient, nullptr);
+    auto participant = Participant::open(options, Participant::Side::kClient, &watch_);
     if (!participant) return participant.error();
     participant_ = std::move(participant.value());
     key_ = participant_->key();
@@ -70,13 +115,14 @@ class DdsClientChannel final : public ClientChannel {
       participant_->open_reader<wire::FeaturesPubSubType>(Topic::kFeatures, nullptr, features_,
                                                           status);
     }
-    participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status);
+    participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status,
+                                                        &watch_);
     // An observer's permissions have no increments.
     if (!participant_->identity() || participant_->identity()->role != "observer") {
       participant_->open_writer<wire::IncrementBatchPubSubType>(Topic::kIncrement, increments_,
-                                                                status);
+                                                                status, &watch_);
     }
-    participant_->open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status);
+    participant_->open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status, &watch_);
     // Last: once the server's answers are matched, everything else is declared.
     participant_->open_reader<wire::AnswersPubSubType>(Topic::kAnswers, &watch_, answers_, status);
     return status;
@@ -127,11 +173,10 @@ class DdsClientChannel final : public ClientChannel {
 
   ClientInput take() override {
     ClientInput input;
-    const ServerWatch::Answer watch = watch_.take();
-    input.server_lost = watch.lost;
     // Answers can be heard; and what is sent from now on will be.
-    input.server_present = watch.present && matched(requests_) &&
-                           (increments_ == nullptr || matched(increments_)) && matched(presence_);
+    const ServerWatch::Answer watch = watch_.take(increments_ == nullptr ? 2 : 3);
+    input.server_lost = watch.lost;
+    input.server_present = watch.present;
     take_answers(input);
     take_snapshots(input);
     take_poses(input);
@@ -173,6 +218,10 @@ class DdsClientChannel final : public ClientChannel {
       if (!info.valid_data) continue;
       ++counters_.received;
       const rtps::GuidPrefix_t& from = info.sample_identity.writer_guid().guidPrefix;
+      if (watch_.is_overtaken(from)) {
+        ++counters_.foreign;
+        continue;
+      }
       if (from != server_) {
         // Another server than before: its numbers start anew.
         server_ = from;

@@ -3,98 +3,80 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <thread>
 
 #include "idl/chunks.h"
 #include "idl/convert.h"
 #include "idl/dds_channel.h"
+#include "idl/doorman.h"
 #include "idl/participant.h"
 #include "mortisePubSubTypes.h"
 
 namespace mortise {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
+constexpr int kLookForLeader_ms = 2000;
 
-/// Hears who comes and goes, in threads of Fast DDS; take() asks what it heard. Also the listener
-/// of the presence reader.
-class Doorman final : public dds::DomainParticipantListener {
- public:
-  using Time = std::chrono::steady_clock::time_point;
-  void on_participant_discovery(dds::DomainParticipant*,
-                                rtps::ParticipantDiscoveryInfo&& info) override {
-    using Info = rtps::ParticipantDiscoveryInfo;
-    const ClientKey client = client_key(info.info.m_guid);
-    if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
-      add(info.info.m_guid);
-      if (!identities_) return;
-      identities_->parted(client);
-      const std::lock_guard lock(mutex_);
-      unproven_since_.erase(client);
-    } else if (identities_) {
-      {
-        const std::lock_guard lock(mutex_);
-        unproven_since_.emplace(client, Time::clock::now());
-      }
-      const std::string* subject =
-          rtps::DataHolderHelper::find_property_value(info.info.identity_token_, "dds.cert.sn");
-      if (subject != nullptr) identities_->met(client, *subject);
-    }
-  }
-  void onParticipantAuthentication(dds::DomainParticipant*,
-                                   rtps::ParticipantAuthenticationInfo&& info) override {
-    const std::lock_guard lock(mutex_);
-    unproven_since_[client_key(info.guid)] = Time::max();  // answered, either way
-    if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
-      turned_away_.push_back(client_key(info.guid));
-  }
-  /// MANUAL_BY_TOPIC: also when other clients live, unlike automatic liveliness (Fast DDS #4373).
-  void on_liveliness_changed(dds::DataReader*,
-                             const dds::LivelinessChangedStatus& status) override {
-    if (status.alive_count_change < 0 || status.not_alive_count_change > 0) {
-      add(rtps::iHandle2GUID(status.last_publication_handle));
-    }
-  }
-  std::vector<ClientKey> take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(gone_, {});
-  }
-  /// Also those of whom nothing was proven in time: where the other end is to begin the handshake
-  /// and does not like our certificate, nobody tells us.
-  std::vector<ClientKey> take_turned_away() {
-    constexpr auto kTimeToProve = std::chrono::seconds(2);
-    const std::lock_guard lock(mutex_);
-    for (auto& [client, since] : unproven_since_) {
-      if (since == Time::max() || Time::clock::now() - since < kTimeToProve) continue;
-      since = Time::max();  // said once
-      turned_away_.push_back(client);
-    }
-    return std::exchange(turned_away_, {});
-  }
-  void know(PeerIdentities* identities) { identities_ = identities; }
+std::uint64_t now_ms() {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
+                                        std::chrono::system_clock::now().time_since_epoch())
+                                        .count());
+}
 
- private:
-  void add(const rtps::GUID_t& guid) {
-    const std::lock_guard lock(mutex_);
-    gone_.push_back(client_key(guid));
-  }
-
-  std::mutex mutex_;
-  std::vector<ClientKey> gone_, turned_away_;
-  std::map<ClientKey, Time> unproven_since_;  ///< max: proven, or said
-  PeerIdentities* identities_ = nullptr;      ///< null: nobody proves anything
-};
-
-class DdsServerChannel final : public ServerChannel {
+class DdsServerChannel final : public StandbyChannel {
  public:
   Status open(const DdsOptions& options) {
+    if (Status met = meet(options, Participant::Side::kServer); !met) return met;
+    if (may_have_another_server(options)) {
+      if (Status listening = listen_to_servers(); !listening) return listening;
+      // One that leads tells a tick as soon as it sees us.
+      for (int waited_ms = 0; waited_ms < kLookForLeader_ms && leader_.empty(); ++waited_ms) {
+        take_told(nullptr);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      if (!leader_.empty()) {
+        return fail(Code::kRuntime, "another server leads session '" + options.session +
+                                        "'; start this one with --standby-of " + options.session);
+      }
+    }
+    return take_over();
+  }
+  Status stand_by(const DdsOptions& options) {
+    if (Status met = meet(options, Participant::Side::kStandby); !met) return met;
+    return listen_to_servers();
+  }
+  Status take_over() override {
+    term_ = std::max(now_ms(), leader_term_ + 1);
+    participant_->set_term(term_);
+    if (Status opened = open_endpoints(); !opened) return opened;
+    return told_ != nullptr ? ok() : listen_to_servers();
+  }
+  std::vector<ToldTick> follow() override {
+    std::vector<ToldTick> ticks;
+    take_told(&ticks);
+    return ticks;
+  }
+  bool leader_present() const override { return servers_.is_alive(leader_); }
+
+ private:
+  Status meet(const DdsOptions& options, Participant::Side side) {
     if (!options.keys.empty()) {
       const KeyFiles files(options.keys);
       identities_ = std::make_unique<PeerIdentities>(files.authority, files.revocations);
       doorman_.know(identities_.get());
     }
-    auto participant = Participant::open(options, Participant::Side::kServer, &doorman_);
+    auto participant = Participant::open(options, side, &doorman_);
     if (!participant) return participant.error();
     participant_ = std::move(participant.value());
+    servers_.know_own(participant_->key());
+    return ok();
+  }
+  Status listen_to_servers() {
+    Status status = ok();
+    participant_->open_reader<wire::TickPubSubType>(Topic::kTick, &servers_, told_, status);
+    return status;
+  }
+  Status open_endpoints() {
     Status status = ok();
     // The writers first: who is heard can be answered.
     participant_->open_writer<wire::AnswersPubSubType>(Topic::kAnswers, answers_, status);
@@ -105,6 +87,7 @@ class DdsServerChannel final : public ServerChannel {
     participant_->open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
     participant_->open_writer<wire::FeaturesPubSubType>(Topic::kFeatures, features_, status);
     participant_->open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
+    participant_->open_writer<wire::TickPubSubType>(Topic::kTick, ticks_, status, &servers_);
     participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &doorman_, presence_,
                                                         status);
     participant_->open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
@@ -113,8 +96,11 @@ class DdsServerChannel final : public ServerChannel {
     return status;
   }
 
+ public:
   ServerInput take() override {
     ServerInput input;
+    input.follower_came = servers_.take_came();
+    input.superseded = take_told(nullptr);
     take_requests(input);
     take_presence(input);
     take_increments(input);
@@ -174,6 +160,22 @@ class DdsServerChannel final : public ServerChannel {
     write(pulses_, to_wire(pulse, pose_serial_));
   }
 
+  bool has_follower() const override { return servers_.has_follower(); }
+  void publish_tick(const ToldTick& told) override {
+    wire::Tick sample;
+    sample.tick(told.tick);
+    sample.term(term_);
+    const std::size_t step = kSampleLimit_bytes - 64;
+    const std::size_t count = std::max<std::size_t>(1, (told.bytes.size() + step - 1) / step);
+    sample.count(static_cast<std::uint32_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto* first = reinterpret_cast<const std::uint8_t*>(told.bytes.data()) + i * step;
+      sample.chunk(static_cast<std::uint32_t>(i));
+      sample.bytes().assign(first, first + std::min(step, told.bytes.size() - i * step));
+      write(ticks_, sample);
+    }
+  }
+
   /// Also a client that is still joining counts, so that nothing said meanwhile is lost.
   bool has_readers() const override { return matched(poses_) || matched(events_); }
   ChannelCounters counters() const override {
@@ -184,6 +186,24 @@ class DdsServerChannel final : public ServerChannel {
   }
 
  private:
+  /// What other servers tell, of the one with the highest term; says whether that one leads instead
+  /// of us. Pieces come in order.
+  bool take_told(std::vector<ToldTick>* ticks) {
+    bool superseded = false;
+    take_all<wire::Tick>(told_, [&](const wire::Tick& sample, const ClientKey& key) {
+      if (key == participant_->key() || sample.term() < leader_term_) return;
+      leader_term_ = sample.term();
+      leader_ = key;
+      superseded = superseded || (term_ != 0 && sample.term() > term_);
+      if (ticks == nullptr) return;
+      if (sample.chunk() == 0) partly_ = {sample.tick(), {}};
+      const auto* first = reinterpret_cast<const std::byte*>(sample.bytes().data());
+      partly_.bytes.insert(partly_.bytes.end(), first, first + sample.bytes().size());
+      if (sample.chunk() + 1 == sample.count()) ticks->push_back(std::exchange(partly_, {}));
+    });
+    return superseded;
+  }
+
   template <class Sample>
   void write(dds::DataWriter* writer, Sample sample) {
     if (!writer->write(&sample)) ++counters_.send_failed;
@@ -314,11 +334,16 @@ class DdsServerChannel final : public ServerChannel {
 
   std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
   Doorman doorman_;                             // before the participant, whose threads call it
+  ServersWatch servers_;
   std::unique_ptr<Participant> participant_;
+  std::uint64_t term_ = 0, leader_term_ = 0;  ///< own: 0 while another leads
+  ClientKey leader_;                          ///< of the highest term that was heard
+  ToldTick partly_;
   dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
-                  *pulses_ = nullptr;
-  dds::DataReader *presence_ = nullptr, *requests_ = nullptr, *increments_ = nullptr;
+                  *pulses_ = nullptr, *ticks_ = nullptr;
+  dds::DataReader *told_ = nullptr, *presence_ = nullptr, *requests_ = nullptr,
+                  *increments_ = nullptr;
   std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0, feature_serial_ = 0;
   std::size_t mesh_chunks_ = 0;
   std::map<UserId, ClientKey> joined_;
@@ -327,6 +352,12 @@ class DdsServerChannel final : public ServerChannel {
 };
 
 }  // namespace
+
+Result<std::unique_ptr<StandbyChannel>> open_standby_channel(const DdsOptions& options) {
+  auto channel = std::make_unique<DdsServerChannel>();
+  if (Status opened = channel->stand_by(options); !opened) return opened.error();
+  return std::unique_ptr<StandbyChannel>(std::move(channel));
+}
 
 Result<std::unique_ptr<ServerChannel>> open_server_channel(const DdsOptions& options) {
   auto channel = std::make_unique<DdsServerChannel>();

@@ -9,11 +9,13 @@
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <charconv>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 #include <mutex>
+#include <sstream>
 
 #include "idl/guard_transport.h"
 #include "idl/security_properties.h"
@@ -36,6 +38,9 @@ constexpr int kMaxPort = 65535;
 constexpr double kAnnouncementPeriod_s = 0.5;
 // The longest a write may wait for a lock of Fast DDS; never for a reader.
 constexpr double kServerWriteWait_s = 0.01, kClientWriteWait_s = 0.1;
+// One that leads and is silent for so long is gone: told four times in it.
+constexpr double kLeaderLease_s = 0.1;
+const std::string kTermPrefix = "term=";
 // A socket's buffer holds a whole scene's burst.
 constexpr std::uint32_t kSocketBuffer_bytes = 1 << 22;
 
@@ -87,6 +92,20 @@ int server_port(const DdsOptions& options) {
              : kPortBase + kPortsPerDomain * options.domain + kServerPortOffset;
 }
 
+std::vector<std::string> addresses_of(const DdsOptions& options) {
+  std::vector<std::string> addresses;
+  std::stringstream words(options.server.empty() ? options.interface : options.server);
+  for (std::string word; std::getline(words, word, ',');) addresses.push_back(word);
+  return addresses;
+}
+
+/// Where a server listens; one that stands by may find the first place taken by the one that leads.
+constexpr int kSecondPlace = 2;
+
+bool place_is_free(const DdsOptions& options, int port) {
+  return port_is_free(options.interface, port) && port_is_free(options.interface, port + 1);
+}
+
 Status check(const DdsOptions& options, Participant::Side side) {
   if (options.domain < 0 || options.domain > kMaxDomain) {
     return bad("DDS domain " + std::to_string(options.domain) + " is not in 0..232");
@@ -104,14 +123,20 @@ Status check(const DdsOptions& options, Participant::Side side) {
     return bad("'" + options.interface +
                "' is not an IPv4 address of this machine: see `ip -4 addr` for those it has");
   }
-  if (!options.server.empty() && !is_ipv4(options.server)) {
-    return bad("server address '" + options.server + "' is not an IPv4 address");
+  for (const std::string& address : addresses_of(options)) {
+    if (!is_ipv4(address)) return bad("server address '" + address + "' is not an IPv4 address");
   }
   if (!(options.liveliness_lease_s > 0.0) || !(options.heartbeat_period_s > 0.0)) {
     return bad("liveliness lease and heartbeat period must be above 0 s");
   }
   if (!(options.participant_lease_s > kAnnouncementPeriod_s)) {
     return bad("participant lease must be longer than the announcement period of 0.5 s");
+  }
+  if (side == Participant::Side::kStandby && !place_is_free(options, port) &&
+      !place_is_free(options, port + kSecondPlace)) {
+    return broken("UDP ports " + std::to_string(port) + " to " + std::to_string(port + 3) + " of " +
+                  options.interface +
+                  " are in use: there is one that leads and one that stands by");
   }
   if (side == Participant::Side::kServer) {
     for (const int used : {port, port + 1}) {
@@ -137,7 +162,7 @@ Locator_t locator(const std::string& address, int port) {
 dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
                                  const DropCounter& dropped) {
   dds::DomainParticipantQos qos;
-  const bool is_server = side == Participant::Side::kServer;
+  const bool is_server = side != Participant::Side::kClient;
   qos.name(is_server ? "mortise-server" : "mortise-client");
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.push_back(options.interface);
@@ -149,16 +174,20 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(options.participant_lease_s);
   builtin.discovery_config.leaseDuration_announcementperiod = duration(kAnnouncementPeriod_s);
-  const int port = server_port(options);
+  int port = server_port(options);
+  for (const std::string& address : addresses_of(options)) {
+    // Servers of one session meet each other, too.
+    builtin.initialPeersList.push_back(locator(address, port));
+    builtin.initialPeersList.push_back(locator(address, port + kSecondPlace));
+  }
   if (is_server) {
+    if (side == Participant::Side::kStandby && !place_is_free(options, port)) port += kSecondPlace;
     builtin.metatrafficUnicastLocatorList.push_back(locator(options.interface, port));
     qos.wire_protocol().default_unicast_locator_list.push_back(
         locator(options.interface, port + 1));
     builtin.mutation_tries = 0;  // this port or none
   } else {
-    const std::string& server = options.server.empty() ? options.interface : options.server;
     builtin.metatrafficUnicastLocatorList.push_back(locator(options.interface, 0));
-    builtin.initialPeersList.push_back(locator(server, port));
   }
   auto flow = std::make_shared<FlowControllerDescriptor>();
   flow->name = kMeshFlowController;
@@ -174,7 +203,7 @@ Result<Identity> own_identity(const DdsOptions& options, Participant::Side side)
   Result<Identity> identity = check_keys(options.keys);
   if (!identity) return identity;
   const bool is_servers = identity->role == "server";
-  if (is_servers == (side == Participant::Side::kServer)) return identity;
+  if (is_servers == (side != Participant::Side::kClient)) return identity;
   return bad(
       options.keys + ": these are the keys of a" +
       (is_servers ? " server" : "n ordinary " + identity->role) + ", '" + identity->name + "': " +
@@ -216,6 +245,19 @@ void set_common(Qos& qos, const TopicRow& row, const DdsOptions& options, int de
 }
 
 }  // namespace
+
+bool may_have_another_server(const DdsOptions& options) {
+  return addresses_of(options).size() > 1 ||
+         !place_is_free(options, server_port(options) + kSecondPlace);
+}
+
+std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data) {
+  const std::string text(user_data.begin(), user_data.end());
+  std::uint64_t term = 0;
+  if (!text.starts_with(kTermPrefix)) return 0;
+  std::from_chars(text.data() + kTermPrefix.size(), text.data() + text.size(), term);
+  return term;
+}
 
 bool matched(dds::DataWriter* writer) {
   dds::PublicationMatchedStatus status;
@@ -284,12 +326,16 @@ Result<dds::Topic*> Participant::open_topic(const TopicRow& row, dds::TopicDataT
       support.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
     return broken(std::string("Fast DDS refused type ") + type_name);
   }
+  // A server both tells ticks and hears those of others.
+  auto* known = dynamic_cast<dds::Topic*>(participant_->lookup_topicdescription(row.topic));
+  if (known != nullptr) return known;
   dds::Topic* topic = participant_->create_topic(row.topic, type_name, dds::TOPIC_QOS_DEFAULT);
   if (topic == nullptr) return broken(std::string("Fast DDS refused topic ") + row.topic);
   return topic;
 }
 
-Result<dds::DataWriter*> Participant::open_writer(const TopicRow& row, dds::TopicDataType* type) {
+Result<dds::DataWriter*> Participant::open_writer(const TopicRow& row, dds::TopicDataType* type,
+                                                  dds::DataWriterListener* listener) {
   Result<dds::Topic*> topic = open_topic(row, type);
   if (!topic) return topic.error();
   dds::DataWriterQos qos;
@@ -305,7 +351,19 @@ Result<dds::DataWriter*> Participant::open_writer(const TopicRow& row, dds::Topi
     // Only meaningful for automatic kinds, but must lie below the lease.
     qos.liveliness().announcement_period = duration(0.5 * options_.liveliness_lease_s);
   }
-  dds::DataWriter* writer = publisher_->create_datawriter(topic.value(), qos);
+  if (row.among_servers) {
+    // Told by a thread of Fast DDS, however long a tick takes.
+    qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
+    qos.liveliness().lease_duration = duration(kLeaderLease_s);
+    qos.liveliness().announcement_period = duration(kLeaderLease_s / 4);
+  }
+  if (term_ != 0) {
+    const std::string term = kTermPrefix + std::to_string(term_);
+    qos.user_data().data_vec({term.begin(), term.end()});
+  }
+  dds::DataWriter* writer = publisher_->create_datawriter(
+      topic.value(), qos, listener,
+      listener == nullptr ? dds::StatusMask::none() : dds::StatusMask::publication_matched());
   if (writer == nullptr) {
     return broken(std::string("Fast DDS refused the writer of topic ") + row.topic);
   }
@@ -320,6 +378,10 @@ Result<dds::DataReader*> Participant::open_reader(const TopicRow& row, dds::Topi
   set_common(qos, row, options_, row.reader_depth);
   qos.history().kind = row.reader == TopicRow::Reader::kKeepAll ? dds::KEEP_ALL_HISTORY_QOS
                                                                 : dds::KEEP_LAST_HISTORY_QOS;
+  if (row.among_servers) {
+    qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
+    qos.liveliness().lease_duration = duration(kLeaderLease_s);
+  }
   const dds::StatusMask mask = listener == nullptr ? dds::StatusMask::none()
                                                    : dds::StatusMask::liveliness_changed()
                                                          << dds::StatusMask::subscription_matched();

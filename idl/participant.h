@@ -4,6 +4,7 @@
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
@@ -32,11 +33,18 @@ ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid);
 /// Does anybody listen?
 bool matched(dds::DataWriter* writer);
 
+/// Can there be another server of the session: at the second place of this host, or on another?
+bool may_have_another_server(const DdsOptions& options);
+
+/// Who led a session later has the higher term: ms since 1970 of its beginning, told with the
+/// server's writers; 0: one that tells none.
+std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
+
 /// One DDS participant in one session: transport, discovery and endpoints after the topic table.
 /// Every creation is checked; each failure is one line.
 class Participant {
  public:
-  enum class Side { kServer, kClient };
+  enum class Side { kServer, kStandby, kClient };
 
   /// The listener may be null and must outlive the participant.
   static Result<std::unique_ptr<Participant>> open(const DdsOptions& options, Side side,
@@ -45,10 +53,15 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
+  /// Said with each writer that is opened from now on, see term_of(); 0: none.
+  void set_term(std::uint64_t term) { term_ = term; }
+
   /// Opens an endpoint unless an earlier one failed; the first failure stays in status.
   template <class Generated>
-  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status) {
-    if (status) keep(open_writer(row_of(topic), new SafeType<Generated>(refused_)), writer, status);
+  void open_writer(Topic topic, dds::DataWriter*& writer, Status& status,
+                   dds::DataWriterListener* listener = nullptr) {
+    if (status)
+      keep(open_writer(row_of(topic), new SafeType<Generated>(refused_), listener), writer, status);
   }
   template <class Generated>
   void open_reader(Topic topic, dds::DataReaderListener* listener, dds::DataReader*& reader,
@@ -74,11 +87,13 @@ class Participant {
   }
   /// Takes ownership of the type.
   Result<dds::Topic*> open_topic(const TopicRow& row, dds::TopicDataType* type);
-  Result<dds::DataWriter*> open_writer(const TopicRow& row, dds::TopicDataType* type);
+  Result<dds::DataWriter*> open_writer(const TopicRow& row, dds::TopicDataType* type,
+                                       dds::DataWriterListener* listener);
   Result<dds::DataReader*> open_reader(const TopicRow& row, dds::TopicDataType* type,
                                        dds::DataReaderListener* listener);
 
   DdsOptions options_;
+  std::uint64_t term_ = 0;
   std::optional<Identity> identity_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;

@@ -15,7 +15,7 @@ constexpr int kMaxSnapshotChunks = 1024;
 constexpr int kMaxMeshChunks = 32768;  // 1.9 GB of meshes
 constexpr int kMaxFeatureChunks = 1024;
 
-constexpr std::array<TopicRow, 11> kTopics = {{
+constexpr std::array<TopicRow, 12> kTopics = {{
     // topic, type, to server, key, reliable, transient local, writer depth, reader, depth, keys,
     // asynchronous, throttled, presence, large
     {"mortise_increment", "IncrementBatch", true, "user", false, false, 32, kAll, 128, kMaxUsers,
@@ -39,6 +39,9 @@ constexpr std::array<TopicRow, 11> kTopics = {{
     {"mortise_features", "Features", false, "chunk", true, true, 1, kLast, 1, kMaxFeatureChunks,
      true, true, false, true},
     {"mortise_pulse", "Pulse", false, "", true, true, 1, kLast, 1, 1, true, false, false, false},
+    // At once: it is out before what it acknowledges is.
+    {"mortise_tick", "Tick", false, "", true, false, 4096, kAll, 65536, 1, false, false, false,
+     true, true},
 }};
 
 }  // namespace
@@ -57,7 +60,9 @@ std::string topic_table_markdown() {
     text += row.topic;
     text += " | ";
     text += row.type;
-    text += row.to_server ? " | to server | " : " | to clients | ";
+    text += row.among_servers ? " | among servers | "
+            : row.to_server   ? " | to server | "
+                              : " | to clients | ";
     text += *row.key == '\0' ? "none" : row.key;
     text += row.reliable ? " | reliable" : " | best effort";
     text += row.transient_local ? " | transient local" : " | volatile";

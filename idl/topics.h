@@ -23,6 +23,7 @@ struct TopicRow {
   bool throttled;     ///< by the mesh flow controller
   bool presence;      ///< MANUAL_BY_TOPIC liveliness
   bool large;         ///< payloads are allocated to size, not beforehand
+  bool among_servers = false;
 };
 
 enum class Topic {
@@ -37,6 +38,7 @@ enum class Topic {
   kMesh,
   kFeatures,
   kPulse,
+  kTick,
 };
 
 const TopicRow& row_of(Topic topic);

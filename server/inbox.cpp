@@ -10,6 +10,9 @@
 namespace mortise {
 namespace {
 
+// So long users of a server that is gone may take to be heard again: twice a participant's lease.
+constexpr double kAwaitAdopted_s = 4.0;
+
 bool printable(const std::string& name) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
   return !name.empty() && name.size() <= 64 && std::none_of(name.begin(), name.end(), control);
@@ -47,6 +50,7 @@ void Intake::clear() {
   refused.clear();
   acks.clear();
   turned_away.clear();
+  follower_came = superseded = false;
   joined = false;
 }
 
@@ -117,6 +121,8 @@ void Inbox::renew(World& world, UserId user, std::int64_t now_ns) {
 void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake) {
   intake.clear();
   intake.turned_away = std::move(input.turned_away);
+  intake.follower_came = input.follower_came;
+  intake.superseded = input.superseded;
   if (renewed_ns_.size() != world.parts.size()) {
     renewed_ns_.resize(world.parts.size(), now_ns);
     moving_.clear();
@@ -149,6 +155,7 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
 
   // 4. Who says goodbye, and whose lease is over.
   depart(input.lost, true, world, intake);
+  end_waiting(world, now_ns, intake);
   end_leases(world, now_ns, intake);
   end_asks(world, now_ns, intake);
 }
@@ -190,8 +197,9 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
   JoinReply reply{request.client, request.nonce, {}, Refusal::kNone, {}};
   UserId known;  // a user of that name who left: the same user again
   for (std::uint32_t i = 0; i < seats_.size(); ++i) {
-    const Seat& seat = seats_[i];
+    Seat& seat = seats_[i];
     if (seat.present && seat.client == request.client && seat.nonce == request.nonce) {
+      seat.awaited_until_ns = 0;
       reply.user = UserId{i + 1};  // asked again because the answer was lost
       intake.join_replies.push_back(std::move(reply));
       intake.joined = true;
@@ -271,6 +279,37 @@ void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) 
   decision.user = user;
   apply_decision(world, decision);
   intake.decisions.push_back(std::move(decision));
+}
+
+void Inbox::adopt(const std::vector<SeatRecord>& seats, std::int64_t now_ns) {
+  for (const SeatRecord& record : seats) {
+    if (record.user.value > seats_.size()) seats_.resize(record.user.value);
+    Seat& seat = seats_[record.user.value - 1];
+    seat = Seat{};
+    seat.client = record.client;
+    seat.nonce = record.nonce;
+    seat.present = true;
+    seat.awaited_until_ns = now_ns + static_cast<std::int64_t>(kAwaitAdopted_s * 1e9);
+    seat.tokens = limits_.messages_per_s;
+    seat.tokens_at_ns = now_ns;
+  }
+}
+
+std::vector<SeatRecord> Inbox::seats() const {
+  std::vector<SeatRecord> records;
+  for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+    const Seat& seat = seats_[i];
+    if (seat.present) records.push_back({UserId{i + 1}, seat.client, seat.nonce});
+  }
+  return records;
+}
+
+void Inbox::end_waiting(World& world, std::int64_t now_ns, Intake& intake) {
+  for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+    const Seat& seat = seats_[i];
+    if (seat.present && seat.awaited_until_ns != 0 && now_ns > seat.awaited_until_ns)
+      leave(UserId{i + 1}, false, world, intake);
+  }
 }
 
 void Inbox::end_leases(World& world, std::int64_t now_ns, Intake& intake) {

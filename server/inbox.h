@@ -9,6 +9,7 @@
 #include "common/session/world.h"
 #include "server/increment_order.h"
 #include "server/sequence_window.h"
+#include "server/tick_bytes.h"
 
 namespace mortise {
 
@@ -69,9 +70,10 @@ struct Intake {
   std::vector<JoinReply> join_replies;
   std::vector<Reply> replies;
   std::vector<RefusedIncrement> refused;
-  std::vector<Ack> acks;                 ///< one per user that sent increments, by user
-  std::vector<std::string> turned_away;  ///< by the transport, in words
-  bool joined = false;                   ///< somebody came in: a snapshot is due
+  std::vector<Ack> acks;                           ///< one per user that sent increments, by user
+  std::vector<std::string> turned_away;            ///< by the transport, in words
+  bool follower_came = false, superseded = false;  ///< see ServerInput
+  bool joined = false;                             ///< somebody came in: a snapshot is due
 
   void clear();
 };
@@ -92,6 +94,11 @@ class Inbox {
   /// for at most after_wait_s.
   void admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake);
 
+  /// Takes over from another server's inbox: its users stay who they are, and are gone when they do
+  /// not ask to join again in time. Called once, before admit().
+  void adopt(const std::vector<SeatRecord>& seats, std::int64_t now_ns);
+  std::vector<SeatRecord> seats() const;  ///< of all who are present
+
   const InboxCounters& counters() const { return counters_; }
   const std::vector<UserCounters>& user_counters() const { return user_counters_; }  ///< by index
   std::size_t waiting_increments() const { return backlog_.size(); }
@@ -103,6 +110,7 @@ class Inbox {
     ClientKey client;
     std::uint64_t nonce = 0;
     bool present = false;
+    std::int64_t awaited_until_ns = 0;  ///< adopted, and has not asked again yet; 0: is there
     IncrementOrder increments;
     std::uint64_t acknowledged = 0;  ///< of the increments
     SequenceWindow commands;
@@ -150,6 +158,7 @@ class Inbox {
   /// What is wrong with a request to join; kNone: nothing.
   Refusal check_join(const JoinRequest& request, const World& world, UserId known,
                      std::string& text) const;
+  void end_waiting(World& world, std::int64_t now_ns, Intake& intake);
   void end_asks(World& world, std::int64_t now_ns, Intake& intake);
   Refusal judge(const Increment& increment, const World& world) const;
   void refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake);

@@ -40,6 +40,11 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--restore", o.restore,
                  "Go on from this session log, or from the newest of the session in this folder "
                  "(none there: begin SCENARIO)");
+  app.add_option("--standby-of", o.standby_of,
+                 "Follow this session beside its server, and go on with it when that one is gone; "
+                 "--restore names its log, or the folder of it");
+  app.add_option("--peers", o.peers,
+                 "IPv4 of other hosts where a server of this session may run, comma between");
   app.add_option("--session", o.session, "Name of the session that clients ask for")
       ->capture_default_str();
   app.add_option("--domain", o.domain, "DDS domain")
@@ -78,6 +83,13 @@ CommandLine read_command_line(int argc, char** argv) {
     app.parse(argc, argv);
     if (o.scenario.empty() && o.restore.empty()) {
       throw CLI::ValidationError("a SCENARIO to play, or --restore LOG");
+    }
+    if (!o.standby_of.empty()) {
+      o.session = o.standby_of;
+      if (o.restore.empty()) {
+        throw CLI::ValidationError(
+            "--standby-of needs --restore: the log of the session, or its folder");
+      }
     }
     if (o.keys.empty() && !o.interface.starts_with("127.")) {
       throw CLI::ValidationError("--interface " + o.interface +

@@ -49,7 +49,7 @@ std::optional<fs::path> log_to_restore(const fs::path& place, const std::string&
 }
 
 Result<Resumed> resume_from(const SessionLog& log, World& world, int threads,
-                            SessionLogWriter* record) {
+                            SessionLogWriter* record, bool all_depart) {
   Resumed resumed;
   const auto on_tick = [&](const ReplayedTick& tick) {
     resumed.statistics.add(tick.computed);
@@ -75,7 +75,7 @@ Result<Resumed> resume_from(const SessionLog& log, World& world, int threads,
   resumed.ticks = report->ticks_compared;
   resumed.ticks_left_out = report->ticks_logged - report->ticks_compared;
   resumed.left_out_because = report->not_verifiable;
-  resumed.departures = depart_all(world);
+  if (all_depart) resumed.departures = depart_all(world);
   return resumed;
 }
 

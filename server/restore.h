@@ -30,8 +30,9 @@ std::optional<std::filesystem::path> log_to_restore(const std::filesystem::path&
 /// its logged events and state hash. Afterwards parts, clashes with their ids, numbers of events
 /// and what can be undone are what they were after the last tick of the log. Costs what the session
 /// cost the engine. `record` gets every tick that was logged, so that the next log is whole again;
-/// may be null. Fails (kMismatch) where the log and this engine disagree.
+/// may be null. Not all_depart: who was there stays, for a server that still leads. Fails
+/// (kMismatch) where the log and this engine disagree.
 Result<Resumed> resume_from(const SessionLog& log, World& world, int threads,
-                            SessionLogWriter* record);
+                            SessionLogWriter* record, bool all_depart = true);
 
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <deque>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "server/closing.h"
 #include "server/metrics_endpoint.h"
 #include "server/restore.h"
+#include "server/standby.h"
 #include "server/start.h"
 
 namespace mortise {
@@ -30,13 +32,25 @@ int say(const Error& error) {
   return exit_code_of(error.code);
 }
 
+DdsOptions dds_of(const ServerOptions& options) {
+  DdsOptions dds;
+  dds.session = options.session;
+  dds.domain = options.domain;
+  dds.interface = options.interface;
+  dds.discovery_port = options.port;
+  dds.keys = options.keys;
+  if (!options.peers.empty()) dds.server = options.interface + "," + options.peers;
+  return dds;
+}
+
 /// Plays the log of before again, when there is one.
 Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& options,
                                       SessionLogWriter* record) {
   std::optional<Resumed> resumed;
   if (!start.log) return resumed;
   const auto begun = std::chrono::steady_clock::now();
-  auto played = resume_from(*start.log, start.scene.world, options.threads, record);
+  auto played = resume_from(*start.log, start.scene.world, options.threads, record,
+                            options.standby_of.empty());
   if (!played) return fail(played.error().code, start.source + ": " + played.error().text);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   spdlog::info("restored from {}: {} ticks played again in {:.2f} s, each as it was logged",
@@ -80,17 +94,24 @@ int close_session(const ServerOptions& options, Closing closing, SessionLogWrite
 }  // namespace
 
 int serve(const ServerOptions& options) {
+  const bool stands_by = !options.standby_of.empty();
+  std::signal(SIGINT, ask_to_stop);
+  std::signal(SIGTERM, ask_to_stop);
+  const auto stop = [] { return stop_asked.load(); };
+  std::unique_ptr<StandbyChannel> standby;
+  std::deque<ToldTick> told;
+  if (stands_by) {
+    auto opened = open_standby_channel(dds_of(options));
+    if (!opened) return say(opened.error());
+    standby = std::move(*opened);
+    spdlog::info("standing by: waiting for the server of session '{}'", options.session);
+    if (!await_leader(*standby, told, stop)) return kExitOk;
+  }
   auto start = read_start(options);
   if (!start) return say(start.error());
   World& world = start->scene.world;
-
-  DdsOptions dds;
-  dds.session = options.session;
-  dds.domain = options.domain;
-  dds.interface = options.interface;
-  dds.discovery_port = options.port;
-  dds.keys = options.keys;
-  auto channel = open_server_channel(dds);
+  auto channel = stands_by ? Result<std::unique_ptr<ServerChannel>>(std::move(standby))
+                           : open_server_channel(dds_of(options));
   if (!channel) return say(channel.error());
 
   // A disk that is full, or a file that may not grow, is an error of the log, not the end.
@@ -111,8 +132,20 @@ int serve(const ServerOptions& options) {
       closing.parts_without_inside.push_back(world.parts[i].name);
   }
 
-  std::signal(SIGINT, ask_to_stop);
-  std::signal(SIGTERM, ask_to_stop);
+  std::vector<SeatRecord> seats;
+  if (stands_by) {
+    Follower follower(world, (*resumed)->statistics, log->writer(), options.threads);
+    spdlog::info("standing by: in step from tick {} on", world.tick);
+    auto& line = static_cast<StandbyChannel&>(**channel);
+    auto ended = follow(line, std::move(told), follower, stop);
+    if (!ended) return say(ended.error());
+    if (!*ended) return kExitOk;
+    seats = follower.seats();
+    if (Status taken = line.take_over(); !taken) return say(taken.error());
+    spdlog::warn("the server of session '{}' is gone: taken over at tick {}, {} users",
+                 options.session, world.tick, seats.size());
+  }
+
   SystemClock clock;
   TickLoopOptions loop_options;
   loop_options.session = options.session;
@@ -123,7 +156,10 @@ int serve(const ServerOptions& options) {
     closing.restored_from = start->source;
     closing.restored_ticks = before->ticks;
     closing.restore_left_out_ticks = before->ticks_left_out;
-    loop.resume(std::move(before->statistics), std::move(before->departures));
+    if (stands_by)
+      loop.adopt(std::move(before->statistics), seats);
+    else
+      loop.resume(std::move(before->statistics), std::move(before->departures));
   }
   loop.open();
   spdlog::info("session '{}' of {} on domain {}, {}: {} parts, {:g} Hz, policy {}{}",
@@ -153,16 +189,23 @@ int serve(const ServerOptions& options) {
   Announcer announcer(options.live, options.quiet);
   loop.run(
       [&] {
-        return stop_asked || (options.duration_s > 0.0 && loop.seconds() >= options.duration_s);
+        return stop_asked || loop.superseded() ||
+               (options.duration_s > 0.0 && loop.seconds() >= options.duration_s);
       },
       [&] {
         announcer.after_tick(loop);
         show_figures();
       });
   announcer.finish();
-  loop.close();
+  if (loop.superseded()) {
+    spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
+                  options.session, options.session);
+  } else {
+    loop.close();
+  }
   closing.channel = (*channel)->counters();
-  return close_session(options, std::move(closing), log->writer(), loop);
+  const int exit_code = close_session(options, std::move(closing), log->writer(), loop);
+  return loop.superseded() ? kExitRuntime : exit_code;
 }
 
 }  // namespace mortise

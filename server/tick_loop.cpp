@@ -20,6 +20,9 @@ std::int64_t difference_ns(std::int64_t a, std::int64_t b) {
 /// No datagram is so late; a clock that was set is.
 constexpr double kClockJump_s = 10.0;
 
+// Seats are told when they change; again now and then, for one that follows from a later tick on.
+constexpr std::uint64_t kSeatsEvery_ticks = 60;
+
 }  // namespace
 
 TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLogWriter* log,
@@ -42,6 +45,11 @@ void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> depart
   statistics_ = std::move(statistics);
   departures_ = std::move(departures);
   event_seq_ = snapshot_of(world_).event_seq;
+}
+
+void TickLoop::adopt(SessionStatistics statistics, const std::vector<SeatRecord>& seats) {
+  resume(std::move(statistics), {});
+  inbox_.adopt(seats, clock_.now_ns());
 }
 
 void TickLoop::open() {
@@ -81,6 +89,8 @@ void TickLoop::tick() {
 
   // 7. out
   record();
+  superseded_ = superseded_ || intake_.superseded;
+  if (channel_.has_follower()) tell_follower();
   publish();
   ++metrics_.ticks;
   metrics_.tick.add(clock_.now_ns() - now_ns_);
@@ -95,6 +105,24 @@ void TickLoop::record() {
   record.increments = intake_.increments;
   record.report = report_;
   log_->record(std::move(record));
+}
+
+void TickLoop::tell_follower() {
+  const auto changes_seats = [](const Decision& d) {
+    return d.kind == Decision::Kind::kJoin || d.kind == Decision::Kind::kLeave ||
+           d.kind == Decision::Kind::kLivelinessLost;
+  };
+  FollowedTick followed;
+  followed.tick = report_.tick;
+  followed.state_hash = report_.state_hash;
+  followed.time_ns = clock_.wall_ns();
+  followed.decisions = intake_.decisions;
+  followed.increments = intake_.increments;
+  followed.has_seats =
+      intake_.follower_came || report_.tick % kSeatsEvery_ticks == 0 ||
+      std::any_of(intake_.decisions.begin(), intake_.decisions.end(), changes_seats);
+  if (followed.has_seats) followed.seats = inbox_.seats();
+  channel_.publish_tick({report_.tick, encode(followed)});
 }
 
 void TickLoop::measure_delay() {

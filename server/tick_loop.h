@@ -42,6 +42,12 @@ class TickLoop {
   /// the world already; they are logged with the first tick. Called before open().
   void resume(SessionStatistics statistics, std::vector<Decision> departures);
 
+  /// Goes on where another server was when it was gone: like resume(), and nobody departs.
+  void adopt(SessionStatistics statistics, const std::vector<SeatRecord>& seats);
+
+  /// Another server leads the session now: this one must end.
+  bool superseded() const { return superseded_; }
+
   /// Publishes the meshes, once per distinct hash, and the first snapshot.
   void open();
 
@@ -69,6 +75,7 @@ class TickLoop {
 
  private:
   void record();
+  void tell_follower();
   void measure_delay();
   void publish();
   void publish_snapshot_when_due();
@@ -96,6 +103,7 @@ class TickLoop {
   bool features_are_new_ = false;
   bool changed_since_snapshot_ = false;
   bool snapshot_wanted_ = false;
+  bool superseded_ = false;
   bool had_readers_ = false;
 };
 

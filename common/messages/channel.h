@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -73,6 +74,12 @@ struct LostUser {
   bool said_goodbye = false;  ///< left, as against lost liveliness
 };
 
+/// What a server tells of a tick to one that stands by; what the bytes say is the servers' affair.
+struct ToldTick {
+  std::uint64_t tick = 0;
+  std::vector<std::byte> bytes;
+};
+
 /// What the transport dropped at the door, by reason; never silent.
 struct ChannelCounters {
   std::uint64_t received = 0, malformed = 0, foreign = 0, lost = 0, send_failed = 0,
@@ -88,6 +95,8 @@ struct ServerInput {
   std::vector<UserId> heartbeats;
   std::vector<ClientKey> snapshot_requests;  ///< who missed something: publish a snapshot again
   std::vector<std::string> turned_away;      ///< who was not let in by the transport, in words
+  bool follower_came = false;                ///< a server stands by that did not before
+  bool superseded = false;                   ///< another server has taken the session over: end
 };
 
 struct Ack {
@@ -135,6 +144,21 @@ class ServerChannel {
   virtual void publish_pulse(const SessionPulse& pulse) = 0;
   virtual bool has_readers() const = 0;
   virtual ChannelCounters counters() const = 0;
+
+  /// Does another server stand by? Then publish_tick() tells it each tick, before anything that
+  /// the tick acknowledges is published.
+  virtual bool has_follower() const { return false; }
+  virtual void publish_tick(const ToldTick&) {}
+};
+
+/// The end of a server that stands by: it hears what the one that leads tells of its ticks. Once it
+/// has taken over it is the end of a server like any other; before, it publishes nothing.
+class StandbyChannel : public ServerChannel {
+ public:
+  virtual std::vector<ToldTick> follow() = 0;
+  /// Is the one that leads alive? Known within a tenth of a second.
+  virtual bool leader_present() const = 0;
+  virtual Status take_over() = 0;
 };
 
 /// A mesh as publish_mesh() gave it.

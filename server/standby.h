@@ -1,0 +1,48 @@
+#pragma once
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "common/io/session_log.h"
+#include "common/messages/channel.h"
+#include "common/session/statistics.h"
+#include "common/session/step.h"
+#include "common/session/world.h"
+#include "server/tick_bytes.h"
+
+namespace mortise {
+
+/// What a server that stands by keeps in step with the one that leads: it computes each tick that
+/// it is told of, and holds it against the leader's state hash.
+class Follower {
+ public:
+  /// `log` may be null; all must outlive this.
+  Follower(World& world, SessionStatistics& statistics, SessionLogWriter* log, int threads)
+      : world_(world), statistics_(statistics), log_(log), scratch_(threads) {}
+
+  /// Fails (kMismatch) where the two disagree, and (kRuntime) where ticks are missing between.
+  Status take(const ToldTick& told);
+  const std::vector<SeatRecord>& seats() const { return seats_; }
+  std::uint64_t ticks() const { return ticks_; }
+
+ private:
+  void step_once(const FollowedTick& tick);
+
+  World& world_;
+  SessionStatistics& statistics_;
+  SessionLogWriter* log_;
+  Scratch scratch_;
+  std::vector<SeatRecord> seats_;
+  std::uint64_t ticks_ = 0, state_hash_ = 0;
+};
+
+/// Waits until the leader tells its first tick, and a moment longer, so that all before it is in
+/// the leader's log; what is told meanwhile is kept. False when `stop` said so.
+bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
+                  const std::function<bool()>& stop);
+
+/// Follows until the leader is gone and all that it told is taken. False when `stop` said so.
+Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower& follower,
+                    const std::function<bool()>& stop);
+
+}  // namespace mortise
