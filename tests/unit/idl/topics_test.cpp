@@ -9,11 +9,28 @@
 namespace mortise {
 namespace {
 
-std::string readme() {
-  std::ifstream file(MORTISE_SOURCE_DIR "/idl/README.md");
+std::string text_of(const std::string& path) {
+  std::ifstream file(MORTISE_SOURCE_DIR + ("/" + path));
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+std::string readme() { return text_of("idl/README.md"); }
+
+TEST(Topics, KeysGrantAllOfThem) {
+  const std::string script = text_of("client/tools/keys/mortise-keys");
+  for (const TopicRow& row : topic_table()) {
+    const std::string way = row.among_servers ? "among_servers="
+                            : row.to_server   ? "to_server="
+                                              : "to_clients=";
+    const std::size_t at = script.find("\n" + way);
+    ASSERT_NE(at, std::string::npos) << way;
+    const std::string line = script.substr(at + 1, script.find('\n', at + 1) - at - 1);
+    EXPECT_NE((line + " ").replace(line.size() - 1, 1, " ").find(std::string(row.topic) + " "),
+              std::string::npos)
+        << row.topic << " is not among " << line;
+  }
 }
 
 TEST(Topics, ReadmePrintsTheTable) {
@@ -35,10 +52,11 @@ TEST(Topics, TheTableKeepsItsRules) {
     EXPECT_GE(row.reader_depth, row.writer_depth);
     EXPECT_GE(row.max_keys, 1);
     EXPECT_EQ(*row.key == '\0', row.max_keys == 1);
-    EXPECT_EQ(row.asynchronous, !row.to_server);  // the tick never waits for a socket
+    // The tick never waits for a socket, but to have told a second server before it acknowledges.
+    EXPECT_EQ(row.asynchronous, !row.to_server && !row.among_servers);
     EXPECT_TRUE(row.reliable || !row.transient_local);
     // A reader that keeps all pushes back, which only a client may be made to feel.
-    EXPECT_TRUE(row.to_server || row.reader == TopicRow::Reader::kKeepLast);
+    EXPECT_TRUE(row.to_server || row.among_servers || row.reader == TopicRow::Reader::kKeepLast);
   }
   EXPECT_TRUE(row_of(Topic::kPresence).presence);
   EXPECT_STREQ(row_of(Topic::kPulse).topic, "mortise_pulse");
