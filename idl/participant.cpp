@@ -39,7 +39,7 @@ constexpr double kAnnouncementPeriod_s = 0.5;
 // The longest a write may wait for a lock of Fast DDS; never for a reader.
 constexpr double kServerWriteWait_s = 0.01, kClientWriteWait_s = 0.1;
 // One that leads and is silent for so long is gone: told four times in it.
-constexpr double kLeaderLease_s = 0.1;
+constexpr double kLeaderLease_s = 0.15;
 const std::string kTermPrefix = "term=";
 // A socket's buffer holds a whole scene's burst.
 constexpr std::uint32_t kSocketBuffer_bytes = 1 << 22;

@@ -156,7 +156,7 @@ class ServerChannel {
 class StandbyChannel : public ServerChannel {
  public:
   virtual std::vector<ToldTick> follow() = 0;
-  /// Is the one that leads alive? Known within a tenth of a second.
+  /// Is the one that leads alive? Known within 0.15 s.
   virtual bool leader_present() const = 0;
   virtual Status take_over() = 0;
 };
