@@ -73,7 +73,7 @@ class DdsServerChannel final : public StandbyChannel {
   }
   Status listen_to_servers() {
     Status status = ok();
-    participant_->open_reader<wire::TickPubSubType>(Topic::kTick, &servers_, told_, status);
+    participant_->open_reader<wire::ServerTickPubSubType>(Topic::kTick, &servers_, told_, status);
     return status;
   }
   Status open_endpoints() {
@@ -87,7 +87,7 @@ class DdsServerChannel final : public StandbyChannel {
     participant_->open_writer<wire::MeshChunkPubSubType>(Topic::kMesh, meshes_, status);
     participant_->open_writer<wire::FeaturesPubSubType>(Topic::kFeatures, features_, status);
     participant_->open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
-    participant_->open_writer<wire::TickPubSubType>(Topic::kTick, ticks_, status, &servers_);
+    participant_->open_writer<wire::ServerTickPubSubType>(Topic::kTick, ticks_, status, &servers_);
     participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &doorman_, presence_,
                                                         status);
     participant_->open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
@@ -162,7 +162,7 @@ class DdsServerChannel final : public StandbyChannel {
 
   bool has_follower() const override { return servers_.has_follower(); }
   void publish_tick(const ToldTick& told) override {
-    wire::Tick sample;
+    wire::ServerTick sample;
     sample.tick(told.tick);
     sample.term(term_);
     const std::size_t step = kSampleLimit_bytes - 64;
@@ -190,7 +190,7 @@ class DdsServerChannel final : public StandbyChannel {
   /// of us. Pieces come in order.
   bool take_told(std::vector<ToldTick>* ticks) {
     bool superseded = false;
-    take_all<wire::Tick>(told_, [&](const wire::Tick& sample, const ClientKey& key) {
+    take_all<wire::ServerTick>(told_, [&](const wire::ServerTick& sample, const ClientKey& key) {
       if (key == participant_->key() || sample.term() < leader_term_) return;
       leader_term_ = sample.term();
       leader_ = key;

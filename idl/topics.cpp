@@ -40,7 +40,7 @@ constexpr std::array<TopicRow, 12> kTopics = {{
      true, true, false, true},
     {"mortise_pulse", "Pulse", false, "", true, true, 1, kLast, 1, 1, true, false, false, false},
     // At once: it is out before what it acknowledges is.
-    {"mortise_tick", "Tick", false, "", true, false, 4096, kAll, 65536, 1, false, false, false,
+    {"mortise_tick", "ServerTick", false, "", true, false, 4096, kAll, 65536, 1, false, false, false,
      true, true},
 }};
 

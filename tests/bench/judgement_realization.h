@@ -27,8 +27,10 @@ struct Realization {
 Realization draw_realization(const JudgedCase& c, bool whole, int i, Dice& dice);
 
 /// Overlap of the drawn surfaces, mm, sampled densely over the inner part and again about the
-/// best sample: never more than the true overlap, and less by about 1e-6 of the zone. Nothing for
+/// best sample: never more than the true overlap, and less by about 1e-6 of the zone; of a shaft
+/// tilted in the mouth of its hole by more, unless `to_ends` (ten times the work). Nothing for
 /// planar families, whose extremes are the limits themselves.
-std::optional<double> sampled_overlap_mm(const JudgedCase& c, const Realization& drawn);
+std::optional<double> sampled_overlap_mm(const JudgedCase& c, const Realization& drawn,
+                                         bool to_ends = false);
 
 }  // namespace mortise::bench
