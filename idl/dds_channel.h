@@ -16,7 +16,9 @@ struct DdsOptions {
   /// IPv4 of the server, or of all that may lead the session, comma between; empty: same as
   /// interface.
   std::string server = "";
-  int discovery_port = 0;  ///< server's fixed UDP port (and the next one); 0: 7402 + 250 domain
+  /// First of the server's two UDP ports; one that stands by takes the next two. 0: 7402 + 250
+  /// domain.
+  int discovery_port = 0;
   double liveliness_lease_s = 0.8;   ///< server and client: a silent client is gone after this
   double participant_lease_s = 2.0;  ///< a silent process is gone after this
   double heartbeat_period_s = 0.1;   ///< of reliable writers; 0.02 on lossy links

@@ -71,7 +71,9 @@ const std::vector<NamedHere>& named_here() {
       {"Boost.Beast",
        std::regex("boost/(beast|asio).*"),
        {"client/web/", "server/metrics_endpoint.", "tests/network/page_client."}},
-      {"OpenSSL", std::regex("openssl/.*"), {"client/web/", "tests/network/page_client."}},
+      {"OpenSSL",
+       std::regex("openssl/.*"),
+       {"client/web/", "idl/identity.", "tests/network/page_client."}},
       {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
       {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
   };

@@ -114,7 +114,7 @@ TEST_F(Isolation, TwoDomains) {
 
 TEST_F(Isolation, TwoPortsOfOneDomain) {
   DdsOptions other = own();
-  other.discovery_port = 7400 + 250 * other.domain + 4;
+  other.discovery_port = 7400 + 250 * other.domain + 6;
   open(own(), other);
   play();
   expect_nothing_crossed();
@@ -123,7 +123,7 @@ TEST_F(Isolation, TwoPortsOfOneDomain) {
 TEST_F(Isolation, TwoSessionsByPartition) {
   DdsOptions other = own();
   other.session = "other";
-  other.discovery_port = 7400 + 250 * other.domain + 4;
+  other.discovery_port = 7400 + 250 * other.domain + 6;
   open(own(), other);
   EXPECT_EQ(ben_there.client->session(), "other");
   play();
@@ -149,7 +149,7 @@ TEST_F(Isolation, TwoSessionsByPartition) {
 TEST_F(Isolation, OneEndsAndTheOtherGoesOn) {
   DdsOptions other = own();
   other.session = "other";
-  other.discovery_port = 7400 + 250 * other.domain + 4;
+  other.discovery_port = 7400 + 250 * other.domain + 6;
   open(own(), other);
   there->loop.reset();
   there->channel.reset();
