@@ -174,14 +174,16 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(options.participant_lease_s);
   builtin.discovery_config.leaseDuration_announcementperiod = duration(kAnnouncementPeriod_s);
-  int port = server_port(options);
-  for (const std::string& address : addresses_of(options)) {
-    // Servers of one session meet each other, too.
-    builtin.initialPeersList.push_back(locator(address, port));
-    builtin.initialPeersList.push_back(locator(address, port + kSecondPlace));
-  }
+  const int first = server_port(options);
+  int port = first;
+  if (side == Participant::Side::kStandby && !place_is_free(options, port)) port += kSecondPlace;
+  // One that stands by looks for the one that leads, which waits to be found.
+  if (side != Participant::Side::kServer)
+    for (const std::string& address : addresses_of(options))
+      for (const int place : {first, first + kSecondPlace})
+        if (!is_server || address != options.interface || place != port)
+          builtin.initialPeersList.push_back(locator(address, place));
   if (is_server) {
-    if (side == Participant::Side::kStandby && !place_is_free(options, port)) port += kSecondPlace;
     builtin.metatrafficUnicastLocatorList.push_back(locator(options.interface, port));
     qos.wire_protocol().default_unicast_locator_list.push_back(
         locator(options.interface, port + 1));
