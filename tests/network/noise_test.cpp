@@ -162,9 +162,11 @@ TEST(NetworkNoise, DroppedDatagramsAreCounted) {
     mouth.send(Datagram(64, static_cast<std::uint8_t>(i)), 7402 + 250 * options.domain);
   }
   EXPECT_TRUE(until(
-      3.0, [&] { return (*channel)->counters().guard_dropped == 100; },
+      3.0, [&] { return (*channel)->counters().guard_dropped >= 100; },
       [&] { (*channel)->take(); }))
       << (*channel)->counters().guard_dropped;
+  // A server hears its own ticks; the statistics that Fast DDS hangs on them are cut off and count.
+  EXPECT_LE((*channel)->counters().guard_dropped, 100U + 20U);
 }
 
 }  // namespace
