@@ -50,19 +50,21 @@ class ServerWatch final : public dds::DomainParticipantListener {
     const std::lock_guard lock(mutex_);
     const auto leader = servers_.find(leader_);
     const bool present = led_ && leader != servers_.end() && leader->second.readers >= topics;
+    for (auto& [prefix, server] : servers_) server.gone = server.met > 0 && !server.answers;
     return {std::exchange(lost_, false), present};
   }
-  /// One that was overtaken: nothing that it says counts.
-  bool is_overtaken(const rtps::GuidPrefix_t& server) const {
+  /// Nothing that it says counts any more: overtaken, or its going was told by take(). Its last
+  /// words may come after that, each topic by its own way.
+  bool is_past(const rtps::GuidPrefix_t& server) const {
     const std::lock_guard lock(mutex_);
     const auto found = servers_.find(server);
-    return found != servers_.end() && found->second.term < highest_term_;
+    return found != servers_.end() && (found->second.gone || found->second.term < highest_term_);
   }
 
  private:
   struct Server {
     std::uint64_t term = 0, met = 0;
-    bool answers = false;
+    bool answers = false, gone = false;
     int readers = 0;
   };
   static rtps::GuidPrefix_t prefix_of(const rtps::InstanceHandle_t& handle) {
@@ -173,10 +175,7 @@ class DdsClientChannel final : public ClientChannel {
 
   ClientInput take() override {
     ClientInput input;
-    // Answers can be heard; and what is sent from now on will be.
-    const ServerWatch::Answer watch = watch_.take(increments_ == nullptr ? 2 : 3);
-    input.server_lost = watch.lost;
-    input.server_present = watch.present;
+    input.server_lost = std::exchange(lost_, false);  // the input before had its last words
     take_answers(input);
     take_snapshots(input);
     take_poses(input);
@@ -184,6 +183,10 @@ class DdsClientChannel final : public ClientChannel {
     take_pulses(input);
     take_meshes(input);
     take_features(input);
+    // Answers can be heard; and what is sent from now on will be.
+    const ServerWatch::Answer watch = watch_.take(increments_ == nullptr ? 2 : 3);
+    lost_ = watch.lost;
+    input.server_present = watch.present && !lost_;
     return input;
   }
 
@@ -218,7 +221,7 @@ class DdsClientChannel final : public ClientChannel {
       if (!info.valid_data) continue;
       ++counters_.received;
       const rtps::GuidPrefix_t& from = info.sample_identity.writer_guid().guidPrefix;
-      if (watch_.is_overtaken(from)) {
+      if (watch_.is_past(from)) {
         ++counters_.foreign;
         continue;
       }
@@ -366,6 +369,7 @@ class DdsClientChannel final : public ClientChannel {
   Clock::duration assert_period_{};
   Clock::time_point asserted_at_{};
   std::uint64_t beat_ = 0;
+  bool lost_ = false;  ///< to be told with the next input
   rtps::GuidPrefix_t server_;
   ChunkCollector<wire::Snapshot> snapshot_collector_;
   ChunkCollector<wire::PoseBatch> keyframe_collector_;

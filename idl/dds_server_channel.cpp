@@ -16,6 +16,7 @@ namespace mortise {
 namespace {
 
 constexpr int kLookForLeader_ms = 2000;
+constexpr int kLastWords_ms = 300;
 
 std::uint64_t now_ms() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -25,6 +26,16 @@ std::uint64_t now_ms() {
 
 class DdsServerChannel final : public StandbyChannel {
  public:
+  /// Says goodbye after its last words were heard; who does not listen is not waited for long.
+  ~DdsServerChannel() override {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kLastWords_ms);
+    for (dds::DataWriter* writer : {answers_, events_, snapshots_}) {
+      const std::chrono::duration<double> left = end - std::chrono::steady_clock::now();
+      if (writer == nullptr || left.count() <= 0.0) continue;
+      writer->wait_for_acknowledgments(
+          eprosima::fastrtps::Duration_t(static_cast<long double>(left.count())));
+    }
+  }
   Status open(const DdsOptions& options) {
     if (Status met = meet(options, Participant::Side::kServer); !met) return met;
     if (may_have_another_server(options)) {

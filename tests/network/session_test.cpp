@@ -1,7 +1,9 @@
 // A session over real DDS on loopback: several participants, each over UDP.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <memory>
+#include <thread>
 
 #include "client/client.h"
 #include "tests/network/small_server.h"
@@ -296,6 +298,42 @@ TEST(Network, WhoClosesIsGoneAtOnce) {
   ASSERT_TRUE(session.wait(3.0, [&] { return !session.server->lost.empty(); }));
   EXPECT_EQ(session.server->lost[0].client, key);
   EXPECT_LT(now_s() - start_s, 0.5);  // no lease has to run out
+}
+
+TEST(Network, NothingThatAServerSaidLastComesAfterItsLoss) {
+  Session session;
+  Client& client = session.add_client("anna");
+  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  for (int round = 0; round < 5; ++round) {
+    int resynced_after = 0;
+    bool lost = false;
+    std::uint64_t highest_event = 0;
+    std::atomic<bool> ended = false;
+    std::thread reader([&] {
+      while (!ended) {
+        const ClientUpdate update = client.poll();
+        lost = lost || update.server_lost;
+        resynced_after += lost && update.resynced;
+        if (!lost) highest_event = client.statistics().highest_event_seq;
+        sleep_s(0.001);
+      }
+    });
+    session.server->publish_events(1);
+    session.channel->publish_snapshot(session.server->snapshot());
+    const std::uint64_t last_event = session.server->event_seq;
+    session.channel.reset();
+    sleep_s(0.5);
+    ended = true;
+    reader.join();
+    EXPECT_TRUE(lost);
+    EXPECT_EQ(resynced_after, 0);
+    EXPECT_EQ(highest_event, last_event);
+    auto again = open_server_channel(session.options);
+    ASSERT_TRUE(again) << again.error().text;
+    session.channel = std::move(*again);
+    session.server = std::make_unique<SmallServer>(*session.channel, "test", 3);
+    ASSERT_TRUE(session.wait(8.0, [&] { return client.server_present() && session.all_joined(); }));
+  }
 }
 
 TEST(Network, WhoIsGoneBeforeItsJoinIsReadDoesNotGetIn) {
