@@ -11,6 +11,8 @@
 #include <optional>
 #include <thread>
 
+#include "server/real_time.h"
+
 namespace mortise {
 namespace {
 
@@ -49,7 +51,10 @@ class Endpoint final : public MetricsEndpoint {
     port_ = acceptor_.local_endpoint().port();
     beat();
     accept();
-    thread_ = std::thread([this] { io_.run(); });
+    thread_ = std::thread([this] {
+      run_as_others();
+      io_.run();
+    });
     return ok();
   }
   ~Endpoint() override {

@@ -14,6 +14,7 @@
 #include "server/announcer.h"
 #include "server/closing.h"
 #include "server/metrics_endpoint.h"
+#include "server/real_time.h"
 #include "server/restore.h"
 #include "server/standby.h"
 #include "server/start.h"
@@ -134,6 +135,7 @@ int serve(const ServerOptions& options) {
 
   std::vector<SeatRecord> seats;
   if (stands_by) {
+    (void)run_before_others();  // said below
     Follower follower(world, (*resumed)->statistics, log->writer(), options.threads);
     spdlog::info("standing by: in step from tick {} on", world.tick);
     auto& line = static_cast<StandbyChannel&>(**channel);
@@ -141,11 +143,13 @@ int serve(const ServerOptions& options) {
     if (!ended) return say(ended.error());
     if (!*ended) return kExitOk;
     seats = follower.seats();
+    run_as_others();  // and the threads of the endpoints
     if (Status taken = line.take_over(); !taken) return say(taken.error());
     spdlog::warn("the server of session '{}' is gone: taken over at tick {}, {} users",
                  options.session, world.tick, seats.size());
   }
 
+  if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
   SystemClock clock;
   TickLoopOptions loop_options;
   loop_options.session = options.session;
