@@ -61,53 +61,39 @@ double height_of(const Frustum& f, double z) {
   return 2.0 * (z - f.z0_mm) / (f.z1_mm - f.z0_mm) - 1.0;
 }
 
-double sampled_round(const RoundFit& fit, const Realization& drawn) {
+// Heights of the shaft are counted between the ends of the hole: along its axis, which is quick, or
+// along each of its lines (`to_ends`), where the deepest point often is and a grid of heights falls
+// short of it. Ten times the work.
+double sampled_round(const RoundFit& fit, const Realization& drawn, bool to_ends) {
   const double slope = (fit.hole.r1_mm - fit.hole.r0_mm) / (fit.hole.z1_mm - fit.hole.z0_mm);
   const double cosine = 1.0 / std::hypot(1.0, slope);
   const double lower = fit.hole.z0_mm - drawn.b.rest_mm, upper = fit.hole.z1_mm + drawn.b.rest_mm;
   const double z0 = fit.shaft.z0_mm - drawn.a.rest_mm, z1 = fit.shaft.z1_mm + drawn.a.rest_mm;
-  // Heights of the shaft that the hole has: the rest is not worth samples.
   const Pose X_AB = fit.X_BA.inverse();
-  const double from = std::max(z0, (X_AB * Vec3(0, 0, lower)).z() - 0.02 * (upper - lower));
-  const double to = std::min(z1, (X_AB * Vec3(0, 0, upper)).z() + 0.02 * (upper - lower));
-  return largest_over([&](double angle, double height) {
-    const double z = 0.5 * (from + to) + 0.5 * height * (to - from);
-    const double radius = fit.shaft.r0_mm + slope * (z - fit.shaft.z0_mm) +
-                          drawn.a.offset_mm(angle, height_of(fit.shaft, z)) / cosine;
-    const Vec3 p = fit.X_BA * shapes::on_circle(radius, angle, z);
-    if (p.z() < lower || p.z() > upper) return kNowhere;
-    const double hole = fit.hole.r0_mm + slope * (p.z() - fit.hole.z0_mm);
-    return (std::hypot(p.x(), p.y()) - hole) * cosine +
-           drawn.b.offset_mm(std::atan2(p.y(), p.x()), height_of(fit.hole, p.z()));
-  });
-}
-
-// The same, heights counted along each line of the shaft between the ends of the hole: there the
-// deepest point often is, and a grid of heights falls short of it. Ten times the work.
-double sampled_round_to_ends(const RoundFit& fit, const Realization& drawn) {
-  const double slope = (fit.hole.r1_mm - fit.hole.r0_mm) / (fit.hole.z1_mm - fit.hole.z0_mm);
-  const double cosine = 1.0 / std::hypot(1.0, slope);
-  const double lower = fit.hole.z0_mm - drawn.b.rest_mm, upper = fit.hole.z1_mm + drawn.b.rest_mm;
-  const double z0 = fit.shaft.z0_mm - drawn.a.rest_mm, z1 = fit.shaft.z1_mm + drawn.a.rest_mm;
   const double rise = (fit.X_BA.q * Vec3::UnitZ()).z();
   const auto point_at = [&](double angle, double z) -> Vec3 {
     const double radius = fit.shaft.r0_mm + slope * (z - fit.shaft.z0_mm) +
                           drawn.a.offset_mm(angle, height_of(fit.shaft, z)) / cosine;
     return fit.X_BA * shapes::on_circle(radius, angle, z);
   };
-  // Along one line of the shaft the deepest point is often where the hole ends: heights are counted
-  // between those ends.
-  const auto ends_at = [&](double angle, double height_B) {
+  const auto end_at = [&](double angle, double height_B) {
     double z = 0.5 * (z0 + z1);
     for (int i = 0; i < 4; ++i) z += (height_B - point_at(angle, z).z()) / rise;
     return z;
   };
+  const double more = 0.02 * (upper - lower);
+  const Interval on_axis{(X_AB * Vec3(0, 0, lower)).z() - more,
+                         (X_AB * Vec3(0, 0, upper)).z() + more};
   return largest_over([&](double angle, double height) {
-    const double one = ends_at(angle, lower), other = ends_at(angle, upper);
-    const double from = std::max(z0, std::min(one, other));
-    const double to = std::min(z1, std::max(one, other));
-    if (!(from <= to)) return kNowhere;
+    Interval hole_z = on_axis;
+    if (to_ends) {
+      const auto [least, most] = std::minmax({end_at(angle, lower), end_at(angle, upper)});
+      hole_z = {least, most};
+    }
+    const double from = std::max(z0, hole_z.lo), to = std::min(z1, hole_z.hi);
+    if (to_ends && !(from <= to)) return kNowhere;
     const Vec3 p = point_at(angle, 0.5 * (from + to) + 0.5 * height * (to - from));
+    if (!to_ends && (p.z() < lower || p.z() > upper)) return kNowhere;
     const double hole = fit.hole.r0_mm + slope * (p.z() - fit.hole.z0_mm);
     return (std::hypot(p.x(), p.y()) - hole) * cosine +
            drawn.b.offset_mm(std::atan2(p.y(), p.x()), height_of(fit.hole, p.z()));
@@ -158,8 +144,7 @@ Realization draw_realization(const JudgedCase& c, bool whole, int i, Dice& dice)
 
 std::optional<double> sampled_overlap_mm(const JudgedCase& c, const Realization& drawn,
                                          bool to_ends) {
-  if (const auto* fit = std::get_if<RoundFit>(&c.shape))
-    return to_ends ? sampled_round_to_ends(*fit, drawn) : sampled_round(*fit, drawn);
+  if (const auto* fit = std::get_if<RoundFit>(&c.shape)) return sampled_round(*fit, drawn, to_ends);
   if (const auto* fit = std::get_if<BallFit>(&c.shape)) return sampled_ball(*fit, drawn);
   return std::nullopt;
 }
