@@ -61,6 +61,10 @@ CommandLine read_command_line(int argc, char** argv) {
   auto* log = app.add_option("--log", o.log,
                              "Session log (MCAP), or a folder for it; default "
                              "sessions/<session>-<UTC time>.mcap");
+  app.add_option("--log-rotate", o.log_rotate_mb,
+                 "Begin the next file of the log (name_p0002.mcap ...) when one has so many MB; 0: "
+                 "never. Old files are yours to keep or to delete")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--no-log", o.no_log, "Write no session log")->excludes(log);
   app.add_option("--threads", o.threads, "Threads of the engine; the results are the same")
       ->check(CLI::Range(1, 256))

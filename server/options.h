@@ -19,6 +19,7 @@ struct ServerOptions {
   std::string restore;     ///< log to go on from, or folder of logs; empty: begin anew
   std::string log;         ///< file or existing folder; empty: sessions/<session>-<UTC>.mcap
   bool no_log = false;
+  double log_rotate_mb = 0.0;  ///< size at which the next file is begun; 0: never
   int threads = 1;
   double duration_s = 0.0;  ///< 0: until a signal
   std::string stats;        ///< file for the closing JSON document

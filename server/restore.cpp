@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include "common/io/build_info.h"
 #include "common/io/replay.h"
+#include "common/session/session_state.h"
 
 namespace mortise {
 namespace {
@@ -38,7 +40,7 @@ std::vector<Decision> depart_all(World& world) {
 
 std::optional<fs::path> log_to_restore(const fs::path& place, const std::string& session) {
   std::error_code error;
-  if (!fs::is_directory(place, error)) return place;
+  if (!fs::is_directory(place, error)) return chain_from(place).back();
   std::optional<fs::path> newest;
   for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
     if (!is_log_of(entry.path(), session)) continue;
@@ -48,21 +50,39 @@ std::optional<fs::path> log_to_restore(const fs::path& place, const std::string&
   return newest;
 }
 
-Result<Resumed> resume_from(const SessionLog& log, World& world, int threads,
-                            SessionLogWriter* record, bool all_depart) {
+namespace {
+
+// Of the ticks that need not be computed, as the log tells them.
+SessionStatistics told_statistics(const SessionLog& log, std::uint64_t up_to) {
+  SessionStatistics told;
+  if (log.begin) told = log.begin->statistics;
+  std::uint64_t last = log.begin ? log.begin->state.tick : 0;
+  for (const TickRecord& record : log.ticks) {
+    if (record.tick > up_to) break;
+    for (; last + 1 < record.tick; ++last) told.add({});
+    told.add(record.report);
+    last = record.tick;
+  }
+  for (const Checkpoint& state : log.checkpoints)
+    if (state.tick == up_to) told.set_counters(state.counters);
+  return told;
+}
+
+LogBegin begin_of(World& world, const SessionStatistics& statistics) {
+  return {{world.tick, state_hash(world, *world.state), build_fingerprint(), {},
+           encode_state(world), statistics.counters()},
+          statistics};
+}
+
+}  // namespace
+
+Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bool all_depart) {
   Resumed resumed;
-  const auto on_tick = [&](const ReplayedTick& tick) {
+  const std::uint64_t from_tick = world.tick;
+  resumed.statistics = told_statistics(log, from_tick);
+  auto report = replay(world, log, threads, [&](const ReplayedTick& tick) {
     resumed.statistics.add(tick.computed);
-    if (record == nullptr || tick.logged == nullptr) return;
-    TickRecord again;
-    again.tick = tick.computed.tick;
-    again.time_ns = tick.logged->time_ns;
-    again.decisions = tick.logged->decisions;
-    again.increments = tick.logged->increments;
-    again.report = tick.computed;
-    record->record(std::move(again));
-  };
-  auto report = replay(world, log, threads, on_tick);
+  });
   if (!report) return report.error();
   if (report->difference) {
     return fail(Code::kMismatch,
@@ -72,9 +92,11 @@ Result<Resumed> resume_from(const SessionLog& log, World& world, int threads,
                     (report->same_build ? "" : "; the log was written by another build") +
                     "; restore with the build that wrote it, or start the scenario anew");
   }
-  resumed.ticks = report->ticks_compared;
-  resumed.ticks_left_out = report->ticks_logged - report->ticks_compared;
+  resumed.ticks_computed = report->ticks_compared;
+  for (const TickRecord& record : log.ticks)
+    ++(record.tick <= world.tick ? resumed.ticks : resumed.ticks_left_out);
   resumed.left_out_because = report->not_verifiable;
+  if (world.state) resumed.begin = begin_of(world, resumed.statistics);
   if (all_depart) resumed.departures = depart_all(world);
   return resumed;
 }

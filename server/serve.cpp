@@ -45,17 +45,20 @@ DdsOptions dds_of(const ServerOptions& options) {
 }
 
 /// Plays the log of before again, when there is one.
-Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& options,
-                                      SessionLogWriter* record) {
+Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& options) {
   std::optional<Resumed> resumed;
   if (!start.log) return resumed;
   const auto begun = std::chrono::steady_clock::now();
-  auto played = resume_from(*start.log, start.scene.world, options.threads, record,
-                            options.standby_of.empty());
+  const std::uint64_t from_tick = start.scene.world.tick;
+  auto played =
+      resume_from(*start.log, start.scene.world, options.threads, options.standby_of.empty());
   if (!played) return fail(played.error().code, start.source + ": " + played.error().text);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-  spdlog::info("restored from {}: {} ticks played again in {:.2f} s, each as it was logged",
-               start.source, played->ticks, took.count());
+  spdlog::info("restored from {}: {} ticks{}; {} played again in {:.2f} s, each as it was logged",
+               start.source, played->ticks,
+               from_tick > 0 ? fmt::format(", the state after tick {} from a checkpoint", from_tick)
+                             : std::string(),
+               played->ticks_computed, took.count());
   if (played->ticks_left_out > 0) {
     spdlog::warn("{} ticks of {} are left out: {}", played->ticks_left_out, start.source,
                  played->left_out_because);
@@ -117,17 +120,17 @@ int serve(const ServerOptions& options) {
 
   // A disk that is full, or a file that may not grow, is an error of the log, not the end.
   std::signal(SIGXFSZ, SIG_IGN);
-  auto log = NewLog::create(options, *start);
-  if (!log) return say(log.error());
-  auto resumed = resume(*start, options, log->writer());
+  auto resumed = resume(*start, options);
   if (!resumed) return say(resumed.error());
-  if (Status published = log->publish(); !published) return say(published.error());
+  auto log = create_log(options, *start,
+                        *resumed ? std::move((*resumed)->begin) : std::optional<LogBegin>());
+  if (!log) return say(log.error());
 
   Closing closing;
   closing.session = options.session;
   closing.scenario = start->source;
   closing.policy = name_of(world.policy);
-  closing.log_file = log->file();
+  closing.log_file = log->file;
   for (std::size_t i = 0; i < start->scene.imports.size() && i < world.parts.size(); ++i) {
     if (!start->scene.imports[i].closed)
       closing.parts_without_inside.push_back(world.parts[i].name);
@@ -136,7 +139,7 @@ int serve(const ServerOptions& options) {
   std::vector<SeatRecord> seats;
   if (stands_by) {
     (void)run_before_others();  // said below
-    Follower follower(world, (*resumed)->statistics, log->writer(), options.threads);
+    Follower follower(world, (*resumed)->statistics, log->writer.get(), options.threads);
     spdlog::info("standing by: in step from tick {} on", world.tick);
     auto& line = static_cast<StandbyChannel&>(**channel);
     auto ended = follow(line, std::move(told), follower, stop);
@@ -155,7 +158,7 @@ int serve(const ServerOptions& options) {
   loop_options.session = options.session;
   loop_options.threads = options.threads;
   loop_options.inbox = options.limits;
-  TickLoop loop(world, **channel, clock, log->writer(), loop_options);
+  TickLoop loop(world, **channel, clock, log->writer.get(), loop_options);
   if (Resumed* before = resumed->has_value() ? &**resumed : nullptr; before != nullptr) {
     closing.restored_from = start->source;
     closing.restored_ticks = before->ticks;
@@ -208,7 +211,7 @@ int serve(const ServerOptions& options) {
     loop.close();
   }
   closing.channel = (*channel)->counters();
-  const int exit_code = close_session(options, std::move(closing), log->writer(), loop);
+  const int exit_code = close_session(options, std::move(closing), log->writer.get(), loop);
   return loop.superseded() ? kExitRuntime : exit_code;
 }
 

@@ -66,18 +66,23 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
   return start;
 }
 
+// The state that the newest checkpoint tells, or the log's beginning: ticks after it are still to be
+// played.
 Result<SessionStart> read_from_log(const fs::path& file) {
-  auto log = read_session_log(file);
+  auto log = read_session_log(file, {.keep_checkpoints = 2});
   // A log that cannot be read is bad input, whatever the reason.
   if (!log) return fail(Code::kInvalidInput, log.error().text);
   for (const std::string& note : log->notes) spdlog::warn("{}: {}", file.string(), note);
-  auto scene = scene_of(*log);
-  if (!scene) return fail(scene.error().code, file.string() + ": " + scene.error().text);
+  auto at = scene_at_last_checkpoint(*log);
+  if (!at) return fail(at.error().code, file.string() + ": " + at.error().text);
+  for (const std::string& note : at->notes) spdlog::warn("{}: {}", file.string(), note);
   SessionStart start;
   start.source = file.string();
   start.scenario_name = log->scenario_name;
   start.scenario_yaml = log->scenario_yaml;
-  start.scene = std::move(*scene);
+  start.scene = std::move(at->scene);
+  start.log_chain = log->chain;
+  start.log_name = file.filename().string();
   start.log = std::move(*log);
   return start;
 }
@@ -103,8 +108,6 @@ std::string log_file(const ServerOptions& options) {
   return options.log;
 }
 
-std::string unfinished(const std::string& file) { return file + ".begun"; }
-
 }  // namespace
 
 Result<SessionStart> read_start(const ServerOptions& options) {
@@ -122,11 +125,12 @@ Result<SessionStart> read_start(const ServerOptions& options) {
   return read_from_scenario(options);
 }
 
-Result<NewLog> NewLog::create(const ServerOptions& options, const SessionStart& start) {
+Result<NewLog> create_log(const ServerOptions& options, const SessionStart& start,
+                          std::optional<LogBegin> begin) {
   NewLog log;
   if (options.no_log) return log;
-  log.file_ = log_file(options);
-  const fs::path path(log.file_);
+  log.file = log_file(options);
+  const fs::path path(log.file);
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
   if (error) {
@@ -134,10 +138,8 @@ Result<NewLog> NewLog::create(const ServerOptions& options, const SessionStart& 
                                             path.parent_path().string(), error.message()));
   }
   if (fs::exists(path)) {
-    return fail(Code::kRuntime, log.file_ + ": exists already; a log is never overwritten");
+    return fail(Code::kRuntime, log.file + ": exists already; a log is never overwritten");
   }
-  fs::remove(unfinished(log.file_), error);  // of a start that was cut short
-
   LogHeader header;
   header.session = options.session;
   header.scenario_name = start.scenario_name;
@@ -149,22 +151,14 @@ Result<NewLog> NewLog::create(const ServerOptions& options, const SessionStart& 
   }
   header.meshes.assign(meshes.begin(), meshes.end());
   header.imports = start.scene.imports;
+  if (begin) header.chain = {start.log_name, start.log_chain.part + 1};
+  header.begin = std::move(begin);
   LogOptions log_options;
-  // A restore records faster than any disk writes.
-  if (start.log) log_options.queue_ticks += start.log->ticks.size();
-  auto writer = SessionLogWriter::create(unfinished(log.file_), header, log_options);
+  log_options.rotate_bytes = static_cast<std::uint64_t>(options.log_rotate_mb * 1e6);
+  auto writer = SessionLogWriter::create(path, header, log_options);
   if (!writer) return writer.error();
-  log.writer_ = std::move(*writer);
+  log.writer = std::move(*writer);
   return log;
-}
-
-Status NewLog::publish() {
-  if (!writer_) return ok();
-  if (Status flushed = writer_->flush(); !flushed) return flushed;
-  std::error_code error;
-  fs::rename(unfinished(file_), file_, error);
-  if (error) return fail(Code::kRuntime, file_ + ": cannot be written: " + error.message());
-  return ok();
 }
 
 std::string with_top_level(const std::string& yaml, const std::string& key,

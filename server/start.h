@@ -15,25 +15,22 @@ struct SessionStart {
   std::string scenario_name, scenario_yaml;
   LoadedScene scene;
   std::optional<SessionLog> log;  ///< to be played again before the session goes on
+  LogChain log_chain;             ///< place of that log, and
+  std::string log_name;           ///< its file name
 };
 
 /// Reads what the options name; says every finding. With a folder to restore from that holds no log
 /// of the session, the scenario begins anew.
 Result<SessionStart> read_start(const ServerOptions& options);
 
-/// The new log. Until `publish` it lies under another name, so that a start that was cut short is
-/// never taken for the newest log of the session.
-class NewLog {
- public:
-  static Result<NewLog> create(const ServerOptions& options, const SessionStart& start);
-  SessionLogWriter* writer() const { return writer_.get(); }  ///< null: none is written
-  const std::string& file() const { return file_; }           ///< empty: none is written
-  Status publish();
-
- private:
-  std::string file_;
-  std::unique_ptr<SessionLogWriter> writer_;
+/// The new log. With `begin` it goes on where the log of the start ends, from that state. A log is
+/// never overwritten.
+struct NewLog {
+  std::unique_ptr<SessionLogWriter> writer;  ///< null: none is written
+  std::string file;                          ///< empty: none is written
 };
+Result<NewLog> create_log(const ServerOptions& options, const SessionStart& start,
+                          std::optional<LogBegin> begin);
 
 /// `yaml` with the top-level `key` set to `value`: its line replaced, or appended. So a log holds
 /// the scenario as it was really played.

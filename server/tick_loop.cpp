@@ -23,6 +23,9 @@ constexpr double kClockJump_s = 10.0;
 // Seats are told when they change; again now and then, for one that follows from a later tick on.
 constexpr std::uint64_t kSeatsEvery_ticks = 60;
 
+// Four seconds of a disk that does not follow.
+constexpr std::size_t kMostQueued_ticks = 256;
+
 }  // namespace
 
 TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLogWriter* log,
@@ -53,7 +56,8 @@ void TickLoop::adopt(SessionStatistics statistics, const std::vector<SeatRecord>
 }
 
 void TickLoop::open() {
-  now_ns_ = opened_ns_ = pulse_ns_ = clock_.now_ns();
+  now_ns_ = opened_ns_ = pulse_ns_ = checkpoint_ns_ = clock_.now_ns();
+  checkpoints_.begin(world_);
   std::set<std::string> sent;
   for (const Part& part : world_.parts) {
     if (!sent.insert(part.solid->hash()).second) continue;
@@ -83,7 +87,9 @@ void TickLoop::tick() {
   // 1-6. the engine
   const std::int64_t step_start_ns = clock_.now_ns();
   report_ = step(world_, intake_.increments, scratch_);
-  metrics_.step.add(clock_.now_ns() - step_start_ns);
+  const std::int64_t step_ns = clock_.now_ns() - step_start_ns;
+  metrics_.step.add(step_ns);
+  worked_ns_ += step_ns;
   statistics_.add(report_);
   if (!report_.events.empty()) event_seq_ = report_.events.back().seq;
 
@@ -98,13 +104,29 @@ void TickLoop::tick() {
 
 void TickLoop::record() {
   if (log_ == nullptr) return;
-  TickRecord record;
+  TickRecord record = log_->spare();
   record.tick = report_.tick;
   record.time_ns = clock_.wall_ns();
   record.decisions = intake_.decisions;
   record.increments = intake_.increments;
   record.report = report_;
+  changed_since_checkpoint_ |= !intake_.decisions.empty() || !intake_.increments.empty();
+  record.state = checkpoints_.after_tick(world_, checkpoint_is_due());
   log_->record(std::move(record));
+}
+
+bool TickLoop::checkpoint_is_due() {
+  const std::int64_t age_ns = now_ns_ - checkpoint_ns_;
+  const bool due =
+      log_->wants_state() || worked_ns_ >= in_ns(options_.checkpoint_work_s) ||
+      age_ns >= in_ns(changed_since_checkpoint_ ? options_.checkpoint_s
+                                                : options_.checkpoint_idle_s);
+  // A log that cannot follow, or is broken, would not take it.
+  if (!due || log_->queued_ticks() > kMostQueued_ticks || !log_->status()) return false;
+  worked_ns_ = 0;
+  checkpoint_ns_ = now_ns_;
+  changed_since_checkpoint_ = false;
+  return true;
 }
 
 void TickLoop::tell_follower() {

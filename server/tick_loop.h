@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/checkpoint.h"
 #include "common/io/session_log.h"
 #include "common/messages/channel.h"
 #include "common/session/statistics.h"
@@ -27,6 +28,9 @@ struct TickLoopOptions {
   /// Requested snapshots come no closer than this: a client that asks in a loop costs little.
   double snapshot_gap_s = 0.1;
   double features_gap_s = 1.0;  ///< likewise tables of features, while meshes are looked at
+  /// A checkpoint goes into the log when the engine has worked for so long since the last one, which
+  /// is what a restart has to compute again, and so often at least when something went in, or not.
+  double checkpoint_work_s = 0.3, checkpoint_s = 10.0, checkpoint_idle_s = 600.0;
 };
 
 /// The beat of a session: at a fixed rate drain the channel, apply decisions, step, record,
@@ -75,6 +79,7 @@ class TickLoop {
 
  private:
   void record();
+  bool checkpoint_is_due();
   void tell_follower();
   void measure_delay();
   void publish();
@@ -93,6 +98,9 @@ class TickLoop {
   StepReport report_;
   SessionStatistics statistics_;
   TickMetrics metrics_;
+  CheckpointMaker checkpoints_;
+  std::int64_t worked_ns_ = 0, checkpoint_ns_ = 0;  ///< since the last one; when that was
+  bool changed_since_checkpoint_ = false;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::vector<PartPose> published_;            ///< what the pose stream said last, by part index

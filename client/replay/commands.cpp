@@ -40,7 +40,7 @@ struct Verification {
 Result<Verification> verification_of(
     const VerifyOptions& options,
     const std::function<void(const World&, const StepReport&)>& on_tick) {
-  auto log = read_session_log(options.log);
+  auto log = read_session(options.log);
   if (!log) return log.error();
   print_notes(*log);
   Progress progress("computing again",
@@ -131,7 +131,7 @@ int run_report(const VerifyOptions& options) {
 }
 
 int run_explain(const ExplainOptions& options) {
-  auto log = read_session_log(options.log);
+  auto log = read_session(options.log);
   if (!log) return say_bad_log(log.error());
   print_notes(*log);
   const auto chain = explain_clash(std::move(*log), ClashId{options.clash}, options.tick);
@@ -144,7 +144,7 @@ int run_explain(const ExplainOptions& options) {
 }
 
 int run_info(const InfoOptions& options) {
-  const auto log = read_session_log(options.log);
+  const auto log = read_session(options.log);
   if (!log) return say_bad_log(log.error());
   std::uint64_t increments = 0, refused = 0, decisions = 0, events = 0, triangles = 0;
   std::map<std::string, std::uint64_t> begun;  // by worst class of ended or open clashes

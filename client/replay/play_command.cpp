@@ -7,7 +7,7 @@
 namespace mortise {
 
 int run_play(const PlayCommand& command) {
-  const auto log = read_session_log(command.log);
+  const auto log = read_session(command.log);
   if (!log) return say(log.error(), kExitBadInput);
   print_notes(*log);
   DdsOptions dds;

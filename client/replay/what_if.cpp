@@ -119,6 +119,11 @@ namespace {
 // The scene with which a changed session begins. A log with another mesh is a copy, kept in `own`.
 Result<LoadedScene> changed_scene(const SessionLog& log, const std::vector<Change>& changes,
                                   std::optional<SessionLog>& own) {
+  if (log.begin && !changes.empty())
+    return fail(Code::kInvalidInput,
+                "the log goes on from " + log.chain.previous +
+                    ", and what would have been before cannot be known from it: give the first "
+                    "file of the session");
   for (const Change& change : changes) {
     if (change.kind != Change::Kind::kMesh) continue;
     if (!own) own = log;

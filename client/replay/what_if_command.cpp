@@ -33,7 +33,7 @@ Json document_of(const WhatIfOptions& options, const SessionLog& log, const Clas
 int run_what_if(const WhatIfOptions& options) {
   const auto all = combinations(options.set, options.sweep);
   if (!all) return say(all.error(), kExitUsage);
-  const auto log = read_session_log(options.log);
+  const auto log = read_session(options.log);
   if (!log) return say(log.error(), kExitBadInput);
   print_notes(*log);
   std::vector<Variant> variants;

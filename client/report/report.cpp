@@ -18,7 +18,7 @@ Result<SessionReport> report_of(const SessionLog& log, const ReportWishes& wishe
 }
 
 Result<std::string> report_page(const std::filesystem::path& log) {
-  const auto read = read_session_log(log);
+  const auto read = read_session(log);
   if (!read) return read.error();
   const auto report = report_of(*read);
   if (!report) return report.error();

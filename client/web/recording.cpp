@@ -101,7 +101,7 @@ Scene Recording::scene_at(std::uint64_t tick) const {
 }
 
 Result<Recording> read_recording(const std::filesystem::path& file) {
-  auto log = read_session_log(file);
+  auto log = read_session(file);
   if (!log) return log.error();
   auto loaded = scene_of(*log);
   if (!loaded) return loaded.error();

@@ -11,6 +11,7 @@ inline constexpr const char* kFormatsRead[] = {"1", "2"};
 inline constexpr const char* kSessionMetadata = "mortise.session";
 inline constexpr const char* kBuildMetadata = "mortise.build";
 inline constexpr const char* kRecoveryMetadata = "mortise.recovery";
+inline constexpr const char* kChainMetadata = "mortise.chain";
 
 inline constexpr const char* kScenarioAttachment = "scenario.yaml";
 inline constexpr const char* kMeshPrefix = "mesh/";      ///< and the hash of the mesh
@@ -26,5 +27,7 @@ inline constexpr const char* kClashes = "/clashes";
 inline constexpr const char* kTicks = "/ticks";
 inline constexpr const char* kStatistics = "/statistics";
 inline constexpr const char* kGaps = "/gaps";
+inline constexpr const char* kCheckpoints = "/checkpoints";
+inline constexpr const char* kTotals = "/totals";
 
 }  // namespace mortise::log_layout

@@ -106,6 +106,7 @@ McapScan Scanner::run() {
     }
     if (next == Next::kEnd) break;
     if (next == Next::kGoOn) {
+      if (handler_.is_enough && handler_.is_enough()) break;
       at_ = content_at + length;
       continue;
     }

@@ -41,6 +41,7 @@ struct McapHandler {
   std::function<void(const std::string& name, const std::map<std::string, std::string>&)>
       on_metadata = {};
   std::function<void(const std::string& what)> on_loss = {};  ///< messages were lost here
+  std::function<bool()> is_enough = {};  ///< asked after each record: the rest is left unread
 };
 
 /// What a hostile file may cost.

@@ -2,7 +2,9 @@
 
 #include <cstdio>
 
+#include "common/base/hash.h"
 #include "common/io/build_info.h"
+#include "common/io/checkpoint.h"
 #include "common/io/log_json.h"
 #include "common/messages/names.h"
 #include "common/session/step.h"
@@ -74,7 +76,7 @@ std::string compare_hash(const StepReport& logged, const StepReport& computed, c
 
 }  // namespace
 
-Result<LoadedScene> scene_of(const SessionLog& log) {
+Result<LoadedScene> bare_scene_of(const SessionLog& log) {
   auto reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
   if (!reading) return reading.error();
   for (const Finding& finding : reading->findings)
@@ -98,6 +100,45 @@ Result<LoadedScene> scene_of(const SessionLog& log) {
   return scene;
 }
 
+Result<LoadedScene> scene_of(const SessionLog& log) {
+  auto scene = bare_scene_of(log);
+  if (!scene || !log.begin) return scene;
+  if (Status restored = restore_state(scene->world, log.begin->state.bytes); !restored)
+    return fail(Code::kInvalidInput,
+                "the state that the log begins with is of no use: " + restored.error().text);
+  return scene;
+}
+
+Result<SceneAtCheckpoint> scene_at_last_checkpoint(const SessionLog& log) {
+  SceneAtCheckpoint at;
+  for (auto state = log.checkpoints.rbegin(); state != log.checkpoints.rend(); ++state) {
+    if (state->bytes.empty()) break;  // nor are those before it kept
+    const auto pass_over = [&](const std::string& why) {
+      at.notes.push_back("the checkpoint after tick " + std::to_string(state->tick) +
+                         " is passed over: " + why);
+    };
+    if (state->build != build_fingerprint()) {
+      pass_over("it was written by another build");
+      continue;
+    }
+    auto scene = bare_scene_of(log);
+    if (!scene) return scene.error();
+    if (Status restored = restore_state(scene->world, state->bytes); !restored) {
+      pass_over(restored.error().text);
+      continue;
+    }
+    at.scene = std::move(*scene);
+    at.tick = at.scene.world.tick;
+    at.from_checkpoint = true;
+    return at;
+  }
+  auto scene = scene_of(log);
+  if (!scene) return scene.error();
+  at.scene = std::move(*scene);
+  at.tick = at.scene.world.tick;
+  return at;
+}
+
 namespace {
 
 // Steps through a log: the record's tick, and those before it that had no input, for which `logged`
@@ -105,8 +146,11 @@ namespace {
 Result<std::string> walk(World& world, const SessionLog& log, int threads,
                          const std::function<bool(const ReplayedTick&)>& visit) {
   Scratch scratch(threads);
+  const std::uint64_t begun_at = world.tick;
   auto gap = log.gaps.begin();
+  while (gap != log.gaps.end() && gap->until_tick != 0 && gap->until_tick <= begun_at) ++gap;
   for (const TickRecord& record : log.ticks) {
+    if (begun_at > 0 && record.tick <= begun_at) continue;
     // 1. What was lost before this tick cannot be computed, nor anything after it.
     if (gap != log.gaps.end() && gap->until_tick == record.tick)
       return "ticks between " + std::to_string(gap->after_tick) + " and " +
@@ -145,6 +189,7 @@ Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
   report.ticks_logged = log.ticks.size();
   report.same_build = log.build_fingerprint == build_fingerprint();
   report.verified_to_tick = world.tick;
+  auto next = log.checkpoints.begin();
   const auto end = walk(world, log, threads, [&](const ReplayedTick& tick) {
     if (tick.logged == nullptr) {
       ++report.idle_ticks;
@@ -155,7 +200,16 @@ Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
       ++report.ticks_compared;
     }
     if (on_tick) on_tick(tick);
-    if (std::string what = difference_of(tick); !what.empty()) {
+    std::string what = difference_of(tick);
+    while (next != log.checkpoints.end() && next->tick < tick.computed.tick) ++next;
+    if (what.empty() && next != log.checkpoints.end() && next->tick == tick.computed.tick &&
+        next->build == build_fingerprint()) {
+      ++report.checkpoints_compared;
+      if (content_hash(encode_state(tick.world)) != next->hash)
+        what = "the checkpoint in the log is not the state computed here, though all that was "
+               "told is the same";
+    }
+    if (!what.empty()) {
       report.difference = ReplayDifference{tick.computed.tick, std::move(what)};
       return false;
     }

@@ -12,8 +12,21 @@
 namespace mortise {
 
 /// The scene with which a logged session began: scenario and meshes from the log, no other file.
-/// `log` must outlive the call only.
+/// Of a log that goes on where another ended, the world stands as at its beginning. `log` must
+/// outlive the call only.
 Result<LoadedScene> scene_of(const SessionLog& log);
+/// The same without what happened before the log's first tick.
+Result<LoadedScene> bare_scene_of(const SessionLog& log);
+
+/// The scene as it stood after the last checkpoint of the log that is of use: whole, kept by the
+/// reader, of this build; else as at the log's beginning.
+struct SceneAtCheckpoint {
+  LoadedScene scene;
+  std::uint64_t tick = 0;  ///< of the world: later ticks are still to be computed
+  bool from_checkpoint = false;
+  std::vector<std::string> notes;  ///< which checkpoints were passed over, and why
+};
+Result<SceneAtCheckpoint> scene_at_last_checkpoint(const SessionLog& log);
 
 /// The first place where a replay and its log disagree.
 struct ReplayDifference {
@@ -27,6 +40,7 @@ struct ReplayReport {
   std::uint64_t idle_ticks = 0;      ///< computed between them: not logged, since nothing went in
   std::uint64_t increments = 0, decisions = 0, events_compared = 0;
   std::uint64_t verified_to_tick = 0;  ///< every tick up to this one agrees
+  std::uint64_t checkpoints_compared = 0;  ///< each of the same bytes as the state computed here
   std::optional<ReplayDifference> difference;
   std::string not_verifiable;  ///< why ticks after verified_to_tick could not be compared, or empty
   bool same_build = false;     ///< bit for bit agreement is promised
@@ -41,7 +55,8 @@ struct ReplayedTick {
 using OnReplayedTick = std::function<void(const ReplayedTick&)>;
 
 /// Computes a logged session again in `world`, which stands as scene_of(log) made it, tick by tick,
-/// and compares refusals, events and state hashes. Stops at the first difference, and at the first
+/// and compares refusals, events, state hashes and, on the build that wrote them, checkpoints. Ticks
+/// that the world has behind it already are passed over. Stops at the first difference, and at the first
 /// gap: what was lost there cannot be computed. Fails when the log cannot be replayed at all.
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
                             const OnReplayedTick& on_tick = {});

@@ -3,78 +3,86 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <thread>
 
 #include "common/io/build_info.h"
-#include "common/io/log_json.h"
-#include "common/io/log_layout.h"
-#include "common/io/log_records.h"
-#include "common/io/mcap_writer.h"
+#include "common/io/log_file.h"
 
 namespace mortise {
 namespace {
 
 using log_json::Gap;
 
-// Ticks are collected for so long, or until there are so many, before the writer takes them.
+// The writer looks so often for ticks, or is woken when there are so many.
 constexpr auto kCollect = std::chrono::milliseconds(50);
 constexpr std::size_t kWakeTicks = 64;
 // Ticks that may stay with the caller while the writer has the queue, which it never has for long.
 constexpr std::size_t kMostKeptBack = 16;
+// Records that are kept for their memory: of a second.
+constexpr std::size_t kMostSpare = 128;
+constexpr std::size_t kMostReserved = 8192;
 
-// Time between two records of /statistics, on the clock of the log.
-constexpr std::uint64_t kStatisticsPeriod_ns = 1'000'000'000;
+void empty(TickRecord& record) {
+  record.tick = 0;
+  record.decisions.clear();
+  record.increments.clear();
+  record.report.moved.clear();
+  record.report.events.clear();
+  record.report.refused.clear();
+  record.state = {};
+}
 
 class FileWriter final : public SessionLogWriter {
  public:
-  FileWriter(std::unique_ptr<McapWriter> mcap, const LogHeader& header, const LogOptions& options);
+  FileWriter(std::unique_ptr<LogFile> file, const LogHeader& header, const LogOptions& options);
   ~FileWriter() override { static_cast<void>(close()); }
 
   void record(TickRecord record) override;
+  TickRecord spare() override;
+  bool wants_state() const override { return wants_state_.load(std::memory_order_relaxed); }
   Status flush() override;
   Status close() override;
   std::uint64_t dropped_ticks() const override { return dropped_.load(); }
-  std::uint64_t bytes_written() const override { return mcap_->bytes_written(); }
+  std::uint64_t bytes_written() const override { return bytes_.load(); }
   std::size_t queued_ticks() const override;
   Status status() const override;
-  Status begin();
 
  private:
   struct Item {
     Gap gap_before;  ///< ticks == 0: none
     TickRecord tick;
   };
-  void write_header(const LogHeader& header);
   void take_kept_back();
   void queue(TickRecord record);
   void run();
   void write(const Item& item);
-  void write(const TickRecord& tick);
-  void write_gap(const Gap& gap);
-  void write_statistics();
-  void message(std::uint16_t channel, std::span<const std::byte> data);
-  void message(std::uint16_t channel, const std::string& text);
+  void write_state(const TickRecord& tick);
+  void rotate(Checkpoint state);
   void remember_error();
   void settle_chunk();
+  void count_bytes();
 
-  // Written by the writer thread alone once it runs.
-  std::unique_ptr<McapWriter> mcap_;
+  // Of the writer thread alone once it runs.
+  std::unique_ptr<LogFile> file_;
+  LogHeader header_;
   LogOptions options_;
-  std::uint16_t decisions_ = 0, increments_ = 0, poses_ = 0, clashes_ = 0, ticks_ = 0,
-                statistics_ = 0, gaps_ = 0;
-  std::uint64_t time_ns_ = 0, statistics_time_ns_ = 0;
-  bool has_time_ = false;
-  log_json::CounterSums sums_;
+  SessionStatistics statistics_;      ///< of all ticks so far; only where files are rotated
+  StepCounters counters_;
   std::uint64_t ticks_in_chunk_ = 0;  ///< written, but not yet in the file
   std::uint32_t chunks_settled_ = 0;
+  std::uint64_t bytes_before_ = 0;  ///< of the files before this one
+  std::optional<Error> rotate_error_;
+
+  std::atomic<std::uint64_t> bytes_ = 0;
+  std::atomic<bool> wants_state_ = false;
+  std::vector<TickRecord> kept_back_, own_spare_;  ///< of the thread that records
 
   mutable std::mutex mutex_;
-  std::vector<TickRecord> kept_back_;  ///< of the thread that records
   std::condition_variable wake_;
   std::size_t wake_ticks_ = 1;  ///< as many wake the writer before its time
-  std::deque<Item> queue_;
+  std::vector<Item> queue_;
+  std::vector<TickRecord> spare_;
   Gap gap_;  ///< dropped since the last queued tick
   bool closing_ = false;
   std::uint64_t flushes_asked_ = 0, flushes_done_ = 0;
@@ -84,50 +92,18 @@ class FileWriter final : public SessionLogWriter {
   std::thread thread_;
 };
 
-FileWriter::FileWriter(std::unique_ptr<McapWriter> mcap, const LogHeader& header,
+FileWriter::FileWriter(std::unique_ptr<LogFile> file, const LogHeader& header,
                        const LogOptions& options)
-    : mcap_(std::move(mcap)), options_(options) {
+    : file_(std::move(file)), header_(header), options_(options) {
   wake_ticks_ = std::clamp<std::size_t>(options.queue_ticks / 2, 1, kWakeTicks);
-  write_header(header);
-}
-
-void FileWriter::write_header(const LogHeader& header) {
-  using namespace log_layout;
-  std::map<std::string, std::string> session = {
-      {"format", kFormat}, {"session", header.session}, {"scenario_name", header.scenario_name}};
-  for (std::size_t i = 0; i < header.mesh_of_part.size(); ++i)
-    session["mesh_of_part/" + std::to_string(i + 1)] = header.mesh_of_part[i];
-  mcap_->add_metadata(kSessionMetadata, session);
-  mcap_->add_metadata(kBuildMetadata, build_info());
-  mcap_->add_attachment(kScenarioAttachment, "application/yaml",
-                        std::as_bytes(std::span(header.scenario_yaml)), 0);
-  for (const auto& [hash, mesh] : header.meshes)
-    mcap_->add_attachment(kMeshPrefix + hash, "application/x-mortise-mesh",
-                          log_records::encode(*mesh), 0);
-  for (std::size_t i = 0; i < header.imports.size(); ++i) {
-    const std::string json = log_json::encode(header.imports[i]);
-    mcap_->add_attachment(kImportPrefix + std::to_string(i + 1), "application/json",
-                          std::as_bytes(std::span(json)), 0);
-  }
-  const auto binary = [&](const char* topic) {
-    return mcap_->add_channel(topic, kBinary, 0, {{"layout", "session_log_format.md"}});
-  };
-  const auto json = [&](const char* topic, const char* name, const std::string& schema) {
-    return mcap_->add_channel(topic, kJson, mcap_->add_schema(name, "jsonschema", schema));
-  };
-  decisions_ = binary(kDecisions);
-  increments_ = binary(kIncrements);
-  poses_ = binary(kPoses);
-  ticks_ = binary(kTicks);
-  clashes_ = json(kClashes, "mortise.Clash", log_json::clash_schema());
-  statistics_ = json(kStatistics, "mortise.Statistics", log_json::statistics_schema());
-  gaps_ = json(kGaps, "mortise.Gap", log_json::gap_schema());
-}
-
-Status FileWriter::begin() {
-  if (Status synced = mcap_->sync(); !synced) return synced.error();
+  if (header_.begin) statistics_ = std::move(header_.begin->statistics);
+  counters_ = statistics_.counters();
+  header_.begin.reset();
+  count_bytes();
+  // Grown while a disk is stuck, they would hold up the tick.
+  queue_.reserve(std::min(options.queue_ticks, kMostReserved));
+  kept_back_.reserve(kMostKeptBack);
   thread_ = std::thread([this] { run(); });
-  return ok();
 }
 
 // Never waits: where the writer has the queue, the tick stays with the caller until the next one.
@@ -141,6 +117,17 @@ void FileWriter::record(TickRecord record) {
   if (!lock.owns_lock()) lock.lock();
   take_kept_back();
   queue(std::move(record));
+}
+
+TickRecord FileWriter::spare() {
+  if (own_spare_.empty()) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock()) own_spare_.swap(spare_);
+  }
+  if (own_spare_.empty()) return {};
+  TickRecord record = std::move(own_spare_.back());
+  own_spare_.pop_back();
+  return record;
 }
 
 void FileWriter::take_kept_back() {
@@ -157,9 +144,8 @@ void FileWriter::queue(TickRecord record) {
     return;
   }
   queue_.push_back({std::exchange(gap_, {}), std::move(record)});
-  // The writer collects for a while: to wake it in each tick would cost the tick more than all
-  // else.
-  if (queue_.size() == 1 || queue_.size() == wake_ticks_) wake_.notify_one();
+  // The writer comes by itself: to wake it in each tick would cost the tick more than all else.
+  if (queue_.size() == wake_ticks_) wake_.notify_one();
 }
 
 void FileWriter::run() {
@@ -168,35 +154,36 @@ void FileWriter::run() {
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.flush_s));
   auto next_flush = Clock::now() + period;
   bool unflushed = false;
-  std::deque<Item> items;
+  std::vector<Item> items;
+  std::vector<TickRecord> used;
+  items.reserve(queue_.capacity());
   std::unique_lock lock(mutex_);
   while (true) {
-    const auto work = [&] { return closing_ || !queue_.empty() || flushes_asked_ > flushes_done_; };
-    if (unflushed)
-      wake_.wait_until(lock, next_flush, work);
-    else
-      wake_.wait(lock, work);
-    const auto enough = [&] {
+    wake_.wait_for(lock, kCollect, [&] {
       return closing_ || queue_.size() >= wake_ticks_ || flushes_asked_ > flushes_done_;
-    };
-    if (!queue_.empty()) {
-      const auto collected = Clock::now() + kCollect;
-      wake_.wait_until(lock, unflushed ? std::min(collected, next_flush) : collected, enough);
-    }
+    });
     items.swap(queue_);
     const bool closing = closing_;
     const std::uint64_t flushes = flushes_asked_;
     lock.unlock();
     unflushed = unflushed || !items.empty();
     for (const Item& item : items) write(item);
-    items.clear();
+    if (!unflushed) next_flush = Clock::now() + period;
     if (unflushed && (Clock::now() >= next_flush || flushes > flushes_done_)) {
-      static_cast<void>(mcap_->sync());  // an error sticks and is taken below
+      static_cast<void>(file_->mcap().sync());  // an error sticks and is taken below
       settle_chunk();
       unflushed = false;
       next_flush = Clock::now() + period;
     }
+    for (Item& item : items) {
+      if (used.size() >= kMostSpare) break;
+      empty(item.tick);
+      used.push_back(std::move(item.tick));
+    }
+    items.clear();
+    count_bytes();
     lock.lock();
+    if (spare_.empty()) spare_.swap(used);
     remember_error();
     flushes_done_ = flushes;
     flushed_.notify_all();
@@ -206,64 +193,75 @@ void FileWriter::run() {
 
 // Ticks that went into a file that can no longer be written are lost like any other.
 void FileWriter::remember_error() {
-  if (error_ || !mcap_->error()) return;
-  error_ = mcap_->error();
+  if (!error_) error_ = file_->mcap().error() ? file_->mcap().error() : rotate_error_;
+  if (!error_) return;
   dropped_.fetch_add(queue_.size());
   queue_.clear();
 }
 
 void FileWriter::write(const Item& item) {
-  if (mcap_->error()) {
+  if (file_->mcap().error() || rotate_error_) {
     dropped_.fetch_add(1);
     return;
   }
-  const auto time_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(item.tick.time_ns, 0));
-  time_ns_ = std::max(time_ns_, time_ns);  // a clock that was set back does not turn the log
-  if (!has_time_) statistics_time_ns_ = time_ns_;
-  has_time_ = true;
-  if (item.gap_before.ticks > 0) write_gap(item.gap_before);
-  write(item.tick);
-  if (time_ns_ - statistics_time_ns_ >= kStatisticsPeriod_ns) write_statistics();
+  file_->set_time(item.tick.time_ns);
+  if (item.gap_before.ticks > 0) file_->write_gap(item.gap_before);
+  file_->write(item.tick);
+  accumulate(counters_, item.tick.report.counters);
+  if (options_.rotate_bytes > 0) statistics_.add(item.tick.report);
   ++ticks_in_chunk_;
-  if (mcap_->chunk_is_full()) {
-    mcap_->end_chunk();
+  if (item.tick.state) write_state(item.tick);
+  if (file_->mcap().chunk_is_full()) {
+    file_->mcap().end_chunk();
     settle_chunk();
   }
 }
 
+void FileWriter::write_state(const TickRecord& tick) {
+  Checkpoint state{tick.tick, tick.report.state_hash, build_fingerprint(), {},
+                   tick.state(), counters_};
+  file_->write(state);
+  const bool is_full =
+      options_.rotate_bytes > 0 && file_->mcap().bytes_written() >= options_.rotate_bytes;
+  if (is_full) rotate(std::move(state));
+}
+
+// The old file is whole on disk before the next one is begun: a crash in between costs nothing that
+// was written.
+void FileWriter::rotate(Checkpoint state) {
+  file_->write_statistics();
+  const Status closed = file_->mcap().close();
+  settle_chunk();
+  if (!closed) return;
+  header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
+  header_.begin = LogBegin{std::move(state), statistics_};
+  auto next = LogFile::create(next_in_chain(file_->path()), header_, options_);
+  header_.begin.reset();
+  if (!next) {
+    rotate_error_ = next.error();
+    return;
+  }
+  bytes_before_ += file_->mcap().bytes_written();
+  const auto time_ns = static_cast<std::int64_t>(file_->time_ns());
+  file_ = std::move(*next);
+  file_->set_time(time_ns);
+  chunks_settled_ = file_->mcap().chunks_written();
+}
+
 // The ticks of a chunk that the disk did not take are lost with it.
 void FileWriter::settle_chunk() {
-  const bool is_whole = mcap_->chunks_written() > chunks_settled_;
-  if (mcap_->error() && !is_whole) dropped_.fetch_add(ticks_in_chunk_);
-  chunks_settled_ = mcap_->chunks_written();
+  const McapWriter& mcap = file_->mcap();
+  const bool is_whole = mcap.chunks_written() > chunks_settled_;
+  if (mcap.error() && !is_whole) dropped_.fetch_add(ticks_in_chunk_);
+  chunks_settled_ = mcap.chunks_written();
   ticks_in_chunk_ = 0;
 }
 
-void FileWriter::write(const TickRecord& tick) {
-  if (!tick.decisions.empty())
-    message(decisions_, log_records::encode(tick.tick, std::span(tick.decisions)));
-  if (!tick.increments.empty())
-    message(increments_, log_records::encode(tick.tick, std::span(tick.increments)));
-  if (!tick.report.moved.empty())
-    message(poses_, log_records::encode(tick.tick, std::span(tick.report.moved)));
-  for (const ClashEvent& event : tick.report.events) message(clashes_, log_json::encode(event));
-  message(ticks_, log_records::encode_end(tick.report, tick.tick));
-  sums_.add(tick.report);
-}
-
-void FileWriter::write_gap(const Gap& gap) { message(gaps_, log_json::encode(gap)); }
-
-void FileWriter::write_statistics() {
-  if (!sums_.empty()) message(statistics_, sums_.encode());
-  sums_ = {};
-  statistics_time_ns_ = time_ns_;
-}
-
-void FileWriter::message(std::uint16_t channel, std::span<const std::byte> data) {
-  mcap_->add_message(channel, time_ns_, data);
-}
-void FileWriter::message(std::uint16_t channel, const std::string& text) {
-  message(channel, std::as_bytes(std::span(text)));
+void FileWriter::count_bytes() {
+  const std::uint64_t bytes = file_->mcap().bytes_written();
+  bytes_.store(bytes_before_ + bytes);
+  wants_state_.store(options_.rotate_bytes > 0 && bytes >= options_.rotate_bytes,
+                     std::memory_order_relaxed);
 }
 
 Status FileWriter::flush() {
@@ -291,10 +289,13 @@ Status FileWriter::close() {
   if (thread_.joinable()) {
     thread_.join();
     const std::lock_guard lock(mutex_);
-    if (gap_.ticks > 0) write_gap(gap_);
-    write_statistics();
-    if (Status closed = mcap_->close(); !closed) error_ = closed.error();
-    settle_chunk();
+    if (!rotate_error_) {
+      if (gap_.ticks > 0) file_->write_gap(gap_);
+      file_->write_statistics();
+      if (Status closed = file_->mcap().close(); !closed) error_ = closed.error();
+      settle_chunk();
+    }
+    count_bytes();
   }
   return status();
 }
@@ -309,14 +310,10 @@ Status FileWriter::status() const {
 
 Result<std::unique_ptr<SessionLogWriter>> SessionLogWriter::create(
     const std::filesystem::path& file, const LogHeader& header, const LogOptions& options) {
-  auto mcap = McapWriter::create(file, {.profile = log_layout::kProfile,
-                                        .library = "mortise " + engine_version(),
-                                        .compress = options.compress,
-                                        .chunk_bytes = options.chunk_bytes});
-  if (!mcap) return mcap.error();
-  auto writer = std::make_unique<FileWriter>(std::move(mcap).value(), header, options);
-  if (Status begun = writer->begin(); !begun) return begun.error();
-  return std::unique_ptr<SessionLogWriter>(std::move(writer));
+  auto log = LogFile::create(file, header, options);
+  if (!log) return log.error();
+  return std::unique_ptr<SessionLogWriter>(
+      std::make_unique<FileWriter>(std::move(*log), header, options));
 }
 
 }  // namespace mortise

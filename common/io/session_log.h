@@ -4,17 +4,41 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
 #include "common/geometry/mesh.h"
+#include "common/io/checkpoint.h"
 #include "common/io/mesh_import.h"
 #include "common/messages/increment.h"
 #include "common/messages/report.h"
+#include "common/session/statistics.h"
 
 namespace mortise {
+
+/// The whole state of the session after a tick, as it stands in a log.
+struct Checkpoint {
+  std::uint64_t tick = 0, state_hash = 0;
+  std::string build;             ///< fingerprint of who wrote it
+  std::string hash;              ///< content hash of the bytes
+  std::vector<std::byte> bytes;  ///< see checkpoint.h; empty where a reader did not keep them
+  StepCounters counters;         ///< of all ticks of the session up to it that were recorded
+};
+
+/// What stands at the front of a log that goes on where another one ended.
+struct LogBegin {
+  Checkpoint state;
+  SessionStatistics statistics;  ///< of all ticks before
+};
+
+/// The place of a file among those of one session.
+struct LogChain {
+  std::string previous;    ///< name of the file before, in the same folder; empty: it is the first
+  std::uint64_t part = 1;  ///< 1, 2, 3 ...
+};
 
 /// What a log starts with: enough to play the session again without any other file.
 struct LogHeader {
@@ -24,6 +48,8 @@ struct LogHeader {
   std::vector<std::pair<std::string, const TriangleMesh*>> meshes;  ///< distinct meshes by hash
   std::vector<std::string> mesh_of_part;                            ///< hash, by part index
   std::vector<ImportReport> imports = {};  ///< by part index; empty when not known
+  std::optional<LogBegin> begin = {};      ///< none: the session begins as its scene was loaded
+  LogChain chain = {};
 };
 
 /// One tick as it is recorded: what went in and what came out. Decisions were applied before the
@@ -34,6 +60,7 @@ struct TickRecord {
   std::vector<Decision> decisions;
   std::vector<Increment> increments;
   StepReport report;
+  StateDraft state = {};  ///< the state after it, made into bytes by the writer; mostly none
 };
 
 struct LogOptions {
@@ -43,13 +70,19 @@ struct LogOptions {
   /// Longest time between two flushes to disk: with what a flush itself takes, a crash costs no
   /// more than the last second.
   double flush_s = 0.9;
+  /// Beyond this size the next file is begun with the next checkpoint; 0: all in one.
+  std::uint64_t rotate_bytes = 0;
 };
+
+/// The file that follows `file` when it has become too large: "x.mcap", "x_p0002.mcap" ...
+std::filesystem::path next_in_chain(const std::filesystem::path& file);
 
 /// Writes an MCAP file off the caller's thread. One thread records, flushes and closes; record()
 /// only queues (bounded) and never waits for the disk nor the writer; a full queue drops nothing
 /// silently: the dropped ticks are counted, said in dropped_ticks(), and marked in the log as a
 /// gap. Chunks are flushed each second. Ticks must rise; ticks in which nothing went in may be left
-/// out, a replay steps through them. Layout: session_log_format.md.
+/// out, a replay steps through them. Layout: session_log_format.md. A file has its name once its
+/// head is on disk. With rotation the meshes of the header have to live as long as the writer.
 class SessionLogWriter {
  public:
   static Result<std::unique_ptr<SessionLogWriter>> create(const std::filesystem::path& file,
@@ -57,6 +90,11 @@ class SessionLogWriter {
                                                           const LogOptions& options = {});
   virtual ~SessionLogWriter() = default;  ///< closes
   virtual void record(TickRecord record) = 0;
+  /// An empty record that brings the memory of one that is written: nothing is allocated to fill
+  /// it. Only for the thread that records.
+  virtual TickRecord spare() { return {}; }
+  /// A record with a state is wanted, so that the next file can begin.
+  virtual bool wants_state() const { return false; }
   /// Waits until all that was recorded so far is on disk.
   virtual Status flush() { return status(); }
   virtual Status close() = 0;  ///< waits until all is on disk; writes index and summary
@@ -81,6 +119,10 @@ struct SessionLog {
   std::vector<std::string> mesh_of_part;
   std::vector<ImportReport> imports;  ///< by part index; may be empty
   std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
+  std::optional<LogBegin> begin;      ///< set: the file goes on where another one ended
+  LogChain chain;
+  /// By tick; with those at the front of later files, but without that of `begin`.
+  std::vector<Checkpoint> checkpoints;
   bool complete = false;
   std::vector<LogGap> gaps;  ///< in the order of the log
   /// Sums of /statistics by name: what was examined and skipped. What is lost of the log is not in
@@ -88,7 +130,24 @@ struct SessionLog {
   std::map<std::string, std::uint64_t> counted;
   std::vector<std::string> notes;  ///< what was lost or skipped, in words
 };
-Result<SessionLog> read_session_log(const std::filesystem::path& file);
+
+struct LogReading {
+  /// Of so many last checkpoints the bytes are kept; all others are known by their hash.
+  std::size_t keep_checkpoints = 0;
+};
+Result<SessionLog> read_session_log(const std::filesystem::path& file,
+                                    const LogReading& reading = {});
+
+/// The files of a session in their order: `file` and what goes on from it in the same folder. Where
+/// two files go on from one, the one whose name comes last. Reads only the heads of files.
+std::vector<std::filesystem::path> chain_from(const std::filesystem::path& file);
+
+/// Several files of one session as one log, each going on where the one before ends; ticks of a
+/// file beyond the beginning of the next are left out, and ticks that are in none are a gap. A
+/// single file brings its chain along. Fails when the files are not of one session, in order.
+Result<SessionLog> read_session(std::span<const std::filesystem::path> files,
+                                const LogReading& reading = {});
+Result<SessionLog> read_session(const std::filesystem::path& file, const LogReading& reading = {});
 
 /// What `recover` did.
 struct Recovery {

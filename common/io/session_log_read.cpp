@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/io/log_checkpoint.h"
 #include "common/io/log_json.h"
 #include "common/io/log_layout.h"
 #include "common/io/log_records.h"
@@ -32,6 +33,7 @@ void add_counts(const nlohmann::json& record, std::map<std::string, std::uint64_
 /// Puts the records of a log together, tick by tick: a tick is taken when its end record comes.
 class LogAssembler {
  public:
+  explicit LogAssembler(const LogReading& reading) : reading_(reading) {}
   McapHandler handler() {
     return {.on_message = [this](const auto& c, const auto& m) { message(c, m); },
             .on_attachment = [this](const McapAttachment& a) { attachment(a); },
@@ -49,7 +51,11 @@ class LogAssembler {
   TickRecord& open(std::uint64_t tick);
   void open_gap(std::string reason);
   void note(const std::string& what);
+  void checkpoint(std::span<const std::byte> bytes);
+  void totals(std::span<const std::byte> bytes);
+  std::uint64_t last_tick() const;
 
+  LogReading reading_;
   SessionLog log_;
   std::optional<TickRecord> tick_;  ///< records seen, end not yet
   std::vector<ClashEvent> events_;  ///< of the tick whose end record comes next
@@ -65,13 +71,46 @@ void LogAssembler::note(const std::string& what) { log_.notes.push_back(what); }
 
 void LogAssembler::open_gap(std::string reason) {
   if (gap_) return;
-  gap_ = LogGap{log_.ticks.empty() ? 0 : log_.ticks.back().tick, 0, std::move(reason)};
+  gap_ = LogGap{last_tick(), 0, std::move(reason)};
+}
+
+std::uint64_t LogAssembler::last_tick() const {
+  if (!log_.ticks.empty()) return log_.ticks.back().tick;
+  return log_.begin ? log_.begin->state.tick : 0;
 }
 
 void LogAssembler::loss(const std::string& what) {
   tick_.reset();  // its other half is gone
   events_.clear();
   open_gap(what);
+}
+
+// It stands behind its tick, or at the front of a file. A damaged one is no loss: the ticks are
+// still there.
+void LogAssembler::checkpoint(std::span<const std::byte> bytes) {
+  Checkpoint state;
+  const std::uint64_t tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
+  const bool is_begin = log_.ticks.empty() && !log_.begin && log_.chain.part > 1;
+  if (!log_records::decode(bytes, state, is_begin || reading_.keep_checkpoints > 0) ||
+      (!is_begin && (state.tick != tick || state.state_hash != log_.ticks.back().report.state_hash)))
+    return note("the checkpoint " +
+                (is_begin ? std::string("at the front")
+                          : "after tick " + std::to_string(tick)) +
+                " is damaged or of another layout, and left out");
+  if (is_begin) {
+    log_.begin = LogBegin{std::move(state), {}};
+    return;
+  }
+  log_.checkpoints.push_back(std::move(state));
+  if (log_.checkpoints.size() > reading_.keep_checkpoints) {
+    Checkpoint& old = log_.checkpoints[log_.checkpoints.size() - 1 - reading_.keep_checkpoints];
+    old.bytes = {};
+  }
+}
+
+void LogAssembler::totals(std::span<const std::byte> bytes) {
+  if (!log_.begin || !log_records::decode(bytes, log_.begin->statistics))
+    note("the sums of what was before this file are damaged and left out");
 }
 
 TickRecord& LogAssembler::open(std::uint64_t tick) {
@@ -87,7 +126,10 @@ TickRecord& LogAssembler::open(std::uint64_t tick) {
 
 void LogAssembler::end_tick(log_records::TickEnd end, std::uint64_t time_ns) {
   TickRecord& record = open(end.tick);
-  const std::uint64_t before = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
+  if (log_.ticks.empty() && log_.chain.part > 1 && !log_.begin)
+    open_gap("it goes on from " + log_.chain.previous +
+             ", and the state that it begins with is missing or damaged");
+  const std::uint64_t before = last_tick();
   if (end.tick <= before || log_.ticks.size() >= kMostTicks) {
     open_gap(end.tick > before ? "more ticks than a session has"
                                : "tick " + std::to_string(end.tick) + " does not follow tick " +
@@ -135,6 +177,10 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
       loss("a record of " + channel.topic + " is not readable");
   } else if (channel.topic == kStatistics) {
     add_counts(nlohmann::json::parse(text_of(message.data), nullptr, false), log_.counted);
+  } else if (channel.topic == kCheckpoints) {
+    checkpoint(message.data);
+  } else if (channel.topic == kTotals) {
+    totals(message.data);
   } else if (channel.topic == kGaps) {
     Gap gap;
     open_gap(log_json::decode(text_of(message.data), gap)
@@ -180,6 +226,9 @@ void LogAssembler::metadata(const std::string& name,
     for (const auto& [key, hash] : values)
       if (key.starts_with(kPart))
         mesh_of_part_[std::strtoull(key.c_str() + kPart.size(), nullptr, 10)] = hash;
+  } else if (name == log_layout::kChainMetadata) {
+    log_.chain.previous = value("previous");
+    log_.chain.part = std::strtoull(value("part").c_str(), nullptr, 10);
   } else if (name == log_layout::kBuildMetadata) {
     log_.engine_version = value("engine_version");
     log_.build_fingerprint = value("fingerprint");
@@ -221,8 +270,8 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
 
 }  // namespace
 
-Result<SessionLog> read_session_log(const std::filesystem::path& file) {
-  LogAssembler assembler;
+Result<SessionLog> read_session_log(const std::filesystem::path& file, const LogReading& reading) {
+  LogAssembler assembler(reading);
   Result<McapScan> scan = scan_mcap(file, assembler.handler());
   if (!scan) return scan.error();
   return assembler.finish(file.string(), std::move(*scan));

@@ -150,7 +150,9 @@ void set_exclusion(World& world, const Decision& decision, bool excluded) {
 }  // namespace
 
 Status set_tolerance(World& world, const Decision& decision) {
-  if (!world.rules || !world.find(decision.part))
+  const PartId other = decision.details.other_part;
+  if (!world.rules || !world.find(decision.part) || other == decision.part ||
+      (other && !world.find(other)))
     return fail(Code::kInvalidInput, "there is no such part, or no scenario to change");
   const Details& details = decision.details;
   auto change = world.rules->restate(
@@ -159,6 +161,9 @@ Status set_tolerance(World& world, const Decision& decision) {
   if (!change) return change.error();
   apply_change(world, decision, std::move(*change));
   stand(world, decision);
+  if (!world.restated.empty() && same_target(world.restated.back(), decision))
+    world.restated.pop_back();
+  world.restated.push_back(decision);
   return ok();
 }
 

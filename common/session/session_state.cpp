@@ -37,10 +37,8 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
     grow(pair.first, rule.band_a);
     grow(pair.second, rule.band_b);
   }
-  for (std::uint32_t i = 0; i < world.parts.size(); ++i) {
-    state->parts[i].growth_mm += kClashHysteresisMost_mm;
-    state->broad_phase->set_box(i, resting_box(world, *state, i));
-  }
+  for (PartState& part : state->parts) part.growth_mm += kClashHysteresisMost_mm;
+  set_resting_boxes(world, *state);
   return state;
 }
 
@@ -145,8 +143,22 @@ void note_surface(World& world, PartId part, PartId other, const Decision& by) {
 
 void note_policy(World& world) {
   if (!world.state) return;
-  for (auto& [pair, memo] : world.state->memos)  // in any order: all become alike
+  for (auto& [pair, memo] : world.state->memos) {  // in any order: all become alike
     memo.allowed_depth_mm = std::numeric_limits<double>::infinity();
+    world.state->touch(pair, memo);
+  }
+}
+
+std::unique_ptr<SessionState> empty_state(const World& world) {
+  auto state = std::make_unique<SessionState>();
+  state->broad_phase = make_dynamic_tree();
+  state->parts.resize(world.parts.size());
+  return state;
+}
+
+void set_resting_boxes(const World& world, SessionState& state) {
+  for (std::uint32_t i = 0; i < world.parts.size(); ++i)
+    state.broad_phase->set_box(i, resting_box(world, state, i));
 }
 
 Box resting_box(const World& world, const SessionState& state, std::uint32_t index) {

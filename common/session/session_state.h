@@ -59,6 +59,7 @@ struct PairMemo {
     std::uint8_t waited = 0;
   };
   std::array<Effort, 2> effort;
+  bool touched = false;  ///< listed in SessionState::touched
 };
 
 /// One clash between begin and end.
@@ -88,8 +89,9 @@ struct PartState {
 
 using PartPair = std::pair<PartId, PartId>;
 
-/// Caches and open clashes between ticks. Caches only save the asking; what a tick answers depends
-/// on poses, open clashes and allowed_depth_mm alone.
+/// Caches and open clashes between ticks. Most of it only saves the asking; but what a pair was held
+/// by, what it needed of work and how long it has waited decide what later ticks find out, so that
+/// a session goes on the same only with all of it.
 struct SessionState {
   std::uint64_t tick = 0;
   std::uint64_t event_seq = 0;
@@ -101,6 +103,8 @@ struct SessionState {
   std::vector<IndexPair> owed;        ///< pairs that the last tick had no work to judge, sorted
   std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
   std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
+  /// Memos that may have changed since somebody last copied them, no repeats; see io/checkpoint.h.
+  std::vector<std::uint64_t> touched;
   std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
   std::vector<ClashEvent> reviews;  ///< made since the last tick, told in the next
   bool clashes_changed = true;
@@ -109,7 +113,14 @@ struct SessionState {
   std::uint64_t clashes_hash = 0;
 
   PairMemo& memo(std::uint32_t a, std::uint32_t b) {
-    return memos[(static_cast<std::uint64_t>(a) << 32) | b];
+    const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | b;
+    PairMemo& found = memos[key];
+    touch(key, found);
+    return found;
+  }
+  void touch(std::uint64_t key, PairMemo& memo) {
+    if (!memo.touched) touched.push_back(key);
+    memo.touched = true;
   }
 };
 
@@ -127,6 +138,11 @@ void note_holder(World& world, std::uint32_t index);
 void note_surface(World& world, PartId part, PartId other, const Decision& by);
 /// The response policy changed: how deep a pair may go is found out anew.
 void note_policy(World& world);
+
+/// A state that holds nothing yet but the parts' number, to be filled from elsewhere; and the boxes
+/// of all parts, once growth and poses stand.
+std::unique_ptr<SessionState> empty_state(const World& world);
+void set_resting_boxes(const World& world, SessionState& state);
 
 /// World box of a resting part, grown by what may lie outside of its mesh.
 Box resting_box(const World& world, const SessionState& state, std::uint32_t index);

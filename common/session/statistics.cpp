@@ -112,6 +112,17 @@ void SessionStatistics::add(const StepReport& report) {
   }
 }
 
+bool SessionStatistics::is_whole() const {
+  const auto within = [&](std::size_t i) { return i < clashes_.size(); };
+  const auto is_class = [](CollisionClass c) { return index_of(c) < 4; };
+  return std::all_of(open_.begin(), open_.end(), within) &&
+         std::all_of(index_.begin(), index_.end(),
+                     [&](const auto& entry) { return within(entry.second); }) &&
+         std::all_of(clashes_.begin(), clashes_.end(), [&](const ClashRow& row) {
+           return is_class(row.now) && is_class(row.worst_class);
+         });
+}
+
 std::uint64_t SessionStatistics::clashes_open(CollisionClass c) const {
   return static_cast<std::uint64_t>(std::count_if(
       open_.begin(), open_.end(), [&](std::size_t i) { return clashes_[i].now == c; }));

@@ -34,6 +34,11 @@ class SessionStatistics {
 
   void add(const StepReport& report);
 
+  /// Counts of all ticks, where they were added without them, as a log has them.
+  void set_counters(const StepCounters& counters) { counters_ = counters; }
+  /// Do its lists point at each other as they must? For what was read back.
+  bool is_whole() const;
+
   std::uint64_t ticks() const { return ticks_; }
   const StepCounters& counters() const { return counters_; }  ///< summed over the session
   const std::map<std::pair<PartId, PartId>, Row>& by_pair() const { return by_pair_; }
@@ -56,6 +61,9 @@ class SessionStatistics {
   template <class Change>
   void for_rows_of(const ClashRow& clash, const Change& change);
   void take_in(const ClashEvent& event);
+
+  template <class Archive>
+  friend void fields(Archive& archive, SessionStatistics& statistics);  ///< io/state_fields.h
 };
 
 /// Adds every count of `from` to `into`.

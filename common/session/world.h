@@ -83,6 +83,9 @@ struct World {
   std::vector<Scenario::UserSpec> may_hold;  ///< who may hold and change what, see rights.h
   std::vector<Decision> standing;  ///< changes of policy, tolerance and exclusions that hold now
   std::shared_ptr<SurfaceRules> rules;  ///< null: tolerances cannot be changed
+  /// Every change of a tolerance that was accepted, in order: said again of a fresh scene they give
+  /// the bands of now. Of several in a row about one thing the last.
+  std::vector<Decision> restated;
   std::vector<Guide> guides;            ///< by id, see session/guidance.h
   std::uint32_t next_constraint = 1, next_group = 1;
   /// What meshes show, by hash; filled when a constraint first names such a feature. A cache.

@@ -1,0 +1,236 @@
+#include "common/io/checkpoint.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <mutex>
+
+#include "common/base/check.h"
+#include "common/io/state_fields.h"
+#include "common/session/surface_rules.h"
+
+namespace mortise {
+namespace {
+
+using state_bytes::Reader;
+using state_bytes::Writer;
+using Memos = std::map<std::uint64_t, PairMemo>;
+
+// Memos copied in one tick, some 50 us from cold memory; and the ticks after which the rest is
+// copied in one go, should the tick itself change more than that.
+constexpr std::size_t kSlice = 256;
+constexpr int kMostSlices = 120;
+
+std::vector<PairStatement> statements_of(const World& world) {
+  std::vector<PairStatement> all;
+  for (const auto& [ids, rule] : world.pair_rules)
+    all.push_back({ids.first, ids.second, rule.band_a != nullptr, rule.band_b != nullptr,
+                   rule.excluded, rule.fit, rule.reason});
+  return all;
+}
+
+// 1. bytes
+
+// All but the memos. The members of a world are named here as those of the rest in state_fields.
+void put_frame(Writer& out, const World& world) {
+  const auto& [name, tick_rate_hz, policy, max_jump_mm, lease_s, tick, parts, users, pair_rules,
+               may_hold, standing, rules, restated, guides, next_constraint, next_group, recognized,
+               evaluates, state] = world;
+  out(tick, policy);
+  out.count(parts.size());
+  for (const Part& part : parts) out(part);
+  out(users, restated, standing, statements_of(world), guides, next_constraint, next_group,
+      evaluates, *state);
+}
+
+void put_memos(Writer& out, const Memos& memos) {
+  out.count(memos.size());
+  for (const auto& [key, memo] : memos) out(key, memo);
+}
+
+// 2. back, held against the scene
+
+bool is_user(const World& world, UserId user) { return user.value <= world.users.size(); }
+
+bool fits(const World& world, const CertainPlace& place, std::uint32_t a, std::uint32_t b) {
+  if (place.role < -1 || place.role > 1) return false;
+  if (!place.known()) return true;
+  return place.triangle < world.parts[place.role == 0 ? a : b].solid->mesh().triangles.size();
+}
+
+bool fits(const World& world, std::uint64_t key, const PairMemo& memo) {
+  const std::uint64_t a = key >> 32, b = key & 0xffffffff;
+  if (a >= b || b >= world.parts.size()) return false;
+  const auto a_index = static_cast<std::uint32_t>(a), b_index = static_cast<std::uint32_t>(b);
+  return !memo.held || fits(world, memo.held->place, a_index, b_index);
+}
+
+bool fits(const World& world, const SessionState& state) {
+  const auto is_part = [&](std::uint32_t index) { return index < world.parts.size(); };
+  const auto is_pair = [&](PartId a, PartId b) { return a < b && world.find(a) && world.find(b); };
+  if (state.parts.size() != world.parts.size() || state.tick != world.tick) return false;
+  for (const PartState& part : state.parts)
+    if (!(part.growth_mm >= 0.0) || !(part.growth_mm < kLargestCoordinate_mm)) return false;
+  for (const auto& [ids, clashes] : state.open) {
+    if (!is_pair(ids.first, ids.second)) return false;
+    for (const OpenClash& clash : clashes)
+      if (clash.last.part_a != ids.first || clash.last.part_b != ids.second) return false;
+  }
+  return std::ranges::all_of(state.placed, is_part) && std::ranges::all_of(state.rehash, is_part) &&
+         std::ranges::all_of(state.owed,
+                             [&](IndexPair p) { return p.a < p.b && is_part(p.b); }) &&
+         std::ranges::is_sorted(state.owed);
+}
+
+bool fits(const World& world) {
+  for (const Part& part : world.parts) {
+    if (!valid(part.X_WP) || !is_user(world, part.holder) || !is_user(world, part.asked_by))
+      return false;
+    for (const auto& done : part.history.done)
+      if (!valid(done.X_WP_before)) return false;
+    for (const auto& undone : part.history.undone)
+      if (!valid(undone.X_WP_after) || !valid(undone.move.X_WP_before)) return false;
+  }
+  for (std::size_t i = 0; i < world.users.size(); ++i)
+    if (world.users[i].id.value != i + 1) return false;
+  return std::ranges::all_of(world.guides, [&](const Guide& guide) {
+    return world.find(guide.constraint.held.part) && world.find(guide.constraint.other.part);
+  });
+}
+
+Status state_rules(World& world, const std::vector<Decision>& restated,
+                   const std::vector<PairStatement>& statements) {
+  for (const Decision& decision : restated)
+    if (Status said = set_tolerance(world, decision); !said) return said;
+  std::map<std::pair<PartId, PartId>, PairRule> rules;
+  for (const PairStatement& statement : statements) {
+    const auto found = world.pair_rules.find({statement.a, statement.b});
+    PairRule rule = found == world.pair_rules.end() ? PairRule{} : found->second;
+    rule.a = statement.a, rule.b = statement.b;
+    if (!world.find(rule.a) || !world.find(rule.b) || !(rule.a < rule.b) ||
+        statement.has_band_a != (rule.band_a != nullptr) ||
+        statement.has_band_b != (rule.band_b != nullptr) || statement.fit != rule.fit)
+      return fail(Code::kInvalidInput, "its rules of pairs are not those of the scene");
+    rule.excluded = statement.excluded;
+    rule.reason = statement.reason;
+    rules[{rule.a, rule.b}] = std::move(rule);
+  }
+  world.pair_rules = std::move(rules);
+  return ok();
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_state(const World& world) {
+  MORTISE_CHECK(world.state != nullptr, "a world has a state once it was stepped");
+  Writer out;
+  put_frame(out, world);
+  put_memos(out, Memos(world.state->memos.begin(), world.state->memos.end()));
+  return out.take();
+}
+
+Status restore_state(World& world, std::span<const std::byte> bytes) {
+  const auto bad = [](const std::string& why) { return fail(Code::kInvalidInput, why); };
+  MORTISE_CHECK(world.state == nullptr, "a state is restored into a world as it was loaded");
+  Reader in(bytes);
+  // 1. What the scene does not say.
+  in(world.tick, world.policy);
+  if (in.count(0) != world.parts.size() || !in.ok()) return bad("it has another number of parts");
+  for (Part& part : world.parts) in(part);
+  std::vector<Decision> restated, standing;
+  std::vector<PairStatement> statements;
+  bool evaluates = false;
+  auto state = empty_state(world);
+  in(world.users, restated, standing, statements, world.guides, world.next_constraint,
+     world.next_group, evaluates, *state);
+  const std::size_t memos = in.count(0);
+  for (std::size_t i = 0; i < memos && in.ok(); ++i) {
+    std::uint64_t key = 0;
+    PairMemo memo;
+    in(key, memo);
+    if (!fits(world, key, memo)) return bad("it speaks of parts that the scene does not have");
+    state->memos.insert_or_assign(key, std::move(memo));
+  }
+  if (!in.at_end()) return bad("its bytes are none of a state");
+  if (!fits(world) || !fits(world, *state)) return bad("it does not fit the scene");
+  // 2. Rules, said again; what is judged anew for them is in the state already.
+  if (Status said = state_rules(world, restated, statements); !said) return said;
+  if (world.evaluates != evaluates) return bad("its rules are not those of the scene");
+  world.standing = std::move(standing);
+  // 3. What follows from the rest.
+  set_resting_boxes(world, *state);
+  world.state = std::move(state);
+  return ok();
+}
+
+// Slices that wait to be put into the copy, and the copy itself, which only drafts touch.
+struct CheckpointMaker::Copies {
+  struct Slice {
+    std::uint64_t number;
+    std::vector<std::pair<std::uint64_t, PairMemo>> memos;
+  };
+  std::mutex mutex;
+  std::deque<Slice> waiting;
+  std::uint64_t number = 0;  ///< of the last slice
+  Memos memos;
+
+  void add(std::vector<std::pair<std::uint64_t, PairMemo>> slice) {
+    const std::lock_guard lock(mutex);
+    waiting.push_back({++number, std::move(slice)});
+  }
+  void take_up_to(std::uint64_t last) {
+    std::vector<Slice> taken;
+    {
+      const std::lock_guard lock(mutex);
+      for (; !waiting.empty() && waiting.front().number <= last; waiting.pop_front())
+        taken.push_back(std::move(waiting.front()));
+    }
+    for (Slice& slice : taken)
+      for (auto& [key, memo] : slice.memos) memos.insert_or_assign(key, std::move(memo));
+  }
+};
+
+CheckpointMaker::CheckpointMaker() : copies_(std::make_shared<Copies>()) {}
+CheckpointMaker::~CheckpointMaker() = default;
+
+void CheckpointMaker::begin(World& world) {
+  copies_ = std::make_shared<Copies>();
+  running_ = false;
+  if (!world.state) return;  // every memo is still to be made, and then is touched
+  for (auto& [key, memo] : world.state->memos) world.state->touch(key, memo);
+}
+
+StateDraft CheckpointMaker::after_tick(World& world, bool due) {
+  if (!running_ && !due) return {};
+  if (!running_) slices_ = 0;
+  running_ = true;
+  SessionState& state = *world.state;
+  const bool rest = ++slices_ > kMostSlices;
+  const std::size_t count = rest ? state.touched.size() : std::min(kSlice, state.touched.size());
+  if (count > 0) {
+    std::vector<std::pair<std::uint64_t, PairMemo>> slice;
+    slice.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      PairMemo& memo = state.memos.at(state.touched[i]);
+      memo.touched = false;
+      slice.emplace_back(state.touched[i], memo);
+    }
+    state.touched.erase(state.touched.begin(),
+                        state.touched.begin() + static_cast<std::ptrdiff_t>(count));
+    copies_->add(std::move(slice));
+  }
+  if (!state.touched.empty()) return {};
+  running_ = false;
+  Writer frame;
+  frame.reserve(1 << 16);
+  put_frame(frame, world);
+  return [copies = copies_, last = copies_->number, bytes = frame.take()] {
+    copies->take_up_to(last);
+    Writer out;
+    out.append(bytes);
+    put_memos(out, copies->memos);
+    return out.take();
+  };
+}
+
+}  // namespace mortise

@@ -1,0 +1,170 @@
+// A checkpoint holds all that a session is: from any of them it goes on as if it had never stopped,
+// bit for bit, to its end.
+#include "common/io/checkpoint.h"
+
+#include <cstring>
+
+#include "common/session/session_state.h"
+#include "tests/unit/io/random_session.h"
+#include "tests/unit/session/report_digest.h"
+
+namespace mortise {
+namespace {
+
+using test::random_scene;
+using test::RandomSession;
+
+struct Saved {
+  std::size_t ticks = 0;
+  std::vector<std::byte> bytes;
+};
+
+bool same_counts(const StepCounters& x, const StepCounters& y) {
+  return std::memcmp(&x, &y, sizeof x) == 0;  // nothing but whole numbers of eight bytes
+}
+
+struct Played {
+  std::unique_ptr<RandomSession> session;
+  std::vector<Saved> saved;
+};
+
+Played play(std::uint64_t seed, int ticks, int every) {
+  Played played{std::make_unique<RandomSession>(seed), {}};
+  for (int i = 1; i <= ticks; ++i) {
+    played.session->tick();
+    if (i % every == 0)
+      played.saved.push_back(
+          {static_cast<std::size_t>(i), encode_state(played.session->scene.world)});
+  }
+  return played;
+}
+
+// Where the session that goes on from these bytes first differs; -1: nowhere.
+int first_difference(const RandomSession& session, const Saved& saved, std::string& what) {
+  auto scene = random_scene();
+  if (Status restored = restore_state(scene->world, saved.bytes); !restored) {
+    what = restored.error().text;
+    return 0;
+  }
+  if (encode_state(scene->world) != saved.bytes) {
+    what = "its bytes are other ones";
+    return 0;
+  }
+  Scratch scratch;
+  for (std::size_t i = saved.ticks; i < session.ticks.size(); ++i) {
+    const TickRecord& record = session.ticks[i];
+    for (const Decision& decision : record.decisions) apply_decision(scene->world, decision);
+    const StepReport report = step(scene->world, record.increments, scratch);
+    if (digest(report) != digest(record.report)) what = "what is told";
+    if (!same_counts(report.counters, record.report.counters)) what += " how it was worked out";
+    if (!what.empty()) return static_cast<int>(record.tick);
+  }
+  if (encode_state(scene->world) == encode_state(session.scene.world)) return -1;
+  what = "the last state";
+  return static_cast<int>(session.ticks.size());
+}
+
+TEST(Checkpoint, FromEachOneRandomSessionsGoOnToTheSameEnd) {
+  std::size_t accepted[kCommandKindCount] = {}, events = 0, waiting = 0, held = 0, slid = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Played played = play(seed, 160, 32);
+    for (std::size_t k = 0; k < kCommandKindCount; ++k) accepted[k] += played.session->accepted[k];
+    for (const TickRecord& record : played.session->ticks) {
+      events += record.report.events.size();
+      waiting += record.report.counters.pairs_waiting;
+      held += record.report.counters.pairs_held_again;
+      slid += record.report.counters.slid_parts;
+    }
+    for (const Saved& saved : played.saved) {
+      std::string what;
+      EXPECT_EQ(first_difference(*played.session, saved, what), -1)
+          << "seed " << seed << ", checkpoint after tick " << saved.ticks << ": " << what;
+    }
+  }
+  // Else it would show too little.
+  EXPECT_GT(events, 200U);
+  EXPECT_GT(waiting, 10U) << "work was never short";
+  EXPECT_GT(held, 10U);
+  EXPECT_GT(slid, 10U);
+  for (const CommandKind kind :
+       {CommandKind::kGrab, CommandKind::kRelease, CommandKind::kUndo, CommandKind::kRedo,
+        CommandKind::kReset, CommandKind::kSetPolicy, CommandKind::kSetTolerance,
+        CommandKind::kSetExclusion, CommandKind::kDropExclusion, CommandKind::kReview,
+        CommandKind::kAddConstraint, CommandKind::kConsent})
+    EXPECT_GT(accepted[static_cast<std::size_t>(kind)], 0U) << static_cast<int>(kind);
+}
+
+// Each thing that a checkpoint might leave out is missed by the comparison above.
+TEST(Checkpoint, WhatIsLeftOutIsNoticed) {
+  const Played played = play(3, 240, 40);
+  const auto without = [&](const Saved& saved, const auto& forget) {
+    auto scene = random_scene();
+    EXPECT_TRUE(restore_state(scene->world, saved.bytes));
+    forget(*scene->world.state);
+    Saved poorer{saved.ticks, encode_state(scene->world)};
+    std::string what;
+    return first_difference(*played.session, poorer, what);
+  };
+  const std::pair<const char*, void (*)(SessionState&)> things[] = {
+      {"memos", [](SessionState& state) { state.memos.clear(); }},
+      {"what was saved of work", [](SessionState& state) { state.saved_work = 0; }},
+      {"identities", [](SessionState& state) { ++state.next_clash; }},
+      {"open clashes", [](SessionState& state) { state.open.clear(); }},
+      {"last movers", [](SessionState& state) {
+         for (PartState& part : state.parts) part.last_user = {};
+       }}};
+  for (const auto& [name, forget] : things) {
+    int noticed = 0;
+    for (const Saved& saved : played.saved) noticed += without(saved, forget) >= 0 ? 1 : 0;
+    EXPECT_GT(noticed, 0) << name;
+  }
+}
+
+// In slices beside the ticks it comes to the same bytes as in one go.
+TEST(Checkpoint, MadeBesideTheTicksItIsTheSame) {
+  RandomSession session(7);
+  CheckpointMaker maker;
+  maker.begin(session.scene.world);
+  std::vector<std::pair<StateDraft, std::vector<std::byte>>> made;
+  for (int i = 0; i < 200; ++i) {
+    session.tick();
+    StateDraft draft = maker.after_tick(session.scene.world, i % 9 == 4);
+    if (draft) made.emplace_back(std::move(draft), encode_state(session.scene.world));
+  }
+  ASSERT_GT(made.size(), 10U);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (i % 3 == 1) continue;  // lost on the way: the next one is whole again
+    EXPECT_TRUE(made[i].first() == made[i].second) << i;
+  }
+}
+
+TEST(Checkpoint, BytesThatAreNoStateOfTheSceneAreRefused) {
+  const Played played = play(5, 60, 60);
+  const std::vector<std::byte>& whole = played.saved.front().bytes;
+  std::mt19937_64 random(1);
+  std::size_t refused = 0;
+  for (int i = 0; i < 600; ++i) {
+    std::vector<std::byte> bytes = whole;
+    if (i % 2 == 0) {
+      bytes.resize(random() % bytes.size());
+    } else {
+      for (int flips = 0; flips < 3; ++flips)
+        bytes[random() % bytes.size()] ^= std::byte{static_cast<unsigned char>(1 + random() % 255)};
+    }
+    auto scene = random_scene();
+    ASSERT_TRUE(scene);
+    const Status restored = restore_state(scene->world, bytes);
+    if (!restored) {
+      ++refused;
+      EXPECT_FALSE(restored.error().text.empty());
+      continue;
+    }
+    // What passes for a state can be computed with.
+    Scratch scratch;
+    for (int tick = 0; tick < 2; ++tick) step(scene->world, {}, scratch);
+  }
+  EXPECT_GT(refused, 300U);
+}
+
+}  // namespace
+}  // namespace mortise
