@@ -69,8 +69,12 @@ SessionStatistics told_statistics(const SessionLog& log, std::uint64_t up_to) {
 }
 
 LogBegin begin_of(World& world, const SessionStatistics& statistics) {
-  return {{world.tick, state_hash(world, *world.state), build_fingerprint(), {},
-           encode_state(world), statistics.counters()},
+  return {{world.tick,
+           state_hash(world, *world.state),
+           build_fingerprint(),
+           {},
+           encode_state(world),
+           statistics.counters()},
           statistics};
 }
 
@@ -80,9 +84,8 @@ Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bo
   Resumed resumed;
   const std::uint64_t from_tick = world.tick;
   resumed.statistics = told_statistics(log, from_tick);
-  auto report = replay(world, log, threads, [&](const ReplayedTick& tick) {
-    resumed.statistics.add(tick.computed);
-  });
+  auto report = replay(world, log, threads,
+                       [&](const ReplayedTick& tick) { resumed.statistics.add(tick.computed); });
   if (!report) return report.error();
   if (report->difference) {
     return fail(Code::kMismatch,

@@ -66,8 +66,8 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
   return start;
 }
 
-// The state that the newest checkpoint tells, or the log's beginning: ticks after it are still to be
-// played.
+// The state that the newest checkpoint tells, or the log's beginning: ticks after it are still to
+// be played.
 Result<SessionStart> read_from_log(const fs::path& file) {
   auto log = read_session_log(file, {.keep_checkpoints = 2});
   // A log that cannot be read is bad input, whatever the reason.

@@ -117,10 +117,9 @@ void TickLoop::record() {
 
 bool TickLoop::checkpoint_is_due() {
   const std::int64_t age_ns = now_ns_ - checkpoint_ns_;
-  const bool due =
-      log_->wants_state() || worked_ns_ >= in_ns(options_.checkpoint_work_s) ||
-      age_ns >= in_ns(changed_since_checkpoint_ ? options_.checkpoint_s
-                                                : options_.checkpoint_idle_s);
+  const bool due = log_->wants_state() || worked_ns_ >= in_ns(options_.checkpoint_work_s) ||
+                   age_ns >= in_ns(changed_since_checkpoint_ ? options_.checkpoint_s
+                                                             : options_.checkpoint_idle_s);
   // A log that cannot follow, or is broken, would not take it.
   if (!due || log_->queued_ticks() > kMostQueued_ticks || !log_->status()) return false;
   worked_ns_ = 0;

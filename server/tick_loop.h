@@ -28,8 +28,9 @@ struct TickLoopOptions {
   /// Requested snapshots come no closer than this: a client that asks in a loop costs little.
   double snapshot_gap_s = 0.1;
   double features_gap_s = 1.0;  ///< likewise tables of features, while meshes are looked at
-  /// A checkpoint goes into the log when the engine has worked for so long since the last one, which
-  /// is what a restart has to compute again, and so often at least when something went in, or not.
+  /// A checkpoint goes into the log when the engine has worked for so long since the last one,
+  /// which is what a restart has to compute again, and so often at least when something went in, or
+  /// not.
   double checkpoint_work_s = 0.3, checkpoint_s = 10.0, checkpoint_idle_s = 600.0;
 };
 

@@ -40,7 +40,7 @@ struct Verification {
 Result<Verification> verification_of(
     const VerifyOptions& options,
     const std::function<void(const World&, const StepReport&)>& on_tick) {
-  auto log = read_session(options.log);
+  auto log = read_files(options.log, options.more);
   if (!log) return log.error();
   print_notes(*log);
   Progress progress("computing again",
@@ -71,6 +71,7 @@ ordered_json json_of(const VerifyOptions& options, const Verification& verificat
                            {"decisions", report.decisions},
                            {"increments", report.increments},
                            {"events_compared", report.events_compared},
+                           {"checkpoints_compared", report.checkpoints_compared},
                            {"same_build", report.same_build},
                            {"complete", verification.log.complete},
                            {"difference", nullptr},
@@ -92,7 +93,8 @@ void print_text(const Verification& verification) {
   std::cout << (verification.exit_code == kExitOk ? "verified: " : "agreed before that: ")
             << "up to tick " << report.verified_to_tick << ", " << report.ticks_compared << " of "
             << report.ticks_logged << " recorded ticks, " << report.idle_ticks << " idle ticks, "
-            << report.increments << " increments, " << report.events_compared << " clash events\n";
+            << report.increments << " increments, " << report.events_compared << " clash events, "
+            << report.checkpoints_compared << " checkpoints\n";
 }
 
 }  // namespace
@@ -144,7 +146,7 @@ int run_explain(const ExplainOptions& options) {
 }
 
 int run_info(const InfoOptions& options) {
-  const auto log = read_session(options.log);
+  const auto log = read_files(options.log, options.more);
   if (!log) return say_bad_log(log.error());
   std::uint64_t increments = 0, refused = 0, decisions = 0, events = 0, triangles = 0;
   std::map<std::string, std::uint64_t> begun;  // by worst class of ended or open clashes
@@ -163,10 +165,20 @@ int run_info(const InfoOptions& options) {
   for (const auto& [hash, mesh] : log->meshes) triangles += mesh.triangles.size();
   const TickRecord* first = log->ticks.empty() ? nullptr : &log->ticks.front();
   const TickRecord* last = log->ticks.empty() ? nullptr : &log->ticks.back();
+  std::vector<std::filesystem::path> paths = options.more;
+  paths.insert(paths.begin(), options.log);
+  if (options.more.empty()) paths = chain_from(options.log);
+  ordered_json files = ordered_json::array();
+  std::uint64_t bytes = 0;
   std::error_code ignored;
+  for (const std::filesystem::path& path : paths) {
+    files.push_back(path.filename().string());
+    bytes += std::filesystem::file_size(path, ignored);
+  }
   const ordered_json document = {
       {"log", options.log.string()},
-      {"bytes", std::filesystem::file_size(options.log, ignored)},
+      {"files", files},
+      {"bytes", bytes},
       {"complete", log->complete},
       {"session", log->session},
       {"scenario", log->scenario_name},
@@ -187,6 +199,8 @@ int run_info(const InfoOptions& options) {
       {"refused", refused},
       {"clash_events", events},
       {"clashes_by_worst_class", begun},
+      {"checkpoints", log->checkpoints.size()},
+      {"goes_on_from", log->chain.previous},
       {"gaps", gaps_of(*log)},
       {"notes", log->notes}};
   if (options.json) {

@@ -9,6 +9,7 @@ namespace mortise {
 /// on stderr, and returns the exit code of the program.
 struct VerifyOptions {
   std::filesystem::path log;
+  std::vector<std::filesystem::path> more;  ///< further files of the session; empty: its chain
   int threads = 1;
   bool json = false;
 };
@@ -19,6 +20,7 @@ int run_report(const VerifyOptions& options);
 
 struct InfoOptions {
   std::filesystem::path log;
+  std::vector<std::filesystem::path> more;
   bool json = false;
 };
 int run_info(const InfoOptions& options);
@@ -43,7 +45,7 @@ struct PlayCommand {
   std::filesystem::path log;
   std::string session = "default", interface = "127.0.0.1", server;
   int domain = 0, server_port = 0;
-  std::string keys;  ///< folder; empty: no security
+  std::string keys;                                             ///< folder; empty: no security
   double speed = 1.0, from_s = 0.0, to_s = 0.0, wait_s = 10.0;  ///< to_s 0: to the end
   bool json = false;
 };
@@ -52,6 +54,7 @@ int run_play(const PlayCommand& command);
 /// The session as tables (client/report/session_tables.h); what is empty is not written.
 struct ExportOptions {
   std::filesystem::path log;
+  std::vector<std::filesystem::path> more;
   std::filesystem::path csv;  ///< a folder
   std::filesystem::path sqlite, html, json, bcf;
   std::vector<std::string> sweep;  ///< what-if of the page; see WhatIfOptions

@@ -72,7 +72,7 @@ int run_export(const ExportOptions& options) {
       options.json.empty() && options.bcf.empty())
     return say(fail(Code::kInvalidInput, "export what? --csv, --sqlite, --html, --json or --bcf"),
                kExitUsage);
-  const auto log = read_session(options.log);
+  const auto log = read_files(options.log, options.more);
   if (!log) return say(log.error(), kExitBadInput);
   print_notes(*log);
   std::optional<StepCounters> coverage;

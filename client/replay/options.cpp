@@ -10,6 +10,8 @@ namespace mortise {
 namespace {
 
 constexpr const char* kJson = "one JSON document on stdout";
+constexpr const char* kMore =
+    "further files of the session, in order; none: what goes on from LOG in its folder";
 constexpr const char* kChanges = R"(
 Changes:
   policy = report                            stop, slide, report
@@ -24,6 +26,7 @@ void add_verify(CLI::App& app, int& code) {
   auto* command = app.add_subcommand(
       "verify", "compute the session again and compare every tick; exit 4 at the first difference");
   command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("more", options->more, kMore);
   command->add_option("--threads", options->threads, "threads; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   command->add_flag("--json", options->json, kJson);
@@ -35,6 +38,7 @@ void add_report(CLI::App& app, int& code) {
   auto* command = app.add_subcommand(
       "report", "verify, and print the statistics of the session: collisions by pair and user");
   command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("more", options->more, kMore);
   command->add_option("--threads", options->threads, "as with verify")->check(CLI::Range(1, 256));
   command->add_flag("--json", options->json, kJson);
   command->callback([options, &code] { code = run_report(*options); });
@@ -44,6 +48,7 @@ void add_info(CLI::App& app, int& code) {
   auto options = std::make_shared<InfoOptions>();
   auto* command = app.add_subcommand("info", "what a log holds, and what it lost");
   command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("more", options->more, kMore);
   command->add_flag("--json", options->json, kJson);
   command->callback([options, &code] { code = run_info(*options); });
 }
@@ -62,6 +67,7 @@ void add_export(CLI::App& app, int& code) {
   auto* command = app.add_subcommand(
       "export", "the session as tables: clashes, events, users, decisions, sums");
   command->add_option("log", options->log, "session log (.mcap)")->required();
+  command->add_option("more", options->more, kMore);
   command->add_option("--csv", options->csv, "a folder for one CSV file a table");
   command->add_option("--sqlite", options->sqlite, "a new SQLite database, with views");
   command->add_option("--html", options->html, "one page that needs no other file");

@@ -24,4 +24,12 @@ void print_notes(const SessionLog& log) {
   for (const std::string& note : log.notes) std::cerr << note << '\n';
 }
 
+Result<SessionLog> read_files(const std::filesystem::path& log,
+                              const std::vector<std::filesystem::path>& more) {
+  if (more.empty()) return read_session(log);
+  std::vector<std::filesystem::path> files{log};
+  files.insert(files.end(), more.begin(), more.end());
+  return read_session(files);
+}
+
 }  // namespace mortise

@@ -11,6 +11,9 @@ int say(const Error& error, int exit_code);
 void print(const Json& document);
 /// One key and its value a line, on stdout.
 void print_lines(const Json& document);
+/// The log with further files of its session, or, where none are named, with its chain.
+Result<SessionLog> read_files(const std::filesystem::path& log,
+                              const std::vector<std::filesystem::path>& more);
 /// What a log lacks, on stderr.
 void print_notes(const SessionLog& log);
 

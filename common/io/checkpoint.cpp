@@ -77,8 +77,7 @@ bool fits(const World& world, const SessionState& state) {
       if (clash.last.part_a != ids.first || clash.last.part_b != ids.second) return false;
   }
   return std::ranges::all_of(state.placed, is_part) && std::ranges::all_of(state.rehash, is_part) &&
-         std::ranges::all_of(state.owed,
-                             [&](IndexPair p) { return p.a < p.b && is_part(p.b); }) &&
+         std::ranges::all_of(state.owed, [&](IndexPair p) { return p.a < p.b && is_part(p.b); }) &&
          std::ranges::is_sorted(state.owed);
 }
 

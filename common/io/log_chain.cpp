@@ -40,8 +40,7 @@ std::map<std::string, fs::path> followers_in(const fs::path& folder) {
     const auto place = place_of(entry.path());
     if (!place || place->part < 2) continue;
     fs::path& follower = followers[place->previous];
-    if (follower.empty() || follower.filename() < entry.path().filename())
-      follower = entry.path();
+    if (follower.empty() || follower.filename() < entry.path().filename()) follower = entry.path();
   }
   return followers;
 }
@@ -54,9 +53,10 @@ void append(std::vector<T>& to, std::vector<T>& from) {
 // Puts `next` behind `log`; `file` for what there is to say.
 Status join(SessionLog& log, SessionLog next, const std::string& file) {
   if (!next.begin)
-    return fail(Code::kInvalidInput, file + ": begins a session of its own, or the state that it "
-                                            "begins with is damaged; give the files of one "
-                                            "session, in order");
+    return fail(Code::kInvalidInput, file +
+                                         ": begins a session of its own, or the state that it "
+                                         "begins with is damaged; give the files of one "
+                                         "session, in order");
   if (next.session != log.session || next.mesh_of_part != log.mesh_of_part)
     return fail(Code::kInvalidInput, file + ": is a log of another session");
   const std::uint64_t at = next.begin->state.tick;
@@ -108,8 +108,7 @@ Result<SessionLog> read_session(std::span<const fs::path> files, const LogReadin
   for (const fs::path& file : files.subspan(1)) {
     auto next = read_session_log(file, reading);
     if (!next) return next.error();
-    if (Status joined = join(*log, std::move(*next), file.string()); !joined)
-      return joined.error();
+    if (Status joined = join(*log, std::move(*next), file.string()); !joined) return joined.error();
   }
   return log;
 }

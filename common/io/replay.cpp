@@ -206,8 +206,9 @@ Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
         next->build == build_fingerprint()) {
       ++report.checkpoints_compared;
       if (content_hash(encode_state(tick.world)) != next->hash)
-        what = "the checkpoint in the log is not the state computed here, though all that was "
-               "told is the same";
+        what =
+            "the checkpoint in the log is not the state computed here, though all that was "
+            "told is the same";
     }
     if (!what.empty()) {
       report.difference = ReplayDifference{tick.computed.tick, std::move(what)};

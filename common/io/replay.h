@@ -39,7 +39,7 @@ struct ReplayReport {
   std::uint64_t ticks_compared = 0;  ///< of these
   std::uint64_t idle_ticks = 0;      ///< computed between them: not logged, since nothing went in
   std::uint64_t increments = 0, decisions = 0, events_compared = 0;
-  std::uint64_t verified_to_tick = 0;  ///< every tick up to this one agrees
+  std::uint64_t verified_to_tick = 0;      ///< every tick up to this one agrees
   std::uint64_t checkpoints_compared = 0;  ///< each of the same bytes as the state computed here
   std::optional<ReplayDifference> difference;
   std::string not_verifiable;  ///< why ticks after verified_to_tick could not be compared, or empty
@@ -55,9 +55,10 @@ struct ReplayedTick {
 using OnReplayedTick = std::function<void(const ReplayedTick&)>;
 
 /// Computes a logged session again in `world`, which stands as scene_of(log) made it, tick by tick,
-/// and compares refusals, events, state hashes and, on the build that wrote them, checkpoints. Ticks
-/// that the world has behind it already are passed over. Stops at the first difference, and at the first
-/// gap: what was lost there cannot be computed. Fails when the log cannot be replayed at all.
+/// and compares refusals, events, state hashes and, on the build that wrote them, checkpoints.
+/// Ticks that the world has behind it already are passed over. Stops at the first difference, and
+/// at the first gap: what was lost there cannot be computed. Fails when the log cannot be replayed
+/// at all.
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
                             const OnReplayedTick& on_tick = {});
 

@@ -67,7 +67,7 @@ class FileWriter final : public SessionLogWriter {
   std::unique_ptr<LogFile> file_;
   LogHeader header_;
   LogOptions options_;
-  SessionStatistics statistics_;      ///< of all ticks so far; only where files are rotated
+  SessionStatistics statistics_;  ///< of all ticks so far; only where files are rotated
   StepCounters counters_;
   std::uint64_t ticks_in_chunk_ = 0;  ///< written, but not yet in the file
   std::uint32_t chunks_settled_ = 0;
@@ -218,8 +218,8 @@ void FileWriter::write(const Item& item) {
 }
 
 void FileWriter::write_state(const TickRecord& tick) {
-  Checkpoint state{tick.tick, tick.report.state_hash, build_fingerprint(), {},
-                   tick.state(), counters_};
+  Checkpoint state{tick.tick, tick.report.state_hash, build_fingerprint(),
+                   {},        tick.state(),           counters_};
   file_->write(state);
   const bool is_full =
       options_.rotate_bytes > 0 && file_->mcap().bytes_written() >= options_.rotate_bytes;

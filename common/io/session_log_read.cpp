@@ -92,10 +92,10 @@ void LogAssembler::checkpoint(std::span<const std::byte> bytes) {
   const std::uint64_t tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
   const bool is_begin = log_.ticks.empty() && !log_.begin && log_.chain.part > 1;
   if (!log_records::decode(bytes, state, is_begin || reading_.keep_checkpoints > 0) ||
-      (!is_begin && (state.tick != tick || state.state_hash != log_.ticks.back().report.state_hash)))
+      (!is_begin &&
+       (state.tick != tick || state.state_hash != log_.ticks.back().report.state_hash)))
     return note("the checkpoint " +
-                (is_begin ? std::string("at the front")
-                          : "after tick " + std::to_string(tick)) +
+                (is_begin ? std::string("at the front") : "after tick " + std::to_string(tick)) +
                 " is damaged or of another layout, and left out");
   if (is_begin) {
     log_.begin = LogBegin{std::move(state), {}};

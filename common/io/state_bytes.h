@@ -21,10 +21,8 @@ template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
 template <class Archive, class T>
-  requires Plain<T>
-void visit(Archive& archive, T& value) {
-  archive.plain(value);
-}
+requires Plain<T>
+void visit(Archive& archive, T& value) { archive.plain(value); }
 template <class Archive, class Tag>
 void visit(Archive& archive, Id<Tag>& id) {
   archive.plain(id.value);
@@ -89,10 +87,8 @@ void visit(Archive& archive, std::map<K, V>& values) {
   }
 }
 template <class Archive, class T>
-  requires std::is_class_v<T> && requires(Archive& archive, T& value) { fields(archive, value); }
-void visit(Archive& archive, T& value) {
-  fields(archive, value);
-}
+requires std::is_class_v<T> && requires(Archive& archive, T& value) { fields(archive, value); }
+void visit(Archive& archive, T& value) { fields(archive, value); }
 
 class Writer {
  public:

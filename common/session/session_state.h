@@ -89,9 +89,9 @@ struct PartState {
 
 using PartPair = std::pair<PartId, PartId>;
 
-/// Caches and open clashes between ticks. Most of it only saves the asking; but what a pair was held
-/// by, what it needed of work and how long it has waited decide what later ticks find out, so that
-/// a session goes on the same only with all of it.
+/// Caches and open clashes between ticks. Most of it only saves the asking; but what a pair was
+/// held by, what it needed of work and how long it has waited decide what later ticks find out, so
+/// that a session goes on the same only with all of it.
 struct SessionState {
   std::uint64_t tick = 0;
   std::uint64_t event_seq = 0;
@@ -105,8 +105,8 @@ struct SessionState {
   std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
   /// Memos that may have changed since somebody last copied them, no repeats; see io/checkpoint.h.
   std::vector<std::uint64_t> touched;
-  std::map<PartPair, std::vector<OpenClash>> open;    ///< clashes of a pair by ClashId
-  std::vector<ClashEvent> reviews;  ///< made since the last tick, told in the next
+  std::map<PartPair, std::vector<OpenClash>> open;  ///< clashes of a pair by ClashId
+  std::vector<ClashEvent> reviews;                  ///< made since the last tick, told in the next
   bool clashes_changed = true;
   std::int64_t saved_work = 0;   ///< evaluations, see work_budget.h; negative: overdrawn
   std::uint64_t parts_hash = 0;  ///< sum of PartState::hash

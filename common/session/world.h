@@ -86,7 +86,7 @@ struct World {
   /// Every change of a tolerance that was accepted, in order: said again of a fresh scene they give
   /// the bands of now. Of several in a row about one thing the last.
   std::vector<Decision> restated;
-  std::vector<Guide> guides;            ///< by id, see session/guidance.h
+  std::vector<Guide> guides;  ///< by id, see session/guidance.h
   std::uint32_t next_constraint = 1, next_group = 1;
   /// What meshes show, by hash; filled when a constraint first names such a feature. A cache.
   mutable std::map<std::string, std::shared_ptr<const std::vector<Feature>>> recognized;

@@ -123,7 +123,9 @@ class RandomSession {
     const UserId who = state.holder && below(4) != 0 ? state.holder : user();
     Details details;
     switch (below(16)) {
-      case 0: case 1: case 2:
+      case 0:
+      case 1:
+      case 2:
         return ask(who, CommandKind::kGrab, part);
       case 3:
         details.parts = {movers_[2], movers_[3]};
@@ -171,8 +173,11 @@ class RandomSession {
         return ask(who, CommandKind::kReview, PartId{}, details);
       }
       case 14:
-        details.constraint = {ConstraintKind::kCoaxial, {movers_[below(2)], "journal"},
-                              {PartId{2}, "bore"}, 0.0, below(2) == 0};
+        details.constraint = {ConstraintKind::kCoaxial,
+                              {movers_[below(2)], "journal"},
+                              {PartId{2}, "bore"},
+                              0.0,
+                              below(2) == 0};
         return ask(scene.world.find(details.constraint.held.part)->holder,
                    CommandKind::kAddConstraint, details.constraint.held.part, details);
       default:

@@ -60,7 +60,7 @@ TEST_F(Restore, FromAnyTickTheSessionGoesOnAsIfNothingHadBeen) {
       }
       for (const ClashEvent& event : log_.ticks[i].report.events) event_seq = event.seq;
     }
-    auto resumed = resume_from(first(k), world, 1, nullptr);
+    auto resumed = resume_from(first(k), world, 1);
     ASSERT_TRUE(resumed) << resumed.error().text;
     EXPECT_EQ(resumed->ticks, k);
     EXPECT_EQ(resumed->ticks_left_out, 0U);
@@ -95,34 +95,39 @@ TEST_F(Restore, FromAnyTickTheSessionGoesOnAsIfNothingHadBeen) {
   EXPECT_GE(with_holder, 2U);
 }
 
-TEST_F(Restore, TheNextLogIsWholeAgain) {
+TEST_F(Restore, TheNextLogGoesOnFromThere) {
   const std::size_t k = log_.ticks.size() / 2;
   auto scene = scene_of(log_);
   ASSERT_TRUE(scene);
-  const auto file = folder_.path() / "next.mcap";
-  auto writer = SessionLogWriter::create(file, session_->header);
-  ASSERT_TRUE(writer) << writer.error().text;
-  auto resumed = resume_from(first(k), scene->world, 1, writer->get());
+  auto resumed = resume_from(first(k), scene->world, 1);
   ASSERT_TRUE(resumed) << resumed.error().text;
-  ASSERT_TRUE((*writer)->flush());
-  // On disk now, though the log is still open.
-  auto next = read_session_log(file);
-  ASSERT_TRUE(next) << next.error().text;
-  ASSERT_EQ(next->ticks.size(), k);
-  // And it goes on from there.
+  ASSERT_TRUE(resumed->begin);
+  EXPECT_EQ(resumed->begin->state.tick, log_.ticks[k - 1].tick);
+  EXPECT_EQ(resumed->begin->state.state_hash, log_.ticks[k - 1].report.state_hash);
+  LogHeader header = session_->header;
+  header.begin = std::move(resumed->begin);
+  header.chain = {"whole.mcap", 2};
+  const auto file = folder_.path() / "next.mcap";
+  auto writer = SessionLogWriter::create(file, header);
+  ASSERT_TRUE(writer) << writer.error().text;
+  // On disk now, though the log is still open and nothing has happened.
+  EXPECT_TRUE(read_session_log(file));
   TickRecord record;
   record.decisions = resumed->departures;
   Scratch scratch(1);
   record.report = step(scene->world, {}, scratch);
   (*writer)->record(record);
   ASSERT_TRUE((*writer)->close());
-  next = read_session_log(file);
-  ASSERT_TRUE(next) << next.error().text;
-  ASSERT_EQ(next->ticks.size(), k + 1);
-  const auto report = verify(*next, 1);
-  ASSERT_TRUE(report) << report.error().text;
-  EXPECT_FALSE(report->difference) << report->difference->what;
-  EXPECT_EQ(report->ticks_compared, k + 1);
+  // Alone, and behind the one before, of which what was not gone on from is left out.
+  for (const auto& log : {read_session_log(file), read_session(folder_.path() / "whole.mcap")}) {
+    ASSERT_TRUE(log) << log.error().text;
+    const auto report = verify(*log, 1);
+    ASSERT_TRUE(report) << report.error().text;
+    EXPECT_FALSE(report->difference) << report->difference->what;
+    EXPECT_EQ(report->not_verifiable, "");
+    EXPECT_EQ(report->verified_to_tick, log_.ticks[k - 1].tick + 1);
+    EXPECT_EQ(report->ticks_compared, log->begin ? 1 : k + 1);
+  }
 }
 
 TEST_F(Restore, ALogThatThisEngineDoesNotComputeIsRefused) {
@@ -130,7 +135,7 @@ TEST_F(Restore, ALogThatThisEngineDoesNotComputeIsRefused) {
   log.ticks[20].report.state_hash ^= 1;
   auto scene = scene_of(log);
   ASSERT_TRUE(scene);
-  const auto resumed = resume_from(log, scene->world, 1, nullptr);
+  const auto resumed = resume_from(log, scene->world, 1);
   ASSERT_FALSE(resumed);
   EXPECT_EQ(resumed.error().code, Code::kMismatch);
   EXPECT_NE(resumed.error().text.find("tick 21"), std::string::npos) << resumed.error().text;
@@ -142,7 +147,7 @@ TEST_F(Restore, WhatLiesBehindAGapIsLeftOutAndCounted) {
   log.gaps.push_back({40, 46, "the queue to the disk was full"});
   auto scene = scene_of(log);
   ASSERT_TRUE(scene);
-  const auto resumed = resume_from(log, scene->world, 1, nullptr);
+  const auto resumed = resume_from(log, scene->world, 1);
   ASSERT_TRUE(resumed) << resumed.error().text;
   EXPECT_EQ(scene->world.tick, 40U);
   EXPECT_EQ(resumed->ticks, 40U);

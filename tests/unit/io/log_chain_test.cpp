@@ -1,0 +1,228 @@
+// Checkpoints in a log, logs in several files, and what becomes of both when they are damaged or
+// their writer is killed.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common/io/replay.h"
+#include "common/session/session_state.h"
+#include "tests/network/program.h"
+#include "tests/unit/io/random_session.h"
+
+namespace mortise {
+namespace {
+
+namespace fs = std::filesystem;
+using test::RandomSession;
+using test::TestFolder;
+
+bool write_tick(int to, std::uint64_t tick) { return ::write(to, &tick, sizeof tick) < 0; }
+
+constexpr std::size_t kTicks = 200, kEvery = 20;
+
+/// A random session whose ticks know the state after every 20th of them.
+class LogChain : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    session_ = new RandomSession(11);
+    for (std::size_t i = 1; i <= kTicks; ++i) {
+      session_->tick();
+      if (i % kEvery != 0) continue;
+      session_->ticks.back().state = [bytes = encode_state(session_->scene.world)] {
+        return bytes;
+      };
+    }
+  }
+  static void TearDownTestSuite() {
+    delete session_;
+    session_ = nullptr;
+  }
+  fs::path file(const std::string& name) const { return folder_.path() / name; }
+  void write(const fs::path& name, const LogOptions& options = {}) {
+    auto writer = SessionLogWriter::create(name, session_->header, options);
+    ASSERT_TRUE(writer) << writer.error().text;
+    for (const TickRecord& tick : session_->ticks) {
+      (*writer)->record(tick);
+      if (tick.state) {
+        ASSERT_TRUE((*writer)->flush());
+      }
+    }
+    ASSERT_TRUE((*writer)->close());
+  }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> all;
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+      if (entry.path().extension() == ".mcap") all.push_back(entry.path());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+  static void expect_verified(const SessionLog& log, std::size_t ticks, std::size_t checkpoints) {
+    const auto report = verify(log, 1);
+    ASSERT_TRUE(report) << report.error().text;
+    EXPECT_FALSE(report->difference)
+        << report->difference->tick << ": " << report->difference->what;
+    EXPECT_EQ(report->not_verifiable, "");
+    EXPECT_EQ(report->ticks_compared, ticks);
+    EXPECT_EQ(report->checkpoints_compared, checkpoints);
+  }
+
+  static RandomSession* session_;
+  TestFolder folder_;
+};
+RandomSession* LogChain::session_ = nullptr;
+
+TEST_F(LogChain, VerifyHoldsEveryCheckpointAgainstItsOwnState) {
+  write(file("one.mcap"));
+  const auto log = read_session_log(file("one.mcap"));
+  ASSERT_TRUE(log) << log.error().text;
+  ASSERT_EQ(log->checkpoints.size(), kTicks / kEvery);
+  for (const Checkpoint& state : log->checkpoints) EXPECT_TRUE(state.bytes.empty());
+  expect_verified(*log, kTicks, kTicks / kEvery);
+}
+
+// Neither its hash nor anything that was told would show it: only the comparison of all bytes does.
+TEST_F(LogChain, ACheckpointThatForgetsOneThingIsFound) {
+  const std::size_t at = 5 * kEvery - 1;
+  const TickRecord whole = session_->ticks[at];
+  auto scene = test::random_scene();
+  ASSERT_TRUE(restore_state(scene->world, whole.state()));
+  ASSERT_FALSE(scene->world.state->memos.empty());
+  scene->world.state->saved_work += 1;
+  session_->ticks[at].state = [bytes = encode_state(scene->world)] { return bytes; };
+  write(file("planted.mcap"));
+  session_->ticks[at] = whole;
+  const auto log = read_session_log(file("planted.mcap"));
+  ASSERT_TRUE(log) << log.error().text;
+  const auto report = verify(*log, 1);
+  ASSERT_TRUE(report) << report.error().text;
+  ASSERT_TRUE(report->difference);
+  EXPECT_EQ(report->difference->tick, at + 1);
+  EXPECT_NE(report->difference->what.find("checkpoint"), std::string::npos);
+}
+
+TEST_F(LogChain, TheLastCheckpointOfUseIsTheStart) {
+  write(file("one.mcap"));
+  const auto log = read_session_log(file("one.mcap"), {.keep_checkpoints = 2});
+  ASSERT_TRUE(log) << log.error().text;
+  const auto goes_on = [&](const SessionLog& damaged, std::uint64_t from, std::size_t notes) {
+    auto at = scene_at_last_checkpoint(damaged);
+    ASSERT_TRUE(at) << at.error().text;
+    EXPECT_EQ(at->tick, from);
+    EXPECT_EQ(at->from_checkpoint, from > 0);
+    EXPECT_EQ(at->notes.size(), notes) << (notes ? at->notes.front() : "");
+    const auto report = replay(at->scene.world, damaged, 1);
+    ASSERT_TRUE(report) << report.error().text;
+    EXPECT_FALSE(report->difference) << report->difference->what;
+    EXPECT_EQ(report->ticks_compared, kTicks - from);
+  };
+  SessionLog shorter = *log;  // so that there is something left to compute
+  shorter.checkpoints.pop_back();
+  goes_on(*log, kTicks, 0);
+  goes_on(shorter, kTicks - kEvery, 0);
+  SessionLog damaged = *log;
+  damaged.checkpoints.back().bytes.resize(100);
+  goes_on(damaged, kTicks - kEvery, 1);
+  for (Checkpoint& state : damaged.checkpoints) state.build = "another";
+  goes_on(damaged, 0, 2);
+}
+
+TEST_F(LogChain, EachFileStandsAloneAndAllTogether) {
+  write(file("s.mcap"), {.chunk_bytes = 4096, .rotate_bytes = 20'000});
+  const std::vector<fs::path> all = files();
+  ASSERT_GE(all.size(), 4U) << "the log was hardly rotated: this shows little";
+  EXPECT_EQ(all[1].filename(), "s_p0002.mcap");
+  EXPECT_EQ(chain_from(file("s.mcap")), all);
+  std::size_t ticks = 0;
+  SessionStatistics sums;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto log = read_session_log(all[i]);
+    ASSERT_TRUE(log) << log.error().text;
+    EXPECT_TRUE(log->complete);
+    EXPECT_EQ(log->begin.has_value(), i > 0);
+    expect_verified(*log, log->ticks.size(), log->checkpoints.size());
+    if (log->begin) {
+      EXPECT_EQ(log->begin->state.tick, ticks);
+      EXPECT_EQ(log->begin->statistics.ticks(), sums.ticks());
+      EXPECT_EQ(log->begin->statistics.clashes().size(), sums.clashes().size());
+      EXPECT_EQ(log->begin->statistics.counters().depth_evaluations,
+                sums.counters().depth_evaluations);
+    }
+    for (const TickRecord& tick : log->ticks) sums.add(session_->ticks[tick.tick - 1].report);
+    ticks += log->ticks.size();
+  }
+  EXPECT_EQ(ticks, kTicks);
+  const auto whole = read_session(file("s.mcap"));
+  ASSERT_TRUE(whole) << whole.error().text;
+  expect_verified(*whole, kTicks, kTicks / kEvery);
+  const auto later = read_session(all[2]);
+  ASSERT_TRUE(later) << later.error().text;
+  EXPECT_EQ(later->ticks.back().tick, kTicks);
+  const auto report = verify(*later, 1);
+  ASSERT_TRUE(report) << report.error().text;
+  EXPECT_FALSE(report->difference) << report->difference->what;
+}
+
+TEST_F(LogChain, AMissingFileIsAGapAndForeignOnesAreRefused) {
+  write(file("s.mcap"), {.chunk_bytes = 4096, .rotate_bytes = 20'000});
+  std::vector<fs::path> all = files();
+  ASSERT_GE(all.size(), 4U);
+  const std::vector<fs::path> without{all[0], all[2]};
+  const auto log = read_session(without);
+  ASSERT_TRUE(log) << log.error().text;
+  ASSERT_EQ(log->gaps.size(), 1U);
+  const auto report = verify(*log, 1);
+  ASSERT_TRUE(report);
+  EXPECT_FALSE(report->difference);
+  EXPECT_NE(report->not_verifiable.find("are missing"), std::string::npos);
+  EXPECT_FALSE(read_session(std::vector<fs::path>{all[2], all[1]})) << "the wrong way round";
+  EXPECT_FALSE(read_session(std::vector<fs::path>{all[1], all[0]})) << "the first is no follower";
+}
+
+// What was on disk stays, whenever the writer dies; most of these files are very small.
+TEST_F(LogChain, AKillWhileFilesChangeLosesNothingThatWasFlushed) {
+  std::mt19937_64 random(3);
+  std::size_t most_files = 0;
+  for (int round = 0; round < 20; ++round) {
+    const fs::path folder = file("kill" + std::to_string(round));
+    fs::create_directories(folder);
+    int flushed_pipe[2];
+    ASSERT_EQ(pipe(flushed_pipe), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      auto writer = SessionLogWriter::create(folder / "s.mcap", session_->header,
+                                             {.chunk_bytes = 4096, .rotate_bytes = 30'000});
+      for (const TickRecord& tick : session_->ticks) {
+        (*writer)->record(tick);
+        if (tick.tick % 4 != 0) continue;
+        if (!(*writer)->flush()) _exit(1);
+        if (write_tick(flushed_pipe[1], tick.tick)) _exit(1);
+      }
+      pause();
+    }
+    close(flushed_pipe[1]);
+    usleep(static_cast<useconds_t>(2'000 + random() % 40'000));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    std::uint64_t flushed = 0;
+    for (std::uint64_t tick = 0; read(flushed_pipe[0], &tick, sizeof tick) == sizeof tick;)
+      flushed = tick;
+    close(flushed_pipe[0]);
+    if (flushed == 0) continue;
+    most_files = std::max(most_files, chain_from(folder / "s.mcap").size());
+    const auto log = read_session(folder / "s.mcap");
+    ASSERT_TRUE(log) << log.error().text;
+    const std::uint64_t last = log->ticks.empty() ? 0 : log->ticks.back().tick;
+    EXPECT_GE(last, flushed);
+    EXPECT_EQ(log->ticks.size(), last);
+    const auto report = verify(*log, 1);
+    ASSERT_TRUE(report) << report.error().text;
+    EXPECT_FALSE(report->difference) << report->difference->what;
+    EXPECT_EQ(report->verified_to_tick, last);
+  }
+  EXPECT_GE(most_files, 3U) << "no kill came while files changed";
+}
+
+}  // namespace
+}  // namespace mortise
