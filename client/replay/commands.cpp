@@ -53,7 +53,7 @@ Result<Verification> verification_of(
   if (!report) return fail(report.error().code, options.log.string() + ": " + report.error().text);
   if (!report->same_build)
     std::cerr << "recorded by another build (" << log->engine_version
-              << "): agreement to the last bit is not promised\n";
+              << "): compared within accuracy, not to the last bit\n";
   const int code = report->difference                ? kExitMismatch
                    : !report->not_verifiable.empty() ? kExitBadInput
                                                      : kExitOk;
@@ -73,6 +73,8 @@ ordered_json json_of(const VerifyOptions& options, const Verification& verificat
                            {"events_compared", report.events_compared},
                            {"checkpoints_compared", report.checkpoints_compared},
                            {"same_build", report.same_build},
+                           {"bit_for_bit", report.bit_for_bit},
+                           {"largest_pose_off_mm", report.largest_pose_off_mm},
                            {"complete", verification.log.complete},
                            {"difference", nullptr},
                            {"not_verifiable", report.not_verifiable},
@@ -94,7 +96,10 @@ void print_text(const Verification& verification) {
             << "up to tick " << report.verified_to_tick << ", " << report.ticks_compared << " of "
             << report.ticks_logged << " recorded ticks, " << report.idle_ticks << " idle ticks, "
             << report.increments << " increments, " << report.events_compared << " clash events, "
-            << report.checkpoints_compared << " checkpoints\n";
+            << report.checkpoints_compared << " checkpoints"
+            << (report.bit_for_bit ? ", bit for bit\n" : "");
+  if (!report.bit_for_bit)
+    std::cout << ", within accuracy; poses to " << report.largest_pose_off_mm << " mm\n";
 }
 
 }  // namespace

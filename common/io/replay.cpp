@@ -1,7 +1,9 @@
 #include "common/io/replay.h"
 
+#include <algorithm>
 #include <cstdio>
 
+#include "common/base/constants.h"
 #include "common/base/hash.h"
 #include "common/io/build_info.h"
 #include "common/io/checkpoint.h"
@@ -18,6 +20,9 @@ constexpr std::uint64_t kMostIdleTicks = 6'000'000;
 
 // Logged poses are rounded to floats and to 2e-6 rad: a part is called moved away beyond this.
 constexpr double kRoundedPose_mm = 1e-2;
+
+// Of a coordinate that was rounded to a float, as a share of it.
+constexpr double kLogPoseRounding = 1.2e-7;
 
 std::string hex(std::uint64_t value) {
   char text[19];
@@ -58,6 +63,39 @@ std::string compare_events(const StepReport& logged, const StepReport& computed)
       return describe(b[i]) + ": " + difference;
   }
   return {};
+}
+
+// Depth of the same place by two builds.
+bool brackets_meet(Interval a, Interval b) {
+  return a.lo <= b.hi + kDepthAccuracyDefault_mm && b.lo <= a.hi + kDepthAccuracyDefault_mm;
+}
+
+std::string compare_events_within_accuracy(const StepReport& logged, const StepReport& computed) {
+  const auto &a = logged.events, &b = computed.events;
+  if (a.size() != b.size()) return compare_events(logged, computed);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool same = a[i].kind == b[i].kind && a[i].seq == b[i].seq && a[i].clash == b[i].clash &&
+                      a[i].part_a == b[i].part_a && a[i].part_b == b[i].part_b &&
+                      a[i].verdict.collision_class == b[i].verdict.collision_class &&
+                      a[i].worst_class == b[i].worst_class &&
+                      brackets_meet(a[i].verdict.delta_mm, b[i].verdict.delta_mm);
+    if (!same)
+      return describe(b[i]) + ", logged as " + describe(a[i]) + ": " +
+             log_json::first_difference(a[i], b[i]);
+  }
+  return {};
+}
+
+// Largest distance of a moved part from where the log has it, beyond the rounding of the log.
+double pose_off_mm(const StepReport& logged, const World& world) {
+  double largest = 0.0;
+  for (const PartPose& pose : logged.moved) {
+    const Part* part = world.find(pose.part);
+    if (part == nullptr) continue;
+    const double rounding_mm = kLogPoseRounding * pose.X_WP.p.norm();
+    largest = std::max(largest, (part->X_WP.p - pose.X_WP.p).norm() - rounding_mm);
+  }
+  return largest;
 }
 
 std::string compare_hash(const StepReport& logged, const StepReport& computed, const World& world) {
@@ -183,9 +221,26 @@ std::string difference_of(const ReplayedTick& tick) {
 
 }  // namespace
 
+namespace {
+
+std::string difference_within_accuracy(const ReplayedTick& tick, double& largest_off_mm) {
+  const StepReport none;
+  const StepReport& logged = tick.logged == nullptr ? none : tick.logged->report;
+  std::string what = compare_refusals(logged, tick.computed);
+  if (what.empty()) what = compare_events_within_accuracy(logged, tick.computed);
+  const double off_mm = pose_off_mm(logged, tick.world);
+  largest_off_mm = std::max(largest_off_mm, off_mm);
+  if (what.empty() && !(off_mm <= kOtherBuild_mm))
+    what = "a part is " + std::to_string(off_mm) + " mm from where the log has it";
+  return what;
+}
+
+}  // namespace
+
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
-                            const OnReplayedTick& on_tick) {
+                            const OnReplayedTick& on_tick, Agreement agreement) {
   ReplayReport report;
+  report.bit_for_bit = agreement == Agreement::kBitForBit;
   report.ticks_logged = log.ticks.size();
   report.same_build = log.build_fingerprint == build_fingerprint();
   report.verified_to_tick = world.tick;
@@ -200,10 +255,12 @@ Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
       ++report.ticks_compared;
     }
     if (on_tick) on_tick(tick);
-    std::string what = difference_of(tick);
+    std::string what = report.bit_for_bit
+                           ? difference_of(tick)
+                           : difference_within_accuracy(tick, report.largest_pose_off_mm);
     while (next != log.checkpoints.end() && next->tick < tick.computed.tick) ++next;
-    if (what.empty() && next != log.checkpoints.end() && next->tick == tick.computed.tick &&
-        next->build == build_fingerprint()) {
+    if (what.empty() && report.bit_for_bit && next != log.checkpoints.end() &&
+        next->tick == tick.computed.tick && next->build == build_fingerprint()) {
       ++report.checkpoints_compared;
       if (content_hash(encode_state(tick.world)) != next->hash)
         what =
@@ -241,7 +298,9 @@ Result<ReplayReport> verify(const SessionLog& log, int threads,
   if (!scene) return scene.error();
   OnReplayedTick each;
   if (on_tick) each = [&](const ReplayedTick& tick) { on_tick(tick.world, tick.computed); };
-  return replay(scene->world, log, threads, each);
+  const bool same_build = log.build_fingerprint == build_fingerprint();
+  return replay(scene->world, log, threads, each,
+                same_build ? Agreement::kBitForBit : Agreement::kWithinAccuracy);
 }
 
 }  // namespace mortise

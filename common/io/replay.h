@@ -44,6 +44,8 @@ struct ReplayReport {
   std::optional<ReplayDifference> difference;
   std::string not_verifiable;  ///< why ticks after verified_to_tick could not be compared, or empty
   bool same_build = false;     ///< bit for bit agreement is promised
+  bool bit_for_bit = true;     ///< that is how it was compared; else within accuracy
+  double largest_pose_off_mm = 0.0;  ///< of a moved part against the log, where that is how
 };
 
 /// A tick as it was computed again. `logged` is null for an idle one.
@@ -54,13 +56,23 @@ struct ReplayedTick {
 };
 using OnReplayedTick = std::function<void(const ReplayedTick&)>;
 
+/// How closely a replay is held to its log.
+enum class Agreement : std::uint8_t {
+  kBitForBit = 0,
+  /// For a log of another build: the same refusals, the same events in the same order with the same
+  /// classes and brackets of depth that meet, and poses within kOtherBuild_mm.
+  kWithinAccuracy = 1,
+};
+inline constexpr double kOtherBuild_mm = 1e-3;
+
 /// Computes a logged session again in `world`, which stands as scene_of(log) made it, tick by tick,
 /// and compares refusals, events, state hashes and, on the build that wrote them, checkpoints.
 /// Ticks that the world has behind it already are passed over. Stops at the first difference, and
 /// at the first gap: what was lost there cannot be computed. Fails when the log cannot be replayed
 /// at all.
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
-                            const OnReplayedTick& on_tick = {});
+                            const OnReplayedTick& on_tick = {},
+                            Agreement agreement = Agreement::kBitForBit);
 
 /// The same without comparing: what the log's decisions and increments come to in a world that is
 /// not as it was (another policy, tolerance, mesh). Stops at the first gap, and says so.
@@ -71,7 +83,8 @@ struct Recomputation {
 Result<Recomputation> recompute(World& world, const SessionLog& log, int threads,
                                 const OnReplayedTick& on_tick);
 
-/// Replay in a world of its own. `on_tick` sees every computed tick, idle ones included, and the
+/// Replay in a world of its own: bit for bit on the build that wrote the log, else within accuracy.
+/// `on_tick` sees every computed tick, idle ones included, and the
 /// world after it.
 Result<ReplayReport> verify(
     const SessionLog& log, int threads,

@@ -168,5 +168,35 @@ TEST_F(Replay, RefusesALogThatCannotBeReplayed) {
   EXPECT_FALSE(verify(bad_tick, 1));
 }
 
+// Other last bits, and so other hashes, are no difference; what a designer would notice is.
+TEST_F(Replay, OfAnotherBuildIsHeldToAccuracy) {
+  const std::uint64_t changed = first_with_increments(*session_) + 3;
+  const auto verified = [&] {
+    SessionLog log = logged(*session_);
+    log.build_fingerprint = "another";
+    auto report = verify(log, 1);
+    EXPECT_TRUE(report) << report.error().text;
+    EXPECT_FALSE(report->bit_for_bit);
+    return std::move(*report);
+  };
+  tick(changed).increments.at(0).translation_mm.y() += 1e-9;
+  const ReplayReport close = verified();
+  EXPECT_FALSE(close.difference) << close.difference->what;
+  EXPECT_EQ(close.ticks_compared, session_->ticks.size());
+  EXPECT_LT(close.largest_pose_off_mm, 1e-5);
+
+  tick(changed).increments.at(0).translation_mm.y() += 0.01;
+  const ReplayReport off = verified();
+  ASSERT_TRUE(off.difference);
+  EXPECT_EQ(off.difference->tick, changed);
+  EXPECT_NE(off.difference->what.find("mm from where"), std::string::npos) << off.difference->what;
+  tick(changed).increments.at(0).translation_mm.y() -= 0.01;
+
+  for (TickRecord& record : session_->ticks)
+    for (ClashEvent& event : record.report.events)
+      event.verdict.collision_class = CollisionClass::kFake;
+  EXPECT_TRUE(verified().difference);
+}
+
 }  // namespace
 }  // namespace mortise
