@@ -40,7 +40,7 @@ const indexed = await McapIndexedReader.Initialize({readable, decompressHandlers
 const byIndex = {};
 for await (const message of indexed.readMessages()) count(byIndex, indexed.channelsById.get(message.channelId).topic);
 found.schemas = [...indexed.schemasById.values()].map((s) => ({
-  name: s.name, encoding: s.encoding, schema: JSON.parse(new TextDecoder().decode(s.data)),
+  name: s.name, encoding: s.encoding, schema: s.encoding === "jsonschema" ? JSON.parse(new TextDecoder().decode(s.data)) : null,
 }));
 let attachmentsByIndex = 0;
 for await (const attachment of indexed.readAttachments({validateCrcs: true})) attachmentsByIndex += attachment.data.length > 0;
