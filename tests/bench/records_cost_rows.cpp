@@ -149,7 +149,7 @@ void section_cost(Report& report, const RecordsOptions& options) {
     getrusage(RUSAGE_THREAD, &before);
     const double from_s = wall_s();
     const double from_cpu_s = by_cpu ? thread_cpu_s() : 0.0;
-    TickRecord record;
+    TickRecord record = (*writer)->spare();
     record.tick = i + 1;
     record.time_ns = static_cast<std::int64_t>(static_cast<double>(i) / 60.0 * 1e9);
     record.decisions = tick.decisions;
