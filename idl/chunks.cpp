@@ -183,6 +183,22 @@ std::vector<wire::Features> cut(const FeatureTable& table, std::uint64_t serial)
   return chunks;
 }
 
+std::vector<wire::ServerTick> cut(const ToldTick& told, std::uint64_t term) {
+  const std::span<const std::byte> bytes(told.bytes);
+  const std::size_t step = kSampleLimit_bytes - kSampleOverhead_bytes;
+  const std::size_t count = std::max<std::size_t>(1, (bytes.size() + step - 1) / step);
+  std::vector<wire::ServerTick> chunks(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto part = bytes.subspan(i * step, std::min(step, bytes.size() - i * step));
+    const auto* first = reinterpret_cast<const std::uint8_t*>(part.data());
+    chunks[i].tick(told.tick);
+    chunks[i].term(term);
+    chunks[i].bytes().assign(first, first + part.size());
+  }
+  number(chunks);
+  return chunks;
+}
+
 std::vector<wire::MeshChunk> cut_mesh(const std::string& hash, std::span<const std::byte> bytes) {
   const std::uint64_t key = key_of(bytes);
   const std::size_t step = kSampleLimit_bytes - kSampleOverhead_bytes - kMaxName_bytes;

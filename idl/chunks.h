@@ -21,6 +21,7 @@ std::vector<wire::PoseBatch> cut(const PoseBatch& batch, std::uint64_t serial);
 std::vector<wire::EventBatch> cut(std::span<const ClashEvent> events);
 /// What has no room in as many chunks as the topic has is left out and counted in each.
 std::vector<wire::Features> cut(const FeatureTable& table, std::uint64_t serial);
+std::vector<wire::ServerTick> cut(const ToldTick& told, std::uint64_t term);
 std::vector<wire::MeshChunk> cut_mesh(const std::string& hash, std::span<const std::byte> bytes);
 
 /// Collects the chunks of one serial; a newer serial takes the place of an older one.

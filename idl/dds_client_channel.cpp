@@ -194,6 +194,7 @@ class DdsClientChannel final : public ClientChannel {
     ChannelCounters counters = counters_;
     counters.malformed += participant_->refused() + mesh_collector_.refused();
     counters.guard_dropped = participant_->dropped();
+    counters.trailers_cut = participant_->cut();
     return counters;
   }
 

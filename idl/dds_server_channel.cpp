@@ -10,6 +10,7 @@
 #include "idl/dds_channel.h"
 #include "idl/doorman.h"
 #include "idl/participant.h"
+#include "idl/server_places.h"
 #include "mortisePubSubTypes.h"
 
 namespace mortise {
@@ -54,13 +55,26 @@ class DdsServerChannel final : public StandbyChannel {
   }
   Status stand_by(const DdsOptions& options) {
     if (Status met = meet(options, Participant::Side::kStandby); !met) return met;
-    return listen_to_servers();
+    Status status = listen_to_servers();
+    participant_->open_writer<wire::ServerTakenPubSubType>(Topic::kTaken, taken_, status);
+    return status;
   }
   Status take_over() override {
     term_ = std::max(now_ms(), leader_term_ + 1);
     participant_->set_term(term_);
     if (Status opened = open_endpoints(); !opened) return opened;
+    beat_ = std::make_unique<Heartbeat>(*ticks_);
     return told_ != nullptr ? ok() : listen_to_servers();
+  }
+  void lead_anew() override {
+    term_ = std::max(now_ms(), term_ + 1);
+    participant_->change_term(*answers_, term_);
+  }
+  void confirm(std::uint64_t tick) override {
+    wire::ServerTaken sample;
+    sample.tick(tick);
+    sample.term(leader_term_);
+    write(taken_, sample);
   }
   std::vector<ToldTick> follow() override {
     std::vector<ToldTick> ticks;
@@ -99,6 +113,8 @@ class DdsServerChannel final : public StandbyChannel {
     participant_->open_writer<wire::FeaturesPubSubType>(Topic::kFeatures, features_, status);
     participant_->open_writer<wire::PulsePubSubType>(Topic::kPulse, pulses_, status);
     participant_->open_writer<wire::ServerTickPubSubType>(Topic::kTick, ticks_, status, &servers_);
+    participant_->open_reader<wire::ServerTakenPubSubType>(Topic::kTaken, &takings_, follows_,
+                                                           status);
     participant_->open_reader<wire::PresencePubSubType>(Topic::kPresence, &doorman_, presence_,
                                                         status);
     participant_->open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
@@ -173,19 +189,19 @@ class DdsServerChannel final : public StandbyChannel {
 
   bool has_follower() const override { return servers_.has_follower(); }
   void publish_tick(const ToldTick& told) override {
-    wire::ServerTick sample;
-    sample.tick(told.tick);
-    sample.term(term_);
-    const std::size_t step = kSampleLimit_bytes - 64;
-    const std::size_t count = std::max<std::size_t>(1, (told.bytes.size() + step - 1) / step);
-    sample.count(static_cast<std::uint32_t>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto* first = reinterpret_cast<const std::uint8_t*>(told.bytes.data()) + i * step;
-      sample.chunk(static_cast<std::uint32_t>(i));
-      sample.bytes().assign(first, first + std::min(step, told.bytes.size() - i * step));
-      write(ticks_, sample);
-    }
+    for (const wire::ServerTick& chunk : cut(told, term_)) write(ticks_, chunk);
   }
+  std::uint64_t taken_up_to() override {
+    std::uint64_t up_to = 0;
+    wire::ServerTaken sample;
+    dds::SampleInfo info;
+    while (follows_->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data || sample.term() != term_) continue;
+      up_to = std::max<std::uint64_t>(up_to, sample.tick());
+    }
+    return up_to;
+  }
+  void await_taken(std::int64_t at_most_ns) override { takings_.await(at_most_ns); }
 
   /// Also a client that is still joining counts, so that nothing said meanwhile is lost.
   bool has_readers() const override { return matched(poses_) || matched(events_); }
@@ -193,6 +209,7 @@ class DdsServerChannel final : public StandbyChannel {
     ChannelCounters counters = counters_;
     counters.malformed += participant_->refused();
     counters.guard_dropped = participant_->dropped();
+    counters.trailers_cut = participant_->cut();
     return counters;
   }
 
@@ -346,14 +363,16 @@ class DdsServerChannel final : public StandbyChannel {
   std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
   Doorman doorman_;                             // before the participant, whose threads call it
   ServersWatch servers_;
+  NewsBell takings_;
   std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Heartbeat> beat_;           ///< after the participant, whose writer it speaks for
   std::uint64_t term_ = 0, leader_term_ = 0;  ///< own: 0 while another leads
   ClientKey leader_;                          ///< of the highest term that was heard
   ToldTick partly_;
   dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
-                  *pulses_ = nullptr, *ticks_ = nullptr;
-  dds::DataReader *told_ = nullptr, *presence_ = nullptr, *requests_ = nullptr,
+                  *pulses_ = nullptr, *ticks_ = nullptr, *taken_ = nullptr;
+  dds::DataReader *told_ = nullptr, *follows_ = nullptr, *presence_ = nullptr, *requests_ = nullptr,
                   *increments_ = nullptr;
   std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0, feature_serial_ = 0;
   std::size_t mesh_chunks_ = 0;

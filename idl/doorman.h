@@ -1,8 +1,11 @@
 #pragma once
 #include <chrono>
+#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <set>
+#include <stop_token>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -127,6 +130,44 @@ class ServersWatch final : public dds::DataReaderListener, public dds::DataWrite
   ClientKey own_;
   int followers_ = 0;
   bool came_ = false;
+};
+
+/// Says that the one that leads lives, however long its tick takes.
+class Heartbeat {
+ public:
+  explicit Heartbeat(dds::DataWriter& writer)
+      : thread_([&writer](const std::stop_token& stop) {
+          while (!stop.stop_requested()) {
+            writer.assert_liveliness();
+            std::this_thread::sleep_for(std::chrono::duration<double>(kLeaderAssert_s));
+          }
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+/// Rings when a sample comes, in a thread of Fast DDS.
+class NewsBell final : public dds::DataReaderListener {
+ public:
+  void on_data_available(dds::DataReader*) override {
+    {
+      const std::lock_guard lock(mutex_);
+      rung_ = true;
+    }
+    bell_.notify_one();
+  }
+  /// Returns when it has rung since the last call, or after so long.
+  void await(std::int64_t at_most_ns) {
+    std::unique_lock lock(mutex_);
+    bell_.wait_for(lock, std::chrono::nanoseconds(at_most_ns), [this] { return rung_; });
+    rung_ = false;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable bell_;
+  bool rung_ = false;
 };
 
 }  // namespace mortise

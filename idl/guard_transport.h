@@ -8,16 +8,20 @@
 
 namespace mortise {
 
-using DropCounter = std::shared_ptr<std::atomic<std::uint64_t>>;
+/// Datagrams, by what became of them; written by threads of Fast DDS.
+struct GuardCounts {
+  std::atomic<std::uint64_t> dropped{0};
+  std::atomic<std::uint64_t> cut{0};  ///< of the statistics that Fast DDS hangs on its datagrams
+};
 
 /// A transport that hands on only datagrams that datagram_guard admits, and counts the others.
 struct GuardDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   GuardDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> inner,
-                  DropCounter dropped_counter)
-      : ChainingTransportDescriptor(std::move(inner)), dropped(std::move(dropped_counter)) {}
+                  std::shared_ptr<GuardCounts> guard_counts)
+      : ChainingTransportDescriptor(std::move(inner)), counts(std::move(guard_counts)) {}
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
-  DropCounter dropped;
+  std::shared_ptr<GuardCounts> counts;
 };
 
 }  // namespace mortise

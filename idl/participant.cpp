@@ -1,24 +1,17 @@
 #include "idl/participant.h"
 
-#include <arpa/inet.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
-#include <ifaddrs.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <charconv>
-#include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 #include <mutex>
-#include <sstream>
 
 #include "idl/guard_transport.h"
 #include "idl/security_properties.h"
+#include "idl/server_places.h"
 
 namespace mortise {
 namespace {
@@ -30,16 +23,14 @@ using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::Locator_t;
 
 constexpr int kMaxDomain = 232;  // 7400 + 250 * 233 is no port any more
-// Well-known ports are 7400 + 250 domain + {0, 1, 10 + 2 i, 11 + 2 i}; 2 and 3 are nobody's.
-constexpr int kPortBase = 7400, kPortsPerDomain = 250, kServerPortOffset = 2;
 constexpr int kMaxPort = 65535;
 // A client asks for the server so often (measured: 67 of 67 joins within 0.6 s; with 3 s 4 of 41
 // took more than 2 s).
 constexpr double kAnnouncementPeriod_s = 0.5;
 // The longest a write may wait for a lock of Fast DDS; never for a reader.
 constexpr double kServerWriteWait_s = 0.01, kClientWriteWait_s = 0.1;
-// One that leads and is silent for so long is gone: told four times in it.
-constexpr double kLeaderLease_s = 0.15;
+// Clients wait for what one that stands by has not got: what is lost on the way comes soon.
+constexpr double kServersHeartbeat_s = 0.02;
 const std::string kTermPrefix = "term=";
 // A socket's buffer holds a whole scene's burst.
 constexpr std::uint32_t kSocketBuffer_bytes = 1 << 22;
@@ -48,63 +39,6 @@ Duration_t duration(double seconds) { return Duration_t(static_cast<long double>
 
 Error bad(const std::string& text) { return fail(Code::kInvalidInput, text); }
 Error broken(const std::string& text) { return fail(Code::kRuntime, text); }
-
-bool is_ipv4(const std::string& text) {
-  in_addr address{};
-  return inet_pton(AF_INET, text.c_str(), &address) == 1;
-}
-
-bool is_own_address(const std::string& text) {
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return false;
-  in_addr wanted{};
-  inet_pton(AF_INET, text.c_str(), &wanted);
-  bool found = false;
-  for (const ifaddrs* at = list; at != nullptr; at = at->ifa_next) {
-    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
-    sockaddr_in address{};
-    std::memcpy(&address, at->ifa_addr, sizeof address);
-    found = found || address.sin_addr.s_addr == wanted.s_addr;
-  }
-  freeifaddrs(list);
-  return found;
-}
-
-/// Whether a UDP port can be had: Fast DDS would silently live without it.
-bool port_is_free(const std::string& interface, int port) {
-  const int handle = socket(AF_INET, SOCK_DGRAM, 0);
-  if (handle < 0) return false;
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  inet_pton(AF_INET, interface.c_str(), &address.sin_addr);
-  sockaddr generic{};
-  static_assert(sizeof generic == sizeof address);
-  std::memcpy(&generic, &address, sizeof address);
-  const bool is_free = bind(handle, &generic, sizeof generic) == 0;
-  close(handle);
-  return is_free;
-}
-
-int server_port(const DdsOptions& options) {
-  return options.discovery_port != 0
-             ? options.discovery_port
-             : kPortBase + kPortsPerDomain * options.domain + kServerPortOffset;
-}
-
-std::vector<std::string> addresses_of(const DdsOptions& options) {
-  std::vector<std::string> addresses;
-  std::stringstream words(options.server.empty() ? options.interface : options.server);
-  for (std::string word; std::getline(words, word, ',');) addresses.push_back(word);
-  return addresses;
-}
-
-/// Where a server listens; one that stands by may find the first place taken by the one that leads.
-constexpr int kSecondPlace = 2;
-
-bool place_is_free(const DdsOptions& options, int port) {
-  return port_is_free(options.interface, port) && port_is_free(options.interface, port + 1);
-}
 
 Status check(const DdsOptions& options, Participant::Side side) {
   if (options.domain < 0 || options.domain > kMaxDomain) {
@@ -160,7 +94,7 @@ Locator_t locator(const std::string& address, int port) {
 /// never meet each other, a restarted server is a new participant, and any DDS implementation can
 /// take part.
 dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
-                                 const DropCounter& dropped) {
+                                 const std::shared_ptr<GuardCounts>& counts) {
   dds::DomainParticipantQos qos;
   const bool is_server = side != Participant::Side::kClient;
   qos.name(is_server ? "mortise-server" : "mortise-client");
@@ -169,7 +103,7 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   udp->sendBufferSize = kSocketBuffer_bytes;
   udp->receiveBufferSize = kSocketBuffer_bytes;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<GuardDescriptor>(udp, dropped));
+  qos.transport().user_transports.push_back(std::make_shared<GuardDescriptor>(udp, counts));
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(options.participant_lease_s);
@@ -248,17 +182,28 @@ void set_common(Qos& qos, const TopicRow& row, const DdsOptions& options, int de
 
 }  // namespace
 
-bool may_have_another_server(const DdsOptions& options) {
-  return addresses_of(options).size() > 1 ||
-         !place_is_free(options, server_port(options) + kSecondPlace);
-}
-
 std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data) {
   const std::string text(user_data.begin(), user_data.end());
   std::uint64_t term = 0;
   if (!text.starts_with(kTermPrefix)) return 0;
   std::from_chars(text.data() + kTermPrefix.size(), text.data() + text.size(), term);
   return term;
+}
+
+namespace {
+
+void put_term(std::uint64_t term, dds::DataWriterQos& qos) {
+  const std::string text = kTermPrefix + std::to_string(term);
+  qos.user_data().data_vec({text.begin(), text.end()});
+}
+
+}  // namespace
+
+void Participant::change_term(dds::DataWriter& writer, std::uint64_t term) {
+  set_term(term);
+  dds::DataWriterQos qos = writer.get_qos();
+  put_term(term, qos);
+  writer.set_qos(qos);
 }
 
 bool matched(dds::DataWriter* writer) {
@@ -289,7 +234,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
     made->identity_ = *identity;
   }
   made->participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, made->dropped_), listener,
+      static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, made->guard_), listener,
       dds::StatusMask::none());
   if (made->participant_ == nullptr) {
     return broken("Fast DDS refused a participant on " + options.interface + ", domain " +
@@ -353,16 +298,14 @@ Result<dds::DataWriter*> Participant::open_writer(const TopicRow& row, dds::Topi
     // Only meaningful for automatic kinds, but must lie below the lease.
     qos.liveliness().announcement_period = duration(0.5 * options_.liveliness_lease_s);
   }
-  if (row.among_servers) {
-    // Told by a thread of Fast DDS, however long a tick takes.
-    qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
+  if (row.leads) {
+    qos.reliable_writer_qos().times.heartbeatPeriod = duration(kServersHeartbeat_s);
+    // By topic: automatic liveliness would be told to every client as well, 27 times a second.
+    qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
     qos.liveliness().lease_duration = duration(kLeaderLease_s);
-    qos.liveliness().announcement_period = duration(kLeaderLease_s / 4);
+    qos.liveliness().announcement_period = duration(kLeaderAssert_s);
   }
-  if (term_ != 0) {
-    const std::string term = kTermPrefix + std::to_string(term_);
-    qos.user_data().data_vec({term.begin(), term.end()});
-  }
+  if (term_ != 0) put_term(term_, qos);
   dds::DataWriter* writer = publisher_->create_datawriter(
       topic.value(), qos, listener,
       listener == nullptr ? dds::StatusMask::none() : dds::StatusMask::publication_matched());
@@ -380,13 +323,14 @@ Result<dds::DataReader*> Participant::open_reader(const TopicRow& row, dds::Topi
   set_common(qos, row, options_, row.reader_depth);
   qos.history().kind = row.reader == TopicRow::Reader::kKeepAll ? dds::KEEP_ALL_HISTORY_QOS
                                                                 : dds::KEEP_LAST_HISTORY_QOS;
-  if (row.among_servers) {
-    qos.liveliness().kind = dds::AUTOMATIC_LIVELINESS_QOS;
+  if (row.leads) {
+    qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
     qos.liveliness().lease_duration = duration(kLeaderLease_s);
   }
   const dds::StatusMask mask = listener == nullptr ? dds::StatusMask::none()
                                                    : dds::StatusMask::liveliness_changed()
-                                                         << dds::StatusMask::subscription_matched();
+                                                         << dds::StatusMask::subscription_matched()
+                                                         << dds::StatusMask::data_available();
   dds::DataReader* reader = subscriber_->create_datareader(topic.value(), qos, listener, mask);
   if (reader == nullptr) {
     return broken(std::string("Fast DDS refused the reader of topic ") + row.topic);

@@ -19,6 +19,7 @@
 #include "common/base/result.h"
 #include "common/messages/channel.h"
 #include "idl/dds_channel.h"
+#include "idl/guard_transport.h"
 #include "idl/identity.h"
 #include "idl/safe_type.h"
 #include "idl/topics.h"
@@ -32,9 +33,6 @@ ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid);
 
 /// Does anybody listen?
 bool matched(dds::DataWriter* writer);
-
-/// Can there be another server of the session: at the second place of this host, or on another?
-bool may_have_another_server(const DdsOptions& options);
 
 /// Who led a session later has the higher term: ms since 1970 of its beginning, told with the
 /// server's writers; 0: one that tells none.
@@ -55,6 +53,8 @@ class Participant {
 
   /// Said with each writer that is opened from now on, see term_of(); 0: none.
   void set_term(std::uint64_t term) { term_ = term; }
+  /// Says it anew, with one that is open.
+  void change_term(dds::DataWriter& writer, std::uint64_t term);
 
   /// Opens an endpoint unless an earlier one failed; the first failure stays in status.
   template <class Generated>
@@ -73,7 +73,8 @@ class Participant {
   ClientKey key() const { return client_key(participant_->guid()); }
   std::uint64_t refused() const { return refused_->load(std::memory_order_relaxed); }
   const std::optional<Identity>& identity() const { return identity_; }  ///< own; none: no security
-  std::uint64_t dropped() const { return dropped_->load(std::memory_order_relaxed); }
+  std::uint64_t dropped() const { return guard_->dropped.load(std::memory_order_relaxed); }
+  std::uint64_t cut() const { return guard_->cut.load(std::memory_order_relaxed); }
 
  private:
   explicit Participant(const DdsOptions& options) : options_(options) {}
@@ -100,8 +101,7 @@ class Participant {
   dds::Subscriber* subscriber_ = nullptr;
   std::shared_ptr<std::atomic<std::uint64_t>> refused_ =
       std::make_shared<std::atomic<std::uint64_t>>(0);
-  std::shared_ptr<std::atomic<std::uint64_t>> dropped_ =
-      std::make_shared<std::atomic<std::uint64_t>>(0);
+  std::shared_ptr<GuardCounts> guard_ = std::make_shared<GuardCounts>();
 };
 
 }  // namespace mortise

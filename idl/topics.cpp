@@ -15,7 +15,7 @@ constexpr int kMaxSnapshotChunks = 1024;
 constexpr int kMaxMeshChunks = 32768;  // 1.9 GB of meshes
 constexpr int kMaxFeatureChunks = 1024;
 
-constexpr std::array<TopicRow, 12> kTopics = {{
+constexpr std::array<TopicRow, 13> kTopics = {{
     // topic, type, to server, key, reliable, transient local, writer depth, reader, depth, keys,
     // asynchronous, throttled, presence, large
     {"mortise_increment", "IncrementBatch", true, "user", false, false, 32, kAll, 128, kMaxUsers,
@@ -40,8 +40,11 @@ constexpr std::array<TopicRow, 12> kTopics = {{
      true, true, false, true},
     {"mortise_pulse", "Pulse", false, "", true, true, 1, kLast, 1, 1, true, false, false, false},
     // At once: it is out before what it acknowledges is.
-    {"mortise_tick", "ServerTick", false, "", true, false, 4096, kAll, 65536, 1, false, false, false,
-     true, true},
+    {"mortise_tick", "ServerTick", false, "", true, false, 4096, kAll, 65536, 1, false, false,
+     false, true, true, true},
+    // Best effort: the next one says all that this one said.
+    {"mortise_taken", "ServerTaken", false, "", false, false, 1, kLast, 1, 1, false, false, false,
+     false, true},
 }};
 
 }  // namespace
@@ -71,6 +74,7 @@ std::string topic_table_markdown() {
     text += std::to_string(row.reader_depth) + " | " + std::to_string(row.max_keys);
     text += row.asynchronous ? " | by another thread | " : " | at once | ";
     if (row.presence) text += "manual-by-topic liveliness ";
+    if (row.leads) text += "manual-by-topic liveliness ";
     if (row.throttled) {
       text += "at most " + std::to_string(kMeshBytesPerPeriod / 1000) + " kB each " +
               std::to_string(kMeshPeriod_ms) + " ms ";

@@ -24,6 +24,7 @@ struct TopicRow {
   bool presence;      ///< MANUAL_BY_TOPIC liveliness
   bool large;         ///< payloads are allocated to size, not beforehand
   bool among_servers = false;
+  bool leads = false;  ///< MANUAL_BY_TOPIC liveliness, short: who writes it leads the session
 };
 
 enum class Topic {
@@ -39,6 +40,7 @@ enum class Topic {
   kFeatures,
   kPulse,
   kTick,
+  kTaken,
 };
 
 const TopicRow& row_of(Topic topic);
@@ -55,5 +57,9 @@ inline constexpr std::size_t kSampleLimit_bytes = 60'000;
 inline constexpr int kMeshBytesPerPeriod = 500'000;
 inline constexpr int kMeshPeriod_ms = 10;
 inline constexpr const char* kMeshFlowController = "mortise_mesh_flow";
+
+/// A server that leads and is silent for so long is gone: it says four times in it that it lives.
+inline constexpr double kLeaderLease_s = 0.15;
+inline constexpr double kLeaderAssert_s = kLeaderLease_s / 4;
 
 }  // namespace mortise

@@ -165,8 +165,8 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
   text += "\nMessages\n" + inbox_lines(loop.inbox().counters());
   const ChannelCounters& c = closing.channel;
   text += fmt::format(
-      "  at the door: received {}, malformed {}, foreign {}, lost {}, not sent {}; datagrams cut "
-      "by the guard {} (Fast DDS adds a trailer to each), participants turned away {}\n",
+      "  at the door: received {}, malformed {}, foreign {}, lost {}, not sent {}; datagrams "
+      "dropped by the guard {}, participants turned away {}\n",
       c.received, c.malformed, c.foreign, c.lost, c.send_failed, c.guard_dropped, c.turned_away);
   text += user_lines(loop);
   if (!closing.restored_from.empty()) {

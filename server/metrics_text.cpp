@@ -182,7 +182,7 @@ void add_process(Text& out, const SessionFigures& f, std::uint64_t resident) {
   out.value(c.foreign, "fate=\"foreign\"");
   out.value(c.lost, "fate=\"lost\"");
   out.value(c.send_failed, "fate=\"not sent\"");
-  out.one("mortise_datagrams_cut_total", "counter", "Datagrams that the guard cut or dropped",
+  out.one("mortise_datagrams_cut_total", "counter", "Datagrams that the guard dropped",
           c.guard_dropped);
   out.one("mortise_participants_turned_away_total", "counter",
           "Participants that could not prove who they are, or may not be here", c.turned_away);

@@ -13,6 +13,7 @@
 #include "idl/dds_channel.h"
 #include "server/announcer.h"
 #include "server/closing.h"
+#include "server/held_channel.h"
 #include "server/metrics_endpoint.h"
 #include "server/real_time.h"
 #include "server/restore.h"
@@ -158,15 +159,20 @@ int serve(const ServerOptions& options) {
   loop_options.session = options.session;
   loop_options.threads = options.threads;
   loop_options.inbox = options.limits;
-  TickLoop loop(world, **channel, clock, log->writer.get(), loop_options);
+  const TickLoop* running = nullptr;
+  HeldChannel held(**channel, clock, [&] { return running->inbox().users_present(); });
+  TickLoop loop(world, held, clock, log->writer.get(), loop_options);
+  running = &loop;
   if (Resumed* before = resumed->has_value() ? &**resumed : nullptr; before != nullptr) {
     closing.restored_from = start->source;
     closing.restored_ticks = before->ticks;
     closing.restore_left_out_ticks = before->ticks_left_out;
-    if (stands_by)
+    if (stands_by) {
+      held.await(seats);
       loop.adopt(std::move(before->statistics), seats);
-    else
+    } else {
       loop.resume(std::move(before->statistics), std::move(before->departures));
+    }
   }
   loop.open();
   spdlog::info("session '{}' of {} on domain {}, {}: {} parts, {:g} Hz, policy {}{}",
@@ -201,6 +207,7 @@ int serve(const ServerOptions& options) {
       },
       [&] {
         announcer.after_tick(loop);
+        for (const std::string& note : held.take_notes()) spdlog::warn("{}", note);
         show_figures();
       });
   announcer.finish();
@@ -209,6 +216,7 @@ int serve(const ServerOptions& options) {
                   options.session, options.session);
   } else {
     loop.close();
+    held.finish();
   }
   closing.channel = (*channel)->counters();
   const int exit_code = close_session(options, std::move(closing), log->writer.get(), loop);

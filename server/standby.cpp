@@ -1,6 +1,8 @@
 #include "server/standby.h"
 
+#include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,6 +20,48 @@ void hear(StandbyChannel& channel, std::deque<ToldTick>& told) {
   for (ToldTick& tick : channel.follow()) told.push_back(std::move(tick));
 }
 
+double process_cpu_s() {
+  timespec used{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+/// How long nothing was told, of the time in which this process could have heard it. After a
+/// freeze, or on a machine that gives it no processor, what was told still lies in the sockets, and
+/// the other's silence may be one's own.
+class Silence {
+ public:
+  void heard() { silent_s_ = 0.0; }
+  void turn() {
+    const Clock::time_point now = Clock::now();
+    const double cpu_s = process_cpu_s();
+    const double took_s = std::chrono::duration<double>(now - at_).count();
+    const double stood_still_s = took_s - (cpu_s - cpu_s_);
+    at_ = now;
+    cpu_s_ = cpu_s;
+    silent_s_ += std::min(took_s, kTurnCounts_s);
+    calm_s_ += took_s;
+    if (stood_still_s > kStall_s) calm_s_ = 0.0;
+  }
+  bool is_believed() const { return silent_s_ >= (calm_s_ < kCalm_s ? kWary_s : kSilent_s); }
+
+ private:
+  static constexpr double kTurnCounts_s = 0.01, kStall_s = 0.05;
+  /// The lease says the same, of datagrams; a second more where this process has just stood still.
+  static constexpr double kSilent_s = 0.1, kWary_s = 1.0, kCalm_s = 1.0;
+
+  Clock::time_point at_ = Clock::now();
+  double cpu_s_ = process_cpu_s(), silent_s_ = 0.0, calm_s_ = kCalm_s;
+};
+
+void hear_and_confirm(StandbyChannel& channel, std::deque<ToldTick>& told, Silence& silence) {
+  const std::size_t before = told.size();
+  hear(channel, told);
+  if (told.size() == before) return;
+  silence.heard();
+  channel.confirm(told.back().tick);
+}
+
 }  // namespace
 
 Status Follower::take(const ToldTick& told) {
@@ -31,7 +75,8 @@ Status Follower::take(const ToldTick& told) {
   // Between the log and what was told nothing went in, or it would be in one of them.
   if (ticks_ > 0 && tick.tick != world_.tick + 1) {
     return fail(Code::kRuntime, "ticks after " + std::to_string(world_.tick) + " and before " +
-                                    std::to_string(tick.tick) + " were not told");
+                                    std::to_string(tick.tick) +
+                                    " were not told to this one: start it again");
   }
   while (world_.tick + 1 < tick.tick) {
     FollowedTick idle;
@@ -73,16 +118,20 @@ bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
 
 Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower& follower,
                     const std::function<bool()>& stop) {
+  Silence silence;
+  if (!told.empty()) channel.confirm(told.back().tick);
   while (!stop()) {
     // Asked first: what it told before it was gone is here by then.
     const bool is_gone = !channel.leader_present();
-    hear(channel, told);
-    for (; !told.empty(); told.pop_front()) {
+    for (hear_and_confirm(channel, told, silence); !told.empty(); told.pop_front()) {
       if (Status taken = follower.take(told.front()); !taken) return taken.error();
+      hear_and_confirm(channel, told, silence);
     }
-    if (is_gone) return true;
+    if (is_gone && silence.is_believed()) return true;
+    silence.turn();
     std::this_thread::sleep_for(kTurn);
   }
+  channel.confirm(kTakenAll);
   return false;
 }
 

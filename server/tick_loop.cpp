@@ -236,6 +236,8 @@ void TickLoop::run(const std::function<bool()>& stop, const std::function<void()
   const std::int64_t period_ns = in_ns(1.0 / world_.tick_rate_hz);
   std::int64_t deadline_ns = clock_.now_ns();
   while (!stop()) {
+    while (channel_.rest(deadline_ns - clock_.now_ns())) {
+    }
     clock_.sleep_until_ns(deadline_ns);
     const std::int64_t start_ns = clock_.now_ns();
     if (start_ns < deadline_ns) continue;  // woken by a signal

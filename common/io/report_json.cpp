@@ -205,7 +205,7 @@ Json json_of(const ChannelCounters& c) {
   return {{"received", c.received},       {"malformed", c.malformed},
           {"foreign", c.foreign},         {"lost", c.lost},
           {"send_failed", c.send_failed}, {"guard_dropped", c.guard_dropped},
-          {"turned_away", c.turned_away}};
+          {"trailers_cut", c.trailers_cut}, {"turned_away", c.turned_away}};
 }
 
 Json json_of(const SessionStatistics& statistics, const SessionNames& names) {

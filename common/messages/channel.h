@@ -84,6 +84,7 @@ struct ToldTick {
 struct ChannelCounters {
   std::uint64_t received = 0, malformed = 0, foreign = 0, lost = 0, send_failed = 0,
                 guard_dropped = 0;
+  std::uint64_t trailers_cut = 0;  ///< statistics of the sender's DDS, cut off: no sign of trouble
   std::uint64_t turned_away = 0;  ///< participants that could not prove who they are, or may not be
 };
 
@@ -149,13 +150,27 @@ class ServerChannel {
   /// the tick acknowledges is published.
   virtual bool has_follower() const { return false; }
   virtual void publish_tick(const ToldTick&) {}
+  /// Up to here the one that stands by has said, since the last call, to have the ticks; 0: it has
+  /// said nothing. kTakenAll: it goes, and needs nothing more.
+  virtual std::uint64_t taken_up_to() { return 0; }
+  /// Returns when it has said something since the last call, or after so long.
+  virtual void await_taken(std::int64_t /*at_most_ns*/) {}
+  /// The one that stood by may have taken over elsewhere: from now on this one is the later leader.
+  virtual void lead_anew() {}
+
+  /// Does what is due between two ticks, for at most so long; false: nothing is due.
+  virtual bool rest(std::int64_t /*at_most_ns*/) { return false; }
 };
+inline constexpr std::uint64_t kTakenAll = ~std::uint64_t{0};
 
 /// The end of a server that stands by: it hears what the one that leads tells of its ticks. Once it
 /// has taken over it is the end of a server like any other; before, it publishes nothing.
 class StandbyChannel : public ServerChannel {
  public:
   virtual std::vector<ToldTick> follow() = 0;
+  /// Tells the one that leads that all up to this tick is here; it waits for that before it lets
+  /// clients know.
+  virtual void confirm(std::uint64_t tick) = 0;
   /// Is the one that leads alive? Known within 0.15 s.
   virtual bool leader_present() const = 0;
   virtual Status take_over() = 0;

@@ -67,7 +67,23 @@ struct Packet {
   }
 };
 
+/// Side that an IPv4 packet goes to, by the last number of its address; -1: none.
+int destination(const std::vector<char>& packet, ssize_t size) {
+  constexpr std::size_t kDestination = 16;  // RFC 791
+  const auto byte = [&](std::size_t i) {
+    return static_cast<unsigned char>(packet[kDestination + i]);
+  };
+  if (size < 20 || packet[0] >> 4 != 4 || byte(0) != 10 || byte(1) != 78 || byte(2) != 0) return -1;
+  return byte(3) - 1;
+}
+
 }  // namespace
+
+void LossyLink::cut(const std::set<int>& apart) {
+  unsigned bits = 0;
+  for (const int side : apart) bits |= 1u << side;
+  apart_ = bits;
+}
 
 std::string LossyLink::address(int side) { return "10.78.0." + std::to_string(1 + side); }
 
@@ -87,11 +103,11 @@ Status LossyLink::enter(int side, Side& made) {
   return ok();
 }
 
-Result<std::unique_ptr<LossyLink>> LossyLink::open(const LinkSettings& settings) {
-  std::unique_ptr<LossyLink> link(new LossyLink(settings));
-  for (int side = 0; side < 2; ++side) {
+Result<std::unique_ptr<LossyLink>> LossyLink::open(const LinkSettings& settings, int sides) {
+  std::unique_ptr<LossyLink> link(new LossyLink(settings, sides));
+  for (int side = 0; side < sides; ++side) {
     Status status = ok();
-    std::thread([&] { status = enter(side, link->sides_[side]); }).join();
+    std::thread([&] { status = enter(side, link->sides_[static_cast<std::size_t>(side)]); }).join();
     if (!status) return status.error();
   }
   link->carrier_ = std::thread([made = link.get()] { made->carry(); });
@@ -108,9 +124,10 @@ LossyLink::~LossyLink() {
 }
 
 std::thread LossyLink::on_side(int side, std::function<void()> work) const {
-  return std::thread([space = sides_[side].space, work = std::move(work)] {
-    if (setns(space, CLONE_NEWNET) == 0) work();
-  });
+  return std::thread(
+      [space = sides_[static_cast<std::size_t>(side)].space, work = std::move(work)] {
+        if (setns(space, CLONE_NEWNET) == 0) work();
+      });
 }
 
 void LossyLink::carry() {
@@ -119,6 +136,9 @@ void LossyLink::carry() {
   std::priority_queue<Packet> under_way;
   std::uint64_t number = 0;
   std::vector<char> buffer(kMaxPacket_bytes);
+  const int sides = static_cast<int>(sides_.size());
+  std::vector<pollfd> polled;
+  for (const Side& side : sides_) polled.push_back({side.device, POLLIN, 0});
   while (!stop_) {
     // 1. Wait for a packet, or until one is due.
     const Clock::time_point wake = Clock::now() + std::chrono::milliseconds(20);
@@ -126,15 +146,18 @@ void LossyLink::carry() {
     const auto wait =
         std::max(Clock::duration::zero(), Clock::duration(until - Clock::now())).count();
     const timespec limit{0, static_cast<long>(wait)};
-    pollfd polled[2] = {{sides_[0].device, POLLIN, 0}, {sides_[1].device, POLLIN, 0}};
-    ppoll(polled, 2, &limit, nullptr);
+    ppoll(polled.data(), polled.size(), &limit, nullptr);
     // 2. Take what came, lose some, double some.
-    for (int from = 0; from < 2; ++from) {
+    for (int from = 0; from < sides; ++from) {
       for (;;) {
-        const ssize_t size = read(sides_[from].device, buffer.data(), buffer.size());
+        const ssize_t size =
+            read(polled[static_cast<std::size_t>(from)].fd, buffer.data(), buffer.size());
         if (size <= 0) break;
+        const int to = destination(buffer, size);
+        if (to < 0 || to >= sides || to == from) continue;  // nobody's, multicast
         for (int copy = chance(random) < settings_.duplicate ? 2 : 1; copy > 0; --copy) {
-          if (chance(random) < settings_.loss || under_way.size() >= kMaxUnderWay) {
+          if (chance(random) < settings_.loss || under_way.size() >= kMaxUnderWay ||
+              parted(from, to)) {
             ++lost_;
             continue;
           }
@@ -142,7 +165,7 @@ void LossyLink::carry() {
                                                     settings_.jitter_s * chance(random));
           under_way.push({Clock::now() + std::chrono::duration_cast<Clock::duration>(takes),
                           ++number,
-                          1 - from,
+                          to,
                           {buffer.begin(), buffer.begin() + size}});
         }
       }
@@ -150,7 +173,8 @@ void LossyLink::carry() {
     // 3. Hand over what is due.
     while (!under_way.empty() && under_way.top().due <= Clock::now()) {
       const Packet& packet = under_way.top();
-      carried_ += write(sides_[packet.to].device, packet.bytes.data(), packet.bytes.size()) > 0;
+      carried_ += write(polled[static_cast<std::size_t>(packet.to)].fd, packet.bytes.data(),
+                        packet.bytes.size()) > 0;
       under_way.pop();
     }
   }

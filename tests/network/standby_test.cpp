@@ -1,10 +1,13 @@
 // A second server beside the first: what clients see when the first is killed, again and again.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "common/io/replay.h"
 #include "common/io/session_log.h"
@@ -61,14 +64,20 @@ class Standby : public ::testing::Test {
       const ClientUpdate of_anna = anna_->client->poll(), of_ben = ben_->client->poll();
       losses_ += of_anna.server_lost + of_ben.server_lost;
       if (of_ben.server_lost) in_doubt();
-      for (const SeenAck& ack : of_ben.acks) acknowledge(ack.seq);
+      for (const SeenAck& ack : of_ben.acks) {
+        acknowledge(ack.seq);
+        if (const auto at = sent_at_s_.find(ack.seq); at != sent_at_s_.end())
+          took_s_.push_back(steady_s() - at->second);
+      }
       const bool news = std::count(of_anna.changed.begin(), of_anna.changed.end(), blue_) > 0;
       if (news)
         longest_gap_s_ = std::max(longest_gap_s_, steady_s() - std::exchange(seen_s_, steady_s()));
       if (moves_ && steady_s() - sent_s_ >= kEvery_s) {
         sent_s_ = steady_s();
-        if (const std::uint64_t seq = ben_->client->send(ben_->user, blue_, {0, kStep_mm, 0}))
+        if (const std::uint64_t seq = ben_->client->send(ben_->user, blue_, {0, kStep_mm, 0})) {
           sent_.insert(seq);
+          sent_at_s_[seq] = sent_s_;
+        }
       }
       sleep_a_moment();
     }
@@ -127,6 +136,32 @@ class Standby : public ::testing::Test {
   int losses_ = 0;
   double sent_s_ = 0.0, seen_s_ = 0.0, longest_gap_s_ = 0.0;
   std::set<std::uint64_t> sent_, acknowledged_;
+  std::map<std::uint64_t, double> sent_at_s_;
+  std::vector<double> took_s_;  ///< from sending to the acknowledgement
+};
+
+/// Takes the processors from a program: it runs at the lowest priority, among many that are busy.
+class Crowd {
+ public:
+  explicit Crowd(const Program& starved) {
+    const std::string threads = "/proc/" + std::to_string(starved.pid()) + "/task";
+    for (const auto& thread : std::filesystem::directory_iterator(threads))
+      setpriority(PRIO_PROCESS, static_cast<id_t>(std::stoi(thread.path().filename())), 19);
+    for (unsigned i = 0; i < 4 * std::thread::hardware_concurrency(); ++i)
+      busy_.emplace_back([this] {
+        while (!stop_) std::atomic_signal_fence(std::memory_order_seq_cst);
+      });
+  }
+  ~Crowd() {
+    stop_ = true;
+    for (std::thread& thread : busy_) thread.join();
+  }
+  Crowd(const Crowd&) = delete;
+  Crowd& operator=(const Crowd&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::vector<std::thread> busy_;
 };
 
 TEST_F(Standby, TakesOverFromEachThatIsKilled) {
@@ -186,6 +221,125 @@ TEST_F(Standby, OneThatComesBackDoesNotFight) {
       << again->errors();
   EXPECT_EQ(losses_, losses);
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
+/// Frozen for a little longer than the lease and woken before the second has opened its topics, or
+/// after: what it says then must not be taken by anybody, or be with the second as well.
+TEST_F(Standby, OneThatIsFrozenForAMomentAcknowledgesNothingThatIsLost) {
+  std::unique_ptr<Program> first = lead(224);
+  come_in(224);
+  for (const int frozen_ms : {150, 160, 170, 180, 250}) {
+    std::unique_ptr<Program> second = stand_by(224);
+    ASSERT_FALSE(HasFailure());
+    (void)longest_gap_after([&] {
+      first->signal(SIGSTOP);
+      turn(frozen_ms * 1e-3);
+      first->signal(SIGCONT);
+    });
+    turn(1.0);
+    const bool taken_over = second->errors().find("taken over at tick") != std::string::npos;
+    std::printf("frozen for %d ms: %s\n", frozen_ms, taken_over ? "taken over" : "went on");
+    if (taken_over) {
+      EXPECT_EQ(first->wait(5), 1) << first->errors();
+      first = std::move(second);
+    } else {
+      second->signal(SIGTERM);
+      EXPECT_EQ(second->wait(5), 0);
+    }
+    ASSERT_EQ(ben_->holder("blue"), ben_->client->user_id(0));
+  }
+  EXPECT_GT(acknowledged_.size(), 30u);
+  EXPECT_EQ(lost_of_acknowledged(*first), 0u);
+}
+
+TEST_F(Standby, AFirstWithoutAProcessorLosesNothingThatItAcknowledged) {
+  std::unique_ptr<Program> first = lead(225);
+  come_in(225);
+  std::unique_ptr<Program> second = stand_by(225);
+  ASSERT_FALSE(HasFailure());
+  moves_ = true;
+  {
+    Crowd crowd(*first);
+    turn(6.0);
+  }
+  turn(3.0);
+  const bool taken_over = second->errors().find("taken over at tick") != std::string::npos;
+  std::printf("starved for 6 s: %s, %zu acknowledged\n", taken_over ? "taken over" : "went on",
+              acknowledged_.size());
+  if (!taken_over) second.swap(first);
+  first->signal(SIGKILL);
+  turn(1.5);
+  EXPECT_GT(acknowledged_.size(), 30u);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
+TEST_F(Standby, OneThatStandsByAndIsFrozenDoesNotStopTheSession) {
+  std::unique_ptr<Program> first = lead(226);
+  come_in(226);
+  std::unique_ptr<Program> second = stand_by(226);
+  ASSERT_FALSE(HasFailure());
+  const int losses = losses_;
+  const double gap_s = longest_gap_after([&] { second->signal(SIGSTOP); });
+  std::printf("a frozen standby keeps clients waiting once, for %.0f ms\n", gap_s * 1e3);
+  EXPECT_NE(first->errors().find("is silent: it is not waited for any more"), std::string::npos)
+      << first->errors();
+  EXPECT_GT(gap_s, 0.3) << "it was not waited for";
+  EXPECT_LT(gap_s, 1.0);
+  second->signal(SIGCONT);  // after 1.5 s
+  turn(3.0);
+  EXPECT_EQ(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_EQ(losses_, losses) << "nobody has changed servers";
+  first->signal(SIGKILL);  // and it is in step again
+  turn(1.5);
+  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
+TEST_F(Standby, OneThatWasFrozenForLongEndsAndDoesNotTakeOver) {
+  std::unique_ptr<Program> first = lead(228);
+  come_in(228);
+  std::unique_ptr<Program> second = stand_by(228);
+  ASSERT_FALSE(HasFailure());
+  const int losses = losses_;
+  (void)longest_gap_after([&] { second->signal(SIGSTOP); });
+  turn(3.0);
+  second->signal(SIGCONT);
+  turn(1.0);
+  EXPECT_EQ(second->wait(5), 1);
+  EXPECT_NE(second->errors().find("were not told to this one: start it again"), std::string::npos)
+      << second->errors();
+  EXPECT_EQ(losses_, losses) << "nobody has changed servers";
+  second = stand_by(228);
+  first->signal(SIGKILL);
+  turn(1.5);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
+/// What the first's waiting for the second costs: the same hand, without one and with one.
+TEST_F(Standby, AcknowledgementsWaitALittle) {
+  std::unique_ptr<Program> first = lead(227);
+  come_in(227);
+  moves_ = true;
+  turn(0.5);
+  took_s_.clear();
+  turn(2.0);
+  const std::vector<double> alone_s = std::exchange(took_s_, {});
+  std::unique_ptr<Program> second = stand_by(227);
+  ASSERT_FALSE(HasFailure());
+  turn(0.5);
+  took_s_.clear();
+  turn(2.0);
+  const std::vector<double> with_s = std::exchange(took_s_, {});
+  const auto at = [](std::vector<double> took_s, double p) {
+    std::sort(took_s.begin(), took_s.end());
+    return took_s.at(static_cast<std::size_t>(p * static_cast<double>(took_s.size() - 1))) * 1e3;
+  };
+  ASSERT_GT(alone_s.size(), 60u);
+  ASSERT_GT(with_s.size(), 60u);
+  std::printf(
+      "acknowledged after: alone p50 %.1f p99 %.1f ms, with a standby p50 %.1f p99 %.1f ms\n",
+      at(alone_s, 0.5), at(alone_s, 0.99), at(with_s, 0.5), at(with_s, 0.99));
+  EXPECT_EQ(lost_of_acknowledged(*first), 0u);
 }
 
 }  // namespace

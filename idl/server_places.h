@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "idl/dds_channel.h"
+
+namespace mortise {
+
+bool is_ipv4(const std::string& text);
+bool is_own_address(const std::string& text);  ///< of this machine
+
+/// Whether a UDP port can be had: Fast DDS would silently live without it.
+bool port_is_free(const std::string& interface, int port);
+
+/// First of the two ports of a session's server.
+int server_port(const DdsOptions& options);
+/// One that stands by may find the first place taken by the one that leads: then so far above.
+inline constexpr int kSecondPlace = 2;
+bool place_is_free(const DdsOptions& options, int port);
+
+/// Of all hosts where servers of the session may be.
+std::vector<std::string> addresses_of(const DdsOptions& options);
+
+/// Can there be another server of the session: at the second place of this host, or on another?
+bool may_have_another_server(const DdsOptions& options);
+
+}  // namespace mortise

@@ -1,0 +1,153 @@
+#include "server/held_channel.h"
+
+#include <algorithm>
+
+namespace mortise {
+namespace {
+
+// One turn counts for no longer: in the rest of it this process may not have run.
+constexpr double kTurn_s = 0.005;
+constexpr std::int64_t kLook_ns = 2'000'000;
+constexpr std::uint64_t kNear_ticks = 60;
+
+template <class Entry>
+std::vector<Entry> copy_of(std::span<const Entry> entries) {
+  return {entries.begin(), entries.end()};
+}
+
+}  // namespace
+
+void HeldChannel::await(const std::vector<SeatRecord>& seats) {
+  for (const SeatRecord& seat : seats) awaited_.insert(seat.client);
+  awaited_enough_ = awaited_.size() / 2;
+  waited_s_ = 0.0;
+}
+
+ServerInput HeldChannel::take() {
+  ServerInput input = inner_.take();
+  note_heard(input);
+  if (!input.superseded) let_go();
+  return input;
+}
+
+void HeldChannel::note_heard(const ServerInput& input) {
+  for (const ReceivedIncrement& received : input.increments) heard_.insert(received.increment.user);
+  for (const ReceivedCommand& received : input.commands) heard_.insert(received.command.user);
+  heard_.insert(input.heartbeats.begin(), input.heartbeats.end());
+  for (const JoinRequest& join : input.joins) awaited_.erase(join.client);
+  if (awaited_.size() <= awaited_enough_) awaited_.clear();
+}
+
+bool HeldChannel::rest(std::int64_t at_most_ns) {
+  if (kept_.empty() || at_most_ns <= 0) return false;
+  inner_.await_taken(std::min(at_most_ns, kLook_ns));
+  let_go();
+  return !kept_.empty();
+}
+
+void HeldChannel::let_go() {
+  const std::uint64_t taken = inner_.taken_up_to();
+  if (taken == kTakenAll) {
+    in_step_ = false;
+    say_up_to(kTakenAll);
+  } else if (taken != 0) {
+    // Only one that is near is waited for: it may have the ticks of minutes to take first.
+    in_step_ = in_step_ || taken + kNear_ticks >= tick_;
+    say_up_to(taken);
+  }
+  const std::int64_t now_ns = clock_.now_ns();
+  const double turn_s = std::min(static_cast<double>(now_ns - turned_ns_) * 1e-9, kTurn_s);
+  turned_ns_ = now_ns;
+  if (!kept_.empty()) wait_on(turn_s);
+}
+
+void HeldChannel::wait_on(double turn_s) {
+  waited_s_ += turn_s;
+  if (!awaited_.empty()) {
+    if (waited_s_ < kPatienceCutOff_s) return;
+    awaited_.clear();
+    notes_.push_back(
+        "fewer than half of the users have come: they may be with the server of "
+        "before, and what is done here may be lost when that one is met again");
+  }
+  if (!in_step_) return say_up_to(kTakenAll);
+  if (waited_s_ < kPatience_s) return;
+  const bool heard_by_most = heard_.size() * 2 > users_then_;
+  if (heard_by_most || waited_s_ >= kPatienceCutOff_s) go_alone(heard_by_most);
+}
+
+void HeldChannel::go_alone(bool heard_by_most) {
+  in_step_ = false;
+  // Whoever took over meanwhile, and has most of the users against it, is not to lead when it is
+  // met again.
+  if (heard_by_most) inner_.lead_anew();
+  notes_.push_back(heard_by_most
+                       ? "the server that stands by is silent: it is not waited for any more"
+                       : "neither the server that stands by nor most users are heard: going on "
+                         "without them; what is done here may be lost when they are met again");
+  say_up_to(kTakenAll);
+}
+
+void HeldChannel::say_up_to(std::uint64_t tick) {
+  if (!awaited_.empty()) return;
+  for (; !kept_.empty() && kept_.front().tick <= tick; kept_.pop_front()) {
+    kept_.front().say();
+    waited_s_ = 0.0;
+    heard_.clear();
+    users_then_ = users_();
+  }
+}
+
+void HeldChannel::say(std::function<void()> what) {
+  if (!keeps()) return what();
+  if (kept_.empty()) {
+    waited_s_ = 0.0;
+    heard_.clear();
+    users_then_ = users_();
+  }
+  kept_.push_back({tick_, std::move(what)});
+}
+
+void HeldChannel::finish() {
+  for (int turn = 0; turn < 100 && rest(kLook_ns); ++turn) {
+  }
+  awaited_.clear();
+  say_up_to(kTakenAll);
+}
+
+void HeldChannel::publish_tick(const ToldTick& told) {
+  tick_ = told.tick;
+  inner_.publish_tick(told);
+}
+void HeldChannel::publish_join_reply(const JoinReply& reply) {
+  say([this, reply] { inner_.publish_join_reply(reply); });
+}
+void HeldChannel::publish_replies(std::span<const Reply> replies) {
+  say([this, all = copy_of(replies)] { inner_.publish_replies(all); });
+}
+void HeldChannel::publish_decisions(std::span<const Decision> decisions) {
+  say([this, all = copy_of(decisions)] { inner_.publish_decisions(all); });
+}
+void HeldChannel::publish_refusals(std::span<const RefusedIncrement> refused) {
+  say([this, all = copy_of(refused)] { inner_.publish_refusals(all); });
+}
+void HeldChannel::publish_poses(const PoseBatch& batch) {
+  say([this, batch] { inner_.publish_poses(batch); });
+}
+void HeldChannel::publish_events(std::span<const ClashEvent> events) {
+  say([this, all = copy_of(events)] { inner_.publish_events(all); });
+}
+void HeldChannel::publish_snapshot(const Snapshot& snapshot) {
+  say([this, snapshot] { inner_.publish_snapshot(snapshot); });
+}
+void HeldChannel::publish_mesh(const std::string& hash, std::span<const std::byte> bytes) {
+  say([this, hash, all = copy_of(bytes)] { inner_.publish_mesh(hash, all); });
+}
+void HeldChannel::publish_features(const FeatureTable& table) {
+  say([this, table] { inner_.publish_features(table); });
+}
+void HeldChannel::publish_pulse(const SessionPulse& pulse) {
+  say([this, pulse] { inner_.publish_pulse(pulse); });
+}
+
+}  // namespace mortise

@@ -1,0 +1,84 @@
+#pragma once
+#include <deque>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/messages/channel.h"
+#include "server/clock.h"
+#include "server/tick_bytes.h"
+
+namespace mortise {
+
+/// Between a tick and those who hear of it. While another server stands by, what a tick says to
+/// clients is kept until that server has said to have the tick: so what a client knows to be taken
+/// outlives either server, also where the first is taken for gone and is not. One that stands by
+/// and is silent is not waited for longer than kPatience_s of the time in which this process ran.
+class HeldChannel final : public ServerChannel {
+ public:
+  static constexpr double kPatience_s = 0.5;
+  /// Longer, where fewer than half of the users are heard either: it may be us who are cut off.
+  static constexpr double kPatienceCutOff_s = 4.0;
+
+  /// All must outlive this. `users` says how many are in the session.
+  HeldChannel(ServerChannel& inner, Clock& clock, std::function<std::size_t()> users)
+      : inner_(inner), clock_(clock), users_(std::move(users)) {}
+
+  /// Of one that has taken over: says nothing until half of `seats` have asked to join again, for
+  /// at most kPatienceCutOff_s; those who do not may be with the server of before.
+  void await(const std::vector<SeatRecord>& seats);
+  /// All that is kept goes out, after a last moment for the one that stands by.
+  void finish();
+  std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
+  bool follower_in_step() const { return in_step_; }
+
+  ServerInput take() override;
+  bool rest(std::int64_t at_most_ns) override;
+  void publish_tick(const ToldTick& told) override;
+  void publish_join_reply(const JoinReply& reply) override;
+  void publish_replies(std::span<const Reply> replies) override;
+  void publish_decisions(std::span<const Decision> decisions) override;
+  void publish_refusals(std::span<const RefusedIncrement> refused) override;
+  void publish_poses(const PoseBatch& batch) override;
+  void publish_events(std::span<const ClashEvent> events) override;
+  void publish_snapshot(const Snapshot& snapshot) override;
+  void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override;
+  void publish_features(const FeatureTable& table) override;
+  void publish_pulse(const SessionPulse& pulse) override;
+  bool has_readers() const override { return inner_.has_readers(); }
+  bool has_follower() const override { return in_step_ || inner_.has_follower(); }
+  ChannelCounters counters() const override { return inner_.counters(); }
+
+ private:
+  struct Kept {
+    std::uint64_t tick = 0;
+    std::function<void()> say;
+  };
+  bool keeps() const { return in_step_ || !awaited_.empty() || !kept_.empty(); }
+  /// Says it, now or later.
+  void say(std::function<void()> what);
+  /// What the one that stands by has goes out; gives it up when it has been silent for too long.
+  void let_go();
+  void wait_on(double seconds);
+  void note_heard(const ServerInput& input);
+  void go_alone(bool heard_by_most);
+  void say_up_to(std::uint64_t tick);
+
+  ServerChannel& inner_;
+  Clock& clock_;
+  std::function<std::size_t()> users_;
+  std::deque<Kept> kept_;
+  std::uint64_t tick_ = 0;          ///< the last that was told
+  bool in_step_ = false;            ///< one that stands by says what it has, and is waited for
+  std::set<ClientKey> awaited_;     ///< see await()
+  std::size_t awaited_enough_ = 0;  ///< so few may still be missing
+  double waited_s_ = 0.0;           ///< for the oldest that is kept
+  std::size_t users_then_ = 0;      ///< when that wait began
+  std::set<UserId> heard_;          ///< since then
+  std::int64_t turned_ns_ = 0;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace mortise

@@ -1,0 +1,204 @@
+#include "server/held_channel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace mortise {
+namespace {
+
+/// A clock that goes on as the test says.
+struct StillClock final : Clock {
+  std::int64_t at_ns = 1;
+  std::int64_t now_ns() override { return at_ns; }
+  std::int64_t wall_ns() override { return at_ns; }
+  void sleep_until_ns(std::int64_t deadline_ns) override { at_ns = deadline_ns; }
+};
+
+/// Writes down what reaches clients; one that stands by takes what the test lets it take.
+struct Wire final : ServerChannel {
+  StillClock* clock = nullptr;
+  std::vector<std::uint64_t> said;  ///< ticks of pose batches
+  std::uint64_t taken = 0, told = 0;
+  int led_anew = 0;
+  ServerInput input;
+
+  ServerInput take() override { return std::exchange(input, {}); }
+  void publish_join_reply(const JoinReply&) override {}
+  void publish_replies(std::span<const Reply>) override {}
+  void publish_decisions(std::span<const Decision>) override {}
+  void publish_refusals(std::span<const RefusedIncrement>) override {}
+  void publish_poses(const PoseBatch& batch) override { said.push_back(batch.tick); }
+  void publish_events(std::span<const ClashEvent>) override {}
+  void publish_snapshot(const Snapshot&) override {}
+  void publish_mesh(const std::string&, std::span<const std::byte>) override {}
+  void publish_features(const FeatureTable&) override {}
+  void publish_pulse(const SessionPulse&) override {}
+  bool has_readers() const override { return true; }
+  ChannelCounters counters() const override { return {}; }
+  bool has_follower() const override { return true; }
+  void publish_tick(const ToldTick& tick) override { told = tick.tick; }
+  std::uint64_t taken_up_to() override { return std::exchange(taken, 0); }
+  void await_taken(std::int64_t at_most_ns) override { clock->at_ns += at_most_ns; }
+  void lead_anew() override { ++led_anew; }
+};
+
+class Held : public ::testing::Test {
+ protected:
+  Held() { wire_.clock = &clock_; }
+  void tick(std::uint64_t number) {
+    (void)held_.take();
+    held_.publish_tick({number, {}});
+    PoseBatch batch;
+    batch.tick = number;
+    held_.publish_poses(batch);
+  }
+  /// The one that stands by says to have `tick`.
+  void taken(std::uint64_t tick) {
+    wire_.taken = tick;
+    (void)held_.take();
+  }
+  void rest(double seconds) {
+    for (const std::int64_t end_ns = clock_.at_ns + static_cast<std::int64_t>(seconds * 1e9);
+         clock_.at_ns < end_ns && held_.rest(end_ns - clock_.at_ns);) {
+    }
+  }
+  void hear(std::initializer_list<std::uint32_t> users) {
+    for (const std::uint32_t user : users) wire_.input.heartbeats.push_back(UserId{user});
+    (void)held_.take();
+  }
+
+  StillClock clock_;
+  Wire wire_;
+  std::size_t users_ = 3;
+  HeldChannel held_{wire_, clock_, [this] { return users_; }};
+};
+
+using Ticks = std::vector<std::uint64_t>;
+
+TEST_F(Held, SaysAllAtOnceWhileNobodyIsInStep) {
+  tick(1);
+  tick(2);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  EXPECT_EQ(wire_.told, 2u);
+  taken(1);  // far behind is as good as not there
+  for (std::uint64_t t = 3; t < 100; ++t) tick(t);
+  EXPECT_FALSE(wire_.said.empty());
+}
+
+TEST_F(Held, KeepsWhatTheSecondHasNot) {
+  tick(1);
+  taken(1);
+  tick(2);
+  tick(3);
+  EXPECT_EQ(wire_.said, Ticks{1});
+  rest(0.1);
+  EXPECT_EQ(wire_.said, Ticks{1});
+  taken(2);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  taken(3);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3}));
+}
+
+TEST_F(Held, NothingIsSaidOfWhatWasKeptWhenAnotherLeads) {
+  tick(1);
+  taken(1);
+  tick(2);
+  wire_.input.superseded = true;
+  wire_.taken = 2;  // said by nobody who could know
+  (void)held_.take();
+  EXPECT_EQ(wire_.said, Ticks{1});
+}
+
+TEST_F(Held, ASilentSecondIsGivenUpAndThatIsSaid) {
+  tick(1);
+  taken(1);
+  tick(2);
+  hear({1, 2});
+  rest(0.45);
+  EXPECT_EQ(wire_.said, Ticks{1});
+  rest(0.1);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  EXPECT_EQ(wire_.led_anew, 1);
+  ASSERT_EQ(held_.take_notes().size(), 1u);
+  tick(3);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3})) << "no more waiting";
+  taken(3);
+  tick(4);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3})) << "it is back, and waited for";
+}
+
+TEST_F(Held, AFreezeOfThisProcessIsNotTheSilenceOfTheOther) {
+  tick(1);
+  taken(1);
+  tick(2);
+  hear({1, 2});
+  clock_.at_ns += 10'000'000'000;  // stood still
+  (void)held_.take();
+  EXPECT_EQ(wire_.said, Ticks{1});
+  EXPECT_EQ(wire_.led_anew, 0);
+}
+
+TEST_F(Held, OneThatHearsNeitherItsSecondNorMostUsersWaitsLonger) {
+  tick(1);
+  taken(1);
+  tick(2);
+  hear({1});  // of three
+  rest(3.5);
+  EXPECT_EQ(wire_.said, Ticks{1}) << "it may be the one that is cut off";
+  hear({2});
+  EXPECT_EQ(wire_.said, (Ticks{1, 2})) << "most are here";
+  EXPECT_EQ(wire_.led_anew, 1);
+}
+
+TEST_F(Held, OneThatStaysAloneGoesOnWithoutAHigherTerm) {
+  tick(1);
+  taken(1);
+  tick(2);
+  rest(4.2);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  EXPECT_EQ(wire_.led_anew, 0) << "whoever leads the others is not to be ended by this one";
+}
+
+TEST_F(Held, ASecondThatGoesIsNotWaitedFor) {
+  tick(1);
+  taken(1);
+  tick(2);
+  taken(kTakenAll);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  tick(3);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3}));
+  EXPECT_TRUE(held_.take_notes().empty());
+}
+
+TEST_F(Held, OneThatTookOverSpeaksWhenHalfOfItsUsersHaveCome) {
+  held_.await({{UserId{1}, "a", 0}, {UserId{2}, "b", 0}, {UserId{3}, "c", 0}});
+  tick(1);
+  wire_.input.joins.push_back({"a", 1, "anna", "designer"});
+  tick(2);
+  rest(1.0);
+  EXPECT_TRUE(wire_.said.empty());
+  wire_.input.joins.push_back({"c", 1, "cleo", "designer"});
+  tick(3);
+  rest(0.01);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3}));
+}
+
+TEST_F(Held, OneThatTookOverAndStaysAloneSaysSo) {
+  held_.await({{UserId{1}, "a", 0}, {UserId{2}, "b", 0}});
+  tick(1);
+  rest(4.2);
+  EXPECT_EQ(wire_.said, Ticks{1});
+  ASSERT_EQ(held_.take_notes().size(), 1u);
+}
+
+TEST_F(Held, AtTheEndAllIsSaid) {
+  tick(1);
+  taken(1);
+  tick(2);
+  held_.finish();
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+}
+
+}  // namespace
+}  // namespace mortise
