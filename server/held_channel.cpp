@@ -9,6 +9,9 @@ namespace {
 constexpr double kTurn_s = 0.005;
 constexpr std::int64_t kLook_ns = 2'000'000;
 constexpr std::uint64_t kNear_ticks = 60;
+// Users who do nothing say so each 0.2 s.
+constexpr double kLately_s = 0.3;
+static_assert(kLately_s < HeldChannel::kPatience_s);
 
 template <class Entry>
 std::vector<Entry> copy_of(std::span<const Entry> entries) {
@@ -31,9 +34,9 @@ ServerInput HeldChannel::take() {
 }
 
 void HeldChannel::note_heard(const ServerInput& input) {
-  for (const ReceivedIncrement& received : input.increments) heard_.insert(received.increment.user);
-  for (const ReceivedCommand& received : input.commands) heard_.insert(received.command.user);
-  heard_.insert(input.heartbeats.begin(), input.heartbeats.end());
+  for (const ReceivedIncrement& received : input.increments) note_heard(received.increment.user);
+  for (const ReceivedCommand& received : input.commands) note_heard(received.command.user);
+  for (const UserId user : input.heartbeats) note_heard(user);
   for (const JoinRequest& join : input.joins) awaited_.erase(join.client);
   if (awaited_.size() <= awaited_enough_) awaited_.clear();
 }
@@ -72,8 +75,23 @@ void HeldChannel::wait_on(double turn_s) {
   }
   if (!in_step_) return say_up_to(kTakenAll);
   if (waited_s_ < kPatience_s) return;
-  const bool heard_by_most = heard_.size() * 2 > users_then_;
+  const bool heard_by_most = most_users_are_heard();
   if (heard_by_most || waited_s_ >= kPatienceCutOff_s) go_alone(heard_by_most);
+}
+
+void HeldChannel::note_heard(UserId user) {
+  Heard& heard = heard_[user];
+  heard.steady = heard.steady && waited_s_ - heard.at_s < kLately_s;
+  heard.at_s = waited_s_;
+}
+
+bool HeldChannel::most_users_are_heard() const {
+  // All along: who is heard again may be with another server since.
+  const auto steadily = [&](const auto& entry) {
+    return entry.second.steady && waited_s_ - entry.second.at_s < kLately_s;
+  };
+  const auto heard = std::count_if(heard_.begin(), heard_.end(), steadily);
+  return static_cast<std::size_t>(heard) * 2 > users_then_;
 }
 
 void HeldChannel::go_alone(bool heard_by_most) {

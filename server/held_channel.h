@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -56,6 +57,10 @@ class HeldChannel final : public ServerChannel {
     std::uint64_t tick = 0;
     std::function<void()> say;
   };
+  struct Heard {
+    double at_s = 0.0;   ///< of waited_s_
+    bool steady = true;  ///< never silent for long
+  };
   bool keeps() const { return in_step_ || !awaited_.empty() || !kept_.empty(); }
   /// Says it, now or later.
   void say(std::function<void()> what);
@@ -63,6 +68,8 @@ class HeldChannel final : public ServerChannel {
   void let_go();
   void wait_on(double seconds);
   void note_heard(const ServerInput& input);
+  void note_heard(UserId user);
+  bool most_users_are_heard() const;
   void go_alone(bool heard_by_most);
   void say_up_to(std::uint64_t tick);
 
@@ -76,7 +83,7 @@ class HeldChannel final : public ServerChannel {
   std::size_t awaited_enough_ = 0;  ///< so few may still be missing
   double waited_s_ = 0.0;           ///< for the oldest that is kept
   std::size_t users_then_ = 0;      ///< when that wait began
-  std::set<UserId> heard_;          ///< since then
+  std::map<UserId, Heard> heard_;   ///< since then
   std::int64_t turned_ns_ = 0;
   std::vector<std::string> notes_;
 };

@@ -38,14 +38,19 @@ std::vector<Decision> depart_all(World& world) {
 
 }  // namespace
 
-std::optional<fs::path> log_to_restore(const fs::path& place, const std::string& session) {
+std::optional<fs::path> log_to_restore(const fs::path& place, const std::string& session,
+                                       Newest by) {
   std::error_code error;
   if (!fs::is_directory(place, error)) return chain_from(place).back();
   std::optional<fs::path> newest;
   for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
     if (!is_log_of(entry.path(), session)) continue;
-    // Names hold the time: the newest is the last one.
-    if (!newest || entry.path().filename() > newest->filename()) newest = entry.path();
+    // Names hold the time: the one that was begun last is the last one.
+    const bool later =
+        !newest ||
+        (by == Newest::kBegun ? entry.path().filename() > newest->filename()
+                              : entry.last_write_time(error) > fs::last_write_time(*newest, error));
+    if (later) newest = entry.path();
   }
   return newest;
 }

@@ -25,10 +25,12 @@ struct Resumed {
   std::string left_out_because;      ///< empty: none was
 };
 
-/// The newest log of the session in a folder; the last of its chain when `place` is no folder; none
-/// when the folder holds no log of it.
+enum class Newest { kBegun, kWritten };
+/// The log of the session in a folder that was begun, or written to, last; the last of its chain
+/// when `place` is no folder; none when the folder holds no log of it.
 std::optional<std::filesystem::path> log_to_restore(const std::filesystem::path& place,
-                                                    const std::string& session);
+                                                    const std::string& session,
+                                                    Newest by = Newest::kBegun);
 
 /// Plays a log again in `world`, which stands as scene_of(log) made it or as at one of its
 /// checkpoints; each tick is held against its logged events and state hash. Afterwards parts,

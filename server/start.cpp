@@ -112,7 +112,10 @@ std::string log_file(const ServerOptions& options) {
 
 Result<SessionStart> read_start(const ServerOptions& options) {
   if (options.restore.empty()) return read_from_scenario(options);
-  const auto file = log_to_restore(options.restore, options.session);
+  const auto file = log_to_restore(options.restore, options.session,
+                                   // One that stood by before leaves a log that was begun later and
+                                   // is not of the one that leads.
+                                   options.standby_of.empty() ? Newest::kBegun : Newest::kWritten);
   if (file) return read_from_log(*file);
   if (options.scenario.empty()) {
     return fail(Code::kInvalidInput,
