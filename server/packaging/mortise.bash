@@ -14,7 +14,12 @@ _mortise() {
     mapfile -t COMPREPLY < <(compgen -W "$(grep -oE '^  (-[a-zA-Z],)?--[a-z0-9-]+' <<<"$help" | grep -oE -- '--[a-z0-9-]+')" -- "$cur")
     return
   fi
-  if [ "$cword" -eq 1 ]; then choices=$(sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' <<<"$help"); fi
+  # What mortise-keys does, and for whom, stands in its --help line by line.
+  if [ "${program##*/}" = mortise-keys ] && [ "$prev" = --role ]; then
+    mapfile -t COMPREPLY < <(compgen -W "designer observer bot gateway server" -- "$cur")
+    return
+  fi
+  if [ "$cword" -eq 1 ]; then choices=$(sed -n "/^Subcommands:/,/^\$/s/^  \([a-z-]*\) .*/\1/p; s/^  ${program##*/} \([a-z]*\) .*/\1/p" <<<"$help"); fi
   mapfile -t COMPREPLY < <(compgen -W "${choices:-}" -- "$cur"; compgen -f -- "$cur")
 }
-complete -o filenames -F _mortise mortise-server mortise-bot mortise-replay mortise-judge mortise-lint mortise-inspect mortise-first-contact mortise-generate mortise-web
+complete -o filenames -F _mortise mortise-server mortise-bot mortise-replay mortise-judge mortise-lint mortise-inspect mortise-first-contact mortise-generate mortise-web mortise-keys

@@ -33,7 +33,7 @@ for deb in "$work"/out/*.deb; do dpkg-deb -x "$deb" "$work/unpacked"; done
 no_warnings() { local said; said=$(MANWIDTH=80 LC_ALL=C.UTF-8 man --warnings -l "$1" 2>&1 >/dev/null) || return 1; echo "$said"; [ -z "$said" ]; }
 if command -v man >/dev/null && command -v help2man >/dev/null; then
   pages=("$work"/unpacked/usr/share/man/man1/*.gz)
-  check "nine programs have manual pages" test "${#pages[@]}" -eq 9
+  check "ten programs have manual pages" test "${#pages[@]}" -eq 10
   for page in "${pages[@]}"; do check "man has nothing to say of $(basename "$page")" no_warnings "$page"; done
 else
   echo "note: man or help2man is not installed: manual pages are not checked"
@@ -47,6 +47,8 @@ check "completion: options of the server" offers --metrics-port mortise-server -
 check "completion: values of an option" offers slide mortise-server --policy s
 check "completion: subcommands" offers verify mortise-replay ver
 check "completion: options of a subcommand" offers --json mortise-replay verify --js
+check "completion: what is done with keys" offers revoke mortise-keys rev
+check "completion: roles of keys" offers observer mortise-keys issue anna --role ob
 check "completion: nothing that is not there" bash -c "! (set -e; $(declare -f completes); work='$work'; completes mortise-server --no-such-option | grep -q .)"
 if command -v systemd-analyze >/dev/null; then
   for unit in "$work"/unpacked/usr/lib/systemd/system/*.service; do
