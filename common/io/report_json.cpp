@@ -202,9 +202,9 @@ Json json_of(const PairVerdicts& pair, const SessionNames& names) {
 }
 
 Json json_of(const ChannelCounters& c) {
-  return {{"received", c.received},       {"malformed", c.malformed},
-          {"foreign", c.foreign},         {"lost", c.lost},
-          {"send_failed", c.send_failed}, {"guard_dropped", c.guard_dropped},
+  return {{"received", c.received},         {"malformed", c.malformed},
+          {"foreign", c.foreign},           {"lost", c.lost},
+          {"send_failed", c.send_failed},   {"guard_dropped", c.guard_dropped},
           {"trailers_cut", c.trailers_cut}, {"turned_away", c.turned_away}};
 }
 
