@@ -120,12 +120,12 @@ class Hosts : public ::testing::Test {
     auto start = read_start(o);
     auto channel = open_server_channel(options(kServerSide, "hall"));
     if (!start || !channel) return note(start ? channel.error().text : start.error().text);
-    auto log = NewLog::create(o, *start);
-    if (!log || !log->publish()) return note("no log");
+    auto log = create_log(o, *start, std::nullopt);
+    if (!log) return note(log.error().text);
     SystemClock clock;
     const TickLoop* running = nullptr;
     HeldChannel held(**channel, clock, [&] { return running->inbox().users_present(); });
-    TickLoop loop(start->scene.world, held, clock, log->writer(), {});
+    TickLoop loop(start->scene.world, held, clock, log->writer.get(), {});
     running = &loop;
     loop.open();
     serving_ = true;
@@ -139,8 +139,8 @@ class Hosts : public ::testing::Test {
              });
     superseded_ = loop.superseded();
     if (!superseded_) held.finish();
-    if (Status closed = log->writer()->close(); !closed) note(closed.error().text);
-    first_log_ = log->file();
+    if (Status closed = log->writer->close(); !closed) note(closed.error().text);
+    first_log_ = log->file;
   }
   /// The designers of one namespace.
   void work(int side, std::size_t first) {
