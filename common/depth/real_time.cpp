@@ -189,7 +189,8 @@ class InterferenceSearch {
   bool real_soon_after(double t) {
     const double soon =
         t + kSoonShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
-    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, std::min(at_.work_cap, kLookWorkCap)))
+    const std::uint64_t left = at_.work_cap - std::min(at_.work_cap, answer_.evaluations);
+    if (soon > std::min(1.0, t_real_) || !is_real_at(soon, std::min(left, kLookWorkCap)))
       return false;
     t_real_ = soon;
     free_until_ = std::min(free_until_, t);

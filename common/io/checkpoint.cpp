@@ -78,7 +78,11 @@ bool fits(const World& world, const SessionState& state) {
   }
   return std::ranges::all_of(state.placed, is_part) && std::ranges::all_of(state.rehash, is_part) &&
          std::ranges::all_of(state.owed, [&](IndexPair p) { return p.a < p.b && is_part(p.b); }) &&
-         std::ranges::is_sorted(state.owed);
+         std::ranges::is_sorted(state.owed) &&
+         std::ranges::all_of(state.kept, [&](const KeptPush& push) {
+           return is_part(push.part) && is_user(world, push.user) && valid(push.X_WP) &&
+                  push.shift_mm.allFinite() && push.turn_rad.allFinite();
+         });
 }
 
 bool fits(const World& world) {

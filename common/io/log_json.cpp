@@ -236,6 +236,7 @@ void each_counter(const StepCounters& counters, const Visit& visit) {
   visit("parts_without_inside", counters.parts_without_inside);
   visit("pairs_waiting", counters.pairs_waiting);
   visit("pairs_held_again", counters.pairs_held_again);
+  visit("pushes_cut", counters.pushes_cut);
   visit("not_examined", counters.not_examined);
 }
 

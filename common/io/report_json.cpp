@@ -166,6 +166,7 @@ Json json_of(const StepCounters& c) {
   json["parts_without_inside"] = c.parts_without_inside;
   json["waiting_for_work"] = c.pairs_waiting;
   json["held_again"] = c.pairs_held_again;
+  json["pushes_cut"] = c.pushes_cut;
   json["not_examined"] = c.not_examined;
   return json;
 }

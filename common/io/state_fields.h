@@ -137,8 +137,8 @@ void fields(A& a, PairMemo::Held& x) {
 }
 template <class A>
 void fields(A& a, PairMemo::Stalled& x) {
-  auto& [X_WA, X_WB, shift, turn, in_full, judged] = x;
-  a(X_WA, X_WB, shift, turn, in_full, judged);
+  auto& [X_WA, X_WB, shift, turn, in_full, judged, in_vain] = x;
+  a(X_WA, X_WB, shift, turn, in_full, judged, in_vain);
 }
 template <class A>
 void fields(A& a, PairMemo::Effort& x) {
@@ -148,22 +148,27 @@ void fields(A& a, PairMemo::Effort& x) {
 /// But for `touched`, which is about copies of it.
 template <class A>
 void fields(A& a, PairMemo& x) {
-  auto& [X_BA, apart_mm, placements, not_contained, pause, next_pause, nearest, allowed_depth_mm,
-         held, stalled, effort, touched] = x;
-  a(X_BA, apart_mm, placements, not_contained, pause, next_pause, nearest, allowed_depth_mm, held,
-    stalled, effort);
+  auto& [not_judged, not_seen, X_BA, apart_mm, placements, not_contained, pause, next_pause,
+         nearest, allowed_depth_mm, held, stalled, effort, touched] = x;
+  a(not_judged, not_seen, X_BA, apart_mm, placements, not_contained, pause, next_pause, nearest,
+    allowed_depth_mm, held, stalled, effort);
 }
 template <class A>
 void fields(A& a, PartState& x) {
   auto& [growth_mm, placements, last_tick, last_user, hash, cause, cause_user, cause_tick] = x;
   a(growth_mm, placements, last_tick, last_user, hash, cause, cause_user, cause_tick);
 }
+template <class A>
+void fields(A& a, KeptPush& x) {
+  auto& [part, user, X_WP, shift_mm, turn_rad] = x;
+  a(part, user, X_WP, shift_mm, turn_rad);
+}
 /// But for the boxes, which follow from poses and growth, and the memos, which are written apart.
 template <class A>
 void fields(A& a, SessionState& x) {
-  auto& [tick, event_seq, next_clash, moving_parts, broad_phase, parts, placed, owed, rehash, memos,
-         touched, open, reviews, clashes_changed, saved_work, parts_hash, clashes_hash] = x;
-  a(tick, event_seq, next_clash, moving_parts, parts, placed, owed, rehash, open, reviews,
+  auto& [tick, event_seq, next_clash, moving_parts, broad_phase, parts, placed, owed, kept, rehash,
+         memos, touched, open, reviews, clashes_changed, saved_work, parts_hash, clashes_hash] = x;
+  a(tick, event_seq, next_clash, moving_parts, parts, placed, owed, kept, rehash, open, reviews,
     clashes_changed, saved_work, parts_hash, clashes_hash);
 }
 
@@ -180,14 +185,14 @@ void fields(A& a, StepCounters& x) {
          event_time_queries, judged_with_bands, judged_plain, regions_decided_early,
          regions_refined, verdicts, verdicts_by_class, stopped_parts, rounds, slid_parts,
          slide_legs, slide_holds, slides_cut_short, box_tests, triangle_tests, depth_evaluations,
-         parts_without_inside, pairs_waiting, pairs_held_again, not_examined] = x;
+         parts_without_inside, pairs_waiting, pairs_held_again, pushes_cut, not_examined] = x;
   a(increments, refused, moves, moves_below_rounding, pairs, pairs_static, pairs_still,
     pairs_excluded, pairs_boxes_apart, pairs_budget, contacts, contacts_clear, contacts_undecided,
     first_contact_queries, distance_queries, depth_queries, event_time_queries, judged_with_bands,
     judged_plain, regions_decided_early, regions_refined, verdicts, verdicts_by_class,
     stopped_parts, rounds, slid_parts, slide_legs, slide_holds, slides_cut_short, box_tests,
     triangle_tests, depth_evaluations, parts_without_inside, pairs_waiting, pairs_held_again,
-    not_examined);
+    pushes_cut, not_examined);
 }
 template <class A>
 void fields(A& a, SessionStatistics::Row& x) {

@@ -47,6 +47,8 @@ struct StepCounters {
   std::uint64_t pairs_waiting = 0;
   /// Pairs that hold a part where the same place held it before: no search, no new verdict.
   std::uint64_t pairs_held_again = 0;
+  /// Parts that wait for work and were pushed by more meanwhile than is kept for them.
+  std::uint64_t pushes_cut = 0;
   std::uint64_t not_examined =
       0;  ///< pairs given up by a work cap or overload; never reported as clear
 };

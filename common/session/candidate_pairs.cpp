@@ -55,6 +55,8 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
   pair.band_b = &band_b_of(bands);
   pair.band_mm = std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
   pair.memo = &state.memo(pair.a, pair.b);
+  const auto open = state.open.find({a.id, b.id});
+  if (open != state.open.end()) pair.open = &open->second;
   const std::uint64_t placements = state.parts[pair.a].placements + state.parts[pair.b].placements;
   if (pair.memo->placements != placements) {
     pair.memo->placements = placements;
@@ -62,9 +64,8 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
     pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
     pair.memo->held.reset();
     pair.memo->stalled.reset();
+    pair.memo->not_judged = pair.memo->not_seen = pair.open != nullptr;
   }
-  const auto open = state.open.find({a.id, b.id});
-  if (open != state.open.end()) pair.open = &open->second;
   pair.move_a = work.move_of_part[pair.a];
   pair.move_b = work.move_of_part[pair.b];
   const auto motion_of = [&](std::int32_t move, const Part& part) {

@@ -67,11 +67,12 @@ bool is_left(CollisionClass told, const Verdict& now) {
   return now.margin_mm >= h;
 }
 
-// Worth an event? A worse class always, a better one when it is beyond the threshold for certain, a
-// growing depth now and then.
-bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick) {
+// Worth an event? A worse class always, a better one when it is beyond the threshold for certain or
+// judged anew by decision (nothing trembles there), a growing depth now and then.
+bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick, bool anew) {
   const CollisionClass told = clash.last.verdict.collision_class;
   if (verdict.collision_class > told) return true;
+  if (anew && verdict.collision_class < told) return true;
   if (verdict.collision_class < told) return is_left(told, verdict);
   if (tick < clash.last.tick + kClashQuietTicks) return false;
   const double told_mm = clash.last.worst_delta_mm.lo;
@@ -211,13 +212,18 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
       }
     pair.seen.resize(kept);
   }
+  const bool anew = pair.memo->not_judged || (pair.memo->not_seen && !pair.blocks);
   for (SeenRegion& seen : pair.seen) {
     if (seen.open < 0) {
       seen.tell = true;
     } else {
       const OpenClash& clash = open[static_cast<std::size_t>(seen.open)];
       pair.keeps[static_cast<std::size_t>(seen.open)] = 1;
-      seen.tell = change_is_due(clash, seen.verdict, world.tick);
+      seen.tell = change_is_due(clash, seen.verdict, world.tick, anew);
+      const bool better = seen.verdict.collision_class < clash.last.verdict.collision_class;
+      // At rest, where the depth cannot be known well enough, what a fresh look says is told.
+      seen.tell |= better && pair.in_full && pair.undecided;
+      pair.unsettled |= better && !seen.tell;
     }
   }
   // 2. Hysteresis: not interfering any more, but by less than can be told for certain.
@@ -229,7 +235,7 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
                   [&](const OverlapRegion& region) {
                     return region.possible_mm.hi <= 0.0 && region.possible_mm.hi > -h;
                   });
-  if (pair.seen.empty() && (close || barely)) pair.keeps.assign(open.size(), 1);
+  if (pair.seen.empty() && !anew && (close || barely)) pair.keeps.assign(open.size(), 1);
 }
 
 void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,

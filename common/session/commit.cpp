@@ -1,4 +1,5 @@
 #include "common/session/guidance.h"
+#include "common/session/kept_push.h"
 #include "common/session/tick_work.h"
 
 namespace mortise {
@@ -20,6 +21,7 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
     state.broad_phase->set_box(move.part, resting_box(world, state, move.part));
   }
   state.placed.clear();
+  state.kept = kept_pushes(world, work, report.counters);
   // What the tick had no work for is looked at as it stands, should it not move on.
   state.owed.clear();
   for (std::size_t i = 0; i < work.pair_count; ++i)

@@ -10,6 +10,8 @@ namespace {
 // Evaluations of each of the two searches, some 10 ms of work. At the cap a time of that kind
 // is told that is not proven to be the first, and the pair is counted as not examined.
 constexpr std::uint64_t kEventTimeWorkCap = 3'000;
+// The same within a tick that has others to serve: its events are told to a share of the tick.
+constexpr std::uint64_t kEventTimeWorkCapOfTick = 750;
 
 // Halvings, and the evaluations of each look.
 constexpr int kHalvings = 13;
@@ -28,7 +30,8 @@ SweptQuery swept_query(const PairWork& pair) {
   query.at_target.b = pair.solid_b;
   query.at_target.band_a = pair.band_a;
   query.at_target.band_b = pair.band_b;
-  query.at_target.work_cap = pair.cap_of(kEventTimeWorkCap);
+  query.at_target.work_cap =
+      pair.cap_of(pair.limited ? kEventTimeWorkCapOfTick : kEventTimeWorkCap);
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
   return query;

@@ -153,6 +153,23 @@ void follow(const World& world, Scratch::Impl& work) {
   }
 }
 
+// Parts that go on with what they were pushed by while they waited, unless somebody else has them
+// now or they were put elsewhere.
+void go_on(const World& world, Scratch::Impl& work) {
+  for (const KeptPush& push : world.state->kept) {
+    const Part& part = world.parts[push.part];
+    if (!identical(part.X_WP, push.X_WP) || (part.holder && part.holder != push.user)) continue;
+    Move& move = move_of(work, target_of(world, push.part));
+    move.user = push.user;
+    move.turned_rad = push.turn_rad.norm();
+    Increment rest;
+    rest.translation_mm = push.shift_mm;
+    rest.rotation_rad = push.turn_rad;
+    move.motion.X_W1 = applied(rest, move.motion.X_W1, move.motion.reference_P);
+  }
+  world.state->kept.clear();
+}
+
 }  // namespace
 
 void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
@@ -164,7 +181,9 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
   for (const Move& move : work.moves) work.move_of_part[move.part] = -1;
   work.moves.clear();
 
-  // 1. Check and compose, in order of arrival. motion.X_W1 is the target so far.
+  // 1. Check and compose, in order of arrival, on top of what is left of the last tick.
+  //    motion.X_W1 is the target so far.
+  go_on(world, work);
   for (const Increment& increment : increments) {
     Refusal refusal = check(world, increment);
     if (refusal == Refusal::kNone) {

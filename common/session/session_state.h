@@ -18,6 +18,9 @@ namespace mortise {
 
 /// What a pair of parts is known to be, so that it need not be asked again.
 struct PairMemo {
+  /// Since a part of it was put somewhere, or what is stated of them changed, the clashes that were
+  /// open then have not been judged at all, or not as the parts stand.
+  bool not_judged = false, not_seen = false;
   /// The surfaces are at least apart_mm from each other when A stands at X_BA as seen from B
   /// (negative: nothing is known). A statement about poses, true for ever: no teleport can spoil
   /// it.
@@ -50,6 +53,8 @@ struct PairMemo {
     Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();
     bool in_full = false;  ///< it had all the work that it may have
     bool judged = false;   ///< and what it would have led to was judged
+    /// Searches in a row, whatever the push, that had all their work and came to nothing there.
+    std::uint8_t in_vain = 0;
   };
   std::optional<Stalled> stalled;
   /// What a stage of the last ticks needed of depth, and for how many ticks it has waited for it;
@@ -87,6 +92,16 @@ struct PartState {
   std::uint64_t cause_tick = 0;
 };
 
+/// What is left of a push whose part waits for work: it was accepted, so the part goes on with it
+/// in the next tick, together with what is pushed then. As an increment about the part's reference
+/// point, mm and rad, world axes.
+struct KeptPush {
+  std::uint32_t part = 0;  ///< index
+  UserId user;
+  Pose X_WP;  ///< where the part was left; put elsewhere, it is pushed no more
+  Vec3 shift_mm = Vec3::Zero(), turn_rad = Vec3::Zero();
+};
+
 using PartPair = std::pair<PartId, PartId>;
 
 /// Caches and open clashes between ticks. Most of it only saves the asking; but what a pair was
@@ -101,6 +116,7 @@ struct SessionState {
   std::vector<PartState> parts;
   std::vector<std::uint32_t> placed;  ///< parts put somewhere since the last tick, no repeats
   std::vector<IndexPair> owed;        ///< pairs that the last tick had no work to judge, sorted
+  std::vector<KeptPush> kept;         ///< by part
   std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
   std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
   /// Memos that may have changed since somebody last copied them, no repeats; see io/checkpoint.h.

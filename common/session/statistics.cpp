@@ -55,6 +55,7 @@ void accumulate(StepCounters& into, const StepCounters& from) {
   into.parts_without_inside += from.parts_without_inside;
   into.pairs_waiting += from.pairs_waiting;
   into.pairs_held_again += from.pairs_held_again;
+  into.pushes_cut += from.pushes_cut;
   into.not_examined += from.not_examined;
 }
 

@@ -211,7 +211,8 @@ PairMemo::Stalled push_of(const PairWork& pair) {
           pair.motion_a.v_W - pair.motion_b.v_W,
           rim_mm * (pair.motion_a.w_W - pair.motion_b.w_W),
           false,
-          false};
+          false,
+          0};
 }
 
 SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
@@ -254,10 +255,21 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
 }  // namespace
 
 void note_stalled(PairWork& pair) {
+  const std::uint8_t in_vain = times_in_vain(pair);
   pair.memo->stalled.reset();
   if (!pair.undecided || pair.t_stop > 0.0) return;
   pair.memo->stalled = push_of(pair);
   pair.memo->stalled->in_full = !pair.short_of_work;
+  pair.memo->stalled->in_vain =
+      static_cast<std::uint8_t>(std::min(in_vain + (pair.short_of_work ? 0 : 1), 250));
+}
+
+std::uint8_t times_in_vain(const PairWork& pair) {
+  const auto& before = pair.memo->stalled;
+  return before && identical(before->X_WA, pair.motion_a.X_W0) &&
+                 identical(before->X_WB, pair.motion_b.X_W0)
+             ? before->in_vain
+             : std::uint8_t{0};
 }
 
 bool is_stalled(const PairWork& pair) {

@@ -23,6 +23,10 @@ void note_stalled(PairWork& pair);
 /// Is it the push that came to nothing before, from the same place?
 bool is_stalled(const PairWork& pair);
 
+/// How many searches in a row, whatever the push, have come to nothing from where the parts stand,
+/// with all the work that they may have.
+std::uint8_t times_in_vain(const PairWork& pair);
+
 /// How far a pair that is real at the start of its segment may go: as long as it gets no deeper.
 /// Looked at in quarters of the segment; between them it is not looked at.
 double withdrawal_time(PairWork& pair, CcdScratch& ccd);

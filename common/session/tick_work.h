@@ -105,6 +105,7 @@ struct PairWork {
   // Work on depth, in evaluations; see work_budget.h.
   std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
   std::uint64_t most_work = 0;   ///< that a pair may have in the stage
+  bool limited = false;          ///< by what the tick may spend
   bool wants_stop_time = false;  ///< its t_stop is what needs no search
   double t_stop_start = 0.0;     ///< of the segment: where that search begins
   bool stop_gave_up = false;     ///< that search came to the end of its work
@@ -128,6 +129,8 @@ struct PairWork {
   // Stage 4.
   Judgement judgement;
   std::vector<SeenRegion> seen;
+  bool unsettled = false;  ///< a better class than told, but not by enough to be told
+  bool in_full = false;    ///< then its depth is looked at as closely as may be
   double t_potential = kNever, t_real = kNever;  ///< of the tick; where somebody is told
   std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)
 

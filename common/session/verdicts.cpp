@@ -39,6 +39,7 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
   query.motion_b = motion.b;
   query.t_contact = motion.t_contact;
   query.want_gpd = want_gpd;
+  if (pair.in_full) query.refinement = Refinement::kFull;
   query.work_cap = query.whole_cap = pair.cap_of(kTickOverlapCap);
   Judgement judgement = judge_pair(query, ccd);
   count(query, judgement, pair.counts);
@@ -160,6 +161,7 @@ void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch
 // The place that holds a part holds it again, or the same push comes to nothing again: what was
 // said of it holds on.
 bool stays_told(const PairWork& pair) {
+  if (pair.memo->not_judged) return false;
   if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
   return pair.near && pair.blocks && pair.held_again && pair.open &&
          std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
@@ -178,6 +180,7 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
                 CcdScratch& ccd) {
   const PairMotion motion = as_moved(work, pair);
   pair.seen.clear();
+  pair.unsettled = false;
   if (pair.blocks) {
     judge_attempt(world, pair, want_gpd, ccd);
   } else {
@@ -209,6 +212,7 @@ void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, 
   const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
                                             2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
+  pair.memo->not_judged = pair.memo->not_seen = false;
 }
 
 bool anything_to_tell(const PairWork& pair) {
@@ -224,6 +228,24 @@ void put_off(PairWork& pair) {
   pair.owed = !pair.blocks || !pair.open;
 }
 
+// After a decision: what was open is judged by what holds now, and as the parts stand.
+void note_judged(PairWork& pair) {
+  pair.memo->not_judged = false;
+  if (!pair.blocks) pair.memo->not_seen = false;
+}
+
+// A class was left, but perhaps only because no more was asked than what class it is now. While
+// parts move that may be; when they rest it is asked once.
+void settle(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  if (!pair.unsettled || pair.blocks) return;
+  if (!pair.placed) {
+    pair.owed = true;
+    return;
+  }
+  pair.in_full = true;
+  judge_near(world, work, pair, false, ccd);
+}
+
 void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   if (pair.cap == 0) {
     put_off(pair);
@@ -232,12 +254,16 @@ void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, 
   const bool was_undecided = std::exchange(pair.undecided, false);
   // The separating motion is needed only where somebody is told of it.
   judge_near(world, work, pair, pair.open == nullptr, ccd);
+  settle(world, work, pair, ccd);
   const bool capped = pair.undecided;
   if (capped && pair.may_have_more()) {
     put_off(pair);
-  } else if (anything_to_tell(pair)) {
-    if (pair.open && pair.left() > 0) judge_near(world, work, pair, true, ccd);
-    find_event_times(pair, end_of(work, pair), ccd);
+  } else {
+    if (anything_to_tell(pair)) {
+      if (pair.open && pair.left() > 0) judge_near(world, work, pair, true, ccd);
+      find_event_times(pair, end_of(work, pair), ccd);
+    }
+    note_judged(pair);
   }
   if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo->stalled->judged = true;
   note_effort(pair, WorkStage::kVerdict, capped);
@@ -274,6 +300,10 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
   work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
     judge_asked(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
   });
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    PairWork& pair = work.pairs[i];
+    pair.owed |= pair.asked && pair.open && pair.memo->not_seen;
+  }
 }
 
 }  // namespace mortise

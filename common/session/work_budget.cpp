@@ -11,7 +11,7 @@ namespace mortise {
 namespace {
 
 // Evaluations a second: 3,000 in a tick of 60 Hz, some 7 ms. More holds up everybody, less leaves
-// more pairs waiting.
+// more pairs waiting: with 2,000 the demo loses the press fit of its bearing.
 constexpr double kWorkPerSecond = 180'000.0;
 constexpr std::uint64_t kLeastTickWork = 500;
 // Share of a tick that the search for stops leaves to the verdicts.
@@ -37,8 +37,15 @@ constexpr std::uint64_t kUnlimitedEffort = 10'000;
 // parts that leave each other need no more.
 constexpr std::uint64_t kFirstEffort = 1'500, kGlance = 250;
 
-// A search that has come to nothing is not repeated for so many ticks while nothing has changed.
+// A search that has come to nothing is not repeated for so many ticks while nothing has changed;
+// nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
+// the parts leave each other.
 constexpr std::uint8_t kStalledTicks = 30;
+
+// So many ticks who is not held waits behind who is; and who has waited so many for a verdict is
+// judged before anybody else, whatever is left, one in a tick.
+constexpr int kHeldLead_ticks = 30;
+constexpr std::uint8_t kLongestWait_ticks = 45;
 
 constexpr std::uint64_t kNoLimit = 1'000'000'000;
 
@@ -77,7 +84,8 @@ std::vector<std::uint32_t> in_order(const World& world, const Scratch::Impl& wor
   std::vector<std::uint32_t> order(pairs.begin(), pairs.end());
   const auto rank = [&](std::uint32_t i) {
     const PairWork& pair = work.pairs[i];
-    return std::tuple(!is_held(world, pair), -static_cast<int>(pair.memo->effort[stage].waited), i);
+    const int waited = pair.memo->effort[stage].waited;
+    return std::tuple(-waited - (is_held(world, pair) ? kHeldLead_ticks : 0), i);
   };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t x, std::uint32_t y) { return rank(x) < rank(y); });
@@ -87,6 +95,12 @@ std::vector<std::uint32_t> in_order(const World& world, const Scratch::Impl& wor
 std::uint64_t wanted_of(const PairWork& pair, std::size_t stage, std::uint64_t most) {
   const std::uint32_t wanted = pair.memo->effort[stage].wanted;
   return std::min<std::uint64_t>(wanted == 0 ? kFirstEffort : wanted, most);
+}
+
+// Is it known from where it stands that a search is of little use?
+bool is_in_vain(const PairWork& pair, std::uint8_t waited) {
+  const int times = times_in_vain(pair);
+  return times > 0 && waited < std::min<int>(kStalledTicks, 1 << std::min(times, 5));
 }
 
 // It is given half as much again as it needed the last time, and mostly needs that again.
@@ -144,18 +158,24 @@ void share_out(const World& world, Scratch::Impl& work, std::span<const std::uin
     PairMemo::Effort& effort = pair.memo->effort[at];
     pair.stage_start = pair.counts.depth_evaluations;
     pair.most_work = most;
+    pair.limited = limited;
     if (!limited) {
       pair.cap = most;
       continue;
     }
     const std::uint64_t wanted = wanted_of(pair, at, most);
     const bool stalled = stage == WorkStage::kStop && is_stalled(pair);
-    const bool rests = stalled && pair.memo->stalled->in_full && effort.waited < kStalledTicks;
-    const bool served = !rests && expected(wanted) <= left.own + left.saved;
+    const bool rests = stage == WorkStage::kStop &&
+                       ((stalled && pair.memo->stalled->in_full && effort.waited < kStalledTicks) ||
+                        is_in_vain(pair, effort.waited));
+    const bool overdue =
+        stage == WorkStage::kVerdict && i == order.front() && effort.waited >= kLongestWait_ticks;
+    const bool served = !rests && (overdue || expected(wanted) <= left.own + left.saved);
     std::uint64_t taken = expected(wanted);
     if (served) {
-      pair.cap = std::min(most, wanted + more);
-      left.saved -= taken - std::min(taken, left.own);
+      // Who has waited that long is not put off again for having asked too little.
+      pair.cap = overdue ? most : std::min(most, wanted + more);
+      left.saved -= std::min(left.saved, taken - std::min(taken, left.own));
     } else {
       // Half a verdict is worth nothing, and so is a push that came to nothing before.
       const bool glances = stage == WorkStage::kStop && !stalled && left.own >= kGlance;

@@ -83,6 +83,28 @@ TEST(WorkBudget, WhoWaitsIsNotLetIntoAnything) {
   }
 }
 
+// Who waits goes on with what it was pushed by, as soon as there is work: nothing that was accepted
+// is lost, and pushes there and back come to nothing.
+TEST(WorkBudget, WhoWaitsKeepsItsPushes) {
+  Row with(Policy::kStop, true), without(Policy::kStop, false);
+  std::uint64_t waiting = 0;
+  for (Row* row : {&with, &without}) {
+    // Near the walls, then along them and away.
+    for (int i = 0; i < 8; ++i) row->push(Vec3(0.498, 0, 0));
+    for (int i = 0; i < 12; ++i) {
+      const StepReport report = row->push(Vec3(-0.002 * (i % 3), i % 2 == 0 ? 0.4 : -0.3, 0));
+      if (row == &with) waiting += report.counters.pairs_waiting;
+      EXPECT_EQ(report.counters.pushes_cut, 0U);
+    }
+    for (int i = 0; i < 200; ++i) row->rest();
+  }
+  EXPECT_GT(waiting, 0U) << "nobody had to wait: nothing is shown";
+  for (std::size_t i = 0; i < with.pegs.size(); ++i)
+    EXPECT_LT((with.session.pose(with.pegs[i]).p - without.session.pose(without.pegs[i]).p).norm(),
+              1e-6)
+        << "peg " << i;
+}
+
 TEST(WorkBudget, PushedOnAgainstTheSamePlaceNothingIsSearched) {
   Row one(Policy::kStop, true, 1);
   for (int i = 0; i < 40; ++i) one.push(Vec3(0.25, 0, 0));
