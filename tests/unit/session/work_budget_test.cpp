@@ -89,10 +89,10 @@ TEST(WorkBudget, WhoWaitsKeepsItsPushes) {
   Row with(Policy::kStop, true), without(Policy::kStop, false);
   std::uint64_t waiting = 0;
   for (Row* row : {&with, &without}) {
-    // Near the walls, then along them and away.
-    for (int i = 0; i < 8; ++i) row->push(Vec3(0.498, 0, 0));
+    // Into what the tolerance leaves open, then along the walls.
+    for (int i = 0; i < 8; ++i) row->push(Vec3(0.5025, 0, 0));
     for (int i = 0; i < 12; ++i) {
-      const StepReport report = row->push(Vec3(-0.002 * (i % 3), i % 2 == 0 ? 0.4 : -0.3, 0));
+      const StepReport report = row->push(Vec3(0, i % 2 == 0 ? 0.04 : -0.03, 0));
       if (row == &with) waiting += report.counters.pairs_waiting;
       EXPECT_EQ(report.counters.pushes_cut, 0U);
     }
