@@ -66,7 +66,7 @@ int first_difference(const RandomSession& session, const Saved& saved, std::stri
 
 TEST(Checkpoint, FromEachOneRandomSessionsGoOnToTheSameEnd) {
   std::size_t accepted[kCommandKindCount] = {}, events = 0, waiting = 0, held = 0, slid = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     const Played played = play(seed, 160, 32);
     for (std::size_t k = 0; k < kCommandKindCount; ++k) accepted[k] += played.session->accepted[k];
     for (const TickRecord& record : played.session->ticks) {
