@@ -9,7 +9,14 @@
 namespace mortise {
 namespace {
 
+// Two declared faces meet in one region (merge_regions), and its worst place may jump all around
+// it.
+bool of_same_faces(const Verdict& x, const Verdict& y) {
+  return !x.face_a.empty() && !x.face_b.empty() && x.face_a == y.face_a && x.face_b == y.face_b;
+}
+
 double apart(const OpenClash& clash, const SeenRegion& seen) {
+  if (of_same_faces(clash.now, seen.verdict)) return 0.0;
   return std::min((clash.p_A - seen.p_A).norm(), (clash.p_B - seen.p_B).norm());
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/constants.h"
 #include "common/session/motion_budget.h"
@@ -32,6 +33,9 @@ constexpr double kHeldAfterGivingUp_mm[] = {0.2, 0.06};
 constexpr double kSamePushCosine = 0.95;
 // Parts that approach by less than this share of their speed slide.
 constexpr double kLeastApproach = 0.1;
+// Path by which a part leaves the brink of being real, mm.
+constexpr double kLeaveBrink_mm = 0.05;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
 
 // Upper bound of the lower outward offset of any face: what the real surface has at least.
@@ -158,9 +162,8 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   return advance;
 }
 
-}  // namespace
-
-double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
+// Up to the time t_most at the latest.
+double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   constexpr int kLooks = 4;
   const auto depth_mm = [&](double t) {
     return std::max(0.0,
@@ -172,12 +175,18 @@ double withdrawal_time(PairWork& pair, CcdScratch& ccd) {
   // the next.
   const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
   for (int i = 1; i <= kLooks; ++i)
-    if (depth_mm(static_cast<double>(i) / kLooks) > allowed_mm + slack_mm)
-      return static_cast<double>(i - 1) / kLooks;
-  return 1.0;
+    if (depth_mm(t_most * i / kLooks) > allowed_mm + slack_mm) return t_most * (i - 1) / kLooks;
+  return t_most;
 }
 
-namespace {
+// Who has come out of the other until both just touch is neither real nor can any search say how
+// long it stays so. It goes on as it came, by so little that nothing is passed over between two
+// looks; from there it is searched like any other.
+double leave_brink(PairWork& pair, CcdScratch& ccd) {
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  return withdrawal_until(pair, std::min(1.0, kLeaveBrink_mm / speed_mm), ccd);
+}
 
 // A part that is pushed on where its last push has left it: is it the same place that holds it? The
 // poses at the start are proven already, so that nothing has to be searched.
@@ -235,7 +244,7 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
   const Advance advance =
       may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
   if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
-  pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
+  const double allowed_mm = std::exchange(pair.memo->allowed_depth_mm, kInfinity);
   if (advance.state == Advanced::kDone) return advance.t_free;
 
   SweptQuery query;
@@ -248,11 +257,18 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
   pair.counts.depth_evaluations += real.evaluations;
   pair.place = real.certain_place;
   if (real.real_at_start) return withdrawal_time(pair, ccd);
+  const double t_free = std::max(advance.t_free, real.t_free);
+  if (real.capped && t_free == 0.0 && std::isfinite(allowed_mm)) {
+    pair.memo->allowed_depth_mm = allowed_mm;
+    return leave_brink(pair, ccd);
+  }
   if (real.capped) pair.undecided = true;
-  return std::max(advance.t_free, real.t_free);
+  return t_free;
 }
 
 }  // namespace
+
+double withdrawal_time(PairWork& pair, CcdScratch& ccd) { return withdrawal_until(pair, 1.0, ccd); }
 
 void note_stalled(PairWork& pair) {
   const std::uint8_t in_vain = times_in_vain(pair);

@@ -1,0 +1,91 @@
+// A part that interferes is let out of the other again, whatever the searches have time for.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "common/io/open_scene.h"
+#include "common/session/step.h"
+
+namespace mortise {
+namespace {
+
+const std::string kScenario = R"(
+name: withdrawal
+units: mm
+policy: stop
+max_jump: 20
+parts:
+  - name: plate
+    generator: {kind: plate_with_bore, bore: 20, facets: 32}
+  - name: peg
+    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 5.625}
+    features:
+      chamfer_lower: {tolerance: {lower: -0.1, upper: -0.04}}
+      chamfer_upper: {tolerance: {lower: -0.1, upper: -0.04}}
+    moving: true
+    pose: {position: [0, 0, 25]}
+  - {name: stray, generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32}, moving: true,
+     pose: {position: [3, 2, 60]}}
+fits:
+  - {between: [plate.bore, peg.journal], code: Ø20 H7/k6}
+)";
+
+struct Withdrawal : testing::Test {
+  LoadedScene scene;
+  Scratch scratch;
+  UserId ada;
+  PartId stray;
+  std::uint64_t seq = 0;
+
+  Withdrawal() {
+    auto reading = read_scenario_text(kScenario, "withdrawal.yaml");
+    auto loaded = load_scene(reading->scenario, default_meshes());
+    EXPECT_TRUE(loaded && loaded->usable());
+    scene = std::move(*loaded);
+    Decision decision;
+    decision.kind = Decision::Kind::kJoin;
+    decision.user_name = "ada";
+    decision.role = Role::kDesigner;
+    apply_decision(scene.world, decision);
+    ada = scene.world.users.back().id;
+    stray = scene.world.find_part("stray")->id;
+    apply_command(scene.world, Command{ada, stray, 1, CommandKind::kGrab}, decision);
+    step(scene.world, {}, scratch);
+  }
+  // Pieces of 1 mm that arrive in one tick, then a tick of rest. Its height after that.
+  double push(int pieces, double by_mm) {
+    std::vector<Increment> increments;
+    for (int i = 0; i < pieces; ++i)
+      increments.push_back({ada, stray, ++seq, Vec3(0, 0, by_mm), Vec3::Zero()});
+    step(scene.world, increments, scratch);
+    step(scene.world, {}, scratch);
+    return scene.world.find(stray)->X_WP.p.z();
+  }
+};
+
+// 5 mm deep at first; after five pieces both just touch.
+TEST_F(Withdrawal, IsNotHeldWhereThePartsJustTouch) {
+  for (int i = 1; i <= 5; ++i) EXPECT_NEAR(push(1, 1.0), 60.0 + i, 1e-9);
+  const double left = push(1, 1.0);
+  EXPECT_GT(left, 65.0 + 0.04);
+  EXPECT_NEAR(push(1, 1.0), left + 1.0, 1e-9);
+  EXPECT_NEAR(push(3, 1.0), left + 4.0, 1e-9);
+  EXPECT_TRUE(snapshot_of(scene.world).open_clashes.empty());
+}
+
+TEST_F(Withdrawal, InPiecesOfAnyNumber) {
+  for (const int pieces : {2, 3, 4, 2, 3}) push(pieces, 1.0);
+  // 5 mm lie behind it when it just touches; of the push from there the rest is lost.
+  EXPECT_GT(scene.world.find(stray)->X_WP.p.z(), 70.0 + 0.04);
+}
+
+// Where they just touch the way out is open, the way in is not.
+TEST_F(Withdrawal, FromTheBrinkNothingIsPressedIn) {
+  for (int i = 1; i <= 5; ++i) push(1, 1.0);
+  for (const double by_mm : {-1.0, -0.02, -0.0005})
+    for (int i = 0; i < 8; ++i) EXPECT_GE(push(1, by_mm), 65.0 - 1e-3) << by_mm;
+}
+
+}  // namespace
+}  // namespace mortise
