@@ -176,6 +176,8 @@ void Browser::write(Outbox::Message message) {
   socket_.async_write(asio::buffer(*writing_.bytes),
                       [self = shared_from_this()](beast::error_code error, std::size_t) {
                         self->writing_.bytes.reset();
+                        // Somebody else ends the connection, and is not done with it.
+                        if (error == asio::error::operation_aborted) return;
                         if (error) return self->failed(error);
                         self->write_next();
                       });

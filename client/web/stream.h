@@ -1,8 +1,13 @@
 #pragma once
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/compose.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/stream.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,11 +71,40 @@ class Stream {
   std::unique_ptr<Tls> tls_;
 };
 
+/// Takes what still comes until the other end has closed too, and throws it away: to close a socket
+/// with bytes unread resets the connection, and the other end may lose the words that were said
+/// last. (What Beast 1.74 has for it stops at the first bytes that it reads.)
+class Drain {
+ public:
+  explicit Drain(beast::tcp_stream& tcp) : tcp_(tcp), rest_(std::make_unique<Rest>()) {}
+
+  template <class Self>
+  void operator()(Self& self, beast::error_code error = {}, std::size_t = 0) {
+    if (!begun_) {
+      begun_ = true;
+      beast::error_code ignored;
+      tcp_.socket().shutdown(asio::socket_base::shutdown_send, ignored);
+      tcp_.expires_after(kPatience);
+    } else if (error) {
+      tcp_.close();
+      return self.complete(error == asio::error::eof ? beast::error_code() : error);
+    }
+    tcp_.async_read_some(asio::buffer(*rest_), std::move(self));
+  }
+
+ private:
+  static constexpr std::chrono::seconds kPatience{2};
+  using Rest = std::array<char, 4096>;
+  beast::tcp_stream& tcp_;
+  std::unique_ptr<Rest> rest_;  // the operation is moved while it is read into
+  bool begun_ = false;
+};
+
 /// A WebSocket has said goodbye in its own words by then: TLS need not do it again.
 template <class Handler>
-void async_teardown(beast::role_type role, Stream& stream, Handler&& handler) {
-  using beast::websocket::async_teardown;
-  async_teardown(role, stream.next_layer(), std::forward<Handler>(handler));
+void async_teardown(beast::role_type, Stream& stream, Handler&& handler) {
+  asio::async_compose<Handler, void(beast::error_code)>(Drain(stream.next_layer()), handler,
+                                                        stream);
 }
 
 }  // namespace mortise::web

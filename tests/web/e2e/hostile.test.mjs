@@ -114,10 +114,13 @@ test('bytes are no message', async () => {
 });
 
 test('a message that is too large closes the line', async () => {
-  const stranger = dial();
-  await opened(stranger);
-  stranger.send(JSON.stringify({ type: 'join', name: 'y'.repeat(1 << 20) }));
-  assert.equal(await stranger.ended, 1009);
+  // Whatever is on its way when the line is closed, the reason arrives.
+  for (let i = 0; i < 40; ++i) {
+    const stranger = dial();
+    await opened(stranger);
+    stranger.send(JSON.stringify({ type: 'join', name: 'y'.repeat(1 << (17 + (i % 6))) }));
+    assert.equal(await stranger.ended, 1009, `message ${i}`);
+  }
   await worksOn();
 });
 
