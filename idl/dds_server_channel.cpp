@@ -204,7 +204,9 @@ class DdsServerChannel final : public StandbyChannel {
   void await_taken(std::int64_t at_most_ns) override { takings_.await(at_most_ns); }
 
   /// Also a client that is still joining counts, so that nothing said meanwhile is lost.
-  bool has_readers() const override { return matched(poses_) || matched(events_); }
+  bool has_readers() const override {
+    return matched(poses_) || matched(events_) || matched(pulses_);
+  }
   ChannelCounters counters() const override {
     ChannelCounters counters = counters_;
     counters.malformed += participant_->refused();

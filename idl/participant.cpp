@@ -3,12 +3,14 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <algorithm>
 #include <charconv>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 #include <mutex>
 
+#include "idl/directory.h"
 #include "idl/guard_transport.h"
 #include "idl/security_properties.h"
 #include "idl/server_places.h"
@@ -31,7 +33,9 @@ constexpr double kAnnouncementPeriod_s = 0.5;
 constexpr double kServerWriteWait_s = 0.01, kClientWriteWait_s = 0.1;
 // Clients wait for what one that stands by has not got: what is lost on the way comes soon.
 constexpr double kServersHeartbeat_s = 0.02;
-const std::string kTermPrefix = "term=";
+const std::string kTermPrefix = "term=", kVersionPrefix = "version=";
+// Samples of different sessions have one key.
+constexpr int kDirectoryDepth = 64;
 // A socket's buffer holds a whole scene's burst.
 constexpr std::uint32_t kSocketBuffer_bytes = 1 << 22;
 
@@ -40,12 +44,17 @@ Duration_t duration(double seconds) { return Duration_t(static_cast<long double>
 Error bad(const std::string& text) { return fail(Code::kInvalidInput, text); }
 Error broken(const std::string& text) { return fail(Code::kRuntime, text); }
 
+bool serves(Participant::Side side) {
+  return side == Participant::Side::kServer || side == Participant::Side::kStandby;
+}
+
 Status check(const DdsOptions& options, Participant::Side side) {
   if (options.domain < 0 || options.domain > kMaxDomain) {
     return bad("DDS domain " + std::to_string(options.domain) + " is not in 0..232");
   }
+  const bool every = side == Participant::Side::kDirectory && options.session == kEverySession;
   if (options.session.empty() || options.session.size() > 128 ||
-      options.session.find_first_of("*?[]") != std::string::npos) {
+      (!every && options.session.find_first_of("*?[]") != std::string::npos)) {
     return bad("session name '" + options.session +
                "' must have 1 to 128 characters and none of * ? [ ]");
   }
@@ -96,7 +105,7 @@ Locator_t locator(const std::string& address, int port) {
 dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
                                  const std::shared_ptr<GuardCounts>& counts) {
   dds::DomainParticipantQos qos;
-  const bool is_server = side != Participant::Side::kClient;
+  const bool is_server = serves(side);
   qos.name(is_server ? "mortise-server" : "mortise-client");
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.push_back(options.interface);
@@ -139,7 +148,7 @@ Result<Identity> own_identity(const DdsOptions& options, Participant::Side side)
   Result<Identity> identity = check_keys(options.keys);
   if (!identity) return identity;
   const bool is_servers = identity->role == "server";
-  if (is_servers == (side != Participant::Side::kClient)) return identity;
+  if (is_servers == serves(side)) return identity;
   return bad(
       options.keys + ": these are the keys of a" +
       (is_servers ? " server" : "n ordinary " + identity->role) + ", '" + identity->name + "': " +
@@ -190,10 +199,20 @@ std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_d
   return term;
 }
 
+std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data) {
+  const std::string text(user_data.begin(), user_data.end());
+  const std::size_t at = text.find(kVersionPrefix);
+  if (at == std::string::npos) return {};
+  const std::size_t first = at + kVersionPrefix.size();
+  return text.substr(first, text.find(' ', first) - first);
+}
+
 namespace {
 
+/// The term first: programs of before read it there, and nothing behind it.
 void put_term(std::uint64_t term, dds::DataWriterQos& qos) {
-  const std::string text = kTermPrefix + std::to_string(term);
+  std::string text = kVersionPrefix + MORTISE_VERSION;
+  if (term != 0) text = kTermPrefix + std::to_string(term) + " " + text;
   qos.user_data().data_vec({text.begin(), text.end()});
 }
 
@@ -227,7 +246,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
                                                        dds::DomainParticipantListener* listener) {
   if (Status checked = check(options, side); !checked) return checked.error();
   set_up_process();
-  std::unique_ptr<Participant> made(new Participant(options));
+  std::unique_ptr<Participant> made(new Participant(options, side));
   if (!options.keys.empty() && options.check_keys) {
     Result<Identity> identity = own_identity(options, side);
     if (!identity) return identity.error();
@@ -305,7 +324,7 @@ Result<dds::DataWriter*> Participant::open_writer(const TopicRow& row, dds::Topi
     qos.liveliness().lease_duration = duration(kLeaderLease_s);
     qos.liveliness().announcement_period = duration(kLeaderAssert_s);
   }
-  if (term_ != 0) put_term(term_, qos);
+  if (serves(side_)) put_term(term_, qos);
   dds::DataWriter* writer = publisher_->create_datawriter(
       topic.value(), qos, listener,
       listener == nullptr ? dds::StatusMask::none() : dds::StatusMask::publication_matched());
@@ -320,7 +339,9 @@ Result<dds::DataReader*> Participant::open_reader(const TopicRow& row, dds::Topi
   Result<dds::Topic*> topic = open_topic(row, type);
   if (!topic) return topic.error();
   dds::DataReaderQos qos;
-  set_common(qos, row, options_, row.reader_depth);
+  set_common(
+      qos, row, options_,
+      side_ == Side::kDirectory ? std::max(kDirectoryDepth, row.reader_depth) : row.reader_depth);
   qos.history().kind = row.reader == TopicRow::Reader::kKeepAll ? dds::KEEP_ALL_HISTORY_QOS
                                                                 : dds::KEEP_LAST_HISTORY_QOS;
   if (row.leads) {

@@ -37,12 +37,15 @@ bool matched(dds::DataWriter* writer);
 /// Who led a session later has the higher term: ms since 1970 of its beginning, told with the
 /// server's writers; 0: one that tells none.
 std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
+/// Of the program that wrote it, told behind the term; empty: one of before told none.
+std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
 
 /// One DDS participant in one session: transport, discovery and endpoints after the topic table.
 /// Every creation is checked; each failure is one line.
 class Participant {
  public:
-  enum class Side { kServer, kStandby, kClient };
+  /// A directory is a client of every session at once: partition "session/*".
+  enum class Side { kServer, kStandby, kClient, kDirectory };
 
   /// The listener may be null and must outlive the participant.
   static Result<std::unique_ptr<Participant>> open(const DdsOptions& options, Side side,
@@ -77,7 +80,7 @@ class Participant {
   std::uint64_t cut() const { return guard_->cut.load(std::memory_order_relaxed); }
 
  private:
-  explicit Participant(const DdsOptions& options) : options_(options) {}
+  Participant(const DdsOptions& options, Side side) : options_(options), side_(side) {}
   template <class Endpoint>
   static void keep(Result<Endpoint*> opened, Endpoint*& endpoint, Status& status) {
     if (opened) {
@@ -94,6 +97,7 @@ class Participant {
                                        dds::DataReaderListener* listener);
 
   DdsOptions options_;
+  Side side_;
   std::uint64_t term_ = 0;
   std::optional<Identity> identity_;
   dds::DomainParticipant* participant_ = nullptr;

@@ -1,0 +1,79 @@
+#include "client/tools/directory/options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <set>
+#include <sstream>
+
+namespace mortise {
+namespace {
+
+constexpr int kMaxDomain = 232, kMaxPort = 65534;
+// Each is a participant of its own, with its threads and sockets.
+constexpr std::size_t kMostPlaces = 32;
+
+}  // namespace
+
+std::vector<int> read_numbers(const std::string& text, int lo, int hi) {
+  std::set<int> numbers;
+  std::stringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    int first = 0, last = 0;
+    const char* const end = word.data() + word.size();
+    auto read = std::from_chars(word.data(), end, first);
+    last = first;
+    if (read.ec == std::errc() && read.ptr != end && *read.ptr == '-')
+      read = std::from_chars(read.ptr + 1, end, last);
+    if (read.ec != std::errc() || read.ptr != end || first < lo || last > hi || last < first)
+      throw CLI::ValidationError("'" + word + "' is neither a number nor a range of numbers in " +
+                                 std::to_string(lo) + ".." + std::to_string(hi) +
+                                 "; write for example 0,3,5-8");
+    for (int number = first; number <= last; ++number) numbers.insert(number);
+  }
+  return {numbers.begin(), numbers.end()};
+}
+
+DirectoryCommand read_directory_command(int argc, char** argv) {
+  DirectoryCommand command;
+  DdsOptions where;
+  where.session = kEverySession;
+  std::string domains = "0", ports = "0";
+  CLI::App app("mortise-directory: which sessions there are, and which servers lead or stand by");
+  app.add_option("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
+      ->capture_default_str();
+  app.add_option("--server", where.server,
+                 "IPv4 addresses of the hosts to ask, comma between; default: the own interface");
+  app.add_option("--port", ports, "Discovery ports of servers, likewise; 0: the domain's own")
+      ->capture_default_str();
+  app.add_option("--interface", where.interface, "IPv4 address of the own interface")
+      ->capture_default_str();
+  app.add_option("--session", where.session, "This session only; *: all")->capture_default_str();
+  app.add_option("--keys", where.keys,
+                 "Folder of the own keys (mortise keys), where servers ask for some");
+  app.add_option("--wait", command.wait_s, "Listen for so many seconds")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  app.add_flag("--json", command.json, "One JSON document on stdout");
+  app.footer(
+      "Exit codes: 0 ok, 1 no server was found or the network failed, 2 usage, 3 an address, "
+      "session "
+      "or folder of keys that cannot be.");
+  try {
+    app.parse(argc, argv);
+    for (const int domain : read_numbers(domains, 0, kMaxDomain))
+      for (const int port : read_numbers(ports, 0, kMaxPort)) {
+        where.domain = domain;
+        where.discovery_port = port;
+        command.places.push_back(where);
+        if (command.places.size() > kMostPlaces)
+          throw CLI::ValidationError("more than " + std::to_string(kMostPlaces) +
+                                     " domains times ports at one time; ask for fewer");
+      }
+    if (command.places.empty()) throw CLI::ValidationError("--domain and --port need a number");
+  } catch (const CLI::ParseError& error) {
+    command.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return command;
+}
+
+}  // namespace mortise
