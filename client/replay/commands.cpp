@@ -141,7 +141,11 @@ int run_explain(const ExplainOptions& options) {
   auto log = read_session(options.log);
   if (!log) return say_bad_log(log.error());
   print_notes(*log);
-  const auto chain = explain_clash(std::move(*log), ClashId{options.clash}, options.tick);
+  Progress progress("computed again, ticks", 0.0);
+  const auto chain =
+      explain_clash(std::move(*log), ClashId{options.clash}, options.tick,
+                    [&](std::uint64_t tick) { progress.show(static_cast<double>(tick)); });
+  progress.end();
   if (!chain) return say_bad_log(chain.error());
   if (options.json)
     print(*chain);

@@ -166,7 +166,8 @@ Json chain_of(const World& world, const TickRecord& record, const ClashEvent& ev
 
 }  // namespace
 
-Result<Json> explain_clash(SessionLog log, ClashId clash, std::uint64_t tick) {
+Result<Json> explain_clash(SessionLog log, ClashId clash, std::uint64_t tick,
+                           const std::function<void(std::uint64_t)>& on_tick) {
   const ClashEvent* found = event_to_explain(log, clash, tick);
   if (found == nullptr)
     return fail(Code::kInvalidInput, "the log tells of no clash " + std::to_string(clash.value) +
@@ -197,6 +198,7 @@ Result<Json> explain_clash(SessionLog log, ClashId clash, std::uint64_t tick) {
         }
     }
     remember();
+    if (on_tick) on_tick(now.computed.tick);
   });
   if (!done) return done.error();
   if (!chain)

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 
 #include "common/io/report_json.h"
@@ -11,7 +12,9 @@ namespace mortise {
 /// told of the clash over its life. mm, rad, s; world frame unless a key ends in _part.
 /// `tick` 0: the worst moment of the clash. An error when the log tells of no such clash, or cannot
 /// be computed up to it. Cost: the session up to that tick.
-Result<Json> explain_clash(SessionLog log, ClashId clash, std::uint64_t tick = 0);
+/// `on_tick` is told each tick that was computed; may be empty.
+Result<Json> explain_clash(SessionLog log, ClashId clash, std::uint64_t tick = 0,
+                           const std::function<void(std::uint64_t)>& on_tick = {});
 
 /// The same for people, in numbered steps.
 std::string explain_text(const Json& chain);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "common/base/check.h"
 #include "common/io/scenario_file.h"
@@ -182,14 +183,26 @@ void add_vector(std::vector<Json>& row, const Vec3& v) {
   for (int i = 0; i < 3; ++i) row.push_back(number(v[i]));
 }
 
+// The faces of two parts that met.
+using Faces = std::tuple<PartId, std::string, PartId, std::string>;
+Faces faces_of(const SessionStatistics::ClashRow& clash) {
+  return {clash.a, clash.worst.face_a, clash.b, clash.worst.face_b};
+}
+
+// How far from another class, in widths of what is undecided between fake and real; NaN: none is.
+double severity_of(const Verdict& v) {
+  const double undecided_mm = v.real_above_mm - v.fake_below_mm;
+  return undecided_mm > 0.0 ? v.margin_mm / undecided_mm : std::nan("");
+}
+
 Table Session::clashes() const {
   Table table{"clashes", "every clash, by its worst moment", {}, {}};
   append(table.columns, columns(Type::kInteger, {"clash"}));
   append(table.columns, columns(Type::kText, {"class", "status", "status_by", "comment", "part_a",
                                               "face_a", "part_b", "face_b", "user"}));
-  append(table.columns,
-         columns(Type::kInteger, {"begin_tick", "end_tick", "worst_tick", "real_ticks",
-                                  "potential_ticks", "fake_ticks", "approval_lost"}));
+  append(table.columns, columns(Type::kInteger, {"begin_tick", "end_tick", "worst_tick",
+                                                 "real_ticks", "potential_ticks", "fake_ticks",
+                                                 "approval_lost", "status_tick", "occurrences"}));
   append(table.columns, columns(Type::kNumber, {"begin_s",
                                                 "duration_s",
                                                 "contact_in_tick",
@@ -200,6 +213,7 @@ Table Session::clashes() const {
                                                 "fake_below_mm",
                                                 "real_above_mm",
                                                 "margin_mm",
+                                                "severity",
                                                 "real_until_widened_mm",
                                                 "fake_until_widened_mm",
                                                 "probability",
@@ -222,6 +236,9 @@ Table Session::clashes() const {
                                               "mesh_a", "mesh_b", "explanation"}));
   const double rate = scenario_.tick_rate_hz;
   const std::uint64_t last_tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
+  std::map<Faces, std::size_t> occurrences;
+  for (const SessionStatistics::ClashRow& clash : statistics_.clashes())
+    ++occurrences[faces_of(clash)];
   for (const SessionStatistics::ClashRow& clash : statistics_.clashes()) {
     const OfClash& of = of_clash_.at(clash.clash);
     const Verdict& v = clash.worst;
@@ -244,13 +261,16 @@ Table Session::clashes() const {
                           clash.ticks[2],
                           clash.ticks[1],
                           of.approval_lost ? 1 : 0,
+                          review.tick == 0 ? Json(nullptr) : Json(review.tick),
+                          occurrences.at(faces_of(clash)),
                           static_cast<double>(clash.begin_tick) / rate,
                           static_cast<double>(end - clash.begin_tick) / rate,
                           number(of.worst.t_contact)};
-    for (const double x : {v.delta_mm.lo, v.delta_mm.hi, v.gpd_mm.lo, v.gpd_mm.hi, v.fake_below_mm,
-                           v.real_above_mm, v.margin_mm, 0.5 * (v.delta_mm.lo - v.real_above_mm),
-                           0.5 * (v.fake_below_mm - v.delta_mm.hi), v.probability, v.travel_mm,
-                           v.normal_travel_mm, v.area_mm2})
+    for (const double x :
+         {v.delta_mm.lo, v.delta_mm.hi, v.gpd_mm.lo, v.gpd_mm.hi, v.fake_below_mm, v.real_above_mm,
+          v.margin_mm, severity_of(v), 0.5 * (v.delta_mm.lo - v.real_above_mm),
+          0.5 * (v.fake_below_mm - v.delta_mm.hi), v.probability, v.travel_mm, v.normal_travel_mm,
+          v.area_mm2})
       row.push_back(number(x));
     add_vector(row, v.point_W);
     add_vector(row, v.normal_W);

@@ -16,20 +16,19 @@ using state_bytes::Reader;
 using state_bytes::Writer;
 using Memos = std::map<std::uint64_t, PairMemo>;
 
-// Memos copied in one tick, some 50 us from cold memory; and the ticks after which the rest is
-// copied in one go, should the tick itself change more than that.
+// Memos copied in one tick at least, some 50 us from cold memory; and the ticks in which all are
+// copied, whatever their number. What the last of these ticks itself has changed goes in one go.
 constexpr std::size_t kSlice = 256;
 constexpr int kMostSlices = 120;
 
-std::vector<PairStatement> statements_of(const World& world) {
-  std::vector<PairStatement> all;
-  for (const auto& [ids, rule] : world.pair_rules)
-    all.push_back({ids.first, ids.second, rule.band_a != nullptr, rule.band_b != nullptr,
-                   rule.excluded, rule.fit, rule.reason});
-  return all;
-}
-
 // 1. bytes
+
+// As a list of PairStatement, which is how it is read; here no text is copied for it.
+void put_rules(Writer& out, const World& world) {
+  out.count(world.pair_rules.size());
+  for (const auto& [ids, rule] : world.pair_rules)
+    out(ids, rule.band_a != nullptr, rule.band_b != nullptr, rule.excluded, rule.fit, rule.reason);
+}
 
 // All but the memos. The members of a world are named here as those of the rest in state_fields.
 void put_frame(Writer& out, const World& world) {
@@ -39,8 +38,9 @@ void put_frame(Writer& out, const World& world) {
   out(tick, policy);
   out.count(parts.size());
   for (const Part& part : parts) out(part);
-  out(users, restated, standing, statements_of(world), guides, next_constraint, next_group,
-      evaluates, *state);
+  out(users, restated, standing);
+  put_rules(out, world);
+  out(guides, next_constraint, next_group, evaluates, *state);
 }
 
 void put_memos(Writer& out, const Memos& memos) {
@@ -166,18 +166,33 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   return ok();
 }
 
-// Slices that wait to be put into the copy, and the copy itself, which only drafts touch.
+// Slices that wait to be put into the copy, the copy itself, which only drafts touch, and memory
+// that is used again: fetched anew, it would cost the tick more than the copying.
 struct CheckpointMaker::Copies {
-  struct Slice {
+  using Slice = std::vector<std::pair<std::uint64_t, PairMemo>>;
+  struct Numbered {
     std::uint64_t number;
-    std::vector<std::pair<std::uint64_t, PairMemo>> memos;
+    Slice memos;
   };
   std::mutex mutex;
-  std::deque<Slice> waiting;
+  std::deque<Numbered> waiting;
   std::uint64_t number = 0;  ///< of the last slice
+  std::vector<Slice> spare;
+  std::vector<std::byte> spare_frame;
   Memos memos;
 
-  void add(std::vector<std::pair<std::uint64_t, PairMemo>> slice) {
+  Slice empty_slice() {
+    const std::lock_guard lock(mutex);
+    if (spare.empty()) return {};
+    Slice slice = std::move(spare.back());
+    spare.pop_back();
+    return slice;
+  }
+  std::vector<std::byte> empty_frame() {
+    const std::lock_guard lock(mutex);
+    return std::move(spare_frame);
+  }
+  void add(Slice slice) {
     const std::lock_guard lock(mutex);
     waiting.push_back({++number, std::move(slice)});
   }
@@ -186,10 +201,19 @@ struct CheckpointMaker::Copies {
     {
       const std::lock_guard lock(mutex);
       for (; !waiting.empty() && waiting.front().number <= last; waiting.pop_front())
-        taken.push_back(std::move(waiting.front()));
+        taken.push_back(std::move(waiting.front().memos));
     }
+    for (Slice& slice : taken) {
+      for (auto& [key, memo] : slice) memos.insert_or_assign(key, std::move(memo));
+      slice.clear();
+    }
+    const std::lock_guard lock(mutex);
     for (Slice& slice : taken)
-      for (auto& [key, memo] : slice.memos) memos.insert_or_assign(key, std::move(memo));
+      if (spare.size() < kMostSlices) spare.push_back(std::move(slice));
+  }
+  void give_back(std::vector<std::byte> frame) {
+    const std::lock_guard lock(mutex);
+    spare_frame = std::move(frame);
   }
 };
 
@@ -199,41 +223,56 @@ CheckpointMaker::~CheckpointMaker() = default;
 void CheckpointMaker::begin(World& world) {
   copies_ = std::make_shared<Copies>();
   running_ = false;
+  copied_ = 0;
   if (!world.state) return;  // every memo is still to be made, and then is touched
-  for (auto& [key, memo] : world.state->memos) world.state->touch(key, memo);
+  world.state->touched.clear();
+  for (auto& [key, memo] : world.state->memos) {
+    memo.touched = false;
+    world.state->touch(key, memo);
+  }
 }
 
 StateDraft CheckpointMaker::after_tick(World& world, bool due) {
   if (!running_ && !due) return {};
-  if (!running_) slices_ = 0;
+  if (!running_) slices_left_ = kMostSlices;
   running_ = true;
   SessionState& state = *world.state;
-  const bool rest = ++slices_ > kMostSlices;
-  const std::size_t count = rest ? state.touched.size() : std::min(kSlice, state.touched.size());
-  if (count > 0) {
-    std::vector<std::pair<std::uint64_t, PairMemo>> slice;
-    slice.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      PairMemo& memo = state.memos.at(state.touched[i]);
-      memo.touched = false;
-      slice.emplace_back(state.touched[i], memo);
-    }
-    state.touched.erase(state.touched.begin(),
-                        state.touched.begin() + static_cast<std::ptrdiff_t>(count));
-    copies_->add(std::move(slice));
-  }
-  if (!state.touched.empty()) return {};
+  if (!copy_slice(state)) return {};
   running_ = false;
-  Writer frame;
-  frame.reserve(1 << 16);
+  Writer frame(copies_->empty_frame());
   put_frame(frame, world);
-  return [copies = copies_, last = copies_->number, bytes = frame.take()] {
+  return [copies = copies_, last = copies_->number, bytes = frame.take()]() mutable {
     copies->take_up_to(last);
     Writer out;
     out.append(bytes);
+    copies->give_back(std::move(bytes));
     put_memos(out, copies->memos);
     return out.take();
   };
+}
+
+bool CheckpointMaker::copy_slice(SessionState& state) {
+  const std::size_t left = state.touched.size() - copied_;
+  const std::size_t share = left / static_cast<std::size_t>(std::max(slices_left_--, 1));
+  const std::size_t count = std::min(left, std::max(kSlice, share));
+  if (count > 0) {
+    Copies::Slice slice = copies_->empty_slice();
+    slice.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t key = state.touched[copied_++];
+      PairMemo& memo = state.memos.at(key);
+      memo.touched = false;
+      slice.emplace_back(key, memo);
+    }
+    copies_->add(std::move(slice));
+  }
+  const bool done = copied_ == state.touched.size();
+  if (2 * copied_ >= state.touched.size()) {
+    state.touched.erase(state.touched.begin(),
+                        state.touched.begin() + static_cast<std::ptrdiff_t>(copied_));
+    copied_ = 0;
+  }
+  return done;
 }
 
 }  // namespace mortise

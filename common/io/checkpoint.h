@@ -43,9 +43,12 @@ class CheckpointMaker {
 
  private:
   struct Copies;
+  bool copy_slice(SessionState& state);  ///< true: nothing is left to be copied
+
   std::shared_ptr<Copies> copies_;
   bool running_ = false;
-  int slices_ = 0;
+  int slices_left_ = 0;
+  std::size_t copied_ = 0;  ///< of SessionState::touched
 };
 
 }  // namespace mortise

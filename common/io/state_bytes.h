@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -92,6 +93,9 @@ void visit(Archive& archive, T& value) { fields(archive, value); }
 
 class Writer {
  public:
+  Writer() = default;
+  /// Into memory of before, which saves fetching it.
+  explicit Writer(std::vector<std::byte> memory) : bytes_(std::move(memory)) {}
   template <class... T>
   void operator()(const T&... values) {
     (visit(*this, const_cast<T&>(values)), ...);  // a writer changes nothing
@@ -101,9 +105,7 @@ class Writer {
   template <class T>
   void plain(const T& value) {
     static_assert(std::endian::native == std::endian::little);
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + sizeof(T));
-    std::memcpy(bytes_.data() + at, &value, sizeof(T));
+    std::memcpy(room(sizeof(T)), &value, sizeof(T));
   }
   std::size_t count(std::size_t count) {
     plain(static_cast<std::uint32_t>(count));
@@ -111,17 +113,28 @@ class Writer {
   }
   void text(const std::string& text) {
     count(text.size());
-    const auto bytes = std::as_bytes(std::span(text));
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    append(std::as_bytes(std::span(text)));
   }
   void append(std::span<const std::byte> bytes) {
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    if (!bytes.empty()) std::memcpy(room(bytes.size()), bytes.data(), bytes.size());
   }
-  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
-  std::vector<std::byte> take() { return std::move(bytes_); }
+  std::vector<std::byte> take() {
+    bytes_.resize(std::exchange(size_, 0));
+    return std::move(bytes_);
+  }
 
  private:
-  std::vector<std::byte> bytes_;
+  // Grown by each number, a vector would cost more than what is written.
+  std::byte* room(std::size_t bytes) {
+    const std::size_t at = size_;
+    size_ += bytes;
+    if (size_ > bytes_.size()) bytes_.resize(std::max(2 * size_, kLeastRoom));
+    return bytes_.data() + at;
+  }
+
+  static constexpr std::size_t kLeastRoom = 256;
+  std::vector<std::byte> bytes_;  ///< with room behind what is written
+  std::size_t size_ = 0;
 };
 
 /// Never reads past its end; what does not fit makes ok() false, and all after it zero.

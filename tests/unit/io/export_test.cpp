@@ -9,6 +9,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <sstream>
 
@@ -81,6 +82,21 @@ TEST_F(Export, CsvAndJsonSayTheSame) {
   EXPECT_EQ(clashes[0]["class"], "real");
   EXPECT_EQ(clashes[0]["part_a"], "wall");
   EXPECT_EQ(clashes[0]["part_b"], "cube");
+  EXPECT_TRUE(clashes[0]["status_tick"].is_null());
+  for (const Json& clash : clashes) {
+    const auto same = std::ranges::count_if(clashes, [&](const Json& other) {
+      return std::ranges::all_of(std::array{"part_a", "face_a", "part_b", "face_b"},
+                                 [&](const char* key) { return clash[key] == other[key]; });
+    });
+    EXPECT_EQ(clash["occurrences"], same);
+    const double undecided_mm =
+        clash["real_above_mm"].get<double>() - clash["fake_below_mm"].get<double>();
+    if (undecided_mm > 0.0)
+      EXPECT_DOUBLE_EQ(clash["severity"].get<double>() * undecided_mm,
+                       clash["margin_mm"].get<double>());
+    else
+      EXPECT_TRUE(clash["severity"].is_null());
+  }
   EXPECT_GT(document["tables"]["coverage"].size(), 20U);
   EXPECT_EQ(document["tables"]["parts"].size(), log_->mesh_of_part.size());
 }
