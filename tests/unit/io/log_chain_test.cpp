@@ -179,29 +179,6 @@ TEST_F(LogChain, AMissingFileIsAGapAndForeignOnesAreRefused) {
   EXPECT_FALSE(read_session(std::vector<fs::path>{all[1], all[0]})) << "the first is no follower";
 }
 
-// Whatever file of a chain is damaged: recovered under its own name, it has its place again.
-TEST_F(LogChain, RecoveredFilesAreAChain) {
-  write(file("s.mcap"), {.chunk_bytes = 4096, .rotate_bytes = 20'000});
-  const std::vector<fs::path> all = files();
-  ASSERT_GE(all.size(), 4U);
-  fs::resize_file(all.back(), fs::file_size(all.back()) * 9 / 10);
-  fs::create_directories(file("new"));
-  for (const fs::path& one : all) {
-    const auto recovery = recover_session_log(one, file("new") / one.filename());
-    ASSERT_TRUE(recovery) << recovery.error().text;
-    EXPECT_EQ(recovery->was_complete, one != all.back()) << one;
-    EXPECT_EQ(recovery->notes.empty(), one != all.back()) << one;
-  }
-  const auto log = read_session(file("new") / "s.mcap");
-  ASSERT_TRUE(log) << log.error().text;
-  const auto cut = read_session(file("s.mcap"));
-  ASSERT_TRUE(cut) << cut.error().text;
-  EXPECT_TRUE(log->complete);
-  EXPECT_EQ(log->ticks.size(), cut->ticks.size());
-  EXPECT_GT(log->ticks.size(), kTicks / 2);
-  expect_verified(*log, log->ticks.size(), log->checkpoints.size());
-}
-
 // What was on disk stays, whenever the writer dies; most of these files are very small.
 TEST_F(LogChain, AKillWhileFilesChangeLosesNothingThatWasFlushed) {
   std::mt19937_64 random(3);
