@@ -18,7 +18,9 @@ class Follower {
  public:
   /// `log` may be null; all must outlive this.
   Follower(World& world, SessionStatistics& statistics, SessionLogWriter* log, int threads)
-      : world_(world), statistics_(statistics), log_(log), scratch_(threads) {}
+      : world_(world), statistics_(statistics), log_(log), scratch_(threads) {
+    statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
+  }
 
   /// Fails (kMismatch) where the two disagree, and (kRuntime) where ticks are missing between.
   Status take(const ToldTick& told);

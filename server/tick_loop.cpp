@@ -37,6 +37,7 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
       options_(options),
       inbox_(options.inbox),
       scratch_(options.threads) {
+  statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   for (std::uint32_t i = 0; i < world_.parts.size(); ++i) {
     const Part& part = world_.parts[i];
     published_.push_back({part.id, part.holder, part.X_WP});
@@ -46,6 +47,7 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
 
 void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> departures) {
   statistics_ = std::move(statistics);
+  statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   departures_ = std::move(departures);
   event_seq_ = snapshot_of(world_).event_seq;
 }

@@ -153,7 +153,9 @@ Result<Clashes> clashes_with(const SessionLog& log, const std::vector<Change>& c
   const auto done = recompute(world, own ? *own : log, 1,
                               [&](const ReplayedTick& tick) { statistics.add(tick.computed); });
   if (!done) return done.error();
-  return Clashes{statistics.clashes(),
+  std::vector<Row> rows;
+  for (const auto& [id, row] : statistics.clashes()) rows.push_back(row);
+  return Clashes{std::move(rows),
                  names_of(world),
                  world.tick_rate_hz,
                  done->ticks,

@@ -237,14 +237,13 @@ Table Session::clashes() const {
   const double rate = scenario_.tick_rate_hz;
   const std::uint64_t last_tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
   std::map<Faces, std::size_t> occurrences;
-  for (const SessionStatistics::ClashRow& clash : statistics_.clashes())
-    ++occurrences[faces_of(clash)];
-  for (const SessionStatistics::ClashRow& clash : statistics_.clashes()) {
-    const OfClash& of = of_clash_.at(clash.clash);
+  for (const auto& [id, clash] : statistics_.clashes()) ++occurrences[faces_of(clash)];
+  for (const auto& [id, clash] : statistics_.clashes()) {
+    const OfClash& of = of_clash_.at(id);
     const Verdict& v = clash.worst;
     const Review& review = of.last.review;
     const std::uint64_t end = clash.end_tick != 0 ? clash.end_tick : last_tick;
-    std::vector<Json> row{clash.clash.value,
+    std::vector<Json> row{id.value,
                           word(clash.worst_class),
                           word(review.status),
                           review.user ? names_.user(review.user) : "",

@@ -10,6 +10,11 @@ namespace mortise::log_records {
 using state_bytes::Reader;
 using state_bytes::Writer;
 
+namespace {
+// 2: of the clashes that ended only the last ones.
+constexpr std::uint8_t kTotalsLayout = 2;
+}  // namespace
+
 std::vector<std::byte> encode(const Checkpoint& state) {
   Writer counters;
   counters(state.counters);
@@ -45,7 +50,7 @@ bool decode(std::span<const std::byte> bytes, Checkpoint& out, bool keep) {
 
 std::vector<std::byte> encode(const SessionStatistics& totals) {
   Writer out;
-  out(kStateLayout);
+  out(kTotalsLayout);
   out(totals);
   return out.take();
 }
@@ -54,7 +59,7 @@ bool decode(std::span<const std::byte> bytes, SessionStatistics& out) {
   Reader in(bytes);
   std::uint8_t layout = 0;
   in(layout, out);
-  return layout == kStateLayout && in.at_end() && out.is_whole();
+  return layout == kTotalsLayout && in.at_end() && out.is_whole();
 }
 
 }  // namespace mortise::log_records

@@ -36,6 +36,12 @@ void put_map(ByteWriter& out, const std::map<Key, std::uint64_t>& values) {
   }
 }
 
+void put_record(ByteWriter& out, std::uint8_t opcode, const ByteWriter& content) {
+  out.u8(opcode);
+  out.u64(content.size());
+  out.raw(content.bytes());
+}
+
 }  // namespace
 
 void McapWriter::Counted::add(std::uint64_t time_ns) {
@@ -95,9 +101,7 @@ void McapWriter::write(std::span<const std::byte> bytes) {
 
 void McapWriter::write_record(std::uint8_t opcode, const ByteWriter& content) {
   ByteWriter record;
-  record.u8(opcode);
-  record.u64(content.size());
-  record.raw(content.bytes());
+  put_record(record, opcode, content);
   write(record.bytes());
 }
 
@@ -109,7 +113,7 @@ std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view enc
   content.string(encoding);
   content.string(data);
   write_record(mcap::kSchema, content);
-  summary_.emplace_back(mcap::kSchema, std::move(content));
+  put_record(summary_[mcap::kSchema], mcap::kSchema, content);
   return schemas_;
 }
 
@@ -123,7 +127,7 @@ std::uint16_t McapWriter::add_channel(std::string_view topic, std::string_view m
   content.string(message_encoding);
   put_map(content, metadata);
   write_record(mcap::kChannel, content);
-  summary_.emplace_back(mcap::kChannel, std::move(content));
+  put_record(summary_[mcap::kChannel], mcap::kChannel, content);
   messages_of_channel_[channels_] = 0;
   return channels_;
 }
@@ -148,7 +152,7 @@ void McapWriter::add_attachment(std::string_view name, std::string_view media_ty
   index.string(name);
   index.string(media_type);
   write_record(mcap::kAttachment, content);
-  summary_.emplace_back(mcap::kAttachmentIndex, std::move(index));
+  put_record(summary_[mcap::kAttachmentIndex], mcap::kAttachmentIndex, index);
   ++attachments_;
 }
 
@@ -163,7 +167,7 @@ void McapWriter::add_metadata(std::string_view name,
   index.u64(mcap::kRecordHeaderBytes + content.size());
   index.string(name);
   write_record(mcap::kMetadata, content);
-  summary_.emplace_back(mcap::kMetadataIndex, std::move(index));
+  put_record(summary_[mcap::kMetadataIndex], mcap::kMetadataIndex, index);
   ++metadata_;
 }
 
@@ -229,7 +233,7 @@ void McapWriter::end_chunk() {
   index.string(compression);
   index.u64(records.size());
   index.u64(chunk_.size());
-  summary_.emplace_back(mcap::kChunkIndex, std::move(index));
+  put_record(summary_[mcap::kChunkIndex], mcap::kChunkIndex, index);
   chunk_.clear();
   chunk_index_.clear();
   chunk_counted_ = {};
@@ -257,25 +261,19 @@ void McapWriter::write_summary() {
   statistics.u64(file_counted_.start_time);
   statistics.u64(file_counted_.end_time);
   put_map(statistics, messages_of_channel_);
-  summary_.emplace_back(mcap::kStatistics, std::move(statistics));
-  std::stable_sort(summary_.begin(), summary_.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  put_record(summary_[mcap::kStatistics], mcap::kStatistics, statistics);
 
   const std::uint64_t summary_start = bytes_written();
   crc_ = 0;  // from here on: of the summary section
   ByteWriter offsets;
-  for (std::size_t first = 0; first < summary_.size();) {
-    const std::uint8_t opcode = summary_[first].first;
+  for (const auto& [opcode, records] : summary_) {
     const std::uint64_t group_start = bytes_written();
-    std::size_t next = first;
-    for (; next < summary_.size() && summary_[next].first == opcode; ++next)
-      write_record(opcode, summary_[next].second);
+    write(records.bytes());
     offsets.u8(mcap::kSummaryOffset);
     offsets.u64(1 + 8 + 8);
     offsets.u8(opcode);
     offsets.u64(group_start);
     offsets.u64(bytes_written() - group_start);
-    first = next;
   }
   const std::uint64_t offsets_start = bytes_written();
   write(offsets.bytes());

@@ -85,7 +85,8 @@ class McapWriter {
   std::uint16_t schemas_ = 0, channels_ = 0;
   std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;
   std::map<std::uint16_t, std::uint64_t> messages_of_channel_;
-  std::vector<std::pair<std::uint8_t, ByteWriter>> summary_;  ///< records for the summary section
+  /// Records of the summary section by their opcode. Some 150 bytes a chunk stay until the end.
+  std::map<std::uint8_t, ByteWriter> summary_;
 };
 
 }  // namespace mortise

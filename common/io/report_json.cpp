@@ -236,8 +236,8 @@ Json json_of(const SessionStatistics& statistics, const SessionNames& names) {
     json["by_user"].push_back(std::move(entry));
   }
   json["clashes"] = Json::array();
-  for (const SessionStatistics::ClashRow& clash : statistics.clashes()) {
-    json["clashes"].push_back({{"clash", clash.clash.value},
+  for (const auto& [id, clash] : statistics.clashes()) {
+    json["clashes"].push_back({{"clash", id.value},
                                {"part_a", names.part(clash.a)},
                                {"part_b", names.part(clash.b)},
                                {"user", names.user(clash.user)},
@@ -248,6 +248,7 @@ Json json_of(const SessionStatistics& statistics, const SessionNames& names) {
                                {"ticks", by_class(clash.ticks)},
                                {"worst", json_of(clash.worst)}});
   }
+  json["ended_clashes_left_out"] = statistics.rows_left_out();
   json["stages"] = json_of(statistics.counters());
   return json;
 }

@@ -97,6 +97,7 @@ FileWriter::FileWriter(std::unique_ptr<LogFile> file, const LogHeader& header,
     : file_(std::move(file)), header_(header), options_(options) {
   wake_ticks_ = std::clamp<std::size_t>(options.queue_ticks / 2, 1, kWakeTicks);
   if (header_.begin) statistics_ = std::move(header_.begin->statistics);
+  statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   counters_ = statistics_.counters();
   header_.begin.reset();
   count_bytes();

@@ -110,7 +110,7 @@ void LogAssembler::checkpoint(std::span<const std::byte> bytes) {
 
 void LogAssembler::totals(std::span<const std::byte> bytes) {
   if (!log_.begin || !log_records::decode(bytes, log_.begin->statistics))
-    note("the sums of what was before this file are damaged and left out");
+    note("the sums of what was before this file are damaged or of another layout, and left out");
 }
 
 TickRecord& LogAssembler::open(std::uint64_t tick) {

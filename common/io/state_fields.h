@@ -206,7 +206,8 @@ void fields(A& a, SessionStatistics::ClashRow& x) {
 }
 template <class A>
 void fields(A& a, SessionStatistics& x) {
-  a(x.ticks_, x.counters_, x.by_pair_, x.by_part_, x.by_user_, x.clashes_, x.index_, x.open_);
+  a(x.ticks_, x.counters_, x.by_pair_, x.by_part_, x.by_user_, x.clashes_, x.open_, x.ended_,
+    x.total_, x.rows_left_out_);
 }
 
 /// What a pair has of its own as far as it is not said again with the changes of tolerances.

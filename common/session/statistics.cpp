@@ -68,23 +68,26 @@ void SessionStatistics::for_rows_of(const ClashRow& clash, const Change& change)
 }
 
 void SessionStatistics::take_in(const ClashEvent& event) {
-  if (event.kind == ClashEvent::Kind::kBegin) {
-    index_[event.clash] = clashes_.size();
-    open_.push_back(clashes_.size());
-    ClashRow& row = clashes_.emplace_back();
+  // A log may hold anything: one that begins twice, or ends twice, does so once.
+  if (event.kind == ClashEvent::Kind::kBegin && !clashes_.contains(event.clash)) {
+    open_.push_back(event.clash);
+    ClashRow& row = clashes_[event.clash];
     row.clash = event.clash;
     row.a = event.part_a;
     row.b = event.part_b;
     row.user = event.user;  // who caused it: later events may name who moved on
     row.begin_tick = event.begin_tick;
     row.worst = event.verdict;
+    ++total_[index_of(row.worst_class)];
     for_rows_of(row, [&](Row& sum) { ++sum.clashes[index_of(row.worst_class)]; });
   }
-  const auto known = index_.find(event.clash);
-  if (known == index_.end()) return;  // its begin was never seen: a report is missing
-  ClashRow& clash = clashes_[known->second];
+  const auto known = clashes_.find(event.clash);
+  if (known == clashes_.end()) return;  // its begin was never seen: a report is missing
+  ClashRow& clash = known->second;
   const CollisionClass worst = std::max(clash.worst_class, event.worst_class);
   if (is_worse(event.verdict, clash.worst)) clash.worst = event.verdict;
+  --total_[index_of(clash.worst_class)];
+  ++total_[index_of(worst)];
   for_rows_of(clash, [&](Row& row) {
     --row.clashes[index_of(clash.worst_class)];
     ++row.clashes[index_of(worst)];
@@ -96,43 +99,57 @@ void SessionStatistics::take_in(const ClashEvent& event) {
   });
   clash.worst_class = worst;
   clash.now = event.verdict.collision_class;
-  if (event.kind != ClashEvent::Kind::kEnd) return;
-  clash.end_tick = event.tick;
+  if (event.kind == ClashEvent::Kind::kEnd) end(clash, event.tick);
+}
+
+void SessionStatistics::end(ClashRow& clash, std::uint64_t tick) {
+  if (std::erase(open_, clash.clash) > 0) ended_.push_back(clash.clash);
+  clash.end_tick = tick;
   clash.now = CollisionClass::kNone;
-  std::erase(open_, known->second);
+  drop_old_rows();
+}
+
+void SessionStatistics::keep_ended_rows(std::size_t most) {
+  most_ended_ = most;
+  drop_old_rows();
+}
+
+void SessionStatistics::drop_old_rows() {
+  if (ended_.size() <= most_ended_) return;
+  const auto kept = ended_.end() - static_cast<std::ptrdiff_t>(most_ended_);
+  for (auto id = ended_.begin(); id != kept; ++id, ++rows_left_out_) clashes_.erase(*id);
+  ended_.erase(ended_.begin(), kept);
 }
 
 void SessionStatistics::add(const StepReport& report) {
   ++ticks_;
   accumulate(counters_, report.counters);
   for (const ClashEvent& event : report.events) take_in(event);
-  for (const std::size_t i : open_) {
-    ClashRow& clash = clashes_[i];
+  for (const ClashId id : open_) {
+    ClashRow& clash = clashes_.at(id);
     ++clash.ticks[index_of(clash.now)];
     for_rows_of(clash, [&](Row& row) { ++row.ticks[index_of(clash.now)]; });
   }
 }
 
 bool SessionStatistics::is_whole() const {
-  const auto within = [&](std::size_t i) { return i < clashes_.size(); };
+  const auto known = [&](ClashId id) { return clashes_.contains(id); };
   const auto is_class = [](CollisionClass c) { return index_of(c) < 4; };
-  return std::all_of(open_.begin(), open_.end(), within) &&
-         std::all_of(index_.begin(), index_.end(),
-                     [&](const auto& entry) { return within(entry.second); }) &&
-         std::all_of(clashes_.begin(), clashes_.end(), [&](const ClashRow& row) {
-           return is_class(row.now) && is_class(row.worst_class);
+  return open_.size() + ended_.size() == clashes_.size() &&
+         std::all_of(open_.begin(), open_.end(), known) &&
+         std::all_of(ended_.begin(), ended_.end(), known) &&
+         std::all_of(clashes_.begin(), clashes_.end(), [&](const auto& entry) {
+           return is_class(entry.second.now) && is_class(entry.second.worst_class);
          });
 }
 
 std::uint64_t SessionStatistics::clashes_open(CollisionClass c) const {
   return static_cast<std::uint64_t>(std::count_if(
-      open_.begin(), open_.end(), [&](std::size_t i) { return clashes_[i].now == c; }));
+      open_.begin(), open_.end(), [&](ClashId id) { return clashes_.at(id).now == c; }));
 }
 
 std::uint64_t SessionStatistics::clashes_total(CollisionClass c) const {
-  return static_cast<std::uint64_t>(
-      std::count_if(clashes_.begin(), clashes_.end(),
-                    [&](const ClashRow& clash) { return clash.worst_class == c; }));
+  return total_[index_of(c)];
 }
 
 }  // namespace mortise

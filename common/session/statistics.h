@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -34,6 +36,12 @@ class SessionStatistics {
 
   void add(const StepReport& report);
 
+  /// Rows of clashes that have ended, as many as a server keeps.
+  static constexpr std::size_t kMostEndedRows = 2000;
+  /// From now on only so many of them are kept, those that ended last. The others stay in every
+  /// count and sum; a log still has them one by one. A session of days needs it.
+  void keep_ended_rows(std::size_t most);
+
   /// Counts of all ticks, where they were added without them, as a log has them.
   void set_counters(const StepCounters& counters) { counters_ = counters; }
   /// Do its lists point at each other as they must? For what was read back.
@@ -44,7 +52,8 @@ class SessionStatistics {
   const std::map<std::pair<PartId, PartId>, Row>& by_pair() const { return by_pair_; }
   const std::map<PartId, Row>& by_part() const { return by_part_; }
   const std::map<UserId, Row>& by_user() const { return by_user_; }
-  const std::vector<ClashRow>& clashes() const { return clashes_; }
+  const std::map<ClashId, ClashRow>& clashes() const { return clashes_; }
+  std::uint64_t rows_left_out() const { return rows_left_out_; }  ///< see keep_ended_rows()
   std::uint64_t clashes_open(CollisionClass c) const;
   std::uint64_t clashes_total(CollisionClass c) const;  ///< by worst class
 
@@ -54,13 +63,17 @@ class SessionStatistics {
   std::map<std::pair<PartId, PartId>, Row> by_pair_;
   std::map<PartId, Row> by_part_;
   std::map<UserId, Row> by_user_;
-  std::vector<ClashRow> clashes_;
-  std::map<ClashId, std::size_t> index_;
-  std::vector<std::size_t> open_;  // into clashes_, by begin
+  std::map<ClashId, ClashRow> clashes_;
+  std::vector<ClashId> open_, ended_;     ///< of clashes_, by begin, by end
+  std::array<std::uint64_t, 4> total_{};  ///< of all there were, by worst class
+  std::uint64_t rows_left_out_ = 0;
+  std::size_t most_ended_ = std::numeric_limits<std::size_t>::max();
 
   template <class Change>
   void for_rows_of(const ClashRow& clash, const Change& change);
   void take_in(const ClashEvent& event);
+  void end(ClashRow& clash, std::uint64_t tick);
+  void drop_old_rows();
 
   template <class Archive>
   friend void fields(Archive& archive, SessionStatistics& statistics);  ///< io/state_fields.h

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/unit/session/random_play.h"
 
 namespace mortise {
@@ -48,12 +50,12 @@ TEST(SessionStatistics, CountsByWorstClassAndDurationByClass) {
   EXPECT_EQ(s.clashes_total(kPotential), 1U);
   EXPECT_EQ(s.clashes_total(kFake), 0U);
   ASSERT_EQ(s.clashes().size(), 2U);
-  const auto& first = s.clashes()[0];
+  const auto& first = s.clashes().at(ClashId{1});
   EXPECT_EQ(first.ticks[1], 2U);  // fake in ticks 1, 2
   EXPECT_EQ(first.ticks[3], 2U);  // real in ticks 3, 4
   EXPECT_EQ(first.end_tick, 5U);
   EXPECT_EQ(first.worst.delta_mm.lo, 0.5);
-  EXPECT_EQ(s.clashes()[1].end_tick, 0U);
+  EXPECT_EQ(s.clashes().at(ClashId{2}).end_tick, 0U);
   const auto& part = s.by_part().at(PartId{1});
   EXPECT_EQ(part.clashes[3], 1U);
   EXPECT_EQ(part.clashes[2], 1U);
@@ -95,6 +97,56 @@ TEST(SessionStatistics, AgreesWithTheSessionItWasFedFrom) {
   EXPECT_EQ(open, snapshot_of(play.session.world).open_clashes.size());
   EXPECT_EQ(s.counters().pairs.in, sum.pairs.in);
   EXPECT_EQ(s.counters().triangle_tests, sum.triangle_tests);
+}
+
+// A session of days: rows of what has ended long ago go, counts and sums stay.
+TEST(SessionStatistics, KeepsTheRowsThatEndedLast) {
+  using enum CollisionClass;
+  SessionStatistics all, some;
+  some.keep_ended_rows(3);
+  std::uint64_t tick = 0;
+  for (std::uint32_t id = 1; id <= 10; ++id) {
+    // The second never ends; the others are fake or real in turn.
+    const CollisionClass c = id % 2 == 0 ? kReal : kFake;
+    std::vector<StepReport> told{report(++tick, {event(Kind::kBegin, tick, id, c, 0.1 * id, c)})};
+    if (id != 2) told.push_back(report(++tick, {event(Kind::kEnd, tick, id, c, 0.1 * id, c)}));
+    for (const StepReport& r : told) {
+      all.add(r);
+      some.add(r);
+    }
+  }
+  EXPECT_EQ(all.clashes().size(), 10U);
+  EXPECT_EQ(all.rows_left_out(), 0U);
+  std::vector<std::uint32_t> kept;
+  for (const auto& [id, row] : some.clashes()) kept.push_back(id.value);
+  EXPECT_EQ(kept, (std::vector<std::uint32_t>{2, 8, 9, 10}));
+  EXPECT_EQ(some.rows_left_out(), 6U);
+  for (const CollisionClass c : {kFake, kPotential, kReal}) {
+    EXPECT_EQ(some.clashes_total(c), all.clashes_total(c));
+    EXPECT_EQ(some.clashes_open(c), all.clashes_open(c));
+  }
+  EXPECT_EQ(some.clashes_open(kReal), 1U);
+  EXPECT_EQ(some.by_part().at(PartId{1}).clashes[3], 5U);
+  all.keep_ended_rows(3);
+  EXPECT_EQ(all.clashes().size(), some.clashes().size());
+  EXPECT_TRUE(some.is_whole());
+}
+
+// What a damaged log tells: begins and ends twice, ends that nothing began.
+TEST(SessionStatistics, TellsApartWhatIsToldTwice) {
+  using enum CollisionClass;
+  SessionStatistics s;
+  s.keep_ended_rows(1);
+  std::mt19937 random(7);
+  for (std::uint64_t tick = 1; tick < 2000; ++tick) {
+    std::vector<ClashEvent> events;
+    for (int i = 0; i < 3; ++i)
+      events.push_back(event(random() % 2 == 0 ? Kind::kBegin : Kind::kEnd, tick,
+                             static_cast<std::uint32_t>(1 + random() % 4), kReal, 0.1, kReal));
+    s.add(report(tick, events));
+    ASSERT_TRUE(s.is_whole()) << tick;
+  }
+  EXPECT_GT(s.rows_left_out(), 100U);
 }
 
 // accumulate must not forget a field: counters that are all one sum to all two.
