@@ -57,6 +57,22 @@ void pair_up(PairWork& pair, const std::vector<OpenClash>& open, double radius_m
   }
 }
 
+// What holds a pair is one clash: where the push would have led, the worst place moves about and may
+// fall into several regions from one tick to the next. So the worst of them goes on with the clash
+// that has held the pair near there, before others may.
+void go_on_holding(PairWork& pair, const std::vector<OpenClash>& open, double radius_mm) {
+  if (pair.seen.empty()) return;
+  SeenRegion& worst = pair.seen.front();
+  double nearest = radius_mm;
+  for (std::size_t c = 0; c < open.size(); ++c) {
+    if (open[c].worst_class != CollisionClass::kReal) continue;
+    const double d = apart(open[c], worst);
+    if (d > nearest || (d == nearest && worst.open >= 0)) continue;
+    nearest = d;
+    worst.open = static_cast<int>(c);
+  }
+}
+
 // How far beyond a threshold a class has to be left behind: 1 % of the width of the zone between
 // both, within bounds (ALG 5.4).
 double hysteresis_mm(const Verdict& verdict) {
@@ -203,6 +219,7 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
     return;
   }
   const std::vector<OpenClash>& open = *pair.open;
+  if (pair.blocks) go_on_holding(pair, open, radius_mm);
   // 1. Near the same place; then what is left over, with a wider gate: a clash that jumps over its
   //    part from tick to tick is still one clash.
   pair_up(pair, open, radius_mm, false);
