@@ -1,0 +1,144 @@
+// A server that runs for long while all that can come and go beside it does: does it grow?
+// MORTISE_SOAK_S says for how long: 40 s unless told, an hour with --soak.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "tests/network/guest.h"
+#include "tests/network/program.h"
+#include "tests/support/growth.h"
+
+namespace mortise::test {
+namespace {
+
+constexpr int kDomain = 231;
+constexpr int kCrews = 4;
+constexpr double kLong_s = 1800.0;  // a slope means something from here on
+constexpr double kSlope_mb_per_h = 3.0;
+
+double soak_s() {
+  const char* seconds = std::getenv("MORTISE_SOAK_S");
+  return seconds != nullptr ? std::atof(seconds) : 40.0;
+}
+
+/// A program that is ended, and started again a little later, in one way or another.
+class ComesAndGoes {
+ public:
+  ComesAndGoes(const TestFolder& folder, std::string name, std::vector<std::string> arguments,
+               double first_s, double lives_s, unsigned seed)
+      : folder_(folder),
+        name_(std::move(name)),
+        arguments_(std::move(arguments)),
+        lives_s_(lives_s),
+        random_(seed),
+        next_s_(first_s) {}
+  void turn(double now_s) {
+    if (program_ && (now_s >= next_s_ || !program_->running())) {
+      end();
+      next_s_ = now_s + between(3.0, 6.0);  // who was killed is gone by then
+    } else if (!program_ && now_s >= next_s_) {
+      program_ = std::make_unique<Program>(folder_.path(), name_, arguments_);
+      ++starts_;
+      next_s_ = now_s + lives_s_ * between(0.5, 1.5);
+    }
+  }
+  void end() {
+    if (!program_) return;
+    const bool kill = std::bernoulli_distribution(0.5)(random_);
+    if (program_->running()) {
+      program_->signal(kill ? SIGKILL : SIGTERM);
+      killed_ += kill;
+    }
+    EXPECT_NE(program_->wait(20), -1) << name_ << " does not end";
+    if (program_->errors().find("taken over") != std::string::npos) ++took_over_;
+    program_.reset();
+  }
+  int starts() const { return starts_; }
+  int killed() const { return killed_; }
+  int took_over() const { return took_over_; }
+
+ private:
+  double between(double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random_);
+  }
+  const TestFolder& folder_;
+  std::string name_;
+  std::vector<std::string> arguments_;
+  double lives_s_;
+  std::mt19937 random_;
+  std::unique_ptr<Program> program_;
+  double next_s_;
+  int starts_ = 0, killed_ = 0, took_over_ = 0;
+};
+
+std::string domain() { return std::to_string(kDomain); }
+
+ComesAndGoes crew(const TestFolder& folder, int number) {
+  const std::string one(1, static_cast<char>('k' + number));
+  return {folder,
+          "mortise-bot",
+          {"--domain", domain(), "--users", "2", "--names", one + "a," + one + "b", "--behaviour",
+           number % 2 ? "mixed" : "share", "--wait", "20", "--duration", "20", "--json"},
+          0.0,
+          16.0,
+          static_cast<unsigned>(number)};
+}
+
+TEST(LiveSoak, AServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
+  const double lasts_s = soak_s();
+  TestFolder folder;
+  const std::string logs = (folder.path() / "logs").string();
+  std::filesystem::create_directories(logs);
+  Program server(
+      folder.path(), "mortise-server",
+      {MORTISE_SOURCE_DIR "/scenarios/gearbox.yaml", "--domain", domain(), "--log", logs,
+       "--log-rotate", "4", "--metrics-port", "0", "--quiet", "--json"});
+  std::vector<ComesAndGoes> all;
+  for (int i = 0; i < kCrews; ++i) all.push_back(crew(folder, i));
+  all.emplace_back(folder, "mortise-server",
+                   std::vector<std::string>{"--standby-of", "default", "--restore", logs, "--log",
+                                            logs, "--domain", domain(), "--json"},
+                   2.0, 30.0, 99u);
+  std::vector<Holdings> seen;
+  const double begin_s = steady_s();
+  for (double now_s = 0.0, sample_s = 0.0; now_s < lasts_s; now_s = steady_s() - begin_s) {
+    for (ComesAndGoes& one : all) one.turn(now_s);
+    if (now_s >= sample_s) {
+      sample_s += std::min(10.0, lasts_s / 20.0);
+      seen.push_back(holdings_of(server.pid(), now_s));
+      std::printf("%.0f s: %.2f MB, %d threads, %d handles\n", now_s, seen.back().resident_mb,
+                  seen.back().threads, seen.back().handles);
+      std::fflush(stdout);
+    }
+    ASSERT_TRUE(server.running()) << server.errors();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  int starts = 0, killed = 0;
+  for (ComesAndGoes& one : all) {
+    one.end();
+    starts += one.starts();
+    killed += one.killed();
+    EXPECT_EQ(one.took_over(), 0) << "the server was taken for gone";
+  }
+  server.signal(SIGTERM);
+  EXPECT_EQ(server.wait(20), 0) << server.errors();
+  EXPECT_GE(starts, 5);
+
+  const double third_s = lasts_s / 3.0, slope = resident_mb_per_h(seen, third_s);
+  std::printf("%.0f s, %d programs came, %d of them killed: %+.2f MB an hour from %.0f s on\n",
+              lasts_s, starts, killed, slope, third_s);
+  const auto grown = [&](int Holdings::*what) {
+    return most(seen, what, 2 * third_s, lasts_s) - most(seen, what, 0.0, 2 * third_s);
+  };
+  EXPECT_LE(grown(&Holdings::threads), 0);
+  EXPECT_LE(grown(&Holdings::handles), 2);
+  if (lasts_s >= kLong_s) {
+    EXPECT_LE(slope, kSlope_mb_per_h);
+  }
+}
+
+}  // namespace
+}  // namespace mortise::test
