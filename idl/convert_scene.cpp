@@ -281,6 +281,7 @@ wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial) {
   out.not_examined(pulse.not_examined);
   out.users(pulse.users);
   out.pose_serial(pose_serial);
+  out.draining(pulse.draining);
   return out;
 }
 
@@ -303,6 +304,7 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   pulse.refused = in.refused();
   pulse.not_examined = in.not_examined();
   pulse.users = in.users();
+  pulse.draining = in.draining();
   return pulse;
 }
 

@@ -30,7 +30,7 @@ class DdsServerChannel final : public StandbyChannel {
   /// Says goodbye after its last words were heard; who does not listen is not waited for long.
   ~DdsServerChannel() override {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kLastWords_ms);
-    for (dds::DataWriter* writer : {answers_, events_, snapshots_}) {
+    for (dds::DataWriter* writer : {answers_, events_, snapshots_, pulses_}) {
       const std::chrono::duration<double> left = end - std::chrono::steady_clock::now();
       if (writer == nullptr || left.count() <= 0.0) continue;
       writer->wait_for_acknowledgments(

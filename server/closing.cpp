@@ -21,6 +21,7 @@ Json json_of(const InboxCounters& c) {
   Json json;
   json["joins"] = c.joins;
   json["joins_refused"] = c.joins_refused;
+  json["joins_put_off"] = c.joins_put_off;
   json["leaves"] = c.leaves;
   json["liveliness_lost"] = c.liveliness_lost;
   json["lease_ends"] = c.lease_ends;

@@ -126,6 +126,22 @@ void HeldChannel::say(std::function<void()> what) {
   kept_.push_back({tick_, std::move(what)});
 }
 
+bool HeldChannel::hand_over() {
+  const std::int64_t begun_ns = clock_.now_ns();
+  while (static_cast<double>(clock_.now_ns() - begun_ns) * 1e-9 < kHandOver_s) {
+    // Not given up as let_go() does: who raises its term now would lead against the other.
+    const std::uint64_t taken = inner_.taken_up_to();
+    if (taken != kTakenAll) say_up_to(taken);
+    if (inner_.take().superseded) {
+      say_up_to(kTakenAll);
+      return true;
+    }
+    inner_.await_taken(kLook_ns);
+  }
+  kept_.clear();
+  return false;
+}
+
 void HeldChannel::finish() {
   for (int turn = 0; turn < 100 && rest(kLook_ns); ++turn) {
   }

@@ -206,6 +206,10 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
       return;
     }
   }
+  if (puts_off_newcomers_) {
+    ++counters_.joins_put_off;
+    return;
+  }
   for (const User& user : world.users) {
     if (user.name == request.name) known = user.id;
   }

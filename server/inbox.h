@@ -49,6 +49,7 @@ struct UserCounters {
 struct InboxCounters {
   std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0,
                 ask_ends = 0;
+  std::uint64_t joins_put_off = 0;  ///< not answered by a server that is about to end
   std::uint64_t commands = 0, commands_refused = 0, commands_deferred = 0;
   std::uint64_t commands_overdue = 0;  ///< carried out before increments that were sent before them
   std::uint64_t increments = 0, accepted = 0;  ///< arrived for the first time; of these taken
@@ -98,6 +99,10 @@ class Inbox {
   /// not ask to join again in time. Called once, before admit().
   void adopt(const std::vector<SeatRecord>& seats, std::int64_t now_ns);
   std::vector<SeatRecord> seats() const;  ///< of all who are present
+
+  /// From now on who asks to join and is not here already gets no answer: clients ask again, and
+  /// come in where the session goes on.
+  void put_off_newcomers() { puts_off_newcomers_ = true; }
 
   const InboxCounters& counters() const { return counters_; }
   const std::vector<UserCounters>& user_counters() const { return user_counters_; }  ///< by index
@@ -178,6 +183,7 @@ class Inbox {
   std::vector<std::uint32_t> moving_;     ///< parts that can be held, by index: not all of a scene
   std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
   std::vector<std::int64_t> asked_ns_;    ///< by part index: since when somebody asks for it
+  bool puts_off_newcomers_ = false;
   std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
   std::vector<ReceivedIncrement> ready_;    ///< in order now, of one arrival
   std::vector<std::uint32_t> taken_;        ///< by user index, in this tick

@@ -69,7 +69,7 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--threads", o.threads, "Threads of the engine; the results are the same")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app.add_option("--duration", o.duration_s, "End after so many seconds; 0: at SIGINT or SIGTERM")
+  app.add_option("--duration", o.duration_s, "End after so many seconds; 0: at a signal")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--stats", o.stats, "Write the closing statistics to this file (JSON)");
   app.add_flag("--json", o.json, "Closing statistics as one JSON document instead of tables");
@@ -81,6 +81,11 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::Range(1.0, 1000.0));
   add_operation(app, o);
   app.footer(
+      "Signals: SIGINT and SIGTERM end the session. SIGUSR1 drains the server: the one that stands "
+      "by "
+      "goes on with the session at once; where none stands by, the log gets a checkpoint of the "
+      "last "
+      "tick, from which --restore goes on elsewhere.\n"
       "Exit codes: 0 ok, 1 runtime error (port in use, log not writable), 2 usage, 3 bad scenario "
       "or log, 4 the log to restore from and this engine disagree.");
   try {

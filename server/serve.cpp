@@ -13,6 +13,7 @@
 #include "idl/dds_channel.h"
 #include "server/announcer.h"
 #include "server/closing.h"
+#include "server/drain.h"
 #include "server/held_channel.h"
 #include "server/metrics_endpoint.h"
 #include "server/real_time.h"
@@ -25,9 +26,10 @@ namespace {
 
 constexpr double kShowFiguresEvery_s = 1.0;  // collectors come each few seconds
 
-std::atomic<bool> stop_asked{false};  // lock-free: set in a signal handler
+std::atomic<bool> stop_asked{false}, drain_asked{false};  // lock-free: set in signal handlers
 
 void ask_to_stop(int) { stop_asked = true; }
+void ask_to_drain(int) { drain_asked = true; }
 
 int say(const Error& error) {
   spdlog::error("{}", error.text);
@@ -102,7 +104,9 @@ int serve(const ServerOptions& options) {
   const bool stands_by = !options.standby_of.empty();
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
-  const auto stop = [] { return stop_asked.load(); };
+  std::signal(SIGUSR1, ask_to_drain);
+  // One that stands by has nothing to hand over.
+  const auto stop = [] { return stop_asked || drain_asked; };
   std::unique_ptr<StandbyChannel> standby;
   std::deque<ToldTick> told;
   if (stands_by) {
@@ -149,8 +153,8 @@ int serve(const ServerOptions& options) {
     seats = follower.seats();
     run_as_others();  // and the threads of the endpoints
     if (Status taken = line.take_over(); !taken) return say(taken.error());
-    spdlog::warn("the server of session '{}' is gone: taken over at tick {}, {} users",
-                 options.session, world.tick, seats.size());
+    spdlog::warn("the server of session '{}' {}: taken over at tick {}, {} users", options.session,
+                 follower.handed_over() ? "hands over" : "is gone", world.tick, seats.size());
   }
 
   if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
@@ -200,9 +204,10 @@ int serve(const ServerOptions& options) {
     metrics->show(figures_of(loop, (*channel)->counters(), options.session));
   };
   Announcer announcer(options.live, options.quiet);
+  Drain drain(loop, held, clock);
   loop.run(
       [&] {
-        return stop_asked || loop.superseded() ||
+        return stop_asked || loop.superseded() || (drain_asked && drain.is_ready()) ||
                (options.duration_s > 0.0 && loop.seconds() >= options.duration_s);
       },
       [&] {
@@ -211,9 +216,12 @@ int serve(const ServerOptions& options) {
         show_figures();
       });
   announcer.finish();
+  if (drain.begun() && !stop_asked && !loop.superseded()) drain.finish();
   if (loop.superseded()) {
     spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
                   options.session, options.session);
+  } else if (drain.end() != Drain::End::kNone) {
+    spdlog::info("{}", drain.text(options.session, closing.log_file));
   } else {
     loop.close();
     held.finish();

@@ -85,6 +85,7 @@ Status Follower::take(const ToldTick& told) {
   }
   step_once(tick);
   ++ticks_;
+  handed_over_ = tick.hands_over;
   if (state_hash_ == tick.state_hash) return ok();
   return fail(Code::kMismatch, "at tick " + std::to_string(tick.tick) +
                                    " this engine computes something else than the one that leads");
@@ -127,7 +128,7 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
       if (Status taken = follower.take(told.front()); !taken) return taken.error();
       hear_and_confirm(channel, told, silence);
     }
-    if (is_gone && silence.is_believed()) return true;
+    if (follower.handed_over() || (is_gone && silence.is_believed())) return true;
     silence.turn();
     std::this_thread::sleep_for(kTurn);
   }

@@ -26,6 +26,8 @@ class Follower {
   Status take(const ToldTick& told);
   const std::vector<SeatRecord>& seats() const { return seats_; }
   std::uint64_t ticks() const { return ticks_; }
+  /// The one that leads has said: go on from here.
+  bool handed_over() const { return handed_over_; }
 
  private:
   void step_once(const FollowedTick& tick);
@@ -36,6 +38,7 @@ class Follower {
   Scratch scratch_;
   std::vector<SeatRecord> seats_;
   std::uint64_t ticks_ = 0, state_hash_ = 0;
+  bool handed_over_ = false;
 };
 
 /// Waits until the leader tells its first tick, and a moment longer, so that all before it is in
@@ -43,7 +46,8 @@ class Follower {
 bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
                   const std::function<bool()>& stop);
 
-/// Follows until the leader is gone and all that it told is taken. False when `stop` said so.
+/// Follows until the leader is gone, or hands over, and all that it told is taken. False when
+/// `stop` said so.
 Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower& follower,
                     const std::function<bool()>& stop);
 

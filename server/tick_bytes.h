@@ -23,6 +23,7 @@ struct FollowedTick {
   std::vector<Increment> increments;
   bool has_seats = false;
   std::vector<SeatRecord> seats;  ///< of all users present; only with has_seats
+  bool hands_over = false;        ///< the last of the one that leads: go on from here
 };
 
 std::vector<std::byte> encode(const FollowedTick& tick);

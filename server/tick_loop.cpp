@@ -113,7 +113,9 @@ void TickLoop::record() {
   record.increments = intake_.increments;
   record.report = report_;
   changed_since_checkpoint_ |= !intake_.decisions.empty() || !intake_.increments.empty();
-  record.state = checkpoints_.after_tick(world_, checkpoint_is_due());
+  // The last one at once: there are no ticks any more over which it could be made.
+  record.state = last_ ? StateDraft([bytes = encode_state(world_)] { return bytes; })
+                       : checkpoints_.after_tick(world_, checkpoint_is_due());
   log_->record(std::move(record));
 }
 
@@ -141,8 +143,9 @@ void TickLoop::tell_follower() {
   followed.time_ns = clock_.wall_ns();
   followed.decisions = intake_.decisions;
   followed.increments = intake_.increments;
+  followed.hands_over = hands_over_;
   followed.has_seats =
-      intake_.follower_came || report_.tick % kSeatsEvery_ticks == 0 ||
+      hands_over_ || intake_.follower_came || report_.tick % kSeatsEvery_ticks == 0 ||
       std::any_of(intake_.decisions.begin(), intake_.decisions.end(), changes_seats);
   if (followed.has_seats) followed.seats = inbox_.seats();
   channel_.publish_tick({report_.tick, encode(followed)});
@@ -198,7 +201,7 @@ void TickLoop::publish() {
   publish_snapshot_when_due();
   if (recognizer_) tell_features();
 
-  if (now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
+  if (last_ || now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
     pulse_ns_ = now_ns_;
     if (has_readers) channel_.publish_pulse(pulse());
   }
@@ -257,6 +260,18 @@ void TickLoop::run(const std::function<bool()>& stop, const std::function<void()
   }
 }
 
+void TickLoop::begin_drain() {
+  draining_ = true;
+  inbox_.put_off_newcomers();
+  pulse_ns_ -= in_ns(options_.pulse_s);  // with the next tick
+}
+
+void TickLoop::last_tick(bool hands_over) {
+  last_ = true;
+  hands_over_ = hands_over;
+  tick();
+}
+
 void TickLoop::close() {
   now_ns_ = clock_.now_ns();
   publish_snapshot();
@@ -278,6 +293,7 @@ SessionPulse TickLoop::pulse() const {
   for (std::uint64_t count : statistics_.counters().refused) pulse.refused += count;
   pulse.not_examined = statistics_.counters().not_examined;
   pulse.users = inbox_.users_present();
+  pulse.draining = draining_;
   return pulse;
 }
 

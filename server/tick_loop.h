@@ -64,6 +64,12 @@ class TickLoop {
   /// ran past wholly are passed over and counted, so that lateness never piles up.
   void run(const std::function<bool()>& stop, const std::function<void()>& after_tick);
 
+  /// The server ends soon: who is not in the session yet is put off, and clients are told.
+  void begin_drain();
+  /// The last tick: the log gets a checkpoint of its end. With `hands_over` the one that stands by
+  /// is told to go on from here.
+  void last_tick(bool hands_over);
+
   /// A last snapshot for those who stay.
   void close();
 
@@ -113,6 +119,7 @@ class TickLoop {
   bool changed_since_snapshot_ = false;
   bool snapshot_wanted_ = false;
   bool superseded_ = false;
+  bool draining_ = false, last_ = false, hands_over_ = false;
   bool had_readers_ = false;
 };
 

@@ -141,7 +141,8 @@ Json json_of(const SessionPulse& pulse) {
           {"overloads", pulse.overloads},
           {"refused", pulse.refused},
           {"not_examined", pulse.not_examined},
-          {"users", pulse.users}};
+          {"users", pulse.users},
+          {"draining", pulse.draining}};
 }
 
 Json percentiles_of(std::vector<double> samples_ms) {

@@ -124,6 +124,7 @@ struct SessionPulse {
   double tick_p50_us = 0.0, tick_p99_us = 0.0, tick_max_us = 0.0, lateness_p99_us = 0.0;
   std::uint64_t overloads = 0, refused = 0, not_examined = 0;
   std::uint32_t users = 0;
+  bool draining = false;  ///< this server ends soon: the session goes on with another, or later
 };
 
 /// The server's end of a transport. take() and publish_*() never block and are called from the tick

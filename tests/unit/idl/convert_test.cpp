@@ -278,12 +278,14 @@ TEST(Convert, PulseGoesRoundAndIsRefused) {
   sent.clashes_total[1] = 9;
   sent.tick_p99_us = 12.5;
   sent.users = 3;
+  sent.draining = true;
   const Result<SessionPulse> got = from_wire(to_wire(sent, 11));
   ASSERT_TRUE(got);
   EXPECT_EQ(got->clashes_open[3], 2u);
   EXPECT_EQ(got->clashes_total[1], 9u);
   EXPECT_EQ(got->tick_p99_us, 12.5);
   EXPECT_EQ(got->users, 3u);
+  EXPECT_TRUE(got->draining);
   wire::Pulse bad = to_wire(sent, 11);
   EXPECT_EQ(bad.pose_serial(), 11u);
   bad.tick_max_us(-1.0);

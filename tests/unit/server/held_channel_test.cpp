@@ -22,8 +22,12 @@ struct Wire final : ServerChannel {
   std::uint64_t taken = 0, told = 0;
   int led_anew = 0;
   ServerInput input;
+  std::int64_t superseded_after_ns = 0;  ///< 0: never
 
-  ServerInput take() override { return std::exchange(input, {}); }
+  ServerInput take() override {
+    input.superseded |= superseded_after_ns != 0 && clock->at_ns >= superseded_after_ns;
+    return std::exchange(input, {});
+  }
   void publish_join_reply(const JoinReply&) override {}
   void publish_replies(std::span<const Reply>) override {}
   void publish_decisions(std::span<const Decision>) override {}
@@ -108,6 +112,29 @@ TEST_F(Held, NothingIsSaidOfWhatWasKeptWhenAnotherLeads) {
   wire_.taken = 2;  // said by nobody who could know
   (void)held_.take();
   EXPECT_EQ(wire_.said, Ticks{1});
+}
+
+TEST_F(Held, WhatIsHandedOverIsSaidOnceTheOtherHasIt) {
+  tick(1);
+  taken(1);
+  tick(2);
+  wire_.taken = 2;
+  wire_.superseded_after_ns = clock_.at_ns + 50'000'000;
+  EXPECT_TRUE(held_.hand_over());
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  EXPECT_EQ(wire_.led_anew, 0);
+}
+
+TEST_F(Held, WhatTheOtherDoesNotTakeIsNeverSaidAndNobodyLeadsAnew) {
+  tick(1);
+  taken(1);
+  tick(2);
+  const std::int64_t begun_ns = clock_.at_ns;
+  EXPECT_FALSE(held_.hand_over());
+  EXPECT_LT(clock_.at_ns - begun_ns, 2'100'000'000);
+  held_.finish();
+  EXPECT_EQ(wire_.said, Ticks{1});
+  EXPECT_EQ(wire_.led_anew, 0) << "it may be leading by now";
 }
 
 TEST_F(Held, ASilentSecondIsGivenUpAndThatIsSaid) {

@@ -55,6 +55,21 @@ class InboxLimitsTest : public ::testing::Test {
   std::uint64_t seq_ = 0;
 };
 
+TEST_F(InboxLimitsTest, NewcomersArePutOffAndWhoIsHereIsAnswered) {
+  const UserId anna = join("anna"), ben = join("ben");
+  inbox().put_off_newcomers();
+  EXPECT_EQ(join("anna"), anna) << "asked again, as one does who has heard nothing";
+  ServerInput input;
+  input.joins.push_back({"cid", 1, "cid", "designer"});
+  input.joins.push_back({"ben", 2, "benno", "designer"});
+  input.lost.push_back({ben, "ben", false});
+  inbox().admit(std::move(input), world_, now_ns_, intake_);
+  EXPECT_TRUE(intake_.join_replies.empty()) << "neither in nor refused: they ask again";
+  EXPECT_EQ(inbox().counters().joins_put_off, 2u);
+  EXPECT_EQ(inbox().counters().joins_refused, 0u);
+  EXPECT_EQ(inbox().users_present(), 1u);
+}
+
 TEST_F(InboxLimitsTest, AHandHoldsSoManyPartsAndNoMore) {
   limits_.parts_per_user = 1;
   const UserId anna = join("anna"), ben = join("ben");

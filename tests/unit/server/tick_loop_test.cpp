@@ -224,6 +224,22 @@ TEST_F(TickLoopTest, NothingIsSentWhileNothingHappens) {
   EXPECT_EQ(loop_->statistics().counters().depth_queries, 0U);
 }
 
+TEST_F(TickLoopTest, ADrainIsToldAtOnceAndOnlyThen) {
+  Participant anna = join("anna");
+  for (int i = 0; i < 90; ++i) tick();
+  anna.take();
+  ASSERT_FALSE(anna.pulses.empty());
+  EXPECT_FALSE(anna.pulses.back().draining);
+  loop_->begin_drain();
+  tick();
+  anna.take();
+  EXPECT_TRUE(anna.pulses.back().draining);
+  const std::size_t before = anna.pulses.size();
+  loop_->last_tick(false);
+  anna.take();
+  EXPECT_EQ(anna.pulses.size(), before + 1) << "also those who have come since";
+}
+
 TEST_F(TickLoopTest, AKeyframeFollowsAChangeWithinASecond) {
   Participant anna = join("anna");
   for (int i = 0; i < 120; ++i) tick();

@@ -1,0 +1,39 @@
+#include "server/drain.h"
+
+namespace mortise {
+
+bool Drain::is_ready() {
+  if (!begun_ns_) {
+    begun_ns_ = clock_.now_ns();
+    loop_.begin_drain();
+  }
+  if (held_.follower_in_step() || !held_.has_follower()) return true;
+  return static_cast<double>(clock_.now_ns() - *begun_ns_) * 1e-9 >= kCatchUp_s;
+}
+
+void Drain::finish() {
+  const bool hands_over = held_.follower_in_step();
+  loop_.last_tick(hands_over);
+  if (loop_.superseded()) return;  // somebody else was faster
+  if (hands_over) {
+    end_ = held_.hand_over() ? End::kHandedOver : End::kNotTaken;
+    return;
+  }
+  loop_.close();
+  held_.finish();
+  end_ = End::kAlone;
+}
+
+std::string Drain::text(const std::string& session, const std::string& log_file) const {
+  const std::string after = " after tick " + std::to_string(loop_.last_report().tick);
+  if (end_ == End::kHandedOver) {
+    return "drained: the server that stood by leads session '" + session + "'" + after;
+  }
+  const std::string go_on =
+      log_file.empty() ? "; no log was written" : "; go on with --restore " + log_file;
+  return (end_ == End::kNotTaken ? "drained, and the server that stands by did not go on"
+                                 : "drained") +
+         after + go_on;
+}
+
+}  // namespace mortise

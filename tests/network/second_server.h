@@ -1,0 +1,151 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/io/replay.h"
+#include "common/io/session_log.h"
+#include "server/restore.h"
+#include "tests/network/guest.h"
+#include "tests/network/program.h"
+#include "tests/support/small_scenarios.h"
+
+namespace mortise::test {
+
+/// A server and one that stands by beside it, with two clients in this process.
+class SecondServer : public ::testing::Test {
+ protected:
+  static constexpr double kStep_mm = 0.01, kEvery_s = 1.0 / 60.0;
+
+  std::unique_ptr<Program> lead(int domain) {
+    return start(domain, {folder_.write("blocks.yaml", blocks_yaml()), "--log", logs()});
+  }
+  std::unique_ptr<Program> stand_by(int domain) {
+    auto server = start(domain, {"--standby-of", "default", "--restore", logs(), "--log", logs()});
+    const double end_s = steady_s() + 20.0;
+    while (steady_s() < end_s && server->errors().find("in step") == std::string::npos &&
+           server->running()) {
+      turn(0.01);
+    }
+    EXPECT_NE(server->errors().find("in step"), std::string::npos) << server->errors();
+    return server;
+  }
+  std::unique_ptr<Program> start(int domain, std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(domain), "--json"});
+    return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
+  }
+  std::string logs() const { return folder_.path().string() + "/logs"; }
+  void SetUp() override { std::filesystem::create_directories(logs()); }
+
+  /// anna presses red into the base and holds it there; ben's hand moves blue at 60 Hz.
+  void come_in(int domain) {
+    anna_ = std::make_unique<Guest>(domain, "anna");
+    ben_ = std::make_unique<Guest>(domain, "ben");
+    ASSERT_TRUE(anna_->joined());
+    ASSERT_TRUE(ben_->joined());
+    ASSERT_TRUE(anna_->grab("red"));
+    ASSERT_TRUE(ben_->grab("blue"));
+    anna_->client->send(anna_->user, anna_->client->find_part("red"), {1, 0, -12});
+    ASSERT_TRUE(anna_->until(3, [&] { return !anna_->client->open_clashes().empty(); }));
+    blue_ = ben_->client->find_part("blue");
+  }
+  /// One that leads, its users, and one that stands by.
+  std::pair<std::unique_ptr<Program>, std::unique_ptr<Program>> both(int domain) {
+    std::unique_ptr<Program> first = lead(domain);
+    come_in(domain);
+    std::unique_ptr<Program> second = stand_by(domain);
+    return {std::move(first), std::move(second)};
+  }
+  /// Lets all act for a while; notes what came when.
+  void turn(double seconds) {
+    for (const double end_s = steady_s() + seconds; steady_s() < end_s;) {
+      if (!ben_) return sleep_a_moment();
+      const ClientUpdate of_anna = anna_->client->poll(), of_ben = ben_->client->poll();
+      losses_ += of_anna.server_lost + of_ben.server_lost;
+      if (of_ben.server_lost) in_doubt();
+      told_of_drain_ |= of_anna.pulse && of_anna.pulse->draining;
+      for (const SeenAck& ack : of_ben.acks) {
+        acknowledge(ack.seq);
+        if (const auto at = sent_at_s_.find(ack.seq); at != sent_at_s_.end())
+          took_s_.push_back(steady_s() - at->second);
+      }
+      const bool news = std::count(of_anna.changed.begin(), of_anna.changed.end(), blue_) > 0;
+      if (news)
+        longest_gap_s_ = std::max(longest_gap_s_, steady_s() - std::exchange(seen_s_, steady_s()));
+      if (moves_ && steady_s() - sent_s_ >= kEvery_s) {
+        sent_s_ = steady_s();
+        if (const std::uint64_t seq = ben_->client->send(ben_->user, blue_, {0, kStep_mm, 0})) {
+          sent_.insert(seq);
+          sent_at_s_[seq] = sent_s_;
+        }
+      }
+      sleep_a_moment();
+    }
+  }
+  static void sleep_a_moment() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+  void acknowledge(std::uint64_t seq) {
+    acknowledged_.insert(sent_.begin(), sent_.upper_bound(seq));
+    sent_.erase(sent_.begin(), sent_.upper_bound(seq));
+  }
+  /// What was sent to a server that is gone, and not acknowledged by it, may be lost.
+  void in_doubt() { sent_.clear(); }
+  static std::map<ClashId, CollisionClass> clashes(const Guest& guest) {
+    std::map<ClashId, CollisionClass> all;
+    for (const auto& [id, clash] : guest.client->open_clashes())
+      all[id] = clash.verdict.collision_class;
+    return all;
+  }
+  /// Longest time without a word of the moving part, from a kill until it goes on.
+  double longest_gap_after(const std::function<void()>& act) {
+    moves_ = true;
+    turn(0.3);
+    longest_gap_s_ = 0.0;
+    seen_s_ = steady_s();
+    act();
+    turn(1.5);
+    return longest_gap_s_;
+  }
+  /// Ends the session; what of the acknowledged is not in the log of the last server.
+  std::size_t lost_of_acknowledged(Program& server) {
+    moves_ = false;
+    turn(0.3);
+    server.signal(SIGTERM);
+    EXPECT_EQ(server.wait(10), 0) << server.errors();
+    // Each server goes on in a file of its own; the name of the first sorts first.
+    std::filesystem::path first;
+    for (const auto& entry : std::filesystem::directory_iterator(logs()))
+      if (entry.path().extension() == ".mcap" && (first.empty() || entry.path() < first))
+        first = entry.path();
+    if (first.empty()) return acknowledged_.size();
+    const auto log = read_session(first);
+    EXPECT_TRUE(log) << log.error().text;
+    const auto verified = verify(*log, 1);
+    EXPECT_TRUE(verified && !verified->difference && verified->not_verifiable.empty())
+        << (verified && verified->difference ? verified->difference->what : "");
+    std::set<std::uint64_t> lost = acknowledged_;
+    for (const TickRecord& tick : log->ticks)
+      for (const Increment& increment : tick.increments)
+        if (increment.part == blue_) lost.erase(increment.seq);
+    return lost.size();
+  }
+
+  TestFolder folder_;
+  std::unique_ptr<Guest> anna_, ben_;
+  PartId blue_;
+  bool moves_ = false, told_of_drain_ = false;
+  int losses_ = 0;
+  double sent_s_ = 0.0, seen_s_ = 0.0, longest_gap_s_ = 0.0;
+  std::set<std::uint64_t> sent_, acknowledged_;
+  std::map<std::uint64_t, double> sent_at_s_;
+  std::vector<double> took_s_;  ///< from sending to the acknowledgement
+};
+
+}  // namespace mortise::test
