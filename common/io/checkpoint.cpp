@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/io/state_fields.h"
@@ -16,10 +17,22 @@ using state_bytes::Reader;
 using state_bytes::Writer;
 using Memos = std::map<std::uint64_t, PairMemo>;
 
-// Memos copied in one tick at least, some 50 us from cold memory; and the ticks in which all are
-// copied, whatever their number. What the last of these ticks itself has changed goes in one go.
-constexpr std::size_t kSlice = 256;
+// Memos in one piece of memory; memos copied in one tick at least; and the ticks after which all are copied,
+// whatever their number. What every tick changes goes in one go, in the last of them.
+constexpr std::size_t kBlock = 128;
+constexpr std::size_t kLeastSlice = 256;
 constexpr int kMostSlices = 120;
+// Memory that the first frame finds, bytes a part: fetched in the tick, it would cost more than it.
+constexpr std::size_t kRoomOfPart = 512;
+// A tick looks at so many times the memos that it may copy for some that it has left alone.
+constexpr std::size_t kLooks = 4;
+
+void prefetch(const PairMemo& memo) {
+  constexpr std::size_t kCacheLine_bytes = 64;
+  const auto* bytes = reinterpret_cast<const char*>(&memo);
+  for (std::size_t at = 0; at < sizeof memo; at += kCacheLine_bytes)
+    __builtin_prefetch(bytes + at);
+}
 
 // 1. bytes
 
@@ -166,50 +179,71 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   return ok();
 }
 
-// Slices that wait to be put into the copy, the copy itself, which only drafts touch, and memory
-// that is used again: fetched anew, it would cost the tick more than the copying.
+// Blocks of memos that wait to be put into the copy, the copy itself, which only drafts touch, and
+// memory that is used again: fetched anew, it would cost the tick more than the copying.
 struct CheckpointMaker::Copies {
-  using Slice = std::vector<std::pair<std::uint64_t, PairMemo>>;
+  using Block = std::vector<std::pair<std::uint64_t, PairMemo>>;  ///< of room for kBlock
   struct Numbered {
     std::uint64_t number;
-    Slice memos;
+    Block memos;
   };
   std::mutex mutex;
   std::deque<Numbered> waiting;
-  std::uint64_t number = 0;  ///< of the last slice
-  std::vector<Slice> spare;
+  std::uint64_t number = 0;  ///< of the last block
+  Block open;                ///< being filled, by the tick
+  std::vector<Block> spare;
   std::vector<std::byte> spare_frame;
   Memos memos;
 
-  Slice empty_slice() {
+  // Written to once, so that its pages are there.
+  static Block fresh_block() {
+    Block block(kBlock);
+    block.clear();
+    return block;
+  }
+  Block empty_block() {
+    {
+      const std::lock_guard lock(mutex);
+      if (!spare.empty()) {
+        Block block = std::move(spare.back());
+        spare.pop_back();
+        return block;
+      }
+    }
+    return fresh_block();
+  }
+  std::size_t spare_room() {
     const std::lock_guard lock(mutex);
-    if (spare.empty()) return {};
-    Slice slice = std::move(spare.back());
-    spare.pop_back();
-    return slice;
+    return spare.size() * kBlock;
+  }
+  void add_spare() {
+    Block block = fresh_block();
+    const std::lock_guard lock(mutex);
+    spare.push_back(std::move(block));
   }
   std::vector<std::byte> empty_frame() {
     const std::lock_guard lock(mutex);
     return std::move(spare_frame);
   }
-  void add(Slice slice) {
+  void close_block() {
     const std::lock_guard lock(mutex);
-    waiting.push_back({++number, std::move(slice)});
+    waiting.push_back({++number, std::exchange(open, {})});
   }
   void take_up_to(std::uint64_t last) {
-    std::vector<Slice> taken;
+    std::vector<Block> taken;
     {
       const std::lock_guard lock(mutex);
       for (; !waiting.empty() && waiting.front().number <= last; waiting.pop_front())
         taken.push_back(std::move(waiting.front().memos));
     }
-    for (Slice& slice : taken) {
-      for (auto& [key, memo] : slice) memos.insert_or_assign(key, std::move(memo));
-      slice.clear();
+    for (Block& block : taken) {
+      for (auto& [key, memo] : block) memos.insert_or_assign(key, std::move(memo));
+      block.clear();
     }
+    const std::size_t most = memos.size() / kBlock + 2;
     const std::lock_guard lock(mutex);
-    for (Slice& slice : taken)
-      if (spare.size() < kMostSlices) spare.push_back(std::move(slice));
+    for (Block& block : taken)
+      if (spare.size() < most) spare.push_back(std::move(block));
   }
   void give_back(std::vector<std::byte> frame) {
     const std::lock_guard lock(mutex);
@@ -222,8 +256,8 @@ CheckpointMaker::~CheckpointMaker() = default;
 
 void CheckpointMaker::begin(World& world) {
   copies_ = std::make_shared<Copies>();
+  copies_->give_back(std::vector<std::byte>(kRoomOfPart * (world.parts.size() + 1)));
   running_ = false;
-  copied_ = 0;
   if (!world.state) return;  // every memo is still to be made, and then is touched
   world.state->touched.clear();
   for (auto& [key, memo] : world.state->memos) {
@@ -234,11 +268,22 @@ void CheckpointMaker::begin(World& world) {
 
 StateDraft CheckpointMaker::after_tick(World& world, bool due) {
   if (!running_ && !due) return {};
-  if (!running_) slices_left_ = kMostSlices;
-  running_ = true;
   SessionState& state = *world.state;
-  if (!copy_slice(state)) return {};
+  if (!running_) {
+    slices_left_ = kMostSlices;
+    slice_ = std::max(kLeastSlice, 2 * state.touched.size() / kMostSlices);
+    at_ = 0;
+  }
+  running_ = true;
+  copy_settled(state);
+  if (--slices_left_ > 0 && state.touched.size() > kLeastSlice) {
+    if (copies_->spare_room() < state.touched.size()) copies_->add_spare();
+    return {};
+  }
   running_ = false;
+  copy(state.touched);
+  state.touched.clear();
+  copies_->close_block();
   Writer frame(copies_->empty_frame());
   put_frame(frame, world);
   return [copies = copies_, last = copies_->number, bytes = frame.take()]() mutable {
@@ -251,28 +296,35 @@ StateDraft CheckpointMaker::after_tick(World& world, bool due) {
   };
 }
 
-bool CheckpointMaker::copy_slice(SessionState& state) {
-  const std::size_t left = state.touched.size() - copied_;
-  const std::size_t share = left / static_cast<std::size_t>(std::max(slices_left_--, 1));
-  const std::size_t count = std::min(left, std::max(kSlice, share));
-  if (count > 0) {
-    Copies::Slice slice = copies_->empty_slice();
-    slice.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t key = state.touched[copied_++];
-      PairMemo& memo = state.memos.at(key);
-      memo.touched = false;
-      slice.emplace_back(key, memo);
+void CheckpointMaker::copy_settled(SessionState& state) {
+  std::vector<SessionState::Touched>& touched = state.touched;
+  std::vector<SessionState::Touched>& settled = settled_;
+  settled.clear();
+  std::size_t looks = std::min(touched.size(), kLooks * slice_);
+  for (std::size_t left = slice_; looks > 0 && left > 0; --looks) {
+    if (at_ >= touched.size()) at_ = 0;
+    if (touched[at_].memo->touched_tick == state.tick) {
+      ++at_;
+      continue;
     }
-    copies_->add(std::move(slice));
+    settled.push_back(touched[at_]);
+    touched[at_] = touched.back();
+    touched.pop_back();
+    --left;
   }
-  const bool done = copied_ == state.touched.size();
-  if (2 * copied_ >= state.touched.size()) {
-    state.touched.erase(state.touched.begin(),
-                        state.touched.begin() + static_cast<std::ptrdiff_t>(copied_));
-    copied_ = 0;
+  copy(settled);
+}
+
+void CheckpointMaker::copy(std::span<const SessionState::Touched> some) {
+  constexpr std::size_t kAhead = 8;
+  Copies::Block& block = copies_->open;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    if (i + kAhead < some.size()) prefetch(*some[i + kAhead].memo);
+    if (block.size() == kBlock) copies_->close_block();
+    if (block.capacity() < kBlock) block = copies_->empty_block();
+    some[i].memo->touched = false;
+    block.emplace_back(some[i].key, *some[i].memo);
   }
-  return done;
 }
 
 }  // namespace mortise

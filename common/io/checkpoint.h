@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/session/session_state.h"
 #include "common/session/world.h"
 
 namespace mortise {
@@ -29,8 +30,9 @@ inline constexpr std::uint8_t kStateLayout = 1;
 using StateDraft = std::function<std::vector<std::byte>()>;
 
 /// Makes checkpoints beside a running session without holding up its ticks: what is remembered of
-/// pairs is copied in slices, a few in each tick, and again as far as it has changed; the rest in
-/// one go. Sorting, bytes and compression are left to who finishes the draft. One maker a world.
+/// pairs is copied in slices, a few pairs in each tick, those first that the tick has left alone,
+/// until few are left or the time is over; the rest in one go. Sorting, bytes and compression are
+/// left to who finishes the draft. One maker a world.
 class CheckpointMaker {
  public:
   CheckpointMaker();
@@ -43,12 +45,15 @@ class CheckpointMaker {
 
  private:
   struct Copies;
-  bool copy_slice(SessionState& state);  ///< true: nothing is left to be copied
+  void copy_settled(SessionState& state);  ///< a slice of what this tick has not changed
+  void copy(std::span<const SessionState::Touched> some);
 
   std::shared_ptr<Copies> copies_;
   bool running_ = false;
   int slices_left_ = 0;
-  std::size_t copied_ = 0;  ///< of SessionState::touched
+  std::vector<SessionState::Touched> settled_;  ///< of this tick
+  std::size_t slice_ = 0;  ///< memos that one tick copies
+  std::size_t at_ = 0;     ///< where to look next in SessionState::touched
 };
 
 }  // namespace mortise

@@ -54,7 +54,7 @@ class FileWriter final : public SessionLogWriter {
     TickRecord tick;
   };
   void take_kept_back();
-  void queue(TickRecord record);
+  void queue(TickRecord& record);
   void run();
   void write(const Item& item);
   void write_state(const TickRecord& tick);
@@ -117,7 +117,7 @@ void FileWriter::record(TickRecord record) {
   }
   if (!lock.owns_lock()) lock.lock();
   take_kept_back();
-  queue(std::move(record));
+  queue(record);
 }
 
 TickRecord FileWriter::spare() {
@@ -132,11 +132,12 @@ TickRecord FileWriter::spare() {
 }
 
 void FileWriter::take_kept_back() {
-  for (TickRecord& record : kept_back_) queue(std::move(record));
+  for (TickRecord& record : kept_back_) queue(record);
   kept_back_.clear();
 }
 
-void FileWriter::queue(TickRecord record) {
+// Takes it where it is let in; a record is large, and moving it costs the tick.
+void FileWriter::queue(TickRecord& record) {
   if (error_ || closing_ || queue_.size() >= options_.queue_ticks) {
     dropped_.fetch_add(1);
     if (gap_.ticks++ == 0) gap_.first_tick = record.tick;
@@ -144,7 +145,7 @@ void FileWriter::queue(TickRecord record) {
     gap_.reason = "the queue to the disk was full";
     return;
   }
-  queue_.push_back({std::exchange(gap_, {}), std::move(record)});
+  queue_.emplace_back(gap_.ticks > 0 ? std::exchange(gap_, {}) : Gap{}, std::move(record));
   // The writer comes by itself: to wake it in each tick would cost the tick more than all else.
   if (queue_.size() == wake_ticks_) wake_.notify_one();
 }

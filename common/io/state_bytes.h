@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/base/ids.h"
+#include "common/base/rare.h"
 #include "common/io/bytes.h"
 #include "common/math/types.h"
 
@@ -30,11 +31,11 @@ void visit(Archive& archive, Id<Tag>& id) {
 }
 template <class Archive>
 void visit(Archive& archive, Vec3& v) {
-  for (int i = 0; i < 3; ++i) archive.plain(v[i]);
+  archive.plains(v.data(), 3);
 }
 template <class Archive>
 void visit(Archive& archive, Quat& q) {
-  for (int i = 0; i < 4; ++i) archive.plain(q.coeffs()[i]);
+  archive.plains(q.coeffs().data(), 4);
 }
 template <class Archive>
 void visit(Archive& archive, std::string& text) {
@@ -52,13 +53,21 @@ template <class Archive, class A, class B>
 void visit(Archive& archive, std::pair<A, B>& both) {
   archive(both.first, both.second);
 }
-template <class Archive, class T>
-void visit(Archive& archive, std::optional<T>& value) {
+template <class Archive, class Maybe>
+void visit_maybe(Archive& archive, Maybe& value) {
   bool has = value.has_value();
   archive(has);
   if (archive.reads() && has) value.emplace();
   if (archive.reads() && !has) value.reset();
   if (has) archive(*value);
+}
+template <class Archive, class T>
+void visit(Archive& archive, std::optional<T>& value) {
+  visit_maybe(archive, value);
+}
+template <class Archive, class T>
+void visit(Archive& archive, Rare<T>& value) {
+  visit_maybe(archive, value);
 }
 template <class Archive, class T>
 void visit(Archive& archive, std::vector<T>& values) {
@@ -106,6 +115,10 @@ class Writer {
   void plain(const T& value) {
     static_assert(std::endian::native == std::endian::little);
     std::memcpy(room(sizeof(T)), &value, sizeof(T));
+  }
+  template <class T>
+  void plains(const T* values, std::size_t count) {
+    std::memcpy(room(count * sizeof(T)), values, count * sizeof(T));
   }
   std::size_t count(std::size_t count) {
     plain(static_cast<std::uint32_t>(count));
@@ -157,6 +170,10 @@ class Reader {
       value = T{};
       if (!bytes.empty()) std::memcpy(&value, bytes.data(), sizeof(T));
     }
+  }
+  template <class T>
+  void plains(T* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) plain(values[i]);
   }
   /// Every item takes a byte at least: a larger count is none.
   std::size_t count(std::size_t) {

@@ -145,11 +145,11 @@ void fields(A& a, PairMemo::Effort& x) {
   auto& [wanted, waited] = x;
   a(wanted, waited);
 }
-/// But for `touched`, which is about copies of it.
+/// But for what is about copies of it.
 template <class A>
 void fields(A& a, PairMemo& x) {
   auto& [not_judged, not_seen, X_BA, apart_mm, placements, not_contained, pause, next_pause,
-         nearest, allowed_depth_mm, held, stalled, effort, touched] = x;
+         nearest, allowed_depth_mm, held, stalled, effort, touched, touched_tick] = x;
   a(not_judged, not_seen, X_BA, apart_mm, placements, not_contained, pause, next_pause, nearest,
     allowed_depth_mm, held, stalled, effort);
 }

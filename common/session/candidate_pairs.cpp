@@ -54,17 +54,18 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
   pair.band_a = &band_a_of(bands);
   pair.band_b = &band_b_of(bands);
   pair.band_mm = std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
-  pair.memo = &state.memo(pair.a, pair.b);
+  pair.memo = MemoInUse(state.memo(pair.a, pair.b));
   const auto open = state.open.find({a.id, b.id});
   if (open != state.open.end()) pair.open = &open->second;
   const std::uint64_t placements = state.parts[pair.a].placements + state.parts[pair.b].placements;
   if (pair.memo->placements != placements) {
-    pair.memo->placements = placements;
-    pair.memo->not_contained = false;
-    pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
-    pair.memo->held.reset();
-    pair.memo->stalled.reset();
-    pair.memo->not_judged = pair.memo->not_seen = pair.open != nullptr;
+    PairMemo& memo = pair.memo.change();
+    memo.placements = placements;
+    memo.not_contained = false;
+    memo.allowed_depth_mm = std::numeric_limits<double>::infinity();
+    memo.held.reset();
+    memo.stalled.reset();
+    memo.not_judged = memo.not_seen = pair.open != nullptr;
   }
   pair.move_a = work.move_of_part[pair.a];
   pair.move_b = work.move_of_part[pair.b];

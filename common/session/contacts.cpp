@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -31,12 +32,16 @@ FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_
   return contact;
 }
 
+void note_contained(PairWork& pair, bool is_free) {
+  if (pair.memo->not_contained != is_free) pair.memo.change().not_contained = is_free;
+}
+
 // Without a band the parts are their meshes: real is where interiors meet, and first contact says
 // when. Touching at the start is no reason to stop anybody; it asks on until the touching places
 // press in.
 void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
   const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kIgnoreTouching, ccd);
-  pair.memo->not_contained = touch.state == ContactState::kFree;
+  note_contained(pair, touch.state == ContactState::kFree);
   if (touch.state == ContactState::kFree) {
     pair.touching = touch.touched_at_start;
     pair.apart_at_end_mm = touch.distance_mm;
@@ -54,8 +59,8 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
     t_stop = pair.undecided ? touch.t_clear : 1.0;
   else if (pair.overlaps_at_start)
     pair.wants_stop_time = true;
-  if (!pair.overlaps_at_start)
-    pair.memo->allowed_depth_mm = std::numeric_limits<double>::infinity();
+  if (!pair.overlaps_at_start && std::isfinite(pair.memo->allowed_depth_mm))
+    pair.memo.change().allowed_depth_mm = std::numeric_limits<double>::infinity();
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t_stop;
 }
 
@@ -64,14 +69,14 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
 void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   const FirstContact near = ask_first_contact(pair, pair.band_mm, AtStart::kSay, ccd);
   if (near.state == ContactState::kFree) {
-    pair.memo->not_contained = true;
+    note_contained(pair, true);
     pair.apart_at_end_mm = std::max(near.distance_mm, pair.band_mm);
     return;
   }
   pair.near = true;
   pair.entered = near.state == ContactState::kContact;
   const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, ccd);
-  pair.memo->not_contained = touch.state == ContactState::kFree;
+  note_contained(pair, touch.state == ContactState::kFree);
   pair.undecided =
       near.state == ContactState::kUndecided || touch.state == ContactState::kUndecided;
   pair.meets = touch.state != ContactState::kFree && touch.state != ContactState::kUndecided;
@@ -90,11 +95,11 @@ double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_
 // or else from the distance now where that is likely to save more than it costs.
 bool stays_clear(PairWork& pair, CcdScratch& ccd) {
   const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
-  PairMemo& memo = *pair.memo;
-  if (apart_lower_bound_mm(memo, budget) > needed_mm(pair)) return true;
+  if (apart_lower_bound_mm(*pair.memo, budget) > needed_mm(pair)) return true;
   // Only surfaces are apart: who may start inside the other is asked, and so is who has to end a
   // clash.
-  if (!memo.not_contained || pair.open) return false;
+  if (!pair.memo->not_contained || pair.open) return false;
+  PairMemo& memo = pair.memo.change();
   if (memo.pause > 0) {
     --memo.pause;
     return false;
@@ -121,10 +126,9 @@ bool stays_clear(PairWork& pair, CcdScratch& ccd) {
 DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
                            CcdScratch& ccd) {
   ++pair.counts.distance_queries;
-  DistanceResult& nearest = pair.memo->nearest;
   const DistanceResult result =
-      distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm, &nearest);
-  if (result.within_limit) nearest = result;
+      distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm, &pair.memo->nearest);
+  if (result.within_limit) pair.memo.change().nearest = result;
   return result;
 }
 
@@ -157,7 +161,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     ask_banded(world, pair, ccd);
   // First contact sometimes learns how far apart they end.
   if (!pair.near && !pair.touching && pair.apart_at_end_mm > needed_mm(pair))
-    remember_apart(*pair.memo, pair.motion_a.X_W1, pair.motion_b.X_W1, pair.apart_at_end_mm);
+    remember_apart(pair.memo.change(), pair.motion_a.X_W1, pair.motion_b.X_W1, pair.apart_at_end_mm);
 }
 
 // What is known of the stop without a search stands where there is no work left for one.

@@ -229,10 +229,10 @@ void respond(const World& world, Scratch::Impl& work, StepReport& report) {
 
 void note_held(const World& world, Scratch::Impl& work) {
   for (std::size_t i = 0; i < work.pair_count; ++i) {
-    const PairWork& pair = work.pairs[i];
+    PairWork& pair = work.pairs[i];
     if (!pair.blocks || !pair.place.known() || std::isfinite(pair.memo->allowed_depth_mm)) continue;
-    pair.memo->held = {world.parts[pair.a].X_WP, world.parts[pair.b].X_WP, pair.place,
-                       pair.stop_gave_up};
+    pair.memo.change().held = PairMemo::Held{world.parts[pair.a].X_WP, world.parts[pair.b].X_WP,
+                                             pair.place, pair.stop_gave_up};
   }
 }
 

@@ -144,6 +144,7 @@ void note_surface(World& world, PartId part, PartId other, const Decision& by) {
 void note_policy(World& world) {
   if (!world.state) return;
   for (auto& [pair, memo] : world.state->memos) {  // in any order: all become alike
+    if (std::isinf(memo.allowed_depth_mm)) continue;
     memo.allowed_depth_mm = std::numeric_limits<double>::infinity();
     world.state->touch(pair, memo);
   }

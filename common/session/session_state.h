@@ -4,11 +4,11 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "common/base/rare.h"
 #include "common/broadphase/broad_phase.h"
 #include "common/ccd/first_contact.h"
 #include "common/depth/overlap.h"
@@ -45,7 +45,7 @@ struct PairMemo {
     CertainPlace place;
     bool gave_up = false;  ///< the search that left them there did, at its cap
   };
-  std::optional<Held> held;
+  Rare<Held> held;
   /// Where a search for the stop has come to nothing: the poses, and the motion that was asked for,
   /// of A against B, its rotation as way of the smaller part's rim.
   struct Stalled {
@@ -56,7 +56,7 @@ struct PairMemo {
     /// Searches in a row, whatever the push, that had all their work and came to nothing there.
     std::uint8_t in_vain = 0;
   };
-  std::optional<Stalled> stalled;
+  Rare<Stalled> stalled;
   /// What a stage of the last ticks needed of depth, and for how many ticks it has waited for it;
   /// see work_budget.h. By WorkStage.
   struct Effort {
@@ -64,7 +64,27 @@ struct PairMemo {
     std::uint8_t waited = 0;
   };
   std::array<Effort, 2> effort;
-  bool touched = false;  ///< listed in SessionState::touched
+  bool touched = false;            ///< listed in SessionState::touched
+  std::uint64_t touched_tick = 0;  ///< when it last was
+};
+
+/// What is remembered of a pair, for everybody to read. Who changes it says so: copies of it are
+/// kept, see SessionState::touched.
+class MemoInUse {
+ public:
+  MemoInUse() = default;
+  explicit MemoInUse(PairMemo& memo) : memo_(&memo) {}
+  const PairMemo& operator*() const { return *memo_; }
+  const PairMemo* operator->() const { return memo_; }
+  PairMemo& change() {
+    changed_ = true;
+    return *memo_;
+  }
+  bool changed() const { return changed_; }
+
+ private:
+  PairMemo* memo_ = nullptr;
+  bool changed_ = false;
 };
 
 /// One clash between begin and end.
@@ -118,9 +138,14 @@ struct SessionState {
   std::vector<IndexPair> owed;        ///< pairs that the last tick had no work to judge, sorted
   std::vector<KeptPush> kept;         ///< by part
   std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
-  std::unordered_map<std::uint64_t, PairMemo> memos;  ///< by part indices; looked up, never walked
-  /// Memos that may have changed since somebody last copied them, no repeats; see io/checkpoint.h.
-  std::vector<std::uint64_t> touched;
+  /// By part indices; looked up, never walked. None is ever taken out.
+  std::unordered_map<std::uint64_t, PairMemo> memos;
+  /// Memos that have changed since somebody last copied them, no repeats; see io/checkpoint.h.
+  struct Touched {
+    std::uint64_t key = 0;
+    PairMemo* memo = nullptr;
+  };
+  std::vector<Touched> touched;
   std::map<PartPair, std::vector<OpenClash>> open;  ///< clashes of a pair by ClashId
   std::vector<ClashEvent> reviews;                  ///< made since the last tick, told in the next
   bool clashes_changed = true;
@@ -128,15 +153,18 @@ struct SessionState {
   std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
   std::uint64_t clashes_hash = 0;
 
+  static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+    return (static_cast<std::uint64_t>(a) << 32) | b;
+  }
   PairMemo& memo(std::uint32_t a, std::uint32_t b) {
-    const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | b;
-    PairMemo& found = memos[key];
-    touch(key, found);
-    return found;
+    const auto [found, is_new] = memos.try_emplace(key_of(a, b));
+    if (is_new) touch(found->first, found->second);
+    return found->second;
   }
   void touch(std::uint64_t key, PairMemo& memo) {
-    if (!memo.touched) touched.push_back(key);
+    if (!memo.touched) touched.push_back({key, &memo});
     memo.touched = true;
+    memo.touched_tick = tick;
   }
 };
 

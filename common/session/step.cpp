@@ -38,6 +38,13 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters&
   counters.parts_without_inside += open_parts.size();
 }
 
+void note_changed_memos(SessionState& state, Scratch::Impl& work) {
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    PairWork& pair = work.pairs[i];
+    if (pair.memo.changed()) state.touch(SessionState::key_of(pair.a, pair.b), pair.memo.change());
+  }
+}
+
 }  // namespace
 
 Scratch::Scratch(int threads) : impl_(std::make_unique<Impl>(std::max(1, threads))) {}
@@ -61,6 +68,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
     note_held(world, work);
     report_clashes(world, state, work, report);
     count_pairs_of(world, work, report.counters);
+    note_changed_memos(state, work);
   }
   close_budget(world, state, work);
   report.state_hash = state_hash(world, state);

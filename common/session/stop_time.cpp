@@ -169,7 +169,7 @@ double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
     return std::max(0.0,
                     certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd).depth_mm.lo);
   };
-  double& allowed_mm = pair.memo->allowed_depth_mm;
+  double& allowed_mm = pair.memo.change().allowed_depth_mm;
   allowed_mm = std::min(allowed_mm, depth_mm(0.0));
   // The less it interferes, the less it may gain: what one tick grants must not be the licence of
   // the next.
@@ -244,7 +244,8 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
   const Advance advance =
       may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
   if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
-  const double allowed_mm = std::exchange(pair.memo->allowed_depth_mm, kInfinity);
+  const double allowed_mm = pair.memo->allowed_depth_mm;
+  if (std::isfinite(allowed_mm)) pair.memo.change().allowed_depth_mm = kInfinity;
   if (advance.state == Advanced::kDone) return advance.t_free;
 
   SweptQuery query;
@@ -259,7 +260,7 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
   if (real.real_at_start) return withdrawal_time(pair, ccd);
   const double t_free = std::max(advance.t_free, real.t_free);
   if (real.capped && t_free == 0.0 && std::isfinite(allowed_mm)) {
-    pair.memo->allowed_depth_mm = allowed_mm;
+    pair.memo.change().allowed_depth_mm = allowed_mm;
     return leave_brink(pair, ccd);
   }
   if (real.capped) pair.undecided = true;
@@ -272,11 +273,11 @@ double withdrawal_time(PairWork& pair, CcdScratch& ccd) { return withdrawal_unti
 
 void note_stalled(PairWork& pair) {
   const std::uint8_t in_vain = times_in_vain(pair);
-  pair.memo->stalled.reset();
+  if (pair.memo->stalled) pair.memo.change().stalled.reset();
   if (!pair.undecided || pair.t_stop > 0.0) return;
-  pair.memo->stalled = push_of(pair);
-  pair.memo->stalled->in_full = !pair.short_of_work;
-  pair.memo->stalled->in_vain =
+  PairMemo::Stalled& stalled = pair.memo.change().stalled.emplace(push_of(pair));
+  stalled.in_full = !pair.short_of_work;
+  stalled.in_vain =
       static_cast<std::uint8_t>(std::min(in_vain + (pair.short_of_work ? 0 : 1), 250));
 }
 

@@ -73,7 +73,7 @@ struct PairWork {
   const PairRule* rule = nullptr;
   const SurfaceBand *band_a = nullptr, *band_b = nullptr;
   double band_mm = 0.0;  ///< distance at which the pair has to be looked at
-  PairMemo* memo = nullptr;
+  MemoInUse memo;
   std::vector<OpenClash>* open = nullptr;  ///< null: none
   bool placed = false;                     ///< neither moves, one was put somewhere
 

@@ -204,6 +204,12 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
   match_clashes(world, pair, distance_mm);
 }
 
+void note_seen(PairWork& pair) {
+  if (!pair.memo->not_judged && !pair.memo->not_seen) return;
+  PairMemo& memo = pair.memo.change();
+  memo.not_judged = memo.not_seen = false;
+}
+
 // Clear of the band, but an open clash ends only at some distance.
 void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   pair.seen.clear();
@@ -212,7 +218,7 @@ void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, 
   const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
                                             2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
-  pair.memo->not_judged = pair.memo->not_seen = false;
+  note_seen(pair);
 }
 
 bool anything_to_tell(const PairWork& pair) {
@@ -230,8 +236,8 @@ void put_off(PairWork& pair) {
 
 // After a decision: what was open is judged by what holds now, and as the parts stand.
 void note_judged(PairWork& pair) {
-  pair.memo->not_judged = false;
-  if (!pair.blocks) pair.memo->not_seen = false;
+  if (!pair.blocks) return note_seen(pair);
+  if (pair.memo->not_judged) pair.memo.change().not_judged = false;
 }
 
 // A class was left, but perhaps only because no more was asked than what class it is now. While
@@ -265,7 +271,7 @@ void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, 
     }
     note_judged(pair);
   }
-  if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo->stalled->judged = true;
+  if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo.change().stalled->judged = true;
   note_effort(pair, WorkStage::kVerdict, capped);
   pair.undecided |= was_undecided;
 }

@@ -155,7 +155,7 @@ void share_out(const World& world, Scratch::Impl& work, std::span<const std::uin
   const std::uint64_t more = order.empty() || sum > left.own ? 0 : (left.own - sum) / order.size();
   for (const std::uint32_t i : order) {
     PairWork& pair = work.pairs[i];
-    PairMemo::Effort& effort = pair.memo->effort[at];
+    PairMemo::Effort& effort = pair.memo.change().effort[at];
     pair.stage_start = pair.counts.depth_evaluations;
     pair.most_work = most;
     pair.limited = limited;
@@ -190,7 +190,7 @@ void share_out(const World& world, Scratch::Impl& work, std::span<const std::uin
 }
 
 void note_effort(PairWork& pair, WorkStage stage, bool capped) {
-  PairMemo::Effort& effort = pair.memo->effort[static_cast<std::size_t>(stage)];
+  PairMemo::Effort& effort = pair.memo.change().effort[static_cast<std::size_t>(stage)];
   const std::uint64_t used = pair.counts.depth_evaluations - pair.stage_start;
   const std::uint64_t before = effort.wanted == 0 ? kFirstEffort : effort.wanted;
   // Who was given less than it wanted has learned nothing of what it needs.

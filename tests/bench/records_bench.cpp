@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   const std::vector<BenchSection<RecordsOptions>> sections = {
       {"size", "bytes per increment and per moved part", section_size},
       {"cost", "what recording costs a tick, on a slow disk", section_cost},
+      {"checkpoint", "what a checkpoint of a large scene costs its ticks", section_checkpoint},
       {"verify", "computing the demo again, against its own time", section_verify},
       {"hour", "one hour of eight users to a page and a database", section_hour},
       {"killed", "logs whose writer was killed", section_killed},

@@ -11,6 +11,7 @@ struct RecordsOptions : BenchOptions {};
 
 void section_size(Report& report, const RecordsOptions& options);
 void section_cost(Report& report, const RecordsOptions& options);
+void section_checkpoint(Report& report, const RecordsOptions& options);
 void section_verify(Report& report, const RecordsOptions& options);
 void section_hour(Report& report, const RecordsOptions& options);
 void section_killed(Report& report, const RecordsOptions& options);

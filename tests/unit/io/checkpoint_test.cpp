@@ -2,15 +2,18 @@
 // bit for bit, to its end.
 #include "common/io/checkpoint.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "common/session/session_state.h"
+#include "tests/support/ball_bed.h"
 #include "tests/unit/io/random_session.h"
 #include "tests/unit/session/report_digest.h"
 
 namespace mortise {
 namespace {
 
+using test::BallBed;
 using test::random_scene;
 using test::RandomSession;
 
@@ -137,6 +140,51 @@ TEST(Checkpoint, MadeBesideTheTicksItIsTheSame) {
   for (std::size_t i = 0; i < made.size(); ++i) {
     if (i % 3 == 1) continue;  // lost on the way: the next one is whole again
     EXPECT_TRUE(made[i].first() == made[i].second) << i;
+  }
+}
+
+// Among more pairs than a tick copies, of which most change while it is made: it is made in many
+// ticks, has the bytes of the state of its last one, and the session goes on from it.
+TEST(Checkpoint, MadeInManySlicesItIsTheSameAndGoesOnTheSame) {
+  for (const int still : {0, 5, 7}) {
+    BallBed bed(10, still);
+    CheckpointMaker maker;
+    maker.begin(bed.world());
+    std::vector<std::vector<std::byte>> whole;
+    std::vector<StateDraft> drafts;
+    int due_at = 0, longest = 0;
+    for (int i = 1; i <= 420; ++i) {
+      bed.tick();
+      ASSERT_GT(bed.pairs(), 3U * 256U);
+      const bool due = i % 140 == 1;
+      if (due) due_at = i;
+      StateDraft draft = maker.after_tick(bed.world(), due);
+      if (!draft) continue;
+      longest = std::max(longest, i - due_at);
+      drafts.push_back(std::move(draft));
+      whole.push_back(encode_state(bed.world()));
+    }
+    ASSERT_EQ(drafts.size(), 3U) << still;
+    EXPECT_GT(longest, 1) << "it was made in one slice";
+    for (std::size_t i = 0; i < drafts.size(); ++i) {
+      SCOPED_TRACE(still);
+      const std::vector<std::byte> bytes = drafts[i]();
+      ASSERT_TRUE(bytes == whole[i]) << i;
+      BallBed next(10, still);
+      ASSERT_TRUE(restore_state(next.world(), bytes));
+      EXPECT_TRUE(encode_state(next.world()) == bytes) << i;
+    }
+    // From the end of the session: another bed that is restored and goes on beside it.
+    const std::vector<std::byte> end = encode_state(bed.world());
+    BallBed next(10, still);
+    ASSERT_TRUE(restore_state(next.world(), end));
+    next.go_on_from(bed);
+    for (int i = 0; i < 20; ++i) {
+      const StepReport &told = bed.tick(), &again = next.tick();
+      ASSERT_EQ(digest(told), digest(again)) << i;
+      ASSERT_TRUE(same_counts(told.counters, again.counters)) << i;
+    }
+    EXPECT_TRUE(encode_state(next.world()) == encode_state(bed.world()));
   }
 }
 
