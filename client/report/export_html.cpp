@@ -39,6 +39,17 @@ std::string number_of(const Cells& clash, const Pictures& pictures) {
   return fmt::format("<a href=\"#clash-{0}\">{0}</a>", number);
 }
 
+std::string known(const Cells& clash, const char* name) {
+  const std::string text = clash.text(name);
+  return text.empty() ? "–" : text;
+}
+
+// Of two columns, "..._lo_mm" and "..._hi_mm".
+std::string range(const Cells& clash, const std::string& name) {
+  if (clash[name + "_lo_mm"].is_null()) return "";
+  return clash.micrometres(name + "_lo_mm") + " … " + clash.micrometres(name + "_hi_mm");
+}
+
 std::string clash_row(const Cells& clash, const Pictures& pictures) {
   const std::string klass = clash.text("class");
   std::string row = fmt::format("<tr data-class=\"{}\" data-status=\"{}\"><td class=\"n\">{}</td>",
@@ -61,6 +72,9 @@ std::string clash_row(const Cells& clash, const Pictures& pictures) {
   row += fmt::format("<td>{}{}<br>{}</td>", clash.text("status"),
                      clash.text("status_by").empty() ? "" : " by " + clash.text("status_by"),
                      clash.text("comment"));
+  row += fmt::format("<td>{}<br>{}</td>", known(clash, "holder_a"), known(clash, "holder_b"));
+  row += fmt::format("<td class=\"n\">{}<br>{}</td>", range(clash, "eps_a"), range(clash, "eps_b"));
+  row += fmt::format("<td>{}<br>{}</td>", clash.text("fit"), range(clash, "clearance"));
   row +=
       fmt::format("<td>{}</td><td>{}</td></tr>\n", clash.text("user"), clash.text("explanation"));
   return row;
@@ -85,12 +99,14 @@ std::string clash_section(const SessionReport& report) {
   std::string html =
       "<h2>Clashes</h2>\n<p class=\"dim\">Each by its worst moment. Lengths in µm; overlap of the "
       "meshes against two thresholds: fake up to the first, real above the second, potential "
-      "between. GPD: generalized penetration depth, as a bracket.</p>\n" +
+      "between. GPD: generalized penetration depth, as a bracket. Mesh error: how far the surface that "
+      "is meant lies outside of the mesh there. Clearance: of the diameters of the fit.</p>\n" +
       filters() +
       "<div class=\"wide\"><table id=\"clashes\"><thead><tr><th>#</th><th>class</th><th>parts, "
       "faces</th><th>from, for</th><th>overlap</th><th>fake up to, real above</th><th>margin</th>"
       "<th>real, fake until zones wider by</th>"
-      "<th>GPD</th><th>review</th><th>by</th><th>why</th></tr></thead><tbody>\n";
+      "<th>GPD</th><th>review</th><th>held by</th><th>mesh error</th><th>fit, clearance</th>"
+      "<th>by</th><th>why</th></tr></thead><tbody>\n";
   std::size_t rows = 0;
   for (const char* klass : kClasses)
     for (const std::vector<Json>& row : table.rows)

@@ -61,6 +61,7 @@ class Drawing {
     const Vec3 p_A = a.X_WP.inverse() * verdict.point_W, p_B = b.X_WP.inverse() * verdict.point_W;
     pictures_.touches[event.clash.value] = {
         p_A, p_B, std::min(a.solid->sphere().radius_mm, b.solid->sphere().radius_mm)};
+    pictures_.circumstances[event.clash.value] = circumstances_at(moment);
     // The normal of a verdict leads from B to A: out of the material of B, into that of A.
     mark(a, p_A, -(a.X_WP.q.conjugate() * verdict.normal_W), verdict, verdict.face_a);
     mark(b, p_B, b.X_WP.q.conjugate() * verdict.normal_W, verdict, verdict.face_b);
@@ -108,7 +109,8 @@ class Drawing {
 
 }  // namespace
 
-Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureLimits& limits) {
+Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureLimits& limits,
+                     const std::function<void(double share)>& on_progress) {
   Pictures pictures;
   const std::vector<std::uint64_t> order = worst_first(clashes);
   const std::size_t drawn = std::min(order.size(), limits.clashes);
@@ -120,12 +122,20 @@ Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureL
   }
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(drawn);
   Drawing drawing(pictures, {order.begin(), middle}, limits.png);
-  const Status done = for_moments(log, wanted, [&](const Moment& moment) { drawing.take(moment); });
+  // Parts are drawn last, and are fewer.
+  constexpr double kMomentsShare = 0.8;
+  const Status done = for_moments(log, wanted, [&](const Moment& moment) {
+    drawing.take(moment);
+    if (on_progress)
+      on_progress(kMomentsShare * static_cast<double>(pictures.touches.size()) /
+                  static_cast<double>(wanted.size()));
+  });
   if (!done) {
     pictures.missing = done.error().text;
     return pictures;
   }
   drawing.draw_parts(limits.parts);
+  if (on_progress) on_progress(1.0);
   pictures.clashes_left_out = order.size() - pictures.of_clash.size();
   return pictures;
 }

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "client/report/circumstances.h"
 #include "client/report/session_tables.h"
 #include "common/io/session_log.h"
 
@@ -33,12 +35,15 @@ struct Pictures {
   std::map<std::uint64_t, std::string> png_of_clash;
   std::vector<PartPicture> of_part;        ///< by the deepest overlap
   std::map<std::uint64_t, Touch> touches;  ///< by clash; all of them
+  std::map<std::uint64_t, Circumstances> circumstances;  ///< likewise
   std::size_t clashes_left_out = 0, parts_left_out = 0;
   std::string missing;  ///< why there are none, or empty
 };
 
 /// Draws the worst moments of the table of clashes. Poses are those of the log, not computed again
 /// (client/report/moments.h). Cost: loading the scene, one pass, some 10 ms a picture.
-Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureLimits& limits);
+/// `on_progress` is told as it goes on: 0 to 1.
+Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureLimits& limits,
+                     const std::function<void(double share)>& on_progress = {});
 
 }  // namespace mortise

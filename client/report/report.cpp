@@ -8,8 +8,9 @@ Result<SessionReport> report_of(const SessionLog& log, const ReportWishes& wishe
   auto tables = tables_of(log, wishes.coverage);
   if (!tables) return tables.error();
   SessionReport report{log.session, std::move(*tables), {}};
-  const Table& clashes = table_named(report.tables, "clashes");
-  report.pictures = pictures_of(log, clashes, wishes.pictures);
+  Table& clashes = table_named(report.tables, "clashes");
+  report.pictures = pictures_of(log, clashes, wishes.pictures, wishes.on_progress);
+  add_circumstances(clashes, report.pictures.circumstances);
   std::vector<Table> more{by_face_table(clashes, report.pictures.touches),
                           tolerance_table(clashes)};
   more.insert(more.end(), wishes.more.begin(), wishes.more.end());

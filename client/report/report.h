@@ -13,6 +13,7 @@ struct ReportWishes {
   PictureLimits pictures;
   std::optional<StepCounters> coverage;  ///< of a recomputation; else what the log counted itself
   std::vector<Table> more;               ///< of a what-if, behind the others
+  std::function<void(double share)> on_progress = {};  ///< of drawing, 0 to 1
 };
 
 /// A logged session for people: its tables, and pictures of the worst.

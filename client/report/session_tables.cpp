@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/io/scenario_file.h"
@@ -202,7 +203,8 @@ Table Session::clashes() const {
                                               "face_a", "part_b", "face_b", "user"}));
   append(table.columns, columns(Type::kInteger, {"begin_tick", "end_tick", "worst_tick",
                                                  "real_ticks", "potential_ticks", "fake_ticks",
-                                                 "approval_lost", "status_tick", "occurrences"}));
+                                                 "approval_lost", "status_tick", "occurrences",
+                                                 "group_id"}));
   append(table.columns, columns(Type::kNumber, {"begin_s",
                                                 "duration_s",
                                                 "contact_in_tick",
@@ -236,8 +238,14 @@ Table Session::clashes() const {
                                               "mesh_a", "mesh_b", "explanation"}));
   const double rate = scenario_.tick_rate_hz;
   const std::uint64_t last_tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
-  std::map<Faces, std::size_t> occurrences;
-  for (const auto& [id, clash] : statistics_.clashes()) ++occurrences[faces_of(clash)];
+  struct Group {
+    std::size_t id = 0, occurrences = 0;
+  };
+  std::map<Faces, Group> groups;
+  for (const auto& [id, clash] : statistics_.clashes()) {
+    Group& group = groups[faces_of(clash)];
+    if (group.occurrences++ == 0) group.id = groups.size();
+  }
   for (const auto& [id, clash] : statistics_.clashes()) {
     const OfClash& of = of_clash_.at(id);
     const Verdict& v = clash.worst;
@@ -261,7 +269,8 @@ Table Session::clashes() const {
                           clash.ticks[1],
                           of.approval_lost ? 1 : 0,
                           review.tick == 0 ? Json(nullptr) : Json(review.tick),
-                          occurrences.at(faces_of(clash)),
+                          groups.at(faces_of(clash)).occurrences,
+                          groups.at(faces_of(clash)).id,
                           static_cast<double>(clash.begin_tick) / rate,
                           static_cast<double>(end - clash.begin_tick) / rate,
                           number(of.worst.t_contact)};
@@ -376,6 +385,10 @@ const Table& table_named(const std::vector<Table>& tables, std::string_view name
                                   [&](const Table& table) { return table.name == name; });
   MORTISE_CHECK(found != tables.end(), "there is such a table");
   return *found;
+}
+
+Table& table_named(std::vector<Table>& tables, std::string_view name) {
+  return const_cast<Table&>(table_named(std::as_const(tables), name));
 }
 
 }  // namespace mortise

@@ -32,5 +32,6 @@ Result<std::vector<Table>> tables_of(const SessionLog& log,
                                      const std::optional<StepCounters>& coverage);
 
 const Table& table_named(const std::vector<Table>& tables, std::string_view name);
+Table& table_named(std::vector<Table>& tables, std::string_view name);
 
 }  // namespace mortise

@@ -89,6 +89,9 @@ TEST_F(Export, CsvAndJsonSayTheSame) {
                                  [&](const char* key) { return clash[key] == other[key]; });
     });
     EXPECT_EQ(clash["occurrences"], same);
+    const auto grouped = std::ranges::count_if(
+        clashes, [&](const Json& other) { return other["group_id"] == clash["group_id"]; });
+    EXPECT_EQ(grouped, same);
     const double undecided_mm =
         clash["real_above_mm"].get<double>() - clash["fake_below_mm"].get<double>();
     if (undecided_mm > 0.0)
@@ -186,6 +189,68 @@ TEST_F(Export, NoFieldIsAFormula) {
   }
   EXPECT_EQ(lines[1][0], "'=1+1");
   EXPECT_EQ(lines[7][0], "plain");
+}
+
+// Who held the parts, the mesh error there, and the fit with its clearance: as the scenario says.
+TEST(ExportCircumstances, OfAFitAreThoseOfTheStandardAndOfTheMesh) {
+  const std::string folder = std::string(MORTISE_SOURCE_DIR) + "/scenarios/gearbox";
+  const auto session = test::play_session(folder + ".yaml", folder + ".play.yaml");
+  ASSERT_TRUE(session) << session.error().text;
+  const test::TemporaryFile file("gearbox.mcap"), db("gearbox.db");
+  ASSERT_TRUE(test::write_log(*session, file.path()));
+  const auto log = read_session_log(file.path());
+  ASSERT_TRUE(log);
+  const auto report = report_of(*log, {.pictures = {0, 0}, .coverage = {}, .more = {}});
+  ASSERT_TRUE(report) << report.error().text;
+  const Table& clashes = table_named(report->tables, "clashes");
+  const Json rows = json_of(report->tables)["tables"]["clashes"];
+  const auto lines = fields_of(csv_of(clashes));
+  const std::string html = html_of(*report);
+  std::size_t fitted = 0, unfitted = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Json& row = rows[i];
+    SCOPED_TRACE(row.dump());
+    for (std::size_t k = 0; k < lines[0].size(); ++k)
+      EXPECT_EQ(lines[i + 1][k], plain(row[lines[0][k]])) << lines[0][k];
+    // Who moved it held it, and nobody holds the other.
+    const std::string by = row["user"];
+    EXPECT_TRUE(row["holder_a"] == by || row["holder_b"] == by);
+    if (row["part_a"] != "input_shaft" || row["part_b"] != "gear_in") {
+      unfitted += row["fit"] == "" && row["clearance_lo_mm"].is_null();
+      continue;
+    }
+    ++fitted;
+    // ISO 286-2: H7 of Ø20 is 0 to 21 µm, k6 is 2 to 15 µm.
+    EXPECT_EQ(row["fit"], "Ø20 H7/k6");
+    EXPECT_NEAR(row["clearance_lo_mm"].get<double>(), -0.015, 1e-12);
+    EXPECT_NEAR(row["clearance_hi_mm"].get<double>(), 0.019, 1e-12);
+    // The corners of the shaft's mesh are on it, its facets inside; the hole's facets stand inwards.
+    EXPECT_NEAR(row["eps_a_lo_mm"].get<double>(), 0.0, 1e-9);
+    EXPECT_GT(row["eps_a_hi_mm"].get<double>(), 0.01);
+    EXPECT_NEAR(row["eps_b_hi_mm"].get<double>(), 0.0, 1e-9);
+    EXPECT_LT(row["eps_b_lo_mm"].get<double>(), -0.01);
+    EXPECT_NE(html.find("Ø20 H7/k6<br>-15.0 … 19.0"), std::string::npos);
+  }
+  EXPECT_GT(fitted, 0U);
+  EXPECT_GT(unfitted, 0U);
+  // The database has the same columns.
+  ASSERT_TRUE(write_sqlite(report->tables, db.path()));
+  sqlite3* handle = nullptr;
+  ASSERT_EQ(sqlite3_open(db.path().c_str(), &handle), SQLITE_OK);
+  std::size_t found = 0;
+  const auto count = [](void* to, int, char** values, char**) {
+    *static_cast<std::size_t*>(to) = std::strtoul(values[0], nullptr, 10);
+    return 0;
+  };
+  EXPECT_EQ(sqlite3_exec(handle,
+                         "SELECT count(*) FROM clashes WHERE fit = 'Ø20 H7/k6' AND "
+                         "part_a = 'input_shaft' AND part_b = 'gear_in' AND "
+                         "round(clearance_lo_mm, 6) = -0.015 AND eps_a_hi_mm > 0.01 AND "
+                         "group_id > 0",
+                         count, &found, nullptr),
+            SQLITE_OK);
+  sqlite3_close(handle);
+  EXPECT_EQ(found, fitted);
 }
 
 // The report draws each clash and each part that was touched, without any other file.

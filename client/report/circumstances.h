@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "client/report/moments.h"
+#include "client/report/session_tables.h"
+#include "common/math/interval.h"
+
+namespace mortise {
+
+/// What held of two parts in the worst moment of their clash.
+struct Circumstances {
+  std::string holder_a, holder_b;  ///< names; empty: nobody held it
+  /// How far the surface that is meant lies outside of the mesh of the face (negative: inside), mm.
+  Interval eps_a_mm, eps_b_mm;
+  std::string fit;                       ///< of the two faces, "Ø20 H7/g6"; empty: none
+  std::optional<Interval> clearance_mm;  ///< of that fit, of the diameter; negative: interference
+};
+Circumstances circumstances_at(const Moment& moment);
+
+/// Appends them to the table of clashes: holder_a, holder_b, fit, eps_a_lo_mm ... clearance_hi_mm.
+/// Of clashes that are not there nothing is known.
+void add_circumstances(Table& clashes, const std::map<std::uint64_t, Circumstances>& known);
+
+}  // namespace mortise
