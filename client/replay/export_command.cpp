@@ -88,7 +88,10 @@ int run_export(const ExportOptions& options) {
   wishes.more = std::move(*what_if);
   if (options.html.empty() && options.bcf.empty()) wishes.pictures = {0, 0};
   wishes.pictures.png = !options.bcf.empty();
+  Progress progress("drawing", 1.0);
+  wishes.on_progress = [&](double share) { progress.show(share); };
   const auto report = report_of(*log, wishes);
+  progress.end();
   if (!report) return say(report.error(), kExitBadInput);
   const std::vector<Table>& tables = report->tables;
   Status status = ok();

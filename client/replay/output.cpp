@@ -2,6 +2,8 @@
 
 #include <iostream>
 
+#include "client/replay/progress.h"
+
 namespace mortise {
 
 int say(const Error& error, int exit_code) {
@@ -26,10 +28,11 @@ void print_notes(const SessionLog& log) {
 
 Result<SessionLog> read_files(const std::filesystem::path& log,
                               const std::vector<std::filesystem::path>& more) {
-  if (more.empty()) return read_session(log);
   std::vector<std::filesystem::path> files{log};
   files.insert(files.end(), more.begin(), more.end());
-  return read_session(files);
+  if (more.empty()) files = chain_from(log);
+  Progress progress("reading the log", static_cast<double>(files.size()));
+  return read_session(files, {.on_progress = [&](double read) { progress.show(read); }});
 }
 
 }  // namespace mortise

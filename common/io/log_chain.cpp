@@ -105,8 +105,13 @@ std::vector<fs::path> chain_from(const fs::path& file) {
 Result<SessionLog> read_session(std::span<const fs::path> files, const LogReading& reading) {
   auto log = read_session_log(files.front(), reading);
   if (!log) return log;
+  double read = 0.0;
+  LogReading further = reading;
+  if (reading.on_progress)
+    further.on_progress = [&](double share) { reading.on_progress(read + share); };
   for (const fs::path& file : files.subspan(1)) {
-    auto next = read_session_log(file, reading);
+    read += 1.0;
+    auto next = read_session_log(file, further);
     if (!next) return next.error();
     if (Status joined = join(*log, std::move(*next), file.string()); !joined) return joined.error();
   }

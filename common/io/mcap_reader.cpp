@@ -108,6 +108,8 @@ McapScan Scanner::run() {
     if (next == Next::kGoOn) {
       if (handler_.is_enough && handler_.is_enough()) break;
       at_ = content_at + length;
+      if (handler_.on_progress)
+        handler_.on_progress(static_cast<double>(at_) / static_cast<double>(file_.size()));
       continue;
     }
     crc_known_ = false;

@@ -41,6 +41,8 @@ struct McapHandler {
   std::function<void(const std::string& name, const std::map<std::string, std::string>&)>
       on_metadata = {};
   std::function<void(const std::string& what)> on_loss = {};  ///< messages were lost here
+  /// After each record: so much of the file is read, 0 to 1.
+  std::function<void(double share)> on_progress = {};
   std::function<bool()> is_enough = {};  ///< asked after each record: the rest is left unread
 };
 

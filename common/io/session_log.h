@@ -134,6 +134,8 @@ struct SessionLog {
 struct LogReading {
   /// Of so many last checkpoints the bytes are kept; all others are known by their hash.
   std::size_t keep_checkpoints = 0;
+  /// Told, as it goes on, how many files are read, with a part of the one that is.
+  std::function<void(double files)> on_progress = {};
 };
 Result<SessionLog> read_session_log(const std::filesystem::path& file,
                                     const LogReading& reading = {});

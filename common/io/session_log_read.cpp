@@ -38,7 +38,8 @@ class LogAssembler {
     return {.on_message = [this](const auto& c, const auto& m) { message(c, m); },
             .on_attachment = [this](const McapAttachment& a) { attachment(a); },
             .on_metadata = [this](const auto& name, const auto& v) { metadata(name, v); },
-            .on_loss = [this](const std::string& what) { loss(what); }};
+            .on_loss = [this](const std::string& what) { loss(what); },
+            .on_progress = reading_.on_progress};
   }
   Result<SessionLog> finish(const std::string& file, McapScan scan);
 
