@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "idl/directory.h"
 #include "tests/network/guest.h"
 #include "tests/network/key_ring.h"
 #include "tests/network/program.h"
@@ -101,6 +102,49 @@ TEST_F(DirectoryOfSessions, ListsWhoLeadsAndWhoStandsBy) {
   ASSERT_EQ(after.size(), 1u) << after.dump();
   EXPECT_EQ(row(after, "default", "leads")["port"], 7404 + 250 * kDomain);
   EXPECT_GT(row(after, "default", "leads")["term_ms"], of_hall["term_ms"]);
+}
+
+/// One that is frozen and overtaken is told apart from the one that leads, until it is known to be
+/// gone; asked in this process, which listens all the while.
+TEST_F(DirectoryOfSessions, TellsTheOvertakenFromTheOneThatLeads) {
+  const auto first = lead(kDomain, "default");
+  DdsOptions options;
+  options.domain = kDomain;
+  options.session = kEverySession;
+  const auto directory = open_directory(options);
+  ASSERT_TRUE(directory) << directory.error().text;
+  const auto port_that = [&](KnownServer::Place place) {
+    std::vector<int> ports;
+    for (const KnownServer& server : (*directory)->known())
+      if (server.place == place) ports.push_back(server.port);
+    EXPECT_LE(ports.size(), 1u);
+    return ports.empty() ? 0 : ports.front();
+  };
+  const auto becomes = [&](KnownServer::Place place, int port) {
+    for (const double end_s = steady_s() + 5.0; steady_s() < end_s;) {
+      if (port_that(place) == port) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  };
+  using Place = KnownServer::Place;
+  constexpr int kFirst = 7402 + 250 * kDomain, kSecond = kFirst + 2;
+  ASSERT_TRUE(becomes(Place::kLeads, kFirst));
+  const auto second = start(kDomain, "default", {"--standby-of", "default", "--restore", logs()});
+  ASSERT_TRUE(becomes(Place::kStandsBy, kSecond));
+  first->signal(SIGSTOP);
+  EXPECT_TRUE(becomes(Place::kLeads, kSecond));
+  EXPECT_EQ(port_that(Place::kOvertaken), kFirst);
+  EXPECT_TRUE(becomes(Place::kOvertaken, 0)) << "known to be gone after its lease";
+  first->signal(SIGKILL);
+
+  // And in order: a third stands by, and the second is drained.
+  const auto third = start(kDomain, "default", {"--standby-of", "default", "--restore", logs()});
+  ASSERT_TRUE(becomes(Place::kStandsBy, kFirst)) << "the place of the one that is gone";
+  second->signal(SIGUSR1);
+  EXPECT_TRUE(becomes(Place::kLeads, kFirst));
+  EXPECT_EQ(second->wait(5), 0) << second->errors();
+  EXPECT_EQ((*directory)->known().size(), 1u);
 }
 
 TEST_F(DirectoryOfSessions, SaysInOneLineThatThereIsNobody) {
