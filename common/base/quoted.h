@@ -4,10 +4,22 @@
 
 namespace mortise {
 
-/// The text between single quotes, for messages that show what a file says.
+/// The text between single quotes, for messages that show what a file says: in one line whatever it
+/// holds (control characters become '?'), and no more of it than helps to find the place.
 inline std::string quoted(std::string_view text) {
+  constexpr std::size_t kMost = 120;
   std::string text_in(1, '\'');
-  text_in.append(text);
+  for (const char c : text.substr(0, kMost)) {
+    const auto code = static_cast<unsigned char>(c);
+    text_in.push_back(code < 0x20 || code == 0x7f ? '?' : c);
+  }
+  if (text.size() > kMost) {
+    // Not in the middle of a character.
+    while (!text_in.empty() && (static_cast<unsigned char>(text_in.back()) & 0xc0) == 0x80)
+      text_in.pop_back();
+    if (static_cast<unsigned char>(text_in.back()) >= 0xc0) text_in.pop_back();
+    text_in += "...";
+  }
   text_in.push_back('\'');
   return text_in;
 }

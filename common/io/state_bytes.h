@@ -57,7 +57,7 @@ template <class Archive, class Maybe>
 void visit_maybe(Archive& archive, Maybe& value) {
   bool has = value.has_value();
   archive(has);
-  if (archive.reads() && has) value.emplace();
+  if (archive.reads() && has) value = T{};  // not emplace: clang holds a nested T for incomplete
   if (archive.reads() && !has) value.reset();
   if (has) archive(*value);
 }

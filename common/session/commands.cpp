@@ -58,6 +58,10 @@ Refused check_holds(const World& world, const User& user, PartId id) {
   return refused;
 }
 
+bool is_for_several(CommandKind kind) {
+  return kind == CommandKind::kGrab || kind == CommandKind::kRelease || kind == CommandKind::kReset;
+}
+
 // All parts of a command pass the same check, or the first that does not speaks for all.
 template <class Check>
 Refused check_all(const Command& command, Check check) {
@@ -198,6 +202,9 @@ Refused check(const World& world, const Command& command) {
             "user " + std::to_string(command.user.value) + " is not in the session: join first"};
   if (user->role == Role::kObserver)
     return {Refusal::kObserver, "'" + user->name + "' is an observer and looks only"};
+  // What is not looked at below must not be carried out.
+  if (!command.details.parts.empty() && !is_for_several(command.kind))
+    return {Refusal::kBadGroup, "only grab, release and reset take several parts: name one"};
   switch (command.kind) {
     case CommandKind::kGrab:
     case CommandKind::kReset:

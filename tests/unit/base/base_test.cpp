@@ -6,6 +6,7 @@
 #include "common/base/check.h"
 #include "common/base/hash.h"
 #include "common/base/ids.h"
+#include "common/base/quoted.h"
 #include "common/base/result.h"
 
 namespace mortise {
@@ -48,6 +49,22 @@ TEST(StateHash, DependsOnValuesAndOrderButNotOnTheSignOfZero) {
   EXPECT_NE(hash_of({1.0, 2.0}), hash_of({2.0, 1.0}));
   EXPECT_NE(hash_of({1.0}), hash_of({1.0 + 1e-15}));
   EXPECT_EQ(hash_of({0.0}), hash_of({-0.0}));
+}
+
+TEST(Quoted, IsOneLineOfBoundedLength) {
+  EXPECT_EQ(quoted("gear_in.stl"), "'gear_in.stl'");
+  EXPECT_EQ(quoted("two\nlines\t\x7f"), "'two?lines??'");
+  EXPECT_EQ(quoted(std::string("a\0b", 3)), "'a?b'");
+  EXPECT_LT(quoted(std::string(100'000, 'x')).size(), 130U);
+  // Cut between characters, not within the two bytes of one.
+  EXPECT_EQ(quoted("x" + std::string(59, 'y') +
+                   std::string("\xc3\x98\xc3\x98\xc3\x98\xc3\x98"
+                               "\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98") +
+                   std::string(39, 'z') + "\xc3\x98tail"),
+            "'x" + std::string(59, 'y') +
+                "\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98"
+                "\xc3\x98\xc3\x98\xc3\x98\xc3\x98" +
+                std::string(39, 'z') + "...'");
 }
 
 TEST(CheckDeathTest, SaysWhereAndWhatBeforeItStops) {

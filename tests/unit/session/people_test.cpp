@@ -326,5 +326,23 @@ TEST_F(PeopleTest, OtherStatusesAreNotTakenBack) {
   EXPECT_EQ(snapshot_of(session.world).open_clashes[0].review.status, ReviewStatus::kReviewed);
 }
 
+// One part is asked for and checked; a list beside it must not be what is carried out.
+TEST_F(PeopleTest, AListOfPartsIsForThoseWhoCheckIt) {
+  ask(bob, CommandKind::kGrab, pin);
+  move(bob, pin, Vec3(0, 0, 3));
+  ask(ada, CommandKind::kGrab, peg);
+  move(ada, peg, Vec3(0, 0, 1));
+  ask(bob, CommandKind::kAskHandOver, peg);
+  const Details others = with_parts({pin, PartId{99}});
+  for (std::uint8_t k = 1; k < kCommandKindCount; ++k) {
+    const auto kind = static_cast<CommandKind>(k);
+    EXPECT_NE(refusal(ada, kind, peg, others), Refusal::kNone) << static_cast<int>(k);
+  }
+  EXPECT_EQ(refusal(ada, CommandKind::kUndo, peg, others), Refusal::kBadGroup);
+  EXPECT_EQ(session.pose(pin).p.z(), 3.0) << "ada has undone what bob did";
+  EXPECT_EQ(session.world.find(pin)->holder, bob);
+  EXPECT_EQ(session.world.find(peg)->holder, ada);
+}
+
 }  // namespace
 }  // namespace mortise
