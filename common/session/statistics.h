@@ -37,7 +37,7 @@ class SessionStatistics {
   void add(const StepReport& report);
 
   /// Rows of clashes that have ended, as many as a server keeps.
-  static constexpr std::size_t kMostEndedRows = 2000;
+  static constexpr std::size_t kMostEndedRows = 256;
   /// From now on only so many of them are kept, those that ended last. The others stay in every
   /// count and sum; a log still has them one by one. A session of days needs it.
   void keep_ended_rows(std::size_t most);
