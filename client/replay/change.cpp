@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include "common/base/quoted.h"
+#include "common/base/in_quotes.h"
 #include "common/io/mesh_import.h"
 #include "common/io/scenario_file.h"
 #include "common/session/surface_rules.h"
@@ -43,7 +43,7 @@ constexpr Word kWords[] = {
     {"include", Change::Kind::kInclude, 2, false}, {"mesh", Change::Kind::kMesh, 1, true}};
 
 Error not_understood(std::string_view text, const std::string& why) {
-  return fail(Code::kInvalidInput, "change " + quoted(text) + ": " + why);
+  return fail(Code::kInvalidInput, "change " + in_quotes(text) + ": " + why);
 }
 
 // The longest part name that the words begin with; behind its dot stands the feature.
@@ -60,8 +60,7 @@ Result<Named> named(const World& world, const std::string& words) {
     if ((whole || feature) && (best == nullptr || part.name.size() > best->name.size()))
       best = &part;
   }
-  if (best == nullptr)
-    return fail(Code::kInvalidInput, "there is no part " + mortise::quoted(words));
+  if (best == nullptr) return fail(Code::kInvalidInput, "there is no part " + in_quotes(words));
   return Named{best->id, words == best->name ? "" : words.substr(best->name.size() + 1)};
 }
 
@@ -170,7 +169,7 @@ Status change_log(SessionLog& log, const Change& change) {
                                  [&](const auto& spec) { return spec.name == change.of[0]; });
   const auto index = static_cast<std::size_t>(part - parts.begin());
   if (part == parts.end() || index >= log.mesh_of_part.size())
-    return not_understood(change.text, "there is no part " + mortise::quoted(change.of[0]));
+    return not_understood(change.text, "there is no part " + in_quotes(change.of[0]));
   auto mesh = import_mesh(change.value, 1.0);
   if (!mesh) return mesh.error();
   const std::string hash = mesh_hash(mesh->mesh);

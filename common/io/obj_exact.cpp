@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/base/quoted.h"
+#include "common/base/in_quotes.h"
 #include "common/io/raw_soup.h"
 
 namespace mortise {
@@ -56,7 +56,7 @@ class ObjReader {
         good = face(line);
       else
         good = passed_over(kind) ||
-               bad(line, "unknown statement " + quoted(kind) + "; is this an OBJ file?");
+               bad(line, "unknown statement " + in_quotes(kind) + "; is this an OBJ file?");
       if (!good) return fail(Code::kInvalidInput, error_);
     }
     if (in.bad()) return fail(Code::kRuntime, file_ + ": reading broke off; check the disk");
@@ -88,7 +88,7 @@ class ObjReader {
       if (word.front() == '+') word.remove_prefix(1);
       const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), x);
       if (status != std::errc{} || end != word.data() + word.size() || !std::isfinite(x))
-        return bad(line, quoted(word) + " is no finite number; correct the coordinate");
+        return bad(line, in_quotes(word) + " is no finite number; correct the coordinate");
     }
     points_.push_back(p);
     return true;
@@ -107,7 +107,7 @@ class ObjReader {
       const auto count = static_cast<long long>(points_.size());
       const long long from_one = index < 0 ? count + 1 + index : index;
       if (!whole || from_one < 1 || from_one > count)
-        return bad(line, quoted(word) + " names no vertex read so far (there are " +
+        return bad(line, in_quotes(word) + " names no vertex read so far (there are " +
                              std::to_string(count) + "); correct the index");
       corner_.push_back(static_cast<std::size_t>(from_one - 1));
     }

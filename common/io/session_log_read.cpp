@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "common/base/quoted.h"
+#include "common/base/in_quotes.h"
 #include "common/io/log_checkpoint.h"
 #include "common/io/log_json.h"
 #include "common/io/log_layout.h"
@@ -251,11 +251,11 @@ bool as_list(std::map<std::uint64_t, Value>& values, std::vector<Value>& list) {
 Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) {
   const auto bad = [&](const std::string& what) { return fail(Code::kInvalidInput, file + what); };
   if (scan.profile != log_layout::kProfile)
-    return bad(": an MCAP file, but no session log: its profile is " + quoted(scan.profile));
+    return bad(": an MCAP file, but no session log: its profile is " + in_quotes(scan.profile));
   if (!has_session_) return bad(": the record that names the session is missing or damaged");
   if (std::find(std::begin(log_layout::kFormatsRead), std::end(log_layout::kFormatsRead),
                 format_) == std::end(log_layout::kFormatsRead))
-    return bad(": written in log format " + quoted(format_) +
+    return bad(": written in log format " + in_quotes(format_) +
                ", this program reads formats up to " + log_layout::kFormat);
   if (!has_scenario_) return bad(": the scenario is missing or damaged; nothing can be replayed");
   if (!as_list(mesh_of_part_, log_.mesh_of_part) || !as_list(imports_, log_.imports))

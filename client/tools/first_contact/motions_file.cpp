@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "common/base/quoted.h"
+#include "common/base/in_quotes.h"
 
 namespace mortise {
 namespace {
@@ -84,7 +84,7 @@ class MotionsReader {
           where_[wanted] = i;
         }
       if (!found)
-        return bad(1, "the column " + quoted(kColumns[wanted]) +
+        return bad(1, "the column " + in_quotes(kColumns[wanted]) +
                           " is missing; the first line must name id,path,ref_x..z,start_x..z,"
                           "start_qw..qz,end_x..z,end_qw..qz");
     }
@@ -99,11 +99,11 @@ class MotionsReader {
     const Cell& id = cells[where_[kId]];
     if (id.text.empty()) return bad(id.column, "the id is empty; give every motion one");
     if (!ids_.insert(std::string(id.text)).second)
-      return bad(id.column, "the id " + quoted(id.text) + " occurs twice; make it unique");
+      return bad(id.column, "the id " + in_quotes(id.text) + " occurs twice; make it unique");
     const Cell& path = cells[where_[kPath]];
     if (path.text != "linear" && path.text != "screw")
       return bad(path.column,
-                 "the path " + quoted(path.text) + " is unknown; write linear or screw");
+                 "the path " + in_quotes(path.text) + " is unknown; write linear or screw");
     Vec3 reference;
     Pose start, end;
     if (!vector(cells, kReference, reference) || !pose(cells, kStart, start) ||
@@ -121,7 +121,7 @@ class MotionsReader {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), x);
     if (status != std::errc{} || end != text.data() + text.size() || !std::isfinite(x))
-      return bad(cell.column, quoted(cell.text) + " in column " + std::string(kColumns[column]) +
+      return bad(cell.column, in_quotes(cell.text) + " in column " + std::string(kColumns[column]) +
                                   " is no finite number; correct the value");
     return true;
   }

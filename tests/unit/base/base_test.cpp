@@ -6,7 +6,7 @@
 #include "common/base/check.h"
 #include "common/base/hash.h"
 #include "common/base/ids.h"
-#include "common/base/quoted.h"
+#include "common/base/in_quotes.h"
 #include "common/base/result.h"
 
 namespace mortise {
@@ -51,16 +51,16 @@ TEST(StateHash, DependsOnValuesAndOrderButNotOnTheSignOfZero) {
   EXPECT_EQ(hash_of({0.0}), hash_of({-0.0}));
 }
 
-TEST(Quoted, IsOneLineOfBoundedLength) {
-  EXPECT_EQ(quoted("gear_in.stl"), "'gear_in.stl'");
-  EXPECT_EQ(quoted("two\nlines\t\x7f"), "'two?lines??'");
-  EXPECT_EQ(quoted(std::string("a\0b", 3)), "'a?b'");
-  EXPECT_LT(quoted(std::string(100'000, 'x')).size(), 130U);
+TEST(InQuotes, IsOneLineOfBoundedLength) {
+  EXPECT_EQ(in_quotes("gear_in.stl"), "'gear_in.stl'");
+  EXPECT_EQ(in_quotes("two\nlines\t\x7f"), "'two?lines?\?'");
+  EXPECT_EQ(in_quotes(std::string("a\0b", 3)), "'a?b'");
+  EXPECT_LT(in_quotes(std::string(100'000, 'x')).size(), 130U);
   // Cut between characters, not within the two bytes of one.
-  EXPECT_EQ(quoted("x" + std::string(59, 'y') +
-                   std::string("\xc3\x98\xc3\x98\xc3\x98\xc3\x98"
-                               "\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98") +
-                   std::string(39, 'z') + "\xc3\x98tail"),
+  EXPECT_EQ(in_quotes("x" + std::string(59, 'y') +
+                      std::string("\xc3\x98\xc3\x98\xc3\x98\xc3\x98"
+                                  "\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98") +
+                      std::string(39, 'z') + "\xc3\x98tail"),
             "'x" + std::string(59, 'y') +
                 "\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98\xc3\x98"
                 "\xc3\x98\xc3\x98\xc3\x98\xc3\x98" +
