@@ -145,7 +145,7 @@ void FileWriter::queue(TickRecord& record) {
     gap_.reason = "the queue to the disk was full";
     return;
   }
-  queue_.emplace_back(gap_.ticks > 0 ? std::exchange(gap_, {}) : Gap{}, std::move(record));
+  queue_.push_back({gap_.ticks > 0 ? std::exchange(gap_, {}) : Gap{}, std::move(record)});
   // The writer comes by itself: to wake it in each tick would cost the tick more than all else.
   if (queue_.size() == wake_ticks_) wake_.notify_one();
 }

@@ -55,9 +55,11 @@ void visit(Archive& archive, std::pair<A, B>& both) {
 }
 template <class Archive, class Maybe>
 void visit_maybe(Archive& archive, Maybe& value) {
+  using T = std::remove_cvref_t<decltype(*value)>;
   bool has = value.has_value();
   archive(has);
-  if (archive.reads() && has) value = T{};  // not emplace: clang holds a nested T for incomplete
+  if (archive.reads() && has)
+    value.emplace(T{});  // without it clang holds a nested T for incomplete
   if (archive.reads() && !has) value.reset();
   if (has) archive(*value);
 }
