@@ -170,7 +170,8 @@ TEST(DemoSession, TheGearboxIsTheSameForAll) {
   EXPECT_EQ(seen["events"]["first_seq"], 1);
   for (auto& designer : designers) EXPECT_EQ(json_of(designer->out())["events"], seen["events"]);
   for (const char* name : {"real", "potential", "fake"})
-    EXPECT_GE(seen["clashes_seen"][name].get<int>(), 2) << name << seen["clashes_seen"].dump(1);
+    EXPECT_GE(seen["clashes_seen"][name].get<int>(), 2)
+        << name << seen["clashes_seen"].dump(1) << server.out();
   EXPECT_EQ(json_of(late->out())["state"], seen["state"]);
   // The press fit stands at the mouth of its seat, the free bearing is home.
   const Json& poses = seen["state"]["poses"];
