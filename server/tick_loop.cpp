@@ -74,6 +74,7 @@ void TickLoop::open() {
 }
 
 void TickLoop::tick() {
+  hand_over_record();
   now_ns_ = clock_.now_ns();
 
   // 0. drain and decide
@@ -96,7 +97,7 @@ void TickLoop::tick() {
   if (!report_.events.empty()) event_seq_ = report_.events.back().seq;
 
   // 7. out
-  record();
+  begin_record();
   superseded_ = superseded_ || intake_.superseded;
   if (channel_.has_follower()) tell_follower();
   publish();
@@ -104,19 +105,26 @@ void TickLoop::tick() {
   metrics_.tick.add(clock_.now_ns() - now_ns_);
 }
 
-void TickLoop::record() {
+void TickLoop::begin_record() {
   if (log_ == nullptr) return;
-  TickRecord record = log_->spare();
-  record.tick = report_.tick;
-  record.time_ns = clock_.wall_ns();
-  record.decisions = intake_.decisions;
-  record.increments = intake_.increments;
-  record.report = report_;
+  record_ = log_->spare();
+  record_.tick = report_.tick;
+  record_.time_ns = clock_.wall_ns();
   changed_since_checkpoint_ |= !intake_.decisions.empty() || !intake_.increments.empty();
   // The last one at once: there are no ticks any more over which it could be made.
-  record.state = last_ ? StateDraft([bytes = encode_state(world_)] { return bytes; })
-                       : checkpoints_.after_tick(world_, checkpoint_is_due());
-  log_->record(std::move(record));
+  record_.state = last_ ? StateDraft([bytes = encode_state(world_)] { return bytes; })
+                        : checkpoints_.after_tick(world_, checkpoint_is_due());
+}
+
+// Once everybody has read what went in and came out, it is given away: a copy would be the largest
+// part of what recording takes from a tick.
+void TickLoop::hand_over_record() {
+  if (record_.tick == 0) return;
+  record_.decisions.swap(intake_.decisions);
+  record_.increments.swap(intake_.increments);
+  record_.report = std::move(report_);
+  log_->record(std::move(record_));
+  record_.tick = 0;
 }
 
 bool TickLoop::checkpoint_is_due() {
@@ -249,6 +257,7 @@ void TickLoop::run(const std::function<bool()>& stop, const std::function<void()
     metrics_.lateness.add(start_ns - deadline_ns);
     tick();
     if (after_tick) after_tick();
+    hand_over_record();
     deadline_ns += period_ns;
     const std::int64_t behind_ns = clock_.now_ns() - deadline_ns;
     if (behind_ns > 0) {
@@ -270,9 +279,11 @@ void TickLoop::last_tick(bool hands_over) {
   last_ = true;
   hands_over_ = hands_over;
   tick();
+  hand_over_record();
 }
 
 void TickLoop::close() {
+  hand_over_record();
   now_ns_ = clock_.now_ns();
   publish_snapshot();
 }

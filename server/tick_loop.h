@@ -56,7 +56,7 @@ class TickLoop {
   /// Publishes the meshes, once per distinct hash, and the first snapshot.
   void open();
 
-  /// One tick, now.
+  /// One tick, now. It is recorded at the latest with the next one or close().
   void tick();
 
   /// Ticks at world.tick_rate_hz with absolute deadlines until `stop` says so (asked before each
@@ -77,6 +77,7 @@ class TickLoop {
   const SessionStatistics& statistics() const { return statistics_; }
   const TickMetrics& metrics() const { return metrics_; }
   const Inbox& inbox() const { return inbox_; }
+  /// Of the last tick, until run() goes on to the next; tick and state hash remain.
   const StepReport& last_report() const { return report_; }
   const Intake& last_intake() const { return intake_; }
   SessionPulse pulse() const;
@@ -85,7 +86,8 @@ class TickLoop {
   double seconds() const { return static_cast<double>(now_ns_ - opened_ns_) * 1e-9; }
 
  private:
-  void record();
+  void begin_record();
+  void hand_over_record();
   bool checkpoint_is_due();
   void tell_follower();
   void measure_delay();
@@ -106,6 +108,7 @@ class TickLoop {
   SessionStatistics statistics_;
   TickMetrics metrics_;
   CheckpointMaker checkpoints_;
+  TickRecord record_;  ///< of the last tick, not yet handed over; tick 0: none
   std::int64_t worked_ns_ = 0, checkpoint_ns_ = 0;  ///< since the last one; when that was
   bool changed_since_checkpoint_ = false;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far

@@ -68,7 +68,10 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::pa
 }
 
 McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions options)
-    : descriptor_(descriptor), file_(std::move(file)), options_(std::move(options)) {}
+    : descriptor_(descriptor),
+      file_(std::move(file)),
+      options_(std::move(options)),
+      chunk_indexes_(std::filesystem::path(file_).parent_path()) {}
 
 McapWriter::~McapWriter() {
   static_cast<void>(close());
@@ -83,7 +86,7 @@ void McapWriter::set_error(const char* doing) {
 }
 
 void McapWriter::write(std::span<const std::byte> bytes) {
-  if (error_) return;
+  if (error_ || bytes.empty()) return;  // the checksum of nothing would begin a new one
   for (auto rest = bytes; !rest.empty();) {
     const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
     if (count < 0 && errno == EINTR) continue;
@@ -233,7 +236,9 @@ void McapWriter::end_chunk() {
   index.string(compression);
   index.u64(records.size());
   index.u64(chunk_.size());
-  put_record(summary_[mcap::kChunkIndex], mcap::kChunkIndex, index);
+  ByteWriter record;
+  put_record(record, mcap::kChunkIndex, index);
+  chunk_indexes_.append(record.bytes());
   chunk_.clear();
   chunk_index_.clear();
   chunk_counted_ = {};
@@ -266,9 +271,14 @@ void McapWriter::write_summary() {
   const std::uint64_t summary_start = bytes_written();
   crc_ = 0;  // from here on: of the summary section
   ByteWriter offsets;
+  if (chunk_indexes_.size() > 0) summary_[mcap::kChunkIndex].clear();  // has its place among them
   for (const auto& [opcode, records] : summary_) {
     const std::uint64_t group_start = bytes_written();
     write(records.bytes());
+    if (opcode == mcap::kChunkIndex && !chunk_indexes_.read([&](auto bytes) { write(bytes); })) {
+      set_error("read back the index of");
+      return;
+    }
     offsets.u8(mcap::kSummaryOffset);
     offsets.u64(1 + 8 + 8);
     offsets.u8(opcode);

@@ -13,6 +13,7 @@
 
 #include "common/base/result.h"
 #include "common/io/bytes.h"
+#include "common/io/spool.h"
 
 namespace mortise {
 
@@ -85,8 +86,8 @@ class McapWriter {
   std::uint16_t schemas_ = 0, channels_ = 0;
   std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;
   std::map<std::uint16_t, std::uint64_t> messages_of_channel_;
-  /// Records of the summary section by their opcode. Some 150 bytes a chunk stay until the end.
-  std::map<std::uint8_t, ByteWriter> summary_;
+  std::map<std::uint8_t, ByteWriter> summary_;  ///< records of the summary section by opcode
+  Spool chunk_indexes_;                         ///< those of chunks: some 300 bytes each
 };
 
 }  // namespace mortise

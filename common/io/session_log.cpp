@@ -19,17 +19,15 @@ constexpr auto kCollect = std::chrono::milliseconds(50);
 constexpr std::size_t kWakeTicks = 64;
 // Ticks that may stay with the caller while the writer has the queue, which it never has for long.
 constexpr std::size_t kMostKeptBack = 16;
-// Records that are kept for their memory: of a second.
-constexpr std::size_t kMostSpare = 128;
+// Records that are kept for their memory: more than come between two looks.
+constexpr std::size_t kMostSpare = 16;
 constexpr std::size_t kMostReserved = 8192;
 
 void empty(TickRecord& record) {
   record.tick = 0;
   record.decisions.clear();
   record.increments.clear();
-  record.report.moved.clear();
-  record.report.events.clear();
-  record.report.refused.clear();
+  record.report = {};  // came with the record, and no one fills it again
   record.state = {};
 }
 

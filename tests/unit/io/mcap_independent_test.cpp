@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "common/io/log_json.h"
+#include "common/io/spool.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {
@@ -84,6 +85,17 @@ TEST_P(IndependentReader, FindsWhatWasWritten) {
     ASSERT_TRUE(log_json::decode(found["clashes"][i].dump(), read));
     EXPECT_EQ(log_json::first_difference(events[i], read), "");
   }
+}
+
+// The index of so many chunks is kept beside the log until its end.
+TEST_P(IndependentReader, FindsWhatLiesInManyChunks) {
+  const test::TemporaryFile file("many_chunks.mcap");
+  ASSERT_TRUE(test::write_sample(file.path(), 800, {.compress = GetParam(), .chunk_bytes = 1}));
+  const Answer answer = ask_independent_reader(file.path());
+  ASSERT_EQ(answer.exit_code, 0) << answer.text.substr(0, 500);
+  EXPECT_TRUE(answer.found["index_agrees"].get<bool>());
+  EXPECT_EQ(answer.found["topics"]["/ticks"], 800);
+  EXPECT_GT(answer.found["statistics"]["chunks"].get<std::size_t>() * 100, Spool::kBlockBytes);
 }
 
 // The check must be able to fail: one flipped bit inside a chunk.
