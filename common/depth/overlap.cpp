@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/depth/candidates.h"
 #include "common/depth/pair_order.h"
@@ -41,8 +42,15 @@ class Overlap {
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
                              query_.refinement == Refinement::kDecided},
                             scratch_, result_.evaluations);
-    if (regions_.count > 0) search_regions();
-    if (result_.regions.empty()) add_shared_inside(candidates);
+    if (regions_.count > 0) {
+      if (query_.only_certain)
+        search_certain();
+      else
+        search_regions();
+    }
+    // Regions that were left out because nothing is certain in them are told apart from none.
+    if (result_.regions.empty() && !(query_.only_certain && regions_.count > 0))
+      add_shared_inside(candidates);
     if (result_.no_inside) add_crossing(candidates);
     for (const OverlapRegion& region : result_.regions)
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
@@ -130,6 +138,22 @@ class Overlap {
         region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
       region.points_W.push_back(region.point_W);
       if (region.certain_mm.lo > 0.0) set_witness(find_witness(pair_, c.best), c.best, region);
+      result_.regions.push_back(std::move(region));
+    }
+  }
+
+  void search_certain() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const Layer layer = pair_.trivial ? Layer::kMesh : Layer::kLower;
+    const bool lazy = query_.refinement == Refinement::kDecided;
+    for (const Bracket& c : search(layer, lazy, work_left())) {
+      if (c.hi_mm <= pair_.touch_mm) continue;
+      OverlapRegion region;
+      region.certain_mm = bracket_of(c);
+      region.possible_mm = {region.certain_mm.lo, kInfinity};
+      region.delta_mm = {-kInfinity, kInfinity};
+      region.capped = regions_.capped || c.undecided;
+      describe(pair_, c.best, c.best, region);
       result_.regions.push_back(std::move(region));
     }
   }

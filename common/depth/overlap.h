@@ -23,6 +23,9 @@ struct OverlapQuery {
   double accuracy_mm = kDepthAccuracyDefault_mm;
   /// False: only certain_mm and possible_mm are wanted; delta_mm may be wide.
   bool want_delta = true;
+  /// True: only the regions in which something may be certain are wanted, and of them certain_mm;
+  /// delta_mm and possible_mm are as wide as may be. Costs less than half.
+  bool only_certain = false;
   /// True: what is not certain is proven not to be, as far as work_cap goes. Else, under kDecided,
   /// a glance at it may do, and the class is potential.
   bool prove_not_certain = false;

@@ -21,9 +21,9 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters&
     }
     ++counters.pairs.out;
     ++counters.contacts.in;
+    if (pair.undecided || pair.withdrawal_unsure) ++counters.not_examined;
     if (pair.undecided) {
       ++counters.contacts_undecided;
-      ++counters.not_examined;
     } else if (pair.near || pair.touching) {
       ++counters.contacts.out;
     } else {

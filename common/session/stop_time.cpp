@@ -18,6 +18,9 @@ constexpr std::uint64_t kRealTimeWorkCap = 10'000;
 // Evaluations of one look at the depth on the way; where it ends, the bracket is wide and the look
 // is worth nothing.
 constexpr std::uint64_t kLookWorkCap = 2'000;
+// The same of a look at what is withdrawn: the shafts of the demo need 1,100. Where it ends, the
+// depth is told too small; the pair is counted as not examined.
+constexpr std::uint64_t kWithdrawalLookWorkCap = 5'000;
 
 // How closely the advance approaches the time at which the pair becomes real, mm of depth, and the
 // steps it may take: head-on it needs two or three; a part that slides along at constant depth
@@ -78,6 +81,7 @@ OverlapQuery overlap_query(const PairWork& pair) {
 // Bracket of the deepest overlap that is certain at one time of the segment, mm.
 struct Look {
   Interval depth_mm;
+  bool capped = false;
   bool has_place = false;  // where the deepest region lies, world frame, and its normal from B to A
   Vec3 point_W = Vec3::Zero(), normal_W = Vec3::UnitZ();
 };
@@ -90,8 +94,8 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
   // What is withdrawn is held against the least that is certain: half a look would let it deeper.
-  const bool whole = refinement == Refinement::kFull;
-  query.work_cap = whole ? kLookWorkCap : pair.cap_of(kLookWorkCap);
+  query.only_certain = refinement == Refinement::kFull;
+  query.work_cap = query.only_certain ? kWithdrawalLookWorkCap : pair.cap_of(kLookWorkCap);
   query.prove_not_certain = true;
   query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
   const OverlapResult overlap = find_overlap(query, ccd);
@@ -100,6 +104,7 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   Look look;
   look.depth_mm = {elsewhere_mm(pair), elsewhere_mm(pair)};
   for (const OverlapRegion& region : overlap.regions) {
+    look.capped |= region.capped;
     look.depth_mm.lo = std::max(look.depth_mm.lo, region.certain_mm.lo);
     if (region.certain_mm.hi < look.depth_mm.hi) continue;
     look.depth_mm.hi = region.certain_mm.hi;
@@ -166,8 +171,9 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
 double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   constexpr int kLooks = 4;
   const auto depth_mm = [&](double t) {
-    return std::max(0.0,
-                    certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd).depth_mm.lo);
+    const Look look = certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd);
+    pair.withdrawal_unsure |= look.capped;
+    return std::max(0.0, look.depth_mm.lo);
   };
   double& allowed_mm = pair.memo.change().allowed_depth_mm;
   allowed_mm = std::min(allowed_mm, depth_mm(0.0));

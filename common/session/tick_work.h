@@ -111,6 +111,7 @@ struct PairWork {
   bool stop_gave_up = false;     ///< that search came to the end of its work
   bool short_of_work = false;    ///< and was given less of it than it may have
   bool stalled = false;          ///< or none, because the same push has come to nothing before
+  bool withdrawal_unsure = false;  ///< a look at what is withdrawn came to the end of its work
   bool owed = false;             ///< near, but not judged to the end: again in the next tick
 
   /// Was it given less than that?

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -21,8 +22,9 @@ struct Case {
   Refinement refinement = Refinement::kFull;
 };
 
-OverlapResult overlap_of(const Case& c) {
+OverlapResult overlap_of(const Case& c, bool only_certain = false) {
   OverlapQuery query;
+  query.only_certain = only_certain;
   query.a = c.a.get();
   query.b = c.b.get();
   query.band_a = &c.band_a;
@@ -284,6 +286,63 @@ INSTANTIATE_TEST_SUITE_P(Overlap, Fits,
                                            FitCase{"H7/k6", CollisionClass::kPotential},
                                            FitCase{"H7/n6", CollisionClass::kPotential},
                                            FitCase{"H7/p6", CollisionClass::kReal}));
+
+Interval certain_of(const OverlapResult& result) {
+  Interval certain{0.0, 0.0};
+  for (const OverlapRegion& region : result.regions)
+    certain = {std::max(certain.lo, region.certain_mm.lo),
+               std::max(certain.hi, region.certain_mm.hi)};
+  return certain;
+}
+
+bool is_capped(const OverlapResult& result) {
+  return std::any_of(result.regions.begin(), result.regions.end(),
+                     [](const OverlapRegion& region) { return region.capped; });
+}
+
+TEST(Overlap, OnlyWhatIsCertainIsTheSameForLess) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> one(-1.0, 1.0);
+  const FitOffsets p6 = fit_offsets("H7/p6", 10.0);
+  std::uint64_t work = 0, work_of_all = 0;
+  int certain = 0, none = 0, capped = 0;
+  for (int i = 0; i < 60; ++i) {
+    Case c;
+    c.a = i % 3 == 0 ? solid(box({4, 5, 6}, Vec3::Zero(), 2)) : solid(peg({10, -5, 15, 32, 1, 0.1}));
+    c.b = i % 3 == 0 ? solid(box({5, 4, 7}, Vec3::Zero(), 1)) : solid(ring({10, 0, 20, 32, 1, 0}, 20));
+    if (i % 3 == 0) {
+      c.band_a = uniform_band({0, 0}, {-0.02, 0.01});
+      c.X_WA = Pose{rotation_exp(0.02 * Vec3(one(random), one(random), one(random))),
+                    Vec3(9.0 + 0.1 * one(random), one(random), one(random))};
+    } else {
+      c.band_a = cylinder_band(c.a, 10, false, p6.shaft_mm);
+      c.band_b = cylinder_band(c.b, 10, true, p6.hole_mm);
+      c.X_WA = Pose{rotation_exp(Vec3(0.003 * one(random), 0.003 * one(random), one(random))),
+                    Vec3(0.05 * one(random), 0.05 * one(random), 20.0 * one(random))};
+    }
+    // Some of each the other way round.
+    if (i % 2 == 1) {
+      std::swap(c.a, c.b);
+      std::swap(c.band_a, c.band_b);
+      std::swap(c.X_WA, c.X_WB);
+    }
+    const OverlapResult all = overlap_of(c), only = overlap_of(c, true);
+    const Interval expected = certain_of(all), found = certain_of(only);
+    EXPECT_TRUE(is_capped(all) || std::fabs(found.lo - expected.lo) < 2e-4)
+        << i << ": " << found.lo << " against " << expected.lo;
+    EXPECT_FALSE(is_capped(only)) << i;
+    capped += is_capped(all);
+    EXPECT_LE(found.lo, expected.hi + 1e-9) << i;
+    EXPECT_GE(found.hi, expected.lo - 1e-9) << i;
+    work += only.evaluations;
+    work_of_all += all.evaluations;
+    ++(expected.lo > 0.0 ? certain : none);
+  }
+  EXPECT_GT(certain, 15);
+  EXPECT_LT(capped, 20);
+  EXPECT_GT(none, 5);
+  EXPECT_LT(2 * work, work_of_all);
+}
 
 TEST(Overlap, FakeFitNumbers) {
   Case c;

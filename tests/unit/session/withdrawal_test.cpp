@@ -1,10 +1,12 @@
 // A part that interferes is let out of the other again, whatever the searches have time for.
 #include <gtest/gtest.h>
 
+#include <random>
 #include <string>
 #include <vector>
 
 #include "common/io/open_scene.h"
+#include "common/session/judgement.h"
 #include "common/session/step.h"
 
 namespace mortise {
@@ -85,6 +87,94 @@ TEST_F(Withdrawal, FromTheBrinkNothingIsPressedIn) {
   for (int i = 1; i <= 5; ++i) push(1, 1.0);
   for (const double by_mm : {-1.0, -0.02, -0.0005})
     for (int i = 0; i < 8; ++i) EXPECT_GE(push(1, by_mm), 65.0 - 1e-3) << by_mm;
+}
+
+// Pressed in askew, certain to interfere: every push that draws it out goes all its way, and none
+// of any other direction makes it deeper.
+struct Askew : testing::Test {
+  LoadedScene scene;
+  Scratch scratch;
+  UserId ada;
+  std::uint64_t seq = 0;
+
+  Askew() {
+    auto reading = read_scenario_text(R"(
+name: askew
+units: mm
+policy: stop
+max_jump: 20
+parts:
+  - name: plate
+    generator: {kind: plate_with_bore, bore: 20, facets: 48}
+  - name: peg
+    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 48, phase_deg: 3}
+    moving: true
+    pose: {position: [0.02, 0, 5], rotation_deg: [0.15, 0.1, 0]}
+fits:
+  - {between: [plate.bore, peg.journal], code: Ø20 H7/p6}
+)",
+                                      "askew.yaml");
+    auto loaded = load_scene(reading->scenario, default_meshes());
+    EXPECT_TRUE(loaded && loaded->usable());
+    scene = std::move(*loaded);
+    Decision decision;
+    decision.kind = Decision::Kind::kJoin;
+    decision.user_name = "ada";
+    decision.role = Role::kDesigner;
+    apply_decision(scene.world, decision);
+    ada = scene.world.users.back().id;
+    apply_command(scene.world, Command{ada, peg().id, 1, CommandKind::kGrab}, decision);
+    step(scene.world, {}, scratch);
+  }
+  const Part& peg() { return *scene.world.find_part("peg"); }
+  StepReport push(const Vec3& by_mm, const Vec3& turn_rad = Vec3::Zero()) {
+    const std::vector<Increment> increments = {{ada, peg().id, ++seq, by_mm, turn_rad}};
+    return step(scene.world, increments, scratch);
+  }
+  /// Lower bound of what is certain as it stands, whatever the work.
+  double depth_mm() {
+    JudgementQuery query;
+    query.a = &scene.world.parts[0];
+    query.b = &scene.world.parts[1];
+    query.rule = scene.world.rule(query.a->id, query.b->id);
+    query.motion_a = still_motion(query.a->X_WP);
+    query.motion_b = still_motion(query.b->X_WP);
+    query.refinement = Refinement::kFull;
+    query.want_gpd = false;
+    CcdScratch ccd;
+    double depth = 0.0;
+    for (const OverlapRegion& region : judge_pair(query, ccd).overlap.regions)
+      depth = std::max(depth, region.certain_mm.lo);
+    return depth;
+  }
+};
+
+TEST_F(Askew, NoPushMakesItDeeper) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  double least_mm = depth_mm();
+  ASSERT_GT(least_mm, 0.005);
+  for (int i = 0; i < 25; ++i) {
+    const auto some = [&](double by) -> Vec3 {
+      return by * Vec3(normal(random), normal(random), normal(random));
+    };
+    push(some(0.05), some(0.002));
+    const double depth = depth_mm();
+    EXPECT_LE(depth, least_mm + 2.0 * kDeepeningSlack_mm) << i;
+    least_mm = std::min(least_mm, depth);
+  }
+}
+
+TEST_F(Askew, IsDrawnOutAlongItsAxis) {
+  ASSERT_GT(depth_mm(), 0.005);
+  const Vec3 axis = peg().X_WP.q * Vec3::UnitZ();
+  for (int i = 0; i < 45; ++i) {
+    const Vec3 before = peg().X_WP.p;
+    const StepReport report = push(axis);
+    EXPECT_GT((peg().X_WP.p - before).dot(axis), 1.0 - 1e-9) << i;
+    EXPECT_EQ(report.counters.not_examined, 0u) << i;
+  }
+  EXPECT_EQ(depth_mm(), 0.0);
 }
 
 }  // namespace
