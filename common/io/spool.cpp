@@ -10,8 +10,8 @@
 namespace mortise {
 
 Spool::Spool(const std::filesystem::path& folder)
-    : descriptor_(::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC,
-                         0600)) {}
+    : descriptor_(
+          ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600)) {}
 
 Spool::~Spool() {
   if (descriptor_ >= 0) ::close(descriptor_);

@@ -104,15 +104,15 @@ struct PairWork {
 
   // Work on depth, in evaluations; see work_budget.h.
   std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
-  std::uint64_t most_work = 0;   ///< that a pair may have in the stage
-  bool limited = false;          ///< by what the tick may spend
-  bool wants_stop_time = false;  ///< its t_stop is what needs no search
-  double t_stop_start = 0.0;     ///< of the segment: where that search begins
-  bool stop_gave_up = false;     ///< that search came to the end of its work
-  bool short_of_work = false;    ///< and was given less of it than it may have
-  bool stalled = false;          ///< or none, because the same push has come to nothing before
+  std::uint64_t most_work = 0;     ///< that a pair may have in the stage
+  bool limited = false;            ///< by what the tick may spend
+  bool wants_stop_time = false;    ///< its t_stop is what needs no search
+  double t_stop_start = 0.0;       ///< of the segment: where that search begins
+  bool stop_gave_up = false;       ///< that search came to the end of its work
+  bool short_of_work = false;      ///< and was given less of it than it may have
+  bool stalled = false;            ///< or none, because the same push has come to nothing before
   bool withdrawal_unsure = false;  ///< a look at what is withdrawn came to the end of its work
-  bool owed = false;             ///< near, but not judged to the end: again in the next tick
+  bool owed = false;               ///< near, but not judged to the end: again in the next tick
 
   /// Was it given less than that?
   bool may_have_more() const { return cap < most_work; }

@@ -308,8 +308,10 @@ TEST(Overlap, OnlyWhatIsCertainIsTheSameForLess) {
   int certain = 0, none = 0, capped = 0;
   for (int i = 0; i < 60; ++i) {
     Case c;
-    c.a = i % 3 == 0 ? solid(box({4, 5, 6}, Vec3::Zero(), 2)) : solid(peg({10, -5, 15, 32, 1, 0.1}));
-    c.b = i % 3 == 0 ? solid(box({5, 4, 7}, Vec3::Zero(), 1)) : solid(ring({10, 0, 20, 32, 1, 0}, 20));
+    c.a =
+        i % 3 == 0 ? solid(box({4, 5, 6}, Vec3::Zero(), 2)) : solid(peg({10, -5, 15, 32, 1, 0.1}));
+    c.b = i % 3 == 0 ? solid(box({5, 4, 7}, Vec3::Zero(), 1))
+                     : solid(ring({10, 0, 20, 32, 1, 0}, 20));
     if (i % 3 == 0) {
       c.band_a = uniform_band({0, 0}, {-0.02, 0.01});
       c.X_WA = Pose{rotation_exp(0.02 * Vec3(one(random), one(random), one(random))),
