@@ -119,7 +119,9 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   builtin.discovery_config.leaseDuration_announcementperiod = duration(kAnnouncementPeriod_s);
   const int first = server_port(options);
   int port = first;
-  if (side == Participant::Side::kStandby && !place_is_free(options, port)) port += kSecondPlace;
+  // The first place is left to the one that leads, which may be starting just now.
+  if (side == Participant::Side::kStandby && place_is_free(options, port + kSecondPlace))
+    port += kSecondPlace;
   // One that stands by looks for the one that leads, which waits to be found.
   if (side != Participant::Side::kServer)
     for (const std::string& address : addresses_of(options))

@@ -14,7 +14,7 @@ bool port_is_free(const std::string& interface, int port);
 
 /// First of the two ports of a session's server.
 int server_port(const DdsOptions& options);
-/// One that stands by may find the first place taken by the one that leads: then so far above.
+/// The place of one that stands by, so far above; the first one, once the one that leads has this.
 inline constexpr int kSecondPlace = 2;
 bool place_is_free(const DdsOptions& options, int port);
 

@@ -75,6 +75,26 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
   EXPECT_LE(gaps_s.back(), kTakeOver_s);
 }
 
+TEST_F(Standby, OneThatIsThereFirstWaitsForTheOneThatLeads) {
+  const auto wait_for = [&](Program& server, const std::string& words) {
+    for (const double end_s = steady_s() + 20.0; steady_s() < end_s && server.running();) {
+      if (server.errors().find(words) != std::string::npos) return true;
+      turn(0.01);
+    }
+    return false;
+  };
+  auto second = start(208, {"--standby-of", "default", "--restore", logs(), "--log", logs()});
+  ASSERT_TRUE(wait_for(*second, "waiting for the server")) << second->errors();
+  turn(0.5);  // its ports are taken by now
+  const std::unique_ptr<Program> first = lead(208);
+  come_in(208);
+  ASSERT_FALSE(HasFailure()) << first->errors();
+  ASSERT_TRUE(wait_for(*second, "in step")) << second->errors();
+  (void)longest_gap_after([&] { first->signal(SIGKILL); });
+  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_EQ(ben_->holder("blue"), ben_->client->user_id(0));
+}
+
 TEST_F(Standby, OneThatComesBackDoesNotFight) {
   auto [first, second] = both(223);
   ASSERT_FALSE(HasFailure());
