@@ -82,7 +82,8 @@ class Overlap {
   // Lazily a glance is enough where the class does not hang on a proof.
   std::uint64_t glance() const { return kGlance + kGlancePerRoot * regions_.roots.size(); }
 
-  std::vector<Bracket> search(Layer layer, bool sign_only, std::uint64_t work_cap) {
+  std::vector<Bracket> search(Layer layer, bool sign_only, std::uint64_t work_cap,
+                              double ignore_below_mm = -std::numeric_limits<double>::infinity()) {
     SearchQuery search;
     search.pair = &pair_;
     search.layer = layer;
@@ -92,6 +93,7 @@ class Overlap {
     search.region_of_triangle = &regions_.region_of_triangle;
     search.primary = regions_.primary;
     search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
+    search.ignore_below_mm = ignore_below_mm;
     search.sign_only = sign_only;
     search.work_cap = std::max<std::uint64_t>(work_cap, regions_.roots.size());
     return search_depth(search, scratch_, result_.evaluations);
@@ -146,7 +148,7 @@ class Overlap {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Layer layer = pair_.trivial ? Layer::kMesh : Layer::kLower;
     const bool lazy = query_.refinement == Refinement::kDecided;
-    for (const Bracket& c : search(layer, lazy, work_left())) {
+    for (const Bracket& c : search(layer, lazy, work_left(), query_.ignore_below_mm)) {
       if (c.hi_mm <= pair_.touch_mm) continue;
       OverlapRegion region;
       region.certain_mm = bracket_of(c);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "common/base/constants.h"
@@ -26,6 +27,8 @@ struct OverlapQuery {
   /// True: only the regions in which something may be certain are wanted, and of them certain_mm;
   /// delta_mm and possible_mm are as wide as may be. Costs less than half.
   bool only_certain = false;
+  /// With only_certain: no more is asked than whether something is certain to be deeper than this.
+  double ignore_below_mm = -std::numeric_limits<double>::infinity();
   /// True: what is not certain is proven not to be, as far as work_cap goes. Else, under kDecided,
   /// a glance at it may do, and the class is potential.
   bool prove_not_certain = false;

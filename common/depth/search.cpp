@@ -110,7 +110,7 @@ class Search {
     const std::uint64_t polish =
         roots <= kFewRoots ? kPolishFew
                            : std::clamp(kPolishPerRoot * roots, kPolishLeast, kPolishMost);
-    while (!heap_.empty() && work_ < query_.work_cap) {
+    while (!heap_.empty() && work_ < query_.work_cap && !has_found()) {
       if (query_.sign_only && work_ >= polish && all_decided()) break;
       std::pop_heap(heap_.begin(), heap_.end(), worse);
       const Item item = std::move(heap_.back());
@@ -118,11 +118,13 @@ class Search {
       treat(item);
     }
     // What was not reached keeps its bound.
+    const bool found = has_found();
     for (const Item& item : heap_) {
       Bracket& bracket = brackets_[item.region];
-      const bool open = query_.sign_only ? bracket.best.depth_mm <= pair_.touch_mm &&
-                                               item.bound_mm > pair_.touch_mm
-                                         : item.bound_mm > tight_limit(bracket);
+      const bool open = found              ? false
+                        : query_.sign_only ? bracket.best.depth_mm <= pair_.touch_mm &&
+                                                 item.bound_mm > pair_.touch_mm
+                                           : item.bound_mm > tight_limit(bracket);
       bracket.undecided |= open;
       bracket.hi_mm = std::max(bracket.hi_mm, item.bound_mm);
     }
@@ -220,10 +222,17 @@ class Search {
     if (started_) std::push_heap(heap_.begin(), heap_.end(), worse);
   }
 
+  bool has_found() const {
+    return std::isfinite(query_.ignore_below_mm) &&
+           std::any_of(brackets_.begin(), brackets_.end(), [&](const Bracket& bracket) {
+             return bracket.best.depth_mm > query_.ignore_below_mm;
+           });
+  }
+
   // Below touch only the sign matters: nothing is gained by knowing how far apart to 0.1 um.
   double tight_limit(const Bracket& bracket) const {
     const double lo = bracket.best.depth_mm;
-    const double u = lo + query_.accuracy_mm;
+    const double u = std::max(lo + query_.accuracy_mm, query_.ignore_below_mm);
     return lo <= pair_.touch_mm ? std::min(u, pair_.touch_mm) : u;
   }
 

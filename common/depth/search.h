@@ -47,6 +47,8 @@ struct SearchQuery {
   const FlatMap<std::uint32_t>* region_of_triangle = nullptr;
   int primary = 0;
   double accuracy_mm = 1e-4;
+  /// What is no deeper than this is of no interest, and one point that is ends the search.
+  double ignore_below_mm = -std::numeric_limits<double>::infinity();
   bool sign_only = false;      ///< stop when every region is known to be above touch or not
   std::uint64_t work_cap = 0;  ///< evaluations of this search
 };

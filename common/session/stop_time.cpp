@@ -86,8 +86,11 @@ struct Look {
   Vec3 point_W = Vec3::Zero(), normal_W = Vec3::UnitZ();
 };
 
+constexpr double kAll = -kInfinity;
+
+// What is no deeper than ignore_below_mm is only known to be so.
 Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
-                   CcdScratch& ccd) {
+                   double ignore_below_mm, CcdScratch& ccd) {
   OverlapQuery query = overlap_query(pair);
   query.X_WA = pair.motion_a.pose_at(t);
   query.X_WB = pair.motion_b.pose_at(t);
@@ -95,6 +98,7 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   query.accuracy_mm = accuracy_mm;
   // What is withdrawn is held against the least that is certain: half a look would let it deeper.
   query.only_certain = refinement == Refinement::kFull;
+  query.ignore_below_mm = ignore_below_mm;
   query.work_cap = query.only_certain ? kWithdrawalLookWorkCap : pair.cap_of(kLookWorkCap);
   query.prove_not_certain = true;
   query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
@@ -142,7 +146,7 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   Advance advance;
   double t = advance.t_free = t_start;
   for (int i = 0; i < kAdvanceSteps; ++i) {
-    const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, ccd);
+    const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, kAll, ccd);
     const Interval& depth_mm = look.depth_mm;
     if (depth_mm.lo > 0.0 && t == 0.0) {
       advance.state = Advanced::kRealAtStart;
@@ -170,18 +174,20 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
 // Up to the time t_most at the latest.
 double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   constexpr int kLooks = 4;
-  const auto depth_mm = [&](double t) {
-    const Look look = certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ccd);
+  const auto depth_mm = [&](double t, double ignore_below_mm) {
+    const Look look =
+        certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ignore_below_mm, ccd);
     pair.withdrawal_unsure |= look.capped;
     return std::max(0.0, look.depth_mm.lo);
   };
   double& allowed_mm = pair.memo.change().allowed_depth_mm;
-  allowed_mm = std::min(allowed_mm, depth_mm(0.0));
+  allowed_mm = std::min(allowed_mm, depth_mm(0.0, kAll));
   // The less it interferes, the less it may gain: what one tick grants must not be the licence of
   // the next.
   const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
+  const double most_mm = allowed_mm + slack_mm;
   for (int i = 1; i <= kLooks; ++i)
-    if (depth_mm(t_most * i / kLooks) > allowed_mm + slack_mm) return t_most * (i - 1) / kLooks;
+    if (depth_mm(t_most * i / kLooks, most_mm) > most_mm) return t_most * (i - 1) / kLooks;
   return t_most;
 }
 

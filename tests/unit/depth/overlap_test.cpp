@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "common/evaluation/verdict.h"
@@ -22,9 +23,12 @@ struct Case {
   Refinement refinement = Refinement::kFull;
 };
 
-OverlapResult overlap_of(const Case& c, bool only_certain = false) {
+constexpr double kAll = -std::numeric_limits<double>::infinity();
+
+OverlapResult overlap_of(const Case& c, bool only_certain = false, double ignore_below_mm = kAll) {
   OverlapQuery query;
   query.only_certain = only_certain;
+  query.ignore_below_mm = ignore_below_mm;
   query.a = c.a.get();
   query.b = c.b.get();
   query.band_a = &c.band_a;
@@ -334,6 +338,14 @@ TEST(Overlap, OnlyWhatIsCertainIsTheSameForLess) {
         << i << ": " << found.lo << " against " << expected.lo;
     EXPECT_FALSE(is_capped(only)) << i;
     capped += is_capped(all);
+    // Is it deeper than so much? Not asked closer to the depth than the accuracy.
+    for (const double limit_mm : {0.5 * found.lo, found.lo - 3e-4, found.hi + 3e-4, 0.05}) {
+      if (limit_mm <= 0.0 || (limit_mm > found.lo - 2e-4 && limit_mm < found.hi + 2e-4)) continue;
+      const OverlapResult asked = overlap_of(c, true, limit_mm);
+      EXPECT_EQ(certain_of(asked).lo > limit_mm, found.lo > limit_mm) << i << " " << limit_mm;
+      EXPECT_EQ(certain_of(asked).hi > limit_mm, found.lo > limit_mm) << i << " " << limit_mm;
+      EXPECT_LE(asked.evaluations, only.evaluations) << i << " " << limit_mm;
+    }
     EXPECT_LE(found.lo, expected.hi + 1e-9) << i;
     EXPECT_GE(found.hi, expected.lo - 1e-9) << i;
     work += only.evaluations;
