@@ -16,6 +16,7 @@ namespace {
 
 // Fast and small enough: a log is written beside a running session.
 constexpr int kCompressionLevel = 3;
+constexpr std::size_t kUsualChunkBytes = 1 << 18;
 
 void put_map(ByteWriter& out, const std::map<std::string, std::string>& values) {
   ByteWriter entries;
@@ -71,7 +72,10 @@ McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions optio
     : descriptor_(descriptor),
       file_(std::move(file)),
       options_(std::move(options)),
-      chunk_indexes_(std::filesystem::path(file_).parent_path()) {}
+      chunk_indexes_(std::filesystem::path(file_).parent_path()) {
+  if (options_.compress)  // larger than chunks mostly are: it does not grow for hours
+    compressed_.resize(ZSTD_compressBound(std::min(options_.chunk_bytes, kUsualChunkBytes)));
+}
 
 McapWriter::~McapWriter() {
   static_cast<void>(close());
@@ -193,7 +197,7 @@ void McapWriter::end_chunk() {
   std::span<const std::byte> records = chunk_.bytes();
   std::string_view compression;
   if (options_.compress) {
-    compressed_.resize(ZSTD_compressBound(chunk_.size()));
+    compressed_.resize(std::max(compressed_.size(), ZSTD_compressBound(chunk_.size())));
     const std::size_t size = ZSTD_compress(compressed_.data(), compressed_.size(),
                                            chunk_.bytes().data(), chunk_.size(), kCompressionLevel);
     if (ZSTD_isError(size) == 0) {  // else stored as it is

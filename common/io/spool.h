@@ -10,11 +10,11 @@
 namespace mortise {
 
 /// Bytes that come in one after the other and are read once at the end. What is beyond a block of
-/// 64 KiB lies in a file without a name, so that memory does not grow with them; where the folder
+/// 4 KiB lies in a file without a name, so that memory does not grow with them; where the folder
 /// has no such files, or the disk is full, they stay in memory.
 class Spool {
  public:
-  static constexpr std::size_t kBlockBytes = 1 << 16;
+  static constexpr std::size_t kBlockBytes = 1 << 12;
 
   /// The file lies in `folder` and is gone with the process.
   explicit Spool(const std::filesystem::path& folder);
