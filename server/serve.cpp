@@ -153,6 +153,8 @@ int serve(const ServerOptions& options) {
     seats = follower.seats();
     run_as_others();  // and the threads of the endpoints
     if (Status taken = line.take_over(); !taken) return say(taken.error());
+    if (log->writer)
+      if (Status named = log->writer->take_name(); !named) spdlog::error("{}", named.error().text);
     spdlog::warn("the server of session '{}' {}: taken over at tick {}, {} users", options.session,
                  follower.handed_over() ? "hands over" : "is gone", world.tick, seats.size());
   }

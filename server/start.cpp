@@ -157,6 +157,7 @@ Result<NewLog> create_log(const ServerOptions& options, const SessionStart& star
   if (begin) header.chain = {start.log_name, start.log_chain.part + 1};
   header.begin = std::move(begin);
   LogOptions log_options;
+  log_options.named_later = !options.standby_of.empty();
   log_options.rotate_bytes = static_cast<std::uint64_t>(options.log_rotate_mb * 1e6);
   auto writer = SessionLogWriter::create(path, header, log_options);
   if (!writer) return writer.error();

@@ -1,8 +1,11 @@
 #include "client/report/circumstances.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <sstream>
 
 #include "common/evaluation/iso286.h"
 #include "common/session/judgement.h"
@@ -38,6 +41,26 @@ Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 }  // namespace
 
+bool is_of_fit(const std::string& fit, const std::string& source_a, const std::string& source_b) {
+  const std::size_t slash = fit.find('/');
+  if (slash == std::string::npos) return false;
+  const auto is_of_class = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  const auto from =
+      std::find_if_not(fit.rend() - static_cast<std::ptrdiff_t>(slash), fit.rend(), is_of_class);
+  const auto until = std::find_if_not(fit.begin() + static_cast<std::ptrdiff_t>(slash) + 1,
+                                      fit.end(), is_of_class);
+  const std::string hole(from.base(), fit.begin() + static_cast<std::ptrdiff_t>(slash));
+  const std::string shaft(fit.begin() + static_cast<std::ptrdiff_t>(slash) + 1, until);
+  const auto says = [](const std::string& source, const std::string& name) {
+    std::istringstream words(source);
+    return std::find(std::istream_iterator<std::string>(words), {}, name) !=
+           std::istream_iterator<std::string>();
+  };
+  return !hole.empty() && !shaft.empty() &&
+         ((says(source_a, hole) && says(source_b, shaft)) ||
+          (says(source_a, shaft) && says(source_b, hole)));
+}
+
 Circumstances circumstances_at(const Moment& moment) {
   const ClashEvent& event = moment.event;
   JudgementQuery query;
@@ -52,8 +75,9 @@ Circumstances circumstances_at(const Moment& moment) {
   if (face_a) found.eps_a_mm = face_a->deviation_mm;
   if (face_b) found.eps_b_mm = face_b->deviation_mm;
   // The pair has a fit, but only between the faces that have a size of it.
-  const bool has_fit = query.rule && !query.rule->fit.empty() && face_a && face_b &&
-                       !face_a->tolerance_source.empty() && !face_b->tolerance_source.empty();
+  const bool has_fit =
+      query.rule && face_a && face_b &&
+      is_of_fit(query.rule->fit, face_a->tolerance_source, face_b->tolerance_source);
   if (!has_fit) return found;
   found.fit = query.rule->fit;
   found.clearance_mm = clearance_of(found.fit);

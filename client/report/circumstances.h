@@ -18,6 +18,8 @@ struct Circumstances {
   std::string fit;                       ///< of the two faces, "Ø20 H7/g6"; empty: none
   std::optional<Interval> clearance_mm;  ///< of that fit, of the diameter; negative: interference
 };
+/// Do the tolerances of these two faces ("Ø20 H7", "Ø20 g6") make the fit "Ø20 H7/g6"?
+bool is_of_fit(const std::string& fit, const std::string& source_a, const std::string& source_b);
 Circumstances circumstances_at(const Moment& moment);
 
 /// Appends them to the table of clashes: holder_a, holder_b, fit, eps_a_lo_mm ... clearance_hi_mm.

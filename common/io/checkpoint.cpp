@@ -17,8 +17,8 @@ using state_bytes::Reader;
 using state_bytes::Writer;
 using Memos = std::map<std::uint64_t, PairMemo>;
 
-// Memos in one piece of memory; memos copied in one tick at least; and the ticks after which all are copied,
-// whatever their number. What every tick changes goes in one go, in the last of them.
+// Memos in one piece of memory; memos copied in one tick at least; and the ticks after which all
+// are copied, whatever their number. What every tick changes goes in one go, in the last of them.
 constexpr std::size_t kBlock = 128;
 constexpr std::size_t kLeastSlice = 256;
 constexpr int kMostSlices = 120;
@@ -30,8 +30,7 @@ constexpr std::size_t kLooks = 4;
 void prefetch(const PairMemo& memo) {
   constexpr std::size_t kCacheLine_bytes = 64;
   const auto* bytes = reinterpret_cast<const char*>(&memo);
-  for (std::size_t at = 0; at < sizeof memo; at += kCacheLine_bytes)
-    __builtin_prefetch(bytes + at);
+  for (std::size_t at = 0; at < sizeof memo; at += kCacheLine_bytes) __builtin_prefetch(bytes + at);
 }
 
 // 1. bytes
@@ -226,6 +225,7 @@ struct CheckpointMaker::Copies {
     return std::move(spare_frame);
   }
   void close_block() {
+    if (open.empty()) return;  // a block without room must not come back as a spare one
     const std::lock_guard lock(mutex);
     waiting.push_back({++number, std::exchange(open, {})});
   }
@@ -321,7 +321,7 @@ void CheckpointMaker::copy(std::span<const SessionState::Touched> some) {
   for (std::size_t i = 0; i < some.size(); ++i) {
     if (i + kAhead < some.size()) prefetch(*some[i + kAhead].memo);
     if (block.size() == kBlock) copies_->close_block();
-    if (block.capacity() < kBlock) block = copies_->empty_block();
+    if (block.empty() && block.capacity() < kBlock) block = copies_->empty_block();
     some[i].memo->touched = false;
     block.emplace_back(some[i].key, *some[i].memo);
   }

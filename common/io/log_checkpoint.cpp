@@ -58,8 +58,11 @@ std::vector<std::byte> encode(const SessionStatistics& totals) {
 bool decode(std::span<const std::byte> bytes, SessionStatistics& out) {
   Reader in(bytes);
   std::uint8_t layout = 0;
-  in(layout, out);
-  return layout == kTotalsLayout && in.at_end() && out.is_whole();
+  SessionStatistics totals;
+  in(layout, totals);
+  if (layout != kTotalsLayout || !in.at_end() || !totals.is_whole()) return false;
+  out = std::move(totals);
+  return true;
 }
 
 }  // namespace mortise::log_records

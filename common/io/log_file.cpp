@@ -55,10 +55,24 @@ Result<std::unique_ptr<LogFile>> LogFile::create(const fs::path& file, const Log
   std::unique_ptr<LogFile> log(new LogFile(std::move(*mcap), file));
   log->write_head(header);
   if (Status synced = log->mcap_->sync(); !synced) return synced.error();
-  fs::rename(unfinished(file), file, error);
-  if (error)
-    return fail(Code::kRuntime, file.string() + ": cannot create the log: " + error.message());
+  if (options.named_later) return log;
+  if (Status named = log->take_name(); !named) return named.error();
   return log;
+}
+
+Status LogFile::take_name() {
+  if (named_) return ok();
+  std::error_code error;
+  fs::rename(unfinished(path_), path_, error);
+  if (error)
+    return fail(Code::kRuntime, path_.string() + ": cannot create the log: " + error.message());
+  named_ = true;
+  return ok();
+}
+
+void LogFile::remove_if_unnamed() {
+  std::error_code error;
+  if (!named_) fs::remove(unfinished(path_), error);
 }
 
 void LogFile::write_head(const LogHeader& header) {

@@ -20,6 +20,10 @@ class LogFile {
                                                  const LogHeader& header,
                                                  const LogOptions& options);
 
+  /// Gives it its name, where that was left for later.
+  Status take_name();
+  /// Takes it away where it never got its name.
+  void remove_if_unnamed();
   void write(const TickRecord& tick);
   void write(const Checkpoint& state);
   void write_gap(const log_json::Gap& gap);
@@ -44,7 +48,7 @@ class LogFile {
   std::uint16_t decisions_ = 0, increments_ = 0, poses_ = 0, clashes_ = 0, ticks_ = 0,
                 statistics_ = 0, gaps_ = 0, checkpoints_ = 0, totals_ = 0;
   std::uint64_t time_ns_ = 0, statistics_time_ns_ = 0;
-  bool has_time_ = false;
+  bool has_time_ = false, named_ = false;
   log_json::CounterSums sums_;
 };
 

@@ -39,6 +39,7 @@ class FileWriter final : public SessionLogWriter {
   void record(TickRecord record) override;
   TickRecord spare() override;
   bool wants_state() const override { return wants_state_.load(std::memory_order_relaxed); }
+  Status take_name() override;
   Status flush() override;
   Status close() override;
   std::uint64_t dropped_ticks() const override { return dropped_.load(); }
@@ -233,6 +234,7 @@ void FileWriter::rotate(Checkpoint state) {
   const Status closed = file_->mcap().close();
   settle_chunk();
   if (!closed) return;
+  options_.named_later = false;
   header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
   header_.begin = LogBegin{std::move(state), statistics_};
   auto next = LogFile::create(next_in_chain(file_->path()), header_, options_);
@@ -264,6 +266,9 @@ void FileWriter::count_bytes() {
                      std::memory_order_relaxed);
 }
 
+// Before the first state is recorded, and so before a file could follow this one.
+Status FileWriter::take_name() { return file_->take_name(); }
+
 Status FileWriter::flush() {
   std::unique_lock lock(mutex_);
   take_kept_back();
@@ -294,6 +299,7 @@ Status FileWriter::close() {
       file_->write_statistics();
       if (Status closed = file_->mcap().close(); !closed) error_ = closed.error();
       settle_chunk();
+      file_->remove_if_unnamed();
     }
     count_bytes();
   }

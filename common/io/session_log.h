@@ -72,6 +72,9 @@ struct LogOptions {
   double flush_s = 0.9;
   /// Beyond this size the next file is begun with the next checkpoint; 0: all in one.
   std::uint64_t rotate_bytes = 0;
+  /// The file has its name with take_name() only, "x.mcap.begun" until then, and goes when it is
+  /// closed without: of a server that stands by, whose log must not be taken for the session's.
+  bool named_later = false;
 };
 
 /// The file that follows `file` when it has become too large: "x.mcap", "x_p0002.mcap" ...
@@ -95,6 +98,8 @@ class SessionLogWriter {
   virtual TickRecord spare() { return {}; }
   /// A record with a state is wanted, so that the next file can begin.
   virtual bool wants_state() const { return false; }
+  /// See LogOptions::named_later.
+  virtual Status take_name() { return ok(); }
   /// Waits until all that was recorded so far is on disk.
   virtual Status flush() { return status(); }
   virtual Status close() = 0;  ///< waits until all is on disk; writes index and summary

@@ -1,6 +1,7 @@
 #include "common/session/statistics.h"
 
 #include <algorithm>
+#include <set>
 
 namespace mortise {
 namespace {
@@ -133,7 +134,8 @@ void SessionStatistics::add(const StepReport& report) {
 }
 
 bool SessionStatistics::is_whole() const {
-  const auto known = [&](ClashId id) { return clashes_.contains(id); };
+  std::set<ClashId> told;  // each is open or ended, once
+  const auto known = [&](ClashId id) { return clashes_.contains(id) && told.insert(id).second; };
   const auto is_class = [](CollisionClass c) { return index_of(c) < 4; };
   return open_.size() + ended_.size() == clashes_.size() &&
          std::all_of(open_.begin(), open_.end(), known) &&

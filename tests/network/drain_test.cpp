@@ -141,10 +141,20 @@ TEST_F(Drain, OneThatStandsByJustGoes) {
   EXPECT_EQ(drained(*second), 0);
   EXPECT_TRUE(first->running());
   const int losses = losses_;
-  turn(0.5);
+  moves_ = true;
+  turn(1.5);
   EXPECT_EQ(losses_, losses);
   EXPECT_EQ(drained(*first), 0);
   EXPECT_TRUE(says(*first, "; go on with --restore "));
+  // What it wrote while it stood by is no part of the session: that goes on from the other's log.
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(logs()))
+    files += entry.is_regular_file();
+  EXPECT_EQ(files, 1u);
+  auto third = start(220, {"--restore", logs(), "--log", logs()});
+  EXPECT_TRUE(ben_->until(10, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
+  EXPECT_GT(acknowledged_.size(), 60u);
+  EXPECT_EQ(lost_of_acknowledged(*third), 0u);
 }
 
 }  // namespace

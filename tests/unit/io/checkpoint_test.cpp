@@ -143,6 +143,32 @@ TEST(Checkpoint, MadeBesideTheTicksItIsTheSame) {
   }
 }
 
+// One at rest has nothing to copy; what it leaves behind must not lose what the next ones copy.
+TEST(Checkpoint, MadeAtOnceAfterOnesAtRestItIsTheSame) {
+  RandomSession session(7);
+  World& world = session.scene.world;
+  CheckpointMaker maker;
+  maker.begin(world);
+  Scratch scratch;
+  int made = 0;
+  const auto checkpoint = [&] {
+    StateDraft draft = maker.after_tick(world, true);
+    while (!draft) {
+      step(world, {}, scratch);
+      draft = maker.after_tick(world, true);
+    }
+    EXPECT_TRUE(draft() == encode_state(world)) << "checkpoint " << ++made;
+  };
+  for (int round = 0; round < 8; ++round) {
+    for (int i = 0; i < 15; ++i) session.tick();
+    checkpoint();
+    for (int i = 0; i < 4; ++i) {  // at rest
+      step(world, {}, scratch);
+      checkpoint();
+    }
+  }
+}
+
 // Among more pairs than a tick copies, of which most change while it is made: it is made in many
 // ticks, has the bytes of the state of its last one, and the session goes on from it.
 TEST(Checkpoint, MadeInManySlicesItIsTheSameAndGoesOnTheSame) {

@@ -1,5 +1,6 @@
 // The session as tables: CSV, JSON, SQLite and HTML say the same, and say it safely.
 #include "client/report/export.h"
+#include "client/report/circumstances.h"
 #include "client/report/report.h"
 #include "client/report/summary_tables.h"
 #include "common/geometry/signed_distance.h"
@@ -191,6 +192,15 @@ TEST_F(Export, NoFieldIsAFormula) {
   EXPECT_EQ(lines[7][0], "plain");
 }
 
+TEST(Circumstances, AFitIsOfTheTwoFacesThatMakeIt) {
+  EXPECT_TRUE(is_of_fit("Ø20 H7/k6", "Ø20 H7", "Ø20 k6"));
+  EXPECT_TRUE(is_of_fit("Ø20 H7/k6", "Ø20 k6 and position 0.1", "Ø20 H7"));
+  EXPECT_FALSE(is_of_fit("Ø20 H7/k6", "Ø20 H7", "-0.1 .. -0.04"));  // a chamfer in the bore
+  EXPECT_FALSE(is_of_fit("Ø20 H7/k6", "Ø20 H7", ""));
+  EXPECT_FALSE(is_of_fit("Ø20 H7/k6", "Ø20 H7", "Ø20 H7"));
+  EXPECT_FALSE(is_of_fit("", "Ø20 H7", "Ø20 k6"));
+}
+
 // Who held the parts, the mesh error there, and the fit with its clearance: as the scenario says.
 TEST(ExportCircumstances, OfAFitAreThoseOfTheStandardAndOfTheMesh) {
   const std::string folder = std::string(MORTISE_SOURCE_DIR) + "/scenarios/gearbox";
@@ -224,7 +234,8 @@ TEST(ExportCircumstances, OfAFitAreThoseOfTheStandardAndOfTheMesh) {
     EXPECT_EQ(row["fit"], "Ø20 H7/k6");
     EXPECT_NEAR(row["clearance_lo_mm"].get<double>(), -0.015, 1e-12);
     EXPECT_NEAR(row["clearance_hi_mm"].get<double>(), 0.019, 1e-12);
-    // The corners of the shaft's mesh are on it, its facets inside; the hole's facets stand inwards.
+    // The corners of the shaft's mesh are on it, its facets inside; the hole's facets stand
+    // inwards.
     EXPECT_NEAR(row["eps_a_lo_mm"].get<double>(), 0.0, 1e-9);
     EXPECT_GT(row["eps_a_hi_mm"].get<double>(), 0.01);
     EXPECT_NEAR(row["eps_b_hi_mm"].get<double>(), 0.0, 1e-9);
