@@ -216,15 +216,18 @@ class DdsServerChannel final : public StandbyChannel {
   }
 
  private:
-  /// What other servers tell, of the one with the highest term; says whether that one leads instead
-  /// of us. Pieces come in order.
+  /// What other servers tell, of the one with the highest term (the highest key where two took over
+  /// at one time); says whether that one leads instead of us. Pieces come in order.
   bool take_told(std::vector<ToldTick>* ticks) {
     bool superseded = false;
     take_all<wire::ServerTick>(told_, [&](const wire::ServerTick& sample, const ClientKey& key) {
-      if (key == participant_->key() || sample.term() < leader_term_) return;
+      if (key == participant_->key() ||
+          std::pair(sample.term(), key) < std::pair(leader_term_, leader_))
+        return;
       leader_term_ = sample.term();
       leader_ = key;
-      superseded = superseded || (term_ != 0 && sample.term() > term_);
+      superseded = superseded || (term_ != 0 && std::pair(sample.term(), key) >
+                                                    std::pair(term_, participant_->key()));
       if (ticks == nullptr) return;
       if (sample.chunk() == 0) partly_ = {sample.tick(), {}};
       const auto* first = reinterpret_cast<const std::byte*>(sample.bytes().data());

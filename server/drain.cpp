@@ -13,6 +13,7 @@ bool Drain::is_ready() {
 
 void Drain::finish() {
   const bool hands_over = held_.follower_in_step();
+  not_in_step_ = !hands_over && held_.has_follower();
   loop_.last_tick(hands_over);
   if (loop_.superseded()) return;  // somebody else was faster
   if (hands_over) {
@@ -31,9 +32,11 @@ std::string Drain::text(const std::string& session, const std::string& log_file)
   }
   const std::string go_on =
       log_file.empty() ? "; no log was written" : "; go on with --restore " + log_file;
-  return (end_ == End::kNotTaken ? "drained, and the server that stands by did not go on"
-                                 : "drained") +
-         after + go_on;
+  const std::string drained = end_ == End::kNotTaken
+                                  ? "drained, and the server that stands by did not go on"
+                              : not_in_step_ ? "drained, and the server that stands by is not in step"
+                                             : "drained";
+  return drained + after + go_on;
 }
 
 }  // namespace mortise

@@ -17,7 +17,7 @@ class Drain {
     kNone = 0,
     kHandedOver,  ///< another server leads the session
     kNotTaken,    ///< one that stood by was to, and does not: the log holds the session
-    kAlone,       ///< nobody stood by: the log holds the session
+    kAlone,       ///< nobody stood by, or was in step: the log holds the session
   };
   /// One that stands by and is not in step yet is waited for so long.
   static constexpr double kCatchUp_s = 10.0;
@@ -41,6 +41,7 @@ class Drain {
   HeldChannel& held_;
   Clock& clock_;
   std::optional<std::int64_t> begun_ns_;
+  bool not_in_step_ = false;  ///< one stood by, and did not come in step in time
   End end_ = End::kNone;
 };
 

@@ -128,6 +128,7 @@ void TickLoop::hand_over_record() {
 }
 
 bool TickLoop::checkpoint_is_due() {
+  if (checkpoints_.running()) return false;
   const std::int64_t age_ns = now_ns_ - checkpoint_ns_;
   const bool due = log_->wants_state() || worked_ns_ >= in_ns(options_.checkpoint_work_s) ||
                    age_ns >= in_ns(changed_since_checkpoint_ ? options_.checkpoint_s

@@ -87,7 +87,10 @@ bool Crew::wait_until_joined() {
     return false;
   };
   while (any(JoinState::kJoining) || any(JoinState::kRefused) || !client_.synced()) {
-    if (stop_asked) return false;
+    if (stop_asked) {
+      spdlog::error("told to end before all had joined: nothing was done");
+      return false;
+    }
     if (any(JoinState::kRefused) || seconds_since(start) > options_.wait_s) {
       say_why_not_joined();
       return false;

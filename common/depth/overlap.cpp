@@ -96,7 +96,23 @@ class Overlap {
     search.ignore_below_mm = ignore_below_mm;
     search.sign_only = sign_only;
     search.work_cap = std::max<std::uint64_t>(work_cap, regions_.roots.size());
-    return search_depth(search, scratch_, result_.evaluations);
+    std::vector<Bracket> brackets = search_depth(search, scratch_, result_.evaluations);
+    // Triangles that the flood did not come to may lie deeper than any that it did.
+    if (regions_.capped)
+      for (Bracket& bracket : brackets) bracket.hi_mm = std::max(bracket.hi_mm, deepest_mm(layer));
+    return brackets;
+  }
+
+  // No point lies deeper in a part than half its least extent, and the offsets of a layer.
+  double deepest_mm(Layer layer) const {
+    double deepest = -std::numeric_limits<double>::infinity();
+    for (const Body& body : pair_.bodies) {
+      if (!body.has_inside) continue;
+      const Box& box = body.solid->bounds();
+      deepest = std::max(deepest, 0.5 * (box.hi - box.lo).minCoeff() +
+                                      body.largest_offset_mm[static_cast<int>(layer)]);
+    }
+    return deepest;
   }
 
   void search_regions() {
@@ -139,7 +155,8 @@ class Overlap {
       for (const Sample& sample : d.samples)
         region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
       region.points_W.push_back(region.point_W);
-      if (region.certain_mm.lo > 0.0) set_witness(find_witness(pair_, c.best), c.best, region);
+      if (region.certain_mm.lo > 0.0)
+        set_witness(find_witness(pair_, c.best, result_.evaluations), c.best, region);
       result_.regions.push_back(std::move(region));
     }
   }
@@ -225,7 +242,7 @@ class Overlap {
   }
 
   // From the point that the closed form names, and from others farther from the end of its face.
-  std::optional<Vec3> known_witness(const KnownFacePair& known, Sample& least) const {
+  std::optional<Vec3> known_witness(const KnownFacePair& known, Sample& least) {
     const int role = pair_.bodies[0].band->faces[known.face[0]].surface->inward ? 1 : 0;
     const SurfaceBand::Face& convex = pair_.s(role).band->faces[known.face[role]];
     const SurfaceBand::Face& hollow = pair_.k(role).band->faces[known.face[1 - role]];
@@ -245,7 +262,8 @@ class Overlap {
       if (!(least.depth_mm > 0.0)) continue;
       least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
       least.triangle = nearest_point(*pair_.s(role).solid, x).triangle;
-      if (const auto witness = find_witness(pair_, least)) return witness;
+      if (const auto witness = find_witness(pair_, least, result_.evaluations))
+        return witness;
     }
     return std::nullopt;
   }
@@ -368,17 +386,19 @@ OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
   return Overlap(query).run();
 }
 
-bool is_certain_at(const OverlapQuery& query, const CertainPlace& place) {
+bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,
+                   std::uint64_t& evaluations) {
   const PairFrame pair(query);
   Sample sample;
   sample.role = place.role;
   sample.triangle = place.triangle;
   sample.point_K = pair.X_KS[place.role] * place.point_S;
   sample.at = nearest_surface(*pair.k(place.role).solid, sample.point_K);
+  ++evaluations;
   sample.depth_mm =
       pair.k(place.role)
           .depth_in(sample.point_K, sample.at, pair.trivial ? Layer::kMesh : Layer::kLower);
-  return sample.depth_mm > pair.touch_mm && find_witness(pair, sample).has_value();
+  return sample.depth_mm > pair.touch_mm && find_witness(pair, sample, evaluations).has_value();
 }
 
 }  // namespace mortise

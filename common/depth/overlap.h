@@ -85,8 +85,9 @@ struct OverlapResult {
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 
 /// True implies: the overlap is certain at the poses of the query, for this place is inside. False
-/// says nothing. Two questions for the nearest point and a few for a witness.
-bool is_certain_at(const OverlapQuery& query, const CertainPlace& place);
+/// says nothing. Two questions for the nearest point and those for a witness are added to evaluations.
+bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,
+                   std::uint64_t& evaluations);
 
 struct SweptQuery {
   OverlapQuery at_target;  ///< poses of the query are ignored

@@ -63,15 +63,29 @@ std::vector<Cut> cuts_of(const Body& s, Layer layer, std::uint32_t triangle) {
 
 // A corner moved to the layer's surface; outward offsets are left to Patch::plus, which also covers
 // the wedge between two faces at a sharp edge.
-Vec3 lifted(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& corner) {
-  if (layer == Layer::kMesh) return corner;
-  const SurfaceBand::Face& face = s.face(triangle);
-  const double inward = std::min(0.0, Body::offset_of(face, layer));
-  const Surface* surface = Body::surface_of(face, layer);
-  if (surface == nullptr) return corner + inward * s.normal(triangle);
-  const Vec3 n = surface->outward_normal(corner);
-  return corner + (inward - surface->signed_distance_mm(corner)) * n;
-}
+class Lift {
+ public:
+  Lift(const Body& s, Layer layer, std::uint32_t triangle)
+      : mesh_(layer == Layer::kMesh),
+        surface_(Body::surface_of(s.face(triangle), layer)),
+        inward_(std::min(0.0, Body::offset_of(s.face(triangle), layer))),
+        normal_(surface_ == nullptr ? s.normal(triangle) : Vec3::Zero()) {}
+
+  Vec3 operator()(const Vec3& corner) const {
+    if (mesh_) return corner;
+    if (surface_ == nullptr) return corner + inward_ * normal_;
+    const Vec3 n = surface_->outward_normal(corner);
+    return corner + (inward_ - surface_->signed_distance_mm(corner)) * n;
+  }
+  const Surface* surface() const { return surface_; }
+  const Vec3& triangle_normal() const { return normal_; }  // where there is no surface
+
+ private:
+  bool mesh_;
+  const Surface* surface_;
+  double inward_;
+  Vec3 normal_;
+};
 
 using Polygon = std::vector<Vec3>;
 
@@ -111,16 +125,10 @@ Polygon cut_by(const Cut& cut, const Polygon& polygon) {
   return left;
 }
 
-struct Shape {
-  Patch patch;
-  Polygon polygon;                       // of S
-  std::array<Patch::Circle, 2> circles;  // of S
-  int circle_count = 0;
-};
-
 // The surface over the piece, moved by its offset, between two circles. Its foot
 // points leave the heights of the corners by no more than the bulge and their own distance.
-void add_circles(const Surface& surface, double offset, const Piece& piece, Shape& shape) {
+void add_circles(const Surface& surface, double offset, const Piece& piece,
+                 PieceShape& shape) {
   if (surface.kind == SurfaceKind::kSphere) {
     shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + offset,
                                            true};
@@ -140,7 +148,7 @@ void add_circles(const Surface& surface, double offset, const Piece& piece, Shap
     return;
   }
   const double sine = std::sin(surface.half_angle_rad), cosine = std::cos(surface.half_angle_rad);
-  const double grown = off + shape.patch.bulge_mm;
+  const double grown = off + shape.bulge_mm;
   if (!(lo - grown > 0.0)) return;  // around the apex
   for (const double z : {lo - grown, hi + grown})
     shape.circles[shape.circle_count++] = {
@@ -148,7 +156,7 @@ void add_circles(const Surface& surface, double offset, const Piece& piece, Shap
         std::max(0.0, z * sine / cosine + offset * cosine), false};
 }
 
-void add_circles(const Shape& shape, const Pose& X_KS, Patch& patch) {
+void add_circles(const PieceShape& shape, const Pose& X_KS, Patch& patch) {
   for (int i = 0; i < shape.circle_count; ++i) {
     const Patch::Circle& circle = shape.circles[i];
     patch.circles[patch.circle_count++] = {X_KS * circle.center, X_KS.q * circle.axis,
@@ -156,16 +164,33 @@ void add_circles(const Shape& shape, const Pose& X_KS, Patch& patch) {
   }
 }
 
-// All but the points of the patch: in frame K.
-Shape shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS) {
-  Shape shape;
-  Patch& patch = shape.patch;
+// All of a patch but its points and circles, at a pose.
+Patch placed(const PieceShape& shape, const Pose& X_KS) {
+  Patch patch;
+  patch.turn_rad = shape.turn_rad;
+  patch.bulge_mm = shape.bulge_mm;
+  patch.bulges_outward = shape.bulges_outward;
+  patch.center = X_KS * shape.center;
+  patch.normal = X_KS.q * shape.normal;
+  patch.plus_count = shape.plus_count;
+  patch.plus_is_own = shape.plus_is_own;
+  for (int i = 0; i < shape.plus_count; ++i)
+    patch.plus[i] = {X_KS.q * shape.plus[i].normal, shape.plus[i].offset_mm, shape.plus[i].flat};
+  if (shape.on_cylinder) patch.axis = X_KS.q * shape.axis;
+  return patch;
+}
+
+}  // namespace
+
+PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
+  PieceShape shape;
   const SurfaceBand::Face& face = s.face(piece.triangle);
-  const Surface* surface = Body::surface_of(face, layer);
+  const Lift lifted(s, layer, piece.triangle);
+  const Surface* surface = lifted.surface();
   const double offset = Body::offset_of(face, layer);
   Vec3 middle = (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0;
-  for (const Vec3& corner : piece.corners)
-    shape.polygon.push_back(lifted(s, layer, piece.triangle, corner));
+  shape.polygon.reserve(2 * piece.corners.size());
+  for (const Vec3& corner : piece.corners) shape.polygon.push_back(lifted(corner));
   const std::vector<Cut> cuts = cuts_of(s, layer, piece.triangle);
   bool was_cut = false;
   for (const Cut& cut : cuts) {
@@ -186,38 +211,35 @@ Shape shape_of(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS)
       if (outside > 0.0) middle -= outside * cut.outward(middle);
     }
   }
-  const Vec3 normal_S =
-      surface != nullptr ? surface->outward_normal(middle) : s.normal(piece.triangle);
+  shape.normal = surface != nullptr ? surface->outward_normal(middle) : lifted.triangle_normal();
   if (surface != nullptr) {
     const double width = width_around(*surface, piece);
     const double bend = surface->curvature_bound(middle);
-    patch.turn_rad = width * bend;
+    shape.turn_rad = width * bend;
     // Interpolation error of the map to the surface over the piece: h^2/8 over a line, r^2/2 with
     // r = h/sqrt(3) over a triangle; the margins cover the pieces' own distance from the surface.
     const bool line = surface->kind == SurfaceKind::kCylinder;
-    patch.bulge_mm = (line ? 1.05 / 8.0 : 1.1 / 6.0) * bend * width * width;
-    patch.bulges_outward = !surface->inward;
+    shape.bulge_mm = (line ? 1.05 / 8.0 : 1.1 / 6.0) * bend * width * width;
+    shape.bulges_outward = !surface->inward;
   }
-  const Vec3 center_S =
-      was_cut && surface == nullptr ? middle : lifted(s, layer, piece.triangle, middle);
-  patch.center = X_KS * (center_S + std::max(0.0, offset) * normal_S);
-  patch.normal = X_KS.q * normal_S;
-  const auto add_plus = [&](const Vec3& normal_K, double offset_mm, bool flat) {
-    if (offset_mm > 0.0) patch.plus[patch.plus_count++] = {normal_K, offset_mm, flat};
+  shape.center = (was_cut && surface == nullptr ? middle : lifted(middle)) +
+                 std::max(0.0, offset) * shape.normal;
+  const auto add_plus = [&](const Vec3& normal, double offset_mm, bool flat) {
+    if (offset_mm > 0.0) shape.plus[shape.plus_count++] = {normal, offset_mm, flat};
   };
-  add_plus(patch.normal, offset, surface == nullptr);
-  patch.plus_is_own = patch.plus_count > 0;
-  if (surface != nullptr && surface->kind == SurfaceKind::kCylinder)
-    patch.axis = X_KS.q * surface->axis;
+  add_plus(shape.normal, offset, surface == nullptr);
+  shape.plus_is_own = shape.plus_count > 0;
+  if (surface != nullptr && surface->kind == SurfaceKind::kCylinder) {
+    shape.on_cylinder = true;
+    shape.axis = surface->axis;
+  }
   if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0)
     for (const std::uint32_t t : s.sharp_neighbours(piece.triangle))
-      add_plus(X_KS.q * s.normal(t), Body::offset_of(s.face(t), layer),
+      add_plus(s.normal(t), Body::offset_of(s.face(t), layer),
                Body::surface_of(s.face(t), layer) == nullptr);
   if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, shape);
   return shape;
 }
-
-}  // namespace
 
 double Patch::across(const Vec3& facet_normal, double facet_turn_rad) const {
   if (axis.isZero(0.0)) return 1.0;
@@ -272,30 +294,33 @@ double Patch::thickness() const {
 
 Vec3 on_layer(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& x) {
   if (layer == Layer::kMesh) return x;
-  Vec3 y = lifted(s, layer, triangle, x);
+  const Lift lifted(s, layer, triangle);
+  Vec3 y = lifted(x);
   for (const Cut& cut : cuts_of(s, layer, triangle)) {
     const double outside = cut.outside(y);
     if (outside > 0.0) y -= outside * cut.outward(y);
   }
-  const SurfaceBand::Face& face = s.face(triangle);
-  const Surface* surface = Body::surface_of(face, layer);
-  const Vec3 n = surface != nullptr ? surface->outward_normal(y) : s.normal(triangle);
-  return y + std::max(0.0, Body::offset_of(face, layer)) * n;
+  const Vec3 n =
+      lifted.surface() != nullptr ? lifted.surface()->outward_normal(y) : lifted.triangle_normal();
+  return y + std::max(0.0, Body::offset_of(s.face(triangle), layer)) * n;
+}
+
+Patch make_patch(const PieceShape& shape, const Pose& X_KS) {
+  Patch patch = placed(shape, X_KS);
+  for (const Vec3& x : shape.polygon)
+    if (patch.count < Patch::kMost) patch.points[patch.count++] = X_KS * x;
+  add_circles(shape, X_KS, patch);
+  finish(patch);
+  return patch;
 }
 
 Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS) {
-  Shape shape = shape_of(s, layer, piece, X_KS);
-  for (const Vec3& x : shape.polygon)
-    if (shape.patch.count < Patch::kMost) shape.patch.points[shape.patch.count++] = X_KS * x;
-  add_circles(shape, X_KS, shape.patch);
-  finish(shape.patch);
-  return shape.patch;
+  return make_patch(shape_of(s, layer, piece), X_KS);
 }
 
-Patch make_swept_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS0,
-                       const Pose& X_KS1, double spread_mm, double turn_rad) {
-  Shape shape = shape_of(s, layer, piece, X_KS0);
-  Patch& patch = shape.patch;
+Patch make_swept_patch(const PieceShape& shape, const Pose& X_KS0, const Pose& X_KS1,
+                       double spread_mm, double turn_rad) {
+  Patch patch = placed(shape, X_KS0);
   for (const Vec3& x : shape.polygon) {
     if (patch.count + 2 > Patch::kMost) break;
     patch.points[patch.count++] = X_KS0 * x;

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <vector>
 
 #include "common/depth/body.h"
 
@@ -59,18 +60,36 @@ struct Piece {
   std::uint32_t triangle = 0;
 };
 
+/// What a piece of S is in a layer, wherever it stands: made once where several poses are asked.
+/// Frame S, mm; the names are those of Patch. The polygon is empty when the neighbours' surfaces
+/// cut all of it away.
+struct PieceShape {
+  std::vector<Vec3> polygon;
+  Vec3 center = Vec3::Zero(), normal = Vec3::Zero(), axis = Vec3::Zero();
+  double turn_rad = 0.0, bulge_mm = 0.0;
+  bool bulges_outward = true, plus_is_own = false, on_cylinder = false;
+  std::array<Patch::Plus, 9> plus;
+  int plus_count = 0;
+  std::array<Patch::Circle, 2> circles;
+  int circle_count = 0;
+
+  bool empty() const { return polygon.empty(); }
+};
+PieceShape shape_of(const Body& s, Layer layer, const Piece& piece);
+
 /// A point of the layer's surface over a mesh point of a triangle; cut back where a sharp neighbour
 /// moves inward. Part frame.
 Vec3 on_layer(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& x);
 
 /// The patch of a piece of S in a layer, in frame K. Without points when the neighbours' surfaces
 /// cut all of it away.
+Patch make_patch(const PieceShape& shape, const Pose& X_KS);
 Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS);
 
 /// The same over a motion from X_KS0 to X_KS1 on which every point of the piece stays within
 /// spread_mm of the straight line between its ends, and normals turn by no more than turn_rad.
-Patch make_swept_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_KS0,
-                       const Pose& X_KS1, double spread_mm, double turn_rad);
+Patch make_swept_patch(const PieceShape& shape, const Pose& X_KS0, const Pose& X_KS1,
+                       double spread_mm, double turn_rad);
 
 /// Halves a piece across the edge that matters: on a curved face lengths around it weigh more.
 std::array<Piece, 2> split(const Body& s, Layer layer, const Piece& piece);

@@ -256,9 +256,10 @@ class InterferenceSearch {
     const Body& k = bodies_[1 - item.role];
     span.t1 = std::min({span.t1, t_real_, free_until_});
     const Pose X0 = path_.pose(item.role, span.t0), X1 = path_.pose(item.role, span.t1);
-    const Patch swept = make_swept_patch(s, layer_, item.piece, X0, X1,
-                                         path_.spread(item.role, span), path_.turn(span));
-    if (swept.count == 0) return;
+    const PieceShape shape = shape_of(s, layer_, item.piece);
+    if (shape.empty()) return;
+    const Patch swept =
+        make_swept_patch(shape, X0, X1, path_.spread(item.role, span), path_.turn(span));
     const SurfacePoint at = nearest_surface(*k.solid, swept.center);
     if (is_certain(item, span.t0, swept.center, at)) {
       t_real_ = std::min(t_real_, span.t0);
@@ -268,8 +269,8 @@ class InterferenceSearch {
     if (at.depth_mm + swept.radius_mm + k.largest_offset_mm[static_cast<int>(layer_)] <= touch_mm_)
       return;
     if (stays_out(item, swept, at, touch_mm_)) return;
-    if (certain_at_end(item, span, X1)) t_real_ = std::min(t_real_, span.t1);
-    cut(item, span, X0, X1, swept, at);
+    if (certain_at_end(item, span, X1 * shape.center)) t_real_ = std::min(t_real_, span.t1);
+    cut(item, span, X0, X1, shape, swept, at);
   }
 
   bool stays_out(const Item& item, const Patch& patch, const SurfacePoint& at, double limit_mm) {
@@ -286,12 +287,10 @@ class InterferenceSearch {
     return depth_at_most(proof, patch, scratch_.proof);
   }
 
-  bool certain_at_end(const Item& item, const Span& span, const Pose& X1) {
-    const Patch patch = make_patch(bodies_[item.role], layer_, item.piece, X1);
-    if (patch.count == 0) return false;
+  bool certain_at_end(const Item& item, const Span& span, const Vec3& center_K) {
     ++answer_.evaluations;
-    return is_certain(item, span.t1, patch.center,
-                      nearest_surface(*bodies_[1 - item.role].solid, patch.center));
+    return is_certain(item, span.t1, center_K,
+                      nearest_surface(*bodies_[1 - item.role].solid, center_K));
   }
 
   // The overlap is certain only with a point in both parts; it is possible where a point of the
@@ -308,15 +307,15 @@ class InterferenceSearch {
     sample.point_K = point_K;
     sample.at = at;
     const PairFrame there(at_);
-    if (!find_witness(there, sample)) return false;
+    if (!find_witness(there, sample, answer_.evaluations)) return false;
     answer_.certain_place = {item.role, item.piece.triangle, there.X_KS[1 - item.role] * point_K};
     return true;
   }
 
   // In time when the piece stands clear at the start, else in space. What is small in time and not
   // deeper than the accuracy, or small in both, is free within the accuracy.
-  void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1, const Patch& swept,
-           const SurfacePoint& at) {
+  void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1,
+           const PieceShape& shape, const Patch& swept, const SurfacePoint& at) {
     double path = path_.spread(item.role, span), width = 0.0;
     for (int c = 0; c < 3; ++c) {
       path = std::max(path, (X1 * item.piece.corners[c] - X0 * item.piece.corners[c]).norm() +
@@ -333,9 +332,8 @@ class InterferenceSearch {
       }
       if (width <= smallest || stays_out(item, swept, at, touch_mm_ + query_.accuracy_mm)) return;
     }
-    const Patch start = make_patch(bodies_[item.role], layer_, item.piece, X0);
-    if (!brief &&
-        (width <= smallest || path > kLongPath * width || stays_out(item, start, at, touch_mm_))) {
+    if (!brief && (width <= smallest || path > kLongPath * width ||
+                   stays_out(item, make_patch(shape, X0), at, touch_mm_))) {
       push({{span.t0, middle}, item.piece, item.role, order_++});
       push({{middle, span.t1}, item.piece, item.role, order_++});
       return;

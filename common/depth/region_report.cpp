@@ -30,28 +30,46 @@ double least_depth(const Body& body, const Vec3& x) {
   return body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower);
 }
 
-// Depth of a point of frame K in both least real parts.
-double least_in_both(const PairFrame& pair, int role, const Vec3& x_K) {
-  return std::min(least_depth(pair.k(role), x_K),
-                  least_depth(pair.s(role), pair.X_KS[1 - role] * x_K));
-}
-
-// The point that lies deepest in both so far.
-struct Climb {
-  const PairFrame& pair;
-  int role;
-  Vec3 x_K;
-  double depth_mm;
-
-  // Goes there when it is deeper; true: inside both, beyond rounding.
-  bool better(const Vec3& to_K) {
-    const double there = least_in_both(pair, role, to_K);
-    if (!(there > depth_mm)) return false;
-    x_K = to_K;
-    depth_mm = there;
-    return depth_mm > pair.rounding_mm;
+// Walks to the point that lies deepest in both.
+class Climb {
+ public:
+  Climb(const PairFrame& pair, int role, const Vec3& start_K, std::uint64_t& evaluations)
+      : pair_(pair), role_(role), evaluations_(evaluations), x_K_(start_K) {
+    const double in_k = depth_in_k(start_K), in_s = depth_in_s(start_K);
+    s_is_least_ = in_s < in_k;
+    depth_mm_ = std::min(in_k, in_s);
   }
-  Vec3 at_W() const { return pair.in_world(role, x_K); }
+  // Goes there when it is deeper; true: inside both, beyond rounding. Asked first of the part in
+  // which the last point lay less deep: mostly that says no.
+  bool better(const Vec3& to_K) {
+    const double first = s_is_least_ ? depth_in_s(to_K) : depth_in_k(to_K);
+    if (!(first > depth_mm_)) return false;
+    const double second = s_is_least_ ? depth_in_k(to_K) : depth_in_s(to_K);
+    if (!(second > depth_mm_)) return false;
+    s_is_least_ = s_is_least_ == (first < second);
+    depth_mm_ = std::min(first, second);
+    x_K_ = to_K;
+    return depth_mm_ > pair_.rounding_mm;
+  }
+  const Vec3& at_K() const { return x_K_; }
+  Vec3 at_W() const { return pair_.in_world(role_, x_K_); }
+
+ private:
+  double depth_in_k(const Vec3& x_K) {
+    ++evaluations_;
+    return least_depth(pair_.k(role_), x_K);
+  }
+  double depth_in_s(const Vec3& x_K) {
+    ++evaluations_;
+    return least_depth(pair_.s(role_), pair_.X_KS[1 - role_] * x_K);
+  }
+
+  const PairFrame& pair_;
+  int role_;
+  std::uint64_t& evaluations_;
+  Vec3 x_K_;
+  double depth_mm_;
+  bool s_is_least_;
 };
 
 }  // namespace
@@ -93,7 +111,8 @@ FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x) {
   return concave ? FaceShape::kConcave : FaceShape::kPlanar;
 }
 
-std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
+std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
+                                 std::uint64_t& evaluations) {
   const int role = least.role;
   const Vec3& p = least.point_K;
   Vec3 out = least.at.outward;
@@ -110,7 +129,7 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
                               mesh_s.corner(least.triangle, 2)) /
                              3.0);
   const Vec3 inwards = ((middle_K - p).stableNormalized() + into_s).stableNormalized();
-  Climb climb{pair, role, p, least_in_both(pair, role, p)};
+  Climb climb(pair, role, p, evaluations);
   for (const double share : kWitnessShares)
     for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized()), inwards,
                               Vec3((out + inwards).stableNormalized())})
@@ -123,7 +142,7 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least) {
   double step_mm = kFirstClimb * least.depth_mm;
   for (int i = 0; i < kWitnessHalvings; ++i, step_mm *= 0.5)
     for (const Vec3& along : {out, Vec3(-out), u, Vec3(-u), v, Vec3(-v), inwards})
-      if (climb.better(climb.x_K + step_mm * along)) return climb.at_W();
+      if (climb.better(climb.at_K() + step_mm * along)) return climb.at_W();
   return std::nullopt;
 }
 

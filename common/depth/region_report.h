@@ -15,8 +15,10 @@ namespace mortise {
 FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x);
 
 /// A point inside both real parts, whatever their offsets: tried halfway between the deepest point
-/// of one least surface and the other, and verified in both parts (ALG 3.5c). World frame.
-std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least);
+/// of one least surface and the other, and verified in both parts (ALG 3.5c). World frame. Costs up
+/// to some 300 evaluations, where there is none.
+std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
+                                 std::uint64_t& evaluations);
 
 /// A point inside both meshes below two coinciding faces that look the same way; how deep it lies
 /// in both together.

@@ -233,7 +233,7 @@ class Search {
   double tight_limit(const Bracket& bracket) const {
     const double lo = bracket.best.depth_mm;
     const double u = std::max(lo + query_.accuracy_mm, query_.ignore_below_mm);
-    return lo <= pair_.touch_mm ? std::min(u, pair_.touch_mm) : u;
+    return lo <= pair_.touch_mm ? std::max(std::min(u, pair_.touch_mm), query_.ignore_below_mm) : u;
   }
 
   double loose_limit(const Bracket& bracket) const {

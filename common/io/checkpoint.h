@@ -42,6 +42,8 @@ class CheckpointMaker {
   /// After each tick; `due` begins a checkpoint. Gives one within kMostSlices ticks: of the state
   /// as it stands after this tick. Drafts are finished in their order, or not at all.
   StateDraft after_tick(World& world, bool due);
+  /// Begun and not given yet: what is due meanwhile is this one.
+  bool running() const { return running_; }
 
  private:
   struct Copies;

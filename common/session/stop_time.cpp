@@ -214,8 +214,7 @@ bool is_held_again(PairWork& pair) {
     const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
     query.X_WA = pair.motion_a.pose_at(t);
     query.X_WB = pair.motion_b.pose_at(t);
-    ++pair.counts.depth_evaluations;
-    return is_certain_at(query, held->place);
+    return is_certain_at(query, held->place, pair.counts.depth_evaluations);
   };
   const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
                      (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),

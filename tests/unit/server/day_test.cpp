@@ -8,23 +8,27 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <random>
 #include <thread>
 
 #include "client/client.h"
 #include "common/io/checkpoint.h"
+#include "common/io/replay.h"
+#include "common/io/scenario_file.h"
+#include "common/io/session_log.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/network/program.h"
 #include "tests/support/growth.h"
-#include "tests/unit/server/small_world.h"
+#include "tests/support/small_scenarios.h"
 
 namespace mortise {
 namespace {
 
-using namespace mortise::testing;
-
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr char kScenario[] = "day.yaml";
 constexpr int kPeople = 6, kTicks_per_s = 60;
 constexpr double kBurst_s = 20.0, kEvery_s = 200.0;  ///< they work for so long, so often
 constexpr double kState_kb = 64.0, kGrowth_mb = 4.0;
@@ -79,7 +83,7 @@ class Person {
     channel_.reset();
   }
   void work(Counts& counts) {
-    const PartId part = chance(0.5) ? kRed : kBlue;
+    const PartId part = client_->find_part(chance(0.5) ? "red" : "blue");
     const auto known = client_->parts().find(part);
     if (known == client_->parts().end()) return;
     const PartInfo& info = known->second.info;
@@ -87,7 +91,7 @@ class Person {
       if (chance(0.05)) counts.commands += client_->grab(0, part) != 0;
       return;
     }
-    // To the wall and beyond, and home again.
+    // To the plate and into it, as far as it lets them, and away again.
     const Vec3 away = info.X_WP.p;
     std::normal_distribution<double> wish(0.0, 1.0);
     const Vec3 by = Vec3(wish(random_), wish(random_), wish(random_)) - 0.02 * away;
@@ -125,19 +129,51 @@ void keep_newest(const std::filesystem::path& folder, std::size_t files) {
   for (std::size_t i = 0; i + files < all.size(); ++i) std::filesystem::remove(all[i]);
 }
 
-std::unique_ptr<SessionLogWriter> log_in(const std::filesystem::path& folder, const World& world) {
+LoadedScene blocks_scene(const std::string& yaml) {
+  const auto reading = read_scenario_text(yaml, kScenario);
+  EXPECT_TRUE(reading && reading->usable());
+  auto scene = load_scene(reading->scenario, default_meshes());
+  EXPECT_TRUE(scene && scene->usable());
+  return std::move(*scene);
+}
+
+std::unique_ptr<SessionLogWriter> log_in(const std::filesystem::path& folder,
+                                         const std::string& yaml, const LoadedScene& scene) {
   LogHeader header;
   header.session = "day";
-  header.scenario_name = "day.yaml";
-  header.scenario_yaml = "name: day\n";
-  const Solid& solid = *world.parts.front().solid;
-  header.meshes.emplace_back(solid.hash(), &solid.mesh());
-  header.mesh_of_part.assign(world.parts.size(), solid.hash());
+  header.scenario_name = kScenario;
+  header.scenario_yaml = yaml;
+  std::map<std::string, const TriangleMesh*> meshes;
+  for (const Part& part : scene.world.parts) {
+    meshes.emplace(part.solid->hash(), &part.solid->mesh());
+    header.mesh_of_part.push_back(part.solid->hash());
+  }
+  header.meshes.assign(meshes.begin(), meshes.end());
   LogOptions options;
-  options.rotate_bytes = 8'000'000;
+  options.rotate_bytes = 2'000'000;
   auto writer = SessionLogWriter::create(folder / "day.mcap", header, options);
   EXPECT_TRUE(writer) << writer.error().text;
   return writer ? std::move(*writer) : nullptr;
+}
+
+/// The last hours of the session as they are on disk, computed again.
+void expect_log_verifies(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  const auto log = read_session(files);
+  ASSERT_TRUE(log) << log.error().text;
+  EXPECT_TRUE(log->complete);
+  EXPECT_TRUE(log->gaps.empty());
+  const auto verified = verify(*log, 1);
+  ASSERT_TRUE(verified) << verified.error().text;
+  EXPECT_FALSE(verified->difference) << verified->difference->what;
+  EXPECT_EQ(verified->not_verifiable, "");
+  EXPECT_EQ(verified->ticks_compared, verified->ticks_logged);
+  std::printf("%zu files left: %llu ticks and %llu checkpoints computed again, all the same\n",
+              files.size(), static_cast<unsigned long long>(verified->ticks_compared),
+              static_cast<unsigned long long>(verified->checkpoints_compared));
 }
 
 double day_s() {
@@ -149,12 +185,13 @@ TEST(Day, NothingThatASessionHoldsGrowsWithTheHours) {
   const double lasts_s = day_s();
   const auto begun = std::chrono::steady_clock::now();
   test::TestFolder folder;
-  World world = small_world();
-  world.policy = Policy::kReport;
+  const std::string yaml = test::blocks_yaml({.head = "policy: stop\nlease_s: 2\n"});
+  LoadedScene scene = blocks_scene(yaml);
+  World& world = scene.world;
   MemoryHub hub;
   DayClock clock;
   const auto server = hub.open_server();
-  const auto log = log_in(folder.path(), world);
+  const auto log = log_in(folder.path(), yaml, scene);
   ASSERT_NE(log, nullptr);
   TickLoop loop(world, *server, clock, log.get(), TickLoopOptions{});
   loop.open();
@@ -184,6 +221,7 @@ TEST(Day, NothingThatASessionHoldsGrowsWithTheHours) {
   }
   EXPECT_EQ(log->dropped_ticks(), 0u);
   EXPECT_TRUE(log->close());
+  expect_log_verifies(folder.path());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   const double half_s = 0.5 * lasts_s, slope = test::resident_mb_per_h(seen, half_s);
   std::printf(
@@ -198,6 +236,7 @@ TEST(Day, NothingThatASessionHoldsGrowsWithTheHours) {
   EXPECT_GT(counts.kills, 0);
   EXPECT_GT(counts.silences, 0);
   EXPECT_GT(loop.inbox().counters().accepted, 1000u);
+  EXPECT_GT(loop.inbox().counters().lease_ends, 0u);
 
   EXPECT_LE(world.users.size(), static_cast<std::size_t>(kPeople)) << "who comes again is the same";
   EXPECT_EQ(loop.inbox().waiting_commands() + loop.inbox().waiting_increments(), 0u);
