@@ -25,7 +25,8 @@ TEST(StopProperty, NothingIsEverLeftOverlapping) {
   EXPECT_GT(stopped, 100U);
 }
 
-// With tolerances: nothing is left where even the least real parts overlap.
+// With tolerances: nothing is left where even the least real parts overlap, up to the accuracy to
+// which the search knows when they do (SweptQuery::accuracy_mm).
 TEST(StopProperty, NothingIsEverLeftInterferingForCertain) {
   std::uint64_t stopped = 0;
   double deepest = -1e300;
@@ -34,7 +35,7 @@ TEST(StopProperty, NothingIsEverLeftInterferingForCertain) {
     Scratch scratch(2);
     for (int i = 0; i < 30; ++i) {
       stopped += play.tick(scratch).counters.stopped_parts;
-      ASSERT_LT(deepest_overlap_mm(play.session.world, true), 2.0 * kAccuracyDefault_mm)
+      ASSERT_LT(deepest_overlap_mm(play.session.world, true), kDepthAccuracyDefault_mm)
           << "seed " << seed << " tick " << i;
       deepest = std::max(deepest, deepest_overlap_mm(play.session.world));
     }
