@@ -9,10 +9,12 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "common/io/replay.h"
 #include "common/io/session_log.h"
+#include "server/drain.h"
 #include "server/held_channel.h"
 #include "server/restore.h"
 #include "server/start.h"
@@ -129,7 +131,8 @@ class Hosts : public ::testing::Test {
     running = &loop;
     loop.open();
     serving_ = true;
-    loop.run([&] { return stop_server_ || loop.superseded(); },
+    Drain drain(loop, held, clock);
+    loop.run([&] { return stop_server_ || loop.superseded() || (drain_ && drain.is_ready()); },
              [&] {
                const std::lock_guard lock(mutex_);
                for (const Increment& increment : loop.last_intake().increments) {
@@ -138,7 +141,11 @@ class Hosts : public ::testing::Test {
                }
              });
     superseded_ = loop.superseded();
-    if (!superseded_) held.finish();
+    if (drain.begun() && !superseded_)
+      drain.finish();
+    else if (!superseded_)
+      held.finish();
+    handed_over_ = drain.end() == Drain::End::kHandedOver;
     if (Status closed = log->writer->close(); !closed) note(closed.error().text);
     first_log_ = log->file;
   }
@@ -228,6 +235,22 @@ class Hosts : public ::testing::Test {
     for (std::thread& thread : threads_) thread.join();
     threads_.clear();
   }
+  /// Places of the session's servers by their address, as the last host sees them.
+  std::map<std::string, std::string> directory() {
+    std::map<std::string, std::string> places;
+    const auto ask = [&] {
+      Program program(folder_.path(), "mortise-directory",
+                      {"--server", options(4, "otto").server, "--interface",
+                       LossyLink::address(4), "--domain", std::to_string(kDomain), "--keys",
+                       (*keys_)["otto"], "--wait", "4", "--json"});
+      EXPECT_EQ(program.wait(15), 0) << program.errors();
+      const auto seen = nlohmann::json::parse(program.out(), nullptr, false);
+      if (!seen.is_object()) return;
+      for (const auto& row : seen["servers"]) places[row["address"]] = row["place"];
+    };
+    link_->on_side(4, ask).join();
+    return places;
+  }
   void end_server() {
     stop_server_ = true;
     server_.join();
@@ -265,7 +288,7 @@ class Hosts : public ::testing::Test {
   std::vector<double> applied_s_;
   std::uint64_t moved_ = 0;
   std::atomic<bool> serving_{false}, superseded_{false}, stop_server_{false}, stop_hands_{false},
-      moves_{false};
+      moves_{false}, drain_{false}, handed_over_{false};
   std::atomic<int> ready_{0};
 };
 
@@ -325,6 +348,25 @@ TEST_F(Hosts, AFirstThatWasCutOffHasSaidNothingThatIsLost) {
       8, [&] { return superseded_.load(); }, [] {}))
       << "it does not end";
   sleep_s(1.0);
+  leave();
+  for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
+  standby_->signal(SIGTERM);
+  EXPECT_EQ(standby_->wait(10), 0) << standby_->errors();
+  EXPECT_EQ(lost(log_to_restore(logs_, "default")->string()), 0u);
+}
+
+TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
+  come_in();
+  ASSERT_FALSE(HasFailure());
+  using Places = std::map<std::string, std::string>;
+  const std::string first = LossyLink::address(kServerSide);
+  const std::string second = LossyLink::address(kStandbySide);
+  EXPECT_EQ(directory(), (Places{{first, "leads"}, {second, "stands by"}}));
+  drain_ = true;
+  server_.join();
+  EXPECT_TRUE(handed_over_);
+  sleep_s(1.5);
+  EXPECT_EQ(directory(), (Places{{second, "leads"}}));
   leave();
   for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
   standby_->signal(SIGTERM);
