@@ -46,10 +46,9 @@ class DdsServerChannel final : public StandbyChannel {
         take_told(nullptr);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      if (!leader_.empty()) {
+      if (!leader_.empty())
         return fail(Code::kRuntime, "another server leads session '" + options.session +
                                         "'; start this one with --standby-of " + options.session);
-      }
     }
     return take_over();
   }
@@ -216,18 +215,16 @@ class DdsServerChannel final : public StandbyChannel {
   }
 
  private:
-  /// What other servers tell, of the one with the highest term (the highest key where two took over
-  /// at one time); says whether that one leads instead of us. Pieces come in order.
+  /// What other servers tell, of the one with the highest term (of equal ones: highest key); says
+  /// whether that one leads instead of us. Pieces come in order.
   bool take_told(std::vector<ToldTick>* ticks) {
     bool superseded = false;
     take_all<wire::ServerTick>(told_, [&](const wire::ServerTick& sample, const ClientKey& key) {
-      if (key == participant_->key() ||
-          std::pair(sample.term(), key) < std::pair(leader_term_, leader_))
-        return;
+      const std::pair rank(sample.term(), key);
+      if (key == participant_->key() || rank < std::pair(leader_term_, leader_)) return;
       leader_term_ = sample.term();
       leader_ = key;
-      superseded = superseded || (term_ != 0 && std::pair(sample.term(), key) >
-                                                    std::pair(term_, participant_->key()));
+      superseded |= term_ != 0 && rank > std::pair(term_, participant_->key());
       if (ticks == nullptr) return;
       if (sample.chunk() == 0) partly_ = {sample.tick(), {}};
       const auto* first = reinterpret_cast<const std::byte*>(sample.bytes().data());

@@ -99,20 +99,9 @@ class Overlap {
     std::vector<Bracket> brackets = search_depth(search, scratch_, result_.evaluations);
     // Triangles that the flood did not come to may lie deeper than any that it did.
     if (regions_.capped)
-      for (Bracket& bracket : brackets) bracket.hi_mm = std::max(bracket.hi_mm, deepest_mm(layer));
+      for (Bracket& bracket : brackets)
+        bracket.hi_mm = std::max(bracket.hi_mm, pair_.deepest_mm(layer));
     return brackets;
-  }
-
-  // No point lies deeper in a part than half its least extent, and the offsets of a layer.
-  double deepest_mm(Layer layer) const {
-    double deepest = -std::numeric_limits<double>::infinity();
-    for (const Body& body : pair_.bodies) {
-      if (!body.has_inside) continue;
-      const Box& box = body.solid->bounds();
-      deepest = std::max(deepest, 0.5 * (box.hi - box.lo).minCoeff() +
-                                      body.largest_offset_mm[static_cast<int>(layer)]);
-    }
-    return deepest;
   }
 
   void search_regions() {
@@ -262,8 +251,7 @@ class Overlap {
       if (!(least.depth_mm > 0.0)) continue;
       least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
       least.triangle = nearest_point(*pair_.s(role).solid, x).triangle;
-      if (const auto witness = find_witness(pair_, least, result_.evaluations))
-        return witness;
+      if (const auto witness = find_witness(pair_, least, result_.evaluations)) return witness;
     }
     return std::nullopt;
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 
 #include "common/base/constants.h"
 #include "common/depth/body.h"
@@ -27,6 +28,17 @@ struct PairFrame {
 
   const Body& s(int role) const { return bodies[role]; }
   const Body& k(int role) const { return bodies[1 - role]; }
+  /// No point lies deeper in either part than half its least extent, and the offsets of the layer.
+  double deepest_mm(Layer layer) const {
+    double deepest = -std::numeric_limits<double>::infinity();
+    for (const Body& body : bodies) {
+      if (!body.has_inside) continue;
+      const Box& box = body.solid->bounds();
+      deepest = std::max(deepest, 0.5 * (box.hi - box.lo).minCoeff() +
+                                      body.largest_offset_mm[static_cast<int>(layer)]);
+    }
+    return deepest;
+  }
   /// A point of frame K of a role in the world.
   Vec3 in_world(int role, const Vec3& x_K) const { return X_W[1 - role] * x_K; }
 
