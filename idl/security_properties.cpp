@@ -19,8 +19,8 @@ void add_security(eprosima::fastdds::dds::DomainParticipantQos& qos, const KeyFi
   file("access.builtin.Access-Permissions.governance", files.governance);
   file("access.builtin.Access-Permissions.permissions", files.permissions);
   set("crypto.plugin", "builtin.AES-GCM-GMAC");
-  // Fast DDS derives a new session key each 32 blocks unless told, which is for every datagram of
-  // half a kilobyte; AES-GCM with a counter for its nonce allows 2^32 datagrams a key.
+  // Unless told, session keys are changed so often that it shows in the CPU of every participant;
+  // AES-GCM with a counter for its nonce allows 2^32 datagrams a key.
   set("crypto.maxblockspersession", "1000000");
 }
 

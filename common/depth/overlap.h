@@ -85,7 +85,7 @@ struct OverlapResult {
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 
 /// True implies: the overlap is certain at the poses of the query, for this place is inside. False
-/// says nothing. Two questions for the nearest point and those for a witness are added to evaluations.
+/// says nothing. Adds to `evaluations` one for the nearest point and those of find_witness().
 bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,
                    std::uint64_t& evaluations);
 
