@@ -32,10 +32,10 @@ std::string Drain::text(const std::string& session, const std::string& log_file)
   }
   const std::string go_on =
       log_file.empty() ? "; no log was written" : "; go on with --restore " + log_file;
-  const std::string drained = end_ == End::kNotTaken
-                                  ? "drained, and the server that stands by did not go on"
-                              : not_in_step_ ? "drained, and the server that stands by is not in step"
-                                             : "drained";
+  const std::string drained =
+      end_ == End::kNotTaken ? "drained, and the server that stands by did not go on"
+      : not_in_step_         ? "drained, and the server that stands by is not in step"
+                             : "drained";
   return drained + after + go_on;
 }
 

@@ -127,8 +127,7 @@ Polygon cut_by(const Cut& cut, const Polygon& polygon) {
 
 // The surface over the piece, moved by its offset, between two circles. Its foot
 // points leave the heights of the corners by no more than the bulge and their own distance.
-void add_circles(const Surface& surface, double offset, const Piece& piece,
-                 PieceShape& shape) {
+void add_circles(const Surface& surface, double offset, const Piece& piece, PieceShape& shape) {
   if (surface.kind == SurfaceKind::kSphere) {
     shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + offset,
                                            true};
