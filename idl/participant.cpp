@@ -12,6 +12,7 @@
 
 #include "idl/directory.h"
 #include "idl/guard_transport.h"
+#include "idl/participant_lease.h"
 #include "idl/security_properties.h"
 #include "idl/server_places.h"
 
@@ -167,6 +168,7 @@ void set_up_process() {
     settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
     dds::Log::ClearConsumers();
+    (void)lease_check_in_force();  // asked so that it is linked
   });
 }
 

@@ -28,8 +28,8 @@ constexpr double kSetAsidePerSecond = 1'200.0;
 // is seldom short, more makes for more long ticks in one that often is.
 constexpr std::int64_t kSavedShare = 4;
 
-// By stage: what a tick may take of that, and what one pair may have. Both stages at once come to
-// more than a tick of 60 Hz has time for; they seldom do.
+// By stage: what a tick may have taken of that by its end, and what one pair may have. What the
+// search for stops has taken is not there for the verdicts.
 constexpr std::array<std::uint64_t, 2> kMostOfSaved{2'000, 3'500}, kMostEffort{4'000, 5'000};
 // The same where work is not limited.
 constexpr std::uint64_t kUnlimitedEffort = 10'000;
@@ -67,15 +67,16 @@ bool is_held(const World& world, const PairWork& pair) {
          (pair.move_b >= 0 && world.parts[pair.b].holder);
 }
 
-// What is left of the tick's own work, and of what was saved.
+std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x - std::min(x, y); }
+
+// What is left of the tick's own work, and of what was saved, from which so much was taken.
 struct Left {
-  std::uint64_t own = 0, saved = 0;
+  std::uint64_t own = 0, saved = 0, taken_of_saved = 0;
 };
 
 Left left_of(const Scratch::Impl& work) {
-  const std::uint64_t used = spent(work);
-  if (used <= work.budget) return {work.budget - used, work.stock};
-  return {0, work.stock - std::min(work.stock, used - work.budget)};
+  const std::uint64_t used = spent(work), beyond = less(used, work.budget);
+  return {less(work.budget, used), less(work.stock, beyond), beyond};
 }
 
 // Pairs in the order in which they are served.
@@ -138,9 +139,9 @@ void share_out(const World& world, Scratch::Impl& work, std::span<const std::uin
   const auto at = static_cast<std::size_t>(stage);
   const std::uint64_t for_verdicts = own_work(world) / kVerdictShare;
   Left left = left_of(work);
-  if (stage == WorkStage::kStop) left.own -= std::min(left.own, for_verdicts);
+  if (stage == WorkStage::kStop) left.own = less(left.own, for_verdicts);
   const std::uint64_t times = world.policy == Policy::kSlide ? kSlideTimes : 1;
-  left.saved = std::min(left.saved, times * kMostOfSaved[at]);
+  left.saved = std::min(left.saved, less(times * kMostOfSaved[at], left.taken_of_saved));
   // No more than there is in some tick, whatever little is asked besides.
   const std::uint64_t own_most =
       stage == WorkStage::kStop ? own_work(world) - for_verdicts : for_verdicts;
@@ -175,7 +176,7 @@ void share_out(const World& world, Scratch::Impl& work, std::span<const std::uin
     if (served) {
       // Who has waited that long is not put off again for having asked too little.
       pair.cap = overdue ? most : std::min(most, wanted + more);
-      left.saved -= std::min(left.saved, taken - std::min(taken, left.own));
+      left.saved = less(left.saved, less(taken, left.own));
     } else {
       // Half a verdict is worth nothing, and so is a push that came to nothing before.
       const bool glances = stage == WorkStage::kStop && !stalled && left.own >= kGlance;
@@ -185,7 +186,7 @@ void share_out(const World& world, Scratch::Impl& work, std::span<const std::uin
       ++pair.counts.pairs_waiting;
     }
     effort.waited = served ? 0 : static_cast<std::uint8_t>(std::min(effort.waited + 1, 250));
-    left.own -= std::min(left.own, taken);
+    left.own = less(left.own, taken);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/network/second_server.h"
+#include "tests/network/stalls.h"
 #include "tests/support/effort.h"
 
 namespace mortise::test {
@@ -55,7 +56,10 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
     std::unique_ptr<Program> second = stand_by(222);
     ASSERT_FALSE(HasFailure());
     const int losses = losses_;
+    const Stalls stalls;
     gaps_s.push_back(longest_gap_after([&] { leader->signal(SIGKILL); }));
+    EXPECT_LE(gaps_s.back(), kTakeOver_s)
+        << "the machine itself stood still for up to " << stalls.longest_s() * 1e3 << " ms";
     EXPECT_EQ(losses_, losses + 2) << "each client changes servers once";
     EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
     EXPECT_EQ(anna_->client->user_id(0), anna);
@@ -72,7 +76,6 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
   std::printf("take-over as a client sees it, %d kills: %.0f ms at least, %.0f median, %.0f most\n",
               kills, gaps_s.front() * 1e3, gaps_s[gaps_s.size() / 2] * 1e3, gaps_s.back() * 1e3);
   RecordProperty("longest_take_over_ms", std::to_string(gaps_s.back() * 1e3));
-  EXPECT_LE(gaps_s.back(), kTakeOver_s);
 }
 
 TEST_F(Standby, OneThatIsThereFirstWaitsForTheOneThatLeads) {

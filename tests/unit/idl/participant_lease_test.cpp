@@ -1,0 +1,87 @@
+// The look at the lease of a participant that has just left, at which the library ends the process.
+#include "idl/participant_lease.h"
+
+#include <dlfcn.h>
+#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/builtin/discovery/participant/PDP.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace mortise {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+/// Discovery of a participant without a network, that says whom it was told to remove.
+class Discovery : public rtps::PDP {
+ public:
+  explicit Discovery(const rtps::RTPSParticipantAllocationAttributes& allocation)
+      : PDP(nullptr, allocation) {}
+
+  bool init(rtps::RTPSParticipantImpl*) override { return true; }
+  bool createPDPEndpoints() override { return true; }
+  void assignRemoteEndpoints(rtps::ParticipantProxyData*) override {}
+  void notifyAboveRemoteEndpoints(const rtps::ParticipantProxyData&) override {}
+  void removeRemoteEndpoints(rtps::ParticipantProxyData*) override {}
+  rtps::ParticipantProxyData* createParticipantProxyData(const rtps::ParticipantProxyData&,
+                                                         const rtps::GUID_t&) override {
+    return nullptr;
+  }
+  bool remove_remote_participant(const rtps::GUID_t& guid,
+                                 rtps::ParticipantDiscoveryInfo::DISCOVERY_STATUS) override {
+    removed.push_back(guid);
+    return true;
+  }
+
+  std::vector<rtps::GUID_t> removed;
+};
+
+/// As the library's timer does: by name, wherever the dynamic linker finds it.
+void look_at_lease(rtps::PDP& discovery, rtps::ParticipantProxyData& remote) {
+  void* found = dlsym(RTLD_DEFAULT, kLeaseCheckName);
+  ASSERT_NE(found, nullptr);
+  reinterpret_cast<void (*)(rtps::PDP*, rtps::ParticipantProxyData*)>(found)(&discovery, &remote);
+}
+
+class ParticipantLease : public ::testing::Test {
+ protected:
+  ParticipantLease() { discovery_.removed.clear(); }
+
+  rtps::RTPSParticipantAllocationAttributes allocation_;
+  // One for all, never ended: its destructor asks for a network.
+  static Discovery& the_only() {
+    static Discovery& only = *new Discovery(rtps::RTPSParticipantAllocationAttributes{});
+    return only;
+  }
+  Discovery& discovery_ = the_only();
+  rtps::ParticipantProxyData remote_{allocation_};
+};
+
+TEST_F(ParticipantLease, OneWhoHasLeftMeanwhileEndsNoProcess) {
+  remote_.should_check_lease_duration = true;
+  ASSERT_EQ(remote_.m_guid, rtps::GUID_t::unknown());
+  look_at_lease(discovery_, remote_);
+  EXPECT_TRUE(discovery_.removed.empty());
+}
+
+TEST_F(ParticipantLease, OneWhoIsSilentIsRemoved) {
+  remote_.should_check_lease_duration = true;
+  remote_.m_guid.guidPrefix.value[0] = 7;
+  remote_.m_guid.entityId = rtps::c_EntityId_RTPSParticipant;
+  look_at_lease(discovery_, remote_);  // never heard of, with a lease of 0 s
+  ASSERT_EQ(discovery_.removed.size(), 1U);
+  EXPECT_EQ(discovery_.removed[0], remote_.m_guid);
+}
+
+TEST_F(ParticipantLease, WhereNoLeaseIsAskedForNobodyIsRemoved) {
+  remote_.should_check_lease_duration = false;
+  remote_.m_guid.guidPrefix.value[0] = 7;
+  look_at_lease(discovery_, remote_);
+  EXPECT_TRUE(discovery_.removed.empty());
+}
+
+TEST_F(ParticipantLease, IsLookedAtHere) { EXPECT_TRUE(lease_check_in_force()); }
+
+}  // namespace
+}  // namespace mortise
