@@ -136,6 +136,7 @@ bool HeldChannel::hand_over() {
       say_up_to(kTakenAll);
       return true;
     }
+    if (!inner_.has_follower()) break;
     inner_.await_taken(kLook_ns);
   }
   kept_.clear();

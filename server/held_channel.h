@@ -22,7 +22,8 @@ class HeldChannel final : public ServerChannel {
   static constexpr double kPatience_s = 0.5;
   /// Longer, where fewer than half of the users are heard either: it may be us who are cut off.
   static constexpr double kPatienceCutOff_s = 4.0;
-  static constexpr double kHandOver_s = 2.0;
+  /// Across a net that loses, Fast DDS tells of new topics again each second or so.
+  static constexpr double kHandOver_s = 8.0;
 
   /// All must outlive this. `users` says how many are in the session.
   HeldChannel(ServerChannel& inner, Clock& clock, std::function<std::size_t()> users)
@@ -31,8 +32,9 @@ class HeldChannel final : public ServerChannel {
   /// Of one that has taken over: says nothing until half of `seats` have asked to join again, for
   /// at most kPatienceCutOff_s; those who do not may be with the server of before.
   void await(const std::vector<SeatRecord>& seats);
-  /// Waits until the one that stands by leads the session, at most kHandOver_s; then all that is
-  /// kept is with it, and goes out. If it does not, what is kept is never said.
+  /// Waits until the one that stands by leads the session, at most kHandOver_s and while it is
+  /// there; then all that is kept is with it, and goes out. If it does not lead, what is kept is
+  /// never said.
   bool hand_over();
   /// All that is kept goes out, after a last moment for the one that stands by.
   void finish();

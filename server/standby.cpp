@@ -1,11 +1,12 @@
 #include "server/standby.h"
 
-#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <string>
 #include <thread>
 #include <utility>
+
+#include "server/silence.h"
 
 namespace mortise {
 namespace {
@@ -26,32 +27,20 @@ double process_cpu_s() {
   return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 
-/// How long nothing was told, of the time in which this process could have heard it. After a
-/// freeze, or on a machine that gives it no processor, what was told still lies in the sockets, and
-/// the other's silence may be one's own.
-class Silence {
+/// Tells a silence how the turns of this process went.
+class Turns {
  public:
-  void heard() { silent_s_ = 0.0; }
-  void turn() {
+  void end(Silence& silence) {
     const Clock::time_point now = Clock::now();
     const double cpu_s = process_cpu_s();
-    const double took_s = std::chrono::duration<double>(now - at_).count();
-    const double stood_still_s = took_s - (cpu_s - cpu_s_);
+    silence.turn(std::chrono::duration<double>(now - at_).count(), cpu_s - cpu_s_);
     at_ = now;
     cpu_s_ = cpu_s;
-    silent_s_ += std::min(took_s, kTurnCounts_s);
-    calm_s_ += took_s;
-    if (stood_still_s > kStall_s) calm_s_ = 0.0;
   }
-  bool is_believed() const { return silent_s_ >= (calm_s_ < kCalm_s ? kWary_s : kSilent_s); }
 
  private:
-  static constexpr double kTurnCounts_s = 0.01, kStall_s = 0.05;
-  /// The lease says the same, of datagrams; a second more where this process has just stood still.
-  static constexpr double kSilent_s = 0.1, kWary_s = 1.0, kCalm_s = 1.0;
-
   Clock::time_point at_ = Clock::now();
-  double cpu_s_ = process_cpu_s(), silent_s_ = 0.0, calm_s_ = kCalm_s;
+  double cpu_s_ = process_cpu_s();
 };
 
 void hear_and_confirm(StandbyChannel& channel, std::deque<ToldTick>& told, Silence& silence) {
@@ -120,6 +109,7 @@ bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
 Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower& follower,
                     const std::function<bool()>& stop) {
   Silence silence;
+  Turns turns;
   if (!told.empty()) channel.confirm(told.back().tick);
   while (!stop()) {
     // Asked first: what it told before it was gone is here by then.
@@ -129,7 +119,7 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
       hear_and_confirm(channel, told, silence);
     }
     if (follower.handed_over() || (is_gone && silence.is_believed())) return true;
-    silence.turn();
+    turns.end(silence);
     std::this_thread::sleep_for(kTurn);
   }
   channel.confirm(kTakenAll);

@@ -101,7 +101,10 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
     EXPECT_EQ(own["state"], seen["state"]) << own["names"];
     EXPECT_EQ(own["troubles"].size(), 0U) << own["troubles"];
     EXPECT_TRUE(own["refused"].empty()) << own["refused"];
-    EXPECT_GT(own["latency_ms"]["count"].get<int>(), 50);
+    // One an acknowledgement: a tick takes several increments where the machine stood still.
+    EXPECT_GT(4 * own["latency_ms"]["count"].get<std::uint64_t>(),
+              own["sent"].get<std::uint64_t>());
+    EXPECT_GT(own["sent"].get<int>(), 50);
     EXPECT_LT(own["latency_ms"]["p50"].get<double>(), 100.0);
     sent += own["sent"].get<std::uint64_t>();
   }

@@ -141,11 +141,15 @@ class Hosts : public ::testing::Test {
                }
              });
     superseded_ = loop.superseded();
+    const double end_s = now_s();
     if (drain.begun() && !superseded_)
       drain.finish();
     else if (!superseded_)
       held.finish();
     handed_over_ = drain.end() == Drain::End::kHandedOver;
+    if (drain.begun())
+      drained_ =
+          drain.text("default", first_log_) + ", in " + std::to_string(now_s() - end_s) + " s";
     if (Status closed = log->writer->close(); !closed) note(closed.error().text);
     first_log_ = log->file;
   }
@@ -239,10 +243,10 @@ class Hosts : public ::testing::Test {
   std::map<std::string, std::string> directory() {
     std::map<std::string, std::string> places;
     const auto ask = [&] {
-      Program program(folder_.path(), "mortise-directory",
-                      {"--server", options(4, "otto").server, "--interface",
-                       LossyLink::address(4), "--domain", std::to_string(kDomain), "--keys",
-                       (*keys_)["otto"], "--wait", "4", "--json"});
+      Program program(
+          folder_.path(), "mortise-directory",
+          {"--server", options(4, "otto").server, "--interface", LossyLink::address(4), "--domain",
+           std::to_string(kDomain), "--keys", (*keys_)["otto"], "--wait", "4", "--json"});
       EXPECT_EQ(program.wait(15), 0) << program.errors();
       const auto seen = nlohmann::json::parse(program.out(), nullptr, false);
       if (!seen.is_object()) return;
@@ -276,7 +280,7 @@ class Hosts : public ::testing::Test {
   TestFolder folder_;
   std::unique_ptr<LossyLink> link_;
   std::unique_ptr<KeyRing> keys_;
-  std::string logs_, first_log_;
+  std::string logs_, first_log_, drained_;
   std::unique_ptr<Program> standby_;
   std::thread server_;
   std::vector<std::thread> threads_;
@@ -364,7 +368,8 @@ TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
   EXPECT_EQ(directory(), (Places{{first, "leads"}, {second, "stands by"}}));
   drain_ = true;
   server_.join();
-  EXPECT_TRUE(handed_over_);
+  EXPECT_TRUE(handed_over_) << drained_;
+  std::printf("%s\n", drained_.c_str());
   sleep_s(1.5);
   EXPECT_EQ(directory(), (Places{{second, "leads"}}));
   leave();

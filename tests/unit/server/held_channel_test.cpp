@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace mortise {
 namespace {
@@ -23,6 +24,7 @@ struct Wire final : ServerChannel {
   int led_anew = 0;
   ServerInput input;
   std::int64_t superseded_after_ns = 0;  ///< 0: never
+  std::int64_t follower_goes_ns = std::numeric_limits<std::int64_t>::max();
 
   ServerInput take() override {
     input.superseded |= superseded_after_ns != 0 && clock->at_ns >= superseded_after_ns;
@@ -40,7 +42,7 @@ struct Wire final : ServerChannel {
   void publish_pulse(const SessionPulse&) override {}
   bool has_readers() const override { return true; }
   ChannelCounters counters() const override { return {}; }
-  bool has_follower() const override { return true; }
+  bool has_follower() const override { return clock->at_ns < follower_goes_ns; }
   void publish_tick(const ToldTick& tick) override { told = tick.tick; }
   std::uint64_t taken_up_to() override { return std::exchange(taken, 0); }
   void await_taken(std::int64_t at_most_ns) override { clock->at_ns += at_most_ns; }
@@ -131,10 +133,21 @@ TEST_F(Held, WhatTheOtherDoesNotTakeIsNeverSaidAndNobodyLeadsAnew) {
   tick(2);
   const std::int64_t begun_ns = clock_.at_ns;
   EXPECT_FALSE(held_.hand_over());
-  EXPECT_LT(clock_.at_ns - begun_ns, 2'100'000'000);
+  EXPECT_NEAR(static_cast<double>(clock_.at_ns - begun_ns) * 1e-9, HeldChannel::kHandOver_s, 0.1);
   held_.finish();
   EXPECT_EQ(wire_.said, Ticks{1});
   EXPECT_EQ(wire_.led_anew, 0) << "it may be leading by now";
+}
+
+TEST_F(Held, OneThatIsGoneIsNotWaitedForToLead) {
+  tick(1);
+  taken(1);
+  tick(2);
+  const std::int64_t begun_ns = clock_.at_ns;
+  wire_.follower_goes_ns = begun_ns + 500'000'000;
+  EXPECT_FALSE(held_.hand_over());
+  EXPECT_NEAR(static_cast<double>(clock_.at_ns - begun_ns) * 1e-9, 0.5, 0.1);
+  EXPECT_EQ(wire_.said, Ticks{1});
 }
 
 TEST_F(Held, ASilentSecondIsGivenUpAndThatIsSaid) {

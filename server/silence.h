@@ -1,0 +1,35 @@
+#pragma once
+#include <algorithm>
+
+namespace mortise {
+
+/// How long the other server said nothing, of the time in which this process could have heard it.
+/// After a freeze, or on a machine that gives it no processor, what was told still lies in the
+/// sockets, and the other may have stood still as well, for as long and a little later.
+class Silence {
+ public:
+  static constexpr double kTurnCounts_s = 0.01;  ///< one turn for no longer
+  static constexpr double kStall_s = 0.05;       ///< so long without processor is standing still
+  /// The lease says the same, of datagrams. After standing still: by as much longer, up to kWary_s.
+  static constexpr double kSilent_s = 0.1, kWary_s = 1.0;
+  static constexpr double kCalm_s = 1.0;  ///< after which a stall is forgotten
+
+  void heard() { silent_s_ = 0.0; }
+  /// A turn of its loop that took so long, of which this process computed so long.
+  void turn(double took_s, double computed_s) {
+    const double stood_still_s = took_s - computed_s;
+    silent_s_ += std::min(took_s, kTurnCounts_s);
+    calm_s_ += took_s;
+    if (calm_s_ >= kCalm_s) stalled_s_ = 0.0;
+    if (stood_still_s <= kStall_s) return;
+    stalled_s_ += stood_still_s;
+    calm_s_ = 0.0;
+  }
+  bool is_believed() const { return silent_s_ >= std::min(kSilent_s + stalled_s_, kWary_s); }
+
+ private:
+  double silent_s_ = 0.0;
+  double calm_s_ = 0.0, stalled_s_ = 0.0;  ///< since, and in, the stalls of late
+};
+
+}  // namespace mortise
