@@ -15,6 +15,9 @@ namespace mortise::test {
 namespace {
 
 constexpr double kTakeOver_s = 0.25;  // as a client sees it
+// A machine that stands still for so long tells nothing of the time: that kill is made once more.
+constexpr double kStall_s = 0.05;
+constexpr int kMostStalledKills = 4;
 
 using Standby = SecondServer;
 
@@ -52,14 +55,20 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
   const auto before = clashes(*anna_);
   ASSERT_EQ(before.size(), 1u);
   std::vector<double> gaps_s;
-  for (int kill = 0; kill < kills; ++kill) {
+  for (int tries = 0; static_cast<int>(gaps_s.size()) < kills; ++tries) {
+    ASSERT_LT(tries, kills + kMostStalledKills) << "the machine stands still too often";
     std::unique_ptr<Program> second = stand_by(222);
     ASSERT_FALSE(HasFailure());
     const int losses = losses_;
     const Stalls stalls;
-    gaps_s.push_back(longest_gap_after([&] { leader->signal(SIGKILL); }));
-    EXPECT_LE(gaps_s.back(), kTakeOver_s)
-        << "the machine itself stood still for up to " << stalls.longest_s() * 1e3 << " ms";
+    const double gap_s = longest_gap_after([&] { leader->signal(SIGKILL); });
+    if (stalls.longest_s() < kStall_s) {
+      gaps_s.push_back(gap_s);
+      EXPECT_LE(gap_s, kTakeOver_s);
+    } else {
+      std::printf("not counted: the machine itself stood still for %.0f ms, take-over %.0f ms\n",
+                  stalls.longest_s() * 1e3, gap_s * 1e3);
+    }
     EXPECT_EQ(losses_, losses + 2) << "each client changes servers once";
     EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
     EXPECT_EQ(anna_->client->user_id(0), anna);
@@ -167,6 +176,28 @@ TEST_F(Standby, AFirstWithoutAProcessorLosesNothingThatItAcknowledged) {
   first->signal(SIGKILL);  // also where it went on
   turn(1.5);
   EXPECT_GT(acknowledged_.size(), 30u);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
+/// The silence that it then wants is as much longer as it was frozen, not a second.
+TEST_F(Standby, OneThatIsFrozenAsItShouldTakeOverDoesSoSoonAfter) {
+  const double kFrozen_s = 0.25;
+  auto [first, second] = both(205);
+  ASSERT_FALSE(HasFailure());
+  std::jthread freeze;
+  const double gap_s = longest_gap_after([&] {
+    first->signal(SIGKILL);
+    freeze = std::jthread([pid = second->pid(), kFrozen_s] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      kill(pid, SIGSTOP);
+      std::this_thread::sleep_for(std::chrono::duration<double>(kFrozen_s));
+      kill(pid, SIGCONT);
+    });
+  });
+  std::printf("frozen for %.0f ms as it should take over: %.0f ms as a client sees it\n",
+              kFrozen_s * 1e3, gap_s * 1e3);
+  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_GT(gap_s, kFrozen_s);
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
 }
 
