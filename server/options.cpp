@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/io/build_info.h"
+
 namespace mortise {
 namespace {
 
@@ -36,6 +38,7 @@ CommandLine read_command_line(int argc, char** argv) {
   CommandLine line;
   ServerOptions& o = line.options;
   CLI::App app{"mortise-server: plays a scenario as a shared session and judges every collision"};
+  app.set_version_flag("--version", version_line("mortise-server"));
   app.add_option("scenario", o.scenario, "Scenario file (YAML)");
   app.add_option("--restore", o.restore,
                  "Go on from this session log, or from the newest of the session in this folder "

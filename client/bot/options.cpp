@@ -7,6 +7,7 @@
 #include "client/bot/behaviour.h"
 #include "client/bot/load_report.h"
 #include "common/base/result.h"
+#include "common/io/build_info.h"
 
 namespace mortise {
 namespace {
@@ -37,6 +38,7 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
   BotCommandLine line;
   BotOptions& o = line.options;
   CLI::App app{"mortise-bot: designers without hands, for load, tests and demos"};
+  app.set_version_flag("--version", version_line("mortise-bot"));
   app.add_option("--session", o.session, "Name of the session")->capture_default_str();
   app.add_option("--domain", o.domain, "DDS domain")
       ->check(CLI::Range(0, 232))

@@ -5,6 +5,7 @@
 
 #include "client/replay/commands.h"
 #include "common/base/result.h"
+#include "common/io/build_info.h"
 
 namespace mortise {
 namespace {
@@ -161,6 +162,7 @@ void add_merge(CLI::App& app, int& code) {
 
 int run_replay_program(int argc, char** argv) {
   CLI::App app("mortise-replay: computes recorded sessions again, and looks into their logs");
+  app.set_version_flag("--version", version_line("mortise-replay"));
   app.require_subcommand(1);
   int code = kExitOk;
   add_verify(app, code);

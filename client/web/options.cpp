@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "common/io/build_info.h"
+
 namespace mortise::web {
 namespace {
 
@@ -47,6 +49,7 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
   WebOptions& o = line.options;
   o.page = default_page();
   CLI::App app{"mortise-web: lets browsers take part in a session, or look at a log of one"};
+  app.set_version_flag("--version", mortise::version_line("mortise-web"));
   auto* session =
       app.add_option("--session", o.session, "Name of the session")->capture_default_str();
   app.add_option("--log", o.log, "Show this session log (MCAP) with a timeline, without a server")

@@ -55,4 +55,9 @@ std::string build_fingerprint() {
   return content_hash(std::as_bytes(std::span(all)));
 }
 
+std::string version_line(const std::string& program) {
+  constexpr std::size_t kDigits = 12;
+  return program + ' ' + engine_version() + ", build " + build_fingerprint().substr(0, kDigits);
+}
+
 }  // namespace mortise

@@ -7,6 +7,10 @@ namespace mortise {
 /// Version of the project, e.g. "0.1.0".
 std::string engine_version();
 
+/// What --version says, e.g. "mortise-server 0.1.0, build 0123456789ab": programs of one build
+/// replay each other's logs bit for bit.
+std::string version_line(const std::string& program);
+
 /// What decides the bits of a result: sources of the engine, compiler, its version and flags, kind
 /// of build, processor family. A replay is promised to agree bit for bit where this is the same.
 std::string build_fingerprint();

@@ -5,6 +5,8 @@
 #include <set>
 #include <sstream>
 
+#include "common/io/build_info.h"
+
 namespace mortise {
 namespace {
 
@@ -39,6 +41,7 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
   where.session = kEverySession;
   std::string domains = "0", ports = "0";
   CLI::App app("mortise-directory: which sessions there are, and which servers lead or stand by");
+  app.set_version_flag("--version", version_line("mortise-directory"));
   app.add_option("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
       ->capture_default_str();
   app.add_option("--server", where.server,

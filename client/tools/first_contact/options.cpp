@@ -4,6 +4,7 @@
 #include <map>
 
 #include "common/base/result.h"
+#include "common/io/build_info.h"
 
 namespace mortise {
 
@@ -14,6 +15,7 @@ FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
   FirstContactOptions& o = line.options;
   CLI::App app{
       "mortise-first-contact: when does a moving mesh first touch a static one, motion by motion"};
+  app.set_version_flag("--version", version_line("mortise-first-contact"));
   app.add_option("--moving", o.moving, "Mesh of the moving part (OBJ, STL, PLY, glTF, DAE)")
       ->required();
   app.add_option("--static", o.fixed, "Mesh of the static part, at identity")->required();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/io/build_info.h"
 
 namespace mortise {
 
@@ -13,6 +14,7 @@ GenerateCommandLine read_generate_command_line(int argc, char** argv) {
   GenerateOptions& o = line.options;
   CLI::App app{
       "mortise-generate: writes a generated part, or the parts of a scenario, as a mesh, in mm"};
+  app.set_version_flag("--version", version_line("mortise-generate"));
   app.add_flag("--list", o.list, "Say which kinds there are and what parameters they have");
   app.add_option("kind", o.kind, "Kind of part, e.g. shaft");
   std::vector<std::string> words;

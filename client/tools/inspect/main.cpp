@@ -3,6 +3,7 @@
 #include <map>
 
 #include "client/tools/inspect/inspect.h"
+#include "common/io/build_info.h"
 
 int main(int argc, char** argv) {
   const std::map<std::string, double> units{
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   CLI::App app(
       "mortise-inspect: planes, cylinders, cones, spheres and tori of meshes, and what a scenario "
       "could say of them");
+  app.set_version_flag("--version", mortise::version_line("mortise-inspect"));
   app.add_option("files", files, "mesh files, or one scenario (.yaml)")->required();
   app.add_option("--unit", unit, "of the numbers in mesh files: mm, cm, m, in, um")
       ->check(CLI::IsMember({"mm", "cm", "m", "in", "um"}))

@@ -4,8 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "client/tools/judge/judge_report.h"
 #include "client/picture/picture.h"
+#include "client/tools/judge/judge_report.h"
+#include "common/io/build_info.h"
 
 int main(int argc, char** argv) {
   std::string file, fail_on, picture;
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   bool json = false, full = false;
   int threads = 1;
   CLI::App app("mortise-judge: judges all pairs of a scenario at its poses");
+  app.set_version_flag("--version", mortise::version_line("mortise-judge"));
   app.add_option("scenario", file, "scenario file (.yaml)")->required();
   app.add_flag("--json", json, "one JSON document on stdout");
   app.add_flag("--full", full, "refine every bracket, not only until the class is decided");

@@ -5,11 +5,13 @@
 #include <cstdlib>
 
 #include "client/tools/lint/lint.h"
+#include "common/io/build_info.h"
 
 int main(int argc, char** argv) {
   std::string file;
   bool json = false;
   CLI::App app("mortise-lint: checks a scenario and prints its tolerances in micrometres");
+  app.set_version_flag("--version", mortise::version_line("mortise-lint"));
   app.add_option("scenario", file, "scenario file (.yaml)")->required();
   app.add_flag("--json", json, "one JSON document on stdout");
   app.footer("Exit codes: 0 ok (warnings allowed), 2 usage, 3 the scenario has errors.");
