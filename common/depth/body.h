@@ -101,18 +101,13 @@ void for_each_triangle_in(const Bvh& bvh, const Box& box, Visit&& visit) {
       continue;
     }
     const Bvh::Node& node = bvh.nodes[child];
-    bool near[Bvh::kWidth];
-    for (int k = 0; k < Bvh::kWidth; ++k) {
-      const double gx = std::fabs(center[0] - static_cast<double>(node.local_center[0][k])) -
-                        static_cast<double>(node.half[0][k]) - half[0];
-      const double gy = std::fabs(center[1] - static_cast<double>(node.local_center[1][k])) -
-                        static_cast<double>(node.half[1][k]) - half[1];
-      const double gz = std::fabs(center[2] - static_cast<double>(node.local_center[2][k])) -
-                        static_cast<double>(node.half[2][k]) - half[2];
-      near[k] = std::max(gx, std::max(gy, gz)) <= 0.0;
-    }
+    double gap[3][Bvh::kWidth];
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < Bvh::kWidth; ++k)
+        gap[c][k] = std::fabs(center[c] - static_cast<double>(node.local_center[c][k])) -
+                    static_cast<double>(node.half[c][k]) - half[c];
     for (int k = node.count - 1; k >= 0; --k)
-      if (near[k]) stack[top++] = node.child[k];
+      if (std::max(gap[0][k], std::max(gap[1][k], gap[2][k])) <= 0.0) stack[top++] = node.child[k];
   }
 }
 

@@ -169,15 +169,18 @@ class Neighbourhood {
   // The tangent plane where the hull of the patch comes nearest to the axis: for a flat patch that
   // is the least depth of all tangent planes. On a cone its direction around the axis only.
   double depth_below_facing_tangent(const Surface& surface) const {
-    const auto across = [&](int i) -> Vec3 {
+    const int n = patch_.count;
+    if (n <= 0) return std::numeric_limits<double>::infinity();
+    std::array<Vec3, Patch::kMost> across;
+    for (int i = 0; i < n; ++i) {
       const Vec3 d = patch_.points[i] - surface.point;
-      return surface.kind == SurfaceKind::kSphere ? d : d - d.dot(surface.axis) * surface.axis;
-    };
-    if (patch_.count == 0) return std::numeric_limits<double>::infinity();
-    Vec3 nearest = across(0);
-    for (int i = 0; i < patch_.count; ++i)
-      for (int j = i + 1; j < patch_.count; ++j) {
-        const Vec3 from = across(i), edge = across(j) - from;
+      across[i] = d;
+      if (surface.kind != SurfaceKind::kSphere) across[i] = d - d.dot(surface.axis) * surface.axis;
+    }
+    Vec3 nearest = across[0];
+    for (int i = 0; i < n; ++i)
+      for (int j = i + 1; j < n; ++j) {
+        const Vec3 &from = across[i], edge = across[j] - from;
         const double length2 = edge.squaredNorm();
         const double share = length2 > 0.0 ? std::clamp(-from.dot(edge) / length2, 0.0, 1.0) : 0.0;
         const Vec3 foot = from + share * edge;
@@ -376,7 +379,10 @@ bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& sc
   // depth_in may say too little; this deep inside the mesh no offset reaches.
   if (proof.at_center.depth_mm - proof.k->largest_offset_mm[static_cast<int>(proof.layer)] > most)
     return false;
-  if (proof.k->depth_in(patch.center, proof.at_center, proof.layer) > most) return false;
+  const double center_mm = proof.center_depth_mm
+                               ? *proof.center_depth_mm
+                               : proof.k->depth_in(patch.center, proof.at_center, proof.layer);
+  if (center_mm > most) return false;
   return Neighbourhood(proof, patch, scratch).holds_off();
 }
 

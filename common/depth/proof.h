@@ -60,6 +60,8 @@ struct DepthProof {
   Layer layer = Layer::kMesh;
   double limit_mm = 0.0;   ///< the claim: no point of the patch is deeper in k than this
   SurfacePoint at_center;  ///< nearest point of k's mesh to patch.center
+  /// Depth of patch.center in the layer of k; asked for where it is not known.
+  std::optional<double> center_depth_mm;
   double rounding_mm = 0.0;
 };
 

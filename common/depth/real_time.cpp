@@ -32,6 +32,7 @@ struct Item {
   Piece piece;
   int role = 0;
   std::uint64_t order = 0;
+  std::uint32_t near = Topology::kNone;  // see nearest_surface()
 };
 
 bool later(const Item& a, const Item& b) {
@@ -260,20 +261,28 @@ class InterferenceSearch {
     if (shape.empty()) return;
     const Patch swept =
         make_swept_patch(shape, X0, X1, path_.spread(item.role, span), path_.turn(span));
-    const SurfacePoint at = nearest_surface(*k.solid, swept.center);
-    if (is_certain(item, span.t0, swept.center, at)) {
+    const Sample center = look(item, swept.center, item.near);
+    if (is_certain(center, span.t0)) {
       t_real_ = std::min(t_real_, span.t0);
       free_until_ = std::min(free_until_, span.t0);
       return;
     }
-    if (at.depth_mm + swept.radius_mm + k.largest_offset_mm[static_cast<int>(layer_)] <= touch_mm_)
-      return;
-    if (stays_out(item, swept, at, touch_mm_)) return;
-    if (certain_at_end(item, span, X1 * shape.center)) t_real_ = std::min(t_real_, span.t1);
-    cut(item, span, X0, X1, shape, swept, at);
+    const double reach = swept.radius_mm + k.largest_offset_mm[static_cast<int>(layer_)];
+    if (center.at.depth_mm + reach <= touch_mm_) return;
+    if (stays_out(item, swept, center, touch_mm_)) return;
+    ++answer_.evaluations;
+    if (is_certain(look(item, X1 * shape.center, center.at.triangle), span.t1))
+      t_real_ = std::min(t_real_, span.t1);
+    cut(item, span, X0, X1, shape, swept, center);
   }
 
-  bool stays_out(const Item& item, const Patch& patch, const SurfacePoint& at, double limit_mm) {
+  Sample look(const Item& item, const Vec3& x_K, std::uint32_t near) const {
+    const Body& k = bodies_[1 - item.role];
+    const SurfacePoint at = nearest_surface(*k.solid, x_K, near);
+    return {k.depth_in(x_K, at, layer_), item.role, item.piece.triangle, x_K, at};
+  }
+
+  bool stays_out(const Item& item, const Patch& patch, const Sample& center, double limit_mm) {
     DepthProof proof;
     proof.k = &bodies_[1 - item.role];
     proof.layer = layer_;
@@ -282,40 +291,30 @@ class InterferenceSearch {
     proof.s = &bodies_[item.role];
     proof.triangle_s = item.piece.triangle;
     proof.limit_mm = limit_mm;
-    proof.at_center = at;
+    proof.at_center = center.at;
+    proof.center_depth_mm = center.depth_mm;
     proof.rounding_mm = rounding_mm_;
     return depth_at_most(proof, patch, scratch_.proof);
   }
 
-  bool certain_at_end(const Item& item, const Span& span, const Vec3& center_K) {
-    ++answer_.evaluations;
-    return is_certain(item, span.t1, center_K,
-                      nearest_surface(*bodies_[1 - item.role].solid, center_K));
-  }
-
   // The overlap is certain only with a point in both parts; it is possible where a point of the
   // largest surface of one lies within that of the other.
-  bool is_certain(const Item& item, double t, const Vec3& point_K, const SurfacePoint& at) {
-    Sample sample;
-    sample.depth_mm = bodies_[1 - item.role].depth_in(point_K, at, layer_);
+  bool is_certain(const Sample& sample, double t) {
     if (sample.depth_mm <= touch_mm_) return false;
     if (layer_ == Layer::kUpper) return true;
     at_.X_WA = path_.motions[0].pose_at(t);
     at_.X_WB = path_.motions[1].pose_at(t);
-    sample.role = item.role;
-    sample.triangle = item.piece.triangle;
-    sample.point_K = point_K;
-    sample.at = at;
     const PairFrame there(at_);
     if (!find_witness(there, sample, answer_.evaluations)) return false;
-    answer_.certain_place = {item.role, item.piece.triangle, there.X_KS[1 - item.role] * point_K};
+    answer_.certain_place = {sample.role, sample.triangle,
+                             there.X_KS[1 - sample.role] * sample.point_K};
     return true;
   }
 
   // In time when the piece stands clear at the start, else in space. What is small in time and not
   // deeper than the accuracy, or small in both, is free within the accuracy.
   void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1,
-           const PieceShape& shape, const Patch& swept, const SurfacePoint& at) {
+           const PieceShape& shape, const Patch& swept, const Sample& center) {
     double path = path_.spread(item.role, span), width = 0.0;
     for (int c = 0; c < 3; ++c) {
       path = std::max(path, (X1 * item.piece.corners[c] - X0 * item.piece.corners[c]).norm() +
@@ -330,16 +329,17 @@ class InterferenceSearch {
         free_until_ = std::min(free_until_, span.t0);
         return;
       }
-      if (width <= smallest || stays_out(item, swept, at, touch_mm_ + query_.accuracy_mm)) return;
+      if (width <= smallest || stays_out(item, swept, center, touch_mm_ + query_.accuracy_mm))
+        return;
     }
     if (!brief && (width <= smallest || path > kLongPath * width ||
-                   stays_out(item, make_patch(shape, X0), at, touch_mm_))) {
-      push({{span.t0, middle}, item.piece, item.role, order_++});
-      push({{middle, span.t1}, item.piece, item.role, order_++});
+                   stays_out(item, make_patch(shape, X0), center, touch_mm_))) {
+      push({{span.t0, middle}, item.piece, item.role, order_++, center.at.triangle});
+      push({{middle, span.t1}, item.piece, item.role, order_++, center.at.triangle});
       return;
     }
     for (const Piece& half : split(bodies_[item.role], layer_, item.piece))
-      push({span, half, item.role, order_++});
+      push({span, half, item.role, order_++, center.at.triangle});
   }
 
   void push(Item item) {

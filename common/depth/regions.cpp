@@ -1,6 +1,7 @@
 #include "common/depth/regions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <numeric>
 
@@ -121,9 +122,9 @@ class Grouping {
     }
     const TriangleMesh& mesh = *pair_.s(role).mesh;
     const Vec3 middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0;
-    const Sample sample = sample_at(pair_, Layer::kMesh, role, t, middle);
+    const Sample sample = sample_at(pair_, Layer::kMesh, role, t, middle, near_[role]);
     ++evaluations_;
-    asked_of.met = sample.at.triangle;
+    asked_of.met = near_[role] = sample.at.triangle;
     asked_of.may_interfere = sample.depth_mm > pair_.touch_mm;
     return asked_of.may_interfere;
   }
@@ -154,7 +155,8 @@ class Grouping {
          {Vec3(0.5 * (a + b)), Vec3(0.5 * (b + c)), Vec3(0.5 * (c + a)), Vec3((a + b + c) / 3.0)}) {
       ++brief_work_;
       ++evaluations_;
-      const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x);
+      const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x, near_[role]);
+      near_[role] = sample.at.triangle;
       if (sample.depth_mm <= pair_.touch_mm) continue;
       asked_[role][t].met = sample.at.triangle;
       return true;
@@ -173,8 +175,9 @@ class Grouping {
   }
 
   bool asked(int role, std::uint32_t t, Layer layer, double limit) {
-    const RootQuery root{&pair_, layer, query_.known, role, t, limit};
+    const RootQuery root{&pair_, layer, query_.known, role, t, limit, near_[role]};
     const RootAnswer answer = ask_root(root, scratch_, evaluations_);
+    if (std::isfinite(answer.best.depth_mm)) near_[role] = answer.best.at.triangle;
     if (answer.state == RootState::kBelow) return false;
     asked_[role][t].met = answer.best.at.triangle;
     return true;
@@ -277,7 +280,8 @@ class Grouping {
   SearchScratch& scratch_;
   std::uint64_t& evaluations_;
   FlatMap<Asked> asked_[2];
-  std::vector<std::uint32_t> kept_[2];  // ascending
+  std::vector<std::uint32_t> kept_[2];                          // ascending
+  std::uint32_t near_[2] = {Topology::kNone, Topology::kNone};  // met by the triangle asked before
   std::vector<double> limit_;
   std::vector<bool> known_face_;
   std::uint64_t brief_work_ = 0;

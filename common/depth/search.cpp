@@ -36,6 +36,7 @@ struct Item {
   std::uint32_t region = 0;
   std::uint64_t order = 0;
   SurfacePoint at;
+  double center_depth_mm = 0.0;
 };
 
 bool worse(const Item& a, const Item& b) {
@@ -60,7 +61,7 @@ struct Looked {
   double bound_mm;
 };
 
-Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece) {
+Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece, std::uint32_t near) {
   const Body& k = pair.k(role);
   Looked looked{make_patch(pair.s(role), layer, piece, pair.X_KS[role]), {}, 0.0};
   looked.sample.role = role;
@@ -68,7 +69,7 @@ Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece) {
   looked.bound_mm = -std::numeric_limits<double>::infinity();
   if (looked.patch.count == 0) return looked;  // cut away by its neighbours
   looked.sample.point_K = looked.patch.center;
-  looked.sample.at = nearest_surface(*k.solid, looked.patch.center);
+  looked.sample.at = nearest_surface(*k.solid, looked.patch.center, near);
   looked.sample.depth_mm = k.depth_in(looked.patch.center, looked.sample.at, layer);
   looked.bound_mm = looked.sample.at.depth_mm + looked.patch.radius_mm +
                     k.largest_offset_mm[static_cast<int>(layer)];
@@ -76,7 +77,8 @@ Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece) {
 }
 
 DepthProof proof_for(const PairFrame& pair, Layer layer, const KnownOverlaps* known, int role,
-                     std::uint32_t triangle, const SurfacePoint& at, double limit_mm) {
+                     std::uint32_t triangle, const SurfacePoint& at, double center_depth_mm,
+                     double limit_mm) {
   DepthProof proof;
   proof.known = layer == Layer::kMesh ? nullptr : known;
   proof.role = role;
@@ -86,6 +88,7 @@ DepthProof proof_for(const PairFrame& pair, Layer layer, const KnownOverlaps* kn
   proof.layer = layer;
   proof.limit_mm = limit_mm;
   proof.at_center = at;
+  proof.center_depth_mm = center_depth_mm;
   proof.rounding_mm = pair.rounding_mm;
   return proof;
 }
@@ -137,7 +140,9 @@ class Search {
   void add_root(const Root& root) {
     const Body& s = pair_.s(root.role);
     const Piece piece = whole(s, root.triangle);
-    push(piece, root.role, root.region, std::numeric_limits<double>::infinity());
+    std::uint32_t& near = near_[root.role];  // roots beside each other follow each other
+    push(piece, root.role, root.region, std::numeric_limits<double>::infinity(), near);
+    if (!heap_.empty() && heap_.back().role == root.role) near = heap_.back().at.triangle;
     int inside = !heap_.empty() && heap_.back().at.depth_mm > pair_.touch_mm ? 1 : 0;
     // Depth is often reached at a corner. Where there are many, some are enough to know the class.
     const bool skip_corners =
@@ -150,7 +155,7 @@ class Search {
         continue;
       }
       const Sample sample =
-          sample_at(pair_, query_.layer, root.role, root.triangle, piece.corners[k]);
+          sample_at(pair_, query_.layer, root.role, root.triangle, piece.corners[k], near);
       if (shared) depth_at_[root.role][point] = sample.depth_mm;
       ++work_;
       ++evaluations_;
@@ -177,7 +182,8 @@ class Search {
       Piece next = piece;
       for (const Piece& quarter : quarters(piece)) {
         const Vec3 middle = (quarter.corners[0] + quarter.corners[1] + quarter.corners[2]) / 3.0;
-        const Sample sample = sample_at(pair_, query_.layer, from.role, piece.triangle, middle);
+        const Sample sample =
+            sample_at(pair_, query_.layer, from.role, piece.triangle, middle, from.at.triangle);
         ++work_;
         ++evaluations_;
         if (sample.depth_mm > deepest) {
@@ -205,8 +211,9 @@ class Search {
     if (sample.depth_mm > of_role.depth_mm) of_role = sample;
   }
 
-  void push(const Piece& piece, int role, std::uint32_t region, double parent_bound) {
-    const Looked looked = look(pair_, query_.layer, role, piece);
+  void push(const Piece& piece, int role, std::uint32_t region, double parent_bound,
+            std::uint32_t near) {
+    const Looked looked = look(pair_, query_.layer, role, piece, near);
     ++work_;
     ++evaluations_;
     if (looked.patch.count == 0) return;
@@ -217,6 +224,7 @@ class Search {
     item.region = region_of(role, region, looked.sample.at.triangle);
     item.order = order_++;
     item.at = looked.sample.at;
+    item.center_depth_mm = looked.sample.depth_mm;
     take(looked.sample, item.region);
     heap_.push_back(std::move(item));
     if (started_) std::push_heap(heap_.begin(), heap_.end(), worse);
@@ -254,7 +262,7 @@ class Search {
         make_patch(pair_.s(item.role), query_.layer, item.piece, pair_.X_KS[item.role]);
     const auto below = [&](double limit) {
       const DepthProof proof = proof_for(pair_, query_.layer, query_.known, item.role,
-                                         item.piece.triangle, item.at, limit);
+                                         item.piece.triangle, item.at, item.center_depth_mm, limit);
       return depth_at_most(proof, patch, scratch_.proof);
     };
     ++work_;
@@ -271,7 +279,7 @@ class Search {
       }
     }
     for (const Piece& half : split(pair_.s(item.role), query_.layer, item.piece))
-      push(half, item.role, item.region, item.bound_mm);
+      push(half, item.role, item.region, item.bound_mm, item.at.triangle);
   }
 
   bool all_decided() const {
@@ -287,6 +295,7 @@ class Search {
   std::vector<Bracket> brackets_;
   std::vector<std::array<Sample, 2>> best_of_role_;
   std::vector<Item> heap_;
+  std::uint32_t near_[2] = {Topology::kNone, Topology::kNone};  // met by the root before, by role
   FlatMap<double> depth_at_[2];  // corners of the meshes that were asked
   std::uint64_t work_ = 0, order_ = 0;
   std::uint64_t roots_seen_ = 0;
@@ -294,10 +303,11 @@ class Search {
 };
 
 // The corner of a triangle that just reaches into the other part is found at once, by halves late.
-bool corner_is_above(const RootQuery& query, const Piece& piece, RootAnswer& answer,
-                     std::uint64_t& evaluations) {
+bool corner_is_above(const RootQuery& query, const Piece& piece, std::uint32_t near,
+                     RootAnswer& answer, std::uint64_t& evaluations) {
   for (const Vec3& corner : piece.corners) {
-    const Sample sample = sample_at(*query.pair, query.layer, query.role, query.triangle, corner);
+    const Sample sample =
+        sample_at(*query.pair, query.layer, query.role, query.triangle, corner, near);
     ++evaluations;
     if (sample.depth_mm > answer.best.depth_mm) answer.best = sample;
     if (sample.depth_mm <= query.limit_mm) continue;
@@ -310,12 +320,12 @@ bool corner_is_above(const RootQuery& query, const Piece& piece, RootAnswer& ans
 }  // namespace
 
 Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t triangle,
-                 const Vec3& x_S) {
+                 const Vec3& x_S, std::uint32_t near) {
   Sample sample;
   sample.role = role;
   sample.triangle = triangle;
   sample.point_K = pair.X_KS[role] * on_layer(pair.s(role), layer, triangle, x_S);
-  sample.at = nearest_surface(*pair.k(role).solid, sample.point_K);
+  sample.at = nearest_surface(*pair.k(role).solid, sample.point_K, near);
   sample.depth_mm = pair.k(role).depth_in(sample.point_K, sample.at, layer);
   return sample;
 }
@@ -331,11 +341,13 @@ RootAnswer ask_root(const RootQuery& query, SearchScratch& scratch, std::uint64_
   std::array<Piece, kRootEvaluations + 1> stack;
   int top = 0;
   stack[top++] = whole(pair.s(query.role), query.triangle);
+  std::uint32_t near = query.near;
   for (int work = 0; top > 0; ++work) {
     if (work >= kRootEvaluations) return answer;
     const Piece piece = stack[--top];
-    const Looked looked = look(pair, query.layer, query.role, piece);
+    const Looked looked = look(pair, query.layer, query.role, piece, near);
     ++evaluations;
+    near = looked.sample.at.triangle;
     if (looked.sample.depth_mm > answer.best.depth_mm) answer.best = looked.sample;
     if (looked.sample.depth_mm > query.limit_mm) {
       answer.state = RootState::kAbove;
@@ -343,9 +355,9 @@ RootAnswer ask_root(const RootQuery& query, SearchScratch& scratch, std::uint64_
     }
     if (looked.patch.count == 0 || looked.bound_mm <= query.limit_mm) continue;
     const DepthProof proof = proof_for(pair, query.layer, query.known, query.role, piece.triangle,
-                                       looked.sample.at, query.limit_mm);
+                                       looked.sample.at, looked.sample.depth_mm, query.limit_mm);
     if (depth_at_most(proof, looked.patch, scratch.proof)) continue;
-    if (work == 0 && corner_is_above(query, piece, answer, evaluations)) return answer;
+    if (work == 0 && corner_is_above(query, piece, near, answer, evaluations)) return answer;
     for (const Piece& half : split(pair.s(query.role), query.layer, piece)) stack[top++] = half;
   }
   answer.state = RootState::kBelow;

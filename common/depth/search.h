@@ -18,8 +18,9 @@ struct Sample {
   SurfacePoint at;  ///< nearest point of K's mesh
 };
 
+/// `near`: see nearest_surface().
 Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t triangle,
-                 const Vec3& x_S);
+                 const Vec3& x_S, std::uint32_t near = Topology::kNone);
 
 struct Root {
   int role = 0;
@@ -71,6 +72,7 @@ struct RootQuery {
   int role = 0;
   std::uint32_t triangle = 0;
   double limit_mm = 0.0;
+  std::uint32_t near = Topology::kNone;  ///< see nearest_surface()
 };
 struct RootAnswer {
   RootState state = RootState::kUnknown;

@@ -75,21 +75,27 @@ Vec3 corner_of(const Bvh& bvh, std::uint32_t i, int k) {
   return {c[3 * k], c[3 * k + 1], c[3 * k + 2]};
 }
 
-// Nearest first, so that the best found so far discards most of the tree.
-Found find_nearest(const Bvh& bvh, const Vec3& x, double limit_mm) {
+// Of each term of a squared distance from a box: boxes are discarded by no less than that, so that
+// which of two triangles at the same distance is found does not depend on what was asked first.
+constexpr double kRounding = 1e-14;
+
+// Nearest first, so that the best found so far (`found`) discards most of the tree.
+Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
   struct Item {
     double distance2;
     std::int32_t child;
   };
   std::array<Item, 512> stack;
   int top = 0;
-  Found found;
-  found.distance2 = limit_mm < 1e150 ? limit_mm * limit_mm : limit_mm;
   stack[top++] = {0.0, bvh.root};
   const Vec3 local = x - bvh.origin;
+  const double size = kRounding * (bvh.radius_mm + local.norm()), tiny = size * size;
+  const auto discards = [&found, tiny](double distance2) {
+    return distance2 * (1.0 - kRounding) > found.distance2 + tiny;
+  };
   while (top > 0) {
     const Item item = stack[--top];
-    if (item.distance2 > found.distance2) continue;
+    if (discards(item.distance2)) continue;
     if (item.child < 0) {
       const Bvh::Leaf& leaf = bvh.leaves[~item.child];
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
@@ -99,20 +105,17 @@ Found find_nearest(const Bvh& bvh, const Vec3& x, double limit_mm) {
       continue;
     }
     const Bvh::Node& node = bvh.nodes[item.child];
-    double distance2[Bvh::kWidth];
-    for (int k = 0; k < Bvh::kWidth; ++k) {
-      double sum = 0.0;
-      for (int c = 0; c < 3; ++c) {
+    double distance2[Bvh::kWidth] = {};
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < Bvh::kWidth; ++k) {
         const double gap =
             std::max(0.0, std::fabs(local[c] - static_cast<double>(node.local_center[c][k])) -
                               static_cast<double>(node.half[c][k]));
-        sum += gap * gap;
+        distance2[k] += gap * gap;
       }
-      distance2[k] = sum;
-    }
     const int begin = top;
     for (int k = 0; k < node.count; ++k) {
-      if (distance2[k] > found.distance2) continue;
+      if (discards(distance2[k])) continue;
       int at = top++;
       while (at > begin && stack[at - 1].distance2 < distance2[k]) {
         stack[at] = stack[at - 1];
@@ -235,14 +238,23 @@ Vec3 nearest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3
 
 NearestPoint nearest_point(const Solid& solid, const Vec3& x, double limit_mm) {
   MORTISE_CHECK(x.allFinite() && !std::isnan(limit_mm), "a point and a limit must be numbers");
-  const Found found = find_nearest(solid.bvh(), x, limit_mm);
+  Found limit;
+  limit.distance2 = limit_mm < 1e150 ? limit_mm * limit_mm : limit_mm;
+  const Found found = find_nearest(solid.bvh(), x, limit);
   if (found.triangle == Topology::kNone) return {limit_mm, x, Topology::kNone};
   return {std::sqrt(found.distance2), found.foot.point, found.triangle};
 }
 
-SurfacePoint nearest_surface(const Solid& solid, const Vec3& x) {
+SurfacePoint nearest_surface(const Solid& solid, const Vec3& x, std::uint32_t near) {
   MORTISE_CHECK(x.allFinite(), "a point must be finite");
-  const Found found = find_nearest(solid.bvh(), x, std::numeric_limits<double>::infinity());
+  Found first;
+  if (near != Topology::kNone) {
+    const TriangleMesh& mesh = solid.mesh();
+    first.offer(
+        foot_on_triangle(x, mesh.corner(near, 0), mesh.corner(near, 1), mesh.corner(near, 2)), x,
+        near);
+  }
+  const Found found = find_nearest(solid.bvh(), x, first);
   SurfacePoint at;
   at.triangle = found.triangle;
   at.point = found.foot.point;

@@ -31,7 +31,10 @@ struct SurfacePoint {
 
 /// Side by the angle-weighted pseudonormal (Baerentzen and Aanaes 2005), exact for closed meshes of
 /// one shell; several shells and meshes with defects ask inside(). O(log n) typical.
-SurfacePoint nearest_surface(const Solid& solid, const Vec3& x);
+/// `near`: a triangle that is likely close to x, e.g. the one met by a point beside it; with one
+/// that is close the same answer comes sooner, with any other no other.
+SurfacePoint nearest_surface(const Solid& solid, const Vec3& x,
+                             std::uint32_t near = Topology::kNone);
 
 /// Is x inside the material? By the winding number > 1/2: closed meshes count signed crossings of a
 /// ray through the tree, O(log n); meshes with defects sum solid angles over all triangles, a

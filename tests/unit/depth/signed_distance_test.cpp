@@ -64,6 +64,38 @@ TEST(SignedDistance, LimitAndTies) {
             nearest_point_brute_force(s->mesh(), Vec3::Zero()).triangle);
 }
 
+/// Also on edges, at corners and where many triangles are equally near.
+TEST(SignedDistance, WhereOneBeganToLookChangesNothing) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(-4.0, 4.0);
+  std::uniform_int_distribution<int> lattice(-16, 16);
+  for (const double offset : {0.0, 1e5})
+    for (TriangleMesh mesh : some_meshes()) {
+      for (Vec3& x : mesh.points_mm) x.array() += offset;
+      const SolidPtr s = solid(mesh);
+      std::uniform_int_distribution<std::uint32_t> any(
+          0, static_cast<std::uint32_t>(mesh.triangles.size() - 1));
+      for (int i = 0; i < 900; ++i) {
+        Vec3 x(unit(random), unit(random), unit(random));
+        if (i % 3 == 0) x = 0.25 * Vec3(lattice(random), lattice(random), lattice(random));
+        x.array() += offset;
+        const std::uint32_t near = any(random);
+        if (i % 3 == 1)
+          x = nearest_on_triangle(x, mesh.corner(near, 0), mesh.corner(near, 1),
+                                  mesh.corner(near, 2));
+        const SurfacePoint from_root = nearest_surface(*s, x);
+        for (const std::uint32_t begin : {near, any(random), from_root.triangle}) {
+          const SurfacePoint hinted = nearest_surface(*s, x, begin);
+          EXPECT_EQ(hinted.triangle, from_root.triangle);
+          EXPECT_EQ(hinted.depth_mm, from_root.depth_mm);
+          EXPECT_EQ(hinted.point, from_root.point);
+          EXPECT_EQ(hinted.outward, from_root.outward);
+        }
+        EXPECT_EQ(from_root.triangle, nearest_point_brute_force(mesh, x).triangle);
+      }
+    }
+}
+
 TEST(SignedDistance, DirtyMeshesVote) {
   TriangleMesh open = box({1, 1, 1}, Vec3::Zero(), 4);
   open.triangles.pop_back();
