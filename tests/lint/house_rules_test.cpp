@@ -77,6 +77,15 @@ TEST_F(PlantedTree, ThePlayFileReachesNoEngine) {
   write("common/io/play_file.h", "#include \"common/session/step.h\"\n");
   expect_one("common/io/play_file.h:1", "may not include common/session/");
 }
+TEST_F(PlantedTree, WhichBuildItIsReachesNoEngine) {
+  write("common/io/build_info.cpp", "#include \"common/session/step.h\"\n");
+  expect_one("common/io/build_info.cpp:1", "may not include common/session/");
+}
+TEST_F(PlantedTree, ClientsMayAskWhichBuildItIsAndNoMoreOfIo) {
+  write("client/web/options.cpp",
+        "#include \"common/io/build_info.h\"\n#include \"common/io/replay.h\"\n");
+  expect_one("client/web/options.cpp:2", "may not include common/io/");
+}
 TEST_F(PlantedTree, TheWireKnowsNoEngine) {
   write("idl/topics.cpp", "#include \"common/session/step.h\"\n");
   expect_one("idl/topics.cpp:1", "idl/ may not include common/session/");

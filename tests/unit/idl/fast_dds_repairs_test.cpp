@@ -1,9 +1,10 @@
-// The look at the lease of a participant that has just left, at which the library ends the process.
-#include "idl/participant_lease.h"
+// Participants that leave at a moment at which the library ends the process.
+#include "idl/fast_dds_repairs.h"
 
 #include <dlfcn.h>
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/builtin/discovery/participant/PDP.h>
+#include <fastdds/rtps/common/CDRMessage_t.h>
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -81,7 +82,17 @@ TEST_F(ParticipantLease, WhereNoLeaseIsAskedForNobodyIsRemoved) {
   EXPECT_TRUE(discovery_.removed.empty());
 }
 
-TEST_F(ParticipantLease, IsLookedAtHere) { EXPECT_TRUE(lease_check_in_force()); }
+TEST(EncodedMessage, WhoseReceiversHaveLeftIsNotSent) {
+  using Encode = bool (*)(const void*, const rtps::CDRMessage_t&, rtps::CDRMessage_t&,
+                          const std::vector<rtps::GuidPrefix_t>&);
+  const auto encode = reinterpret_cast<Encode>(dlsym(RTLD_DEFAULT, kEncodeName));
+  ASSERT_NE(encode, nullptr);
+  rtps::CDRMessage_t plain, encoded;
+  // Security of nobody: with no receiver it must not be asked.
+  EXPECT_FALSE(encode(nullptr, plain, encoded, {}));
+}
+
+TEST(FastDdsRepairs, AreInForce) { EXPECT_TRUE(repairs_in_force()); }
 
 }  // namespace
 }  // namespace mortise
