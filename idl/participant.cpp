@@ -12,7 +12,7 @@
 
 #include "idl/directory.h"
 #include "idl/guard_transport.h"
-#include "idl/fast_dds_repairs.h"
+#include "idl/fast_dds_overrides.h"
 #include "idl/security_properties.h"
 #include "idl/server_places.h"
 
@@ -168,7 +168,7 @@ void set_up_process() {
     settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
     dds::Log::ClearConsumers();
-    (void)repairs_in_force();  // asked so that it is linked
+    (void)overrides_in_force();  // asked so that it is linked
   });
 }
 

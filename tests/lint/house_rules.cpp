@@ -66,7 +66,7 @@ const std::vector<NamedHere>& named_here() {
       {"yaml-cpp", std::regex("yaml-cpp/.*"), {"common/io/scenario_", "common/io/play_file"}},
       {"Fast DDS",
        std::regex("(fastdds|fastrtps|fastcdr)/.*"),
-       {"idl/", "tests/unit/idl/fast_dds_repairs_test."}},
+       {"idl/", "tests/unit/idl/fast_dds_overrides_test."}},
       {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/mcap_"}},
       {"SQLite", std::regex("sqlite3\\.h"), {"client/report/", "tests/unit/io/export_test."}},

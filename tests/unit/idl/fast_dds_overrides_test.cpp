@@ -1,5 +1,6 @@
-// Participants that leave at a moment at which the library ends the process.
-#include "idl/fast_dds_repairs.h"
+// Participants that leave at a moment at which the library ends the process; keys that it computes
+// again and again.
+#include "idl/fast_dds_overrides.h"
 
 #include <dlfcn.h>
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
@@ -7,6 +8,8 @@
 #include <fastdds/rtps/common/CDRMessage_t.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
 #include <vector>
 
 namespace mortise {
@@ -40,7 +43,7 @@ class Discovery : public rtps::PDP {
 
 /// As the library's timer does: by name, wherever the dynamic linker finds it.
 void look_at_lease(rtps::PDP& discovery, rtps::ParticipantProxyData& remote) {
-  void* found = dlsym(RTLD_DEFAULT, kLeaseCheckName);
+  void* found = dlsym(RTLD_DEFAULT, MORTISE_LEASE_CHECK);
   ASSERT_NE(found, nullptr);
   reinterpret_cast<void (*)(rtps::PDP*, rtps::ParticipantProxyData*)>(found)(&discovery, &remote);
 }
@@ -85,14 +88,54 @@ TEST_F(ParticipantLease, WhereNoLeaseIsAskedForNobodyIsRemoved) {
 TEST(EncodedMessage, WhoseReceiversHaveLeftIsNotSent) {
   using Encode = bool (*)(const void*, const rtps::CDRMessage_t&, rtps::CDRMessage_t&,
                           const std::vector<rtps::GuidPrefix_t>&);
-  const auto encode = reinterpret_cast<Encode>(dlsym(RTLD_DEFAULT, kEncodeName));
+  const auto encode = reinterpret_cast<Encode>(dlsym(RTLD_DEFAULT, MORTISE_ENCODE));
   ASSERT_NE(encode, nullptr);
   rtps::CDRMessage_t plain, encoded;
   // Security of nobody: with no receiver it must not be asked.
   EXPECT_FALSE(encode(nullptr, plain, encoded, {}));
 }
 
-TEST(FastDdsRepairs, AreInForce) { EXPECT_TRUE(repairs_in_force()); }
+using Key = std::array<std::uint8_t, 32>;
+using ComputeKey = void (*)(void*, Key&, bool, const Key&, const Key&, std::uint32_t, int);
+
+TEST(SessionKeys, ThatAreKeptAreThoseOfTheLibrary) {
+  const auto kept = reinterpret_cast<ComputeKey>(dlsym(RTLD_DEFAULT, MORTISE_SESSION_KEY));
+  const auto computed = reinterpret_cast<ComputeKey>(dlsym(RTLD_NEXT, MORTISE_SESSION_KEY));
+  ASSERT_NE(kept, nullptr);
+  ASSERT_NE(computed, nullptr);
+  ASSERT_NE(kept, computed);
+  std::mt19937_64 random(7);
+  const auto random_key = [&] {
+    Key key;
+    for (std::uint8_t& byte : key) byte = static_cast<std::uint8_t>(random());
+    return key;
+  };
+  // Few of each, so that what is asked comes again; sessions that fall on one place among them, and
+  // master keys and salts that differ in their last byte.
+  std::vector<Key> masters, salts;
+  for (int i = 0; i < 3; ++i) {
+    masters.push_back(random_key());
+    salts.push_back(random_key());
+    masters.push_back(masters.back());
+    salts.push_back(salts.back());
+    ++masters.back()[31];
+    ++salts.back()[31];
+  }
+  const std::uint32_t sessions[] = {0, 1, 1024, 2048, 0xfffffffe};
+  const auto one_of = [&](const auto& some) { return some[random() % std::size(some)]; };
+  for (int i = 0; i < 5000; ++i) {
+    const Key master = one_of(masters), salt = one_of(salts);
+    const std::uint32_t session = one_of(sessions);
+    const bool receiver_specific = random() % 2 == 0;
+    const int length = random() % 2 == 0 ? 16 : 32;
+    Key ours = random_key(), theirs = random_key();
+    kept(nullptr, ours, receiver_specific, master, salt, session, length);
+    computed(nullptr, theirs, receiver_specific, master, salt, session, length);
+    ASSERT_EQ(ours, theirs) << i;
+  }
+}
+
+TEST(FastDdsOverrides, AreInForce) { EXPECT_TRUE(overrides_in_force()); }
 
 }  // namespace
 }  // namespace mortise
