@@ -1,6 +1,7 @@
 #include "common/io/mcap_writer.h"
 
 #include <fcntl.h>
+#include <sys/uio.h>
 #include <unistd.h>
 #include <zstd.h>
 
@@ -16,7 +17,6 @@ namespace {
 
 // Fast and small enough: a log is written beside a running session.
 constexpr int kCompressionLevel = 3;
-constexpr std::size_t kUsualChunkBytes = 1 << 18;
 
 void put_map(ByteWriter& out, const std::map<std::string, std::string>& values) {
   ByteWriter entries;
@@ -72,9 +72,11 @@ McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions optio
     : descriptor_(descriptor),
       file_(std::move(file)),
       options_(std::move(options)),
+      compressor_(options_.compress ? ZSTD_createCCtx() : nullptr,
+                  [](ZSTD_CCtx_s* it) { static_cast<void>(ZSTD_freeCCtx(it)); }),
       chunk_indexes_(std::filesystem::path(file_).parent_path()) {
-  if (options_.compress)  // larger than chunks mostly are: it does not grow for hours
-    compressed_.resize(ZSTD_compressBound(std::min(options_.chunk_bytes, kUsualChunkBytes)));
+  // A full chunk, so that nothing grows when a busy hour brings the first one.
+  if (compressor_) static_cast<void>(compressed(std::vector<std::byte>(options_.chunk_bytes)));
 }
 
 McapWriter::~McapWriter() {
@@ -89,10 +91,12 @@ void McapWriter::set_error(const char* doing) {
                                  "; what was written stays readable");
 }
 
-void McapWriter::write(std::span<const std::byte> bytes) {
-  if (error_ || bytes.empty()) return;  // the checksum of nothing would begin a new one
-  for (auto rest = bytes; !rest.empty();) {
-    const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
+void McapWriter::write(std::span<const std::byte> bytes, std::span<const std::byte> more) {
+  if (error_) return;
+  for (auto rest = bytes, then = more; !rest.empty() || !then.empty();) {
+    const iovec parts[] = {{const_cast<std::byte*>(rest.data()), rest.size()},
+                           {const_cast<std::byte*>(then.data()), then.size()}};
+    const ssize_t count = ::writev(descriptor_, parts, 2);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       set_error("write");
@@ -100,16 +104,22 @@ void McapWriter::write(std::span<const std::byte> bytes) {
       if (::ftruncate(descriptor_, static_cast<off_t>(offset_.load())) != 0) return;
       return;
     }
-    rest = rest.subspan(static_cast<std::size_t>(count));
+    const std::size_t of_rest = std::min(static_cast<std::size_t>(count), rest.size());
+    rest = rest.subspan(of_rest);
+    then = then.subspan(static_cast<std::size_t>(count) - of_rest);
   }
-  crc_ = crc32(bytes, crc_);
-  offset_.fetch_add(bytes.size(), std::memory_order_relaxed);
+  for (const auto& part : {bytes, more})
+    if (!part.empty()) crc_ = crc32(part, crc_);  // that of nothing would begin a new one
+  offset_.fetch_add(bytes.size() + more.size(), std::memory_order_relaxed);
 }
 
-void McapWriter::write_record(std::uint8_t opcode, const ByteWriter& content) {
+void McapWriter::write_record(std::uint8_t opcode, const ByteWriter& content,
+                              std::span<const std::byte> more) {
   ByteWriter record;
-  put_record(record, opcode, content);
-  write(record.bytes());
+  record.u8(opcode);
+  record.u64(content.size() + more.size());
+  record.raw(content.bytes());
+  write(record.bytes(), more);
 }
 
 std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view encoding,
@@ -192,19 +202,24 @@ void McapWriter::add_message(std::uint16_t channel, std::uint64_t time_ns,
   file_counted_.add(time_ns);
 }
 
+std::span<const std::byte> McapWriter::compressed(std::span<const std::byte> records) {
+  if (!compressor_) return {};
+  const std::size_t most = ZSTD_compressBound(records.size());
+  if (compressed_bytes_ < most) {
+    compressed_ = std::make_unique_for_overwrite<std::byte[]>(most);
+    compressed_bytes_ = most;
+  }
+  const std::size_t size = ZSTD_compressCCtx(compressor_.get(), compressed_.get(), most,
+                                             records.data(), records.size(), kCompressionLevel);
+  if (ZSTD_isError(size) != 0) return {};
+  return {compressed_.get(), size};
+}
+
 void McapWriter::end_chunk() {
   if (chunk_.empty()) return;
-  std::span<const std::byte> records = chunk_.bytes();
-  std::string_view compression;
-  if (options_.compress) {
-    compressed_.resize(std::max(compressed_.size(), ZSTD_compressBound(chunk_.size())));
-    const std::size_t size = ZSTD_compress(compressed_.data(), compressed_.size(),
-                                           chunk_.bytes().data(), chunk_.size(), kCompressionLevel);
-    if (ZSTD_isError(size) == 0) {  // else stored as it is
-      records = std::span(compressed_).first(size);
-      compression = "zstd";
-    }
-  }
+  std::span<const std::byte> records = compressed(chunk_.bytes());
+  const std::string_view compression = records.empty() ? "" : "zstd";
+  if (records.empty()) records = chunk_.bytes();
   ByteWriter content;
   content.u64(chunk_counted_.start_time);
   content.u64(chunk_counted_.end_time);
@@ -212,14 +227,13 @@ void McapWriter::end_chunk() {
   content.u32(crc32(chunk_.bytes()));
   content.string(compression);
   content.u64(records.size());
-  content.raw(records);
 
   ByteWriter index;
   index.u64(chunk_counted_.start_time);
   index.u64(chunk_counted_.end_time);
   index.u64(bytes_written());
-  index.u64(mcap::kRecordHeaderBytes + content.size());
-  write_record(mcap::kChunk, content);
+  index.u64(mcap::kRecordHeaderBytes + content.size() + records.size());
+  write_record(mcap::kChunk, content, records);
   if (!error_) ++chunks_;
 
   const std::uint64_t index_start = bytes_written();

@@ -15,6 +15,8 @@
 #include "common/io/bytes.h"
 #include "common/io/spool.h"
 
+struct ZSTD_CCtx_s;
+
 namespace mortise {
 
 struct McapWriterOptions {
@@ -65,8 +67,12 @@ class McapWriter {
     void add(std::uint64_t time_ns);
   };
   McapWriter(int descriptor, std::string file, McapWriterOptions options);
-  void write(std::span<const std::byte> bytes);
-  void write_record(std::uint8_t opcode, const ByteWriter& content);
+  /// All of both or nothing.
+  void write(std::span<const std::byte> bytes, std::span<const std::byte> more = {});
+  void write_record(std::uint8_t opcode, const ByteWriter& content,
+                    std::span<const std::byte> more = {});
+  /// What a chunk is stored as; empty: as it is.
+  std::span<const std::byte> compressed(std::span<const std::byte> records);
   void write_summary();
   void set_error(const char* doing);
 
@@ -81,7 +87,9 @@ class McapWriter {
   ByteWriter chunk_;
   Counted chunk_counted_, file_counted_;
   std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> chunk_index_;
-  std::vector<std::byte> compressed_;
+  std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> compressor_;
+  std::unique_ptr<std::byte[]> compressed_;  ///< touched as far as chunks need it
+  std::size_t compressed_bytes_ = 0;
 
   std::uint16_t schemas_ = 0, channels_ = 0;
   std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;

@@ -82,6 +82,7 @@ TEST_F(PlantedTree, WhichBuildItIsReachesNoEngine) {
   expect_one("common/io/build_info.cpp:1", "may not include common/session/");
 }
 TEST_F(PlantedTree, ClientsMayAskWhichBuildItIsAndNoMoreOfIo) {
+  write("client/web/README.md", "# web\n");
   write("client/web/options.cpp",
         "#include \"common/io/build_info.h\"\n#include \"common/io/replay.h\"\n");
   expect_one("client/web/options.cpp:2", "may not include common/io/");
