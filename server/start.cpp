@@ -6,7 +6,6 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 
 #include "common/io/replay.h"
@@ -143,17 +142,8 @@ Result<NewLog> create_log(const ServerOptions& options, const SessionStart& star
   if (fs::exists(path)) {
     return fail(Code::kRuntime, log.file + ": exists already; a log is never overwritten");
   }
-  LogHeader header;
-  header.session = options.session;
-  header.scenario_name = start.scenario_name;
-  header.scenario_yaml = start.scenario_yaml;
-  std::map<std::string, const TriangleMesh*> meshes;
-  for (const Part& part : start.scene.world.parts) {
-    meshes.emplace(part.solid->hash(), &part.solid->mesh());
-    header.mesh_of_part.push_back(part.solid->hash());
-  }
-  header.meshes.assign(meshes.begin(), meshes.end());
-  header.imports = start.scene.imports;
+  LogHeader header =
+      log_header(start.scene, options.session, start.scenario_name, start.scenario_yaml);
   if (begin) header.chain = {start.log_name, start.log_chain.part + 1};
   header.begin = std::move(begin);
   LogOptions log_options;

@@ -8,6 +8,7 @@
 
 #include "common/io/build_info.h"
 #include "common/io/log_file.h"
+#include "common/io/scene_load.h"
 
 namespace mortise {
 namespace {
@@ -313,6 +314,23 @@ Status FileWriter::status() const {
 }
 
 }  // namespace
+
+LogHeader log_header(const LoadedScene& scene, std::string session, std::string scenario_name,
+                     std::string scenario_yaml) {
+  LogHeader header{.session = std::move(session),
+                   .scenario_name = std::move(scenario_name),
+                   .scenario_yaml = std::move(scenario_yaml),
+                   .meshes = {},
+                   .mesh_of_part = {},
+                   .imports = scene.imports};
+  std::map<std::string, const TriangleMesh*> meshes;
+  for (const Part& part : scene.world.parts) {
+    meshes.emplace(part.solid->hash(), &part.solid->mesh());
+    header.mesh_of_part.push_back(part.solid->hash());
+  }
+  header.meshes.assign(meshes.begin(), meshes.end());
+  return header;
+}
 
 Result<std::unique_ptr<SessionLogWriter>> SessionLogWriter::create(
     const std::filesystem::path& file, const LogHeader& header, const LogOptions& options) {

@@ -19,6 +19,8 @@
 
 namespace mortise {
 
+struct LoadedScene;
+
 /// The whole state of the session after a tick, as it stands in a log.
 struct Checkpoint {
   std::uint64_t tick = 0, state_hash = 0;
@@ -51,6 +53,11 @@ struct LogHeader {
   std::optional<LogBegin> begin = {};      ///< none: the session begins as its scene was loaded
   LogChain chain = {};
 };
+
+/// Of a session that begins as `scene` was loaded. The meshes stay those of the scene, which must
+/// outlive the header.
+LogHeader log_header(const LoadedScene& scene, std::string session, std::string scenario_name,
+                     std::string scenario_yaml);
 
 /// One tick as it is recorded: what went in and what came out. Decisions were applied before the
 /// increments.

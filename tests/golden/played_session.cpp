@@ -65,16 +65,7 @@ Result<PlayedSession> play_session(const std::string& scenario_name, const std::
 
   PlayedSession session{.header = {}, .scene = std::move(*scene), .ticks = {}};
   World& world = session.scene.world;
-  session.header.session = world.name;
-  session.header.scenario_name = scenario_name;
-  session.header.scenario_yaml = yaml;
-  session.header.imports = session.scene.imports;
-  std::map<std::string, const TriangleMesh*> meshes;
-  for (const Part& part : world.parts) {
-    meshes.emplace(part.solid->hash(), &part.solid->mesh());
-    session.header.mesh_of_part.push_back(part.solid->hash());
-  }
-  session.header.meshes.assign(meshes.begin(), meshes.end());
+  session.header = log_header(session.scene, world.name, scenario_name, yaml);
 
   std::map<std::string, UserId> users;
   std::uint32_t next_id = 1;

@@ -50,7 +50,7 @@ OverlapResult overlap_of(const Scene& scene, Refinement refinement, std::uint64_
 }
 
 // Deepest of all regions. Nothing is told of what is known not to overlap.
-Interval deepest(const OverlapResult& result, Interval OverlapRegion::* bracket) {
+Interval deepest(const OverlapResult& result, Interval OverlapRegion::*bracket) {
   Interval found{-std::numeric_limits<double>::infinity(), 0.0};
   for (const OverlapRegion& region : result.regions)
     found = {std::max(found.lo, (region.*bracket).lo), std::max(found.hi, (region.*bracket).hi)};
@@ -67,7 +67,7 @@ TEST(CappedOverlap, BracketsHoldTheDepthThatMoreWorkFinds) {
       for (const Refinement refinement : {Refinement::kDecided, Refinement::kFull})
         for (const bool only_certain : {false, true}) {
           const OverlapResult cut = overlap_of(scene, refinement, cap, only_certain);
-          const auto expect_holds = [&](Interval OverlapRegion::* bracket) {
+          const auto expect_holds = [&](Interval OverlapRegion::*bracket) {
             const Interval truth = deepest(whole, bracket), found = deepest(cut, bracket);
             EXPECT_GE(found.hi, truth.lo - 1e-9) << i << " " << cap << " " << only_certain;
             EXPECT_LE(found.lo, std::max(0.0, truth.hi) + 1e-9) << i << " " << cap;

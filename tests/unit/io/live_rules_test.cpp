@@ -35,13 +35,7 @@ struct LiveRules : testing::Test {
     auto loaded = load_scene(reading->scenario, default_meshes());
     ASSERT_TRUE(loaded && loaded->usable());
     scene = std::move(*loaded);
-    header.session = "live";
-    header.scenario_name = "live.yaml";
-    header.scenario_yaml = kScenario;
-    for (const Part& part : scene.world.parts) {
-      header.meshes.emplace_back(part.solid->hash(), &part.solid->mesh());
-      header.mesh_of_part.push_back(part.solid->hash());
-    }
+    header = log_header(scene, "live", "live.yaml", kScenario);
     for (const char* name : {"ann", "bob"}) {
       Decision join;
       join.kind = Decision::Kind::kJoin;

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <memory>
 #include <random>
 #include <thread>
@@ -139,19 +138,10 @@ LoadedScene blocks_scene(const std::string& yaml) {
 
 std::unique_ptr<SessionLogWriter> log_in(const std::filesystem::path& folder,
                                          const std::string& yaml, const LoadedScene& scene) {
-  LogHeader header;
-  header.session = "day";
-  header.scenario_name = kScenario;
-  header.scenario_yaml = yaml;
-  std::map<std::string, const TriangleMesh*> meshes;
-  for (const Part& part : scene.world.parts) {
-    meshes.emplace(part.solid->hash(), &part.solid->mesh());
-    header.mesh_of_part.push_back(part.solid->hash());
-  }
-  header.meshes.assign(meshes.begin(), meshes.end());
   LogOptions options;
   options.rotate_bytes = 2'000'000;
-  auto writer = SessionLogWriter::create(folder / "day.mcap", header, options);
+  auto writer = SessionLogWriter::create(folder / "day.mcap",
+                                         log_header(scene, "day", kScenario, yaml), options);
   EXPECT_TRUE(writer) << writer.error().text;
   return writer ? std::move(*writer) : nullptr;
 }

@@ -34,15 +34,8 @@ Truth play_session(const fs::path& file) {
   MemoryHub hub;
   auto server = hub.open_server();
   SystemClock clock;
-  LogHeader header;
-  header.session = "replayed";
-  header.scenario_name = "replayed.yaml";
-  header.scenario_yaml = test::peg_yaml();
-  for (const Part& part : scene->world.parts) {
-    header.meshes.emplace_back(part.solid->hash(), &part.solid->mesh());
-    header.mesh_of_part.push_back(part.solid->hash());
-  }
-  auto log = SessionLogWriter::create(file, header);
+  auto log = SessionLogWriter::create(
+      file, log_header(*scene, "replayed", "replayed.yaml", test::peg_yaml()));
   EXPECT_TRUE(log) << log.error().text;
   TickLoopOptions options;
   options.session = "replayed";
