@@ -27,7 +27,8 @@ int run(int argc, char** argv) {
   SessionOptions options;
   CLI::App app("The session under load: server and bots as programs on loopback");
   add_bench_options(app, options, session_sections());
-  app.add_flag("--soak", options.soak, "the load for ten minutes each")->excludes("--quick");
+  app.add_flag("--soak", options.soak, "the load for ten minutes each, after eight to get warm")
+      ->excludes("--quick");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -149,7 +149,9 @@ LoadResult run_load(const LoadShape& shape) {
     return result;
   }
   result.ran = true;
-  result.memory = slope_of(mb_at_s, std::max(10.0, 0.3 * shape.seconds));
+  result.memory = slope_of(mb_at_s, shape.warm_up_s);
+  std::erase_if(mb_at_s, [&](const auto& at) { return at.first > shape.warm_up_s; });
+  result.memory_of_warm_up = slope_of(mb_at_s, shape.warm_up_s / 3.0);
   const Json &b = result.bots, &s = result.server;
   // Held against the ticks of the load alone: the quiet seconds around it would flatter.
   const double due = shape.seconds * s["tick_rate_hz"].get<double>();

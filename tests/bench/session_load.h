@@ -55,6 +55,7 @@ MemorySlope slope_of(const std::vector<std::pair<double, double>>& mb_at_s, doub
 struct LoadShape {
   int processes = 1, users = 64;
   double rate_hz = 60.0, seconds = 30.0;
+  double warm_up_s = 10.0;  ///< of these; then the slope of the memory is taken
   std::string behaviour = "mixed";
 };
 /// What one load brought, seen by the bots and by the server.
@@ -62,7 +63,7 @@ struct LoadResult {
   bool ran = false;
   std::string why_not;
   Json bots, server;
-  MemorySlope memory;
+  MemorySlope memory, memory_of_warm_up;  ///< the latter from a third of it on
   double load_average_before = 0.0, load_average_after = 0.0;
   double missed_percent = 0.0;  ///< deadlines missed in the time of the load, of those due in it
   std::int64_t lost_increments = 0;  ///< acknowledged, but neither taken nor refused

@@ -88,7 +88,11 @@ void bars(Report& report, const LoadShape& shape, const LoadResult& r,
       "more would show as {:.2f} MB/h{}",
       name, r.memory.first_mb, r.memory.last_mb, r.memory.seconds, r.memory.mb_per_h,
       r.memory.resolution_mb_per_h,
-      options.soak ? "" : ": too short to tell a slope of 1 MB/h, that is asked of --soak"));
+      options.soak
+          ? fmt::format("; {:.1f} to {:.1f} MB over the last {:.0f} s of the warm-up, {:+.1f} MB/h",
+                        r.memory_of_warm_up.first_mb, r.memory_of_warm_up.last_mb,
+                        r.memory_of_warm_up.seconds, r.memory_of_warm_up.mb_per_h)
+          : ": too short to tell a slope of 1 MB/h, that is asked of --soak"));
   if (options.soak) bar("server memory slope, MB/h", r.memory.mb_per_h, kMemoryBar_mb_per_h);
 }
 
@@ -96,7 +100,7 @@ void bars(Report& report, const LoadShape& shape, const LoadResult& r,
 
 void section_users(Report& report, const SessionOptions& options) {
   report.table("One process with many users, demo scene, loopback", kColumns);
-  const LoadShape shape{1, 64, 60.0, options.load_seconds()};
+  const LoadShape shape{1, 64, 60.0, options.load_seconds(), options.warm_up_seconds()};
   const LoadResult result = row(report, shape);
   if (!options.soak) row(report, in_free_air(shape, options));
   bars(report, shape, result, options);
@@ -104,7 +108,7 @@ void section_users(Report& report, const SessionOptions& options) {
 
 void section_processes(Report& report, const SessionOptions& options) {
   report.table("Many client processes, demo scene, loopback", kColumns);
-  const LoadShape asked{16, 1, 120.0, options.load_seconds()};
+  const LoadShape asked{16, 1, 120.0, options.load_seconds(), options.warm_up_seconds()};
   const LoadResult result = row(report, asked);
   // More are reported; nothing is promised of them on two cores.
   if (!options.soak) {

@@ -7,8 +7,13 @@
 namespace mortise::bench {
 
 struct SessionOptions : BenchOptions {
-  bool soak = false;  ///< the load for ten minutes
-  double load_seconds() const { return soak ? 600.0 : quick ? 8.0 : 30.0; }
+  bool soak = false;  ///< the load for ten minutes more, after it was warm
+  double load_seconds() const { return soak ? kSoakWarmUp_s + 600.0 : quick ? 8.0 : 30.0; }
+  double warm_up_seconds() const { return soak ? kSoakWarmUp_s : 10.0; }
+
+  /// What a server keeps for ever is there by then: trees of the parts that have met, answers of
+  /// all users, memory of the largest searches.
+  static constexpr double kSoakWarmUp_s = 480.0;
 };
 
 /// Each adds its tables, notes and bars to the report.
