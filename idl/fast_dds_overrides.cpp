@@ -9,21 +9,34 @@
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <mutex>
 #include <vector>
 
-static_assert(FASTRTPS_VERSION_MAJOR == 2 && FASTRTPS_VERSION_MINOR == 9,
+static_assert(FASTRTPS_VERSION_MAJOR == 2 && FASTRTPS_VERSION_MINOR == 9 &&
+                  FASTRTPS_VERSION_MICRO == 1,
               "another Fast DDS: see whether its functions below still do what their header says; "
               "if not, drop them");
+
+namespace {
+
+struct Uses {
+  std::atomic<std::uint64_t> lease_checks = 0, encodings = 0, session_keys = 0;
+};
+Uses uses;
+void count(std::atomic<std::uint64_t>& use) { use.fetch_add(1, std::memory_order_relaxed); }
+
+}  // namespace
 
 namespace eprosima::fastrtps::rtps {
 
 // Called by a timer of each remote participant. Whoever left while the timer waited for the lock
 // has no GUID any more, and nothing is to be done.
 void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_participant) {
+  count(uses.lease_checks);
   std::unique_lock<std::recursive_mutex> lock(*getMutex());
   ParticipantProxyData& remote = *remote_participant;
   if (!remote.should_check_lease_duration || remote.m_guid == GUID_t::unknown()) return;
@@ -99,6 +112,7 @@ struct SessionKeys {
 // Called where a message is about to be sent. False: it is not sent.
 bool encode_for_somebody(const void* manager, const CDRMessage_t& plain, CDRMessage_t& encoded,
                          const Receivers& receivers) {
+  count(uses.encodings);
   if (receivers.empty()) return false;
   static auto* const encode = library_s<decltype(encode_for_somebody)>(MORTISE_ENCODE);
   return encode != nullptr && encode(manager, plain, encoded, receivers);
@@ -106,20 +120,27 @@ bool encode_for_somebody(const void* manager, const CDRMessage_t& plain, CDRMess
 
 void kept_session_key(void* transform, Key& session_key, bool receiver_specific, const Key& master,
                       const Key& salt, std::uint32_t session, int length) {
+  count(uses.session_keys);
   static SessionKeys keys;
   const std::lock_guard<std::mutex> lock(keys.mutex);
   SessionKey& kept = keys.place_of(master, session);
   if (kept.length != length || kept.session != session ||
       kept.receiver_specific != receiver_specific || kept.master != master || kept.salt != salt) {
     static auto* const compute = library_s<decltype(kept_session_key)>(MORTISE_SESSION_KEY);
-    kept = {master, salt, {}, session, length, receiver_specific};
-    compute(transform, kept.key, receiver_specific, master, salt, session, length);
+    session_key = {};
+    compute(transform, session_key, receiver_specific, master, salt, session, length);
+    if (session_key == Key{}) return;  // it failed; the next datagram may fare better
+    kept = {master, salt, session_key, session, length, receiver_specific};
   }
   session_key = kept.key;
 }
 
 bool overrides_in_force() {
   return is_own(MORTISE_LEASE_CHECK) && is_own(MORTISE_ENCODE) && is_own(MORTISE_SESSION_KEY);
+}
+
+OverrideUses override_uses() {
+  return {uses.lease_checks.load(), uses.encodings.load(), uses.session_keys.load()};
 }
 
 }  // namespace mortise

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 
 // Three functions of Fast DDS 2.9.1 as the linker names them, with what takes their place here.
 
@@ -28,9 +29,16 @@
 
 namespace mortise {
 
-/// The dynamic linker prefers functions of the program to those of a library. True: it does so in
-/// this program. False where a program hides its symbols from libraries; there a participant that
-/// leaves may still end it, and keys cost more.
+/// The dynamic linker prefers functions of the program to those of a library. True: it finds these
+/// first. False where a program hides its symbols from libraries; there a participant that leaves
+/// may still end it, and keys cost more. Whether the library asks the linker at all was decided
+/// when it was built (Debian's does): see override_uses().
 bool overrides_in_force();
+
+/// How often the library came by, in this process.
+struct OverrideUses {
+  std::uint64_t lease_checks = 0, encodings = 0, session_keys = 0;
+};
+OverrideUses override_uses();
 
 }  // namespace mortise

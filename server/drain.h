@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,8 +30,9 @@ class Drain {
   /// Asked before each tick once the server was told to go: is this the moment?
   bool is_ready();
   bool begun() const { return begun_ns_.has_value(); }
-  /// The last tick, and what comes after it.
-  void finish();
+  /// The last tick, and what comes after it. `goes_on`, asked while the other is waited for, says
+  /// false where the server is to end at once.
+  void finish(const std::function<bool()>& goes_on);
 
   End end() const { return end_; }
   /// For people: how it ended.

@@ -126,7 +126,7 @@ void HeldChannel::say(std::function<void()> what) {
   kept_.push_back({tick_, std::move(what)});
 }
 
-bool HeldChannel::hand_over() {
+bool HeldChannel::hand_over(const std::function<bool()>& goes_on) {
   const std::int64_t begun_ns = clock_.now_ns();
   while (static_cast<double>(clock_.now_ns() - begun_ns) * 1e-9 < kHandOver_s) {
     // Not given up as let_go() does: who raises its term now would lead against the other.
@@ -136,7 +136,7 @@ bool HeldChannel::hand_over() {
       say_up_to(kTakenAll);
       return true;
     }
-    if (!inner_.has_follower()) break;
+    if (!inner_.has_follower() || !goes_on()) break;
     inner_.await_taken(kLook_ns);
   }
   kept_.clear();

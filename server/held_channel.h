@@ -33,9 +33,9 @@ class HeldChannel final : public ServerChannel {
   /// at most kPatienceCutOff_s; those who do not may be with the server of before.
   void await(const std::vector<SeatRecord>& seats);
   /// Waits until the one that stands by leads the session, at most kHandOver_s and while it is
-  /// there; then all that is kept is with it, and goes out. If it does not lead, what is kept is
-  /// never said.
-  bool hand_over();
+  /// there, and while `goes_on`, which is asked each turn; then all that is kept is with it, and
+  /// goes out. If it does not lead, what is kept is never said.
+  bool hand_over(const std::function<bool()>& goes_on);
   /// All that is kept goes out, after a last moment for the one that stands by.
   void finish();
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }

@@ -218,7 +218,12 @@ int serve(const ServerOptions& options) {
         show_figures();
       });
   announcer.finish();
-  if (drain.begun() && !stop_asked && !loop.superseded()) drain.finish();
+  if (drain.begun() && !stop_asked && !loop.superseded()) {
+    drain.finish([&] {
+      if (metrics) metrics->beat();
+      return !stop_asked;
+    });
+  }
   if (loop.superseded()) {
     spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
                   options.session, options.session);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/uio.h>
 #include <unistd.h>
+#define ZSTD_STATIC_LINKING_ONLY  // for a compressor in memory of ours
 #include <zstd.h>
 
 #include <algorithm>
@@ -72,11 +73,16 @@ McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions optio
     : descriptor_(descriptor),
       file_(std::move(file)),
       options_(std::move(options)),
-      compressor_(options_.compress ? ZSTD_createCCtx() : nullptr,
-                  [](ZSTD_CCtx_s* it) { static_cast<void>(ZSTD_freeCCtx(it)); }),
       chunk_indexes_(std::filesystem::path(file_).parent_path()) {
-  // A full chunk, so that nothing grows when a busy hour brings the first one.
-  if (compressor_) static_cast<void>(compressed(std::vector<std::byte>(options_.chunk_bytes)));
+  // So that it does not grow when a busy hour brings the first full chunk, nor shrink in a quiet
+  // one.
+  if (options_.compress) {
+    const std::size_t size = ZSTD_estimateCCtxSize(kCompressionLevel);
+    compressor_memory_ = std::make_unique<std::byte[]>(size);
+    compressor_ = ZSTD_initStaticCCtx(compressor_memory_.get(), size);
+  }
+  // Room that is not touched costs nothing: a chunk is full once a tick has gone beyond it.
+  chunk_.reserve(2 * options_.chunk_bytes);
 }
 
 McapWriter::~McapWriter() {
@@ -206,11 +212,11 @@ std::span<const std::byte> McapWriter::compressed(std::span<const std::byte> rec
   if (!compressor_) return {};
   const std::size_t most = ZSTD_compressBound(records.size());
   if (compressed_bytes_ < most) {
-    compressed_ = std::make_unique_for_overwrite<std::byte[]>(most);
-    compressed_bytes_ = most;
+    compressed_bytes_ = std::max(most, ZSTD_compressBound(2 * options_.chunk_bytes));
+    compressed_ = std::make_unique_for_overwrite<std::byte[]>(compressed_bytes_);
   }
-  const std::size_t size = ZSTD_compressCCtx(compressor_.get(), compressed_.get(), most,
-                                             records.data(), records.size(), kCompressionLevel);
+  const std::size_t size = ZSTD_compressCCtx(compressor_, compressed_.get(), most, records.data(),
+                                             records.size(), kCompressionLevel);
   if (ZSTD_isError(size) != 0) return {};
   return {compressed_.get(), size};
 }

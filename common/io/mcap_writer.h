@@ -87,8 +87,9 @@ class McapWriter {
   ByteWriter chunk_;
   Counted chunk_counted_, file_counted_;
   std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> chunk_index_;
-  std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> compressor_;
-  std::unique_ptr<std::byte[]> compressed_;  ///< touched as far as chunks need it
+  std::unique_ptr<std::byte[]> compressor_memory_;  ///< all that it ever needs
+  ZSTD_CCtx_s* compressor_ = nullptr;               ///< in it; null: chunks stay as they are
+  std::unique_ptr<std::byte[]> compressed_;         ///< touched as far as chunks need it
   std::size_t compressed_bytes_ = 0;
 
   std::uint16_t schemas_ = 0, channels_ = 0;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMissedBar_percent = 0.5;
 constexpr double kMemoryBar_mb_per_h = 1.0;
+constexpr double kWarmBar_mb = 40.0;  // what it took to get warm does not count as growth
 constexpr double kBeyondTickBar_ms = 5.0;
 
 const std::vector<std::string> kColumns = {
@@ -93,7 +94,9 @@ void bars(Report& report, const LoadShape& shape, const LoadResult& r,
                         r.memory_of_warm_up.first_mb, r.memory_of_warm_up.last_mb,
                         r.memory_of_warm_up.seconds, r.memory_of_warm_up.mb_per_h)
           : ": too short to tell a slope of 1 MB/h, that is asked of --soak"));
-  if (options.soak) bar("server memory slope, MB/h", r.memory.mb_per_h, kMemoryBar_mb_per_h);
+  if (!options.soak) return;
+  bar("server memory slope, MB/h", r.memory.mb_per_h, kMemoryBar_mb_per_h);
+  bar("memory of the warm server, MB", r.memory.first_mb, kWarmBar_mb);
 }
 
 }  // namespace

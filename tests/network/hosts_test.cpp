@@ -143,7 +143,7 @@ class Hosts : public ::testing::Test {
     superseded_ = loop.superseded();
     const double end_s = now_s();
     if (drain.begun() && !superseded_)
-      drain.finish();
+      drain.finish([] { return true; });
     else if (!superseded_)
       held.finish();
     handed_over_ = drain.end() == Drain::End::kHandedOver;

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <thread>
 
+#include "idl/fast_dds_overrides.h"
 #include "idl/identity.h"
 #include "tests/network/key_ring.h"
 #include "tests/network/site.h"
@@ -94,6 +95,10 @@ TEST_F(Security, ThoseOfOneSiteMeetAndWork) {
   ASSERT_TRUE(until_in(otto, kPatience_s));
   EXPECT_TRUE(until(  // the scene comes first, poses of now with the next tick
       kPatience_s, [&] { return x_of(otto, "red") == x_of(anna, "red"); }, [&] { turn(otto); }));
+  // What takes the place of the library's functions does so where the library itself calls them.
+  const OverrideUses uses = override_uses();
+  EXPECT_GT(uses.encodings, 0u);
+  EXPECT_GT(uses.session_keys, 0u);
 }
 
 TEST_F(Security, WithoutACertificateNobodyComesIn) {

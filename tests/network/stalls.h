@@ -1,8 +1,9 @@
 #pragma once
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 namespace mortise::test {
 
@@ -12,22 +13,39 @@ class Stalls {
  public:
   Stalls()
       : watch_([this](const std::stop_token& stop) {
-          using Clock = std::chrono::steady_clock;
-          constexpr std::chrono::duration<double> kNap{0.005};
           for (auto last = Clock::now(); !stop.stop_requested();) {
             std::this_thread::sleep_for(kNap);
             const auto now = Clock::now();
-            const std::chrono::duration<double> slept = now - last;
-            longest_s_ = std::max(longest_s_.load(), (slept - kNap).count());
+            const Seconds late = now - last - kNap;
+            if (late > kNap) {
+              const std::lock_guard<std::mutex> lock(mutex_);
+              stalls_.push_back({last - begun_, late});
+            }
             last = now;
           }
         }) {}
 
-  double longest_s() const { return longest_s_; }
+  /// Of those that came within so long after this one was made.
+  double longest_s(double within_s) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    double longest_s = 0.0;
+    for (const Stall& stall : stalls_)
+      if (stall.at.count() <= within_s) longest_s = std::max(longest_s, stall.length.count());
+    return longest_s;
+  }
 
  private:
-  std::atomic<double> longest_s_{0.0};
-  std::jthread watch_;
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  static constexpr Seconds kNap{0.005};
+  struct Stall {
+    Seconds at, length;
+  };
+
+  const Clock::time_point begun_ = Clock::now();
+  mutable std::mutex mutex_;
+  std::vector<Stall> stalls_;
+  std::jthread watch_;  // the last member: it ends before the others do
 };
 
 }  // namespace mortise::test

@@ -122,7 +122,7 @@ TEST_F(Held, WhatIsHandedOverIsSaidOnceTheOtherHasIt) {
   tick(2);
   wire_.taken = 2;
   wire_.superseded_after_ns = clock_.at_ns + 50'000'000;
-  EXPECT_TRUE(held_.hand_over());
+  EXPECT_TRUE(held_.hand_over([] { return true; }));
   EXPECT_EQ(wire_.said, (Ticks{1, 2}));
   EXPECT_EQ(wire_.led_anew, 0);
 }
@@ -132,7 +132,7 @@ TEST_F(Held, WhatTheOtherDoesNotTakeIsNeverSaidAndNobodyLeadsAnew) {
   taken(1);
   tick(2);
   const std::int64_t begun_ns = clock_.at_ns;
-  EXPECT_FALSE(held_.hand_over());
+  EXPECT_FALSE(held_.hand_over([] { return true; }));
   EXPECT_NEAR(static_cast<double>(clock_.at_ns - begun_ns) * 1e-9, HeldChannel::kHandOver_s, 0.1);
   held_.finish();
   EXPECT_EQ(wire_.said, Ticks{1});
@@ -145,8 +145,20 @@ TEST_F(Held, OneThatIsGoneIsNotWaitedForToLead) {
   tick(2);
   const std::int64_t begun_ns = clock_.at_ns;
   wire_.follower_goes_ns = begun_ns + 500'000'000;
-  EXPECT_FALSE(held_.hand_over());
+  EXPECT_FALSE(held_.hand_over([] { return true; }));
   EXPECT_NEAR(static_cast<double>(clock_.at_ns - begun_ns) * 1e-9, 0.5, 0.1);
+  EXPECT_EQ(wire_.said, Ticks{1});
+}
+
+TEST_F(Held, WhoIsToldToEndWaitsForNobodyToLead) {
+  tick(1);
+  taken(1);
+  tick(2);
+  const std::int64_t begun_ns = clock_.at_ns;
+  int turns = 0;
+  EXPECT_FALSE(held_.hand_over([&] { return ++turns < 10; }));
+  EXPECT_EQ(turns, 10);
+  EXPECT_LT(static_cast<double>(clock_.at_ns - begun_ns) * 1e-9, 0.5);
   EXPECT_EQ(wire_.said, Ticks{1});
 }
 
