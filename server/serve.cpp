@@ -15,6 +15,7 @@
 #include "server/closing.h"
 #include "server/drain.h"
 #include "server/held_channel.h"
+#include "server/memory.h"
 #include "server/metrics_endpoint.h"
 #include "server/real_time.h"
 #include "server/restore.h"
@@ -101,6 +102,7 @@ int close_session(const ServerOptions& options, Closing closing, SessionLogWrite
 }  // namespace
 
 int serve(const ServerOptions& options) {
+  give_back_large_memory();
   const bool stands_by = !options.standby_of.empty();
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
