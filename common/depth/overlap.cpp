@@ -35,10 +35,11 @@ class Overlap {
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
-    const Candidates candidates = find_candidates(near);
+    Candidates candidates = find_candidates(near);
     known_ = known_overlaps(pair_, candidates);
     for (const KnownFacePair& known : candidates.known)
-      if (!told_by_another(known, candidates)) add_known(known);
+      if (!told_by_another(known, candidates) && !add_known(known))
+        leave_to_search(known, candidates);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
                              query_.refinement == Refinement::kDecided},
                             scratch_, result_.evaluations);
@@ -155,7 +156,7 @@ class Overlap {
     const Layer layer = pair_.trivial ? Layer::kMesh : Layer::kLower;
     const bool lazy = query_.refinement == Refinement::kDecided;
     for (const Bracket& c : search(layer, lazy, work_left(), query_.ignore_below_mm)) {
-      if (c.hi_mm <= pair_.touch_mm) continue;
+      if (c.hi_mm <= pair_.touch_mm + query_.certain_from_mm) continue;
       OverlapRegion region;
       region.certain_mm = bracket_of(c);
       region.possible_mm = {region.certain_mm.lo, kInfinity};
@@ -191,9 +192,21 @@ class Overlap {
     region.certain_place = {from.role, from.triangle, pair_.X_KS[1 - from.role] * from.point_K};
   }
 
+  void leave_to_search(const KnownFacePair& known, Candidates& candidates) {
+    for (KnownOverlaps::Row& row : known_.rows)
+      if (row.face[0] == known.face[0] && row.face[1] == known.face[1]) row.told = false;
+    for (int role = 0; role < 2; ++role) {
+      std::vector<std::uint32_t>& all = candidates.triangles[role];
+      all.insert(all.end(), known.triangles[role].begin(), known.triangles[role].end());
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+    }
+  }
+
   // A pair of declared faces whose overlap has a closed form: only the overlap of the meshes is
-  // searched.
-  void add_known(const KnownFacePair& known) {
+  // searched. False: it is certain by its closed form only, which knows no neighbour that cuts a
+  // face short.
+  bool add_known(const KnownFacePair& known) {
     const SurfaceBand::Face& face_a = pair_.bodies[0].band->faces[known.face[0]];
     const SurfaceBand::Face& face_b = pair_.bodies[1].band->faces[known.face[1]];
     const auto offsets = [&](Layer layer) {
@@ -204,13 +217,19 @@ class Overlap {
     const auto [at_least, at_most] = known.overlap.of_layer_mm;
     region.possible_mm = without_touch({at_most.lo + upper, at_most.hi + upper}, pair_.touch_mm);
     region.certain_mm = without_touch({at_least.lo + lower, at_least.hi + lower}, pair_.touch_mm);
+    if (region.certain_mm.lo > 0.0) {
+      Sample least;
+      const auto witness_W = known_witness(known, least);
+      if (!witness_W && query_.only_certain) return false;
+      set_witness(witness_W, least, region);
+    }
     Bracket mesh = mesh_overlap_of(known);
     // The meshes stand out of the true surfaces by no more than this.
     const double excess =
         std::max(0.0, -face_a.deviation_mm.lo) + std::max(0.0, -face_b.deviation_mm.lo);
     mesh.hi_mm = std::max(mesh.best.depth_mm, std::min(mesh.hi_mm, known.overlap.hi_mm + excess));
     if (mesh.best.depth_mm <= pair_.touch_mm && region.possible_mm.hi <= 0.0 && query_.want_delta)
-      return;
+      return true;
     region.delta_mm = bracket_of(mesh);
     if (std::isfinite(mesh.best.depth_mm)) {
       describe(pair_, mesh.best, mesh.best, region);
@@ -222,12 +241,8 @@ class Overlap {
     for (const Sample& sample : mesh.samples)
       region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
     region.points_W.push_back(region.point_W);
-    if (region.certain_mm.lo > 0.0) {
-      Sample least;
-      const auto witness_W = known_witness(known, least);
-      set_witness(witness_W, least, region);
-    }
     result_.regions.push_back(std::move(region));
+    return true;
   }
 
   // From the point that the closed form names, and from others farther from the end of its face.

@@ -27,6 +27,9 @@ struct OverlapQuery {
   /// True: only the regions in which something may be certain are wanted, and of them certain_mm;
   /// delta_mm and possible_mm are as wide as may be. Costs less than half.
   bool only_certain = false;
+  /// With only_certain: regions in which even the least surfaces are no farther apart than this
+  /// are wanted, too. mm, <= 0.
+  double certain_from_mm = 0.0;
   /// With only_certain: no more is asked than whether something is certain to be deeper than this.
   double ignore_below_mm = -std::numeric_limits<double>::infinity();
   /// True: what is not certain is proven not to be, as far as work_cap goes. Else, under kDecided,

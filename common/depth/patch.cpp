@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace mortise {
@@ -125,9 +126,27 @@ Polygon cut_by(const Cut& cut, const Polygon& polygon) {
   return left;
 }
 
+// A cone about a shaft's own axis, moved inward, ends the shaft at one height all around.
+void shorten(const Surface& shaft, double radius_mm, const Cut& cut, double& lo, double& hi) {
+  constexpr double kSame = 1e-9;
+  const Surface* cone = cut.surface;
+  if (cone == nullptr || cone->kind != SurfaceKind::kCone || cone->inward) return;
+  const double along = cone->axis.dot(shaft.axis);
+  const Vec3 from = cone->point - shaft.point;
+  if (std::fabs(along) < 1.0 - kSame ||
+      around(shaft, from).norm() > kSame * std::max(1.0, radius_mm))
+    return;
+  const double height =
+      (std::cos(cone->half_angle_rad) * radius_mm - cut.offset_mm) / std::sin(cone->half_angle_rad);
+  const double z = from.dot(shaft.axis) + (along > 0.0 ? height : -height);
+  (along > 0.0 ? lo : hi) = along > 0.0 ? std::max(lo, z) : std::min(hi, z);
+  if (lo > hi) lo = hi = z;
+}
+
 // The surface over the piece, moved by its offset, between two circles. Its foot
 // points leave the heights of the corners by no more than the bulge and their own distance.
-void add_circles(const Surface& surface, double offset, const Piece& piece, PieceShape& shape) {
+void add_circles(const Surface& surface, double offset, const Piece& piece,
+                 std::span<const Cut> cuts, PieceShape& shape) {
   if (surface.kind == SurfaceKind::kSphere) {
     shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + offset,
                                            true};
@@ -141,6 +160,7 @@ void add_circles(const Surface& surface, double offset, const Piece& piece, Piec
     off = std::max(off, std::fabs(surface.signed_distance_mm(x)));
   }
   if (surface.kind == SurfaceKind::kCylinder) {
+    for (const Cut& cut : cuts) shorten(surface, surface.radius_mm + offset, cut, lo, hi);
     for (const double z : {lo, hi})
       shape.circles[shape.circle_count++] = {surface.point + z * surface.axis, surface.axis,
                                              surface.radius_mm + offset, false};
@@ -176,6 +196,9 @@ Patch placed(const PieceShape& shape, const Pose& X_KS) {
   for (int i = 0; i < shape.plus_count; ++i)
     patch.plus[i] = {X_KS.q * shape.plus[i].normal, shape.plus[i].offset_mm, shape.plus[i].flat};
   if (shape.on_cylinder) patch.axis = X_KS.q * shape.axis;
+  patch.rim_count = shape.rim_count;
+  for (int i = 0; i < shape.rim_count; ++i)
+    patch.rims_from[i] = patch.rims_to[i] = shape.rims[i].seen_from(X_KS);
   return patch;
 }
 
@@ -236,7 +259,8 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
     for (const std::uint32_t t : s.sharp_neighbours(piece.triangle))
       add_plus(s.normal(t), Body::offset_of(s.face(t), layer),
                Body::surface_of(s.face(t), layer) == nullptr);
-  if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, shape);
+  if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, cuts, shape);
+  shape.rim_count = rims_of(s, layer, piece.triangle, shape.rims);
   return shape;
 }
 
@@ -285,6 +309,19 @@ double Patch::depth_below_plane(const Vec3& facet_normal, const Vec3& point,
   return std::min(by_points + more, by_circles + outward);
 }
 
+double Patch::depth_at_rims_mm(const Surface& round) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < rim_count; ++i) {
+    double below_mm = 0.0;
+    for (int j = 0; j < count; ++j)
+      for (const Rim& rim : {rims_from[i], rims_to[i]})
+        below_mm = std::max(below_mm, rim.axis.dot(rim.center - points[j]));
+    least = std::min(least, depth_at_rim_mm(rims_from[i], rims_to[i], round, below_mm + thickness(),
+                                            motion_turn_rad, spread_mm));
+  }
+  return least;
+}
+
 double Patch::thickness() const {
   double sum = spread_mm + bulge_mm;
   for (int i = 0; i < plus_count; ++i) sum += plus[i].offset_mm;
@@ -327,6 +364,7 @@ Patch make_swept_patch(const PieceShape& shape, const Pose& X_KS0, const Pose& X
   }
   add_circles(shape, X_KS0, patch);
   add_circles(shape, X_KS1, patch);
+  for (int i = 0; i < shape.rim_count; ++i) patch.rims_to[i] = shape.rims[i].seen_from(X_KS1);
   patch.spread_mm = spread_mm;
   patch.turn_rad += turn_rad;
   patch.motion_turn_rad = turn_rad;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "common/depth/facing_tangent.h"
 #include "common/depth/known_depth.h"
+#include "common/depth/wall_mean.h"
 
 namespace mortise {
 namespace {
@@ -15,9 +18,6 @@ constexpr std::size_t kMostOpen = 96;
 
 // Facets of one hollow corner: normals within 60 degrees of each other.
 constexpr double kSameSide = 0.5;
-
-// A patch whose hull comes nearer to the axis than this share of the radius goes through it.
-constexpr double kLeastFacing = 1e-3;
 
 // Cosines of normals of one plane differ from one by less than this.
 constexpr double kOnePlane = 1e-9;
@@ -69,7 +69,7 @@ class Neighbourhood {
     if (scratch_.near.empty()) return true;
     if (all_covered() && (u <= 0.0 || void_above_walls())) return true;
     if (u > 0.0 && leave_between_open_facets()) return true;
-    return nearest_counts && below_two_planes();
+    return nearest_counts && below_two_walls();
   }
 
  private:
@@ -103,7 +103,21 @@ class Neighbourhood {
 
   // False: too much is open.
   bool take(std::uint32_t t, const Corners& c) {
-    if (covered(t, c)) return true;
+    if (covered(t, c) || add_wall(t, c)) return true;
+    // A neighbour that is moved inward cuts it short beyond the end of its own triangles.
+    if (proof_.layer != Layer::kMesh)
+      for (const std::uint32_t n : k_.sharp_neighbours(t))
+        if (Body::offset_of(k_.face(n), proof_.layer) < 0.0 &&
+            add_wall(n, {k_.mesh->corner(n, 0), k_.mesh->corner(n, 1), k_.mesh->corner(n, 2)}) &&
+            covered(t, c))
+          return true;
+    if (scratch_.open.size() >= kMostOpen) return false;
+    scratch_.open.push_back({t, c});
+    return true;
+  }
+
+  // Does the facet hold the patch off? Then it is kept as a wall.
+  bool add_wall(std::uint32_t t, const Corners& c) {
     Facet facet;
     facet.triangle = t;
     const SurfaceBand::Face& face = k_.face(t);
@@ -119,12 +133,8 @@ class Neighbourhood {
       facet.covers_along_mm = depth.along_mm;
       facet.slack_mm = proof_.limit_mm * along - depth.face_mm;
     }
-    if (facet.slack_mm >= -proof_.rounding_mm) {
-      if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);
-      return true;
-    }
-    if (scratch_.open.size() >= kMostOpen) return false;
-    scratch_.open.push_back({t, c});
+    if (facet.slack_mm < -proof_.rounding_mm) return false;
+    if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);
     return true;
   }
 
@@ -139,64 +149,40 @@ class Neighbourhood {
     return known;
   }
 
-  // By where the patch is and the facet's surface continued.
-  double depth_below_surface(Facet& facet, const Corners& c) const {
+  // Normal and point of a facet, at the patch. No normal: a triangle without area.
+  void set_out(Facet& facet, const Corners& c) const {
     if (facet.surface == nullptr) {
       const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
       const double length = n.norm();
-      if (!(length > 0.0)) return 0.0;
+      if (!(length > 0.0)) return;
       facet.normal = n / length;
       facet.point = c[0];
-      return facet.offset_mm + patch_.depth_below_plane(facet.normal, facet.point, 0.0);
+      return;
     }
+    facet.normal = facet.surface->outward_normal(patch_.center);
+    facet.point = patch_.center - facet.surface->signed_distance_mm(patch_.center) * facet.normal;
+  }
+
+  // By where the patch is and the facet's surface continued.
+  double depth_below_surface(Facet& facet, const Corners& c) const {
+    set_out(facet, c);
+    if (facet.normal.isZero(0.0)) return 0.0;
+    if (facet.surface == nullptr)
+      return facet.offset_mm + patch_.depth_below_plane(facet.normal, facet.point, 0.0);
     const Surface& surface = *facet.surface;
-    facet.normal = surface.outward_normal(patch_.center);
-    facet.point = patch_.center - surface.signed_distance_mm(patch_.center) * facet.normal;
     double deepest = -std::numeric_limits<double>::infinity();
     if (surface.inward) {  // the distance is convex
-      const double turn = std::min(1.0, surface.curvature_bound(patch_.center) * patch_.radius_mm);
       for (int i = 0; i < patch_.count; ++i)
         deepest = std::max(deepest, -surface.signed_distance_mm(patch_.points[i]));
-      deepest += patch_.beyond(facet.normal, turn);
+      deepest += patch_.beyond(facet.normal, turn_of(surface));
     } else {  // it lies below each of its tangent planes
       deepest = patch_.depth_below_plane(facet.normal, facet.point, 0.0);
       if (deepest + facet.offset_mm > std::min(0.0, proof_.limit_mm))
-        deepest = std::min(deepest, depth_below_facing_tangent(surface));
+        deepest = std::min(deepest, depth_below_facing_tangent(patch_, surface));
+      if (surface.kind != SurfaceKind::kSphere && deepest + facet.offset_mm > proof_.limit_mm)
+        deepest = std::min(deepest, patch_.depth_at_rims_mm(surface));
     }
     return deepest + facet.offset_mm;
-  }
-
-  // The tangent plane where the hull of the patch comes nearest to the axis: for a flat patch that
-  // is the least depth of all tangent planes. On a cone its direction around the axis only.
-  double depth_below_facing_tangent(const Surface& surface) const {
-    const int n = patch_.count;
-    if (n <= 0) return std::numeric_limits<double>::infinity();
-    std::array<Vec3, Patch::kMost> across;
-    for (int i = 0; i < n; ++i) {
-      const Vec3 d = patch_.points[i] - surface.point;
-      across[i] = d;
-      if (surface.kind != SurfaceKind::kSphere) across[i] = d - d.dot(surface.axis) * surface.axis;
-    }
-    Vec3 nearest = across[0];
-    for (int i = 0; i < n; ++i)
-      for (int j = i + 1; j < n; ++j) {
-        const Vec3 &from = across[i], edge = across[j] - from;
-        const double length2 = edge.squaredNorm();
-        const double share = length2 > 0.0 ? std::clamp(-from.dot(edge) / length2, 0.0, 1.0) : 0.0;
-        const Vec3 foot = from + share * edge;
-        if (foot.squaredNorm() < nearest.squaredNorm()) nearest = foot;
-      }
-    const double length = nearest.norm();
-    if (!(length > kLeastFacing * surface.radius_mm) || !(length > 0.0))
-      return std::numeric_limits<double>::infinity();
-    const Vec3 out = nearest / length;
-    Vec3 normal = out, point = surface.point + surface.radius_mm * out;
-    if (surface.kind == SurfaceKind::kCone) {
-      normal =
-          std::cos(surface.half_angle_rad) * out - std::sin(surface.half_angle_rad) * surface.axis;
-      point = surface.point;  // all tangent planes meet in the apex
-    }
-    return patch_.depth_below_plane(normal, point, 0.0);
   }
 
   bool covered(std::uint32_t t, const Corners& c) const {
@@ -303,43 +289,38 @@ class Neighbourhood {
     return rise * (length > 0.0 ? std::max(0.0, n.dot(wall.normal) / length) : 1.0);
   }
 
-  // Depths of the patch's points below the plane of a triangle, when all near facets lie below it.
-  bool depths_below_plane(std::uint32_t t, const Corners& c,
-                          std::array<double, Patch::kMost>& depths) const {
-    Facet plane;
-    plane.triangle = t;
-    const SurfaceBand::Face& face = k_.face(t);
-    if (Body::surface_of(face, proof_.layer) != nullptr) return false;
-    plane.offset_mm = Body::offset_of(face, proof_.layer);
-    if (depth_below_surface(plane, c) <= -std::numeric_limits<double>::infinity()) return false;
-    if (plane.normal.isZero(0.0)) return false;
-    for (const ProofScratch::Near& near : scratch_.near)
-      if (!below(near.triangle, near.corners, plane)) return false;
-    const double more = plane.offset_mm + patch_.beyond(plane.normal, 0.0);  // points of the hull
-    for (int i = 0; i < patch_.count; ++i)
-      depths[i] = more - plane.normal.dot(patch_.points[i] - plane.point);
-    return true;
+  // By how much the normal of a hollow surface turns over the patch.
+  double turn_of(const Surface& surface) const {
+    return std::min(1.0, surface.curvature_bound(patch_.center) * patch_.radius_mm);
   }
 
-  bool below_two_planes() const {
+  // The plane or bore of a triangle, when all near facets lie below it.
+  std::optional<ConvexWall> wall_over_all(std::uint32_t t, const Corners& c) const {
+    Facet facet;
+    facet.triangle = t;
+    facet.surface = Body::surface_of(k_.face(t), proof_.layer);
+    if (facet.surface != nullptr && !facet.surface->inward) return std::nullopt;
+    facet.offset_mm = Body::offset_of(k_.face(t), proof_.layer);
+    set_out(facet, c);
+    if (facet.normal.isZero(0.0)) return std::nullopt;
+    for (const ProofScratch::Near& near : scratch_.near)
+      if (!below(near.triangle, near.corners, facet)) return std::nullopt;
+    const double turn_rad = facet.surface != nullptr ? turn_of(*facet.surface) : 0.0;
+    return ConvexWall{facet.surface, facet.normal, facet.point, facet.offset_mm, turn_rad};
+  }
+
+  bool below_two_walls() const {
     if (scratch_.near.size() > kMostOpen) return false;
-    std::array<double, Patch::kMost> first, second;
-    if (!depths_below_plane(proof_.at_center.triangle, nearest_, first)) return false;
+    const auto first = wall_over_all(proof_.at_center.triangle, nearest_);
+    if (!first) return false;
+    const Surface* asked = first->surface;
     for (const ProofScratch::Near& near : scratch_.near) {
       if (near.triangle == proof_.at_center.triangle) continue;
-      if (!depths_below_plane(near.triangle, near.corners, second)) continue;
-      // Some share s in [0, 1] with (1 - s) first + s second <= u at every point?
-      double lo = 0.0, hi = 1.0;
-      for (int i = 0; i < patch_.count && lo <= hi; ++i) {
-        const double at0 = first[i] - proof_.limit_mm, slope = second[i] - first[i];
-        if (slope > 0.0)
-          hi = std::min(hi, -at0 / slope);
-        else if (slope < 0.0)
-          lo = std::max(lo, -at0 / slope);
-        else if (at0 > 0.0)
-          lo = 2.0;
-      }
-      if (lo <= hi) return true;
+      const Surface* surface = Body::surface_of(k_.face(near.triangle), proof_.layer);
+      if (surface != nullptr && surface == asked) continue;  // another triangle of the same bore
+      const auto second = wall_over_all(near.triangle, near.corners);
+      if (second && mean_keeps_off(*first, *second, patch_, proof_.limit_mm)) return true;
+      if (surface != nullptr) asked = surface;
     }
     return false;
   }

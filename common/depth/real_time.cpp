@@ -79,8 +79,10 @@ class InterferenceSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
-      if (item.span.t0 <= 0.0 && answer_.evaluations >= next_look) {
-        if (real_soon_after(item.span.t0)) break;
+      if (answer_.evaluations >= next_look) {
+        if (answer_.evaluations >= enough && real_within(item.span.t0, kCloseEnough_mm)) break;
+        if (item.span.t0 <= 0.0 && real_within(item.span.t0, kSoonShare * query_.accuracy_mm))
+          break;
         next_look = 2 * answer_.evaluations;
       }
       treat(item);
@@ -185,11 +187,11 @@ class InterferenceSearch {
     return false;
   }
 
-  // Everything before t is proven free. A part that rests against another and is pushed on is real
-  // at once: then nothing is gained by parting the surfaces that touch.
-  bool real_soon_after(double t) {
-    const double soon =
-        t + kSoonShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
+  // Everything before t is proven free. Is it real when no point has gone farther than path_mm from
+  // there? A part that rests against another and is pushed on is real at once: then nothing is
+  // gained by parting the surfaces that touch.
+  bool real_within(double t, double path_mm) {
+    const double soon = t + path_mm / std::max(path_.speed_upper_bound(), 1e-300);
     const std::uint64_t left = at_.work_cap - std::min(at_.work_cap, answer_.evaluations);
     if (soon > std::min(1.0, t_real_) || !is_real_at(soon, std::min(left, kLookWorkCap)))
       return false;

@@ -10,7 +10,9 @@ namespace mortise {
 namespace {
 
 // How far a slide sets out before the place where something holds it, mm.
-constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm;
+// With bands so far that the way along what holds it can be searched: what is that near costs the
+// search as much as a touch.
+constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm, kBandBackOff_mm = 2e-3;
 
 bool active(const Scratch::Impl& work, std::int32_t move) {
   if (move < 0) return false;
@@ -38,10 +40,10 @@ Motion rest_of(const Move& move, double t) {
 }
 
 AskedEarlier asked_until(const PairWork& pair, double t) {
-  AskedEarlier asked{pair.tau,          pair.t_contact, pair.t_enter,
-                     pair.t_stop,       pair.motion_a,  pair.motion_b,
-                     pair.entered,      pair.meets,     pair.overlaps_at_start,
-                     pair.short_of_work};
+  AskedEarlier asked{pair.tau,           pair.t_contact,    pair.t_enter,
+                     pair.t_stop,        pair.motion_a,     pair.motion_b,
+                     pair.entered,       pair.meets,        pair.overlaps_at_start,
+                     pair.short_of_work, pair.stop_gave_up, pair.place};
   asked.t_end = t;
   return asked;
 }
@@ -60,6 +62,8 @@ void take_back(PairWork& pair, const AskedEarlier& asked) {
   pair.meets = asked.meets;
   pair.overlaps_at_start = asked.overlaps_at_start;
   pair.short_of_work = asked.short_of_work;
+  pair.stop_gave_up = asked.stop_gave_up;
+  pair.place = asked.place;
 }
 
 class Response {
@@ -124,7 +128,11 @@ class Response {
       fastest_mm = std::max(
           fastest_mm, move.leg.travel_upper_bound_mm(radius_mm, 0.0, 1.0) / (1.0 - move.leg_start));
     }
-    return fastest_mm > 0.0 ? std::max(changed_at_, t - kBackOff_mm / fastest_mm) : t;
+    const bool banded = std::any_of(
+        work_.pairs.begin(), work_.pairs.begin() + static_cast<std::ptrdiff_t>(work_.pair_count),
+        [&](const PairWork& pair) { return pair.blocks && pair.t_stop == t && !pair.plain(); });
+    const double back_mm = banded ? kBandBackOff_mm : kBackOff_mm;
+    return fastest_mm > 0.0 ? std::max(changed_at_, t - back_mm / fastest_mm) : t;
   }
 
   // The movers of every pair of that time, one for each body, by index.

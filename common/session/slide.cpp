@@ -6,6 +6,7 @@
 #include "common/broadphase/swept_box.h"
 #include "common/ccd/contact_places.h"
 #include "common/math/rotation.h"
+#include "common/session/hold_places.h"
 
 namespace mortise {
 namespace {
@@ -17,19 +18,23 @@ constexpr int kMostBandLegs = 4;
 constexpr int kMostStalls = 4;
 constexpr double kStalled = 1e-9;  // share of the tick
 
-// What is this near counts as holding, mm: less than any clearance.
-constexpr double kReach_mm = 1e-3;
+// What is this near counts as holding, mm: less than any clearance; with bands as near as a search
+// for the time at which a pair becomes real may leave it.
+constexpr double kReach_mm = 1e-3, kBandReach_mm = 0.03;
 // A leg leaves what it leans on by so much, mm, so that it does not end where it begins: of plain
 // parts twice the accuracy of first contact, else twice that of the search for the depth.
 constexpr double kLift_mm = 2.0 * kAccuracyDefault_mm;
-constexpr double kBandLift_mm = 2.0 * kDepthAccuracyDefault_mm;
+constexpr double kBandLift_mm = 2e-3;
 // A shorter leg is none, mm: more than the lifts.
 constexpr double kLeastLeg_mm = 1e-5;
-constexpr double kLeastBandLeg_mm = 10.0 * kBandLift_mm;
+constexpr double kLeastBandLeg_mm = 2.0 * kBandLift_mm;
+
+// How closely the depth of what holds a body is looked at, mm: a share of the lift.
+constexpr double kHoldAccuracy_mm = 0.25 * kBandLift_mm;
 
 // How far the body is tried against what held it, mm: more than the lift, less than a clearance;
 // and at how many places of a leg: one in so many mm.
-constexpr double kTry_mm = 2e-3;
+constexpr double kTry_mm = 2e-3, kBandTry_mm = 6e-3;
 constexpr double kLookEvery_mm = 0.01;
 constexpr int kMostLooks = 64;
 constexpr int kMostBandLooks = 3;
@@ -78,26 +83,9 @@ Side side_of(const PairWork& pair, const Scratch::Impl& work, std::int32_t slidi
   return {a, a != b};
 }
 
-// Parts with bands, or that interfere already, hold where the overlap that is certain is nearest to
-// none; the normal is that of the true surface where one is known.
-Vec3 best_normal(const PairWork& pair, const OverlapRegion& region, const Pose& X_WA,
-                 const Pose& X_WB) {
-  constexpr double kAlike = 0.9;
-  const auto from = [&](const SurfaceBand& band, std::uint32_t triangle, const Pose& X,
-                        double sign) -> Vec3 {
-    const SurfaceBand::Face& face = band.face_of(triangle);
-    if (!face.surface) return Vec3::Zero();
-    return sign * (X.q * face.surface->outward_normal(X.inverse() * region.point_W));
-  };
-  const Vec3 of_b = from(*pair.band_b, region.triangle_b, X_WB, 1.0);
-  const Vec3 of_a = from(*pair.band_a, region.triangle_a, X_WA, -1.0);
-  for (const Vec3& n : {of_b, of_a})
-    if (n.dot(region.normal_W) > kAlike) return n;
-  return region.normal_W;
-}
-
-void add_banded_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool is_a,
-                      CcdScratch& ccd, std::vector<Hold>& holds) {
+// What is certain of a pair at these poses, and a little beyond; kDecided: only whether.
+OverlapQuery certain_query(const PairWork& pair, const Pose& X_WA, const Pose& X_WB,
+                           Refinement refinement) {
   OverlapQuery query;
   query.a = pair.solid_a;
   query.b = pair.solid_b;
@@ -105,22 +93,38 @@ void add_banded_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool i
   query.band_b = pair.band_b;
   query.X_WA = X_WA;
   query.X_WB = X_WB;
-  query.refinement = Refinement::kFull;
-  query.accuracy_mm = 0.5 * kDepthAccuracyDefault_mm;
+  query.refinement = refinement;
+  query.accuracy_mm = kHoldAccuracy_mm;
   query.work_cap = kHoldWorkCap;
+  query.only_certain = true;
+  query.certain_from_mm = -kBandReach_mm;
   query.prove_not_certain = true;
-  const OverlapResult overlap = find_overlap(query, ccd);
+  return query;
+}
+
+OverlapResult ask(PairWork& pair, const OverlapQuery& query, CcdScratch& ccd) {
+  OverlapResult overlap = find_overlap(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += overlap.evaluations;
+  return overlap;
+}
+
+// Parts with bands, or that interfere already, hold where the overlap that is certain is nearest to
+// none.
+void add_banded_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool is_a,
+                      CcdScratch& ccd, std::vector<Hold>& holds) {
+  const OverlapQuery query = certain_query(pair, X_WA, X_WB, Refinement::kFull);
+  const OverlapResult overlap = ask(pair, query, ccd);
   for (const OverlapRegion& region : overlap.regions) {
-    if (region.certain_mm.hi < -kReach_mm) continue;
-    const Vec3 n = best_normal(pair, region, X_WA, X_WB);
-    // What interferes already may not go deeper; nobody has to push it out. Where the search was
-    // given up, what it has found counts, not what it could not rule out.
-    const Interval& certain_mm = region.certain_mm;
-    const double depth_mm = certain_mm.width() > kReach_mm ? certain_mm.lo : certain_mm.hi;
-    const double gap_mm = certain_mm.lo > kDeepeningSlack_mm ? 0.0 : -depth_mm - kBandLift_mm;
-    holds.push_back({region.point_W, is_a ? n : Vec3(-n), std::max(gap_mm, -kReach_mm)});
+    if (region.certain_mm.hi < -kBandReach_mm) continue;
+    for (const HoldPlace& place : hold_places(query, region, kBandReach_mm)) {
+      // What interferes already may not go deeper; nobody has to push it out.
+      const double gap_mm = region.has_witness && region.certain_mm.lo > kDeepeningSlack_mm
+                                ? 0.0
+                                : -place.depth_mm - kBandLift_mm;
+      holds.push_back({place.point_W, is_a ? place.normal_W : Vec3(-place.normal_W),
+                       std::max(gap_mm, -kBandReach_mm)});
+    }
   }
 }
 
@@ -145,7 +149,7 @@ void carry_on(SlidingBody& sliding, double share, const Vec3& center_W) {
     hold.gap_mm += share * hold.normal_W.dot(by);
     hold.point_W += share * by;
   }
-  std::erase_if(sliding.holds, [](const Hold& hold) { return hold.gap_mm > kReach_mm; });
+  std::erase_if(sliding.holds, [](const Hold& hold) { return hold.gap_mm > kBandReach_mm; });
 }
 
 double travel_mm(const Twist& twist, double radius_mm) {
@@ -289,15 +293,6 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& slid
   sliding.look = 2.0;
   const std::int32_t number = move_at(work, sliding.moves.front()).sliding;
   const Move& lead = move_at(work, sliding.moves.front());
-  Twist away{sliding.wanted.shift_mm - sliding.given.shift_mm,
-             sliding.wanted.turn_rad - sliding.given.turn_rad};
-  const double length_mm = travel_mm(away, sliding.body.radius_mm);
-  const double try_mm = kTry_mm + 2.0 * sliding.lift_mm;
-  if (length_mm < try_mm) return;
-  away.shift_mm *= try_mm / length_mm;
-  away.turn_rad *= try_mm / length_mm;
-  const Displacement tried = displacement_of(away);
-
   std::vector<PairWork*> holding;
   bool banded = false;
   for (std::size_t i = 0; i < work.pair_count; ++i) {
@@ -307,6 +302,14 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& slid
     holding.push_back(&pair);
     banded |= !pair.plain();
   }
+  Twist away{sliding.wanted.shift_mm - sliding.given.shift_mm,
+             sliding.wanted.turn_rad - sliding.given.turn_rad};
+  const double length_mm = travel_mm(away, sliding.body.radius_mm);
+  const double try_mm = (banded ? kBandTry_mm : kTry_mm) + 2.0 * sliding.lift_mm;
+  if (length_mm < try_mm) return;
+  away.shift_mm *= try_mm / length_mm;
+  away.turn_rad *= try_mm / length_mm;
+  const Displacement tried = displacement_of(away);
   const double leg_mm = travel_mm(sliding.given, sliding.body.radius_mm);
   const int looks = std::min(banded ? kMostBandLooks : kMostLooks,
                              static_cast<int>(std::ceil(leg_mm / kLookEvery_mm)));
@@ -320,10 +323,11 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& slid
         (is_a ? move_at(work, pair.move_a) : move_at(work, pair.move_b)).leg.reference_P;
     X = rigid_motion(X, X * center_W, tried).X_W1;
     if (pair.plain()) return surfaces_cross(*pair.solid_a, X_W[0], *pair.solid_b, X_W[1], ccd);
-    std::vector<Hold> holds;
-    add_banded_holds(pair, X_W[0], X_W[1], is_a, ccd, holds);
-    return std::any_of(holds.begin(), holds.end(),
-                       [](const Hold& hold) { return hold.gap_mm < -kBandLift_mm; });
+    // Only what is proven free is let go.
+    const OverlapResult overlap =
+        ask(pair, certain_query(pair, X_W[0], X_W[1], Refinement::kDecided), ccd);
+    return std::any_of(overlap.regions.begin(), overlap.regions.end(),
+                       [](const OverlapRegion& region) { return region.certain_mm.hi > 0.0; });
   };
   for (int k = 1; k <= looks; ++k) {
     const double t =

@@ -82,6 +82,7 @@ OverlapQuery overlap_query(const PairWork& pair) {
 struct Look {
   Interval depth_mm;
   bool capped = false;
+  bool witnessed = false;  // some point is in both parts for certain
   bool has_place = false;  // where the deepest region lies, world frame, and its normal from B to A
   Vec3 point_W = Vec3::Zero(), normal_W = Vec3::UnitZ();
 };
@@ -109,6 +110,7 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   look.depth_mm = {elsewhere_mm(pair), elsewhere_mm(pair)};
   for (const OverlapRegion& region : overlap.regions) {
     look.capped |= region.capped;
+    look.witnessed |= region.has_witness;
     look.depth_mm.lo = std::max(look.depth_mm.lo, region.certain_mm.lo);
     if (region.certain_mm.hi < look.depth_mm.hi) continue;
     look.depth_mm.hi = region.certain_mm.hi;
@@ -148,7 +150,7 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   for (int i = 0; i < kAdvanceSteps; ++i) {
     const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, kAll, ccd);
     const Interval& depth_mm = look.depth_mm;
-    if (depth_mm.lo > 0.0 && t == 0.0) {
+    if (look.witnessed && t == 0.0) {
       advance.state = Advanced::kRealAtStart;
       return advance;
     }
@@ -204,7 +206,8 @@ double leave_brink(PairWork& pair, CcdScratch& ccd) {
 // poses at the start are proven already, so that nothing has to be searched.
 bool is_held_again(PairWork& pair) {
   const auto& held = pair.memo->held;
-  if (!held || std::isfinite(pair.memo->allowed_depth_mm) ||
+  // Who slides goes another way than what was held.
+  if (!held || pair.blocked || std::isfinite(pair.memo->allowed_depth_mm) ||
       !identical(held->X_WA, pair.motion_a.X_W0) || !identical(held->X_WB, pair.motion_b.X_W0))
     return false;
   const double speed_mm =

@@ -50,6 +50,8 @@ struct AskedEarlier {
   double tau = 0.0, t_contact = 1.0, t_enter = 0.0, t_stop = 1.0;
   Motion motion_a, motion_b;
   bool entered = false, meets = false, overlaps_at_start = false, short_of_work = false;
+  bool stop_gave_up = false;
+  CertainPlace place;
   double t_end = 1.0;  ///< of the tick: until then
 };
 
