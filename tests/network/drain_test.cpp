@@ -48,7 +48,7 @@ TEST_F(Drain, HandsTheSessionToTheOneThatStandsBy) {
         << leader->errors();
     EXPECT_NE(second->errors().find("hands over: taken over at tick"), std::string::npos)
         << second->errors();
-    EXPECT_EQ(losses_, losses + 2) << "each client changes servers once";
+    EXPECT_EQ(losses_, losses + kClients) << "each client changes servers once";
     EXPECT_EQ(anna_->client->user_id(0), anna);
     EXPECT_EQ(ben_->client->user_id(0), ben);
     EXPECT_EQ(ben_->holder("blue"), ben) << "what was held is held";
@@ -130,7 +130,7 @@ TEST_F(Drain, WhoComesMeanwhileComesInWhereTheSessionGoesOn) {
   });
   EXPECT_TRUE(joined) << second->errors();
   EXPECT_EQ(first->wait(5), 0) << first->errors();
-  EXPECT_EQ(anna_->client->users().size(), 3u);
+  EXPECT_EQ(anna_->client->users().size(), 4u);
   second->signal(SIGTERM);
   EXPECT_EQ(second->wait(10), 0);
 }

@@ -17,14 +17,14 @@ inline double steady_s() {
 
 /// A participant in this process.
 struct Guest {
-  explicit Guest(int domain, const std::string& name) {
+  explicit Guest(int domain, const std::string& name, const std::string& role = "designer") {
     DdsOptions options;
     options.domain = domain;
     auto opened = open_client_channel(options);
     if (!opened) return;
     channel = std::move(*opened);
     client = std::make_unique<Client>(*channel);
-    user = client->add_user(name, "designer");
+    user = client->add_user(name, role);
   }
   bool until(double limit_s, const std::function<bool()>& done) {
     for (const double end_s = steady_s() + limit_s; steady_s() < end_s;) {
