@@ -21,7 +21,7 @@ std::vector<Entry> copy_of(std::span<const Entry> entries) {
 }  // namespace
 
 void HeldChannel::await(const std::vector<SeatRecord>& seats) {
-  for (const SeatRecord& seat : seats) awaited_.insert(seat.client);
+  for (const SeatRecord& seat : seats) awaited_.emplace(seat.client, seat.nonce);
   awaited_enough_ = awaited_.size() / 2;
   waited_s_ = 0.0;
 }
@@ -37,7 +37,7 @@ void HeldChannel::note_heard(const ServerInput& input) {
   for (const ReceivedIncrement& received : input.increments) note_heard(received.increment.user);
   for (const ReceivedCommand& received : input.commands) note_heard(received.command.user);
   for (const UserId user : input.heartbeats) note_heard(user);
-  for (const JoinRequest& join : input.joins) awaited_.erase(join.client);
+  for (const JoinRequest& join : input.joins) awaited_.erase({join.client, join.nonce});
   if (awaited_.size() <= awaited_enough_) awaited_.clear();
 }
 

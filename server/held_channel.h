@@ -83,9 +83,10 @@ class HeldChannel final : public ServerChannel {
   Clock& clock_;
   std::function<std::size_t()> users_;
   std::deque<Kept> kept_;
-  std::uint64_t tick_ = 0;          ///< the last that was told
-  bool in_step_ = false;            ///< one that stands by says what it has, and is waited for
-  std::set<ClientKey> awaited_;     ///< see await()
+  std::uint64_t tick_ = 0;  ///< the last that was told
+  bool in_step_ = false;    ///< one that stands by says what it has, and is waited for
+  /// See await(): a client may hold many users, who count like any others.
+  std::set<std::pair<ClientKey, std::uint64_t>> awaited_;
   std::size_t awaited_enough_ = 0;  ///< so few may still be missing
   double waited_s_ = 0.0;           ///< for the oldest that is kept
   std::size_t users_then_ = 0;      ///< when that wait began

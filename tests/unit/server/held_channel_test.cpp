@@ -227,7 +227,7 @@ TEST_F(Held, ASecondThatGoesIsNotWaitedFor) {
 }
 
 TEST_F(Held, OneThatTookOverSpeaksWhenHalfOfItsUsersHaveCome) {
-  held_.await({{UserId{1}, "a", 0}, {UserId{2}, "b", 0}, {UserId{3}, "c", 0}});
+  held_.await({{UserId{1}, "a", 1}, {UserId{2}, "b", 1}, {UserId{3}, "c", 1}});
   tick(1);
   wire_.input.joins.push_back({"a", 1, "anna", "designer"});
   tick(2);
@@ -237,6 +237,25 @@ TEST_F(Held, OneThatTookOverSpeaksWhenHalfOfItsUsersHaveCome) {
   tick(3);
   rest(0.01);
   EXPECT_EQ(wire_.said, (Ticks{1, 2, 3}));
+}
+
+/// A gateway or a bot holds many users: half of the clients may be few of them, or one most.
+TEST_F(Held, OneThatTookOverCountsUsersNotClients) {
+  std::vector<SeatRecord> seats;
+  for (std::uint32_t i = 1; i <= 6; ++i) seats.push_back({UserId{i}, "gateway", i});
+  seats.push_back({UserId{7}, "a", 1});
+  seats.push_back({UserId{8}, "b", 1});
+  held_.await(seats);
+  tick(1);
+  wire_.input.joins.push_back({"a", 1, "anna", "designer"});
+  wire_.input.joins.push_back({"b", 1, "ben", "designer"});
+  tick(2);
+  rest(1.0);
+  EXPECT_TRUE(wire_.said.empty()) << "two of eight";
+  for (std::uint64_t nonce : {1, 2, 2}) wire_.input.joins.push_back({"gateway", nonce, "g", "bot"});
+  tick(3);
+  rest(0.01);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3})) << "four of eight";
 }
 
 TEST_F(Held, OneThatTookOverAndStaysAloneSaysSo) {
