@@ -1,6 +1,7 @@
 #include "server/inbox.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -9,6 +10,8 @@
 
 namespace mortise {
 namespace {
+
+constexpr std::uint64_t kEverySeq = std::numeric_limits<std::uint64_t>::max();
 
 // So long users of a server that is gone may take to be heard again: twice a participant's lease.
 constexpr double kAwaitAdopted_s = 4.0;
@@ -277,6 +280,8 @@ void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) 
   Seat& seat = seats_[user.value - 1];
   if (!seat.present) return;
   seat.present = false;
+  // What waits was never carried out: who sits here next has nothing to do with it.
+  while (!seat.backlog.empty()) take_first(user, world, 0, intake);
   ++(said_goodbye ? counters_.leaves : counters_.liveliness_lost);
   Decision decision;
   decision.kind = said_goodbye ? Decision::Kind::kLeave : Decision::Kind::kLivelinessLost;
@@ -321,6 +326,7 @@ void Inbox::end_leases(World& world, std::int64_t now_ns, Intake& intake) {
   for (const std::uint32_t i : moving_) {
     const Part& part = world.parts[i];
     if (!part.holder || now_ns - renewed_ns_[i] <= lease_ns) continue;
+    if (waits(part.holder, part.id, kEverySeq)) continue;  // moved, but not yet carried out
     ++counters_.lease_ends;
     Decision decision;
     decision.kind = Decision::Kind::kLeaseEnd;

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,11 +25,14 @@ struct InboxLimits {
   /// Refusals told to one user in one tick; the rest is only counted, so that nonsense is not
   /// amplified.
   std::uint32_t refusals_told_per_tick = 8;
-  /// Increments of one user in one tick; more wait for the next ticks, in order. A device of 240 Hz
-  /// sends 4 in a tick of 60 Hz, so a backlog shrinks at twice the speed at which it grew. Without
-  /// it the increments that piled up in one slow tick would make the next one a single long leap,
-  /// slower still.
+  /// Increments of one user in one tick; more wait for the next ticks, in order. Twice what the
+  /// user sends in the time of a tick, but at least so many: a backlog shrinks as fast as it grew,
+  /// at whatever rate the session ticks. Without it the increments that piled up in one slow tick
+  /// would make the next one a single long leap, slower still.
   std::uint32_t increments_per_tick = 8;
+  /// Increments of one user that wait; more are refused as too many (kRateTooHigh). A second of the
+  /// highest rate, four of a device of 240 Hz: so long may the session stand still.
+  std::uint32_t increments_waiting = 1000;
   /// Parts in the hands of one user: more are refused at the grab. A hand needs one, a group move
   /// some; who takes all keeps the others from working.
   std::uint32_t parts_per_user = 64;
@@ -106,7 +110,7 @@ class Inbox {
 
   const InboxCounters& counters() const { return counters_; }
   const std::vector<UserCounters>& user_counters() const { return user_counters_; }  ///< by index
-  std::size_t waiting_increments() const { return backlog_.size(); }
+  std::size_t waiting_increments() const { return waiting_increments_; }
   std::size_t waiting_commands() const { return deferred_.size(); }
   std::uint32_t users_present() const;
 
@@ -117,7 +121,10 @@ class Inbox {
     bool present = false;
     std::int64_t awaited_until_ns = 0;  ///< adopted, and has not asked again yet; 0: is there
     IncrementOrder increments;
-    std::uint64_t acknowledged = 0;  ///< of the increments
+    std::uint64_t acknowledged = 0;               ///< of the increments
+    std::deque<ReceivedIncrement> backlog;        ///< in rising sequence
+    std::uint32_t queued = 0, queued_before = 0;  ///< increments, in this second and the last one
+    std::int64_t second_ns = 0;                   ///< when this second began
     SequenceWindow commands;
     double tokens = 0.0;  ///< of the rate bucket
     std::int64_t tokens_at_ns = 0;
@@ -138,6 +145,8 @@ class Inbox {
   Seat* seat_of(UserId user, const ClientKey& client);
   UserId first_user_of(const ClientKey& client) const;
   bool take_token(Seat& seat, std::int64_t now_ns);
+  /// How many increments this tick may take of that user.
+  std::size_t share_of(const Seat& seat, const World& world) const;
   /// Would a grab, an ask or a consent give its taker more parts than a user may hold?
   bool hand_is_full(const World& world, const Command& command) const;
   void renew(World& world, UserId user, std::int64_t now_ns);
@@ -153,8 +162,10 @@ class Inbox {
   void receive_increment(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
   /// The same for what is in order now.
   void queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
-  /// Takes this tick's share from the backlog, against the holders as they are now.
+  /// Takes this tick's share from the backlogs, against the holders as they are now.
   void take_increments(const World& world, std::int64_t now_ns, Intake& intake);
+  /// Takes the first one of the backlog of a user, or refuses it.
+  void take_first(UserId user, const World& world, std::int64_t now_ns, Intake& intake);
   bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
   /// The same of a command; counts those that will not wait any longer.
   bool waits(const DeferredCommand& deferred, std::int64_t now_ns);
@@ -184,10 +195,9 @@ class Inbox {
   std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
   std::vector<std::int64_t> asked_ns_;    ///< by part index: since when somebody asks for it
   bool puts_off_newcomers_ = false;
-  std::vector<ReceivedIncrement> backlog_;  ///< in order of arrival
-  std::vector<ReceivedIncrement> ready_;    ///< in order now, of one arrival
-  std::vector<std::uint32_t> taken_;        ///< by user index, in this tick
-  std::vector<DeferredCommand> deferred_;   ///< in order of arrival
+  std::vector<ReceivedIncrement> ready_;   ///< in order now, of one arrival
+  std::size_t waiting_increments_ = 0;     ///< in all backlogs
+  std::vector<DeferredCommand> deferred_;  ///< in order of arrival
   std::vector<DeferredGoodbye> goodbyes_;
   std::uint32_t told_strangers_ = 0;
   double session_tokens_ = 0.0;  ///< of the session's rate bucket; full at the first message

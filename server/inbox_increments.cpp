@@ -1,15 +1,23 @@
 #include "server/inbox.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "common/base/constants.h"
 
 namespace mortise {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+}  // namespace
 
 bool Inbox::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
-  return std::any_of(backlog_.begin(), backlog_.end(), [&](const ReceivedIncrement& r) {
-    return r.increment.user == user && (!part || r.increment.part == part) &&
-           r.increment.seq <= up_to_seq;
+  if (!user || user.value > seats_.size()) return false;
+  const std::deque<ReceivedIncrement>& backlog = seats_[user.value - 1].backlog;
+  return std::any_of(backlog.begin(), backlog.end(), [&](const ReceivedIncrement& r) {
+    return (!part || r.increment.part == part) && r.increment.seq <= up_to_seq;
   });
 }
 
@@ -55,43 +63,63 @@ void Inbox::receive_increment(const ReceivedIncrement& received, std::int64_t no
 
 void Inbox::queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake) {
   const Increment& increment = received.increment;
+  Seat& seat = seats_[increment.user.value - 1];
   Refusal reason = received.at_door;
-  if (reason == Refusal::kNone && !take_token(seats_[increment.user.value - 1], now_ns)) {
+  if (reason == Refusal::kNone &&
+      (!take_token(seat, now_ns) || seat.backlog.size() >= limits_.increments_waiting)) {
     reason = Refusal::kRateTooHigh;
   }
-  if (reason == Refusal::kNone) {
-    backlog_.push_back(received);
+  if (reason != Refusal::kNone) {
+    acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+    refuse(increment, increment.user, reason, intake);
     return;
   }
-  acknowledge(increment.user, increment.seq, received.sent_ns, intake);
-  refuse(increment, increment.user, reason, intake);
+  if (now_ns - seat.second_ns >= kSecond_ns) {
+    seat.queued_before = now_ns - seat.second_ns < 2 * kSecond_ns ? seat.queued : 0;
+    seat.queued = 0;
+    seat.second_ns = now_ns;
+  }
+  ++seat.queued;
+  seat.backlog.push_back(received);
+  ++waiting_increments_;
+}
+
+std::size_t Inbox::share_of(const Seat& seat, const World& world) const {
+  const double sent_per_s = std::max(seat.queued, seat.queued_before);
+  return std::max<std::size_t>(
+      limits_.increments_per_tick,
+      static_cast<std::size_t>(std::ceil(2.0 * sent_per_s / world.tick_rate_hz)));
 }
 
 void Inbox::take_increments(const World& world, std::int64_t now_ns, Intake& intake) {
-  taken_.assign(seats_.size(), 0);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < backlog_.size(); ++i) {
-    const Increment& increment = backlog_[i].increment;
-    const std::size_t user = increment.user.value - 1;
-    Refusal reason = seats_[user].present ? judge(increment, world) : Refusal::kUnknownUser;
-    if (reason == Refusal::kNone) renewed_ns_[increment.part.value - 1] = now_ns;
+  for (std::uint32_t i = 0; i < seats_.size(); ++i) {
+    std::deque<ReceivedIncrement>& backlog = seats_[i].backlog;
+    const std::size_t before = intake.increments.size(), share = share_of(seats_[i], world);
     // Also what would be refused waits its turn: the sequence of a user never goes back.
-    if (seats_[user].present && taken_[user] >= limits_.increments_per_tick) {
-      if (kept != i) backlog_[kept] = backlog_[i];
-      ++kept;
-      continue;
+    while (!backlog.empty() && intake.increments.size() - before < share) {
+      take_first(UserId{i + 1}, world, now_ns, intake);
     }
-    if (reason == Refusal::kNone) {
-      ++taken_[user];
-      ++counters_.accepted;
-      ++counters_of(increment.user).accepted;
-      intake.increments.push_back(increment);
-    }
-    acknowledge(increment.user, increment.seq, backlog_[i].sent_ns, intake);
-    if (reason != Refusal::kNone) refuse(increment, increment.user, reason, intake);
   }
-  backlog_.resize(kept);
-  counters_.longest_backlog = std::max<std::uint64_t>(counters_.longest_backlog, kept);
+  counters_.longest_backlog =
+      std::max<std::uint64_t>(counters_.longest_backlog, waiting_increments_);
+}
+
+void Inbox::take_first(UserId user, const World& world, std::int64_t now_ns, Intake& intake) {
+  Seat& seat = seats_[user.value - 1];
+  const ReceivedIncrement first = std::move(seat.backlog.front());
+  seat.backlog.pop_front();
+  --waiting_increments_;
+  const Increment& increment = first.increment;
+  const Refusal reason = seat.present ? judge(increment, world) : Refusal::kUnknownUser;
+  acknowledge(user, increment.seq, first.sent_ns, intake);
+  if (reason != Refusal::kNone) {
+    refuse(increment, user, reason, intake);
+    return;
+  }
+  renewed_ns_[increment.part.value - 1] = now_ns;
+  ++counters_.accepted;
+  ++counters_of(user).accepted;
+  intake.increments.push_back(increment);
 }
 
 Refusal Inbox::judge(const Increment& increment, const World& world) const {

@@ -137,8 +137,13 @@ struct Decision {
   PartId part;
   std::string user_name;       ///< with kJoin
   Role role = Role::kUnknown;  ///< with kJoin
-  Details details = {};
+  Details details = {};        ///< with kJoin: text is who had the user's id before, see below
 };
 inline constexpr std::uint8_t kDecisionKindCount = 21;
+
+/// Does somebody join with the id of a user who left long ago? Nothing of that user is theirs.
+inline bool takes_over_id(const Decision& decision) {
+  return decision.kind == Decision::Kind::kJoin && !decision.details.text.empty();
+}
 
 }  // namespace mortise

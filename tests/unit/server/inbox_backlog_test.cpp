@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/server/inbox_bench.h"
+
+namespace mortise {
+namespace {
+
+using namespace mortise::testing;
+
+struct Waited {
+  std::size_t most = 0;             ///< increments of all, at the end of a tick
+  double longest_s = 0.0;           ///< from sent to carried out
+  double longest_of_later_s = 0.0;  ///< the same without the first two seconds
+  std::size_t most_in_a_tick = 0;
+};
+
+class InboxBacklogTest : public InboxTest {
+ protected:
+  /// Anna's device sends `per_s` increments a second for `seconds`, and the session ticks.
+  Waited drag(double per_s, double ticks_per_s, double seconds) {
+    world_.tick_rate_hz = ticks_per_s;
+    Waited waited;
+    const std::int64_t start_ns = now_ns_;
+    for (int tick = 1; tick <= seconds * ticks_per_s; ++tick) {
+      now_ns_ = start_ns + static_cast<std::int64_t>(tick * 1e9 / ticks_per_s);
+      waited = after_tick(waited, per_s, start_ns);
+    }
+    return waited;
+  }
+  Waited after_tick(Waited waited, double per_s, std::int64_t start_ns) {
+    ServerInput input;
+    for (; sent_ns(per_s, start_ns) <= now_ns_; ++seq_) {
+      input.increments.push_back(increment("a", anna_, kRed, seq_ + 1));
+      input.increments.back().sent_ns = sent_ns(per_s, start_ns);
+    }
+    admit(std::move(input));
+    waited.most = std::max(waited.most, inbox_.waiting_increments());
+    waited.most_in_a_tick = std::max(waited.most_in_a_tick, intake_.increments.size());
+    for (const Increment& taken : intake_.increments) {
+      const std::int64_t sent =
+          start_ns + static_cast<std::int64_t>(static_cast<double>(taken.seq) * 1e9 / per_s);
+      const double s = static_cast<double>(now_ns_ - sent) * 1e-9;
+      waited.longest_s = std::max(waited.longest_s, s);
+      if (now_ns_ - start_ns > 2 * kSecond_ns)
+        waited.longest_of_later_s = std::max(waited.longest_of_later_s, s);
+    }
+    return waited;
+  }
+  std::int64_t sent_ns(double per_s, std::int64_t start_ns) const {
+    return start_ns + static_cast<std::int64_t>(static_cast<double>(seq_ + 1) * 1e9 / per_s);
+  }
+
+  std::uint64_t seq_ = 0;
+};
+
+TEST_F(InboxBacklogTest, ThousandASecondForAMinuteDoNotPileUp) {
+  const Waited waited = drag(1000.0, 60.0, 60.0);
+  EXPECT_LE(waited.most, 200u);
+  EXPECT_LE(waited.longest_s, 0.25);
+  EXPECT_LE(waited.longest_of_later_s, 2.1 / 60.0) << "of two ticks";
+  EXPECT_EQ(
+      inbox_.counters().accepted + inbox_.counters().refused_in_all() + inbox_.waiting_increments(),
+      seq_);
+  EXPECT_LE(refused(Refusal::kRateTooHigh), 1u) << "that is what the rate admits";
+}
+
+TEST_F(InboxBacklogTest, ADeviceOf240HzInASlowSessionDoesNotPileUp) {
+  const Waited waited = drag(240.0, 20.0, 60.0);
+  EXPECT_LE(waited.most, 100u);
+  EXPECT_LE(waited.longest_s, 0.5);
+  EXPECT_LE(waited.longest_of_later_s, 2.1 / 20.0) << "of two ticks";
+  EXPECT_EQ(inbox_.counters().refused_in_all(), 0u);
+}
+
+// The session stood still for a fifth of a second: 48 increments of a device of 240 Hz.
+TEST_F(InboxBacklogTest, WhatPiledUpInASlowTickIsNoLongLeap) {
+  (void)drag(240.0, 60.0, 3.0);
+  const std::int64_t start_ns = now_ns_ - static_cast<std::int64_t>(3e9);
+  now_ns_ += kSecond_ns / 5;
+  Waited waited = after_tick({}, 240.0, start_ns);
+  EXPECT_GE(waited.most, 40u);
+  for (int tick = 0; tick < 12; ++tick) {
+    now_ns_ += kSecond_ns / 60;
+    waited = after_tick(waited, 240.0, start_ns);
+  }
+  EXPECT_LE(waited.most_in_a_tick, 9u) << "two ticks of this device";
+  EXPECT_LE(inbox_.waiting_increments(), 1u);
+}
+
+// One that ticks far below its rate cannot work off what is sent: what waits is bounded, and what
+// is refused is said.
+TEST_F(InboxBacklogTest, WhatWaitsIsBoundedAndWhatIsBeyondIsRefused) {
+  ServerInput pile;
+  for (std::uint64_t seq = 1; seq <= 900; ++seq)
+    pile.increments.push_back(increment("a", anna_, kRed, seq));
+  admit(std::move(pile));
+  for (std::uint64_t burst = 1; burst <= 20; ++burst) {
+    now_ns_ += kSecond_ns;
+    ServerInput more;
+    for (std::uint64_t i = 1; i <= 900; ++i)
+      more.increments.push_back(increment("a", anna_, kRed, 900 * burst + i));
+    admit(std::move(more));
+    ASSERT_LE(inbox_.waiting_increments(), InboxLimits{}.increments_waiting);
+  }
+  EXPECT_GT(refused(Refusal::kRateTooHigh), 10'000u);
+  ASSERT_FALSE(intake_.refused.empty()) << "it is told";
+  EXPECT_EQ(intake_.refused.front().reason, Refusal::kRateTooHigh);
+  EXPECT_EQ(intake_.refused.front().user, anna_);
+  EXPECT_EQ(
+      inbox_.counters().accepted + inbox_.counters().refused_in_all() + inbox_.waiting_increments(),
+      21u * 900u);
+  std::uint64_t last = 0;  // and the order holds
+  while (inbox_.waiting_increments() != 0) {
+    admit({});
+    for (const Increment& taken : intake_.increments) {
+      ASSERT_GT(taken.seq, last);
+      last = taken.seq;
+    }
+  }
+}
+
+// A part whose motion waits is still in its hand.
+TEST_F(InboxBacklogTest, ALeaseDoesNotEndWhileIncrementsWait) {
+  ServerInput pile;
+  for (std::uint64_t seq = 1; seq <= 900; ++seq)
+    pile.increments.push_back(increment("a", anna_, kRed, seq));
+  admit(std::move(pile));
+  while (inbox_.waiting_increments() > 0) {
+    now_ns_ += 3 * kSecond_ns;  // longer than the lease
+    admit({});
+    ASSERT_EQ(world_.find(kRed)->holder, anna_);
+  }
+  now_ns_ += 3 * kSecond_ns;
+  admit({});
+  EXPECT_FALSE(world_.find(kRed)->holder);
+}
+
+// Who leaves and comes back at once has nothing to do with what was still waiting.
+TEST_F(InboxBacklogTest, WhatWaitsOfSomebodyWhoIsGoneIsRefused) {
+  ServerInput pile;
+  for (std::uint64_t seq = 1; seq <= 100; ++seq)
+    pile.increments.push_back(increment("a", anna_, kRed, seq));
+  admit(std::move(pile));
+  const std::size_t waiting = inbox_.waiting_increments();
+  ASSERT_GT(waiting, 0u);
+  ServerInput gone;
+  gone.lost.push_back({UserId{}, "a", false});
+  gone.joins.push_back({"c", 7, "anna", "designer"});
+  admit(std::move(gone));
+  EXPECT_EQ(inbox_.waiting_increments(), 0u);
+  EXPECT_TRUE(intake_.increments.empty());
+  EXPECT_EQ(refused(Refusal::kUnknownUser), waiting);
+  EXPECT_EQ(inbox_.users_present(), 2u);
+}
+
+}  // namespace
+}  // namespace mortise
