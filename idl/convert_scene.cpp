@@ -276,7 +276,7 @@ wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial) {
   out.tick_p99_us(pulse.tick_p99_us);
   out.tick_max_us(pulse.tick_max_us);
   out.lateness_p99_us(pulse.lateness_p99_us);
-  out.overloads(pulse.overloads);
+  out.missed_deadlines(pulse.missed_deadlines);
   out.refused(pulse.refused);
   out.not_examined(pulse.not_examined);
   out.users(pulse.users);
@@ -300,7 +300,7 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   pulse.tick_p99_us = in.tick_p99_us();
   pulse.tick_max_us = in.tick_max_us();
   pulse.lateness_p99_us = in.lateness_p99_us();
-  pulse.overloads = in.overloads();
+  pulse.missed_deadlines = in.missed_deadlines();
   pulse.refused = in.refused();
   pulse.not_examined = in.not_examined();
   pulse.users = in.users();

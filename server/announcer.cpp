@@ -25,7 +25,8 @@ std::string live_line(const SessionPulse& pulse, double seconds) {
       seconds, pulse.tick, pulse.users, pulse.clashes_open[3], pulse.clashes_open[2],
       pulse.clashes_open[1], pulse.tick_p99_us * 1e-3);
   if (pulse.refused > 0) line += fmt::format(" | {} refused", pulse.refused);
-  if (pulse.overloads > 0) line += fmt::format(" | {} deadlines missed", pulse.overloads);
+  if (pulse.missed_deadlines > 0)
+    line += fmt::format(" | {} deadlines missed", pulse.missed_deadlines);
   return line;
 }
 

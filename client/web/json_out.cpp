@@ -138,7 +138,7 @@ Json json_of(const SessionPulse& pulse) {
             {"p99", number(pulse.tick_p99_us)},
             {"max", number(pulse.tick_max_us)}}},
           {"lateness_p99_us", number(pulse.lateness_p99_us)},
-          {"overloads", pulse.overloads},
+          {"missed_deadlines", pulse.missed_deadlines},
           {"refused", pulse.refused},
           {"not_examined", pulse.not_examined},
           {"users", pulse.users},

@@ -122,7 +122,8 @@ struct SessionPulse {
   std::uint64_t clashes_open[4] = {0, 0, 0, 0};  ///< by CollisionClass
   std::uint64_t clashes_total[4] = {0, 0, 0, 0};
   double tick_p50_us = 0.0, tick_p99_us = 0.0, tick_max_us = 0.0, lateness_p99_us = 0.0;
-  std::uint64_t overloads = 0, refused = 0, not_examined = 0;
+  std::uint64_t missed_deadlines = 0;  ///< that ticks ran past wholly
+  std::uint64_t refused = 0, not_examined = 0;
   std::uint32_t users = 0;
   bool draining = false;  ///< this server ends soon: the session goes on with another, or later
 };

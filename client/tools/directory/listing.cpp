@@ -93,7 +93,7 @@ std::string listing_json(const std::vector<ListedServer>& servers) {
     row["users"] = pulse ? nlohmann::json(pulse->users) : nlohmann::json();
     row["tick"] = pulse ? nlohmann::json(pulse->tick) : nlohmann::json();
     row["tick_p99_us"] = pulse ? nlohmann::json(pulse->tick_p99_us) : nlohmann::json();
-    row["overloads"] = pulse ? nlohmann::json(pulse->overloads) : nlohmann::json();
+    row["missed_deadlines"] = pulse ? nlohmann::json(pulse->missed_deadlines) : nlohmann::json();
     document["servers"].push_back(row);
   }
   // Names may be any bytes.

@@ -18,7 +18,7 @@ TEST(LiveLine, IsOneShortLineAndNamesTroubleOnlyWhenThereIsSome) {
             "30.0 s, tick 1800, 4 users | open: 1 real, 12 potential, 7 fake | tick p99 2.3 ms");
   EXPECT_LE(line.size(), 85U);
   pulse.refused = 3;
-  pulse.overloads = 2;
+  pulse.missed_deadlines = 2;
   EXPECT_NE(live_line(pulse, 30.0).find("3 refused | 2 deadlines missed"), std::string::npos);
 }
 

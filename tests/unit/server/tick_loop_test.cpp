@@ -402,6 +402,7 @@ TEST_F(TickLoopTest, DeadlinesAreAbsoluteAndOverloadIsCounted) {
              });
   EXPECT_EQ(loop_->metrics().overloads, 10U);
   EXPECT_EQ(loop_->metrics().missed_deadlines, 15U);
+  EXPECT_EQ(loop_->pulse().missed_deadlines, 15U) << "what clients are told";
   EXPECT_LE(loop_->metrics().lateness.max_us(), 1e6 / 60.0);
 }
 

@@ -42,7 +42,7 @@ export function makeStatistics({ session, line }, shown) {
       table('Worst of each pair', pairs().length ? pairs() : [['none yet', '']]),
       table('Server, last second', [
         ['Tick, median', microseconds(tick.p50)], ['Tick, 99th percentile', microseconds(tick.p99)], ['Tick, longest', microseconds(tick.max)],
-        ['Overloads', count(pulse?.overloads)], ['Moves refused', count(pulse?.refused)], ['Pairs not examined', count(pulse?.not_examined)], ['Users', count(pulse?.users)],
+        ['Deadlines missed', count(pulse?.missed_deadlines)], ['Moves refused', count(pulse?.refused)], ['Pairs not examined', count(pulse?.not_examined)], ['Users', count(pulse?.users)],
       ]),
       table('Your line', [
         ['Your moves, median', latency ? `${latency.p50.toFixed(1)} ms` : '–'], ['Your moves, 99th percentile', latency ? `${latency.p99.toFixed(1)} ms` : '–'],
