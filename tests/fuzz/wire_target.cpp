@@ -4,6 +4,7 @@
 #include "common/base/check.h"
 #include "idl/chunks.h"
 #include "idl/datagram_guard.h"
+#include "server/tick_bytes.h"
 #include "tests/fuzz/targets.h"
 #include "tests/unit/idl/samples.h"
 
@@ -129,13 +130,58 @@ bool pulses(Bytes bytes) {
   return read<wire::PulsePubSubType>(bytes, sample) && bool(from_wire(sample));
 }
 
+// What a second server is told of a tick: its bytes are read by the room that wrote them.
+bool told_ticks(Bytes bytes) {
+  FollowedTick tick;
+  if (!decode(std::as_bytes(bytes), tick)) return false;
+  FollowedTick again;
+  MORTISE_CHECK(decode(encode(tick), again), "what came in must go out and in again");
+  MORTISE_CHECK(again.tick == tick.tick && again.state_hash == tick.state_hash &&
+                    again.decisions.size() == tick.decisions.size() &&
+                    again.increments.size() == tick.increments.size() &&
+                    again.seats.size() == tick.seats.size(),
+                "and be the same");
+  return true;
+}
+
+bool server_ticks(Bytes bytes) {
+  wire::ServerTick sample;
+  return read<wire::ServerTickPubSubType>(bytes, sample) && told_ticks(Bytes(sample.bytes()));
+}
+
+bool takings(Bytes bytes) {
+  wire::ServerTaken sample;
+  return read<wire::ServerTakenPubSubType>(bytes, sample);
+}
+
+bool presences(Bytes bytes) {
+  wire::Presence sample;
+  return read<wire::PresencePubSubType>(bytes, sample);
+}
+
+ToldTick some_told_tick() {
+  FollowedTick tick;
+  tick.tick = 7;
+  tick.decisions.push_back({Decision::Kind::kJoin, UserId{1}, {}, "anna", Role::kDesigner});
+  tick.decisions.push_back({Decision::Kind::kReview, UserId{1}, PartId{2}, {}, {}, some_details()});
+  tick.increments.push_back(some_increment());
+  tick.has_seats = true;
+  tick.seats.push_back({UserId{1}, "client", 5});
+  return {tick.tick, encode(tick)};
+}
+
+std::string as_text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 }  // namespace
 
 bool fuzz_wire(std::span<const std::uint8_t> input) {
   MORTISE_CHECK(admissible_length(std::as_bytes(input)) <= input.size(), "guard");
   if (input.empty()) return false;
-  constexpr bool (*kDoors[])(Bytes) = {increments, requests, answers, poses,   events,
-                                       snapshots,  meshes,   pulses,  features};
+  constexpr bool (*kDoors[])(Bytes) = {increments, requests,  answers,  poses,    events,
+                                       snapshots,  meshes,    pulses,   features, server_ticks,
+                                       takings,    presences, told_ticks};
   return kDoors[input[0] % std::size(kDoors)](input.subspan(1));
 }
 
@@ -154,6 +200,10 @@ std::vector<std::string> wire_seeds() {
   const RefusedIncrement refused{UserId{2}, PartId{3}, 6, Refusal::kNotHolder};
   FeatureTable features;
   features.sets.push_back({{PartId{1}, PartId{2}}, {some_feature()}});
+  wire::ServerTaken taken;
+  taken.tick(7);
+  wire::Presence present;
+  present.user(1);
   const std::string mesh = "sixteen bytes or so of a mesh";
   return {
       written<wire::IncrementBatchPubSubType>('\0', to_wire(batch)),
@@ -167,6 +217,10 @@ std::vector<std::string> wire_seeds() {
           '\6', cut_mesh("0123456789abcdef", std::as_bytes(std::span(mesh))).front()),
       written<wire::PulsePubSubType>('\7', to_wire(SessionPulse{}, 4)),
       written<wire::FeaturesPubSubType>('\10', cut(features, 3).front()),
+      written<wire::ServerTickPubSubType>('\11', cut(some_told_tick(), 4).front()),
+      written<wire::ServerTakenPubSubType>('\12', taken),
+      written<wire::PresencePubSubType>('\13', present),
+      '\14' + as_text(some_told_tick().bytes),
   };
 }
 
