@@ -210,10 +210,7 @@ void Client::apply_scene(const Snapshot& snapshot) {
   tick_rate_hz_ = snapshot.tick_rate_hz;
   session_users_ = snapshot.users;
   standing_ = snapshot.standing;
-  for (const UserInfo& info : snapshot.users) {
-    LocalUserState* user = own_user(info.user);
-    if (user != nullptr && !info.present) user->in_doubt = true;
-  }
+  for (const UserInfo& info : snapshot.users) doubt(info);
   std::map<PartId, KnownPart> parts;
   for (const PartInfo& info : snapshot.parts) {
     KnownPart& part = parts[info.part];

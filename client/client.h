@@ -171,6 +171,9 @@ class Client {
 
   void apply_decision(const Decision& decision, ClientUpdate& update);
   UserInfo& known_user(UserId id);
+  void forget_user(UserId id);
+  /// Is it a user of ours, gone, or somebody else by now? Then ours has to join again.
+  void doubt(const UserInfo& who);
   void let_go(UserId user, PartId part);
   LocalUserState* own_user(UserId id);
   void forget_server();

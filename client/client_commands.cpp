@@ -148,14 +148,33 @@ void Client::let_go(UserId user, PartId part) {
   });
 }
 
+// Somebody else has the id now: what it stands for in clashes and rules is nobody's.
+void Client::forget_user(UserId id) {
+  const auto forget = [id](UserId& by) {
+    if (by == id) by = UserId{};
+  };
+  for (auto& [clash, event] : open_clashes_) {
+    forget(event.user);
+    forget(event.review.user);
+  }
+  for (Decision& rule : standing_) forget(rule.user);
+}
+
+void Client::doubt(const UserInfo& who) {
+  LocalUserState* user = own_user(who.user);
+  if (user != nullptr && (!who.present || who.name != user->name)) user->in_doubt = true;
+}
+
 void Client::apply_decision(const Decision& decision, ClientUpdate& update) {
   const Details& details = decision.details;
   switch (decision.kind) {
     case Decision::Kind::kJoin: {
+      if (takes_over_id(decision)) forget_user(decision.user);
       UserInfo& user = known_user(decision.user);
       user.present = true;
       user.role = decision.role;
       user.name = decision.user_name;
+      doubt(user);
       break;
     }
     case Decision::Kind::kLeave:

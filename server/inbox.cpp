@@ -73,6 +73,20 @@ Inbox::Seat* Inbox::seat_of(UserId user, const ClientKey& client) {
   return &seat;
 }
 
+UserId Inbox::longest_gone(const World& world) const {
+  UserId longest;
+  std::uint64_t left = 0;
+  for (const User& user : world.users) {
+    const Seat* seat = user.id.value <= seats_.size() ? &seats_[user.id.value - 1] : nullptr;
+    if (user.present || (seat != nullptr && seat->present)) continue;
+    const std::uint64_t when = seat != nullptr ? seat->left : 0;
+    if (longest && when >= left) continue;
+    longest = user.id;
+    left = when;
+  }
+  return longest;
+}
+
 UserId Inbox::first_user_of(const ClientKey& client) const {
   for (std::uint32_t i = 0; i < seats_.size(); ++i) {
     if (seats_[i].present && seats_[i].client == client) return UserId{i + 1};
@@ -225,11 +239,17 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
 
   Decision decision;
   decision.kind = Decision::Kind::kJoin;
-  decision.user = known ? known : UserId{static_cast<std::uint32_t>(world.users.size()) + 1};
+  decision.user = known;
+  if (!known && world.users.size() >= std::max(limits_.names_kept, limits_.max_users)) {
+    decision.user = longest_gone(world);
+    if (const User* gone = world.find(decision.user)) decision.details.text = gone->name;
+  }
+  if (!decision.user) decision.user = UserId{static_cast<std::uint32_t>(world.users.size()) + 1};
   decision.user_name = request.name;
   decision.role = role_named(request.role).value_or(Role::kUnknown);
   apply_decision(world, decision);
   if (decision.user.value > seats_.size()) seats_.resize(decision.user.value);
+  if (takes_over_id(decision)) counters_of(decision.user) = {};
   Seat& seat = seats_[decision.user.value - 1];
   seat = Seat{};
   seat.client = request.client;
@@ -280,8 +300,13 @@ void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) 
   Seat& seat = seats_[user.value - 1];
   if (!seat.present) return;
   seat.present = false;
+  seat.left = ++departures_;
   // What waits was never carried out: who sits here next has nothing to do with it.
   while (!seat.backlog.empty()) take_first(user, world, 0, intake);
+  const std::size_t undone = std::erase_if(
+      deferred_, [&](const DeferredCommand& d) { return d.received.command.user == user; });
+  counters_.commands_refused += undone;
+  counters_of(user).commands_refused += undone;
   ++(said_goodbye ? counters_.leaves : counters_.liveliness_lost);
   Decision decision;
   decision.kind = said_goodbye ? Decision::Kind::kLeave : Decision::Kind::kLivelinessLost;

@@ -22,6 +22,9 @@ struct InboxLimits {
   double session_messages_per_s = 100'000.0;
   /// A session with more is refused: one user costs up to one broad-phase move a tick.
   std::uint32_t max_users = 256;
+  /// Names that the session remembers, of who is there and who was: an id each, in every snapshot.
+  /// With more, a newcomer takes the id of who has been gone longest. At least max_users.
+  std::uint32_t names_kept = 1024;
   /// Refusals told to one user in one tick; the rest is only counted, so that nonsense is not
   /// amplified.
   std::uint32_t refusals_told_per_tick = 8;
@@ -119,6 +122,7 @@ class Inbox {
     ClientKey client;
     std::uint64_t nonce = 0;
     bool present = false;
+    std::uint64_t left = 0;  ///< the how manieth departure; 0: never here, or before this server
     std::int64_t awaited_until_ns = 0;  ///< adopted, and has not asked again yet; 0: is there
     IncrementOrder increments;
     std::uint64_t acknowledged = 0;               ///< of the increments
@@ -143,6 +147,8 @@ class Inbox {
   };
 
   Seat* seat_of(UserId user, const ClientKey& client);
+  /// Of the user who has been gone longest; none: all are here.
+  UserId longest_gone(const World& world) const;
   UserId first_user_of(const ClientKey& client) const;
   bool take_token(Seat& seat, std::int64_t now_ns);
   /// How many increments this tick may take of that user.
@@ -195,6 +201,7 @@ class Inbox {
   std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
   std::vector<std::int64_t> asked_ns_;    ///< by part index: since when somebody asks for it
   bool puts_off_newcomers_ = false;
+  std::uint64_t departures_ = 0;
   std::vector<ReceivedIncrement> ready_;   ///< in order now, of one arrival
   std::size_t waiting_increments_ = 0;     ///< in all backlogs
   std::vector<DeferredCommand> deferred_;  ///< in order of arrival

@@ -11,6 +11,10 @@ void add_operation(CLI::App& app, ServerOptions& o) {
   app.add_option("--max-users", o.limits.max_users, "Users in the session at one time")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
+  app.add_option("--max-names", o.limits.names_kept,
+                 "Names that the session remembers, also of who left")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   app.add_option("--max-messages", o.limits.messages_per_s,
                  "Increments and commands a second and user")
       ->check(CLI::Range(1.0, 1e6))

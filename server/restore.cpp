@@ -65,6 +65,7 @@ SessionStatistics told_statistics(const SessionLog& log, std::uint64_t up_to) {
   for (const TickRecord& record : log.ticks) {
     if (record.tick > up_to) break;
     for (; last + 1 < record.tick; ++last) told.add({});
+    told.forget_users(record.decisions);
     told.add(record.report);
     last = record.tick;
   }

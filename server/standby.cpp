@@ -85,6 +85,7 @@ void Follower::step_once(const FollowedTick& tick) {
   TickRecord record;
   record.report = step(world_, tick.increments, scratch_);
   state_hash_ = record.report.state_hash;
+  statistics_.forget_users(tick.decisions);
   statistics_.add(record.report);
   if (log_ == nullptr) return;
   record.tick = record.report.tick;

@@ -93,6 +93,7 @@ void TickLoop::tick() {
   const std::int64_t step_ns = clock_.now_ns() - step_start_ns;
   metrics_.step.add(step_ns);
   worked_ns_ += step_ns;
+  statistics_.forget_users(intake_.decisions);
   statistics_.add(report_);
   if (!report_.events.empty()) event_seq_ = report_.events.back().seq;
 
@@ -300,7 +301,7 @@ SessionPulse TickLoop::pulse() const {
   pulse.tick_p99_us = metrics_.tick.percentile_us(0.99);
   pulse.tick_max_us = metrics_.tick.max_us();
   pulse.lateness_p99_us = metrics_.lateness.percentile_us(0.99);
-  pulse.overloads = metrics_.missed_deadlines;
+  pulse.missed_deadlines = metrics_.missed_deadlines;
   pulse.refused = inbox_.counters().refused_in_all();
   for (std::uint64_t count : statistics_.counters().refused) pulse.refused += count;
   pulse.not_examined = statistics_.counters().not_examined;

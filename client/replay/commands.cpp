@@ -122,6 +122,10 @@ int run_report(const VerifyOptions& options) {
         statistics.add(report);
         if (names.users.size() != world.users.size() || names.parts.empty())
           names = names_of(world);
+        // An id that somebody took over was first the one's and then the other's: so are its sums.
+        for (std::size_t i = 0; i < world.users.size(); ++i)
+          if (!names.users[i].ends_with(world.users[i].name))
+            names.users[i] += ", then " + world.users[i].name;
       });
   if (!verification) return say_bad_log(verification.error());
   if (options.json) {

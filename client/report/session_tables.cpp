@@ -149,7 +149,12 @@ class Session {
   void take_in(const Decision& decision, std::uint64_t tick) {
     if (decision.kind != Decision::Kind::kJoin || !decision.user) return;
     names_.users.resize(std::max<std::size_t>(names_.users.size(), decision.user.value));
-    names_.users[decision.user.value - 1] = decision.user_name;
+    // An id that somebody took over was first the one's and then the other's: so are its sums.
+    std::string& name = names_.users[decision.user.value - 1];
+    if (takes_over_id(decision) && !name.empty())
+      name += ", then " + decision.user_name;
+    else if (!name.ends_with(", then " + decision.user_name))
+      name = decision.user_name;
     OfUser& user = of_user_[decision.user];
     user.role = decision.role;
     if (user.joined_tick == 0) user.joined_tick = tick;

@@ -210,7 +210,10 @@ void FileWriter::write(const Item& item) {
   if (item.gap_before.ticks > 0) file_->write_gap(item.gap_before);
   file_->write(item.tick);
   accumulate(counters_, item.tick.report.counters);
-  if (options_.rotate_bytes > 0) statistics_.add(item.tick.report);
+  if (options_.rotate_bytes > 0) {
+    statistics_.forget_users(item.tick.decisions);
+    statistics_.add(item.tick.report);
+  }
   ++ticks_in_chunk_;
   if (item.tick.state) write_state(item.tick);
   if (file_->mcap().chunk_is_full()) {

@@ -13,9 +13,19 @@ using Poses = std::vector<PartPose>;
 
 // 1. who is there
 
+// The id is somebody else's from now on.
+void forget(World& world, UserId user) {
+  for (Part& part : world.parts) part.history.forget(user);
+  for (std::vector<Decision>* rules : {&world.standing, &world.restated})
+    for (Decision& rule : *rules)
+      if (rule.user == user) rule.user = UserId{};
+  if (world.state) forget_user(*world.state, user);
+}
+
 void join(World& world, const Decision& decision) {
   const Role role = decision.role == Role::kUnknown ? Role::kDesigner : decision.role;
   if (User* known = world.find(decision.user)) {
+    if (takes_over_id(decision)) forget(world, known->id);
     known->present = true;
     known->last_seq = 0;  // whoever comes back may be a new program that counts from 1
     known->role = role;

@@ -33,6 +33,12 @@ void MoveHistory::note(UserId user, const Pose& X_WP_before) {
   open = true;
 }
 
+void MoveHistory::forget(UserId user) {
+  for (Done& move : done)
+    if (move.user == user) move.user = UserId{};
+  std::erase_if(undone, [user](const Undone& entry) { return entry.move.user == user; });
+}
+
 MoveHistory::Answer MoveHistory::may_undo(UserId user) const {
   if (done.empty()) return {Refusal::kNothingToUndo, UserId{}};
   if (done.back().user != user) return {Refusal::kMovedBySomeoneElse, done.back().user};

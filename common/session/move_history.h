@@ -29,6 +29,8 @@ struct MoveHistory {
   /// What this user has undone before can no longer be repeated.
   void note(UserId user, const Pose& X_WP_before);
   void end_move() { open = false; }
+  /// Nobody is this user any more: their moves stay, and are nobody's to take back or repeat.
+  void forget(UserId user);
 
   /// kNone, kNothingToUndo, or kMovedBySomeoneElse: then `by` has moved the part last.
   struct Answer {

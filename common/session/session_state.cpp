@@ -94,6 +94,28 @@ SessionState& session_state(World& world, bool brute_force_pairs) {
   return *world.state;
 }
 
+void forget_user(SessionState& state, UserId user) {
+  const auto forget = [user](UserId& by) {
+    if (by == user) by = UserId{};
+  };
+  for (PartState& part : state.parts) {
+    forget(part.last_user);
+    forget(part.cause_user);
+  }
+  for (KeptPush& push : state.kept) forget(push.user);
+  for (auto& [pair, clashes] : state.open) {
+    for (OpenClash& clash : clashes) {
+      forget(clash.last.user);
+      forget(clash.last.review.user);
+    }
+  }
+  for (ClashEvent& event : state.reviews) {
+    forget(event.user);
+    forget(event.review.user);
+  }
+  state.clashes_changed = true;
+}
+
 void note_placed(World& world, std::uint32_t index, const Decision& by) {
   if (!world.state) return;
   SessionState& state = *world.state;

@@ -173,6 +173,9 @@ struct SessionState {
 /// of the broad phase.
 SessionState& session_state(World& world, bool brute_force_pairs = false);
 
+/// Nobody is this user any more: what they caused and said of clashes stays, and is nobody's.
+void forget_user(SessionState& state, UserId user);
+
 /// Part `index` was put at a pose without a motion by this decision. No-op before the first step.
 void note_placed(World& world, std::uint32_t index, const Decision& by);
 /// The holder of part `index` changed.

@@ -133,6 +133,15 @@ void SessionStatistics::add(const StepReport& report) {
   }
 }
 
+void SessionStatistics::forget_users(std::span<const Decision> decisions) {
+  for (const Decision& decision : decisions) {
+    if (!takes_over_id(decision)) continue;
+    by_user_.erase(decision.user);
+    for (auto& [id, clash] : clashes_)
+      if (clash.user == decision.user) clash.user = UserId{};
+  }
+}
+
 bool SessionStatistics::is_whole() const {
   std::set<ClashId> told;  // each is open or ended, once
   const auto known = [&](ClashId id) { return clashes_.contains(id) && told.insert(id).second; };

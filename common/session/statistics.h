@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,8 @@ class SessionStatistics {
   };
 
   void add(const StepReport& report);
+  /// Where one of these takes over an id, what was told of its user before is nobody's.
+  void forget_users(std::span<const Decision> decisions);
 
   /// Rows of clashes that have ended, as many as a server keeps.
   static constexpr std::size_t kMostEndedRows = 256;

@@ -114,8 +114,10 @@ Reply apply_command(World& world, const Command& command, Decision& decision);
 
 /// Applies a decision without asking: join, leave (frees the user's parts), lease end, and, in a
 /// replay, all the others. A join without a user id takes the next one, which is then
-/// users.back().id; with the id of an absent user it brings that user back. Returns the parts whose
-/// holder or pose changed, by id. What cannot apply (unknown user or part) changes nothing.
+/// users.back().id; with the id of an absent user it brings that user back, or, where
+/// takes_over_id(), gives the id to somebody else, to whom nothing of that user belongs. Returns
+/// the parts whose holder or pose changed, by id. What cannot apply (unknown user or part) changes
+/// nothing.
 std::vector<PartPose> apply_decision(World& world, const Decision& decision);
 
 }  // namespace mortise

@@ -29,6 +29,7 @@ namespace {
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr char kScenario[] = "day.yaml";
 constexpr int kPeople = 6, kTicks_per_s = 60;
+constexpr std::uint32_t kNames = 8;                  ///< that the session remembers
 constexpr double kBurst_s = 20.0, kEvery_s = 200.0;  ///< they work for so long, so often
 constexpr double kState_kb = 64.0, kGrowth_mb = 4.0;
 
@@ -40,10 +41,11 @@ struct DayClock final : Clock {
 };
 
 struct Counts {
-  int joins = 0, leaves = 0, kills = 0, silences = 0, moves = 0, commands = 0;
+  int joins = 0, leaves = 0, kills = 0, silences = 0, moves = 0, commands = 0, names = 0;
 };
 
-/// One of the people, who comes again and again by the same name.
+/// One of the people, who comes again and again: now by the same name, now by one never heard
+/// before.
 class Person {
  public:
   Person(MemoryHub& hub, DayClock& clock, int number)
@@ -67,7 +69,9 @@ class Person {
     channel_ = hub_.open_client();
     key_ = hub_.last_client();
     client_ = std::make_unique<Client>(*channel_, ClientOptions{}, [this] { return clock_.at_ns; });
-    client_->add_user(name_, "designer");
+    const bool by_new_name = chance(0.5);
+    counts.names += by_new_name;
+    client_->add_user(by_new_name ? name_ + std::to_string(counts.names) : name_, "designer");
     ++counts.joins;
   }
   void go(Counts& counts) {
@@ -183,7 +187,9 @@ TEST(Day, NothingThatASessionHoldsGrowsWithTheHours) {
   const auto server = hub.open_server();
   const auto log = log_in(folder.path(), yaml, scene);
   ASSERT_NE(log, nullptr);
-  TickLoop loop(world, *server, clock, log.get(), TickLoopOptions{});
+  TickLoopOptions options;
+  options.inbox.max_users = options.inbox.names_kept = kNames;
+  TickLoop loop(world, *server, clock, log.get(), options);
   loop.open();
   std::vector<Person> people;
   for (int i = 0; i < kPeople; ++i) people.emplace_back(hub, clock, i);
@@ -215,20 +221,22 @@ TEST(Day, NothingThatASessionHoldsGrowsWithTheHours) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   const double half_s = 0.5 * lasts_s, slope = test::resident_mb_per_h(seen, half_s);
   std::printf(
-      "%.1f h in %.0f s: %d came, %d went, %d killed, %d silent for longer than a lease (%llu "
+      "%.1f h in %.0f s: %d came (%d by new names), %d went, %d killed, %d silent for longer than "
+      "a lease (%llu "
       "leases ended), %d moves, %d commands, %llu clash events; state at most %.1f kB; %+.3f MB an "
       "hour in the second half\n",
-      lasts_s / 3600.0, took.count(), counts.joins, counts.leaves, counts.kills, counts.silences,
-      static_cast<unsigned long long>(loop.inbox().counters().lease_ends), counts.moves,
-      counts.commands, static_cast<unsigned long long>(snapshot_of(world).event_seq), most_state_kb,
-      slope);
+      lasts_s / 3600.0, took.count(), counts.joins, counts.names, counts.leaves, counts.kills,
+      counts.silences, static_cast<unsigned long long>(loop.inbox().counters().lease_ends),
+      counts.moves, counts.commands, static_cast<unsigned long long>(snapshot_of(world).event_seq),
+      most_state_kb, slope);
   EXPECT_GT(counts.joins, kPeople);
   EXPECT_GT(counts.kills, 0);
   EXPECT_GT(counts.silences, 0);
   EXPECT_GT(loop.inbox().counters().accepted, 1000u);
   EXPECT_GT(loop.inbox().counters().lease_ends, 0u);
 
-  EXPECT_LE(world.users.size(), static_cast<std::size_t>(kPeople)) << "who comes again is the same";
+  EXPECT_GT(counts.names, static_cast<int>(kNames)) << "no id was taken over";
+  EXPECT_LE(world.users.size(), std::size_t{kNames}) << "names that nobody comes by any more";
   EXPECT_EQ(loop.inbox().waiting_commands() + loop.inbox().waiting_increments(), 0u);
   EXPECT_LE(most_state_kb, kState_kb);
   const auto later = [&](auto what) {

@@ -224,8 +224,19 @@ export class Session extends Signals {
     if (decision.kind === 'set policy') this.policy = decision.text;
     const parts = decision.parts?.length ? decision.parts : [decision.part];
     for (const id of parts) this.#holders(decision, id);
+    if (decision.kind === 'join' && decision.text) this.#forgetUser(decision.user);
     this.#keepStanding(decision);
     this.emit('decision', decision);
+  }
+
+  /** Somebody else has the id now. @param {number} id */
+  #forgetUser(id) {
+    for (const clash of this.clashes.values()) {
+      if (clash.user === id) clash.user = 0;
+      if (clash.review?.user === id) clash.review.user = 0;
+    }
+    this.standing = this.standing.map((rule) => (rule.user === id ? { ...rule, user: 0 } : rule));
+    for (const what of /** @type {const} */ (['clashes', 'standing'])) this.emit(what, undefined);
   }
 
   /** @param {any} decision @param {number} id */
