@@ -186,6 +186,13 @@ Result<Identity> check_keys(const fs::path& folder) {
       error != X509_V_OK) {
     return bad(files.certificate, what_is_wrong(error, identity, certificate.get()));
   }
+  const std::string serial = serial_text(X509_get0_serialNumber(certificate.get()));
+  if (serial != identity.serial) {
+    return bad(files.certificate, "the certificate of '" + identity.name + "' has the serial " +
+                                      serial + " and says " + identity.serial +
+                                      ": it could not be taken back; revoke it and issue a new "
+                                      "one with mortise keys");
+  }
   const auto key = read_pem<Key>(files.key, PEM_read_bio_PrivateKey);
   if (!key || X509_check_private_key(certificate.get(), key.get()) != 1) {
     ERR_clear_error();

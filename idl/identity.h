@@ -25,7 +25,8 @@ Result<Identity> identity_of_subject(const std::string& subject);
 
 /// Looks at keys before they are used, so that what is wrong with them is said here and by name;
 /// the other end only refuses. Checks that the files are there, that the certificate is of the
-/// site's authority, valid now and not revoked, and that its key is the one beside it.
+/// site's authority, valid now and not revoked, that its serial is the one its subject says (by
+/// which it is taken back while its owner is there), and that its key is the one beside it.
 Result<Identity> check_keys(const std::filesystem::path& folder);
 
 /// Whom the participants that were met belong to. Under DDS-Security the first 47 bits of a

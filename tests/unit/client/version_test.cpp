@@ -9,7 +9,7 @@ namespace {
 TEST(Version, EachProgramSaysWhichBuildItIs) {
   const TestFolder folder;
   for (const char* name : {"server", "web", "bot", "replay", "directory", "judge", "lint",
-                           "inspect", "first-contact", "generate"}) {
+                           "inspect", "first-contact", "generate", "keys"}) {
     const std::string program = std::string("mortise-") + name;
     if (!std::filesystem::exists(program_path(program))) continue;  // built without its libraries
     Program asked(folder.path(), program, {"--version"});
