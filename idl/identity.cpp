@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -143,6 +144,11 @@ KeyFiles::KeyFiles(const fs::path& given) {
   governance = folder / "governance.p7s";
   permissions = folder / "permissions.p7s";
   revocations = folder / "crl.pem";
+  const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
+  if (credentials == nullptr) return;
+  const fs::path handed_over = fs::path(credentials) / key.filename();
+  // Empty: a unit that would hand one over was given none.
+  if (fs::file_size(handed_over, ignored) > 0 && !ignored) key = handed_over;
 }
 
 Result<Identity> identity_of_subject(const std::string& subject) {

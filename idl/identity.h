@@ -13,7 +13,9 @@
 
 namespace mortise {
 
-/// What is in the folder of one identity, as `mortise-keys issue` makes it.
+/// What is in the folder of one identity, as `mortise-keys issue` makes it. The key alone may come
+/// from elsewhere: from a service manager that hands secrets to a process without an account of its
+/// own ($CREDENTIALS_DIRECTORY/identity.key), so that the folder's key stays root's.
 struct KeyFiles {
   explicit KeyFiles(const std::filesystem::path& folder);
   std::filesystem::path authority, certificate, key, governance, permissions, revocations;

@@ -1,5 +1,7 @@
 #include "client/web/options.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
@@ -75,11 +77,15 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
       "File of two lines, the tokens of designers and of observers (made when it is not there), "
       "or a line ROLE NAME TOKEN for each person (mortise keys token). Default: two new "
       "ones for this run");
+  app.add_option("--addresses", o.addresses,
+                 "File for the addresses with their tokens, which only its owner reads; -: stdout. "
+                 "Default: stdout where that is a terminal, else none are said");
   add_web(app, o.gateway);
   app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
   app.footer(
-      "Prints two addresses, one for designers and one for who only looks on; whoever has one may "
-      "come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 usage, 3 bad file (page, "
+      "Prints two addresses, one for designers and one for who only looks on, or one for each "
+      "person; whoever has one may come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 "
+      "usage, 3 bad file (page, "
       "tokens, certificate, log).");
   try {
     app.parse(argc, argv);
@@ -88,6 +94,11 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
           "--address " + o.gateway.address +
           " opens the gateway to other hosts: give --certificate and --key, or "
           "stay on 127.0.0.1 behind a proxy that speaks TLS");
+    }
+    if (o.addresses.empty() && o.tokens.empty() && ::isatty(STDOUT_FILENO) == 0) {
+      throw CLI::ValidationError(
+          "stdout is no terminal, so that nobody would learn the tokens of this run: give "
+          "--addresses FILE (or - for stdout all the same), or --tokens FILE");
     }
   } catch (const CLI::ParseError& error) {
     line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;

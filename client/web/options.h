@@ -16,6 +16,7 @@ struct WebOptions {
   std::string session_log;  ///< of the live session, for reports; empty: there are none
   std::string page;         ///< folder
   std::string tokens;       ///< file; empty: made for this run
+  std::string addresses;    ///< see AddressesTo
   GatewayOptions gateway;
   bool quiet = false;
 };

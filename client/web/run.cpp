@@ -5,10 +5,10 @@
 #include <spdlog/spdlog.h>
 
 #include <csignal>
-#include <iostream>
 #include <thread>
 
 #include "client/report/report.h"
+#include "client/web/addresses.h"
 #include "client/web/live_feed.h"
 #include "client/web/replay_feed.h"
 #include "common/messages/names.h"
@@ -50,16 +50,7 @@ Result<Tokens> tokens_of(const WebOptions& options) {
   return tokens_of_file(options.tokens);
 }
 
-void say_addresses(const Gateway& gateway, const Tokens& tokens, const PageFiles& page) {
-  for (const Tokens::Personal& person : tokens.people) {
-    std::cout << name_of(person.bearer.role) << " " << person.bearer.name << " "
-              << gateway.address(person.token) << "\n";
-  }
-  if (tokens.people.empty()) {
-    std::cout << "designer " << gateway.address(tokens.designer) << "\nobserver "
-              << gateway.address(tokens.observer) << "\n";
-  }
-  std::cout << std::flush;
+void warn_without_three(const PageFiles& page) {
   if (!page.has_three()) {
     spdlog::warn(
         "three.js is not installed: the page has no 3D view until `npm ci --omit=dev` was run in "
@@ -81,7 +72,9 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   const auto say = [](const std::string& line) { spdlog::warn("{}", line); };
   auto gateway = Gateway::open(gateway_options, *tokens, *page, feed, say);
   if (!gateway) return fail_with(gateway.error());
-  say_addresses(**gateway, *tokens, *page);
+  if (Status said = say_addresses({options.addresses, options.tokens}, **gateway, *tokens); !said)
+    return fail_with(said.error());
+  warn_without_three(*page);
   stop_signal.then_stop(**gateway);
   (*gateway)->run();
   spdlog::info("ended; {}", feed.statistics().dump());

@@ -1,18 +1,16 @@
 #include "client/web/tokens.h"
 
-#include <fcntl.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 #include <openssl/sha.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <sstream>
+
+#include "client/web/private_file.h"
 
 namespace mortise::web {
 namespace {
@@ -69,17 +67,6 @@ std::optional<std::vector<Tokens::Personal>> read_people(std::istream& in) {
   return people;
 }
 
-Status write_new(const std::string& file, const Tokens& tokens) {
-  const std::string text = tokens.designer + "\n" + tokens.observer + "\n";
-  const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  const bool written =
-      out >= 0 && ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  const int error = errno;
-  if (out >= 0) ::close(out);
-  if (written) return ok();
-  return fail(Code::kRuntime, file + ": cannot be written: " + std::strerror(error));
-}
-
 }  // namespace
 
 Tokens make_tokens() { return {random_hex(), random_hex()}; }
@@ -88,7 +75,8 @@ Result<Tokens> tokens_of_file(const std::string& file) {
   std::ifstream in(file);
   if (!in) {
     const Tokens made = make_tokens();
-    if (Status written = write_new(file, made); !written) return written.error();
+    const std::string lines = made.designer + "\n" + made.observer + "\n";
+    if (Status written = write_private(file, lines); !written) return written.error();
     return made;
   }
   Tokens tokens;

@@ -28,7 +28,7 @@ BenchGateway::BenchGateway(BenchServer& server) {
   program_ = std::make_unique<test::Program>(
       server.folder().path(), "mortise-web",
       std::vector<std::string>{"--domain", std::to_string(server.domain()), "--page",
-                               server.folder().path().string(), "--quiet"});
+                               server.folder().path().string(), "--addresses", "-", "--quiet"});
   const std::regex line("designer http://[^:]*:(\\d+)/#token=(\\S+)\\n");
   std::smatch match;
   for (const double end_s = steady_s() + kStart_s; steady_s() < end_s; sleep_s(0.05)) {

@@ -160,6 +160,20 @@ TEST_F(Keys, OnlyTheirOwnerReadsKeys) {
     EXPECT_EQ(mode(file), all) << file;
 }
 
+TEST_F(Keys, AServiceIsHandedItsKey) {
+  ASSERT_EQ(run({"issue", "hall", "--role", "server"}), 0) << said;
+  const fs::path credentials = folder.path() / "credentials", copy = folder.path() / "hall.keys";
+  fs::create_directory(credentials);
+  fs::copy(ring / "hall", copy);
+  fs::rename(copy / "identity.key", credentials / "identity.key");
+  EXPECT_NE(trouble_with(copy), "");
+  setenv("CREDENTIALS_DIRECTORY", credentials.c_str(), 1);
+  EXPECT_EQ(trouble_with(copy), "");
+  std::ofstream(credentials / "identity.key");  // of a unit that was given none
+  EXPECT_EQ(trouble_with(ring / "hall"), "");
+  unsetenv("CREDENTIALS_DIRECTORY");
+}
+
 TEST_F(Keys, ASiteMayBeMoved) {
   ASSERT_EQ(run({"issue", "anna", "--role", "designer"}), 0) << said;
   const fs::path before = ring;

@@ -52,7 +52,7 @@ export class LiveSession {
    */
   async open(log, port = '0') {
     const from = log ? ['--log', join(root, log)] : ['--session', this.name, '--domain', `${this.domain}`];
-    const args = [...from, '--port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens')];
+    const args = [...from, '--port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens'), '--addresses', '-'];
     this.gateway = await this.start('web', args, (text) => {
       const designer = /^designer (http\S+)$/m.exec(text);
       const observer = /^observer (http\S+)$/m.exec(text);
