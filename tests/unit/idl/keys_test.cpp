@@ -169,7 +169,7 @@ TEST_F(Keys, AServiceIsHandedItsKey) {
   EXPECT_NE(trouble_with(copy), "");
   setenv("CREDENTIALS_DIRECTORY", credentials.c_str(), 1);
   EXPECT_EQ(trouble_with(copy), "");
-  std::ofstream(credentials / "identity.key");  // of a unit that was given none
+  std::ofstream(credentials / "identity.key") << "none";  // of a unit that was given none
   EXPECT_EQ(trouble_with(ring / "hall"), "");
   unsetenv("CREDENTIALS_DIRECTORY");
 }
