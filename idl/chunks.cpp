@@ -1,6 +1,7 @@
 #include "idl/chunks.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/base/hash.h"
 #include "idl/convert.h"
@@ -213,6 +214,29 @@ std::vector<wire::MeshChunk> cut_mesh(const std::string& hash, std::span<const s
   }
   number(chunks);
   return chunks;
+}
+
+std::optional<ToldTick> TickCollector::add(const wire::ServerTick& piece) {
+  const bool possible = piece.chunk() < piece.count() && piece.count() <= kMaxPieces &&
+                        piece.bytes().size() <= kSampleLimit_bytes;
+  const bool follows = piece.chunk() == next_ && piece.tick() == tick_.tick &&
+                       piece.term() == term_ && piece.count() == count_;
+  if (!possible || (piece.chunk() > 0 && !follows)) {
+    dropped_ += 1 + std::exchange(next_, 0);
+    tick_ = {};
+    return std::nullopt;
+  }
+  if (piece.chunk() == 0) {
+    dropped_ += std::exchange(next_, 0);
+    tick_ = {piece.tick(), {}};
+    term_ = piece.term();
+    count_ = piece.count();
+  }
+  const auto bytes = std::as_bytes(std::span(piece.bytes()));
+  tick_.bytes.insert(tick_.bytes.end(), bytes.begin(), bytes.end());
+  if (++next_ < count_) return std::nullopt;
+  next_ = 0;
+  return std::exchange(tick_, {});
 }
 
 std::optional<MeshBytes> MeshCollector::add(const wire::MeshChunk& chunk) {

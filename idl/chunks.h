@@ -57,6 +57,21 @@ class ChunkCollector {
   std::map<std::uint32_t, Chunk> chunks_;
 };
 
+/// Collects what one that leads tells of its ticks, each in pieces that come in order. A piece that
+/// does not go on from the one before is dropped with what was there of its tick, and counted.
+class TickCollector {
+ public:
+  /// The tick when this piece was the last of it.
+  std::optional<ToldTick> add(const wire::ServerTick& piece);
+  std::uint64_t dropped() const { return dropped_; }  ///< pieces
+
+ private:
+  static constexpr std::uint32_t kMaxPieces = 1024;  // 60 MB; a full tick of 64 users has one
+  std::uint64_t term_ = 0, dropped_ = 0;
+  std::uint32_t next_ = 0, count_ = 0;  ///< next 0: no tick is begun
+  ToldTick tick_;
+};
+
 /// Collects meshes. A mesh whose bytes do not match its key is refused and counted.
 class MeshCollector {
  public:

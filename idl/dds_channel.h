@@ -22,8 +22,11 @@ struct DdsOptions {
   double liveliness_lease_s = 0.8;   ///< server and client: a silent client is gone after this
   double participant_lease_s = 2.0;  ///< a silent process is gone after this
   double heartbeat_period_s = 0.1;   ///< of reliable writers; 0.02 on lossy links
-  bool meshes = true;                ///< client: receive meshes
-  bool features = true;              ///< client: receive what constraints can name
+  /// Server: when the session was led last, ms since 1970, as its log tells; 0: it begins. It leads
+  /// under a later term, also where the clock was set back since.
+  std::uint64_t led_until_ms = 0;
+  bool meshes = true;    ///< client: receive meshes
+  bool features = true;  ///< client: receive what constraints can name
   /// Folder of an identity (see client/tools/keys): DDS-Security on. Empty: off. Participants with
   /// and without never meet.
   std::string keys = {};

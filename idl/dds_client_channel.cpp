@@ -1,6 +1,4 @@
 #include <chrono>
-#include <map>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -8,94 +6,18 @@
 #include "idl/convert.h"
 #include "idl/dds_channel.h"
 #include "idl/participant.h"
+#include "idl/server_watch.h"
 #include "mortisePubSubTypes.h"
 
 namespace mortise {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
 using Clock = std::chrono::steady_clock;
-
-/// Knows which server leads the session, by the match with its answers and the term that its
-/// writers carry. The highest term counts, of equal ones the newest: one that was killed and
-/// started again is met before the old one's lease ends, and one that was overtaken may come back.
-/// What was led by a higher term is never led by a lower one again.
-class ServerWatch final : public dds::DomainParticipantListener {
- public:
-  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
-    const std::lock_guard lock(mutex_);
-    const std::uint64_t term = term_of(info.info.m_qos.m_userData.data_vec());
-    servers_[info.info.guid().guidPrefix].term = term;
-    highest_term_ = std::max(highest_term_, term);
-    choose();
-  }
-  void on_subscription_matched(dds::DataReader*,
-                               const dds::SubscriptionMatchedStatus& status) override {
-    const std::lock_guard lock(mutex_);
-    Server& server = servers_[prefix_of(status.last_publication_handle)];
-    server.answers = status.current_count_change > 0;
-    if (server.answers) server.met = ++met_;
-    choose();
-  }
-  void on_publication_matched(dds::DataWriter*,
-                              const dds::PublicationMatchedStatus& status) override {
-    const std::lock_guard lock(mutex_);
-    servers_[prefix_of(status.last_subscription_handle)].readers += status.current_count_change;
-  }
-  struct Answer {
-    bool lost = false;     ///< since the last call
-    bool present = false;  ///< and hears us, on so many topics
-  };
-  Answer take(int topics) {
-    const std::lock_guard lock(mutex_);
-    const auto leader = servers_.find(leader_);
-    const bool present = led_ && leader != servers_.end() && leader->second.readers >= topics;
-    for (auto& [prefix, server] : servers_) server.gone = server.met > 0 && !server.answers;
-    return {std::exchange(lost_, false), present};
-  }
-  /// Nothing that it says counts any more: overtaken, or its going was told by take(). Its last
-  /// words may come after that, each topic by its own way.
-  bool is_past(const rtps::GuidPrefix_t& server) const {
-    const std::lock_guard lock(mutex_);
-    const auto found = servers_.find(server);
-    return found != servers_.end() && (found->second.gone || found->second.term < highest_term_);
-  }
-
- private:
-  struct Server {
-    std::uint64_t term = 0, met = 0;
-    bool answers = false, gone = false;
-    int readers = 0;
-  };
-  static rtps::GuidPrefix_t prefix_of(const rtps::InstanceHandle_t& handle) {
-    return rtps::iHandle2GUID(handle).guidPrefix;
-  }
-  void choose() {
-    const Server* best = nullptr;
-    rtps::GuidPrefix_t leader;
-    for (const auto& [prefix, server] : servers_) {
-      if (!server.answers || server.term < highest_term_) continue;
-      if (best != nullptr && server.met < best->met) continue;
-      best = &server;
-      leader = prefix;
-    }
-    const bool same = led_ == (best != nullptr) && (!led_ || leader == leader_);
-    if (same) return;
-    lost_ = lost_ || led_;
-    led_ = best != nullptr;
-    leader_ = leader;
-  }
-
-  mutable std::mutex mutex_;
-  std::map<rtps::GuidPrefix_t, Server> servers_;
-  std::uint64_t highest_term_ = 0, met_ = 0;
-  bool lost_ = false, led_ = false;
-  rtps::GuidPrefix_t leader_;
-};
 
 class DdsClientChannel final : public ClientChannel {
  public:
   Status open(const DdsOptions& options) {
+    watch_.look_for(options.session);
     auto participant = Participant::open(options, Participant::Side::kClient, &watch_);
     if (!participant) return participant.error();
     participant_ = std::move(participant.value());
@@ -156,6 +78,8 @@ class DdsClientChannel final : public ClientChannel {
     assert_presence();
     if (increments_ == nullptr) {
       ++counters_.send_failed;
+      for (const auto& [increment, sent_ns] : batch.increments)
+        unsent_.push_back({increment.user, increment.part, increment.seq, Refusal::kObserver});
       return;
     }
     write(increments_, to_wire(batch));
@@ -183,6 +107,7 @@ class DdsClientChannel final : public ClientChannel {
     take_pulses(input);
     take_meshes(input);
     take_features(input);
+    refuse_unsent(input);
     // Answers can be heard; and what is sent from now on will be.
     const ServerWatch::Answer watch = watch_.take(increments_ == nullptr ? 2 : 3);
     lost_ = watch.lost;
@@ -355,6 +280,16 @@ class DdsClientChannel final : public ClientChannel {
     });
   }
 
+  /// Of an observer with keys: as a server answers one without, lest it is sent again for ever.
+  void refuse_unsent(ClientInput& input) {
+    PoseBatch answered;
+    for (const RefusedIncrement& refused : unsent_)
+      answered.acks.push_back({refused.user, refused.seq, 0});
+    if (!unsent_.empty()) input.poses.push_back(std::move(answered));
+    append(unsent_, input.refused);
+    unsent_.clear();
+  }
+
   template <class Entry>
   static void append(std::vector<Entry>& from, std::vector<Entry>& to) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
@@ -370,7 +305,8 @@ class DdsClientChannel final : public ClientChannel {
   Clock::duration assert_period_{};
   Clock::time_point asserted_at_{};
   std::uint64_t beat_ = 0;
-  bool lost_ = false;  ///< to be told with the next input
+  std::vector<RefusedIncrement> unsent_;  ///< an observer's, to be told with the next input
+  bool lost_ = false;                     ///< to be told with the next input
   rtps::GuidPrefix_t server_;
   ChunkCollector<wire::Snapshot> snapshot_collector_;
   ChunkCollector<wire::PoseBatch> keyframe_collector_;

@@ -19,12 +19,6 @@ namespace {
 constexpr int kLookForLeader_ms = 2000;
 constexpr int kLastWords_ms = 300;
 
-std::uint64_t now_ms() {
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
-                                        std::chrono::system_clock::now().time_since_epoch())
-                                        .count());
-}
-
 class DdsServerChannel final : public StandbyChannel {
  public:
   /// Says goodbye after its last words were heard; who does not listen is not waited for long.
@@ -59,16 +53,17 @@ class DdsServerChannel final : public StandbyChannel {
     return status;
   }
   Status take_over() override {
-    term_ = std::max(now_ms(), leader_term_ + 1);
+    term_ = next_term(std::max(leader_term_, led_until_ms_));
     participant_->set_term(term_);
     if (Status opened = open_endpoints(); !opened) return opened;
     beat_ = std::make_unique<Heartbeat>(*ticks_);
     return told_ != nullptr ? ok() : listen_to_servers();
   }
   void lead_anew() override {
-    term_ = std::max(now_ms(), term_ + 1);
+    term_ = next_term(term_);
     participant_->change_term(*answers_, term_);
   }
+  std::uint64_t term_ms() const override { return term_; }
   void confirm(std::uint64_t tick) override {
     wire::ServerTaken sample;
     sample.tick(tick);
@@ -92,6 +87,7 @@ class DdsServerChannel final : public StandbyChannel {
     auto participant = Participant::open(options, side, &doorman_);
     if (!participant) return participant.error();
     participant_ = std::move(participant.value());
+    led_until_ms_ = options.led_until_ms;
     servers_.know_own(participant_->key());
     return ok();
   }
@@ -125,13 +121,13 @@ class DdsServerChannel final : public StandbyChannel {
  public:
   ServerInput take() override {
     ServerInput input;
+    if (identities_) turn_away(input);  // first: who has to go does not come in by this take()
     input.follower_came = servers_.take_came();
     input.superseded = take_told(nullptr);
     take_requests(input);
     take_presence(input);
     take_increments(input);
     take_departures(input);
-    if (identities_) turn_away(input);
     return input;
   }
 
@@ -208,7 +204,7 @@ class DdsServerChannel final : public StandbyChannel {
   }
   ChannelCounters counters() const override {
     ChannelCounters counters = counters_;
-    counters.malformed += participant_->refused();
+    counters.malformed += participant_->refused() + tick_collector_.dropped();
     counters.guard_dropped = participant_->dropped();
     counters.trailers_cut = participant_->cut();
     return counters;
@@ -216,7 +212,7 @@ class DdsServerChannel final : public StandbyChannel {
 
  private:
   /// What other servers tell, of the one with the highest term (of equal ones: highest key); says
-  /// whether that one leads instead of us. Pieces come in order.
+  /// whether that one leads instead of us.
   bool take_told(std::vector<ToldTick>* ticks) {
     bool superseded = false;
     take_all<wire::ServerTick>(told_, [&](const wire::ServerTick& sample, const ClientKey& key) {
@@ -226,10 +222,7 @@ class DdsServerChannel final : public StandbyChannel {
       leader_ = key;
       superseded |= term_ != 0 && rank > std::pair(term_, participant_->key());
       if (ticks == nullptr) return;
-      if (sample.chunk() == 0) partly_ = {sample.tick(), {}};
-      const auto* first = reinterpret_cast<const std::byte*>(sample.bytes().data());
-      partly_.bytes.insert(partly_.bytes.end(), first, first + sample.bytes().size());
-      if (sample.chunk() + 1 == sample.count()) ticks->push_back(std::exchange(partly_, {}));
+      if (auto tick = tick_collector_.add(sample)) ticks->push_back(std::move(*tick));
     });
     return superseded;
   }
@@ -255,11 +248,13 @@ class DdsServerChannel final : public StandbyChannel {
     while (reader->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       ++counters_.received;
-      if (revoked_.contains(client_key(info.sample_identity.writer_guid()))) {
+      const ClientKey key = client_key(info.sample_identity.writer_guid());
+      if (identities_ && identities_->is_revoked(key)) {
         ++counters_.foreign;
+        if constexpr (std::is_same_v<Sample, wire::Request>) refuse_revoked(sample, key);
         continue;
       }
-      action(sample, client_key(info.sample_identity.writer_guid()));
+      action(sample, key);
     }
   }
 
@@ -284,27 +279,29 @@ class DdsServerChannel final : public StandbyChannel {
     }
   }
 
-  /// Fast DDS reads revocations once, when it begins: who was let in before stays. Here they go.
+  /// Fast DDS reads revocations once, when it begins: who is revoked later it lets stay, and come
+  /// back. Here they go.
   void turn_away(ServerInput& input) {
     for (const ClientKey& key : identities_->newly_revoked()) {
-      revoked_.insert(key);
-      present_.erase(key);
+      input.turned_away.push_back(identities_->whose(key) +
+                                  (present_.erase(key) > 0
+                                       ? " has been revoked: what comes from there is dropped"
+                                       : " was not let in: it has been revoked"));
       input.lost.push_back({UserId{}, key, false});
-      input.turned_away.push_back(whose(key) +
-                                  " has been revoked: what comes from there is dropped");
     }
-    for (const ClientKey& key : doorman_.take_turned_away()) {
-      input.turned_away.push_back(
-          whose(key) + " was not let in: without keys, of another site, expired or revoked");
-    }
+    for (std::string& text : doorman_.take_turned_away())
+      input.turned_away.push_back(std::move(text));
     counters_.turned_away += input.turned_away.size();
+    doorman_.tell_repeats(participant_->repeated(), input.turned_away);
   }
-  std::string whose(const ClientKey& key) const {
-    const std::optional<Identity> identity = identities_->identity_of(key);
-    return identity ? "the certificate of '" + identity->name + "' (" + identity->role + ")"
-                    : "a participant without a name (" + key + ")";
+  /// Who asks to come in is told. Of anything else nobody can be: whose user it names, is not
+  /// known.
+  void refuse_revoked(const wire::Request& sample, const ClientKey& key) {
+    if (sample.kind() != static_cast<std::uint8_t>(Request::Kind::kJoin)) return;
+    publish_join_reply(
+        {key, sample.nonce(), UserId{}, Refusal::kNotAllowed,
+         identities_->whose(key) + " has been revoked; ask for a new one (mortise keys issue)"});
   }
-
   void take_requests(ServerInput& input) {
     take_all<wire::Request>(requests_, [&](const wire::Request& sample, const ClientKey& key) {
       Result<Request> request = from_wire(sample);
@@ -369,8 +366,9 @@ class DdsServerChannel final : public StandbyChannel {
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Heartbeat> beat_;           ///< after the participant, whose writer it speaks for
   std::uint64_t term_ = 0, leader_term_ = 0;  ///< own: 0 while another leads
+  std::uint64_t led_until_ms_ = 0;            ///< DdsOptions
   ClientKey leader_;                          ///< of the highest term that was heard
-  ToldTick partly_;
+  TickCollector tick_collector_;
   dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
                   *pulses_ = nullptr, *ticks_ = nullptr, *taken_ = nullptr;
@@ -379,7 +377,7 @@ class DdsServerChannel final : public StandbyChannel {
   std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0, feature_serial_ = 0;
   std::size_t mesh_chunks_ = 0;
   std::map<UserId, ClientKey> joined_;
-  std::set<ClientKey> present_, revoked_;
+  std::set<ClientKey> present_;
   ChannelCounters counters_;
 };
 

@@ -16,7 +16,7 @@ namespace mortise {
 namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
-const std::string kPartition = "session/";
+const std::string kPartition = partition_of("");
 
 /// What a server's endpoints say: in which session, and whether it leads.
 class Endpoints final : public dds::DomainParticipantListener {

@@ -29,23 +29,41 @@ class Doorman final : public dds::DomainParticipantListener {
       if (!identities_) return;
       identities_->parted(client);
       const std::lock_guard lock(mutex_);
-      unproven_since_.erase(client);
+      unproven_.erase(client);
     } else if (identities_) {
-      {
-        const std::lock_guard lock(mutex_);
-        unproven_since_.emplace(client, Time::clock::now());
-      }
-      const std::string* subject =
-          rtps::DataHolderHelper::find_property_value(info.info.identity_token_, "dds.cert.sn");
-      if (subject != nullptr) identities_->met(client, *subject);
+      const auto told = [&](const char* name) {
+        const std::string* value =
+            rtps::DataHolderHelper::find_property_value(info.info.identity_token_, name);
+        return value != nullptr ? *value : std::string();
+      };
+      const std::string subject = told("dds.cert.sn");
+      if (!subject.empty()) identities_->met(client, subject);
+      const std::lock_guard lock(mutex_);
+      unproven_.emplace(
+          client, Unproven{Time::clock::now(), identities_->why_not(subject, told("dds.ca.sn"))});
     }
   }
   void onParticipantAuthentication(dds::DomainParticipant*,
                                    rtps::ParticipantAuthenticationInfo&& info) override {
     const std::lock_guard lock(mutex_);
-    unproven_since_[client_key(info.guid)] = Time::max();  // answered, either way
+    const ClientKey client = client_key(info.guid);
+    Unproven& unproven = unproven_[client];
+    unproven.since = Time::max();  // answered, either way
     if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
-      turned_away_.push_back(client_key(info.guid));
+      turn_away(client, unproven);
+  }
+  /// What an observer would send is not heard, whatever its own end lets pass: its permissions have
+  /// no increments. Nobody can tell it so.
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    if (!identities_ || info.status != rtps::WriterDiscoveryInfo::DISCOVERED_WRITER ||
+        info.info.topicName().to_string() != row_of(Topic::kIncrement).topic)
+      return;
+    const ClientKey client = client_key(info.info.guid());
+    const std::optional<Identity> identity = identities_->identity_of(client);
+    if (!identity || identity->role != "observer") return;
+    const std::lock_guard lock(mutex_);
+    turned_away_.push_back(identities_->whose(client) +
+                           " does not let its owner send increments: none is heard");
   }
   /// MANUAL_BY_TOPIC: also when other clients live, unlike automatic liveliness (Fast DDS #4373).
   void on_liveliness_changed(dds::DataReader*,
@@ -58,17 +76,29 @@ class Doorman final : public dds::DomainParticipantListener {
     const std::lock_guard lock(mutex_);
     return std::exchange(gone_, {});
   }
-  /// Also those of whom nothing was proven in time: where the other end is to begin the handshake
-  /// and does not like our certificate, nobody tells us.
-  std::vector<ClientKey> take_turned_away() {
+  /// Who was not let in since, and why, in words. Also those of whom nothing was proven in time:
+  /// where the other end is to begin the handshake and does not like our certificate, nobody tells
+  /// us. Not who is revoked: PeerIdentities tells of them.
+  std::vector<std::string> take_turned_away() {
     constexpr auto kTimeToProve = std::chrono::seconds(2);
     const std::lock_guard lock(mutex_);
-    for (auto& [client, since] : unproven_since_) {
-      if (since == Time::max() || Time::clock::now() - since < kTimeToProve) continue;
-      since = Time::max();  // said once
-      turned_away_.push_back(client);
+    for (auto& [client, unproven] : unproven_) {
+      if (unproven.since == Time::max() || Time::clock::now() - unproven.since < kTimeToProve)
+        continue;
+      unproven.since = Time::max();  // said once
+      turn_away(client, unproven);
     }
     return std::exchange(turned_away_, {});
+  }
+  /// Says how many encrypted datagrams came a second time, once a second, if any did; `in_all`: of
+  /// the whole session. For one thread.
+  void tell_repeats(std::uint64_t in_all, std::vector<std::string>& texts) {
+    const Time now = Time::clock::now();
+    if (in_all == repeats_told_ || now - repeats_told_at_ < std::chrono::seconds(1)) return;
+    repeats_told_at_ = now;
+    texts.push_back(std::to_string(in_all - std::exchange(repeats_told_, in_all)) +
+                    " encrypted datagrams came a second time and were dropped: a recording, or a "
+                    "net that doubles");
   }
   void know(PeerIdentities* identities) { identities_ = identities; }
 
@@ -78,10 +108,22 @@ class Doorman final : public dds::DomainParticipantListener {
     gone_.push_back(client_key(guid));
   }
 
+  struct Unproven {
+    Time since = Time::max();  ///< max: proven, or said
+    std::string why;
+  };
+  void turn_away(const ClientKey& client, const Unproven& unproven) {
+    if (identities_->is_revoked(client)) return;
+    turned_away_.push_back(identities_->whose(client) + " was not let in: " + unproven.why);
+  }
+
   std::mutex mutex_;
-  std::vector<ClientKey> gone_, turned_away_;
-  std::map<ClientKey, Time> unproven_since_;  ///< max: proven, or said
-  PeerIdentities* identities_ = nullptr;      ///< null: nobody proves anything
+  std::vector<ClientKey> gone_;
+  std::vector<std::string> turned_away_;
+  std::map<ClientKey, Unproven> unproven_;
+  PeerIdentities* identities_ = nullptr;  ///< null: nobody proves anything
+  std::uint64_t repeats_told_ = 0;
+  Time repeats_told_at_{};
 };
 
 /// Hears which servers of the session tell ticks and are alive, and which listen to ours.

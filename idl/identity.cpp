@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace mortise {
@@ -210,6 +211,13 @@ Result<Identity> check_keys(const fs::path& folder) {
 
 PeerIdentities::PeerIdentities(fs::path authority, fs::path revocations)
     : authority_(std::move(authority)), revocations_(std::move(revocations)) {
+  const auto own = read_pem<Certificate>(authority_, PEM_read_bio_X509);
+  if (own) {
+    const std::unique_ptr<char, void (*)(char*)> text(
+        X509_NAME_oneline(X509_get_subject_name(own.get()), nullptr, 0),
+        [](char* p) { OPENSSL_free(p); });
+    authority_subject_ = text.get();
+  }
   read_revocations();
 }
 
@@ -217,7 +225,8 @@ void PeerIdentities::met(const ClientKey& client, const std::string& subject) {
   const Result<Identity> claimed = identity_of_subject(subject);
   if (!claimed || guid_start(*claimed) != client.substr(0, 12)) return;
   const std::lock_guard lock(mutex_);
-  known_[client] = *claimed;
+  known_[client].identity = *claimed;
+  has_news_ = true;
 }
 
 void PeerIdentities::parted(const ClientKey& client) {
@@ -228,28 +237,43 @@ void PeerIdentities::parted(const ClientKey& client) {
 std::optional<Identity> PeerIdentities::identity_of(const ClientKey& client) const {
   const std::lock_guard lock(mutex_);
   const auto found = known_.find(client);
-  return found == known_.end() ? std::nullopt : std::optional(found->second);
+  return found == known_.end() ? std::nullopt : std::optional(found->second.identity);
 }
 
-bool PeerIdentities::is_revoked(const Identity& identity) const {
+std::string PeerIdentities::whose(const ClientKey& client) const {
+  const std::optional<Identity> identity = identity_of(client);
+  return identity ? "the certificate of '" + identity->name + "' (" + identity->role + ")"
+                  : "a participant without a name (" + client + ")";
+}
+
+std::string PeerIdentities::why_not(const std::string& subject,
+                                    const std::string& authority) const {
+  if (subject.empty()) return "without keys; start it with --keys";
+  if (authority != authority_subject_) return "of another site (" + authority + ")";
+  return "expired, not valid yet, or signed by no authority of this site";
+}
+
+bool PeerIdentities::is_revoked(const ClientKey& client) const {
   const std::lock_guard lock(mutex_);
-  return revoked_.contains(identity.serial);
+  const auto found = known_.find(client);
+  return found != known_.end() && revoked_.contains(found->second.identity.serial);
 }
 
 std::vector<ClientKey> PeerIdentities::newly_revoked() {
-  std::vector<ClientKey> clients;
   const auto now = std::chrono::steady_clock::now();
-  if (now - looked_at_ < std::chrono::seconds(1)) return clients;
-  looked_at_ = now;
-  std::error_code error;
-  const auto changed = fs::last_write_time(revocations_, error);
-  if (error || changed == read_of_) return clients;
-  const std::set<std::string> before = revoked_;
-  read_revocations();
+  if (now - looked_at_ >= std::chrono::seconds(1)) {
+    looked_at_ = now;
+    std::error_code error;
+    const auto changed = fs::last_write_time(revocations_, error);
+    if (!error && changed != read_of_) read_revocations();
+  }
+  std::vector<ClientKey> clients;
   const std::lock_guard lock(mutex_);
-  for (const auto& [client, identity] : known_) {
-    if (revoked_.contains(identity.serial) && !before.contains(identity.serial))
-      clients.push_back(client);
+  if (!std::exchange(has_news_, false)) return clients;
+  for (auto& [client, known] : known_) {
+    if (known.told || !revoked_.contains(known.identity.serial)) continue;
+    known.told = true;
+    clients.push_back(client);
   }
   return clients;
 }
@@ -268,6 +292,7 @@ void PeerIdentities::read_revocations() {
   }
   const std::lock_guard lock(mutex_);
   revoked_ = std::move(revoked);
+  has_news_ = true;
   read_of_ = changed;
 }
 

@@ -43,18 +43,30 @@ class PeerIdentities {
   void met(const ClientKey& client, const std::string& subject);
   void parted(const ClientKey& client);
   std::optional<Identity> identity_of(const ClientKey& client) const;
-  bool is_revoked(const Identity& identity) const;
-  /// Clients whose certificate was revoked since the last call. Looks at the file once a second; a
-  /// list that is not the authority's changes nothing.
+  std::string whose(const ClientKey& client) const;  ///< for a message
+  /// Why one that says this of itself can not have been let in, as far as can be told from that:
+  /// the transport does not say. Empty subject: it has no certificate.
+  std::string why_not(const std::string& subject, const std::string& authority) const;
+  /// Also of one that came after its certificate was revoked: the list that the transport read when
+  /// it began lets it in.
+  bool is_revoked(const ClientKey& client) const;
+  /// Clients that are found to be revoked, or have come being so, since the last call. Looks at the
+  /// file once a second; a list that is not the authority's changes nothing.
   std::vector<ClientKey> newly_revoked();
 
  private:
+  struct Known {
+    Identity identity;
+    bool told = false;  ///< that it is revoked
+  };
   void read_revocations();
 
   std::filesystem::path authority_, revocations_;
+  std::string authority_subject_;
   mutable std::mutex mutex_;
-  std::map<ClientKey, Identity> known_;
+  std::map<ClientKey, Known> known_;
   std::set<std::string> revoked_;  ///< serials
+  bool has_news_ = false;          ///< somebody was met, or the list read, since the last look
   std::filesystem::file_time_type read_of_{};
   std::chrono::steady_clock::time_point looked_at_{};
 };

@@ -5,14 +5,15 @@
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 #include <mutex>
 
 #include "idl/directory.h"
-#include "idl/guard_transport.h"
 #include "idl/fast_dds_overrides.h"
+#include "idl/guard_transport.h"
 #include "idl/security_properties.h"
 #include "idl/server_places.h"
 
@@ -113,7 +114,8 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   udp->sendBufferSize = kSocketBuffer_bytes;
   udp->receiveBufferSize = kSocketBuffer_bytes;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<GuardDescriptor>(udp, counts));
+  qos.transport().user_transports.push_back(
+      std::make_shared<GuardDescriptor>(udp, counts, is_server && !options.keys.empty()));
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(options.participant_lease_s);
@@ -203,6 +205,26 @@ std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_d
   return term;
 }
 
+std::uint64_t next_term(std::uint64_t after) {
+  using std::chrono::milliseconds;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto now_ms = std::chrono::duration_cast<milliseconds>(now).count();
+  return std::max(static_cast<std::uint64_t>(std::max<std::int64_t>(now_ms, 0)), after + 1);
+}
+
+std::string partition_of(const std::string& session) { return "session/" + session; }
+
+std::uint64_t told_term(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& writer,
+                        const std::string& session) {
+  if (writer.status == eprosima::fastrtps::rtps::WriterDiscoveryInfo::REMOVED_WRITER) return 0;
+  // Who leads answers, and tells with that writer when it leads anew.
+  if (writer.info.topicName().to_string() != row_of(Topic::kAnswers).topic) return 0;
+  const std::vector<std::string> partitions = writer.info.m_qos.m_partition.names();
+  const bool is_here =
+      std::find(partitions.begin(), partitions.end(), partition_of(session)) != partitions.end();
+  return is_here ? term_of(writer.info.m_qos.m_userData.data_vec()) : 0;
+}
+
 std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data) {
   const std::string text(user_data.begin(), user_data.end());
   const std::size_t at = text.find(kVersionPrefix);
@@ -264,7 +286,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
                   std::to_string(options.domain) +
                   (options.keys.empty() ? "" : ", with the keys in " + options.keys));
   }
-  const std::string partition = "session/" + options.session;
+  const std::string partition = partition_of(options.session);
   dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
   publisher_qos.partition().push_back(partition.c_str());
   made->publisher_ = made->participant_->create_publisher(publisher_qos);

@@ -31,12 +31,20 @@ namespace dds = eprosima::fastdds::dds;
 /// Hex of the first 12 bytes of a GUID: the participant.
 ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid);
 
+/// In which all endpoints of a session are.
+std::string partition_of(const std::string& session);
+
 /// Does anybody listen?
 bool matched(dds::DataWriter* writer);
 
 /// Who led a session later has the higher term: ms since 1970 of its beginning, told with the
 /// server's writers; 0: one that tells none.
 std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
+/// The one of now, or where the clock says less, the next.
+std::uint64_t next_term(std::uint64_t after);
+/// The term that a server of the session tells with this writer; 0: it is no such writer, or goes.
+std::uint64_t told_term(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& writer,
+                        const std::string& session);
 /// Of the program that wrote it, told behind the term; empty: one of before told none.
 std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
 
@@ -77,6 +85,7 @@ class Participant {
   std::uint64_t refused() const { return refused_->load(std::memory_order_relaxed); }
   const std::optional<Identity>& identity() const { return identity_; }  ///< own; none: no security
   std::uint64_t dropped() const { return guard_->dropped.load(std::memory_order_relaxed); }
+  std::uint64_t repeated() const { return guard_->repeated.load(std::memory_order_relaxed); }
   std::uint64_t cut() const { return guard_->cut.load(std::memory_order_relaxed); }
 
  private:

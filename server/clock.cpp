@@ -2,6 +2,8 @@
 
 #include <time.h>
 
+#include <algorithm>
+
 namespace mortise {
 namespace {
 
@@ -13,8 +15,21 @@ std::int64_t read_ns(clockid_t id) {
 
 }  // namespace
 
+SystemClock::SystemClock(std::int64_t not_before_ns)
+    : wall_ns_(not_before_ns), asked_at_ns_(read_ns(CLOCK_MONOTONIC)) {}
+
 std::int64_t SystemClock::now_ns() { return read_ns(CLOCK_MONOTONIC); }
-std::int64_t SystemClock::wall_ns() { return read_ns(CLOCK_REALTIME); }
+
+std::int64_t SystemClock::wall_ns() {
+  const std::int64_t now_ns = read_ns(CLOCK_MONOTONIC);
+  wall_ns_ = std::max(read_ns(CLOCK_REALTIME), wall_ns_ + (now_ns - asked_at_ns_));
+  asked_at_ns_ = now_ns;
+  return wall_ns_;
+}
+
+double SystemClock::ahead_s() {
+  return static_cast<double>(wall_ns() - read_ns(CLOCK_REALTIME)) * 1e-9;
+}
 
 void SystemClock::sleep_until_ns(std::int64_t deadline_ns) {
   timespec deadline{};

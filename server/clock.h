@@ -14,11 +14,18 @@ class Clock {
 };
 
 /// CLOCK_MONOTONIC with absolute deadlines, so that a late tick does not make the next ones late.
+/// wall_ns() never goes back, nor is it before `not_before_ns`: where the machine's clock is set
+/// back, it goes on from where it was, until that one has caught up.
 class SystemClock : public Clock {
  public:
+  explicit SystemClock(std::int64_t not_before_ns = 0);
   std::int64_t now_ns() override;
   std::int64_t wall_ns() override;
   void sleep_until_ns(std::int64_t deadline_ns) override;
+  double ahead_s();  ///< of the machine's clock; mostly 0
+
+ private:
+  std::int64_t wall_ns_, asked_at_ns_;  ///< what it said last, and when
 };
 
 }  // namespace mortise

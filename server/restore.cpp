@@ -1,7 +1,9 @@
 #include "server/restore.h"
 
 #include <algorithm>
+#include <chrono>
 #include <system_error>
+#include <utility>
 
 #include "common/io/build_info.h"
 #include "common/io/replay.h"
@@ -11,6 +13,9 @@ namespace mortise {
 namespace {
 
 namespace fs = std::filesystem;
+
+// More than the clocks of two hosts of one folder differ.
+constexpr auto kFuture = std::chrono::seconds(60);
 
 /// Name of the session that a log file belongs to, as default_log_file() writes it:
 /// <session>-YYYYMMDD-HHMMSS[...].mcap.
@@ -43,13 +48,18 @@ std::optional<fs::path> log_to_restore(const fs::path& place, const std::string&
   std::error_code error;
   if (!fs::is_directory(place, error)) return chain_from(place).back();
   std::optional<fs::path> newest;
+  // A file of the future was written before the clock was set back: it is an old one.
+  const fs::file_time_type future = fs::file_time_type::clock::now() + kFuture;
+  const auto written = [&](const fs::path& file) {
+    const fs::file_time_type at = fs::last_write_time(file, error);
+    return std::pair(at < future, at);
+  };
   for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
     if (!is_log_of(entry.path(), session)) continue;
     // Names hold the time: the one that was begun last is the last one.
     const bool later =
-        !newest ||
-        (by == Newest::kBegun ? entry.path().filename() > newest->filename()
-                              : entry.last_write_time(error) > fs::last_write_time(*newest, error));
+        !newest || (by == Newest::kBegun ? entry.path().filename() > newest->filename()
+                                         : written(entry.path()) > written(*newest));
     if (later) newest = entry.path();
   }
   return newest;
@@ -74,14 +84,15 @@ SessionStatistics told_statistics(const SessionLog& log, std::uint64_t up_to) {
   return told;
 }
 
-LogBegin begin_of(World& world, const SessionStatistics& statistics) {
+LogBegin begin_of(World& world, const SessionStatistics& statistics, std::int64_t time_ns) {
   return {{world.tick,
            state_hash(world, *world.state),
            build_fingerprint(),
            {},
            encode_state(world),
            statistics.counters()},
-          statistics};
+          statistics,
+          time_ns};
 }
 
 }  // namespace
@@ -105,7 +116,7 @@ Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bo
   for (const TickRecord& record : log.ticks)
     ++(record.tick <= world.tick ? resumed.ticks : resumed.ticks_left_out);
   resumed.left_out_because = report->not_verifiable;
-  if (world.state) resumed.begin = begin_of(world, resumed.statistics);
+  if (world.state) resumed.begin = begin_of(world, resumed.statistics, last_time_ns(log));
   if (all_depart) resumed.departures = depart_all(world);
   return resumed;
 }

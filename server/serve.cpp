@@ -26,6 +26,7 @@ namespace mortise {
 namespace {
 
 constexpr double kShowFiguresEvery_s = 1.0;  // collectors come each few seconds
+constexpr double kSayAhead_s = 2.0;          // less is a restart within a moment
 
 std::atomic<bool> stop_asked{false}, drain_asked{false};  // lock-free: set in signal handlers
 
@@ -121,8 +122,10 @@ int serve(const ServerOptions& options) {
   auto start = read_start(options);
   if (!start) return say(start.error());
   World& world = start->scene.world;
+  DdsOptions dds = dds_of(options);
+  dds.led_until_ms = static_cast<std::uint64_t>(start->led_until_ns / 1'000'000);
   auto channel = stands_by ? Result<std::unique_ptr<ServerChannel>>(std::move(standby))
-                           : open_server_channel(dds_of(options));
+                           : open_server_channel(dds);
   if (!channel) return say(channel.error());
 
   // A disk that is full, or a file that may not grow, is an error of the log, not the end.
@@ -162,7 +165,13 @@ int serve(const ServerOptions& options) {
   }
 
   if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
-  SystemClock clock;
+  // No tick is logged before the term of its server: so the next one finds a later term in the log.
+  SystemClock clock(static_cast<std::int64_t>((*channel)->term_ms() * 1'000'000));
+  if (const double ahead_s = clock.ahead_s(); ahead_s > kSayAhead_s)
+    spdlog::warn(
+        "the clock of this machine is {:.0f} s behind the last tick of {}: the log's "
+        "times go on from there",
+        ahead_s, start->source);
   TickLoopOptions loop_options;
   loop_options.session = options.session;
   loop_options.threads = options.threads;

@@ -16,6 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A log that tells more, the year 2116, tells nonsense; nothing is to overflow of it.
+constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
+
 /// Says every finding; fails when the scenario cannot be played.
 Status say_findings(const std::vector<Finding>& findings, bool usable, const std::string& file) {
   std::size_t errors = 0;
@@ -82,12 +85,16 @@ Result<SessionStart> read_from_log(const fs::path& file) {
   start.scene = std::move(at->scene);
   start.log_chain = log->chain;
   start.log_name = file.filename().string();
+  start.led_until_ns = std::min(last_time_ns(*log), kLatest_ns);
   start.log = std::move(*log);
   return start;
 }
 
-std::string default_log_file(const fs::path& folder, const std::string& session) {
-  const std::time_t now = std::time(nullptr);
+// Later than the log that it goes on from, also by its name: so the last one is found.
+std::string default_log_file(const fs::path& folder, const std::string& session,
+                             const std::optional<LogBegin>& begin) {
+  const std::time_t before = begin ? begin->time_ns / 1'000'000'000 : 0;
+  const std::time_t now = std::max(std::time(nullptr), before);
   std::tm utc{};
   gmtime_r(&now, &utc);
   char stamp[32];
@@ -101,9 +108,9 @@ std::string default_log_file(const fs::path& folder, const std::string& session)
   return file.string();
 }
 
-std::string log_file(const ServerOptions& options) {
-  if (options.log.empty()) return default_log_file("sessions", options.session);
-  if (fs::is_directory(options.log)) return default_log_file(options.log, options.session);
+std::string log_file(const ServerOptions& options, const std::optional<LogBegin>& begin) {
+  if (options.log.empty()) return default_log_file("sessions", options.session, begin);
+  if (fs::is_directory(options.log)) return default_log_file(options.log, options.session, begin);
   return options.log;
 }
 
@@ -131,7 +138,7 @@ Result<NewLog> create_log(const ServerOptions& options, const SessionStart& star
                           std::optional<LogBegin> begin) {
   NewLog log;
   if (options.no_log) return log;
-  log.file = log_file(options);
+  log.file = log_file(options, begin);
   const fs::path path(log.file);
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);

@@ -17,6 +17,7 @@ struct SessionStart {
   std::optional<SessionLog> log;  ///< to be played again before the session goes on
   LogChain log_chain;             ///< place of that log, and
   std::string log_name;           ///< its file name
+  std::int64_t led_until_ns = 0;  ///< wall clock of the last tick of that log; 0: there is none
 };
 
 /// Reads what the options name; says every finding. With a folder to restore from that holds no log

@@ -113,6 +113,7 @@ void LogFile::write_head(const LogHeader& header) {
       binary(kCheckpoints, mcap_->add_schema("mortise.Checkpoint", kBinary, kStateSchema));
   totals_ = binary(kTotals);
   if (!header.begin) return;
+  if (header.begin->time_ns > 0) set_time(header.begin->time_ns);
   write(header.begin->state);
   message(totals_, log_records::encode(header.begin->statistics));
 }

@@ -240,7 +240,8 @@ void FileWriter::rotate(Checkpoint state) {
   if (!closed) return;
   options_.named_later = false;
   header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
-  header_.begin = LogBegin{std::move(state), statistics_};
+  header_.begin =
+      LogBegin{std::move(state), statistics_, static_cast<std::int64_t>(file_->time_ns())};
   auto next = LogFile::create(next_in_chain(file_->path()), header_, options_);
   header_.begin.reset();
   if (!next) {
@@ -248,9 +249,7 @@ void FileWriter::rotate(Checkpoint state) {
     return;
   }
   bytes_before_ += file_->mcap().bytes_written();
-  const auto time_ns = static_cast<std::int64_t>(file_->time_ns());
   file_ = std::move(*next);
-  file_->set_time(time_ns);
   chunks_settled_ = file_->mcap().chunks_written();
 }
 

@@ -34,6 +34,7 @@ struct Checkpoint {
 struct LogBegin {
   Checkpoint state;
   SessionStatistics statistics;  ///< of all ticks before
+  std::int64_t time_ns = 0;      ///< of the last of them; no tick of this log is earlier
 };
 
 /// The place of a file among those of one session.
@@ -142,6 +143,9 @@ struct SessionLog {
   std::map<std::string, std::uint64_t> counted;
   std::vector<std::string> notes;  ///< what was lost or skipped, in words
 };
+
+/// Server clock of the last tick that a log tells, or that it begins with; 0: it tells none.
+std::int64_t last_time_ns(const SessionLog& log);
 
 struct LogReading {
   /// Of so many last checkpoints the bytes are kept; all others are known by their hash.

@@ -31,6 +31,15 @@ void add_counts(const nlohmann::json& record, std::map<std::string, std::uint64_
       sums[name] += count.get<std::uint64_t>();
 }
 
+}  // namespace
+
+std::int64_t last_time_ns(const SessionLog& log) {
+  if (!log.ticks.empty()) return log.ticks.back().time_ns;
+  return log.begin ? log.begin->time_ns : 0;
+}
+
+namespace {
+
 /// Puts the records of a log together, tick by tick: a tick is taken when its end record comes.
 class LogAssembler {
  public:
@@ -49,11 +58,11 @@ class LogAssembler {
   void attachment(const McapAttachment& attachment);
   void metadata(const std::string& name, const std::map<std::string, std::string>& values);
   void loss(const std::string& what);
-  void end_tick(log_records::TickEnd end, std::uint64_t time_ns);
+  void end_tick(log_records::TickEnd end, std::int64_t time_ns);
   TickRecord& open(std::uint64_t tick);
   void open_gap(std::string reason);
   void note(const std::string& what);
-  void checkpoint(std::span<const std::byte> bytes);
+  void checkpoint(std::span<const std::byte> bytes, std::int64_t time_ns);
   void totals(std::span<const std::byte> bytes);
   std::uint64_t last_tick() const;
 
@@ -89,7 +98,7 @@ void LogAssembler::loss(const std::string& what) {
 
 // It stands behind its tick, or at the front of a file. A damaged one is no loss: the ticks are
 // still there.
-void LogAssembler::checkpoint(std::span<const std::byte> bytes) {
+void LogAssembler::checkpoint(std::span<const std::byte> bytes, std::int64_t time_ns) {
   Checkpoint state;
   const std::uint64_t tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
   const bool is_begin = log_.ticks.empty() && !log_.begin && log_.chain.part > 1;
@@ -100,7 +109,7 @@ void LogAssembler::checkpoint(std::span<const std::byte> bytes) {
                 (is_begin ? std::string("at the front") : "after tick " + std::to_string(tick)) +
                 " is damaged or of another layout, and left out");
   if (is_begin) {
-    log_.begin = LogBegin{std::move(state), {}};
+    log_.begin = LogBegin{std::move(state), {}, time_ns};
     return;
   }
   log_.checkpoints.push_back(std::move(state));
@@ -126,7 +135,7 @@ TickRecord& LogAssembler::open(std::uint64_t tick) {
   return *tick_;
 }
 
-void LogAssembler::end_tick(log_records::TickEnd end, std::uint64_t time_ns) {
+void LogAssembler::end_tick(log_records::TickEnd end, std::int64_t time_ns) {
   TickRecord& record = open(end.tick);
   if (log_.ticks.empty() && log_.chain.part > 1 && !log_.begin)
     open_gap("it goes on from " + log_.chain.previous +
@@ -140,7 +149,7 @@ void LogAssembler::end_tick(log_records::TickEnd end, std::uint64_t time_ns) {
     events_.clear();
     return;
   }
-  record.time_ns = static_cast<std::int64_t>(std::min<std::uint64_t>(time_ns, INT64_MAX));
+  record.time_ns = time_ns;
   record.report.tick = end.tick;
   record.report.state_hash = end.state_hash;
   record.report.refused = std::move(end.refused);
@@ -155,6 +164,8 @@ void LogAssembler::end_tick(log_records::TickEnd end, std::uint64_t time_ns) {
 
 void LogAssembler::message(const McapChannel& channel, const McapMessage& message) {
   using namespace log_layout;
+  const auto time_ns =
+      static_cast<std::int64_t>(std::min<std::uint64_t>(message.log_time_ns, INT64_MAX));
   const auto take = [&](auto record, auto&& use) {
     if (log_records::decode(message.data, record))
       use(std::move(record));
@@ -170,7 +181,7 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
   } else if (channel.topic == kPoses) {
     take(log_records::Poses{}, [&](auto r) { open(r.tick).report.moved = std::move(r.poses); });
   } else if (channel.topic == kTicks) {
-    take(log_records::TickEnd{}, [&](auto r) { end_tick(std::move(r), message.log_time_ns); });
+    take(log_records::TickEnd{}, [&](auto r) { end_tick(std::move(r), time_ns); });
   } else if (channel.topic == kClashes) {
     ClashEvent event;
     if (log_json::decode(text_of(message.data), event))
@@ -180,7 +191,7 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
   } else if (channel.topic == kStatistics) {
     add_counts(nlohmann::json::parse(text_of(message.data), nullptr, false), log_.counted);
   } else if (channel.topic == kCheckpoints) {
-    checkpoint(message.data);
+    checkpoint(message.data, time_ns);
   } else if (channel.topic == kTotals) {
     totals(message.data);
   } else if (channel.topic == kGaps) {

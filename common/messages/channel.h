@@ -159,6 +159,8 @@ class ServerChannel {
   virtual void await_taken(std::int64_t /*at_most_ns*/) {}
   /// The one that stood by may have taken over elsewhere: from now on this one is the later leader.
   virtual void lead_anew() {}
+  /// Under which this one leads, ms since 1970 or later; 0: its transport knows no other servers.
+  virtual std::uint64_t term_ms() const { return 0; }
 
   /// Does what is due between two ticks, for at most so long; false: nothing is due.
   virtual bool rest(std::int64_t /*at_most_ns*/) { return false; }

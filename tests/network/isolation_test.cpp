@@ -145,6 +145,17 @@ TEST_F(Isolation, TwoSessionsByPartition) {
   EXPECT_EQ(there->loop->inbox().counters().joins, 2U);
 }
 
+// Clients look for a server that takes over where another session's is: that one began later, and
+// its term is the higher one.
+TEST_F(Isolation, AnotherSessionAtTheSecondPlace) {
+  DdsOptions other = own();
+  other.session = "other";
+  other.discovery_port = 7400 + 250 * other.domain + 4;
+  open(own(), other);
+  play();
+  expect_nothing_crossed();
+}
+
 // The end of one is not the end of the other.
 TEST_F(Isolation, OneEndsAndTheOtherGoesOn) {
   DdsOptions other = own();

@@ -10,7 +10,10 @@ namespace mortise::test {
 /// A site with keys of its own, made by the script that people use.
 class KeyRing {
  public:
-  explicit KeyRing(const std::string& name) : site_(folder_.path() / name) { run({"init"}); }
+  explicit KeyRing(const std::string& folder, const std::string& site = "mortise")
+      : site_(folder_.path() / folder) {
+    run({"init", "--site", site});
+  }
 
   void issue(const std::string& name, const std::string& role,
              const std::vector<std::string>& more = {}) {

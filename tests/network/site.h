@@ -62,6 +62,7 @@ struct Person {
       to.insert(to.end(), from.begin(), from.end());
     };
     append(replies, update.replies);
+    append(refused, update.refused);
     append(decisions, update.decisions);
     append(events, update.events);
   }
@@ -69,6 +70,7 @@ struct Person {
   std::unique_ptr<ClientChannel> channel;
   std::unique_ptr<Client> client;
   std::vector<Reply> replies;
+  std::vector<RefusedIncrement> refused;
   std::vector<Decision> decisions;
   std::vector<ClashEvent> events;
 

@@ -142,5 +142,64 @@ TEST(Chunks, MeshIsWholeOnceAndChecked) {
   EXPECT_EQ(cut_mesh("empty", {}).size(), 1u);
 }
 
+ToldTick large_tick(std::uint64_t tick) {
+  ToldTick told{tick, std::vector<std::byte>(200'000)};
+  std::mt19937_64 random(tick);
+  for (std::byte& byte : told.bytes) byte = static_cast<std::byte>(random());
+  return told;
+}
+
+TEST(Chunks, ATickIsWholeWhereItsPiecesComeInOrder) {
+  TickCollector collector;
+  for (const std::uint64_t tick : {7, 8, 9}) {
+    const ToldTick told = large_tick(tick);
+    const std::vector<wire::ServerTick> pieces = cut(told, 3);
+    ASSERT_EQ(pieces.size(), 4u);
+    for (std::size_t i = 0; i + 1 < pieces.size(); ++i) EXPECT_FALSE(collector.add(pieces[i]));
+    const std::optional<ToldTick> whole = collector.add(pieces.back());
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->tick, tick);
+    EXPECT_EQ(whole->bytes, told.bytes);
+  }
+  ASSERT_TRUE(collector.add(cut(ToldTick{10, {}}, 3)[0])) << "one that says nothing";
+  EXPECT_EQ(collector.dropped(), 0u);
+}
+
+TEST(Chunks, PiecesThatMakeNoTickAreDroppedAndCounted) {
+  const std::vector<wire::ServerTick> seven = cut(large_tick(7), 3), eight = cut(large_tick(8), 3);
+  const std::vector<wire::ServerTick> later = cut(large_tick(7), 4);
+  const auto count_of = [](std::vector<wire::ServerTick> pieces) {
+    TickCollector collector;
+    for (const wire::ServerTick& piece : pieces) EXPECT_FALSE(collector.add(piece));
+    // Whatever came before it: a tick that is whole is taken.
+    const std::uint64_t dropped = collector.dropped();
+    for (const wire::ServerTick& piece : cut(large_tick(9), 3)) {
+      const auto whole = collector.add(piece);
+      EXPECT_EQ(whole.has_value(), piece.chunk() == 3);
+      if (whole) {
+        EXPECT_EQ(whole->bytes, large_tick(9).bytes);
+      }
+    }
+    return dropped;
+  };
+  EXPECT_EQ(count_of({seven[1], seven[2], seven[3]}), 3u) << "without a beginning";
+  EXPECT_EQ(count_of({seven[0], seven[2], seven[3]}), 3u) << "with a hole";
+  EXPECT_EQ(count_of({seven[0], seven[1], seven[1], seven[2]}), 4u) << "one twice";
+  EXPECT_EQ(count_of({seven[0], eight[1], eight[2], eight[3]}), 4u) << "of two ticks";
+  EXPECT_EQ(count_of({seven[0], later[1], later[2], later[3]}), 4u) << "of two servers";
+  wire::ServerTick huge = seven[0];
+  huge.count(1'000'000'000);
+  EXPECT_EQ(count_of({huge}), 1u);
+  huge.count(1);
+  huge.bytes().resize(kSampleLimit_bytes + 1);
+  EXPECT_EQ(count_of({huge}), 1u);
+  huge.count(0);
+  EXPECT_EQ(count_of({huge}), 1u);
+  // Many that begin and never end: one at a time is kept.
+  TickCollector collector;
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(collector.add(seven[0]));
+  EXPECT_EQ(collector.dropped(), 99u);
+}
+
 }  // namespace
 }  // namespace mortise

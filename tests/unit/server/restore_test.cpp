@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 
 #include "common/io/replay.h"
 #include "common/session/step.h"
+#include "server/clock.h"
 #include "tests/golden/played_session.h"
 #include "tests/network/program.h"
 
@@ -168,6 +170,59 @@ TEST(LogToRestore, IsTheNewestOfTheSessionAndNoOther) {
   EXPECT_EQ(log_to_restore(folder.path(), "demo-2")->filename(), "demo-2-20270101-000000.mcap");
   EXPECT_FALSE(log_to_restore(folder.path(), "other"));
   EXPECT_EQ(*log_to_restore(folder.path() / "x.mcap", "demo"), folder.path() / "x.mcap");
+}
+
+// A file of the future is one of before the clock was set back.
+TEST(LogToRestore, OfThoseWrittenIsTheLastOneOfNow) {
+  namespace fs = std::filesystem;
+  TestFolder folder;
+  const auto now = fs::file_time_type::clock::now();
+  const auto written = [&](const char* name, std::chrono::seconds after_now) {
+    fs::last_write_time(folder.write(name, "x"), now + after_now);
+  };
+  using std::chrono::hours;
+  written("demo-20260101-130000.mcap", hours(1));
+  written("demo-20260101-110000.mcap", -hours(1));
+  written("demo-20260101-120000.mcap", std::chrono::seconds(0));
+  const auto file = log_to_restore(folder.path(), "demo", Newest::kWritten);
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->filename(), "demo-20260101-120000.mcap");
+}
+
+TEST_F(Restore, TheNextLogKnowsWhenItsSessionWasLed) {
+  auto scene = scene_of(log_);
+  ASSERT_TRUE(scene) << scene.error().text;
+  const auto resumed = resume_from(log_, scene->world, 1);
+  ASSERT_TRUE(resumed && resumed->begin) << "nothing was told";
+  EXPECT_GT(last_time_ns(log_), 0);
+  EXPECT_EQ(resumed->begin->time_ns, last_time_ns(log_));
+  LogHeader header = log_header(*scene, "default", log_.scenario_name, log_.scenario_yaml);
+  header.begin = resumed->begin;
+  header.chain = {"whole.mcap", 2};
+  // Also one that was killed before its first tick came to disk.
+  const auto file = folder_.path() / "next.mcap";
+  auto writer = SessionLogWriter::create(file, header);
+  ASSERT_TRUE(writer) << writer.error().text;
+  ASSERT_TRUE((*writer)->close());
+  const auto next = read_session_log(file);
+  ASSERT_TRUE(next) << next.error().text;
+  EXPECT_TRUE(next->ticks.empty());
+  EXPECT_EQ(last_time_ns(*next), last_time_ns(log_));
+}
+
+TEST(SystemClockSays, NoTimeBeforeTheOneItIsGiven) {
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  SystemClock plain;
+  const std::int64_t later_ns = plain.wall_ns() + kHour_ns;
+  SystemClock clock(later_ns);
+  const std::int64_t first_ns = clock.wall_ns();
+  EXPECT_GE(first_ns, later_ns);
+  EXPECT_NEAR(clock.ahead_s(), 3600.0, 60.0);
+  clock.sleep_until_ns(clock.now_ns() + 2'000'000);
+  EXPECT_GE(clock.wall_ns(), first_ns + 2'000'000) << "it goes on";
+  SystemClock past(later_ns - 2 * kHour_ns);
+  EXPECT_LT(past.wall_ns(), later_ns) << "the machine's, where that is later";
+  EXPECT_NEAR(past.ahead_s(), 0.0, 1.0);
 }
 
 }  // namespace

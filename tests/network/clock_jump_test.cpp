@@ -1,0 +1,93 @@
+// The wall clock of a server and its clients jumps while people drag parts, and a server is killed
+// and started again while the clock shows less than its log.
+#include "tests/network/second_server.h"
+#include "tests/network/wall_clock.h"
+
+namespace mortise::test {
+namespace {
+
+constexpr int kDomain = 232;
+constexpr std::int64_t kHour_s = 3600;
+
+class ClockJump : public SecondServer {
+ protected:
+  void drag(double seconds) {
+    moves_ = true;
+    const std::size_t before = acknowledged_.size();
+    turn(seconds);
+    EXPECT_GT(acknowledged_.size(), before) << "nothing comes through";
+    moves_ = false;
+    turn(0.2);  // what is on its way
+  }
+  /// The step itself: nobody loses the server, and what is moved is moved.
+  void step(std::int64_t seconds) {
+    const int losses = losses_;
+    wall_.step(seconds);
+    drag(0.7);
+    EXPECT_EQ(losses_, losses);
+  }
+  static std::map<PartId, Pose> poses(const Guest& guest) {
+    std::map<PartId, Pose> poses;
+    for (const auto& [id, part] : guest.client->parts()) poses[id] = part.info.X_WP;
+    return poses;
+  }
+  void expect_same(const Guest& one, const Guest& other) {
+    const auto ours = poses(one), theirs = poses(other);
+    ASSERT_EQ(ours.size(), theirs.size());
+    for (const auto& [id, pose] : ours) EXPECT_TRUE(identical(theirs.at(id), pose));
+    EXPECT_EQ(clashes(one), clashes(other));
+    EXPECT_EQ(clashes(one).size(), 1U) << "red in the base";
+  }
+  /// Kills the server and starts it again on its log. All that was acknowledged is on disk by then.
+  void kill_and_restore(std::unique_ptr<Program>& server) {
+    turn(2.2);
+    const auto poses_before = poses(*anna_);
+    const auto clashes_before = clashes(*anna_);
+    const UserId anna_id = anna_->client->user_id(anna_->user);
+    const int losses = losses_;
+    server->signal(SIGKILL);
+    ASSERT_EQ(server->wait(5), 128 + SIGKILL);
+    server = start(kDomain, {"--restore", logs(), "--log", logs()});
+    const auto is_in = [](const Guest& guest) {
+      return guest.client->user_id(guest.user) && guest.client->synced();
+    };
+    const double begun_s = steady_s();
+    while (steady_s() < begun_s + 15.0 && !(losses_ == losses + 2 && is_in(*anna_) && is_in(*ben_)))
+      turn(0.01);
+    ASSERT_EQ(losses_, losses + 2) << "both have seen that the server went";
+    ASSERT_TRUE(is_in(*anna_) && is_in(*ben_)) << server->errors();
+    std::printf("back in the session %.2f s after the new process started\n", steady_s() - begun_s);
+    EXPECT_EQ(anna_->client->user_id(anna_->user), anna_id);
+    for (const auto& [id, pose] : poses_before) EXPECT_TRUE(identical(poses(*anna_)[id], pose));
+    EXPECT_EQ(clashes(*anna_), clashes_before);
+    expect_same(*anna_, *ben_);
+    ASSERT_TRUE(ben_->grab("blue"));
+    drag(0.7);
+  }
+
+  WallClock wall_{folder_.path()};
+};
+
+TEST_F(ClockJump, AnHourOnAndAnHourBack) {
+  std::unique_ptr<Program> server = lead(kDomain);
+  come_in(kDomain);
+  drag(0.5);
+  step(kHour_s);
+  kill_and_restore(server);
+  step(-kHour_s);
+  kill_and_restore(server);  // whose clock shows an hour less than its log
+  EXPECT_NE(server->errors().find("s behind the last tick"), std::string::npos) << server->errors();
+  kill_and_restore(server);  // and again: the last log is that of the server before
+  step(-kHour_s);
+  kill_and_restore(server);
+  Guest late(kDomain, "late");
+  ASSERT_TRUE(late.joined());
+  turn(0.3);
+  expect_same(*anna_, *ben_);
+  expect_same(*anna_, late);
+  EXPECT_GT(acknowledged_.size(), 100U);
+  EXPECT_EQ(lost_of_acknowledged(*server), 0U) << "of " << acknowledged_.size();
+}
+
+}  // namespace
+}  // namespace mortise::test
