@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/base/constants.h"
+#include "common/geometry/signed_distance.h"
 #include "common/math/rotation.h"
 
 namespace mortise {
@@ -62,6 +63,12 @@ class FacesThere {
   const LeastFace& face() const { return holding_.front(); }
   Vec3 normal() const { return face().normal(x_); }
   const Vec3& place() const { return x_; }
+  double depth_mm() const { return least_deep_mm_; }
+  bool is_shaft_in(const FacesThere& other) const {
+    const Surface *own = face().surface, *of_other = other.face().surface;
+    return own != nullptr && of_other != nullptr && own->kind == SurfaceKind::kCylinder &&
+           !own->inward && of_other->kind == SurfaceKind::kCylinder && of_other->inward;
+  }
   /// The axis of the round face that the edge is of; null: no edge of a shaft or bore.
   const Surface* round() const {
     for (const LeastFace& face : holding_)
@@ -106,27 +113,47 @@ std::vector<HoldPlace> hold_places(const OverlapQuery& query, const OverlapRegio
   const Interval& certain_mm = region.certain_mm;
   HoldPlace place{region.point_W, region.normal_W,
                   certain_mm.width() > accuracy_mm ? certain_mm.lo : certain_mm.hi};
-  if (a.is_smooth() == b.is_smooth()) {
+  // Which of them is followed around: the one at an edge, or a shaft in its bore.
+  const bool follows_b = a.is_smooth() && (!b.is_smooth() || b.is_shaft_in(a));
+  const bool follows_a = b.is_smooth() && (!a.is_smooth() || a.is_shaft_in(b));
+  if (!follows_a && !follows_b) {
     for (const Vec3& n : {of_a, of_b})
       if (n.dot(region.normal_W) > kAlike) place.normal_W = n;
     return {place};
   }
-  place.normal_W = a.is_smooth() ? of_a : of_b;
+  place.normal_W = follows_b ? of_a : of_b;
   std::vector<HoldPlace> places{place};
-  const FacesThere &smooth = a.is_smooth() ? a : b, &edge = a.is_smooth() ? b : a;
-  const Surface* round = edge.round();
+  const FacesThere &smooth = follows_b ? a : b, &followed = follows_b ? b : a;
+  const Surface* round = followed.round();
   if (round == nullptr) return places;
-  const Pose &X_WE = a.is_smooth() ? query.X_WB : query.X_WA,
-             &X_WS = a.is_smooth() ? query.X_WA : query.X_WB;
+  const Pose &X_WE = follows_b ? query.X_WB : query.X_WA,
+             &X_WS = follows_b ? query.X_WA : query.X_WB;
   for (int i = 1; i < kAround; ++i) {
     const Vec3 turn = 2.0 * 3.14159265358979323846 * i / kAround * round->axis;
-    const Vec3 x_E = round->point + rotation_exp(turn) * (edge.place() - round->point);
+    const Vec3 x_E = round->point + rotation_exp(turn) * (followed.place() - round->point);
     const Vec3 x_S = X_WS.inverse() * (X_WE * x_E);
     const double depth_mm = smooth.face().depth_mm(x_S);
     const Vec3 n = X_WS.q * smooth.face().normal(x_S);
-    places.push_back({X_WE * x_E, a.is_smooth() ? Vec3(-n) : n, depth_mm});
+    places.push_back({X_WE * x_E, follows_b ? Vec3(-n) : n, depth_mm});
   }
   return places;
+}
+
+std::vector<HoldPlace> hold_places(const OverlapQuery& query, const CertainPlace& place,
+                                   double accuracy_mm) {
+  const bool of_a = place.role == 0;
+  const Pose &X_WS = of_a ? query.X_WA : query.X_WB, &X_WK = of_a ? query.X_WB : query.X_WA;
+  const Solid& solid_k = of_a ? *query.b : *query.a;
+  OverlapRegion region;
+  region.point_W = X_WS * place.point_S;
+  const Vec3 x_K = X_WK.inverse() * region.point_W;
+  const std::uint32_t other = nearest_surface(solid_k, x_K).triangle;
+  region.triangle_a = of_a ? place.triangle : other;
+  region.triangle_b = of_a ? other : place.triangle;
+  const FacesThere k(solid_k, of_a ? *query.band_b : *query.band_a, other, x_K);
+  region.normal_W = (of_a ? 1.0 : -1.0) * (X_WK.q * k.normal());
+  region.certain_mm = {k.depth_mm(), k.depth_mm()};
+  return hold_places(query, region, accuracy_mm);
 }
 
 }  // namespace mortise

@@ -14,9 +14,14 @@ struct HoldPlace {
 
 /// Where a region holds the parts apart. The normal is that of the part that is smooth there, of
 /// its true surface where one is known; where both are, or both meet at an edge, that of the
-/// region. A round edge of the other part holds all around, however far: places along it follow. A
-/// bracket wider than accuracy_mm is taken at its lower end.
+/// region. A round edge of the other part, or a shaft in its bore, holds all around, however far:
+/// places along it follow. A bracket wider than accuracy_mm is taken at its lower end.
 std::vector<HoldPlace> hold_places(const OverlapQuery& query, const OverlapRegion& region,
+                                   double accuracy_mm);
+
+/// The same at a place that is certain a little later: where the parts are not near enough yet for
+/// a region.
+std::vector<HoldPlace> hold_places(const OverlapQuery& query, const CertainPlace& place,
                                    double accuracy_mm);
 
 }  // namespace mortise

@@ -12,7 +12,7 @@ namespace {
 // How far a slide sets out before the place where something holds it, mm.
 // With bands so far that the way along what holds it can be searched: what is that near costs the
 // search as much as a touch.
-constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm, kBandBackOff_mm = 2e-3;
+constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm, kBandBackOff_mm = 1.5e-3;
 
 bool active(const Scratch::Impl& work, std::int32_t move) {
   if (move < 0) return false;

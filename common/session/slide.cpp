@@ -24,7 +24,7 @@ constexpr double kReach_mm = 1e-3, kBandReach_mm = 0.03;
 // A leg leaves what it leans on by so much, mm, so that it does not end where it begins: of plain
 // parts twice the accuracy of first contact, else twice that of the search for the depth.
 constexpr double kLift_mm = 2.0 * kAccuracyDefault_mm;
-constexpr double kBandLift_mm = 2e-3;
+constexpr double kBandLift_mm = 1.5e-3;
 // A shorter leg is none, mm: more than the lifts.
 constexpr double kLeastLeg_mm = 1e-5;
 constexpr double kLeastBandLeg_mm = 2.0 * kBandLift_mm;
@@ -115,17 +115,21 @@ void add_banded_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool i
                       CcdScratch& ccd, std::vector<Hold>& holds) {
   const OverlapQuery query = certain_query(pair, X_WA, X_WB, Refinement::kFull);
   const OverlapResult overlap = ask(pair, query, ccd);
+  const auto add = [&](const HoldPlace& place, bool is_real) {
+    // What interferes already may not go deeper; nobody has to push it out.
+    const double gap_mm = is_real ? 0.0 : -place.depth_mm - kBandLift_mm;
+    holds.push_back({place.point_W, is_a ? place.normal_W : Vec3(-place.normal_W),
+                     std::max(gap_mm, -kBandReach_mm)});
+  };
+  bool any = false;
   for (const OverlapRegion& region : overlap.regions) {
     if (region.certain_mm.hi < -kBandReach_mm) continue;
-    for (const HoldPlace& place : hold_places(query, region, kBandReach_mm)) {
-      // What interferes already may not go deeper; nobody has to push it out.
-      const double gap_mm = region.has_witness && region.certain_mm.lo > kDeepeningSlack_mm
-                                ? 0.0
-                                : -place.depth_mm - kBandLift_mm;
-      holds.push_back({place.point_W, is_a ? place.normal_W : Vec3(-place.normal_W),
-                       std::max(gap_mm, -kBandReach_mm)});
-    }
+    any = true;
+    for (const HoldPlace& place : hold_places(query, region, kBandReach_mm))
+      add(place, region.has_witness && region.certain_mm.lo > kDeepeningSlack_mm);
   }
+  if (any || !pair.place.known()) return;
+  for (const HoldPlace& place : hold_places(query, pair.place, kBandReach_mm)) add(place, false);
 }
 
 void add_plain_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool is_a, CcdScratch& ccd,

@@ -34,14 +34,16 @@ class SlideFit : public ::testing::Test {
     const Vec3 middle(peg.X_WP.p.x(), peg.X_WP.p.y(), 0.0);
     peg.X_WP.p = middle + from;
     Scratch scratch;
-    for (int i = 0; i < ticks; ++i) {
-      Increment increment;
-      increment.user = peg.holder;
-      increment.part = peg.id;
-      increment.seq = static_cast<std::uint64_t>(i + 1);
-      increment.translation_mm = by;
-      step(world, {&increment, 1}, scratch);
-    }
+    std::uint64_t seq = 0;
+    for (const Push& one : pushes)
+      for (int i = 0; i < one.ticks; ++i) {
+        Increment increment;
+        increment.user = peg.holder;
+        increment.part = peg.id;
+        increment.seq = ++seq;
+        increment.translation_mm = one.by;
+        step(world, {&increment, 1}, scratch);
+      }
     return peg.X_WP.p - middle;
   }
 
@@ -54,7 +56,7 @@ TEST_F(SlideFit, OverItsChamferIntoItsBore) {
   for (int i = 0; i < 6; ++i) {
     Vec3 off(u(rng), u(rng), 0.0);
     off *= 0.4 * (i + 1) / 6.0 / off.norm();
-    const Vec3 at = push("peg_g6", Policy::kSlide, off + Vec3(0, 0, 15.5), {0, 0, -0.4}, 60);
+    const Vec3 at = push("peg_g6", Policy::kSlide, off + Vec3(0, 0, 15.5), {{{0, 0, -0.4}, 60}});
     EXPECT_LT(at.z(), 5.0) << "from " << off.transpose() << " to " << at.transpose();
     // H7/g6: the bore leaves it 20.5 um at most.
     EXPECT_LT(at.head<2>().norm(), 0.0206) << at.transpose();
@@ -62,18 +64,19 @@ TEST_F(SlideFit, OverItsChamferIntoItsBore) {
 }
 
 TEST_F(SlideFit, UnderStopItStaysAtTheMouth) {
-  const Vec3 at = push("peg_g6", Policy::kStop, {0.3, 0.1, 15.5}, {0, 0, -0.4}, 60);
+  const Vec3 at = push("peg_g6", Policy::kStop, {0.3, 0.1, 15.5}, {{{0, 0, -0.4}, 60}});
   EXPECT_GT(at.z(), 14.0) << at.transpose();
 }
 
 TEST_F(SlideFit, WhatIsLargerThanItsBoreDoesNotDropIn) {
   // H7/p6: even the least peg is larger than the largest bore.
-  const Vec3 at = push("peg_p6", Policy::kSlide, {0.2, 0.1, 15.5}, {0, 0, -0.4}, 40);
+  const Vec3 at = push("peg_p6", Policy::kSlide, {0.2, 0.1, 15.5}, {{{0, 0, -0.4}, 40}});
   EXPECT_GT(at.z(), 13.5) << at.transpose();
 }
 
 TEST_F(SlideFit, DraggedOverThePlateItDropsIn) {
-  const Vec3 at = push("peg_g6", Policy::kSlide, {-2.0, 0.002, 15.2}, {0.15, 0, -0.3}, 60);
+  const Vec3 at = push("peg_g6", Policy::kSlide, {-2.0, 0.002, 15.2},
+                       {{{0.15, 0, -0.3}, 12}, {{0, 0, -0.3}, 40}});
   EXPECT_LT(at.z(), 8.0) << at.transpose();
 }
 
