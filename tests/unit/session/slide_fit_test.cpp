@@ -20,9 +20,14 @@ class SlideFit : public ::testing::Test {
     scene_ = loaded->world;
   }
 
+  struct Push {
+    Vec3 by;
+    int ticks;
+  };
   /// The peg stands at `from` (its bore's mouth is at z = 15, its middle at x = y = 0) and is
-  /// pushed by `by` in each tick.
-  Vec3 push(const std::string& name, Policy policy, const Vec3& from, const Vec3& by, int ticks) {
+  /// pushed so in each tick.
+  Vec3 push(const std::string& name, Policy policy, const Vec3& from,
+            const std::vector<Push>& pushes) {
     World world = scene_;
     world.policy = policy;
     Decision join;
