@@ -156,6 +156,7 @@ LoadResult run_load(const LoadShape& shape) {
   // Held against the ticks of the load alone: the quiet seconds around it would flatter.
   const double due = shape.seconds * s["tick_rate_hz"].get<double>();
   result.missed_percent = 100.0 * s["missed_deadlines"].get<double>() / due;
+  result.ran_over_percent = 100.0 * s["overloads"].get<double>() / due;
   // Acknowledged: told by the server to be taken or refused, one by one or by a later one.
   const std::int64_t acknowledged =
       b["sent"].get<std::int64_t>() - b["unacknowledged_increments"].get<std::int64_t>();

@@ -65,7 +65,8 @@ struct LoadResult {
   Json bots, server;
   MemorySlope memory, memory_of_warm_up;  ///< the latter from a third of it on
   double load_average_before = 0.0, load_average_after = 0.0;
-  double missed_percent = 0.0;  ///< deadlines missed in the time of the load, of those due in it
+  double missed_percent = 0.0;    ///< deadlines missed in the time of the load, of those due in it
+  double ran_over_percent = 0.0;  ///< ticks that ran past the next deadline, of those due
   std::int64_t lost_increments = 0;  ///< acknowledged, but neither taken nor refused
   std::int64_t lost_commands = 0;    ///< acknowledged as done to the bots, not done by the server
   double at(const char* distribution, const char* percentile) const {

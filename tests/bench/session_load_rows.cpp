@@ -12,13 +12,29 @@ constexpr double kMemoryBar_mb_per_h = 1.0;
 constexpr double kWarmBar_mb = 40.0;  // what it took to get warm does not count as growth
 constexpr double kBeyondTickBar_ms = 5.0;
 
-const std::vector<std::string> kColumns = {
-    "behaviour",         "processes",           "users",           "rate Hz",
-    "seconds",           "increments",          "to pose p50 ms",  "to pose p90 ms",
-    "to pose p99 ms",    "to pose max ms",      "to event p50 ms", "to event p99 ms",
-    "tick p50 us",       "tick p99 us",         "missed %",        "lost events",
-    "resyncs",           "missed pose batches", "lost commands",   "lost increments",
-    "streams differing", "load average"};
+const std::vector<std::string> kColumns = {"behaviour",
+                                           "processes",
+                                           "users",
+                                           "rate Hz",
+                                           "seconds",
+                                           "increments",
+                                           "to pose p50 ms",
+                                           "to pose p90 ms",
+                                           "to pose p99 ms",
+                                           "to pose max ms",
+                                           "to event p50 ms",
+                                           "to event p99 ms",
+                                           "tick p50 us",
+                                           "tick p99 us",
+                                           "missed %",
+                                           "ran over %",
+                                           "lost events",
+                                           "resyncs",
+                                           "missed pose batches",
+                                           "lost commands",
+                                           "lost increments",
+                                           "streams differing",
+                                           "load average"};
 
 std::string name_of(const LoadShape& shape) {
   return shape.processes == 1
@@ -57,6 +73,7 @@ LoadResult row(Report& report, const LoadShape& shape) {
               tick_us["p50"].get<double>(),
               tick_us["p99"].get<double>(),
               r.missed_percent,
+              r.ran_over_percent,
               count(b["lost"]["events"]),
               count(b["repaired"]["resyncs"]),
               count(b["lost"]["pose_batches"]),
