@@ -71,6 +71,8 @@ class DdsServerChannel final : public StandbyChannel {
     write(taken_, sample);
   }
   std::vector<ToldTick> follow() override {
+    ServerInput nobody;
+    if (identities_) turn_away(nobody);  // the one that leads may be revoked, too
     std::vector<ToldTick> ticks;
     take_told(&ticks);
     return ticks;

@@ -301,8 +301,13 @@ void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) 
   if (!seat.present) return;
   seat.present = false;
   seat.left = ++departures_;
-  // What waits was never carried out: who sits here next has nothing to do with it.
+  // What waits was never carried out: who sits here next has nothing to do with it, nor is to hear
+  // of it.
+  const std::vector<Ack> acks = intake.acks;
+  const std::size_t refused = intake.refused.size();
   while (!seat.backlog.empty()) take_first(user, world, 0, intake);
+  intake.acks = acks;
+  intake.refused.resize(refused);
   const std::size_t undone = std::erase_if(
       deferred_, [&](const DeferredCommand& d) { return d.received.command.user == user; });
   counters_.commands_refused += undone;

@@ -125,8 +125,9 @@ class Inbox {
     std::uint64_t left = 0;  ///< the how manieth departure; 0: never here, or before this server
     std::int64_t awaited_until_ns = 0;  ///< adopted, and has not asked again yet; 0: is there
     IncrementOrder increments;
-    std::uint64_t acknowledged = 0;               ///< of the increments
-    std::deque<ReceivedIncrement> backlog;        ///< in rising sequence
+    std::uint64_t acknowledged = 0;         ///< of the increments
+    std::deque<ReceivedIncrement> backlog;  ///< in rising sequence
+    std::uint64_t refused_up_to = 0;        ///< behind the backlog: acknowledged when that is empty
     std::uint32_t queued = 0, queued_before = 0;  ///< increments, in this second and the last one
     std::int64_t second_ns = 0;                   ///< when this second began
     SequenceWindow commands;

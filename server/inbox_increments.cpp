@@ -70,7 +70,11 @@ void Inbox::queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake
     reason = Refusal::kRateTooHigh;
   }
   if (reason != Refusal::kNone) {
-    acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+    // An acknowledgement speaks of all before it, also of what waits.
+    if (seat.backlog.empty())
+      acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+    else
+      seat.refused_up_to = increment.seq;
     refuse(increment, increment.user, reason, intake);
     return;
   }
@@ -112,6 +116,8 @@ void Inbox::take_first(UserId user, const World& world, std::int64_t now_ns, Int
   const Increment& increment = first.increment;
   const Refusal reason = seat.present ? judge(increment, world) : Refusal::kUnknownUser;
   acknowledge(user, increment.seq, first.sent_ns, intake);
+  if (seat.backlog.empty() && seat.refused_up_to > increment.seq)
+    acknowledge(user, seat.refused_up_to, 0, intake);
   if (reason != Refusal::kNone) {
     refuse(increment, user, reason, intake);
     return;

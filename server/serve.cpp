@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -132,6 +133,10 @@ int serve(const ServerOptions& options) {
   std::signal(SIGXFSZ, SIG_IGN);
   auto resumed = resume(*start, options);
   if (!resumed) return say(resumed.error());
+  // No log begins before the term under which it is written: the next one finds that term in it.
+  const auto term_ns = [&] { return static_cast<std::int64_t>((*channel)->term_ms() * 1'000'000); };
+  if (*resumed && (*resumed)->begin)
+    (*resumed)->begin->time_ns = std::max((*resumed)->begin->time_ns, term_ns());
   auto log = create_log(options, *start,
                         *resumed ? std::move((*resumed)->begin) : std::optional<LogBegin>());
   if (!log) return say(log.error());
@@ -147,6 +152,7 @@ int serve(const ServerOptions& options) {
   }
 
   std::vector<SeatRecord> seats;
+  std::int64_t followed_ns = 0;
   if (stands_by) {
     (void)run_before_others();  // said below
     Follower follower(world, (*resumed)->statistics, log->writer.get(), options.threads);
@@ -156,6 +162,7 @@ int serve(const ServerOptions& options) {
     if (!ended) return say(ended.error());
     if (!*ended) return kExitOk;
     seats = follower.seats();
+    followed_ns = follower.time_ns();
     run_as_others();  // and the threads of the endpoints
     if (Status taken = line.take_over(); !taken) return say(taken.error());
     if (log->writer)
@@ -166,7 +173,7 @@ int serve(const ServerOptions& options) {
 
   if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
   // No tick is logged before the term of its server: so the next one finds a later term in the log.
-  SystemClock clock(static_cast<std::int64_t>((*channel)->term_ms() * 1'000'000));
+  SystemClock clock(std::max(term_ns(), followed_ns));
   if (const double ahead_s = clock.ahead_s(); ahead_s > kSayAhead_s)
     spdlog::warn(
         "the clock of this machine is {:.0f} s behind the last tick of {}: the log's "

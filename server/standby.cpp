@@ -1,5 +1,6 @@
 #include "server/standby.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <string>
@@ -60,6 +61,7 @@ Status Follower::take(const ToldTick& told) {
                                      " was told in words that this build does not know");
   }
   if (tick.has_seats) seats_ = std::move(tick.seats);
+  time_ns_ = std::max(time_ns_, tick.time_ns);
   if (tick.tick <= world_.tick) return ok();
   // Between the log and what was told nothing went in, or it would be in one of them.
   if (ticks_ > 0 && tick.tick != world_.tick + 1) {

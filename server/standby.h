@@ -26,6 +26,7 @@ class Follower {
   Status take(const ToldTick& told);
   const std::vector<SeatRecord>& seats() const { return seats_; }
   std::uint64_t ticks() const { return ticks_; }
+  std::int64_t time_ns() const { return time_ns_; }  ///< of the last tick that was told; 0: none
   /// The one that leads has said: go on from here.
   bool handed_over() const { return handed_over_; }
 
@@ -38,6 +39,7 @@ class Follower {
   Scratch scratch_;
   std::vector<SeatRecord> seats_;
   std::uint64_t ticks_ = 0, state_hash_ = 0;
+  std::int64_t time_ns_ = 0;
   bool handed_over_ = false;
 };
 

@@ -117,15 +117,20 @@ int run_verify(const VerifyOptions& options) {
 int run_report(const VerifyOptions& options) {
   SessionStatistics statistics;
   SessionNames names;
+  std::vector<std::string> last_names;  // by user, of whom the id is now
   const auto verification =
       verification_of(options, [&](const World& world, const StepReport& report) {
         statistics.add(report);
-        if (names.users.size() != world.users.size() || names.parts.empty())
-          names = names_of(world);
+        if (names.parts.empty()) names = names_of(world);
         // An id that somebody took over was first the one's and then the other's: so are its sums.
-        for (std::size_t i = 0; i < world.users.size(); ++i)
-          if (!names.users[i].ends_with(world.users[i].name))
-            names.users[i] += ", then " + world.users[i].name;
+        names.users.resize(world.users.size());
+        last_names.resize(world.users.size());
+        for (std::size_t i = 0; i < world.users.size(); ++i) {
+          if (last_names[i] == world.users[i].name) continue;
+          names.users[i] = last_names[i].empty() ? world.users[i].name
+                                                 : names.users[i] + ", then " + world.users[i].name;
+          last_names[i] = world.users[i].name;
+        }
       });
   if (!verification) return say_bad_log(verification.error());
   if (options.json) {

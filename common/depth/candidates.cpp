@@ -372,4 +372,15 @@ KnownOverlaps known_overlaps(const PairFrame& pair, const Candidates& candidates
   return known;
 }
 
+void leave_to_search(const KnownFacePair& pair, Candidates& candidates, KnownOverlaps& known) {
+  for (KnownOverlaps::Row& row : known.rows)
+    if (row.face[0] == pair.face[0] && row.face[1] == pair.face[1]) row.told = false;
+  for (int role = 0; role < 2; ++role) {
+    std::vector<std::uint32_t>& all = candidates.triangles[role];
+    all.insert(all.end(), pair.triangles[role].begin(), pair.triangles[role].end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+  }
+}
+
 }  // namespace mortise

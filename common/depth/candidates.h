@@ -57,4 +57,8 @@ Candidates find_candidates(const CandidateQuery& query);
 /// bores that cannot interfere in the upper layer.
 KnownOverlaps known_overlaps(const PairFrame& pair, const Candidates& candidates);
 
+/// Has a pair of faces that has a closed form searched all the same: its triangles are candidates,
+/// and what is known of it serves proofs only.
+void leave_to_search(const KnownFacePair& pair, Candidates& candidates, KnownOverlaps& known);
+
 }  // namespace mortise

@@ -39,7 +39,7 @@ class Overlap {
     known_ = known_overlaps(pair_, candidates);
     for (const KnownFacePair& known : candidates.known)
       if (!told_by_another(known, candidates) && !add_known(known))
-        leave_to_search(known, candidates);
+        leave_to_search(known, candidates, known_);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
                              query_.refinement == Refinement::kDecided},
                             scratch_, result_.evaluations);
@@ -190,17 +190,6 @@ class Overlap {
     if (!witness_W) return;
     region.witness_W = *witness_W;
     region.certain_place = {from.role, from.triangle, pair_.X_KS[1 - from.role] * from.point_K};
-  }
-
-  void leave_to_search(const KnownFacePair& known, Candidates& candidates) {
-    for (KnownOverlaps::Row& row : known_.rows)
-      if (row.face[0] == known.face[0] && row.face[1] == known.face[1]) row.told = false;
-    for (int role = 0; role < 2; ++role) {
-      std::vector<std::uint32_t>& all = candidates.triangles[role];
-      all.insert(all.end(), known.triangles[role].begin(), known.triangles[role].end());
-      std::sort(all.begin(), all.end());
-      all.erase(std::unique(all.begin(), all.end()), all.end());
-    }
   }
 
   // A pair of declared faces whose overlap has a closed form: only the overlap of the meshes is

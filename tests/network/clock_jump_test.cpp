@@ -52,10 +52,11 @@ class ClockJump : public SecondServer {
       return guest.client->user_id(guest.user) && guest.client->synced();
     };
     const double begun_s = steady_s();
-    while (steady_s() < begun_s + 15.0 && !(losses_ == losses + 2 && is_in(*anna_) && is_in(*ben_)))
+    while (steady_s() < begun_s + 15.0 &&
+           !(losses_ == losses + kClients && is_in(*anna_) && is_in(*ben_) && is_in(*otto_)))
       turn(0.01);
-    ASSERT_EQ(losses_, losses + 2) << "both have seen that the server went";
-    ASSERT_TRUE(is_in(*anna_) && is_in(*ben_)) << server->errors();
+    ASSERT_EQ(losses_, losses + kClients) << "all have seen that the server went";
+    ASSERT_TRUE(is_in(*anna_) && is_in(*ben_) && is_in(*otto_)) << server->errors();
     std::printf("back in the session %.2f s after the new process started\n", steady_s() - begun_s);
     EXPECT_EQ(anna_->client->user_id(anna_->user), anna_id);
     for (const auto& [id, pose] : poses_before) EXPECT_TRUE(identical(poses(*anna_)[id], pose));

@@ -68,9 +68,9 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
       stalls.emplace();
       leader->signal(SIGKILL);
     });
-    EXPECT_LT(gap_s, kComesBack_s);
     const double stall_s = stalls->longest_s(gap_s);
     if (stall_s < kStall_s) {
+      EXPECT_LT(gap_s, kComesBack_s);
       gaps_s.push_back(gap_s);
       std::printf("take-over %zu: %.0f ms\n", gaps_s.size(), gap_s * 1e3);
       EXPECT_LE(gap_s, kTakeOver_s);
