@@ -133,7 +133,7 @@ void shorten(const Surface& shaft, double radius_mm, const Cut& cut, double& lo,
   if (cone == nullptr || cone->kind != SurfaceKind::kCone || cone->inward) return;
   const double along = cone->axis.dot(shaft.axis);
   const Vec3 from = cone->point - shaft.point;
-  if (std::fabs(along) < 1.0 - kSame ||
+  if (cone->axis.cross(shaft.axis).norm() > kSame ||
       around(shaft, from).norm() > kSame * std::max(1.0, radius_mm))
     return;
   const double height =

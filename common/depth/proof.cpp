@@ -40,8 +40,9 @@ class Neighbourhood {
 
   bool holds_off() {
     const double u = proof_.limit_mm;
-    const double reach = std::fabs(u) + k_.largest_offset_mm[static_cast<int>(proof_.layer)] +
-                         patch_.thickness() + proof_.rounding_mm;
+    const double reach = reach_ = std::fabs(u) +
+                                  k_.largest_offset_mm[static_cast<int>(proof_.layer)] +
+                                  patch_.thickness() + proof_.rounding_mm;
     Box box;
     for (int i = 0; i < patch_.count; ++i) box.add(patch_.points[i]);
     slab_normal_ = patch_.normal;
@@ -215,11 +216,15 @@ class Neighbourhood {
     const std::uint16_t face = k_.face_index(wall.triangle);
     for (const std::uint32_t other : k_.sharp_neighbours(t)) {
       if (k_.face_index(other) != face) continue;
-      if (wall.surface != nullptr || other == wall.triangle ||
-          k_.normal(other).dot(wall.normal) > 1.0 - kOnePlane)
+      if (wall.surface != nullptr || other == wall.triangle || is_in_plane(other, wall))
         return true;
     }
     return false;
+  }
+
+  bool is_in_plane(std::uint32_t t, const Facet& wall) const {
+    return k_.normal(t).dot(wall.normal) > 1.0 - kOnePlane &&
+           std::fabs(wall.normal.dot(k_.mesh->corner(t, 0) - wall.point)) <= proof_.rounding_mm;
   }
 
   // A round face lies within the hull of its end circles: its true surface is below a plane or a
@@ -309,6 +314,11 @@ class Neighbourhood {
     return ConvexWall{facet.surface, facet.normal, facet.point, facet.offset_mm, turn_rad};
   }
 
+  bool is_there(const Corners& c) const {
+    return (nearest_on_triangle(patch_.center, c[0], c[1], c[2]) - patch_.center).norm() <=
+           patch_.radius_mm + reach_;
+  }
+
   bool below_two_walls() const {
     if (scratch_.near.size() > kMostOpen) return false;
     const auto first = wall_over_all(proof_.at_center.triangle, nearest_);
@@ -318,6 +328,8 @@ class Neighbourhood {
       if (near.triangle == proof_.at_center.triangle) continue;
       const Surface* surface = Body::surface_of(k_.face(near.triangle), proof_.layer);
       if (surface != nullptr && surface == asked) continue;  // another triangle of the same bore
+      // Where a point has to leave k, the wall that it leaves by must be there.
+      if (proof_.limit_mm > 0.0 && !is_there(near.corners)) continue;
       const auto second = wall_over_all(near.triangle, near.corners);
       if (second && mean_keeps_off(*first, *second, patch_, proof_.limit_mm)) return true;
       if (surface != nullptr) asked = surface;
@@ -350,6 +362,7 @@ class Neighbourhood {
   Vec3 up_;
   Corners nearest_;
   Vec3 slab_normal_ = Vec3::Zero();
+  double reach_ = 0.0;
   double slab_lo_ = 0.0, slab_hi_ = 0.0;
 };
 

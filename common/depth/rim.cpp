@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Directions closer than this are one: a bore is square to its plane.
+// Sine of the angle by which a bore may be out of square to its plane.
 constexpr double kSquare = 1e-9;
 
 // Where the bore of one triangle ends in the plane of another, in the layer.
@@ -20,9 +20,12 @@ std::optional<Rim> rim_between(const Body& s, Layer layer, std::uint32_t bore, s
       s.face(flat).surface)
     return std::nullopt;
   const Vec3 n = s.normal(flat);
-  const double along = n.dot(surface->axis);
-  if (std::fabs(along) < 1.0 - kSquare) return std::nullopt;
-  const double height_mm = n.dot(s.mesh->corner(flat, 0) - surface->point) +
+  const double along = n.dot(surface->axis), sine = n.cross(surface->axis).norm();
+  if (n.isZero(0.0) || sine > kSquare) return std::nullopt;
+  double reach_mm = surface->radius_mm;
+  for (int k = 0; k < 3; ++k)
+    reach_mm = std::max(reach_mm, (s.mesh->corner(flat, k) - surface->point).norm());
+  const double height_mm = n.dot(s.mesh->corner(flat, 0) - surface->point) + 2.0 * sine * reach_mm +
                            std::max(0.0, Body::offset_of(s.face(flat), layer));
   Rim rim;
   rim.axis = along > 0.0 ? surface->axis : Vec3(-surface->axis);
@@ -53,7 +56,14 @@ Seen seen(const Rim& rim, const Surface& round) {
 int rims_of(const Body& s, Layer layer, std::uint32_t triangle, std::span<Rim> rims) {
   if (layer == Layer::kMesh) return 0;
   std::size_t count = 0;
+  const auto is_widened = [&](std::uint32_t but) {
+    // By a third face that moves outward the triangle goes on past the rim.
+    for (const std::uint32_t n : s.sharp_neighbours(triangle))
+      if (n != but && Body::offset_of(s.face(n), layer) > 0.0) return true;
+    return false;
+  };
   for (const std::uint32_t other : s.sharp_neighbours(triangle)) {
+    if (is_widened(other)) continue;
     auto rim = rim_between(s, layer, triangle, other);
     if (!rim) rim = rim_between(s, layer, other, triangle);
     if (rim && count < rims.size()) rims[count++] = *rim;

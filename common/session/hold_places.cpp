@@ -54,6 +54,7 @@ class FacesThere {
       for (const std::uint32_t next : solid.topology().neighbor[t])
         if (next != Topology::kNone) add(next);
     }
+    if (holding_.empty()) holding_.emplace_back();  // triangles without area hold nothing
   }
   bool is_smooth() const {
     return std::all_of(holding_.begin(), holding_.end(), [&](const LeastFace& face) {
@@ -117,8 +118,8 @@ std::vector<HoldPlace> hold_places(const OverlapQuery& query, const OverlapRegio
   const bool follows_b = a.is_smooth() && (!b.is_smooth() || b.is_shaft_in(a));
   const bool follows_a = b.is_smooth() && (!a.is_smooth() || a.is_shaft_in(b));
   if (!follows_a && !follows_b) {
-    for (const Vec3& n : {of_a, of_b})
-      if (n.dot(region.normal_W) > kAlike) place.normal_W = n;
+    const Vec3& n = of_a.dot(region.normal_W) > of_b.dot(region.normal_W) ? of_a : of_b;
+    if (n.dot(region.normal_W) > kAlike) place.normal_W = n;
     return {place};
   }
   place.normal_W = follows_b ? of_a : of_b;
