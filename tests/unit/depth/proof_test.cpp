@@ -7,18 +7,10 @@
 
 #include "common/geometry/signed_distance.h"
 #include "common/math/rotation.h"
-#include "tests/support/shapes.h"
+#include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {
 namespace {
-
-SurfaceBand band_of(const Interval& tolerance_mm) {
-  SurfaceBand band = nominal_band();
-  band.trivial = false;
-  band.faces[0].tolerance_mm = tolerance_mm;
-  band.largest_offset_mm = std::max(0.0, tolerance_mm.hi);
-  return band;
-}
 
 struct Asked {
   Patch patch;
@@ -57,7 +49,8 @@ TEST(Proof, ALowerStepDoesNotCoverTheRiser) {
       shapes::solid(shapes::prism({{-20, -10}, {20, -10}, {20, 0}, {0, 0}, {0, 10}, {-20, 10}},
                                   {{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}}, -5, 5));
   const auto s = shapes::solid(shapes::box({2, 1, 2}, {1.0, 1.05, 0}));
-  const SurfaceBand of_k = band_of({-0.1, 0.1}), of_s = band_of({0.0, 0.0});
+  const SurfaceBand of_k = shapes::uniform_band({0.0, 0.0}, {-0.1, 0.1}),
+                    of_s = shapes::uniform_band({0.0, 0.0}, {0.0, 0.0});
   const Body body_k(*k, of_k), body_s(*s, of_s);
   int asked = 0;
   for (std::uint32_t t = 0; t < s->mesh().triangles.size(); ++t) {
@@ -111,7 +104,7 @@ TEST(Proof, AThirdFaceThatMovesOutwardLeavesNoRim) {
   round.inward = true;
   round.radius_mm = 5.0;
   for (const double widens_mm : {0.1, 0.0}) {
-    SurfaceBand band = band_of({-0.1, widens_mm});
+    SurfaceBand band = shapes::uniform_band({0.0, 0.0}, {-0.1, widens_mm});
     band.faces.resize(2);
     band.faces[1].surface = round;
     band.faces[1].deviation_mm = {-0.03, 0.0};
