@@ -39,7 +39,8 @@ class Bench {
       part.X_WP = pose;
       result.parts.push_back(part);
     }
-    for (const auto& [id, key] : users) result.users.push_back({id, "user", !gone.contains(id)});
+    for (const auto& [id, key] : users)
+      result.users.push_back({id, names.at(id), !gone.contains(id)});
     for (const auto& [id, clash] : open) result.open_clashes.push_back(clash);
     return result;
   }
@@ -72,6 +73,7 @@ class Bench {
       }
       if (!id) id = UserId{static_cast<std::uint32_t>(users.size()) + 1};
       users[id] = {join.client, join.nonce};
+      names[id] = join.name;
       gone.erase(id);
       if (answer_joins) {
         server->publish_join_reply({join.client, join.nonce, id, Refusal::kNone, ""});
@@ -99,6 +101,7 @@ class Bench {
   std::unique_ptr<ServerChannel> server;
   ServerInput input;
   std::map<UserId, std::pair<ClientKey, std::uint64_t>> users;
+  std::map<UserId, std::string> names;
   std::set<UserId> gone;
   std::map<UserId, std::uint64_t> seen;
   std::map<PartId, Pose> parts;
