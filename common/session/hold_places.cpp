@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/base/constants.h"
-#include "common/geometry/signed_distance.h"
+#include "common/depth/body.h"
 #include "common/math/rotation.h"
 
 namespace mortise {
@@ -18,13 +18,6 @@ constexpr double kTogether_mm = 5e-3;
 constexpr double kAlike = 0.9;
 // Places around a round edge.
 constexpr int kAround = 24;
-
-Vec3 triangle_normal(const TriangleMesh& mesh, std::uint32_t t) {
-  const Vec3 n =
-      (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
-  const double length = n.norm();
-  return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
-}
 
 /// The least surface of a face.
 struct LeastFace {
@@ -45,8 +38,8 @@ struct LeastFace {
 /// the one below whose least surface the place is least deep; several are an edge.
 class FacesThere {
  public:
-  FacesThere(const Solid& solid, const SurfaceBand& band, std::uint32_t triangle, const Vec3& x)
-      : solid_(solid), band_(band), x_(x) {
+  FacesThere(const Body& body, std::uint32_t triangle, const Vec3& x) : body_(body), x_(x) {
+    const Solid& solid = *body.solid;
     add(triangle);
     for (const std::uint32_t t : solid.topology().neighbor[triangle]) {
       if (t == Topology::kNone) continue;
@@ -80,22 +73,17 @@ class FacesThere {
 
  private:
   void add(std::uint32_t t) {
-    const SurfaceBand::Face& face = band_.face_of(t);
-    LeastFace least;
-    least.surface = face.surface ? &*face.surface : nullptr;
-    least.plane_normal = triangle_normal(solid_.mesh(), t);
-    least.plane_point = solid_.mesh().corner(t, 0);
+    const SurfaceBand::Face& face = body_.face(t);
+    const LeastFace least{Body::surface_of(face, Layer::kLower), body_.normal(t),
+                          body_.mesh->corner(t, 0), Body::offset_of(face, Layer::kLower)};
     if (least.surface == nullptr && least.plane_normal.isZero(0.0)) return;
-    least.offset_mm =
-        face.tolerance_mm.lo + (least.surface != nullptr ? -face.doubt_mm() : face.deviation_mm.lo);
     const double depth_mm = least.depth_mm(x_);
     if (depth_mm < least_deep_mm_ - kTogether_mm) holding_.clear();
     if (depth_mm < least_deep_mm_ + kTogether_mm) holding_.push_back(least);
     least_deep_mm_ = std::min(least_deep_mm_, depth_mm);
   }
 
-  const Solid& solid_;
-  const SurfaceBand& band_;
+  const Body& body_;
   Vec3 x_;
   std::vector<LeastFace> holding_;
   double least_deep_mm_ = std::numeric_limits<double>::infinity();
@@ -105,10 +93,9 @@ class FacesThere {
 
 std::vector<HoldPlace> hold_places(const OverlapQuery& query, const OverlapRegion& region,
                                    double accuracy_mm) {
-  const FacesThere a(*query.a, *query.band_a, region.triangle_a,
-                     query.X_WA.inverse() * region.point_W);
-  const FacesThere b(*query.b, *query.band_b, region.triangle_b,
-                     query.X_WB.inverse() * region.point_W);
+  const Body body_a(*query.a, *query.band_a), body_b(*query.b, *query.band_b);
+  const FacesThere a(body_a, region.triangle_a, query.X_WA.inverse() * region.point_W);
+  const FacesThere b(body_b, region.triangle_b, query.X_WB.inverse() * region.point_W);
   const Vec3 of_a = -(query.X_WA.q * a.normal()), of_b = query.X_WB.q * b.normal();
   // Where the search was given up, what it has found counts, not what it could not rule out.
   const Interval& certain_mm = region.certain_mm;
@@ -144,14 +131,14 @@ std::vector<HoldPlace> hold_places(const OverlapQuery& query, const CertainPlace
                                    double accuracy_mm) {
   const bool of_a = place.role == 0;
   const Pose &X_WS = of_a ? query.X_WA : query.X_WB, &X_WK = of_a ? query.X_WB : query.X_WA;
-  const Solid& solid_k = of_a ? *query.b : *query.a;
+  const Body body_k = of_a ? Body(*query.b, *query.band_b) : Body(*query.a, *query.band_a);
   OverlapRegion region;
   region.point_W = X_WS * place.point_S;
   const Vec3 x_K = X_WK.inverse() * region.point_W;
-  const std::uint32_t other = nearest_surface(solid_k, x_K).triangle;
+  const std::uint32_t other = nearest_surface(*body_k.solid, x_K).triangle;
   region.triangle_a = of_a ? place.triangle : other;
   region.triangle_b = of_a ? other : place.triangle;
-  const FacesThere k(solid_k, of_a ? *query.band_b : *query.band_a, other, x_K);
+  const FacesThere k(body_k, other, x_K);
   region.normal_W = (of_a ? 1.0 : -1.0) * (X_WK.q * k.normal());
   region.certain_mm = {k.depth_mm(), k.depth_mm()};
   return hold_places(query, region, accuracy_mm);

@@ -10,9 +10,7 @@ namespace mortise {
 namespace {
 
 // How far a slide sets out before the place where something holds it, mm.
-// With bands so far that the way along what holds it can be searched: what is that near costs the
-// search as much as a touch.
-constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm, kBandBackOff_mm = 1.5e-3;
+constexpr double kBackOff_mm = 4.0 * kAccuracyDefault_mm;
 
 bool active(const Scratch::Impl& work, std::int32_t move) {
   if (move < 0) return false;
@@ -131,7 +129,7 @@ class Response {
     const bool banded = std::any_of(
         work_.pairs.begin(), work_.pairs.begin() + static_cast<std::ptrdiff_t>(work_.pair_count),
         [&](const PairWork& pair) { return pair.blocks && pair.t_stop == t && !pair.plain(); });
-    const double back_mm = banded ? kBandBackOff_mm : kBackOff_mm;
+    const double back_mm = banded ? kBandLift_mm : kBackOff_mm;
     return fastest_mm > 0.0 ? std::max(changed_at_, t - back_mm / fastest_mm) : t;
   }
 

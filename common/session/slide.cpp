@@ -21,10 +21,9 @@ constexpr double kStalled = 1e-9;  // share of the tick
 // What is this near counts as holding, mm: less than any clearance; with bands as near as a search
 // for the time at which a pair becomes real may leave it.
 constexpr double kReach_mm = 1e-3, kBandReach_mm = 0.03;
-// A leg leaves what it leans on by so much, mm, so that it does not end where it begins: of plain
-// parts twice the accuracy of first contact, else twice that of the search for the depth.
+// A leg leaves what it leans on by so much, mm, so that it does not end where it begins: twice the
+// accuracy of first contact; with bands see kBandLift_mm.
 constexpr double kLift_mm = 2.0 * kAccuracyDefault_mm;
-constexpr double kBandLift_mm = 1.5e-3;
 // A shorter leg is none, mm: more than the lifts.
 constexpr double kLeastLeg_mm = 1e-5;
 constexpr double kLeastBandLeg_mm = 2.0 * kBandLift_mm;

@@ -9,6 +9,10 @@ namespace mortise {
 // would not let it. Time runs on as under stop: legs follow each other at the times at which
 // something more holds the body back, or lets it go. At most kMostLegs legs a body and tick.
 
+/// With bands a slide sets out, and keeps off what it leans on, by so much, mm: nearer than that
+/// its way costs the search as much as a touch. Less than any clearance.
+inline constexpr double kBandLift_mm = 1.5e-3;
+
 /// The body that this move belongs to goes on from time t along what holds it. False: there is no
 /// way on, or it had its legs.
 bool start_leg(const World& world, Scratch::Impl& work, std::int32_t move, double t,
