@@ -103,6 +103,9 @@ TEST_F(InboxBacklogTest, WhatWaitsIsBoundedAndWhatIsBeyondIsRefused) {
       more.increments.push_back(increment("a", anna_, kRed, 900 * burst + i));
     admit(std::move(more));
     ASSERT_LE(inbox_.waiting_increments(), InboxLimits{}.increments_waiting);
+    ASSERT_FALSE(intake_.increments.empty());
+    for (const Ack& ack : intake_.acks)
+      ASSERT_LE(ack.seq, intake_.increments.back().seq) << "what waits is not acknowledged yet";
   }
   EXPECT_GT(refused(Refusal::kRateTooHigh), 10'000u);
   ASSERT_FALSE(intake_.refused.empty()) << "it is told";
@@ -152,6 +155,7 @@ TEST_F(InboxBacklogTest, WhatWaitsOfSomebodyWhoIsGoneIsRefused) {
   EXPECT_EQ(inbox_.waiting_increments(), 0u);
   EXPECT_TRUE(intake_.increments.empty());
   EXPECT_EQ(refused(Refusal::kUnknownUser), waiting);
+  EXPECT_TRUE(intake_.acks.empty() && intake_.refused.empty()) << "who has the id now hears of it";
   EXPECT_EQ(inbox_.users_present(), 2u);
 }
 
