@@ -50,7 +50,13 @@ void look_at_lease(rtps::PDP& discovery, rtps::ParticipantProxyData& remote) {
 
 class ParticipantLease : public ::testing::Test {
  protected:
-  ParticipantLease() { discovery_.removed.clear(); }
+  ParticipantLease() {
+    discovery_.removed.clear();
+    // Fast DDS leaves the lease as the memory was until somebody announces one: 0 s here.
+    rtps::ParticipantProxyData announced(allocation_);
+    announced.m_leaseDuration = {0, 0};
+    EXPECT_TRUE(remote_.updateData(announced));
+  }
 
   rtps::RTPSParticipantAllocationAttributes allocation_;
   // One for all, never ended: its destructor asks for a network.
