@@ -12,6 +12,9 @@ constexpr int kLooks = 3;
 // Work of one look; at the brink of interfering it is not worth more.
 constexpr std::uint64_t kLookWorkCap = 600;
 
+// What first contact may do before the search, for each evaluation of that: a test is the cheaper.
+constexpr std::uint64_t kTestsPerEvaluation = 8;
+
 // A path cut anywhere is a path of its kind.
 Motion rest_of(const Motion& motion, double t) {
   if (!motion.moves()) return motion;
@@ -54,6 +57,7 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   near.motion_b = query.motion_b;
   near.separation_mm =
       std::max(0.0, at.band_a->largest_offset_mm) + std::max(0.0, at.band_b->largest_offset_mm);
+  near.work_cap = std::min(kCcdWorkCap, kTestsPerEvaluation * std::min(kCcdWorkCap, at.work_cap));
   const FirstContact first = first_contact(near, scratch);
   if (first.state == ContactState::kFree) return answer;
   if (first.state == ContactState::kUndecided) {

@@ -167,9 +167,10 @@ void fields(A& a, KeptPush& x) {
 template <class A>
 void fields(A& a, SessionState& x) {
   auto& [tick, event_seq, next_clash, moving_parts, broad_phase, parts, placed, owed, kept, rehash,
-         memos, touched, open, reviews, clashes_changed, saved_work, parts_hash, clashes_hash] = x;
+         memos, touched, open, reviews, clashes_changed, saved_work, saved_tests, parts_hash,
+         clashes_hash] = x;
   a(tick, event_seq, next_clash, moving_parts, parts, placed, owed, kept, rehash, open, reviews,
-    clashes_changed, saved_work, parts_hash, clashes_hash);
+    clashes_changed, saved_work, saved_tests, parts_hash, clashes_hash);
 }
 
 template <class A>

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/constants.h"
+#include "common/session/contact_budget.h"
 #include "common/session/motion_budget.h"
 #include "common/session/stop_time.h"
 #include "common/session/tick_work.h"
@@ -25,10 +26,12 @@ FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_
   query.separation_mm = separation_mm;
   query.ignore_touching_at_start = at_start == AtStart::kIgnoreTouching;
   query.check_contained = !pair.memo->not_contained;
+  query.work_cap = pair.contact_cap;
   const FirstContact contact = first_contact(query, ccd);
-  ++pair.counts.first_contact_queries;
-  pair.counts.box_tests += contact.work.box_tests;
-  pair.counts.triangle_tests += contact.work.triangle_tests;
+  note_contact_work(pair, contact.work);
+  pair.contact_short |= contact.state == ContactState::kUndecided &&
+                        pair.contact_cap < kCcdWorkCap &&
+                        contact.work.box_tests + contact.work.leaf_tests >= pair.contact_cap;
   return contact;
 }
 
@@ -96,6 +99,7 @@ double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_
 bool stays_clear(PairWork& pair, CcdScratch& ccd) {
   const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
   if (apart_lower_bound_mm(*pair.memo, budget) > needed_mm(pair)) return true;
+  if (pair.contact_cap == 0) return false;
   // Only surfaces are apart: who may start inside the other is asked, and so is who has to end a
   // clash.
   if (!pair.memo->not_contained || pair.open) return false;
@@ -132,7 +136,22 @@ DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, d
   return result;
 }
 
+void note_contact_work(PairWork& pair, const CcdWork& work) {
+  ++pair.counts.first_contact_queries;
+  pair.counts.box_tests += work.box_tests;
+  pair.counts.triangle_tests += work.triangle_tests;
+  pair.contact_tests += work.box_tests + work.leaf_tests;
+}
+
 namespace {
+
+// The tick has no work left for it: nothing is known beyond how it stands.
+void leave_unasked(const World& world, PairWork& pair) {
+  pair.near = pair.undecided = pair.contact_waits = true;
+  if (!holds_back(world.policy)) return;
+  pair.short_of_work = true;
+  pair.t_stop = pair.tau;
+}
 
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {
   pair.asked = true;
@@ -143,6 +162,8 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.stop_gave_up = pair.short_of_work = pair.stalled = pair.withdrawal_unsure = false;
   pair.place = {};
   pair.t_enter = pair.apart_at_end_mm = 0.0;
+  pair.contact_waits = false;
+  const bool cut_short = std::exchange(pair.contact_short, false);
   if (pair.together) {
     pair.asked = false;
     return;
@@ -151,17 +172,20 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     pair.near = true;
     return;
   }
-  if (switches.motion_budget && stays_clear(pair, ccd)) {
+  if (switches.motion_budget && !cut_short && stays_clear(pair, ccd)) {
     pair.asked = false;
     return;
   }
+  if (pair.contact_cap == 0) return leave_unasked(world, pair);
   if (pair.plain())
     ask_plain(world, pair, ccd);
   else
     ask_banded(world, pair, ccd);
+  pair.short_of_work = pair.contact_short;
   // First contact sometimes learns how far apart they end.
   if (!pair.near && !pair.touching && pair.apart_at_end_mm > needed_mm(pair))
-    remember_apart(pair.memo.change(), pair.motion_a.X_W1, pair.motion_b.X_W1, pair.apart_at_end_mm);
+    remember_apart(pair.memo.change(), pair.motion_a.X_W1, pair.motion_b.X_W1,
+                   pair.apart_at_end_mm);
 }
 
 // What is known of the stop without a search stands where there is no work left for one.
@@ -169,7 +193,7 @@ void search_stop_time(PairWork& pair, CcdScratch& ccd) {
   if (pair.cap == 0) {
     pair.undecided = pair.stop_gave_up = true;
     pair.stalled = is_stalled(pair) && pair.memo->stalled->in_full;
-    pair.short_of_work = !pair.stalled;
+    pair.short_of_work |= !pair.stalled;
     return;
   }
   const bool was_undecided = std::exchange(pair.undecided, false);
@@ -177,26 +201,64 @@ void search_stop_time(PairWork& pair, CcdScratch& ccd) {
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
   note_effort(pair, WorkStage::kStop, pair.undecided);
   pair.stop_gave_up = pair.undecided;
-  pair.short_of_work = pair.undecided && pair.may_have_more();
+  pair.short_of_work |= pair.undecided && pair.may_have_more();
   note_stalled(pair);
   pair.undecided |= was_undecided;
 }
 
 }  // namespace
 
-void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
-  const auto each = [&](std::span<const std::uint32_t> some, const auto& ask) {
-    work.pool.for_each(some.size(), [&](std::size_t i, int thread) {
-      ask(work.pairs[some[i]], work.ccd[static_cast<std::size_t>(thread)]);
-    });
+namespace {
+
+template <class Ask>
+void each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const Ask& ask) {
+  work.pool.for_each(pairs.size(), [&](std::size_t i, int thread) {
+    ask(work.pairs[pairs[i]], work.ccd[static_cast<std::size_t>(thread)]);
+  });
+}
+
+// 1. each with a share of what the tick may spend; most need no more.
+// 2. whose share did not do, or who had none, with all that a pair may have, as long as there is
+//    work.
+void ask_within_budget(const World& world, Scratch::Impl& work,
+                       std::span<const std::uint32_t> pairs) {
+  const auto ask = [&](PairWork& pair, CcdScratch& ccd) {
+    ask_pair(world, work.switches, pair, ccd);
   };
-  each(pairs, [&](PairWork& pair, CcdScratch& ccd) { ask_pair(world, work.switches, pair, ccd); });
+  if (is_contact_unlimited(work)) {
+    for (const std::uint32_t i : pairs) work.pairs[i].contact_cap = kCcdWorkCap;
+    return each(work, pairs, ask);
+  }
+  const std::vector<std::uint32_t> order = contact_order(world, work, pairs);
+  for (std::span<const std::uint32_t> rest = order; !rest.empty();) {
+    const auto batch = rest.first(std::min(rest.size(), kContactBatch));
+    rest = rest.subspan(batch.size());
+    share_contact_work(world, work, batch);
+    each(work, batch, ask);
+  }
+  std::vector<std::uint32_t> unanswered;
+  for (const std::uint32_t i : order)
+    if (work.pairs[i].contact_short || work.pairs[i].contact_waits) unanswered.push_back(i);
+  for (std::span<const std::uint32_t> rest = unanswered; !rest.empty();) {
+    const auto batch = rest.first(std::min(rest.size(), kDearBatch));
+    rest = rest.subspan(batch.size());
+    if (!share_more_contact_work(work, batch)) break;
+    each(work, batch, ask);
+  }
+  for (const std::uint32_t i : unanswered)
+    work.pairs[i].counts.pairs_waiting += work.pairs[i].contact_waits ? 1U : 0U;
+}
+
+}  // namespace
+
+void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
+  ask_within_budget(world, work, pairs);
   work.asked.clear();
   for (const std::uint32_t i : pairs)
     if (work.pairs[i].wants_stop_time) work.asked.push_back(i);
   if (work.asked.empty()) return;
   share_out(world, work, work.asked, WorkStage::kStop);
-  each(work.asked, [](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, ccd); });
+  each(work, work.asked, [](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, ccd); });
 }
 
 void find_contacts(const World& world, Scratch::Impl& work) {

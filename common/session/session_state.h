@@ -150,6 +150,7 @@ struct SessionState {
   std::vector<ClashEvent> reviews;                  ///< made since the last tick, told in the next
   bool clashes_changed = true;
   std::int64_t saved_work = 0;   ///< evaluations, see work_budget.h; negative: overdrawn
+  std::int64_t saved_tests = 0;  ///< the same of first contact, see contact_budget.h
   std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
   std::uint64_t clashes_hash = 0;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/session/contact_budget.h"
 #include "common/session/review.h"
 #include "common/session/statistics.h"
 #include "common/session/tick_work.h"
@@ -60,6 +61,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   gather(world, increments, work, report);
   find_candidates(world, state, work, report);
   open_budget(world, state, work);
+  open_contact_budget(world, state, work);
   if (!work.moves.empty()) {
     find_contacts(world, work);
     respond(world, work, report);
@@ -71,6 +73,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
     note_changed_memos(state, work);
   }
   close_budget(world, state, work);
+  close_contact_budget(world, state, work);
   report.state_hash = state_hash(world, state);
   return report;
 }

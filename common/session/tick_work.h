@@ -104,6 +104,12 @@ struct PairWork {
   std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
                                                 ///< back; near, and left again
 
+  // Work on first contact, in tests; see contact_budget.h.
+  std::uint64_t contact_cap = kCcdWorkCap,
+                contact_tests = 0;  ///< of one question; used in the tick
+  bool contact_short = false;       ///< a question came to the end of that
+  bool contact_waits = false;       ///< none was asked, for want of work
+
   // Work on depth, in evaluations; see work_budget.h.
   std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
   std::uint64_t most_work = 0;     ///< that a pair may have in the stage
@@ -166,6 +172,7 @@ struct Scratch::Impl {
   std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
   std::size_t pair_count = 0;
   std::uint64_t budget = 0, stock = 0;  ///< evaluations of depth: of this tick, and what was saved
+  std::uint64_t contact_budget = 0;     ///< tests of first contact, what was saved included
   std::vector<std::uint32_t> asked;     ///< pairs that want work of the stage
   std::vector<std::uint32_t> again;     ///< pairs to ask again in a round of the response
   std::vector<SlidingBody> sliding;
@@ -200,6 +207,9 @@ void note_held(const World& world, Scratch::Impl& work);
 
 /// Asks pairs over the segments set in them; used by 3 and by the rounds of 3b.
 void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs);
+
+/// Counts what a question of first contact took.
+void note_contact_work(PairWork& pair, const CcdWork& work);
 
 /// Distance of the meshes of a pair at these poses, mm, up to limit_mm; counted, and begun where
 /// the last one was found.

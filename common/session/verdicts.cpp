@@ -15,6 +15,8 @@ namespace {
 // brink of a threshold can take any number; where it ends, brackets stay wide, the verdict is
 // potential and the pair is counted as not examined to the end.
 constexpr std::uint64_t kTickOverlapCap = 10'000;
+// Tests of the look back from the end of a motion that passes through something.
+constexpr std::uint64_t kLeastWorkBack = 2'000;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -118,10 +120,9 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Pair
   back.separation_mm = pair.band_mm;
   back.check_contained = false;
   back.ignore_touching_at_start = pair.plain();
+  back.work_cap = std::max(pair.contact_cap, kLeastWorkBack);
   const FirstContact last = first_contact(back, ccd);
-  ++pair.counts.first_contact_queries;
-  pair.counts.box_tests += last.work.box_tests;
-  pair.counts.triangle_tests += last.work.triangle_tests;
+  note_contact_work(pair, last.work);
   if (last.state == ContactState::kUndecided) pair.undecided = true;
   const double t_out = std::max(whole.t_enter, 1.0 - last.t_clear);
   for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "common/session/contact_budget.h"
 #include "common/session/stop_time.h"
 
 namespace mortise {
@@ -16,8 +17,6 @@ constexpr double kWorkPerSecond = 180'000.0;
 constexpr std::uint64_t kLeastTickWork = 500;
 // Share of a tick that the search for stops leaves to the verdicts.
 constexpr std::uint64_t kVerdictShare = 3;
-// A leg of a slide is searched like a push of its own, and several of them in a tick.
-constexpr std::uint64_t kSlideTimes = 2;
 
 // What is saved at most, so that the first verdict on a clash and a stop at a brink are found at
 // once where the session is not always short of work; what may be overdrawn at most; and what is
@@ -60,11 +59,6 @@ std::uint64_t spent(const Scratch::Impl& work) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < work.pair_count; ++i) sum += work.pairs[i].counts.depth_evaluations;
   return sum;
-}
-
-bool is_held(const World& world, const PairWork& pair) {
-  return (pair.move_a >= 0 && world.parts[pair.a].holder) ||
-         (pair.move_b >= 0 && world.parts[pair.b].holder);
 }
 
 std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x - std::min(x, y); }

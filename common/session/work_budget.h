@@ -11,6 +11,10 @@ namespace mortise {
 // as they are, and is counted in pairs_waiting and not_examined. What ticks do not need is saved,
 // up to a limit, for pairs that need more than one tick has.
 
+/// Of all work a tick has so many times more under slide: a leg is searched like a push of its own,
+/// and there are several of them in a tick.
+inline constexpr std::uint64_t kSlideTimes = 2;
+
 /// Evaluations that are left of the tick, what is saved included.
 std::uint64_t work_left(const Scratch::Impl& work);
 

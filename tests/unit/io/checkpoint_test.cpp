@@ -113,6 +113,7 @@ TEST(Checkpoint, WhatIsLeftOutIsNoticed) {
   const std::pair<const char*, void (*)(SessionState&)> things[] = {
       {"memos", [](SessionState& state) { state.memos.clear(); }},
       {"what was saved of work", [](SessionState& state) { state.saved_work = 0; }},
+      {"what was saved of tests", [](SessionState& state) { state.saved_tests = 0; }},
       {"identities", [](SessionState& state) { ++state.next_clash; }},
       {"open clashes", [](SessionState& state) { state.open.clear(); }},
       {"last movers", [](SessionState& state) {
