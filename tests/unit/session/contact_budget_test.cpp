@@ -80,6 +80,7 @@ TEST(ContactBudget, ATickSpendsNoMoreThanItMayAndSaysWhatItLeftOut) {
     // What was saved when the session began, and the last two beyond.
     EXPECT_LT(with.tests, 3U * 2'000U + 2U * 12'000U + kContactBatch * 100U);
     EXPECT_GT(report.counters.not_examined, 0U);
+    EXPECT_GE(report.counters.not_examined, report.counters.pairs_waiting);
     EXPECT_TRUE(report.events.empty()) << "who had no work has met nothing";
     ASSERT_FALSE(with.any_crossing()) << i;
   }
