@@ -16,6 +16,7 @@ finish() { for pid in "${started[@]}"; do kill -INT "$pid" 2>/dev/null || true; 
 trap finish EXIT
 fail() { echo "capacity.sh: $1" >&2; tail -n 5 "$2" >&2; exit 1; }
 measured=0
+patience=30
 ticks_per_s=$(getconf CLK_TCK)
 cpu() { awk -v t="$ticks_per_s" '{sub(/.*\) /, ""); print ($12 + $13) / t}' "/proc/$1/stat"; }
 sent() { awk '/^ *lo:/ {print $10}' /proc/net/dev; }
@@ -40,10 +41,17 @@ row() {
   for ((i = 0; i < processes; ++i)); do
     local names='' u
     for ((u = 0; u < users; ++u)); do names+=${names:+,}mill-$i-$u; done
-    "$bin/mortise-bot" "${words[@]}" --users "$users" --names "$names" --behaviour "$behaviour" --rate 60 --first-part $((i * users)) \
-      --seconds $((seconds + warm + 2)) ${keys:+--keys "$keys/mill"} >"$work/$domain.bot$i" 2>&1 &
+    "$bin/mortise-bot" --domain "$domain" --wait "$patience" --users "$users" --names "$names" --behaviour "$behaviour" --rate 60 --first-part $((i * users)) \
+      --seconds 3600 ${keys:+--keys "$keys/mill"} >"$work/$domain.bot$i" 2>&1 &
     bots+=($!)
     started+=($!)
+  done
+  local end=$((SECONDS + patience))
+  for i in "${!bots[@]}"; do
+    until grep -q 'joined session' "$work/$domain.bot$i"; do
+      { [ "$SECONDS" -lt "$end" ] && kill -0 "${bots[i]}" 2>/dev/null; } || fail "$name: a bot did not join" "$work/$domain.bot$i"
+      sleep 0.1
+    done
   done
   sleep "$warm"
   kill -0 "$server" 2>/dev/null || fail "$name: the server has ended" "$work/$domain.out"
@@ -58,7 +66,7 @@ row() {
   awk -v n="$name" -v c="$(awk "BEGIN {print 100 * ($after_cpu - $before_cpu) / $took}")" -v b="$(awk "BEGIN {print ($after_bytes - $before_bytes) / $took / 1000}")" \
     -v k="$(awk "BEGIN {print 100 * $bots_cpu / $took}")" -v m="$(awk '/VmRSS/ {print $2 / 1000}' "/proc/$server/status")" -v u=$((processes * users)) \
     'BEGIN {printf "| %s | %d | %.1f | %.1f | %.0f | %.0f |\n", n, u, c, k, b, m}'
-  for i in "${!bots[@]}"; do wait "${bots[i]}" || fail "$name: a bot failed" "$work/$domain.bot$i"; done
+  for i in "${!bots[@]}"; do { kill -INT "${bots[i]}" && wait "${bots[i]}"; } || fail "$name: a bot failed" "$work/$domain.bot$i"; done
   if [ -n "$other" ]; then
     { kill -INT "$other" && wait "$other"; } || fail "$name: the second server failed" "$work/$domain.standby"
   fi

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What the load model is read from: a short run of capacity.sh has the table that it promises, and what cannot be is refused:
-# capacity_test.sh BIN
+# capacity_test.sh BIN. Figures are looked at for whether they can be, not for how good they are.
 set -euo pipefail
 bin=$1 script=$(dirname "$0")/capacity.sh
 work=$(mktemp -d)
@@ -48,7 +48,7 @@ refuses 2 'no row is called' "$bin" 1 'ten thousand users'
 mkdir "$work/bin"
 ln -s "$(realpath "$bin")"/mortise-* "$work/bin/"
 ln -sf "$(type -P false)" "$work/bin/mortise-bot"
-refuses 1 'a bot has ended' "$work/bin" 1 'one process'
+refuses 1 'a bot did not join' "$work/bin" 1 'one process'
 ln -sf "$(realpath "$bin/mortise-bot")" "$work/bin/mortise-bot"
 ln -sf "$(type -P false)" "$work/bin/mortise-server"
 refuses 1 'the server has ended' "$work/bin" 1 nobody

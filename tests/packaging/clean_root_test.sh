@@ -21,7 +21,7 @@ if [ "${IN_NAMESPACE:-}" != yes ]; then
     # shellcheck disable=SC1091
     suite=${MORTISE_SUITE:-$(. /etc/os-release && echo "$VERSION_CODENAME")}
     began=$SECONDS
-    TMPDIR=$(if [ -w /dev/shm ]; then echo /dev/shm; else echo /tmp; fi) timeout 240 mmdebstrap --quiet --variant=apt \
+    TMPDIR=$(if [ -w /dev/shm ]; then echo /dev/shm; else echo /tmp; fi) timeout 600 mmdebstrap --quiet --variant=apt \
       --aptopt='Acquire::Languages "none"' "$suite" "$cache/root.new.tar" "${sources[@]}" 2>"$work/said.txt" ||
       skip "mmdebstrap: $(grep -m 1 -E '^(E|Err)' "$work/said.txt" || tail -n 1 "$work/said.txt")"
     mv "$cache/root.new.tar" "$cache/root.tar"
