@@ -1,4 +1,5 @@
-// A server that runs for long while all that can come and go beside it does: does it grow?
+// A server that runs for long while all that can come and go beside it does: does it grow? In the
+// first quarter the leader itself is killed, again and again; who stood by is the server from then.
 // MORTISE_SOAK_S says for how long: 40 s unless told, an hour with --soak.
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -18,6 +19,12 @@ constexpr int kDomain = 231;
 constexpr int kCrews = 4;
 constexpr double kLong_s = 1800.0;  // a slope means something from here on
 constexpr double kSlope_mb_per_h = 3.0;
+// Of leaders; the next one stands by, and is in step, before the next kill.
+constexpr double kFirstKill_s = 10.0, kBetweenKills_s = 45.0;
+// Whoever takes over waits 4 s for the users of before; a name is free again after that.
+constexpr double kNamesHeld_s = 5.5;
+// Whatever the machine does; standby_test holds the figures.
+constexpr double kTakesOver_s = 10.0, kInStep_s = 20.0;
 
 double soak_s() {
   const char* seconds = std::getenv("MORTISE_SOAK_S");
@@ -70,6 +77,14 @@ class ComesAndGoes {
     next_s_ = now_s + 3.0;
     return std::move(program_);
   }
+  /// Who is away stays away until then.
+  void not_before(double moment_s) {
+    if (!program_) next_s_ = std::max(next_s_, moment_s);
+  }
+  /// Whether it runs, and has said so.
+  bool says(const std::string& words) const {
+    return program_ && program_->running() && program_->errors().find(words) != std::string::npos;
+  }
   int starts() const { return starts_; }
   int killed() const { return killed_; }
   /// How many of them said that they are in step with the server.
@@ -102,6 +117,19 @@ ComesAndGoes crew(const TestFolder& folder, int number) {
           static_cast<unsigned>(number)};
 }
 
+/// Kills the one that leads, and gives the one that stood by, which leads from then; none when it
+/// does not take over.
+std::unique_ptr<Program> kill_leader(Program& leader, ComesAndGoes& standby, double now_s) {
+  leader.signal(SIGKILL);
+  EXPECT_EQ(leader.wait(5), 128 + SIGKILL);
+  const double end_s = steady_s() + kTakesOver_s;
+  while (!standby.says("taken over at")) {
+    if (steady_s() > end_s) return nullptr;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return standby.give(now_s);
+}
+
 TEST(LiveSoak, AServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
   const double lasts_s = soak_s();
   TestFolder folder;
@@ -116,14 +144,26 @@ TEST(LiveSoak, AServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
   for (int i = 0; i < kCrews; ++i) all.push_back(crew(folder, i));
   all.emplace_back(folder, "mortise-server",
                    std::vector<std::string>{"--standby-of", "default", "--restore", logs, "--log",
-                                            logs, "--domain", domain(), "--json"},
+                                            logs, "--log-rotate", "4", "--metrics-port", "0",
+                                            "--domain", domain(), "--json"},
                    2.0, 30.0, 99u);
   ComesAndGoes& standby = all.back();
   std::vector<Holdings> seen;
-  int taken_over = 0;
-  double since_s = 0.0;
+  int taken_over = 0, leaders_killed = 0, in_step_again = 0;
+  double since_s = 0.0, kill_s = kFirstKill_s;
+  bool after_kill = false;  // and nobody stands by yet
+  const auto leads = [&](std::unique_ptr<Program> next, double now_s) {
+    std::printf("%.0f s: taken over\n", now_s);
+    ++taken_over;
+    server = std::move(next);
+    seen.clear();
+    since_s = now_s;
+    for (int i = 0; i < kCrews; ++i) all[i].not_before(now_s + kNamesHeld_s);
+  };
   const double begin_s = steady_s();
-  for (double now_s = 0.0, sample_s = 0.0; now_s < lasts_s; now_s = steady_s() - begin_s) {
+  // Who was killed last is waited for.
+  for (double now_s = 0.0, sample_s = 0.0; now_s < lasts_s + (after_kill ? kInStep_s : 0.0);
+       now_s = steady_s() - begin_s) {
     for (ComesAndGoes& one : all) one.turn(now_s);
     if (now_s >= sample_s) {
       sample_s += std::min(10.0, lasts_s / 20.0);
@@ -140,11 +180,21 @@ TEST(LiveSoak, AServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
       auto next = standby.give(now_s);
       ASSERT_TRUE(next && next->errors().find("taken over at") != std::string::npos)
           << server->errors();
-      std::printf("%.0f s: taken over\n", now_s);
-      ++taken_over;
-      server = std::move(next);
-      seen.clear();
-      since_s = sample_s = now_s;
+      leads(std::move(next), now_s);
+      sample_s = now_s;
+    }
+    if (after_kill && standby.says("in step")) {
+      after_kill = false;
+      ++in_step_again;
+    }
+    if (now_s >= kill_s && !after_kill && standby.says("in step")) {
+      auto next = kill_leader(*server, standby, now_s);
+      ASSERT_TRUE(next) << "nobody took over at " << now_s << " s";
+      ++leaders_killed;
+      after_kill = true;
+      leads(std::move(next), now_s);
+      sample_s = now_s;
+      kill_s = now_s + kBetweenKills_s <= lasts_s / 4.0 ? now_s + kBetweenKills_s : lasts_s;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
@@ -157,12 +207,14 @@ TEST(LiveSoak, AServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
   server->signal(SIGTERM);
   EXPECT_EQ(server->wait(20), 0) << server->errors();
   EXPECT_GE(starts, 5);
+  EXPECT_GE(leaders_killed, 1);
+  EXPECT_EQ(in_step_again, leaders_killed) << "who was killed stands by again";
   EXPECT_GE(standby.in_step() + taken_over, standby.starts() / 2) << "most live 15 s and more";
 
   const double third_s = (lasts_s - since_s) / 3.0;
   const double slope = resident_mb_per_h(seen, since_s + third_s);
-  std::printf("%.0f s, %d programs came, %d of them killed, %d times taken over; ", lasts_s, starts,
-              killed, taken_over);
+  std::printf("%.0f s, %d programs came, %d of them killed, %d leaders killed, %d take-overs; ",
+              lasts_s, starts, killed, leaders_killed, taken_over);
   std::printf("%+.2f MB an hour from %.0f s on\n", slope, since_s + third_s);
   const auto grown = [&](int Holdings::*what) {
     const double early_s = since_s + 2 * third_s;

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Makes the packages of a build anew, for the tests that install them: make_packages.sh BUILD FOLDER
+set -euo pipefail
+build=$1 folder=$2
+skip() { echo "SKIPPED: packages are not made: $*"; exit 77; }
+for tool in dpkg-deb dpkg-shlibdeps cpack; do command -v "$tool" >/dev/null || skip "$tool is not here"; done
+[ -z "$(sed -n 's/^MORTISE_SANITIZE:[A-Z]*=//p' "$build/CMakeCache.txt")" ] || skip "a build with sanitizers is not packaged"
+rm -rf "$folder"
+mkdir -p "$folder"
+cmake --build "$build" --target package_documents
+cpack --config "$build/CPackConfig.cmake" -B "$folder"
+rm -rf "$folder/_CPack_Packages"
+for package in mortise-server mortise-tools mortise-web libmortise-dev; do ls "$folder/$package"_*.deb; done
