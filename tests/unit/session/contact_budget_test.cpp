@@ -23,7 +23,8 @@ struct Sockets {
   Scratch scratch;
   UserId ada;
   std::vector<PartId> balls;
-  std::uint64_t tests = 0, waiting = 0, not_examined = 0;
+  std::uint64_t tests = 0, unanswered = 0;  ///< in the last tick
+  std::uint64_t waiting = 0, not_examined = 0;
 
   Sockets(Policy policy, int wanted, double rate_hz, bool budget, int threads = 1)
       : session(policy), scratch(threads) {
@@ -45,9 +46,12 @@ struct Sockets {
     std::vector<Increment> increments;
     for (const PartId ball : balls) increments.push_back(session.push(ada, ball, by));
     const StepReport report = play_tick(session.world, increments, scratch);
-    tests = 0;
+    tests = unanswered = 0;
     const Scratch::Impl& work = scratch.impl();
-    for (std::size_t i = 0; i < work.pair_count; ++i) tests += work.pairs[i].contact_tests;
+    for (std::size_t i = 0; i < work.pair_count; ++i) {
+      tests += work.pairs[i].contact_tests;
+      unanswered += work.pairs[i].contact_waits || work.pairs[i].contact_short ? 1U : 0U;
+    }
     waiting += report.counters.pairs_waiting;
     not_examined += report.counters.not_examined;
     return report;
@@ -87,6 +91,22 @@ TEST(ContactBudget, ATickSpendsNoMoreThanItMayAndSaysWhatItLeftOut) {
   // What a tick takes beyond, the next ones do not have.
   EXPECT_LT(all, 50U * (2'000U + kContactBatch * 100U) + 2U * 2'000U);
   EXPECT_GT(with.waiting, 0U);
+}
+
+// What moved unseen is never told as clear.
+TEST(ContactBudget, UnderReportWhoWaitsIsNotExamined) {
+  std::uint64_t all = 0;
+  Sockets with(Policy::kReport, 24, 1000.0, true);
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = with.push(Vec3(0.3 * kGap_mm * (i % 2 == 0 ? 1 : -1), 0, 0));
+    const StepCounters& counters = report.counters;
+    EXPECT_EQ(counters.pairs_budget + counters.contacts_clear + counters.contacts.out +
+                  counters.contacts_undecided,
+              24U);
+    EXPECT_GE(counters.contacts_undecided, with.unanswered);
+    all += with.unanswered;
+  }
+  EXPECT_GT(all, 100U);
 }
 
 // Somebody pushes on: who was cut short goes on in the next tick from where it was proven clear.
