@@ -23,8 +23,11 @@ enum Submessage : std::uint8_t {
   kHeartbeatFrag = 0x13,
   kData = 0x15,
   kDataFrag = 0x16,
-  kSecureFirst = 0x30,
-  kSecureLast = 0x35,
+  kSecureBody = 0x30,
+  kSecurePrefix = 0x31,
+  kSecurePostfix = 0x32,
+  kSecureRtpsPrefix = 0x33,
+  kSecureRtpsPostfix = 0x34,
   kStatistics = 0x80,  // eProsima's own: an assert() of the reader is reachable behind it
 };
 
@@ -137,6 +140,49 @@ bool acknack_ok(const Bytes& body) {
   return base >= 0 && base < kMaxSequence && bitmap_ok(body, 16, 4);
 }
 
+// DDS-Security 1.1, section 9.5.2: lengths inside what is encrypted are big endian. Fast DDS
+// believes them before it knows whether they are genuine, and decrypts beyond the end of the
+// datagram.
+bool secure_prefix_ok(const Bytes& body) {
+  constexpr std::size_t kSecureHeaderSize = 20;
+  return body.data.size() == kSecureHeaderSize;
+}
+
+bool secure_body_ok(const Bytes& body) {
+  constexpr std::uint64_t kMostPadding = 3;
+  if (!body.has(4)) return false;
+  const std::uint64_t room = body.data.size() - 4, length = Bytes{body.data, false}.u32(0);
+  return length <= room && room - length <= kMostPadding;
+}
+
+bool secure_postfix_ok(const Bytes& body) {
+  constexpr std::size_t kMacSize = 16, kReceiverMacSize = 20;
+  if (!body.has(kMacSize + 4)) return false;
+  const std::uint64_t macs = Bytes{body.data, false}.u32(kMacSize);
+  return body.data.size() == kMacSize + 4 + macs * kReceiverMacSize;
+}
+
+/// What is encrypted is prefix, body and postfix, in this order and with nothing between them.
+class SecureOrder {
+ public:
+  bool admits(std::uint8_t id) {
+    const std::uint8_t before = last_;
+    last_ = id;
+    if (before == kSecurePrefix || before == kSecureRtpsPrefix) {
+      postfix_ = before == kSecurePrefix ? kSecurePostfix : kSecureRtpsPostfix;
+      return id == kSecureBody;
+    }
+    if (before == kSecureBody) return id == postfix_;
+    return id != kSecureBody && id != kSecurePostfix && id != kSecureRtpsPostfix;
+  }
+  bool may_end() const {
+    return last_ != kSecurePrefix && last_ != kSecureRtpsPrefix && last_ != kSecureBody;
+  }
+
+ private:
+  std::uint8_t last_ = 0, postfix_ = 0;
+};
+
 bool submessage_ok(std::uint8_t id, std::uint8_t flags, const Bytes& body) {
   constexpr std::uint8_t kInvalidateFlag = 2;
   switch (id) {
@@ -162,8 +208,16 @@ bool submessage_ok(std::uint8_t id, std::uint8_t flags, const Bytes& body) {
       return body.has(28) && sequence_ok(body.sequence(8)) && bitmap_ok(body, 20, 4);
     case kHeartbeatFrag:
       return body.has(24) && sequence_ok(body.sequence(8));
+    case kSecurePrefix:
+    case kSecureRtpsPrefix:
+      return secure_prefix_ok(body);
+    case kSecureBody:
+      return secure_body_ok(body);
+    case kSecurePostfix:
+    case kSecureRtpsPostfix:
+      return secure_postfix_ok(body);
     default:
-      return id >= kSecureFirst && id <= kSecureLast;
+      return false;
   }
 }
 
@@ -175,10 +229,12 @@ std::size_t admissible_length(std::span<const std::byte> datagram) {
       all.u8(4) != kMajorVersion) {
     return 0;
   }
+  SecureOrder order;
   std::size_t at = kHeaderSize;
   while (all.has(at + kSubmessageHeaderSize)) {
     const std::uint8_t id = all.u8(at), flags = all.u8(at + 1);
-    if (id == kStatistics) return at > kHeaderSize ? at : 0;
+    if (id == kStatistics) return at > kHeaderSize && order.may_end() ? at : 0;
+    if (!order.admits(id)) return 0;
     const bool little = (flags & 1) != 0;
     std::size_t length = Bytes{datagram, little}.u16(at + 2);
     at += kSubmessageHeaderSize;
@@ -188,7 +244,7 @@ std::size_t admissible_length(std::span<const std::byte> datagram) {
     if (!submessage_ok(id, flags, {datagram.subspan(at, length), little})) return 0;
     at += length;
   }
-  return at == datagram.size() ? at : 0;
+  return at == datagram.size() && order.may_end() ? at : 0;
 }
 
 }  // namespace mortise
