@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -48,9 +49,8 @@ class LiveNoise : public ::testing::Test {
     for (int i = 0; i < 60; ++i) move(*anna_);
     seeds_ = tap_->take();
     ASSERT_GT(seeds_.size(), 100u) << "the session says next to nothing";
-    for (const auto& seed : seeds_) to_clients_ += seed.port >= port_ + kPortsOfServers;
-    EXPECT_GT(to_clients_, seeds_.size() / 10) << "the clients' ports are others";
-    EXPECT_LT(to_clients_, seeds_.size() * 9 / 10) << "the server's ports are others";
+    EXPECT_GT(to_clients(seeds_), seeds_.size() / 10) << "the clients' ports are others";
+    EXPECT_LT(to_clients(seeds_), seeds_.size() * 9 / 10) << "the server's ports are others";
   }
   std::unique_ptr<Program> start(const char* program, std::vector<std::string> arguments,
                                  const std::string& keys) {
@@ -58,10 +58,14 @@ class LiveNoise : public ::testing::Test {
     if (!keys.empty()) arguments.insert(arguments.end(), {"--keys", keys});
     return std::make_unique<Program>(folder_.path(), program, arguments);
   }
+  std::size_t to_clients(const std::vector<Wiretap::Heard>& seeds) const {
+    return static_cast<std::size_t>(std::count_if(
+        seeds.begin(), seeds.end(),
+        [&](const Wiretap::Heard& heard) { return heard.port >= port_ + kPortsOfServers; }));
+  }
   bool until(double limit_s, const std::function<bool()>& done) {
     return anna_->until(limit_s, [&] {
       ben_->listen();
-      if (late_) late_->listen();
       return done();
     });
   }
@@ -71,16 +75,16 @@ class LiveNoise : public ::testing::Test {
     until(0.01, [] { return false; });
   }
   /// The session goes on meanwhile, as well as it can.
-  void make_noise(std::uint64_t seed) {
+  void make_noise(std::uint64_t seed, const std::vector<Wiretap::Heard>& seeds, int datagrams,
+                  int at_once = 250) {
     std::mt19937_64 random(seed);
     Socket mouth(0);
-    const int datagrams = effort(250'000);
     const std::uint64_t overflowed = overflowed_at(port_, kPorts);
     const double begin_s = steady_s();
     for (int i = 0; i < datagrams; ++i) {
-      const Wiretap::Heard& heard = seeds_[random() % seeds_.size()];
+      const Wiretap::Heard& heard = seeds[random() % seeds.size()];
       mouth.send(mutate(Datagram(heard.bytes.begin(), heard.bytes.end()), random), heard.port);
-      if (i % 250 == 0) move(*anna_);  // and sockets do not overflow
+      if (i % at_once == 0) move(*anna_);  // and sockets do not overflow
       if (i % 5000 == 0) {
         ASSERT_TRUE(server_->running()) << i << ": " << server_->errors();
         ASSERT_TRUE(bots_->running()) << i << ": " << bots_->errors();
@@ -90,7 +94,7 @@ class LiveNoise : public ::testing::Test {
     EXPECT_TRUE(bots_->running()) << bots_->errors();
     const std::uint64_t missed = overflowed_at(port_, kPorts) - overflowed;
     std::printf("%d mutations of %zu datagrams (%zu of them to clients) in %.1f s, %llu too many\n",
-                datagrams, seeds_.size(), to_clients_, steady_s() - begin_s,
+                datagrams, seeds.size(), to_clients(seeds), steady_s() - begin_s,
                 static_cast<unsigned long long>(missed));
     std::printf("anna's guard dropped %llu\n",
                 static_cast<unsigned long long>(anna_->channel->counters().guard_dropped));
@@ -116,11 +120,10 @@ class LiveNoise : public ::testing::Test {
   std::unique_ptr<Wiretap> tap_;
   std::string log_;
   std::unique_ptr<Program> server_, bots_;
-  std::unique_ptr<Guest> anna_, ben_, late_;
+  std::unique_ptr<Guest> anna_, ben_;
   PartId red_;
   std::uint64_t last_ = 0;  ///< sequence of her last move
   std::vector<Wiretap::Heard> seeds_;
-  std::size_t to_clients_ = 0;
 };
 
 // Without keys whatever is said in somebody's name counts as said by them, also the number of their
@@ -129,7 +132,7 @@ class LiveNoise : public ::testing::Test {
 TEST_F(LiveNoise, NoProcessEndsAndTheSessionWorks) {
   begin(224, "", "", "", "");
   if (IsSkipped() || HasFatalFailure()) return;
-  make_noise(2718);
+  make_noise(2718, seeds_, effort(250'000));
   bots_->signal(SIGTERM);
   EXPECT_EQ(bots_->wait(20), 0) << bots_->errors();
   anna_ = std::make_unique<Guest>(domain_, "anna");
@@ -147,33 +150,59 @@ TEST_F(LiveNoise, NoProcessEndsAndTheSessionWorks) {
   expect_in_log(known, log_, {anna_.get(), ben_.get()});
 }
 
-// With keys who was there does not even notice.
+// With keys whatever is encrypted is genuine or nothing, and who was there does not even notice.
+// How participants announce themselves is in the clear: noise there may part them, but no process
+// ends, and with whom it comes anew the session works.
 TEST_F(LiveNoise, WithKeysNobodyNotices) {
   KeyRing keys("site");
   keys.issue("hall", "server");
-  for (const char* name : {"anna", "ben", "late"}) keys.issue(name, "designer");
+  for (const char* name : {"anna", "ben", "late", "later"}) keys.issue(name, "designer");
   keys.issue("crew", "bot");
   ASSERT_EQ(keys.trouble(), "");
   begin(228, keys["hall"], keys["crew"], keys["anna"], keys["ben"]);
   if (IsSkipped() || HasFatalFailure()) return;
-  make_noise(2719);
+  const auto in_the_clear =
+      std::partition(seeds_.begin(), seeds_.end(), [](const Wiretap::Heard& heard) {
+        constexpr char kEncrypted = 0x33;
+        return heard.bytes.size() > 20 && heard.bytes[20] == kEncrypted;
+      });
+  const std::vector<Wiretap::Heard> announcements(in_the_clear, seeds_.end());
+  seeds_.erase(in_the_clear, seeds_.end());
+  ASSERT_GT(seeds_.size(), 100u);
+  ASSERT_GT(announcements.size(), 3u);
+
+  const std::size_t said_before = server_->errors().size();
+  make_noise(2719, seeds_, effort(200'000));
   ASSERT_TRUE(until(5, [&] { return anna_->taken.contains(last_); })) << server_->errors();
   EXPECT_EQ(anna_->holder("red"), anna_->client->user_id(anna_->user));
   EXPECT_EQ(anna_->taken.size(), anna_->client->statistics().increments_sent);
   EXPECT_EQ(anna_->refused.size(), 0u);
+  EXPECT_EQ(server_->errors().find("without goodbye", said_before), std::string::npos)
+      << server_->errors();
+  EXPECT_EQ(anna_->client->statistics().server_losses, 0u);
+  agreed_by({anna_.get(), ben_.get()});
+
+  make_noise(2720, announcements, effort(50'000), 60);  // each costs more
   bots_->signal(SIGTERM);
   EXPECT_EQ(bots_->wait(20), 0) << bots_->errors();
-  late_ = std::make_unique<Guest>(domain_, "late", "designer", keys["late"]);
-  ASSERT_TRUE(until(10, [&] { return late_->client->user_id(0) && late_->client->synced(); }));
+  const std::unique_ptr<Guest> first = std::move(anna_);
+  anna_ = std::make_unique<Guest>(domain_, "late", "designer", keys["late"]);
+  ben_ = std::make_unique<Guest>(domain_, "later", "designer", keys["later"]);
+  ASSERT_TRUE(anna_->joined()) << server_->errors();
+  ASSERT_TRUE(ben_->joined()) << server_->errors();
+  first->client->release(first->user, red_);
+  ASSERT_TRUE(until(8, [&] {
+    first->listen();
+    return !anna_->holder("red");
+  })) << server_->errors();
+  ASSERT_TRUE(anna_->grab("red"));
   anna_->client->send(anna_->user, red_, {0, 0, -12});  // into the base
-  ASSERT_TRUE(until(5, [&] { return !late_->client->open_clashes().empty(); }));
-  const Knowledge known = agreed_by({anna_.get(), ben_.get(), late_.get()});
-  EXPECT_EQ(server_->errors().find("without goodbye"), std::string::npos) << server_->errors();
+  ASSERT_TRUE(until(5, [&] { return !ben_->client->open_clashes().empty(); }));
+  const Knowledge known = agreed_by({anna_.get(), ben_.get()});
   const Json closing = end();
   expect_told_at_end(known, closing);
-  expect_in_log(known, log_, {anna_.get()});
-  expect_nothing_lost(*anna_, "anna", closing);
-  EXPECT_EQ(anna_->client->statistics().server_losses, 0u);
+  expect_in_log(known, log_, {first.get(), anna_.get(), ben_.get()});
+  expect_nothing_lost(*anna_, "late", closing);
 }
 
 }  // namespace
