@@ -1,5 +1,6 @@
 #include "idl/datagram_guard.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -33,11 +34,14 @@ enum Submessage : std::uint8_t {
 
 constexpr std::uint16_t kSentinel = 1;                               // ends a parameter list
 constexpr std::uint16_t kTypeIdentifier = 0x69, kTypeObject = 0x72;  // their reader crashes
-constexpr std::uint32_t kMaxBitmapBits = 256;                        // of a number set, 9.4.2.6
-constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;         // no writer gets there
-constexpr std::int64_t kMaxHeartbeatRange = 10'000'000;              // far above any history
-constexpr std::int64_t kMaxGapRange = 100'000;    // a gap is walked number by number
-constexpr std::uint16_t kOctetsToInlineQos = 16;  // of DATA, fixed in RTPS 2.x
+// Lengths inside these are believed by their readers.
+constexpr std::uint16_t kUserData = 0x2c, kPropertyList = 0x59, kIdentityToken = 0x1001,
+                        kPermissionsToken = 0x1002, kIdentityStatusToken = 0x1006;
+constexpr std::uint32_t kMaxBitmapBits = 256;                 // of a number set, 9.4.2.6
+constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;  // no writer gets there
+constexpr std::int64_t kMaxHeartbeatRange = 10'000'000;       // far above any history
+constexpr std::int64_t kMaxGapRange = 100'000;                // a gap is walked number by number
+constexpr std::uint16_t kOctetsToInlineQos = 16;              // of DATA, fixed in RTPS 2.x
 
 /// A submessage's body, or a part of it, in its own byte order. Offsets are checked by the caller
 /// through has().
@@ -62,16 +66,68 @@ struct Bytes {
   }
 };
 
+/// The value of a parameter, read from its front; nothing in it may be longer than what is left.
+class Value {
+ public:
+  explicit Value(const Bytes& bytes) : bytes_(bytes) {}
+
+  /// Text, or a sequence of bytes.
+  bool octets() {
+    std::uint32_t size = 0;
+    if (!count(size) || size > bytes_.data.size() - at_) return false;
+    at_ = std::min(bytes_.data.size(), at_ + (std::size_t{size} + 3) / 4 * 4);
+    return true;
+  }
+  /// Properties: pairs of a name and a value.
+  bool properties() {
+    std::uint32_t size = 0;
+    if (!count(size)) return false;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      if (!octets() || !octets()) return false;
+    }
+    return true;
+  }
+  /// Class, properties and binary properties.
+  bool token() { return octets() && properties() && properties(); }
+
+ private:
+  bool count(std::uint32_t& number) {
+    if (!bytes_.has(at_ + 4)) return false;
+    number = bytes_.u32(at_);
+    at_ += 4;
+    return true;
+  }
+  const Bytes& bytes_;
+  std::size_t at_ = 0;
+};
+
+/// Of what participants announce: is the value of the parameter whole?
+bool announced_ok(std::uint16_t id, const Bytes& value) {
+  switch (id) {
+    case kUserData:
+      return Value(value).octets();
+    case kPropertyList:
+      return Value(value).properties();
+    case kIdentityToken:
+    case kPermissionsToken:
+    case kIdentityStatusToken:
+      return Value(value).token();
+    default:
+      return true;
+  }
+}
+
 /// Length of a parameter list with its sentinel; 0 when it does not end, or holds what must not be
 /// read.
-std::size_t parameter_list_length(const Bytes& list, bool refuse_types) {
+std::size_t parameter_list_length(const Bytes& list, bool is_announced) {
   std::size_t at = 0;
   while (list.has(at + 4)) {
     const std::uint16_t id = list.u16(at), length = list.u16(at + 2);
     at += 4;
     if (id == kSentinel) return at;
-    if (refuse_types && (id == kTypeIdentifier || id == kTypeObject)) return 0;
+    if (is_announced && (id == kTypeIdentifier || id == kTypeObject)) return 0;
     if (length % 4 != 0 || !list.has(at + length)) return 0;
+    if (is_announced && !announced_ok(id, {list.data.subspan(at, length), list.little})) return 0;
     at += length;
   }
   return 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace mortise {
@@ -164,6 +165,58 @@ TEST(Guard, EncryptedTrafficPassesWhole) {
   EXPECT_EQ(admitted(submessage), submessage.size());
   EXPECT_EQ(admitted(with(submessage, 0x07, 1, heartbeat_body(1, 7))), submessage.size() + 32);
   EXPECT_EQ(admitted(with(encrypted(), 0x80, 1, Datagram(8, 0))), encrypted().size());
+}
+
+Datagram announcement(std::uint16_t parameter, const Datagram& value) {
+  DataFields fields;
+  fields.encapsulation = 3;
+  Datagram body = data_body(fields);
+  body.resize(body.size() - 4);
+  put16(body, parameter);
+  put16(body, static_cast<std::uint16_t>(value.size()));
+  body.insert(body.end(), value.begin(), value.end());
+  put32(body, 1);
+  return with(header(), 0x15, 5, body);
+}
+
+// Lengths inside what is announced: of texts, of properties, of tokens.
+TEST(Guard, WhatIsAnnouncedIsNoLongerThanItsParameter) {
+  const auto drops = [](std::uint16_t parameter, const Datagram& value) {
+    return admitted(announcement(parameter, value)) == 0;
+  };
+  Datagram token;
+  const auto put_text = [&](const std::string& text) {
+    put32(token, static_cast<std::uint32_t>(text.size()) + 1);
+    for (const char c : text) token.push_back(static_cast<std::uint8_t>(c));
+    do token.push_back(0);
+    while (token.size() % 4 != 0);
+  };
+  put_text("DDS:Auth:PKI-DH:1.0");
+  const std::size_t at_properties = token.size();
+  put32(token, 1);
+  put_text("dds.cert.sn");
+  const std::size_t at_value = token.size();
+  put_text("anna");
+  const std::size_t at_binary = token.size();
+  put32(token, 0);
+  for (const std::uint16_t id :
+       {std::uint16_t{0x1001}, std::uint16_t{0x1002}, std::uint16_t{0x1006}}) {
+    EXPECT_FALSE(drops(id, token));
+    EXPECT_TRUE(drops(id, Datagram(token.begin(), token.end() - 4)));
+    for (const std::size_t at : {std::size_t{0}, at_properties, at_value, at_binary}) {
+      for (const int byte : {0, 1, 3}) {
+        Datagram wrong = token;
+        wrong[at + static_cast<std::size_t>(byte)] = 0xff;
+        EXPECT_TRUE(drops(id, wrong)) << at << " " << byte;
+      }
+    }
+  }
+  const auto end = [&](std::size_t at) { return token.begin() + static_cast<std::ptrdiff_t>(at); };
+  const Datagram list(end(at_properties), end(at_binary));
+  EXPECT_FALSE(drops(0x59, list));
+  EXPECT_TRUE(drops(0x59, Datagram(list.begin(), list.end() - 4)));
+  EXPECT_FALSE(drops(0x2c, {2, 0, 0, 0, 7, 7, 0, 0}));
+  EXPECT_TRUE(drops(0x2c, {5, 0, 0, 0, 7, 7, 0, 0}));
 }
 
 // Fast DDS decrypts as much as is said to be there.
