@@ -41,7 +41,7 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   auto server = serve(210, {"--log", log, "--policy", "report"});
   Program bot(folder_.path(), "mortise-bot",
               {"--domain", "210", "--wait", "10", "--part", "red", "--behaviour", "wander"});
-  Guest ben(210, "ben");
+  Guest ben(210, "ben"), cid(210, "cid");  // who joins late
   ASSERT_TRUE(ben.joined()) << server->errors();
   ASSERT_TRUE(ben.until(5, [&] { return bool(ben.holder("red")) && ben.x("red") != 0.0; }));
   EXPECT_FALSE(ben.grab("red")) << "it is in other hands";
@@ -61,8 +61,10 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   const Vec3 there = Vec3(0, 0, 9) - ben.client->parts().at(red).info.X_WP.p;
   for (int i = 0; i < 20; ++i) last = ben.client->send(ben.user, red, there / 20.0);
   EXPECT_TRUE(ben.until(3, [&] { return ben.taken.contains(last); }));
-  Guest cid(210, "cid");
-  ASSERT_TRUE(cid.joined());
+  ASSERT_TRUE(cid.until(10, [&] {
+    ben.listen();
+    return cid.client->user_id(cid.user) && cid.client->synced();
+  }));
   const Knowledge known = agreed_by({&ben, &cid});
   EXPECT_GE(known.open.size(), 1u) << "nothing to agree on";
   server->signal(SIGTERM);
