@@ -1,5 +1,6 @@
 #include "idl/datagram_guard.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -23,18 +24,24 @@ enum Submessage : std::uint8_t {
   kHeartbeatFrag = 0x13,
   kData = 0x15,
   kDataFrag = 0x16,
-  kSecureFirst = 0x30,
-  kSecureLast = 0x35,
+  kSecureBody = 0x30,
+  kSecurePrefix = 0x31,
+  kSecurePostfix = 0x32,
+  kSecureRtpsPrefix = 0x33,
+  kSecureRtpsPostfix = 0x34,
   kStatistics = 0x80,  // eProsima's own: an assert() of the reader is reachable behind it
 };
 
 constexpr std::uint16_t kSentinel = 1;                               // ends a parameter list
 constexpr std::uint16_t kTypeIdentifier = 0x69, kTypeObject = 0x72;  // their reader crashes
-constexpr std::uint32_t kMaxBitmapBits = 256;                        // of a number set, 9.4.2.6
-constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;         // no writer gets there
-constexpr std::int64_t kMaxHeartbeatRange = 10'000'000;              // far above any history
-constexpr std::int64_t kMaxGapRange = 100'000;    // a gap is walked number by number
-constexpr std::uint16_t kOctetsToInlineQos = 16;  // of DATA, fixed in RTPS 2.x
+// Lengths inside these are believed by their readers.
+constexpr std::uint16_t kUserData = 0x2c, kPropertyList = 0x59, kIdentityToken = 0x1001,
+                        kPermissionsToken = 0x1002, kIdentityStatusToken = 0x1006;
+constexpr std::uint32_t kMaxBitmapBits = 256;                 // of a number set, 9.4.2.6
+constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;  // no writer gets there
+constexpr std::int64_t kMaxHeartbeatRange = 10'000'000;       // far above any history
+constexpr std::int64_t kMaxGapRange = 100'000;                // a gap is walked number by number
+constexpr std::uint16_t kOctetsToInlineQos = 16;              // of DATA, fixed in RTPS 2.x
 
 /// A submessage's body, or a part of it, in its own byte order. Offsets are checked by the caller
 /// through has().
@@ -59,16 +66,68 @@ struct Bytes {
   }
 };
 
+/// The value of a parameter, read from its front; nothing in it may be longer than what is left.
+class Value {
+ public:
+  explicit Value(const Bytes& bytes) : bytes_(bytes) {}
+
+  /// Text, or a sequence of bytes.
+  bool octets() {
+    std::uint32_t size = 0;
+    if (!count(size) || size > bytes_.data.size() - at_) return false;
+    at_ = std::min(bytes_.data.size(), at_ + (std::size_t{size} + 3) / 4 * 4);
+    return true;
+  }
+  /// Properties: pairs of a name and a value.
+  bool properties() {
+    std::uint32_t size = 0;
+    if (!count(size)) return false;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      if (!octets() || !octets()) return false;
+    }
+    return true;
+  }
+  /// Class, properties and binary properties.
+  bool token() { return octets() && properties() && properties(); }
+
+ private:
+  bool count(std::uint32_t& number) {
+    if (!bytes_.has(at_ + 4)) return false;
+    number = bytes_.u32(at_);
+    at_ += 4;
+    return true;
+  }
+  const Bytes& bytes_;
+  std::size_t at_ = 0;
+};
+
+/// Of what participants announce: is the value of the parameter whole?
+bool announced_ok(std::uint16_t id, const Bytes& value) {
+  switch (id) {
+    case kUserData:
+      return Value(value).octets();
+    case kPropertyList:
+      return Value(value).properties();
+    case kIdentityToken:
+    case kPermissionsToken:
+    case kIdentityStatusToken:
+      return Value(value).token();
+    default:
+      return true;
+  }
+}
+
 /// Length of a parameter list with its sentinel; 0 when it does not end, or holds what must not be
 /// read.
-std::size_t parameter_list_length(const Bytes& list, bool refuse_types) {
+std::size_t parameter_list_length(const Bytes& list, bool is_announced) {
   std::size_t at = 0;
   while (list.has(at + 4)) {
     const std::uint16_t id = list.u16(at), length = list.u16(at + 2);
     at += 4;
     if (id == kSentinel) return at;
-    if (refuse_types && (id == kTypeIdentifier || id == kTypeObject)) return 0;
+    if (is_announced && (id == kTypeIdentifier || id == kTypeObject)) return 0;
     if (length % 4 != 0 || !list.has(at + length)) return 0;
+    if (is_announced && !announced_ok(id, {list.data.subspan(at, length), list.little})) return 0;
     at += length;
   }
   return 0;
@@ -137,6 +196,49 @@ bool acknack_ok(const Bytes& body) {
   return base >= 0 && base < kMaxSequence && bitmap_ok(body, 16, 4);
 }
 
+// DDS-Security 1.1, section 9.5.2: lengths inside what is encrypted are big endian. Fast DDS
+// believes them before it knows whether they are genuine, and decrypts beyond the end of the
+// datagram.
+bool secure_prefix_ok(const Bytes& body) {
+  constexpr std::size_t kSecureHeaderSize = 20;
+  return body.data.size() == kSecureHeaderSize;
+}
+
+bool secure_body_ok(const Bytes& body) {
+  constexpr std::uint64_t kMostPadding = 3;
+  if (!body.has(4)) return false;
+  const std::uint64_t room = body.data.size() - 4, length = Bytes{body.data, false}.u32(0);
+  return length <= room && room - length <= kMostPadding;
+}
+
+bool secure_postfix_ok(const Bytes& body) {
+  constexpr std::size_t kMacSize = 16, kReceiverMacSize = 20;
+  if (!body.has(kMacSize + 4)) return false;
+  const std::uint64_t macs = Bytes{body.data, false}.u32(kMacSize);
+  return body.data.size() == kMacSize + 4 + macs * kReceiverMacSize;
+}
+
+/// What is encrypted is prefix, body and postfix, in this order and with nothing between them.
+class SecureOrder {
+ public:
+  bool admits(std::uint8_t id) {
+    const std::uint8_t before = last_;
+    last_ = id;
+    if (before == kSecurePrefix || before == kSecureRtpsPrefix) {
+      postfix_ = before == kSecurePrefix ? kSecurePostfix : kSecureRtpsPostfix;
+      return id == kSecureBody;
+    }
+    if (before == kSecureBody) return id == postfix_;
+    return id != kSecureBody && id != kSecurePostfix && id != kSecureRtpsPostfix;
+  }
+  bool may_end() const {
+    return last_ != kSecurePrefix && last_ != kSecureRtpsPrefix && last_ != kSecureBody;
+  }
+
+ private:
+  std::uint8_t last_ = 0, postfix_ = 0;
+};
+
 bool submessage_ok(std::uint8_t id, std::uint8_t flags, const Bytes& body) {
   constexpr std::uint8_t kInvalidateFlag = 2;
   switch (id) {
@@ -162,8 +264,16 @@ bool submessage_ok(std::uint8_t id, std::uint8_t flags, const Bytes& body) {
       return body.has(28) && sequence_ok(body.sequence(8)) && bitmap_ok(body, 20, 4);
     case kHeartbeatFrag:
       return body.has(24) && sequence_ok(body.sequence(8));
+    case kSecurePrefix:
+    case kSecureRtpsPrefix:
+      return secure_prefix_ok(body);
+    case kSecureBody:
+      return secure_body_ok(body);
+    case kSecurePostfix:
+    case kSecureRtpsPostfix:
+      return secure_postfix_ok(body);
     default:
-      return id >= kSecureFirst && id <= kSecureLast;
+      return false;
   }
 }
 
@@ -175,10 +285,12 @@ std::size_t admissible_length(std::span<const std::byte> datagram) {
       all.u8(4) != kMajorVersion) {
     return 0;
   }
+  SecureOrder order;
   std::size_t at = kHeaderSize;
   while (all.has(at + kSubmessageHeaderSize)) {
     const std::uint8_t id = all.u8(at), flags = all.u8(at + 1);
-    if (id == kStatistics) return at > kHeaderSize ? at : 0;
+    if (id == kStatistics) return at > kHeaderSize && order.may_end() ? at : 0;
+    if (!order.admits(id)) return 0;
     const bool little = (flags & 1) != 0;
     std::size_t length = Bytes{datagram, little}.u16(at + 2);
     at += kSubmessageHeaderSize;
@@ -188,7 +300,7 @@ std::size_t admissible_length(std::span<const std::byte> datagram) {
     if (!submessage_ok(id, flags, {datagram.subspan(at, length), little})) return 0;
     at += length;
   }
-  return at == datagram.size() ? at : 0;
+  return at == datagram.size() && order.may_end() ? at : 0;
 }
 
 }  // namespace mortise

@@ -56,7 +56,9 @@ void section_lossy(Report& report, const SessionOptions& options) {
       {{.loss = 0.01, .delay_s = 0.02}, true},
       {{.loss = 0.05, .delay_s = 0.02, .seed = 2}, true},
       {{.loss = 0.10, .delay_s = 0.02, .seed = 3}, false},
+      {{.loss = 0.01, .delay_s = 0.1, .seed = 6}, false},
       {{.loss = 0.05, .delay_s = 0.1, .seed = 4}, true},
+      {{.loss = 0.10, .delay_s = 0.1, .seed = 7}, false},
       {{.loss = 0.02, .duplicate = 0.2, .delay_s = 0.02, .jitter_s = 0.03, .seed = 5}, false},
   };
   for (const auto& [link, is_bar] : rows) {

@@ -1,5 +1,6 @@
 // The wall clock of a server and its clients jumps while people drag parts, and a server is killed
 // and started again while the clock shows less than its log.
+#include "tests/network/same_everywhere.h"
 #include "tests/network/second_server.h"
 #include "tests/network/wall_clock.h"
 
@@ -31,12 +32,10 @@ class ClockJump : public SecondServer {
     for (const auto& [id, part] : guest.client->parts()) poses[id] = part.info.X_WP;
     return poses;
   }
-  void expect_same(const Guest& one, const Guest& other) {
-    const auto ours = poses(one), theirs = poses(other);
-    ASSERT_EQ(ours.size(), theirs.size());
-    for (const auto& [id, pose] : ours) EXPECT_TRUE(identical(theirs.at(id), pose));
-    EXPECT_EQ(clashes(one), clashes(other));
-    EXPECT_EQ(clashes(one).size(), 1U) << "red in the base";
+  Knowledge agreed(std::vector<Guest*> guests) {
+    const Knowledge known = agreed_by(guests);
+    EXPECT_EQ(known.open.size(), 1U) << "red in the base";
+    return known;
   }
   /// Kills the server and starts it again on its log. All that was acknowledged is on disk by then.
   void kill_and_restore(std::unique_ptr<Program>& server) {
@@ -61,7 +60,7 @@ class ClockJump : public SecondServer {
     EXPECT_EQ(anna_->client->user_id(anna_->user), anna_id);
     for (const auto& [id, pose] : poses_before) EXPECT_TRUE(identical(poses(*anna_)[id], pose));
     EXPECT_EQ(clashes(*anna_), clashes_before);
-    expect_same(*anna_, *ben_);
+    agreed({anna_.get(), ben_.get(), otto_.get()});
     ASSERT_TRUE(ben_->grab("blue"));
     drag(0.7);
   }
@@ -84,10 +83,10 @@ TEST_F(ClockJump, AnHourOnAndAnHourBack) {
   Guest late(kDomain, "late");
   ASSERT_TRUE(late.joined());
   turn(0.3);
-  expect_same(*anna_, *ben_);
-  expect_same(*anna_, late);
+  const Knowledge known = agreed({anna_.get(), ben_.get(), otto_.get(), &late});
   EXPECT_GT(acknowledged_.size(), 100U);
   EXPECT_EQ(lost_of_acknowledged(*server), 0U) << "of " << acknowledged_.size();
+  expect_in_log(known, first_log(), {anna_.get(), ben_.get()});
 }
 
 }  // namespace

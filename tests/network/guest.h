@@ -1,7 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,20 +19,33 @@ inline double steady_s() {
 
 /// A participant in this process.
 struct Guest {
-  explicit Guest(int domain, const std::string& name, const std::string& role = "designer") {
+  Guest(int domain, const std::string& name, const std::string& role = "designer",
+        const std::string& keys = "") {
     DdsOptions options;
     options.domain = domain;
+    options.keys = keys;
     auto opened = open_client_channel(options);
     if (!opened) return;
     channel = std::move(*opened);
     client = std::make_unique<Client>(*channel);
     user = client->add_user(name, role);
   }
+  ClientUpdate listen() {
+    ClientUpdate update = client->poll();
+    for (const RefusedIncrement& r : update.refused) refused.push_back(r);
+    for (const Reply& r : update.replies) replies.push_back(r);
+    // What a server that is gone had not acknowledged may be lost: the next one speaks of later
+    // ones.
+    if (update.server_lost) told_up_to_ = client->statistics().increments_sent;
+    const std::uint64_t sent = client->statistics().increments_sent;
+    for (const SeenAck& ack : update.acks)
+      while (told_up_to_ < std::min(ack.seq, sent)) taken.insert(++told_up_to_);
+    if (const UserId now = client->user_id(user)) id = now;
+    return update;
+  }
   bool until(double limit_s, const std::function<bool()>& done) {
     for (const double end_s = steady_s() + limit_s; steady_s() < end_s;) {
-      const ClientUpdate update = client->poll();
-      for (const RefusedIncrement& r : update.refused) refused.push_back(r);
-      for (const Reply& r : update.replies) replies.push_back(r);
+      listen();
       if (done()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
@@ -53,8 +68,14 @@ struct Guest {
   std::unique_ptr<ClientChannel> channel;
   std::unique_ptr<Client> client;
   LocalUser user = 0;
+  UserId id;                      ///< of the last time that it was in
+  std::set<std::uint64_t> taken;  ///< increments that a server has said to have, refused ones too;
+                                  ///< of those that `client` sent
   std::vector<RefusedIncrement> refused;
   std::vector<Reply> replies;
+
+ private:
+  std::uint64_t told_up_to_ = 0;  ///< increments up to here are taken, or in doubt
 };
 
 }  // namespace mortise::test

@@ -21,10 +21,11 @@ void play(const LinkSettings& settings) {
   ASSERT_GT(run.took_s.size(), 100u);
   std::printf(
       "loss %4.1f %%, delay %3.0f ms, doubled %2.0f %%, jitter %2.0f ms: increment to applied p50 "
-      "%.1f p99 %.1f max %.1f ms; sent %llu, repaired %llu, lost %llu, events %zu, packets %llu "
+      "%.1f p99 %.1f (bar of the bench %.1f) max %.1f ms; sent %llu, repaired %llu, lost %llu, "
+      "events %zu, packets %llu "
       "(lost %llu), deadlines missed %.2f %%\n",
       100 * settings.loss, 1e3 * settings.delay_s, 100 * settings.duplicate,
-      1e3 * settings.jitter_s, run.percentile_ms(0.5), run.percentile_ms(0.99),
+      1e3 * settings.jitter_s, run.percentile_ms(0.5), run.percentile_ms(0.99), 1e3 * run.target_s,
       run.percentile_ms(1.0), static_cast<unsigned long long>(run.sent),
       static_cast<unsigned long long>(run.inbox.repaired),
       static_cast<unsigned long long>(run.inbox.lost), run.events.size(),
@@ -37,6 +38,10 @@ void play(const LinkSettings& settings) {
   if (settings.loss > 0.0) {
     EXPECT_GT(run.lost, 0u);
   }
+  // At 20 ms a busy machine takes what is left of the bar; the bench holds it there.
+  if (settings.loss == 0.05 && settings.delay_s == 0.1) {
+    EXPECT_LE(run.percentile_ms(0.99), 1e3 * run.target_s);
+  }
   // Nothing is lost, and all know the same.
   EXPECT_TRUE(run.agreed) << "accepted " << run.inbox.accepted << " of " << run.sent;
   EXPECT_EQ(run.inbox.accepted, run.sent);
@@ -47,16 +52,16 @@ void play(const LinkSettings& settings) {
     if (run.resyncs == LossyRun::kUsers) {  // the first snapshot of each, and no other
       EXPECT_EQ(run.seen_events[i], run.events) << "user " << i;
     }
-    for (const auto& [part, pose] : run.poses) {
-      EXPECT_TRUE(identical(run.seen_poses[i].at(part), pose)) << part.value;
-    }
+    EXPECT_EQ(difference(run.known, run.seen[i]), "") << "user " << i;
   }
 }
 
 TEST(LossyLink, OnePercent20ms) { play({.loss = 0.01, .delay_s = 0.02}); }
 TEST(LossyLink, FivePercent20ms) { play({.loss = 0.05, .delay_s = 0.02, .seed = 2}); }
 TEST(LossyLink, TenPercent20ms) { play({.loss = 0.10, .delay_s = 0.02, .seed = 3}); }
+TEST(LossyLink, OnePercent100ms) { play({.loss = 0.01, .delay_s = 0.1, .seed = 6}); }
 TEST(LossyLink, FivePercent100ms) { play({.loss = 0.05, .delay_s = 0.1, .seed = 4}); }
+TEST(LossyLink, TenPercent100ms) { play({.loss = 0.10, .delay_s = 0.1, .seed = 7}); }
 TEST(LossyLink, DoubledAndReordered) {
   play({.loss = 0.02, .duplicate = 0.2, .delay_s = 0.02, .jitter_s = 0.03, .seed = 5});
 }

@@ -38,7 +38,7 @@ struct Books {
   std::mutex mutex;
   std::map<std::pair<UserId, std::uint64_t>, double> sent_s;
   std::uint64_t accepted = 0;
-  std::atomic<bool> done{false};
+  std::atomic<bool> done{false}, closed{false};  ///< no more is asked; no more is answered
   std::string fault;
   LossyRun run;
 };
@@ -69,10 +69,11 @@ void serve(Books& books) {
              }
            });
   books.run.inbox = loop.inbox().counters();
-  for (const Part& part : world.parts) books.run.poses[part.id] = part.X_WP;
+  books.run.known = knowledge_of(snapshot_of(world));
   books.run.target_s = 1.0 / world.tick_rate_hz;
   books.run.missed = static_cast<double>(loop.metrics().missed_deadlines) /
                      std::max(1.0, static_cast<double>(loop.metrics().ticks));
+  books.closed = true;
 }
 
 struct Hand {
@@ -156,10 +157,12 @@ void act(Books& books, double seconds) {
       3.0, [] { return false; }, turn);  // keyframes repair lost poses
   for (int i = 0; i < kUsers; ++i) {
     books.run.given_up += hands[i].client->statistics().increments_given_up;
-    for (const auto& [id, part] : hands[i].client->parts()) {
-      books.run.seen_poses[i][id] = part.info.X_WP;
-    }
+    books.run.seen[i] = knowledge_of(*hands[i].client);
   }
+  // Who leaves lets go: not before the server has said what it knows.
+  books.done = true;
+  until(
+      2.0, [&] { return books.closed.load(); }, [] {});
 }
 
 }  // namespace

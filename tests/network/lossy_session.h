@@ -1,12 +1,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "common/base/result.h"
 #include "common/messages/event.h"
 #include "server/inbox.h"
+#include "tests/network/knowledge.h"
 #include "tests/network/lossy_link.h"
 
 namespace mortise::test {
@@ -28,9 +28,9 @@ struct LossyRun {
   std::uint64_t sent = 0, given_up = 0, resyncs = 0;
   bool agreed = false;  ///< all that was sent came, and all that came of it is known to all
   std::vector<SeenEvent> events;
-  std::map<PartId, Pose> poses;
+  Knowledge known;  ///< to the server at the end
   std::array<std::vector<SeenEvent>, kUsers> seen_events;
-  std::array<std::map<PartId, Pose>, kUsers> seen_poses;
+  std::array<Knowledge, kUsers> seen;
   InboxCounters inbox;
   double missed = 0.0;                  ///< share of deadlines
   std::uint64_t carried = 0, lost = 0;  ///< IP packets

@@ -1,64 +1,15 @@
 // Noise on the wire: mutated datagrams sent to a living server's ports. It must go on, and count.
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <cstring>
-#include <random>
 
 #include "client/client.h"
+#include "tests/network/noise.h"
 #include "tests/network/small_server.h"
 #include "tests/support/effort.h"
 
 namespace mortise::test {
 namespace {
-
-using Datagram = std::vector<std::uint8_t>;
-
-/// Listens where a client believes the server to be, and keeps what it hears: real discovery
-/// traffic as the seed of the mutations.
-class Socket {
- public:
-  explicit Socket(int port) : handle_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    if (port != 0) {
-      const sockaddr own = address(port);
-      bound_ = bind(handle_, &own, sizeof own) == 0;
-    }
-    const timeval limit{0, 100'000};
-    setsockopt(handle_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  }
-  ~Socket() { close(handle_); }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-
-  bool bound() const { return bound_; }
-  Datagram receive() {
-    Datagram datagram(65536);
-    const ssize_t size = recv(handle_, datagram.data(), datagram.size(), 0);
-    datagram.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
-    return datagram;
-  }
-  void send(const Datagram& datagram, int port) {
-    const sockaddr to = address(port);
-    sendto(handle_, datagram.data(), datagram.size(), 0, &to, sizeof to);
-  }
-
- private:
-  static sockaddr address(int port) {
-    sockaddr_in in{};
-    in.sin_family = AF_INET;
-    in.sin_port = htons(static_cast<std::uint16_t>(port));
-    in.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    sockaddr out{};
-    std::memcpy(&out, &in, sizeof in);
-    return out;
-  }
-  int handle_;
-  bool bound_ = false;
-};
 
 /// A DATA submessage to the reader of increments with a body of the caller's.
 Datagram data_datagram(std::mt19937_64& random) {
@@ -70,27 +21,6 @@ Datagram data_datagram(std::mt19937_64& random) {
   }
   while (out.size() < 84) out.push_back(static_cast<std::uint8_t>(random()));
   return out;
-}
-
-Datagram mutate(Datagram datagram, std::mt19937_64& random) {
-  for (std::uint64_t change = 1 + random() % 4; change-- > 0 && datagram.size() > 24;) {
-    const std::size_t at = 20 + random() % (datagram.size() - 20);
-    switch (random() % 4) {
-      case 0:
-        datagram[at] = static_cast<std::uint8_t>(random());
-        break;
-      case 1:
-        datagram[at] = static_cast<std::uint8_t>(datagram[at] ^ (1u << random() % 8));
-        break;
-      case 2:
-        datagram.resize(at);
-        break;
-      default:
-        std::memset(datagram.data() + (at & ~std::size_t{3}), 0xff,
-                    std::min<std::size_t>(4, datagram.size() - (at & ~std::size_t{3})));
-    }
-  }
-  return datagram;
 }
 
 TEST(NetworkNoise, ServerAndClientsOutliveMutatedDatagrams) {

@@ -2,13 +2,14 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/io/session_log.h"
-#include "tests/network/guest.h"
 #include "tests/network/program.h"
+#include "tests/network/same_everywhere.h"
 #include "tests/support/small_scenarios.h"
 
 /// The server killed without warning and started again on its own log; and a disk that is full.
@@ -58,7 +59,7 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   ASSERT_TRUE(step_by(ben, "blue", {0, 0.25, 4}));  // and out again: that clash has ended
   ASSERT_TRUE(anna.until(3, [&] { return anna.client->open_clashes().size() == 1; }));
   anna.until(2.2, [&] {  // two flushes later all of it is on disk
-    ben.client->poll();
+    ben.listen();
     return false;
   });
   const auto poses_before = poses(anna);
@@ -74,7 +75,7 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   const double restarted_s = steady_s();
   server = serve(220, {"--restore", file("first.mcap"), "--log", file("second.mcap")});
   ASSERT_TRUE(anna.until(15, [&] {
-    ben.client->poll();
+    ben.listen();
     return anna.client->statistics().server_losses > 0 && anna.client->user_id(anna.user) &&
            anna.client->synced();
   })) << server->errors();
@@ -103,9 +104,12 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   })) << anna.x("red");
   EXPECT_EQ(anna.client->statistics().highest_event_seq, events_before + 1);
   anna.until(0.3, [] { return false; });
+  const Knowledge known = agreed_by({&anna, &ben});
   server->signal(SIGTERM);
   ASSERT_EQ(server->wait(5), 0) << server->errors();
   const Json closing = Json::parse(server->out());
+  expect_told_at_end(known, closing);
+  expect_in_log(known, file("first.mcap"), {&anna, &ben});  // and what goes on from it
   EXPECT_EQ(closing["restored"]["ticks"].get<std::size_t>(), log->ticks.size());
   EXPECT_EQ(closing["restored"]["left_out_ticks"], 0);
 
@@ -140,13 +144,20 @@ TEST_F(RestoreAfterCrash, InMidMotionTheLastFlushedSecondCounts) {
                                               logs.string()};
   Program bots(folder_.path(), "mortise-bot",
                {"--domain", "221", "--wait", "20", "--users", "3", "--behaviour", "mixed",
-                "--duration", "30", "--json"});
+                "--duration", "120", "--json"});
+  const auto bots_in = [](const Guest& guest) {
+    return std::ranges::count_if(guest.client->users(), [](const UserInfo& user) {
+      return user.present && user.name.starts_with("bot");
+    });
+  };
   std::filesystem::path first, before;
   std::uint64_t ticks = 0;
   for (int crash = 0; crash < 3; ++crash) {
     auto server = serve(221, arguments);
     Guest anna(221, "anna" + std::to_string(crash));
     ASSERT_TRUE(anna.joined()) << server->errors();
+    ASSERT_TRUE(anna.until(15, [&] { return bots_in(anna) == 3; }))
+        << "the bots do not come back: " << bots.errors();
     const std::uint64_t seen = anna.client->statistics().highest_tick;
     EXPECT_GE(seen, ticks) << "the session began anew";
     ASSERT_TRUE(anna.until(6, [&] { return anna.client->statistics().highest_tick > seen + 150; }))
@@ -167,6 +178,34 @@ TEST_F(RestoreAfterCrash, InMidMotionTheLastFlushedSecondCounts) {
   }
   Program replay(folder_.path(), "mortise-replay", {"verify", first.string()});
   EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+
+  // And once more, to the end: the bots finish in order, and all know the same.
+  auto server = serve(221, arguments);
+  Guest anna(221, "anna"), ben(221, "ben");
+  ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(ben.joined());
+  ASSERT_TRUE(anna.until(15, [&] { return bots_in(anna) == 3; })) << bots.errors();
+  anna.until(2.5, [&] {  // what was done here is on disk
+    ben.listen();
+    return false;
+  });
+  bots.signal(SIGTERM);
+  ASSERT_EQ(bots.wait(20), 0) << bots.errors();
+  const Json told = Json::parse(bots.out());
+  EXPECT_EQ(told["server_losses"], 3);
+  const Knowledge known = agreed_by({&anna, &ben});
+  server->signal(SIGTERM);
+  ASSERT_EQ(server->wait(10), 0) << server->errors();
+  const Json closing = Json::parse(server->out());
+  expect_told_at_end(known, closing);
+  expect_in_log(known, first, {&anna, &ben});
+  std::uint64_t accepted = 0, logged = 0;
+  for (const Json& user : closing["users"]) accepted += user["accepted"].get<std::uint64_t>();
+  const auto log = read_session_log(newest());
+  ASSERT_TRUE(log) << log.error().text;
+  for (const TickRecord& tick : log->ticks) logged += tick.increments.size();
+  EXPECT_GT(accepted, 0u);
+  EXPECT_EQ(logged, accepted) << "what was taken is in the log";
 }
 
 TEST_F(RestoreAfterCrash, WhatCannotBeRestoredSaysSoInOneLine) {
@@ -198,8 +237,9 @@ TEST_F(RestoreAfterCrash, AFullDiskIsSaidOnceAndTheSessionGoesOn) {
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);  // inherited by what is started now
   auto server = serve(223, {scenario(), "--log", file("full.mcap")});
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
-  Guest anna(223, "anna");
+  Guest anna(223, "anna"), ben(223, "ben");
   ASSERT_TRUE(anna.joined()) << server->errors();
+  ASSERT_TRUE(ben.joined());
   ASSERT_TRUE(anna.grab("red"));
   const auto failed = [&] { return server->errors().find("cannot write") != std::string::npos; };
   int moves = 0;
@@ -207,9 +247,19 @@ TEST_F(RestoreAfterCrash, AFullDiskIsSaidOnceAndTheSessionGoesOn) {
     ASSERT_TRUE(step_by(anna, "red", {moves % 2 ? -0.001 : 0.00123, 0, 0}));
   ASSERT_TRUE(failed()) << server->errors();
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(step_by(anna, "red", {0, 0.01, 0})) << "it goes on";
-  anna.until(1.5, [] { return false; });
+  ASSERT_TRUE(step_by(anna, "red", {0, 0, -12}));
+  anna.until(1.5, [&] {
+    ben.listen();
+    return false;
+  });
+  Guest late(223, "late");  // what it knows is what the server says now
+  ASSERT_TRUE(late.joined());
+  const Knowledge known = agreed_by({&anna, &ben, &late});
+  EXPECT_EQ(known.open.size(), 1u) << "red in the base";
   server->signal(SIGTERM);
   EXPECT_EQ(server->wait(5), 1) << "the log is not whole, and the exit code says so";
+  expect_told_at_end(known, Json::parse(server->out()));
+  expect_nothing_lost(anna, "anna", Json::parse(server->out()));
   const std::string errors = server->errors();
   std::size_t times = 0;
   for (std::size_t at = 0; (at = errors.find("the session goes on", at)) != std::string::npos; ++at)

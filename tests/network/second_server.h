@@ -113,7 +113,7 @@ class SecondServer : public ::testing::Test {
     }
   }
   ClientUpdate listen(Guest& guest, PoseGap& gap) {
-    ClientUpdate update = guest.client->poll();
+    ClientUpdate update = guest.listen();
     losses_ += update.server_lost;
     if (std::count(update.changed.begin(), update.changed.end(), blue_) > 0) gap.seen();
     return update;
@@ -143,17 +143,21 @@ class SecondServer : public ::testing::Test {
     for (const PoseGap& gap : gaps_) longest_s = std::max(longest_s, gap.longest_s());
     return longest_s;
   }
+  /// Each server goes on in a file of its own; the name of the first sorts first.
+  std::filesystem::path first_log() const {
+    std::filesystem::path first;
+    for (const auto& entry : std::filesystem::directory_iterator(logs()))
+      if (entry.path().extension() == ".mcap" && (first.empty() || entry.path() < first))
+        first = entry.path();
+    return first;
+  }
   /// Ends the session; what of the acknowledged is not in the log of the last server.
   std::size_t lost_of_acknowledged(Program& server) {
     moves_ = false;
     turn(0.3);
     server.signal(SIGTERM);
     EXPECT_EQ(server.wait(10), 0) << server.errors();
-    // Each server goes on in a file of its own; the name of the first sorts first.
-    std::filesystem::path first;
-    for (const auto& entry : std::filesystem::directory_iterator(logs()))
-      if (entry.path().extension() == ".mcap" && (first.empty() || entry.path() < first))
-        first = entry.path();
+    const std::filesystem::path first = first_log();
     if (first.empty()) return acknowledged_.size();
     const auto log = read_session(first);
     EXPECT_TRUE(log) << log.error().text;

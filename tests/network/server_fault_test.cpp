@@ -11,8 +11,8 @@
 #include "client/client.h"
 #include "common/io/session_log.h"
 #include "idl/dds_channel.h"
-#include "tests/network/guest.h"
 #include "tests/network/program.h"
+#include "tests/network/same_everywhere.h"
 #include "tests/support/small_scenarios.h"
 
 /// The real server under bad luck and bad company, over DDS on loopback.
@@ -37,10 +37,11 @@ class ServerFault : public ::testing::Test {
 };
 
 TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
-  auto server = serve(210);
+  const std::string log = (folder_.path() / "killed.mcap").string();
+  auto server = serve(210, {"--log", log, "--policy", "report"});
   Program bot(folder_.path(), "mortise-bot",
               {"--domain", "210", "--wait", "10", "--part", "red", "--behaviour", "wander"});
-  Guest ben(210, "ben");
+  Guest ben(210, "ben"), cid(210, "cid");  // who joins late
   ASSERT_TRUE(ben.joined()) << server->errors();
   ASSERT_TRUE(ben.until(5, [&] { return bool(ben.holder("red")) && ben.x("red") != 0.0; }));
   EXPECT_FALSE(ben.grab("red")) << "it is in other hands";
@@ -54,13 +55,30 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   // Liveliness lease 0.8 s; its check, a tick and the way back on a busy machine.
   EXPECT_LT(steady_s() - killed_s, 2.0);
   EXPECT_TRUE(ben.grab("red"));
+  const PartId red = ben.client->find_part("red");
+  std::uint64_t last = 0;
+  // To where it clashes with the base, wherever the bot had it.
+  const Vec3 there = Vec3(0, 0, 9) - ben.client->parts().at(red).info.X_WP.p;
+  for (int i = 0; i < 20; ++i) last = ben.client->send(ben.user, red, there / 20.0);
+  EXPECT_TRUE(ben.until(3, [&] { return ben.taken.contains(last); }));
+  ASSERT_TRUE(cid.until(10, [&] {
+    ben.listen();
+    return cid.client->user_id(cid.user) && cid.client->synced();
+  }));
+  const Knowledge known = agreed_by({&ben, &cid});
+  EXPECT_GE(known.open.size(), 1u) << "nothing to agree on";
   server->signal(SIGTERM);
   EXPECT_EQ(server->wait(5), 0);
-  EXPECT_EQ(Json::parse(server->out())["inbox"]["liveliness_lost"], 1);
+  const Json closing = Json::parse(server->out());
+  EXPECT_EQ(closing["inbox"]["liveliness_lost"], 1);
+  expect_told_at_end(known, closing);
+  expect_in_log(known, log, {&ben});
+  expect_nothing_lost(ben, "ben", closing);
 }
 
 TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
-  auto server = serve(211);
+  const std::string log = (folder_.path() / "nonsense.mcap").string();
+  auto server = serve(211, {"--log", log});
   Guest anna(211, "anna"), ben(211, "ben");
   ASSERT_TRUE(anna.joined()) << server->errors();
   ASSERT_TRUE(ben.joined());
@@ -94,8 +112,11 @@ TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
       {Refusal::kStale, 1}};
   EXPECT_EQ(reasons, expected);
   EXPECT_TRUE(ben.until(3, [&] { return ben.refused.size() == 1; })) << "told to who sent it";
+  const Knowledge known = agreed_by({&anna, &ben});
   server->signal(SIGINT);
   EXPECT_EQ(server->wait(5), 0);
+  expect_told_at_end(known, Json::parse(server->out()));
+  expect_in_log(known, log, {&anna, &ben});
   const Json inbox = Json::parse(server->out())["inbox"];
   EXPECT_EQ(inbox["accepted"], 4);
   EXPECT_EQ(inbox["foreign"], 1);

@@ -12,11 +12,11 @@
 
 namespace mortise::test {
 
-/// Hears all that goes to the server's ports.
+/// Hears all that goes to the server's ports, or to so many from `port` on.
 class Wiretap {
  public:
-  explicit Wiretap(int port)
-      : port_(port), handle_(socket(AF_PACKET, SOCK_DGRAM, htons(ETH_P_IP))) {
+  explicit Wiretap(int port, int ports = 2)
+      : port_(port), ports_(ports), handle_(socket(AF_PACKET, SOCK_DGRAM, htons(ETH_P_IP))) {
     const int room = 1 << 24;
     setsockopt(handle_, SOL_SOCKET, SO_RCVBUFFORCE, &room, sizeof room);
   }
@@ -38,14 +38,14 @@ class Wiretap {
       if (ip.protocol != IPPROTO_UDP || static_cast<std::size_t>(size) < at + sizeof udp) continue;
       std::memcpy(&udp, packet.data() + at, sizeof udp);
       const int port = ntohs(udp.dest);
-      if (port != port_ && port != port_ + 1) continue;
+      if (port < port_ || port >= port_ + ports_) continue;
       all.push_back({port, {packet.data() + at + sizeof udp, packet.data() + size}});
     }
     return all;
   }
 
  private:
-  int port_, handle_;
+  int port_, ports_, handle_;
 };
 
 /// To the same ports, by somebody else.

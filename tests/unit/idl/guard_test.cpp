@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace mortise {
@@ -134,6 +135,119 @@ Datagram ordinary() {
   return with(out, 0x08, 1, gap_body(3, 5, 0, 0));
 }
 
+struct SecureFields {
+  std::uint8_t prefix = 0x33, body = 0x30, postfix = 0x34;
+  std::size_t header_size = 20;
+  std::uint32_t length = 77, padding = 3;  ///< of what is encrypted; as it is said and as it is
+  int missing = 0;                         ///< of these bytes
+  std::uint32_t macs = 1;                  ///< of receivers, as it is said; there is one
+};
+
+/// An encrypted datagram.
+Datagram encrypted(const SecureFields& fields = {}) {
+  const auto put32_big = [](Datagram& out, std::uint32_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8)
+      out.push_back(static_cast<std::uint8_t>(value >> shift));
+  };
+  Datagram body, postfix(16, 7);
+  put32_big(body, fields.length);
+  body.resize(4 + 77 + fields.padding - static_cast<std::size_t>(fields.missing), 9);
+  put32_big(postfix, fields.macs);
+  postfix.resize(postfix.size() + 20, 5);
+  Datagram out = with(header(), fields.prefix, 1, Datagram(fields.header_size, 8));
+  if (fields.body != 0) out = with(out, fields.body, 1, body);
+  return fields.postfix == 0 ? out : with(out, fields.postfix, 1, postfix);
+}
+
+TEST(Guard, EncryptedTrafficPassesWhole) {
+  EXPECT_EQ(admitted(encrypted()), encrypted().size());
+  const Datagram submessage = encrypted({.prefix = 0x31, .postfix = 0x32});  // of a handshake
+  EXPECT_EQ(admitted(submessage), submessage.size());
+  EXPECT_EQ(admitted(with(submessage, 0x07, 1, heartbeat_body(1, 7))), submessage.size() + 32);
+  EXPECT_EQ(admitted(with(encrypted(), 0x80, 1, Datagram(8, 0))), encrypted().size());
+}
+
+Datagram announcement(std::uint16_t parameter, const Datagram& value) {
+  DataFields fields;
+  fields.encapsulation = 3;
+  Datagram body = data_body(fields);
+  body.resize(body.size() - 4);
+  put16(body, parameter);
+  put16(body, static_cast<std::uint16_t>(value.size()));
+  body.insert(body.end(), value.begin(), value.end());
+  put32(body, 1);
+  return with(header(), 0x15, 5, body);
+}
+
+// Lengths inside what is announced: of texts, of properties, of tokens.
+TEST(Guard, WhatIsAnnouncedIsNoLongerThanItsParameter) {
+  const auto drops = [](std::uint16_t parameter, const Datagram& value) {
+    return admitted(announcement(parameter, value)) == 0;
+  };
+  Datagram token;
+  const auto put_text = [&](const std::string& text) {
+    put32(token, static_cast<std::uint32_t>(text.size()) + 1);
+    for (const char c : text) token.push_back(static_cast<std::uint8_t>(c));
+    do token.push_back(0);
+    while (token.size() % 4 != 0);
+  };
+  put_text("DDS:Auth:PKI-DH:1.0");
+  const std::size_t at_properties = token.size();
+  put32(token, 1);
+  put_text("dds.cert.sn");
+  const std::size_t at_value = token.size();
+  put_text("anna");
+  const std::size_t at_binary = token.size();
+  put32(token, 0);
+  for (const std::uint16_t id :
+       {std::uint16_t{0x1001}, std::uint16_t{0x1002}, std::uint16_t{0x1006}}) {
+    EXPECT_FALSE(drops(id, token));
+    EXPECT_TRUE(drops(id, Datagram(token.begin(), token.end() - 4)));
+    for (const std::size_t at : {std::size_t{0}, at_properties, at_value, at_binary}) {
+      for (const int byte : {0, 1, 3}) {
+        Datagram wrong = token;
+        wrong[at + static_cast<std::size_t>(byte)] = 0xff;
+        EXPECT_TRUE(drops(id, wrong)) << at << " " << byte;
+      }
+    }
+  }
+  const auto end = [&](std::size_t at) { return token.begin() + static_cast<std::ptrdiff_t>(at); };
+  const Datagram list(end(at_properties), end(at_binary));
+  EXPECT_FALSE(drops(0x59, list));
+  EXPECT_TRUE(drops(0x59, Datagram(list.begin(), list.end() - 4)));
+  EXPECT_FALSE(drops(0x2c, {2, 0, 0, 0, 7, 7, 0, 0}));
+  EXPECT_TRUE(drops(0x2c, {5, 0, 0, 0, 7, 7, 0, 0}));
+}
+
+// Fast DDS decrypts as much as is said to be there.
+TEST(Guard, LengthsOfWhatIsEncryptedAreThoseOfTheDatagram) {
+  const auto drops = [](const SecureFields& fields) { return admitted(encrypted(fields)) == 0; };
+  EXPECT_TRUE(drops({.header_size = 24}));
+  EXPECT_TRUE(drops({.header_size = 16}));
+  EXPECT_TRUE(drops({.length = 81}));
+  EXPECT_TRUE(drops({.length = 76}));
+  EXPECT_TRUE(drops({.length = 0x0100'004d}));
+  EXPECT_TRUE(drops({.length = 0xffff'ffff}));  // with the size of a block it is small again
+  EXPECT_TRUE(drops({.length = 77, .padding = 3, .missing = 4}));
+  EXPECT_TRUE(drops({.macs = 0}));
+  EXPECT_TRUE(drops({.macs = 2}));
+  EXPECT_TRUE(drops({.macs = 0x0ccc'ccce}));  // times 20 it is small again
+}
+
+TEST(Guard, WhatIsEncryptedIsPrefixBodyAndPostfix) {
+  const auto drops = [](const SecureFields& fields) { return admitted(encrypted(fields)) == 0; };
+  EXPECT_TRUE(drops({.postfix = 0x32}));
+  EXPECT_TRUE(drops({.prefix = 0x31}));
+  EXPECT_TRUE(drops({.body = 0x01}));
+  EXPECT_TRUE(drops({.body = 0}));
+  EXPECT_TRUE(drops({.postfix = 0}));
+  EXPECT_TRUE(drops({.postfix = 0x80}));
+  EXPECT_TRUE(drops({.body = 0, .postfix = 0}));
+  EXPECT_TRUE(drops({.prefix = 0x01}));
+  EXPECT_TRUE(drops({.prefix = 0x35}));
+  EXPECT_EQ(admitted(with(encrypted(), 0x34, 1, Datagram(20, 0))), 0u);
+}
+
 TEST(Guard, OrdinaryTrafficPassesWhole) {
   EXPECT_EQ(admitted(ordinary()), ordinary().size());
   EXPECT_EQ(admitted(header()), header().size());
@@ -218,10 +332,10 @@ TEST(Guard, BigEndianIsReadAsSuch) {
 // sanitizer build checks), never more than came in, and what is admitted is admitted again.
 TEST(Guard, MutatedDatagramsLeadNowhere) {
   std::mt19937_64 random(424242);
-  const Datagram whole = ordinary();
+  const Datagram wholes[] = {ordinary(), encrypted()};
   std::size_t dropped = 0, passed = 0;
   for (int i = 0; i < 300'000; ++i) {
-    Datagram mutated = whole;
+    Datagram mutated = wholes[i % 2];
     for (std::uint64_t change = 1 + random() % 4; change-- > 0 && !mutated.empty();) {
       const std::size_t at = random() % mutated.size();
       switch (random() % 4) {
