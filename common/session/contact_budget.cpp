@@ -36,14 +36,7 @@ std::uint64_t spent(const Scratch::Impl& work) {
   return sum;
 }
 
-std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x - std::min(x, y); }
-
 }  // namespace
-
-bool is_held(const World& world, const PairWork& pair) {
-  return (pair.move_a >= 0 && world.parts[pair.a].holder) ||
-         (pair.move_b >= 0 && world.parts[pair.b].holder);
-}
 
 void open_contact_budget(const World& world, const SessionState& state, Scratch::Impl& work) {
   // How a session begins is judged in one go, before anybody waits for it.

@@ -32,7 +32,4 @@ void share_contact_work(const World& world, Scratch::Impl& work,
 /// Sets it to all that a pair may have. False: the tick has no work left.
 bool share_more_contact_work(Scratch::Impl& work, std::span<const std::uint32_t> batch);
 
-/// Does a user hold a part that moves in it?
-bool is_held(const World& world, const PairWork& pair);
-
 }  // namespace mortise

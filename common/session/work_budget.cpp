@@ -5,7 +5,6 @@
 #include <tuple>
 #include <vector>
 
-#include "common/session/contact_budget.h"
 #include "common/session/stop_time.h"
 
 namespace mortise {
@@ -61,8 +60,6 @@ std::uint64_t spent(const Scratch::Impl& work) {
   return sum;
 }
 
-std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x - std::min(x, y); }
-
 // What is left of the tick's own work, and of what was saved, from which so much was taken.
 struct Left {
   std::uint64_t own = 0, saved = 0, taken_of_saved = 0;
@@ -102,6 +99,11 @@ bool is_in_vain(const PairWork& pair, std::uint8_t waited) {
 std::uint64_t expected(std::uint64_t wanted) { return wanted - wanted / 3; }
 
 }  // namespace
+
+bool is_held(const World& world, const PairWork& pair) {
+  return (pair.move_a >= 0 && world.parts[pair.a].holder) ||
+         (pair.move_b >= 0 && world.parts[pair.b].holder);
+}
 
 void open_budget(const World& world, const SessionState& state, Scratch::Impl& work) {
   // How a session begins is judged in one go, before anybody waits for it.

@@ -15,6 +15,12 @@ namespace mortise {
 /// and there are several of them in a tick.
 inline constexpr std::uint64_t kSlideTimes = 2;
 
+/// Does a user hold a part that moves in it?
+bool is_held(const World& world, const PairWork& pair);
+
+/// x - y, or nothing.
+inline std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x > y ? x - y : 0; }
+
 /// Evaluations that are left of the tick, what is saved included.
 std::uint64_t work_left(const Scratch::Impl& work);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/session/work_budget.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/session/report_digest.h"
 #include "tests/unit/session/session_builder.h"
