@@ -23,9 +23,6 @@ constexpr double kClockJump_s = 10.0;
 // Seats are told when they change; again now and then, for one that follows from a later tick on.
 constexpr std::uint64_t kSeatsEvery_ticks = 60;
 
-// Four seconds of a disk that does not follow.
-constexpr std::size_t kMostQueued_ticks = 256;
-
 }  // namespace
 
 TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLogWriter* log,
@@ -36,7 +33,8 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
       log_(log),
       options_(options),
       inbox_(options.inbox),
-      scratch_(options.threads) {
+      scratch_(options.threads),
+      recorder_(world, log, options.checkpoints) {
   statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   for (std::uint32_t i = 0; i < world_.parts.size(); ++i) {
     const Part& part = world_.parts[i];
@@ -58,8 +56,8 @@ void TickLoop::adopt(SessionStatistics statistics, const std::vector<SeatRecord>
 }
 
 void TickLoop::open() {
-  now_ns_ = opened_ns_ = pulse_ns_ = checkpoint_ns_ = clock_.now_ns();
-  checkpoints_.begin(world_);
+  now_ns_ = opened_ns_ = pulse_ns_ = clock_.now_ns();
+  recorder_.open(now_ns_);
   std::set<std::string> sent;
   for (const Part& part : world_.parts) {
     if (!sent.insert(part.solid->hash()).second) continue;
@@ -92,13 +90,12 @@ void TickLoop::tick() {
   report_ = step(world_, intake_.increments, scratch_);
   const std::int64_t step_ns = clock_.now_ns() - step_start_ns;
   metrics_.step.add(step_ns);
-  worked_ns_ += step_ns;
   statistics_.forget_users(intake_.decisions);
   statistics_.add(report_);
   if (!report_.events.empty()) event_seq_ = report_.events.back().seq;
 
   // 7. out
-  begin_record();
+  begin_record(step_ns);
   superseded_ = superseded_ || intake_.superseded;
   if (channel_.has_follower()) tell_follower();
   publish();
@@ -106,40 +103,14 @@ void TickLoop::tick() {
   metrics_.tick.add(clock_.now_ns() - now_ns_);
 }
 
-void TickLoop::begin_record() {
+void TickLoop::begin_record(std::int64_t step_ns) {
   if (log_ == nullptr) return;
-  record_ = log_->spare();
-  record_.tick = report_.tick;
-  record_.time_ns = clock_.wall_ns();
-  changed_since_checkpoint_ |= !intake_.decisions.empty() || !intake_.increments.empty();
-  // The last one at once: there are no ticks any more over which it could be made.
-  record_.state = last_ ? StateDraft([bytes = encode_state(world_)] { return bytes; })
-                        : checkpoints_.after_tick(world_, checkpoint_is_due());
-}
-
-// Once everybody has read what went in and came out, it is given away: a copy would be the largest
-// part of what recording takes from a tick.
-void TickLoop::hand_over_record() {
-  if (record_.tick == 0) return;
-  record_.decisions.swap(intake_.decisions);
-  record_.increments.swap(intake_.increments);
-  record_.report = std::move(report_);
-  log_->record(std::move(record_));
-  record_.tick = 0;
-}
-
-bool TickLoop::checkpoint_is_due() {
-  if (checkpoints_.running()) return false;
-  const std::int64_t age_ns = now_ns_ - checkpoint_ns_;
-  const bool due = log_->wants_state() || worked_ns_ >= in_ns(options_.checkpoint_work_s) ||
-                   age_ns >= in_ns(changed_since_checkpoint_ ? options_.checkpoint_s
-                                                             : options_.checkpoint_idle_s);
-  // A log that cannot follow, or is broken, would not take it.
-  if (!due || log_->queued_ticks() > kMostQueued_ticks || !log_->status()) return false;
-  worked_ns_ = 0;
-  checkpoint_ns_ = now_ns_;
-  changed_since_checkpoint_ = false;
-  return true;
+  recorder_.begin({.tick = report_.tick,
+                   .wall_ns = clock_.wall_ns(),
+                   .now_ns = now_ns_,
+                   .step_ns = step_ns,
+                   .changed = !intake_.decisions.empty() || !intake_.increments.empty(),
+                   .last = last_});
 }
 
 void TickLoop::tell_follower() {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "common/io/checkpoint.h"
 #include "common/io/session_log.h"
 #include "common/messages/channel.h"
 #include "common/session/statistics.h"
@@ -16,6 +15,7 @@
 #include "server/inbox.h"
 #include "server/metrics.h"
 #include "server/recognizer.h"
+#include "server/tick_recorder.h"
 
 namespace mortise {
 
@@ -28,10 +28,7 @@ struct TickLoopOptions {
   /// Requested snapshots come no closer than this: a client that asks in a loop costs little.
   double snapshot_gap_s = 0.1;
   double features_gap_s = 1.0;  ///< likewise tables of features, while meshes are looked at
-  /// A checkpoint goes into the log when the engine has worked for so long since the last one,
-  /// which is what a restart has to compute again, and so often at least when something went in, or
-  /// not.
-  double checkpoint_work_s = 0.3, checkpoint_s = 10.0, checkpoint_idle_s = 600.0;
+  CheckpointTimes checkpoints;
 };
 
 /// The beat of a session: at a fixed rate drain the channel, apply decisions, step, record,
@@ -86,9 +83,8 @@ class TickLoop {
   double seconds() const { return static_cast<double>(now_ns_ - opened_ns_) * 1e-9; }
 
  private:
-  void begin_record();
-  void hand_over_record();
-  bool checkpoint_is_due();
+  void begin_record(std::int64_t step_ns);
+  void hand_over_record() { recorder_.hand_over(intake_.decisions, intake_.increments, report_); }
   void tell_follower();
   void measure_delay();
   void publish();
@@ -107,10 +103,7 @@ class TickLoop {
   StepReport report_;
   SessionStatistics statistics_;
   TickMetrics metrics_;
-  CheckpointMaker checkpoints_;
-  TickRecord record_;  ///< of the last tick, not yet handed over; tick 0: none
-  std::int64_t worked_ns_ = 0, checkpoint_ns_ = 0;  ///< since the last one; when that was
-  bool changed_since_checkpoint_ = false;
+  TickRecorder recorder_;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::vector<PartPose> published_;            ///< what the pose stream said last, by part index

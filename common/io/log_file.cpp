@@ -62,17 +62,26 @@ Result<std::unique_ptr<LogFile>> LogFile::create(const fs::path& file, const Log
 
 Status LogFile::take_name() {
   if (named_) return ok();
-  std::error_code error;
-  fs::rename(unfinished(path_), path_, error);
-  if (error)
-    return fail(Code::kRuntime, path_.string() + ": cannot create the log: " + error.message());
+  if (Status status = name(path_); !status) return status;
   named_ = true;
   return ok();
 }
 
-void LogFile::remove_if_unnamed() {
+Status LogFile::name(const fs::path& file) {
   std::error_code error;
-  if (!named_) fs::remove(unfinished(path_), error);
+  fs::rename(unfinished(file), file, error);
+  if (error)
+    return fail(Code::kRuntime, file.string() + ": cannot create the log: " + error.message());
+  return ok();
+}
+
+void LogFile::remove_if_unnamed() {
+  if (!named_) remove_unnamed(path_);
+}
+
+void LogFile::remove_unnamed(const fs::path& file) {
+  std::error_code error;
+  fs::remove(unfinished(file), error);
 }
 
 void LogFile::write_head(const LogHeader& header) {

@@ -22,6 +22,9 @@ class LogFile {
 
   /// Gives it its name, where that was left for later.
   Status take_name();
+  /// The same of one that is closed.
+  static Status name(const std::filesystem::path& file);
+  static void remove_unnamed(const std::filesystem::path& file);
   /// Takes it away where it never got its name.
   void remove_if_unnamed();
   void write(const TickRecord& tick);

@@ -13,6 +13,7 @@
 namespace mortise {
 namespace {
 
+namespace fs = std::filesystem;
 using log_json::Gap;
 
 // The writer looks so often for ticks, or is woken when there are so many.
@@ -73,6 +74,8 @@ class FileWriter final : public SessionLogWriter {
   std::uint32_t chunks_settled_ = 0;
   std::uint64_t bytes_before_ = 0;  ///< of the files before this one
   std::optional<Error> rotate_error_;
+  std::mutex names_mutex_;         ///< file_ as it is replaced, and:
+  std::vector<fs::path> unnamed_;  ///< files before this one that have no name yet
 
   std::atomic<std::uint64_t> bytes_ = 0;
   std::atomic<bool> wants_state_ = false;
@@ -238,7 +241,7 @@ void FileWriter::rotate(Checkpoint state) {
   const Status closed = file_->mcap().close();
   settle_chunk();
   if (!closed) return;
-  options_.named_later = false;
+  const std::lock_guard lock(names_mutex_);
   header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
   header_.begin =
       LogBegin{std::move(state), statistics_, static_cast<std::int64_t>(file_->time_ns())};
@@ -249,6 +252,7 @@ void FileWriter::rotate(Checkpoint state) {
     return;
   }
   bytes_before_ += file_->mcap().bytes_written();
+  if (options_.named_later) unnamed_.push_back(file_->path());
   file_ = std::move(*next);
   chunks_settled_ = file_->mcap().chunks_written();
 }
@@ -269,8 +273,13 @@ void FileWriter::count_bytes() {
                      std::memory_order_relaxed);
 }
 
-// Before the first state is recorded, and so before a file could follow this one.
-Status FileWriter::take_name() { return file_->take_name(); }
+Status FileWriter::take_name() {
+  const std::lock_guard lock(names_mutex_);
+  options_.named_later = false;
+  for (; !unnamed_.empty(); unnamed_.erase(unnamed_.begin()))
+    if (Status named = LogFile::name(unnamed_.front()); !named) return named;
+  return file_->take_name();
+}
 
 Status FileWriter::flush() {
   std::unique_lock lock(mutex_);
@@ -302,8 +311,9 @@ Status FileWriter::close() {
       file_->write_statistics();
       if (Status closed = file_->mcap().close(); !closed) error_ = closed.error();
       settle_chunk();
-      file_->remove_if_unnamed();
     }
+    file_->remove_if_unnamed();
+    for (const fs::path& file : unnamed_) LogFile::remove_unnamed(file);
     count_bytes();
   }
   return status();

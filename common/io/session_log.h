@@ -80,8 +80,9 @@ struct LogOptions {
   double flush_s = 0.9;
   /// Beyond this size the next file is begun with the next checkpoint; 0: all in one.
   std::uint64_t rotate_bytes = 0;
-  /// The file has its name with take_name() only, "x.mcap.begun" until then, and goes when it is
-  /// closed without: of a server that stands by, whose log must not be taken for the session's.
+  /// The file, and those that follow it, have their names with take_name() only, "x.mcap.begun"
+  /// until then, and go when closed without: of a server that stands by, whose log must not be
+  /// taken for the session's.
   bool named_later = false;
 };
 

@@ -50,10 +50,10 @@ class LogChain : public ::testing::Test {
     }
     ASSERT_TRUE((*writer)->close());
   }
-  std::vector<fs::path> files() const {
+  std::vector<fs::path> files(const std::string& extension = ".mcap") const {
     std::vector<fs::path> all;
     for (const auto& entry : fs::directory_iterator(folder_.path()))
-      if (entry.path().extension() == ".mcap") all.push_back(entry.path());
+      if (entry.path().extension() == extension) all.push_back(entry.path());
     std::sort(all.begin(), all.end());
     return all;
   }
@@ -125,6 +125,33 @@ TEST_F(LogChain, TheLastCheckpointOfUseIsTheStart) {
   goes_on(damaged, kTicks - kEvery, 1);
   for (Checkpoint& state : damaged.checkpoints) state.build = "another";
   goes_on(damaged, 0, 2);
+}
+
+/// Of a server that stands by: its files have their names when it leads, or go with it.
+TEST_F(LogChain, FilesThatAreNamedLaterAreNamedTogetherOrGo) {
+  const LogOptions options = {.chunk_bytes = 4096, .rotate_bytes = 20'000, .named_later = true};
+  write(file("s.mcap"), options);
+  EXPECT_TRUE(fs::is_empty(folder_.path())) << "closed without a name";
+
+  auto writer = SessionLogWriter::create(file("s.mcap"), session_->header, options);
+  ASSERT_TRUE(writer) << writer.error().text;
+  for (const TickRecord& tick : session_->ticks) {
+    (*writer)->record(tick);
+    if (!tick.state) continue;
+    ASSERT_TRUE((*writer)->flush());
+    if (tick.tick != kTicks / 2) continue;
+    EXPECT_TRUE(files().empty());
+    EXPECT_GE(files(".begun").size(), 2U);
+    ASSERT_TRUE((*writer)->take_name());
+    EXPECT_GE(files().size(), 2U);
+    EXPECT_TRUE(files(".begun").empty());
+  }
+  ASSERT_TRUE((*writer)->close());
+  EXPECT_GE(files().size(), 4U);
+  EXPECT_EQ(chain_from(file("s.mcap")), files());
+  const auto whole = read_session(file("s.mcap"));
+  ASSERT_TRUE(whole) << whole.error().text;
+  expect_verified(*whole, kTicks, kTicks / kEvery);
 }
 
 TEST_F(LogChain, EachFileStandsAloneAndAllTogether) {

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "common/io/checkpoint.h"
+#include "common/io/session_log.h"
+#include "common/session/world.h"
+
+namespace mortise {
+
+/// A checkpoint goes into the log when the engine has worked for so long since the last one, which
+/// is what a restart has to compute again, and so often at least when something went in, or not.
+struct CheckpointTimes {
+  double work_s = 0.3, changed_s = 10.0, idle_s = 600.0;
+};
+
+/// Hands ticks to the log of a session, with the state whenever a checkpoint is due or the log
+/// wants to begin its next file: the same for a server that leads and for one that stands by.
+class TickRecorder {
+ public:
+  /// `log` may be null: nothing is done then. Both must outlive this.
+  TickRecorder(World& world, SessionLogWriter* log, const CheckpointTimes& times)
+      : world_(world), log_(log), times_(times) {}
+
+  /// Before the first tick that it is to see. Times are of a clock that never goes back.
+  void open(std::int64_t now_ns);
+
+  struct Stepped {
+    std::uint64_t tick = 0;
+    std::int64_t wall_ns = 0, now_ns = 0;
+    std::int64_t step_ns = 0;  ///< what the engine took for it
+    bool changed = false;      ///< something went into it
+    bool last = false;         ///< of the session here: with the state
+  };
+  /// After the step, while the world stands as after this tick.
+  void begin(const Stepped& stepped);
+  /// What is begun goes to the log, with what went into the tick and came out. All are given away,
+  /// once everybody has read them: a copy would be the largest part of what recording takes from a
+  /// tick. Does nothing where nothing is begun.
+  void hand_over(std::vector<Decision>& decisions, std::vector<Increment>& increments,
+                 StepReport& report);
+
+ private:
+  bool checkpoint_is_due(std::int64_t now_ns);
+
+  World& world_;
+  SessionLogWriter* log_;
+  CheckpointTimes times_;
+  CheckpointMaker checkpoints_;
+  TickRecord record_;  ///< of the last tick, not yet handed over; tick 0: none
+  std::int64_t worked_ns_ = 0, checkpoint_ns_ = 0;  ///< since the last one; when that was
+  bool changed_since_checkpoint_ = false;
+};
+
+}  // namespace mortise
