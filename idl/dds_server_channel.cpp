@@ -9,6 +9,7 @@
 #include "idl/convert.h"
 #include "idl/dds_channel.h"
 #include "idl/doorman.h"
+#include "idl/following.h"
 #include "idl/participant.h"
 #include "idl/server_places.h"
 #include "mortisePubSubTypes.h"
@@ -36,11 +37,12 @@ class DdsServerChannel final : public StandbyChannel {
     if (may_have_another_server(options)) {
       if (Status listening = listen_to_servers(); !listening) return listening;
       // One that leads tells a tick as soon as it sees us.
-      for (int waited_ms = 0; waited_ms < kLookForLeader_ms && leader_.empty(); ++waited_ms) {
+      for (int waited_ms = 0; waited_ms < kLookForLeader_ms && leader_.leader().empty();
+           ++waited_ms) {
         take_told(nullptr);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      if (!leader_.empty())
+      if (!leader_.leader().empty())
         return fail(Code::kRuntime, "another server leads session '" + options.session +
                                         "'; start this one with --standby-of " + options.session);
     }
@@ -53,7 +55,7 @@ class DdsServerChannel final : public StandbyChannel {
     return status;
   }
   Status take_over() override {
-    term_ = next_term(std::max(leader_term_, led_until_ms_));
+    term_ = next_term(std::max(leader_.term(), led_until_ms_));
     participant_->set_term(term_);
     if (Status opened = open_endpoints(); !opened) return opened;
     beat_ = std::make_unique<Heartbeat>(*ticks_);
@@ -64,10 +66,11 @@ class DdsServerChannel final : public StandbyChannel {
     participant_->change_term(*answers_, term_);
   }
   std::uint64_t term_ms() const override { return term_; }
-  void confirm(std::uint64_t tick) override {
+  void confirm(const TakenTicks& taken) override {
     wire::ServerTaken sample;
-    sample.tick(tick);
-    sample.term(leader_term_);
+    sample.tick(taken.received);
+    sample.term(leader_.term());
+    sample.computed(taken.computed);
     write(taken_, sample);
   }
   std::vector<ToldTick> follow() override {
@@ -77,7 +80,10 @@ class DdsServerChannel final : public StandbyChannel {
     take_told(&ticks);
     return ticks;
   }
-  bool leader_present() const override { return servers_.is_alive(leader_); }
+  bool leader_present() const override { return servers_.is_alive(leader_.leader()); }
+  bool another_stands_by() const override {
+    return !leader_.counts_on().empty() && leader_.counts_on() != participant_->key();
+  }
 
  private:
   Status meet(const DdsOptions& options, Participant::Side side) {
@@ -186,18 +192,12 @@ class DdsServerChannel final : public StandbyChannel {
 
   bool has_follower() const override { return servers_.has_follower(); }
   void publish_tick(const ToldTick& told) override {
-    for (const wire::ServerTick& chunk : cut(told, term_)) write(ticks_, chunk);
-  }
-  std::uint64_t taken_up_to() override {
-    std::uint64_t up_to = 0;
-    wire::ServerTaken sample;
-    dds::SampleInfo info;
-    while (follows_->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data || sample.term() != term_) continue;
-      up_to = std::max<std::uint64_t>(up_to, sample.tick());
+    for (wire::ServerTick& chunk : cut(told, term_)) {
+      chunk.follower(follower_.follower(servers_));
+      write(ticks_, std::move(chunk));
     }
-    return up_to;
   }
+  TakenTicks taken_up_to() override { return follower_.take(*follows_, term_, identities_.get()); }
   void await_taken(std::int64_t at_most_ns) override { takings_.await(at_most_ns); }
 
   /// Also a client that is still joining counts, so that nothing said meanwhile is lost.
@@ -206,25 +206,18 @@ class DdsServerChannel final : public StandbyChannel {
   }
   ChannelCounters counters() const override {
     ChannelCounters counters = counters_;
-    counters.malformed += participant_->refused() + tick_collector_.dropped();
+    counters.malformed += participant_->refused() + leader_.dropped();
     counters.guard_dropped = participant_->dropped();
     counters.trailers_cut = participant_->cut();
     return counters;
   }
 
  private:
-  /// What other servers tell, of the one with the highest term (of equal ones: highest key); says
-  /// whether that one leads instead of us.
+  /// What other servers tell; says whether one of them leads instead of us.
   bool take_told(std::vector<ToldTick>* ticks) {
     bool superseded = false;
     take_all<wire::ServerTick>(told_, [&](const wire::ServerTick& sample, const ClientKey& key) {
-      const std::pair rank(sample.term(), key);
-      if (key == participant_->key() || rank < std::pair(leader_term_, leader_)) return;
-      leader_term_ = sample.term();
-      leader_ = key;
-      superseded |= term_ != 0 && rank > std::pair(term_, participant_->key());
-      if (ticks == nullptr) return;
-      if (auto tick = tick_collector_.add(sample)) ticks->push_back(std::move(*tick));
+      superseded |= leader_.hear(sample, key, {term_, participant_->key()}, ticks);
     });
     return superseded;
   }
@@ -366,11 +359,11 @@ class DdsServerChannel final : public StandbyChannel {
   ServersWatch servers_;
   NewsBell takings_;
   std::unique_ptr<Participant> participant_;
-  std::unique_ptr<Heartbeat> beat_;           ///< after the participant, whose writer it speaks for
-  std::uint64_t term_ = 0, leader_term_ = 0;  ///< own: 0 while another leads
-  std::uint64_t led_until_ms_ = 0;            ///< DdsOptions
-  ClientKey leader_;                          ///< of the highest term that was heard
-  TickCollector tick_collector_;
+  std::unique_ptr<Heartbeat> beat_;  ///< after the participant, whose writer it speaks for
+  std::uint64_t term_ = 0;           ///< 0 while another leads
+  std::uint64_t led_until_ms_ = 0;   ///< DdsOptions
+  LeaderTold leader_;
+  FollowerTold follower_;
   dds::DataWriter *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
                   *pulses_ = nullptr, *ticks_ = nullptr, *taken_ = nullptr;

@@ -145,8 +145,9 @@ class ServersWatch final : public dds::DataReaderListener, public dds::DataWrite
                               const dds::PublicationMatchedStatus& status) override {
     const std::lock_guard lock(mutex_);
     const ClientKey server = key_of(status.last_subscription_handle);
-    if (server == own_) return;
-    followers_ += status.current_count_change;
+    if (server == own_ || status.current_count_change == 0) return;
+    if (status.current_count_change < 0) followers_.erase(server);
+    if (status.current_count_change > 0) followers_.insert(server);
     came_ = came_ || status.current_count_change > 0;
   }
   void know_own(const ClientKey& own) { own_ = own; }
@@ -156,7 +157,11 @@ class ServersWatch final : public dds::DataReaderListener, public dds::DataWrite
   }
   bool has_follower() const {
     const std::lock_guard lock(mutex_);
-    return followers_ > 0;
+    return !followers_.empty();
+  }
+  bool follows(const ClientKey& server) const {
+    const std::lock_guard lock(mutex_);
+    return followers_.contains(server);
   }
   bool take_came() {
     const std::lock_guard lock(mutex_);
@@ -168,9 +173,8 @@ class ServersWatch final : public dds::DataReaderListener, public dds::DataWrite
     return client_key(rtps::iHandle2GUID(handle));
   }
   mutable std::mutex mutex_;
-  std::set<ClientKey> alive_;
+  std::set<ClientKey> alive_, followers_;
   ClientKey own_;
-  int followers_ = 0;
   bool came_ = false;
 };
 

@@ -129,6 +129,9 @@ Json closing_json(const Closing& closing, const TickLoop& loop) {
                          : Json{{"log", closing.restored_from},
                                 {"ticks", closing.restored_ticks},
                                 {"left_out_ticks", closing.restore_left_out_ticks}};
+  json["standby"] = {{"in_step", closing.follower.in_step()},
+                     {"times_behind", closing.follower.times_behind()},
+                     {"most_ticks_behind", closing.follower.longest_ticks()}};
   json["users"] = Json::array();
   const std::vector<UserCounters>& users = loop.inbox().user_counters();
   for (std::size_t i = 0; i < users.size() && i < loop.world().users.size(); ++i) {
@@ -173,6 +176,10 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
   if (!closing.restored_from.empty()) {
     text += fmt::format("\nRestored from {}: {} ticks, {} left out\n", closing.restored_from,
                         closing.restored_ticks, closing.restore_left_out_ticks);
+  }
+  if (closing.follower.times_behind() > 0) {
+    text += fmt::format("\nThe server that stood by fell behind {} times, by {} ticks at most\n",
+                        closing.follower.times_behind(), closing.follower.longest_ticks());
   }
   if (!closing.parts_without_inside.empty()) {
     text += "\nParts without an inside (open or non-manifold: crossing is found, depth is not)\n";

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/io/report_json.h"
+#include "server/backlog.h"
 #include "server/tick_loop.h"
 
 namespace mortise {
@@ -17,6 +18,7 @@ struct Closing {
   std::uint64_t restored_ticks = 0, restore_left_out_ticks = 0;
   std::vector<std::string> parts_without_inside;
   ChannelCounters channel;
+  Backlog follower;  ///< of the server that stood by, if any
 };
 
 Json closing_json(const Closing& closing, const TickLoop& loop);

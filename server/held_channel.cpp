@@ -49,19 +49,33 @@ bool HeldChannel::rest(std::int64_t at_most_ns) {
 }
 
 void HeldChannel::let_go() {
-  const std::uint64_t taken = inner_.taken_up_to();
-  if (taken == kTakenAll) {
-    in_step_ = false;
+  const TakenTicks taken = inner_.taken_up_to();
+  if (taken.received == kTakenAll) {
+    waited_for_ = false;
+    backlog_.forget();
     say_up_to(kTakenAll);
-  } else if (taken != 0) {
-    // Only one that is near is waited for: it may have the ticks of minutes to take first.
-    in_step_ = in_step_ || taken + kNear_ticks >= tick_;
-    say_up_to(taken);
+  } else if (taken.received != 0) {
+    // Only one that is near is waited for: it may have the ticks of seconds to take first.
+    waited_for_ = waited_for_ || taken.received + kNear_ticks >= tick_;
+    note_backlog(taken);
+    say_up_to(taken.received);
   }
   const std::int64_t now_ns = clock_.now_ns();
   const double turn_s = std::min(static_cast<double>(now_ns - turned_ns_) * 1e-9, kTurn_s);
   turned_ns_ = now_ns;
   if (!kept_.empty()) wait_on(turn_s);
+}
+
+void HeldChannel::note_backlog(const TakenTicks& taken) {
+  const std::uint64_t ticks = taken.received - std::min(taken.received, taken.computed);
+  const Backlog::News news = backlog_.now_is(ticks);
+  if (news == Backlog::News::kBehind) {
+    notes_.push_back("the server that stands by has " + std::to_string(ticks) +
+                     " ticks that it has not computed yet: if this one were gone, users would wait "
+                     "for that");
+  } else if (news == Backlog::News::kInStepAgain) {
+    notes_.push_back("the server that stands by is in step again");
+  }
 }
 
 void HeldChannel::wait_on(double turn_s) {
@@ -73,7 +87,7 @@ void HeldChannel::wait_on(double turn_s) {
         "fewer than half of the users have come: they may be with the server of "
         "before, and what is done here may be lost when that one is met again");
   }
-  if (!in_step_) return say_up_to(kTakenAll);
+  if (!waited_for_) return say_up_to(kTakenAll);
   if (waited_s_ < kPatience_s) return;
   const bool heard_by_most = most_users_are_heard();
   if (heard_by_most || waited_s_ >= kPatienceCutOff_s) go_alone(heard_by_most);
@@ -95,7 +109,8 @@ bool HeldChannel::most_users_are_heard() const {
 }
 
 void HeldChannel::go_alone(bool heard_by_most) {
-  in_step_ = false;
+  waited_for_ = false;
+  backlog_.forget();
   // Whoever took over meanwhile, and has most of the users against it, is not to lead when it is
   // met again.
   if (heard_by_most) inner_.lead_anew();
@@ -130,7 +145,7 @@ bool HeldChannel::hand_over(const std::function<bool()>& goes_on) {
   const std::int64_t begun_ns = clock_.now_ns();
   while (static_cast<double>(clock_.now_ns() - begun_ns) * 1e-9 < kHandOver_s) {
     // Not given up as let_go() does: who raises its term now would lead against the other.
-    const std::uint64_t taken = inner_.taken_up_to();
+    const std::uint64_t taken = inner_.taken_up_to().received;
     if (taken != kTakenAll) say_up_to(taken);
     if (inner_.take().superseded) {
       say_up_to(kTakenAll);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/messages/channel.h"
+#include "server/backlog.h"
 #include "server/clock.h"
 #include "server/tick_bytes.h"
 
@@ -39,7 +40,9 @@ class HeldChannel final : public ServerChannel {
   /// All that is kept goes out, after a last moment for the one that stands by.
   void finish();
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
-  bool follower_in_step() const { return in_step_; }
+  /// It has the ticks and has computed them: it could lead at once.
+  bool follower_in_step() const { return waited_for_ && backlog_.in_step(); }
+  const Backlog& follower_backlog() const { return backlog_; }
 
   ServerInput take() override;
   bool rest(std::int64_t at_most_ns) override;
@@ -55,7 +58,7 @@ class HeldChannel final : public ServerChannel {
   void publish_features(const FeatureTable& table) override;
   void publish_pulse(const SessionPulse& pulse) override;
   bool has_readers() const override { return inner_.has_readers(); }
-  bool has_follower() const override { return in_step_ || inner_.has_follower(); }
+  bool has_follower() const override { return waited_for_ || inner_.has_follower(); }
   ChannelCounters counters() const override { return inner_.counters(); }
 
  private:
@@ -67,11 +70,12 @@ class HeldChannel final : public ServerChannel {
     double at_s = 0.0;   ///< of waited_s_
     bool steady = true;  ///< never silent for long
   };
-  bool keeps() const { return in_step_ || !awaited_.empty() || !kept_.empty(); }
+  bool keeps() const { return waited_for_ || !awaited_.empty() || !kept_.empty(); }
   /// Says it, now or later.
   void say(std::function<void()> what);
   /// What the one that stands by has goes out; gives it up when it has been silent for too long.
   void let_go();
+  void note_backlog(const TakenTicks& taken);
   void wait_on(double seconds);
   void note_heard(const ServerInput& input);
   void note_heard(UserId user);
@@ -83,8 +87,9 @@ class HeldChannel final : public ServerChannel {
   Clock& clock_;
   std::function<std::size_t()> users_;
   std::deque<Kept> kept_;
-  std::uint64_t tick_ = 0;  ///< the last that was told
-  bool in_step_ = false;    ///< one that stands by says what it has, and is waited for
+  std::uint64_t tick_ = 0;   ///< the last that was told
+  bool waited_for_ = false;  ///< one that stands by says what it has
+  Backlog backlog_;          ///< of that one
   /// See await(): a client may hold many users, who count like any others.
   std::set<std::pair<ClientKey, std::uint64_t>> awaited_;
   std::size_t awaited_enough_ = 0;  ///< so few may still be missing

@@ -186,6 +186,14 @@ void add_process(Text& out, const SessionFigures& f, std::uint64_t resident) {
           c.guard_dropped);
   out.one("mortise_participants_turned_away_total", "counter",
           "Participants that could not prove who they are, or may not be here", c.turned_away);
+  out.one("mortise_standby_in_step", "gauge", "1: a server stands by that could go on at once",
+          f.follower.in_step() ? 1 : 0);
+  out.one("mortise_standby_ticks_behind", "gauge",
+          "Ticks that it was told and has not computed yet", f.follower.ticks());
+  out.one("mortise_standby_most_ticks_behind", "gauge", "Most that these ever were",
+          f.follower.longest_ticks());
+  out.one("mortise_standby_fell_behind_total", "counter", "How often they became more than 30",
+          f.follower.times_behind());
   out.one("mortise_log_open", "gauge", "1: a session log is written, and the disk takes it",
           f.has_log && !f.log_failed ? 1 : 0);
   out.one("mortise_log_failed", "gauge", "1: the disk refused the log; ticks go unrecorded",
@@ -201,7 +209,7 @@ void add_process(Text& out, const SessionFigures& f, std::uint64_t resident) {
 }  // namespace
 
 SessionFigures figures_of(const TickLoop& loop, const ChannelCounters& channel,
-                          const std::string& session) {
+                          const std::string& session, const Backlog& follower) {
   const World& world = loop.world();
   const TickMetrics& metrics = loop.metrics();
   SessionFigures f;
@@ -237,6 +245,7 @@ SessionFigures figures_of(const TickLoop& loop, const ChannelCounters& channel,
   }
   f.stages = loop.statistics().counters();
   f.channel = channel;
+  f.follower = follower;
   if (const SessionLogWriter* log = loop.log(); log != nullptr) {
     f.has_log = true;
     f.log_failed = !log->status();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/messages/channel.h"
+#include "server/backlog.h"
 #include "server/tick_loop.h"
 
 namespace mortise {
@@ -34,13 +35,14 @@ struct SessionFigures {
   std::array<std::uint64_t, 4> clashes_open{}, clashes_total{};  ///< by CollisionClass
   StepCounters stages;
   ChannelCounters channel;
+  Backlog follower;  ///< of the server that stands by
   bool has_log = false, log_failed = false;
   std::uint64_t log_bytes = 0, log_queued_ticks = 0, log_dropped_ticks = 0;
 };
 
 /// Taken on the tick thread; costs some microseconds.
 SessionFigures figures_of(const TickLoop& loop, const ChannelCounters& channel,
-                          const std::string& session);
+                          const std::string& session, const Backlog& follower = {});
 
 /// The text format of Prometheus, version 0.0.4.
 /// `resident_bytes`: memory of the process, 0 when not known.

@@ -156,9 +156,9 @@ int serve(const ServerOptions& options) {
   if (stands_by) {
     (void)run_before_others();  // said below
     Follower follower(world, (*resumed)->statistics, log->writer.get(), options.threads);
-    spdlog::info("standing by: in step from tick {} on", world.tick);
     auto& line = static_cast<StandbyChannel&>(**channel);
-    auto ended = follow(line, std::move(told), follower, stop);
+    auto ended = follow(line, std::move(told), follower, stop,
+                        [](const std::string& note) { spdlog::info("standing by: {}", note); });
     if (!ended) return say(ended.error());
     if (!*ended) return kExitOk;
     seats = follower.seats();
@@ -221,7 +221,8 @@ int serve(const ServerOptions& options) {
     metrics->beat();
     if (loop.seconds() - shown_at_s < kShowFiguresEvery_s) return;
     shown_at_s = loop.seconds();
-    metrics->show(figures_of(loop, (*channel)->counters(), options.session));
+    metrics->show(
+        figures_of(loop, (*channel)->counters(), options.session, held.follower_backlog()));
   };
   Announcer announcer(options.live, options.quiet);
   Drain drain(loop, held, clock);
@@ -252,6 +253,7 @@ int serve(const ServerOptions& options) {
     held.finish();
   }
   closing.channel = (*channel)->counters();
+  closing.follower = held.follower_backlog();
   const int exit_code = close_session(options, std::move(closing), log->writer.get(), loop);
   return loop.superseded() ? kExitRuntime : exit_code;
 }

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "server/backlog.h"
 #include "server/silence.h"
 
 namespace mortise {
@@ -15,12 +16,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kTurn = std::chrono::milliseconds(1);
+// One that was killed is known to be gone within 2 s.
+constexpr auto kAnotherMayBeGone = std::chrono::seconds(5);
 // A log is flushed each second; the disk may take its time.
 constexpr auto kLogIsWritten = std::chrono::milliseconds(2500);
 
 void hear(StandbyChannel& channel, std::deque<ToldTick>& told) {
   for (ToldTick& tick : channel.follow()) told.push_back(std::move(tick));
 }
+
+std::int64_t now_ns() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
 
 double process_cpu_s() {
   timespec used{};
@@ -44,15 +49,33 @@ class Turns {
   double cpu_s_ = process_cpu_s();
 };
 
-void hear_and_confirm(StandbyChannel& channel, std::deque<ToldTick>& told, Silence& silence) {
-  const std::size_t before = told.size();
-  hear(channel, told);
-  if (told.size() == before) return;
-  silence.heard();
-  channel.confirm(told.back().tick);
+std::string text_of(Backlog::News news, std::uint64_t backlog, std::uint64_t tick) {
+  switch (news) {
+    case Backlog::News::kInStep:
+      return "in step from tick " + std::to_string(tick) + " on";
+    case Backlog::News::kInStepAgain:
+      return "in step again from tick " + std::to_string(tick) + " on";
+    case Backlog::News::kBehind:
+      return std::to_string(backlog) +
+             " ticks of the one that leads are not computed yet: a take-over would wait for them";
+    case Backlog::News::kNone:
+      break;
+  }
+  return {};
 }
 
 }  // namespace
+
+Follower::Follower(World& world, SessionStatistics& statistics, SessionLogWriter* log, int threads,
+                   const CheckpointTimes& checkpoints)
+    : world_(world),
+      statistics_(statistics),
+      log_(log),
+      recorder_(world, log, checkpoints),
+      scratch_(threads) {
+  statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
+  recorder_.open(now_ns());
+}
 
 Status Follower::take(const ToldTick& told) {
   FollowedTick tick;
@@ -82,19 +105,21 @@ Status Follower::take(const ToldTick& told) {
                                    " this engine computes something else than the one that leads");
 }
 
-void Follower::step_once(const FollowedTick& tick) {
+void Follower::step_once(FollowedTick& tick) {
   for (const Decision& decision : tick.decisions) apply_decision(world_, decision);
-  TickRecord record;
-  record.report = step(world_, tick.increments, scratch_);
-  state_hash_ = record.report.state_hash;
+  const std::int64_t begun_ns = now_ns();
+  StepReport report = step(world_, tick.increments, scratch_);
+  state_hash_ = report.state_hash;
   statistics_.forget_users(tick.decisions);
-  statistics_.add(record.report);
+  statistics_.add(report);
   if (log_ == nullptr) return;
-  record.tick = record.report.tick;
-  record.time_ns = tick.time_ns;
-  record.decisions = tick.decisions;
-  record.increments = tick.increments;
-  log_->record(std::move(record));
+  const std::int64_t stepped_ns = now_ns();
+  recorder_.begin({.tick = report.tick,
+                   .wall_ns = tick.time_ns,
+                   .now_ns = stepped_ns,
+                   .step_ns = stepped_ns - begun_ns,
+                   .changed = !tick.decisions.empty() || !tick.increments.empty()});
+  recorder_.hand_over(tick.decisions, tick.increments, report);
 }
 
 bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
@@ -110,22 +135,44 @@ bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
 }
 
 Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower& follower,
-                    const std::function<bool()>& stop) {
+                    const std::function<bool()>& stop,
+                    const std::function<void(const std::string&)>& note) {
   Silence silence;
   Turns turns;
-  if (!told.empty()) channel.confirm(told.back().tick);
-  while (!stop()) {
+  Backlog backlog;
+  Clock::time_point counts = Clock::now();
+  for (std::size_t confirmed = 0; !stop();) {
     // Asked first: what it told before it was gone is here by then.
     const bool is_gone = !channel.leader_present();
-    for (hear_and_confirm(channel, told, silence); !told.empty(); told.pop_front()) {
-      if (Status taken = follower.take(told.front()); !taken) return taken.error();
-      hear_and_confirm(channel, told, silence);
+    hear(channel, told);
+    const bool another = channel.another_stands_by();
+    if (!another) counts = Clock::now();
+    if (told.size() > confirmed) {
+      silence.heard();
+      if (!another) channel.confirm({told.back().tick, follower.last_tick()});
     }
-    if (follower.handed_over() || (is_gone && silence.is_believed())) return true;
+    if (told.size() > kMostUntaken_ticks) {
+      return fail(Code::kRuntime, std::to_string(told.size()) +
+                                      " ticks of the one that leads are not computed yet: this "
+                                      "host is too slow to stand by");
+    }
+    if (!told.empty()) {
+      if (Status taken = follower.take(told.front()); !taken) return taken.error();
+      told.pop_front();
+    }
+    confirmed = told.size();
+    const Backlog::News news = backlog.now_is(told.size());
+    if (news != Backlog::News::kNone) note(text_of(news, told.size(), follower.last_tick()));
+    const bool takes_over =
+        told.empty() && (follower.handed_over() || (is_gone && silence.is_believed()));
+    if (another && (takes_over || Clock::now() - counts > kAnotherMayBeGone))
+      return fail(Code::kRuntime,
+                  "another server stands by for this session, and one is enough: this one ends");
+    if (takes_over) return true;
     turns.end(silence);
-    std::this_thread::sleep_for(kTurn);
+    if (told.empty()) std::this_thread::sleep_for(kTurn);
   }
-  channel.confirm(kTakenAll);
+  if (!channel.another_stands_by()) channel.confirm({kTakenAll, follower.last_tick()});
   return false;
 }
 

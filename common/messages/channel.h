@@ -79,6 +79,13 @@ struct ToldTick {
   std::uint64_t tick = 0;
   std::vector<std::byte> bytes;
 };
+/// How far one that stands by has the ticks that it was told.
+struct TakenTicks {
+  std::uint64_t received = 0;  ///< all up to here are with it; 0: it has said nothing
+  std::uint64_t computed = 0;  ///< and up to here computed; the rest comes before it could lead
+};
+/// Of `received`: it goes, and needs nothing more.
+inline constexpr std::uint64_t kTakenAll = ~std::uint64_t{0};
 
 /// What the transport dropped at the door, by reason; never silent.
 struct ChannelCounters {
@@ -152,9 +159,8 @@ class ServerChannel {
   /// the tick acknowledges is published.
   virtual bool has_follower() const { return false; }
   virtual void publish_tick(const ToldTick&) {}
-  /// Up to here the one that stands by has said, since the last call, to have the ticks; 0: it has
-  /// said nothing. kTakenAll: it goes, and needs nothing more.
-  virtual std::uint64_t taken_up_to() { return 0; }
+  /// What the one that stands by has said since the last call.
+  virtual TakenTicks taken_up_to() { return {}; }
   /// Returns when it has said something since the last call, or after so long.
   virtual void await_taken(std::int64_t /*at_most_ns*/) {}
   /// The one that stood by may have taken over elsewhere: from now on this one is the later leader.
@@ -165,18 +171,19 @@ class ServerChannel {
   /// Does what is due between two ticks, for at most so long; false: nothing is due.
   virtual bool rest(std::int64_t /*at_most_ns*/) { return false; }
 };
-inline constexpr std::uint64_t kTakenAll = ~std::uint64_t{0};
 
 /// The end of a server that stands by: it hears what the one that leads tells of its ticks. Once it
 /// has taken over it is the end of a server like any other; before, it publishes nothing.
 class StandbyChannel : public ServerChannel {
  public:
   virtual std::vector<ToldTick> follow() = 0;
-  /// Tells the one that leads that all up to this tick is here; it waits for that before it lets
-  /// clients know.
-  virtual void confirm(std::uint64_t tick) = 0;
+  /// Tells the one that leads what is here; it waits for what is received before it lets clients
+  /// know.
+  virtual void confirm(const TakenTicks& taken) = 0;
   /// Is the one that leads alive? Known within 0.15 s.
   virtual bool leader_present() const = 0;
+  /// Does the one that leads count on another one that stands by? Only that one may take over.
+  virtual bool another_stands_by() const = 0;
   virtual Status take_over() = 0;
 };
 

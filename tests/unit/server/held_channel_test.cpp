@@ -20,7 +20,7 @@ struct StillClock final : Clock {
 struct Wire final : ServerChannel {
   StillClock* clock = nullptr;
   std::vector<std::uint64_t> said;  ///< ticks of pose batches
-  std::uint64_t taken = 0, told = 0;
+  std::uint64_t taken = 0, told = 0, not_computed = 0;
   int led_anew = 0;
   ServerInput input;
   std::int64_t superseded_after_ns = 0;  ///< 0: never
@@ -44,7 +44,10 @@ struct Wire final : ServerChannel {
   ChannelCounters counters() const override { return {}; }
   bool has_follower() const override { return clock->at_ns < follower_goes_ns; }
   void publish_tick(const ToldTick& tick) override { told = tick.tick; }
-  std::uint64_t taken_up_to() override { return std::exchange(taken, 0); }
+  TakenTicks taken_up_to() override {
+    const std::uint64_t received = std::exchange(taken, 0);
+    return {received, received - std::min(received, not_computed)};
+  }
   void await_taken(std::int64_t at_most_ns) override { clock->at_ns += at_most_ns; }
   void lead_anew() override { ++led_anew; }
 };
@@ -104,6 +107,36 @@ TEST_F(Held, KeepsWhatTheSecondHasNot) {
   EXPECT_EQ(wire_.said, (Ticks{1, 2}));
   taken(3);
   EXPECT_EQ(wire_.said, (Ticks{1, 2, 3}));
+}
+
+/// What it has received is safe there, and clients may know of it; it is not in step all the same.
+TEST_F(Held, OneThatComputesLateIsSaidAndCountedAndKeepsNobodyWaiting) {
+  tick(1);
+  wire_.not_computed = 200;
+  taken(1);
+  EXPECT_TRUE(held_.follower_in_step()) << "one tick";
+  for (std::uint64_t t = 2; t <= 100; ++t) tick(t);
+  taken(100);
+  EXPECT_EQ(wire_.said.back(), 100u);
+  EXPECT_FALSE(held_.follower_in_step());
+  EXPECT_EQ(held_.take_notes(),
+            std::vector<std::string>{"the server that stands by has 100 ticks that it has not "
+                                     "computed yet: if this one were gone, users would wait for "
+                                     "that"});
+  tick(101);
+  EXPECT_EQ(wire_.said.back(), 100u) << "and is waited for";
+  wire_.not_computed = 20;
+  taken(101);
+  EXPECT_FALSE(held_.follower_in_step());
+  EXPECT_TRUE(held_.take_notes().empty());
+  tick(102);
+  wire_.not_computed = 1;
+  taken(102);
+  EXPECT_TRUE(held_.follower_in_step());
+  EXPECT_EQ(held_.take_notes(),
+            std::vector<std::string>{"the server that stands by is in step again"});
+  EXPECT_EQ(held_.follower_backlog().times_behind(), 1u);
+  EXPECT_EQ(held_.follower_backlog().longest_ticks(), 100u);
 }
 
 TEST_F(Held, NothingIsSaidOfWhatWasKeptWhenAnotherLeads) {

@@ -76,7 +76,10 @@ TEST(MetricsText, TellsWhatTheSessionKnows) {
   ben->send(batch_of(move(b, 1, 1), 0));    // not the holder
   loop.tick();
 
-  const Exposition told = read(metrics_text(figures_of(loop, channel->counters(), "a\nb"), 4096));
+  Backlog follower;
+  for (const std::uint64_t behind : {1, 40, 12}) (void)follower.now_is(behind);
+  const Exposition told =
+      read(metrics_text(figures_of(loop, channel->counters(), "a\nb", follower), 4096));
   const std::string whole = metrics_text(figures_of(loop, channel->counters(), "a"), 4096);
   const std::map<std::string, std::string> expected = {
       {"mortise_session_info{session=\"a\\nb\",policy=\"report\"}", "1"},
@@ -95,6 +98,10 @@ TEST(MetricsText, TellsWhatTheSessionKnows) {
       {"mortise_user_commands_refused_total{user=\"ben\"}", "1"},
       {"mortise_clashes_open{class=\"real\"}", "1"},
       {"mortise_clashes_total{class=\"real\"}", "1"},
+      {"mortise_standby_in_step", "0"},
+      {"mortise_standby_ticks_behind", "12"},
+      {"mortise_standby_most_ticks_behind", "40"},
+      {"mortise_standby_fell_behind_total", "1"},
       {"mortise_log_open", "0"},
       {"process_resident_memory_bytes", "4096"},
   };
