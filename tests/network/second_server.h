@@ -70,17 +70,22 @@ class SecondServer : public ::testing::Test {
   /// anna presses red into the base and holds it there; ben's hand moves blue at 60 Hz; otto looks
   /// on.
   void come_in(int domain) {
+    join(domain, "blue");
+    if (HasFatalFailure()) return;
+    ASSERT_TRUE(anna_->grab("red"));
+    anna_->client->send(anna_->user, anna_->client->find_part("red"), {1, 0, -12});
+    ASSERT_TRUE(anna_->until(3, [&] { return !anna_->client->open_clashes().empty(); }));
+  }
+  /// All three; ben takes this part, which is called blue.
+  void join(int domain, const char* bens_part) {
     anna_ = std::make_unique<Guest>(domain, "anna");
     ben_ = std::make_unique<Guest>(domain, "ben");
     otto_ = std::make_unique<Guest>(domain, "otto", "observer");
     ASSERT_TRUE(anna_->joined());
     ASSERT_TRUE(ben_->joined());
     ASSERT_TRUE(otto_->joined());
-    ASSERT_TRUE(anna_->grab("red"));
-    ASSERT_TRUE(ben_->grab("blue"));
-    anna_->client->send(anna_->user, anna_->client->find_part("red"), {1, 0, -12});
-    ASSERT_TRUE(anna_->until(3, [&] { return !anna_->client->open_clashes().empty(); }));
-    blue_ = ben_->client->find_part("blue");
+    ASSERT_TRUE(ben_->grab(bens_part));
+    blue_ = ben_->client->find_part(bens_part);
   }
   /// One that leads, its users, and one that stands by.
   std::pair<std::unique_ptr<Program>, std::unique_ptr<Program>> both(int domain) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -46,11 +47,13 @@ struct Site {
 
 /// One participant and all that it was told.
 struct Person {
+  /// What stands between a client and its channel.
+  using Through = std::function<std::unique_ptr<ClientChannel>(std::unique_ptr<ClientChannel>)>;
   void enter(const DdsOptions& options, const std::string& name,
-             const std::string& role = "designer") {
+             const std::string& role = "designer", const Through& through = {}) {
     auto opened = open_client_channel(options);
     ASSERT_TRUE(opened) << opened.error().text;
-    channel = std::move(*opened);
+    channel = through ? through(std::move(*opened)) : std::move(*opened);
     client = std::make_unique<Client>(*channel);
     client->add_user(name, role);
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
@@ -95,6 +96,33 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
       "take-over as every client sees it, %d kills: %.0f ms at least, %.0f median, %.0f most\n",
       kills, gaps_s.front() * 1e3, gaps_s[gaps_s.size() / 2] * 1e3, gaps_s.back() * 1e3);
   RecordProperty("longest_take_over_ms", std::to_string(gaps_s.back() * 1e3));
+}
+
+/// Ticks that take long: what is told and not computed yet is computed before the second leads.
+TEST_F(Standby, TakesOverUnderHandsThatPushTheGearbox) {
+  const auto scenario = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios" / "gearbox.yaml";
+  const std::unique_ptr<Program> first = start(204, {scenario.string(), "--log", logs()});
+  join(204, "screw_4");
+  ASSERT_FALSE(HasFailure()) << first->errors();
+  const Program bots(folder_.path(), "mortise-bot",
+                     {"--domain", "204", "--wait", "20", "--users", "6", "--behaviour", "mixed",
+                      "--duration", "60"});
+  const std::unique_ptr<Program> second = stand_by(204);
+  ASSERT_FALSE(HasFailure());
+  moves_ = true;
+  turn(4.0);
+  const std::size_t acknowledged = acknowledged_.size();
+  const double gap_s = longest_gap_after([&] { first->signal(SIGKILL); });
+  std::printf("take-over under six who push the gearbox: %.0f ms\n", gap_s * 1e3);
+  EXPECT_LT(gap_s, kComesBack_s);
+  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_EQ(ben_->holder("screw_4"), ben_->client->user_id(0));
+  EXPECT_GT(acknowledged, 60u);
+  EXPECT_GT(acknowledged_.size(), acknowledged + 30);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+  const auto closing = nlohmann::json::parse(second->out(), nullptr, false);
+  ASSERT_TRUE(closing.is_object()) << second->out();
+  EXPECT_FALSE(closing["standby"]["in_step"]) << "nobody stands by any more";
 }
 
 /// What holds take-overs to their time sees it where nothing comes back.
