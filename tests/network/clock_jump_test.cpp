@@ -89,5 +89,32 @@ TEST_F(ClockJump, AnHourOnAndAnHourBack) {
   expect_in_log(known, first_log(), {anna_.get(), ben_.get()});
 }
 
+/// Its own clock shows an hour less than the ticks that it followed.
+TEST_F(ClockJump, OneThatTakesOverGoesOnLaterThanTheOneThatLed) {
+  auto [first, second] = both(kDomain - 1);
+  ASSERT_FALSE(HasFailure());
+  step(kHour_s);
+  step(-kHour_s);
+  (void)longest_gap_after([&] { first->signal(SIGKILL); });
+  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_NE(second->errors().find("s behind the last tick"), std::string::npos) << second->errors();
+  drag(0.7);
+  expect_same(*anna_, *ben_);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0U) << "of " << acknowledged_.size();
+  std::vector<std::int64_t> times_ns;
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(logs())) files.insert(entry.path());
+  ASSERT_EQ(files.size(), 2U);
+  for (const auto& file : files) {
+    const auto log = read_session_log(file);
+    ASSERT_TRUE(log) << log.error().text;
+    for (const TickRecord& tick : log->ticks) times_ns.push_back(tick.time_ns);
+    EXPECT_TRUE(std::is_sorted(times_ns.end() - static_cast<std::ptrdiff_t>(log->ticks.size()),
+                               times_ns.end()))
+        << file;
+  }
+  EXPECT_GT(times_ns.back() - times_ns.front(), kHour_s * 1'000'000'000);
+}
+
 }  // namespace
 }  // namespace mortise::test

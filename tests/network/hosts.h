@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -12,6 +13,8 @@
 #include <set>
 #include <span>
 
+#include "client/bot/behaviour.h"
+#include "common/io/play_file.h"
 #include "common/io/replay.h"
 #include "common/io/session_log.h"
 #include "server/drain.h"
@@ -43,14 +46,18 @@ inline std::string wall_yaml() {
   return yaml;
 }
 
-/// One designer at 60 Hz, pushing a cube into the wall and pulling it out again; in a thread of the
-/// namespace it is in.
+/// One designer at 60 Hz, pushing a cube into the wall and pulling it out again, or acting as a
+/// play says; in a thread of the namespace it is in.
 struct Hand {
   Person person;
+  UserId user;
   PartId part;
+  std::unique_ptr<Behaviour> script;  ///< null: cube and wall
+  double begun_s = 0.0;               ///< that acting
   double x_mm = 0.0;
   std::uint64_t beats = 0;
   int changes = 0;  ///< of servers
+  std::atomic<bool> is_done{false};
   const Overheard* heard = nullptr;
   std::set<std::uint64_t> sent, acknowledged;
 };
@@ -115,7 +122,7 @@ class Hosts : public ::testing::Test {
   }
   void serve() {
     ServerOptions o;
-    o.scenario = folder_.write("wall.yaml", wall_yaml());
+    o.scenario = scenario_.empty() ? folder_.write("wall.yaml", wall_yaml()) : scenario_;
     o.log = logs_;
     o.domain = kDomain;
     auto start = read_start(o);
@@ -135,7 +142,7 @@ class Hosts : public ::testing::Test {
              [&] {
                const std::lock_guard lock(mutex_);
                for (const Increment& increment : loop.last_intake().increments) {
-                 const auto at = sent_s_.find({increment.part, increment.seq});
+                 const auto at = sent_s_.find({increment.user, increment.seq});
                  if (at != sent_s_.end()) applied_s_.push_back(now_s() - at->second);
                }
              });
@@ -175,11 +182,13 @@ class Hosts : public ::testing::Test {
       return note("not in");
     for (std::size_t i = first; i < last; ++i) {
       Client& client = *hands_[i].person.client;
+      hands_[i].user = client.user_id(0);
+      if (hands_[i].script) continue;
       hands_[i].part = client.find_part("cube" + std::to_string(i));
       client.grab(0, hands_[i].part);
     }
     const auto holds = [](const Hand& h) {
-      return h.person.client->parts().at(h.part).info.holder == h.person.client->user_id(0);
+      return h.script || h.person.client->parts().at(h.part).info.holder == h.user;
     };
     if (!until(
             10, [&] { return each(holds); }, listen))
@@ -189,22 +198,43 @@ class Hosts : public ::testing::Test {
       until(
           1.0, [&] { return now_s() >= next_s; }, listen);
       if (moves_)
-        for (std::size_t i = first; i < last; ++i) move(hands_[i]);
+        for (std::size_t i = first; i < last; ++i)
+          hands_[i].script ? act(hands_[i]) : push(hands_[i]);
     }
     until(
         2.0, [] { return false; }, listen);  // the last acknowledgements
   }
-  void move(Hand& hand) {
+  void push(Hand& hand) {
     const double x_mm =
         -14.0 * 0.5 * (1.0 - std::cos(2.0 * kPi * static_cast<double>(++hand.beats) / 90.0));
+    if (move(hand, hand.part, Vec3(x_mm - hand.x_mm, 0, 0), Vec3::Zero())) hand.x_mm = x_mm;
+  }
+  void act(Hand& hand) {
+    Client& client = *hand.person.client;
+    if (!client.user_id(0)) return;  // on the way to another server
+    if (hand.beats++ == 0) hand.begun_s = now_s();
+    View view;
+    view.time_s = now_s() - hand.begun_s;
+    view.beat_s = kBeat_s;
+    view.self = client.user_id(0);
+    view.parts = &client.parts();
+    const Wish wish = hand.script->beat(view);
+    if (wish.grab) client.grab(0, wish.grab);
+    if (wish.move && !(wish.translation_mm.isZero(0.0) && wish.rotation_rad.isZero(0.0)))
+      move(hand, wish.move, wish.translation_mm, wish.rotation_rad);
+    if (wish.release) client.release(0, wish.release);
+    hand.is_done = wish.done;
+  }
+  /// False where it is not joined just now.
+  bool move(Hand& hand, PartId part, const Vec3& by_mm, const Vec3& by_rad) {
     const std::lock_guard lock(mutex_);
     const double now = now_s();
-    const std::uint64_t seq = hand.person.client->send(0, hand.part, Vec3(x_mm - hand.x_mm, 0, 0));
-    if (seq == 0) return;  // not joined just now
-    hand.x_mm = x_mm;
+    const std::uint64_t seq = hand.person.client->send(0, part, by_mm, by_rad);
+    if (seq == 0) return false;
     hand.sent.insert(seq);
-    sent_s_[{hand.part, seq}] = now;
+    sent_s_[{hand.user, seq}] = now;
     ++moved_;
+    return true;
   }
   static void turn(Hand& hand) {
     const ClientUpdate update = hand.person.client->poll();
@@ -274,13 +304,16 @@ class Hosts : public ::testing::Test {
     if (!log) return ~std::size_t{0};
     const auto verified = verify(*log, 1);
     EXPECT_TRUE(verified && !verified->difference) << file;
+    return lost_in(*log, hands);
+  }
+  static std::size_t lost_in(const SessionLog& log, std::span<const Hand> hands) {
     std::size_t all = 0;
     for (const Hand& hand : hands) {
       std::set<std::uint64_t> missing = hand.acknowledged;
       EXPECT_GT(missing.size(), 60u);
-      for (const TickRecord& tick : log->ticks)
+      for (const TickRecord& tick : log.ticks)
         for (const Increment& increment : tick.increments)
-          if (increment.part == hand.part) missing.erase(increment.seq);
+          if (increment.user == hand.user) missing.erase(increment.seq);
       all += missing.size();
     }
     return all;
@@ -289,6 +322,7 @@ class Hosts : public ::testing::Test {
   TestFolder folder_;
   std::unique_ptr<LossyLink> link_;
   std::unique_ptr<KeyRing> keys_;
+  std::string scenario_;  ///< empty: cubes and a wall
   std::string logs_, first_log_, drained_;
   std::unique_ptr<Program> standby_;
   std::thread server_;
@@ -297,7 +331,7 @@ class Hosts : public ::testing::Test {
   Person otto_;
   mutable std::mutex mutex_;
   std::string fault_;
-  std::map<std::pair<PartId, std::uint64_t>, double> sent_s_;
+  std::map<std::pair<UserId, std::uint64_t>, double> sent_s_;
   std::vector<double> applied_s_;
   std::uint64_t moved_ = 0;
   std::atomic<bool> serving_{false}, superseded_{false}, stop_server_{false}, stop_hands_{false},

@@ -125,6 +125,47 @@ TEST_F(Standby, TakesOverUnderHandsThatPushTheGearbox) {
   EXPECT_FALSE(closing["standby"]["in_step"]) << "nobody stands by any more";
 }
 
+/// The gearbox half put together, as its play has it: clearance, transition, and a screw in a wall.
+TEST_F(Standby, TheGearboxHasTheSameClashesAfterAsBefore) {
+  const auto scenario = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios" / "gearbox.yaml";
+  const std::string play = folder_.write("half.play.yaml", R"(
+acts:
+  - {user: ann, part: input_shaft, release: false,
+     steps: [{by: [0, 110, 0], seconds: 0.6}, {by: [0, 0, -80], seconds: 1}]}
+  - {user: bob, part: output_shaft,
+     steps: [{by: [0, 110, 0], seconds: 0.6}, {by: [0, 0, -80], seconds: 1}]}
+  - {user: bob, part: gear_out, release: false,
+     steps: [{by: [0, -160, 0], seconds: 0.8}, {by: [0, 0, -82.9], seconds: 1.2}]}
+  - {user: dee, part: screw_1, release: false,
+     steps: [{by: [0, 0, -90], seconds: 0.8}, {by: [0, 90, 0], seconds: 1}]}
+)");
+  const std::unique_ptr<Program> first = start(221, {scenario.string(), "--log", logs()});
+  join(221, "screw_4");
+  ASSERT_FALSE(HasFailure()) << first->errors();
+  const Program bots(folder_.path(), "mortise-bot",
+                     {"--domain", "221", "--wait", "20", "--names", "ann,bob,dee", "--behaviour",
+                      "script", "--play", play, "--linger", "60"});
+  const std::unique_ptr<Program> second = stand_by(221);
+  ASSERT_FALSE(HasFailure());
+  const auto all_classes = [&] {
+    std::set<CollisionClass> classes;
+    for (const auto& [id, collision_class] : clashes(*otto_)) classes.insert(collision_class);
+    return classes ==
+           std::set{CollisionClass::kFake, CollisionClass::kPotential, CollisionClass::kReal};
+  };
+  for (const double end_s = steady_s() + 30.0; steady_s() < end_s && !all_classes();) turn(0.01);
+  ASSERT_TRUE(all_classes()) << first->errors();
+  turn(2.0);  // the last of them go in
+  const auto before = clashes(*otto_);
+  EXPECT_GE(before.size(), 4u);
+  const double gap_s = longest_gap_after([&] { first->signal(SIGKILL); });
+  std::printf("take-over of the gearbox with %zu clashes: %.0f ms\n", before.size(), gap_s * 1e3);
+  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  for (const Guest* guest : {anna_.get(), ben_.get(), otto_.get()})
+    EXPECT_EQ(clashes(*guest), before);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
 /// What holds take-overs to their time sees it where nothing comes back.
 TEST_F(Standby, WhereNobodyTakesOverTheGapIsAllTheTimeThatIsWatched) {
   const std::unique_ptr<Program> alone = lead(209);
