@@ -1,4 +1,5 @@
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,11 @@ class DdsClientChannel final : public ClientChannel {
  public:
   Status open(const DdsOptions& options) {
     watch_.look_for(options.session);
+    if (!options.keys.empty()) {
+      const KeyFiles files(options.keys);
+      identities_ = std::make_unique<PeerIdentities>(files.authority, files.revocations);
+      watch_.know(identities_.get());
+    }
     auto participant = Participant::open(options, Participant::Side::kClient, &watch_);
     if (!participant) return participant.error();
     participant_ = std::move(participant.value());
@@ -295,7 +301,8 @@ class DdsClientChannel final : public ClientChannel {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
   }
 
-  ServerWatch watch_;  // before the participant, whose threads call it
+  std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
+  ServerWatch watch_;                           // before the participant, whose threads call it
   std::unique_ptr<Participant> participant_;
   ClientKey key_;
   dds::DataReader *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,

@@ -66,6 +66,11 @@ class DdsServerChannel final : public StandbyChannel {
     participant_->change_term(*answers_, term_);
   }
   std::uint64_t term_ms() const override { return term_; }
+  std::string barred() const override {
+    if (!identities_ || !identities_->is_revoked(*participant_->identity())) return {};
+    return "the certificate of '" + participant_->identity()->name +
+           "' (server) has been revoked: this server ends; issue a new one with mortise keys";
+  }
   void confirm(const TakenTicks& taken) override {
     wire::ServerTaken sample;
     sample.tick(taken.received);

@@ -31,16 +31,12 @@ class Doorman final : public dds::DomainParticipantListener {
       const std::lock_guard lock(mutex_);
       unproven_.erase(client);
     } else if (identities_) {
-      const auto told = [&](const char* name) {
-        const std::string* value =
-            rtps::DataHolderHelper::find_property_value(info.info.identity_token_, name);
-        return value != nullptr ? *value : std::string();
-      };
-      const std::string subject = told("dds.cert.sn");
+      const std::string subject = announced(info, "dds.cert.sn");
       if (!subject.empty()) identities_->met(client, subject);
       const std::lock_guard lock(mutex_);
-      unproven_.emplace(
-          client, Unproven{Time::clock::now(), identities_->why_not(subject, told("dds.ca.sn"))});
+      unproven_.emplace(client,
+                        Unproven{Time::clock::now(),
+                                 identities_->why_not(subject, announced(info, "dds.ca.sn"))});
     }
   }
   void onParticipantAuthentication(dds::DomainParticipant*,

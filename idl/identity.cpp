@@ -259,6 +259,11 @@ bool PeerIdentities::is_revoked(const ClientKey& client) const {
   return found != known_.end() && revoked_.contains(found->second.identity.serial);
 }
 
+bool PeerIdentities::is_revoked(const Identity& identity) const {
+  const std::lock_guard lock(mutex_);
+  return revoked_.contains(identity.serial);
+}
+
 std::vector<ClientKey> PeerIdentities::newly_revoked() {
   const auto now = std::chrono::steady_clock::now();
   if (now - looked_at_ >= std::chrono::seconds(1)) {

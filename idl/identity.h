@@ -50,6 +50,7 @@ class PeerIdentities {
   /// Also of one that came after its certificate was revoked: the list that the transport read when
   /// it began lets it in.
   bool is_revoked(const ClientKey& client) const;
+  bool is_revoked(const Identity& identity) const;  ///< one's own, say
   /// Clients that are found to be revoked, or have come being so, since the last call. Looks at the
   /// file once a second; a list that is not the authority's changes nothing.
   std::vector<ClientKey> newly_revoked();

@@ -258,6 +258,13 @@ bool matched(dds::DataWriter* writer) {
          status.current_count > 0;
 }
 
+std::string announced(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& participant,
+                      const char* property) {
+  const std::string* value = eprosima::fastrtps::rtps::DataHolderHelper::find_property_value(
+      participant.info.identity_token_, property);
+  return value != nullptr ? *value : std::string();
+}
+
 ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
   constexpr char kDigits[] = "0123456789abcdef";
   ClientKey key;

@@ -48,6 +48,11 @@ std::uint64_t told_term(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& wri
 /// Of the program that wrote it, told behind the term; empty: one of before told none.
 std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
 
+/// What a participant announces of its certificate: "dds.cert.sn", its subject, or "dds.ca.sn",
+/// that of its authority; empty: it has none. Proven by nothing yet.
+std::string announced(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& participant,
+                      const char* property);
+
 /// One DDS participant in one session: transport, discovery and endpoints after the topic table.
 /// Every creation is checked; each failure is one line.
 class Participant {

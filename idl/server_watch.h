@@ -21,12 +21,22 @@ class ServerWatch final : public dds::DomainParticipantListener {
  public:
   /// Before any thread of Fast DDS calls.
   void look_for(const std::string& session) { session_ = session; }
+  /// The same; whoever is revoked leads nobody here, however high its term.
+  void know(PeerIdentities* identities) { identities_ = identities; }
+  void on_participant_discovery(dds::DomainParticipant*,
+                                rtps::ParticipantDiscoveryInfo&& info) override {
+    if (identities_ == nullptr ||
+        info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT)
+      return;
+    const std::string subject = announced(info, "dds.cert.sn");
+    if (!subject.empty()) identities_->met(client_key(info.info.m_guid), subject);
+  }
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
     const std::lock_guard lock(mutex_);
     const std::uint64_t term = told_term(info, session_);
     if (term == 0) return;
     servers_[info.info.guid().guidPrefix].term = term;
-    highest_term_ = std::max(highest_term_, term);
+    look_who_is_revoked();
     choose();
   }
   void on_subscription_matched(dds::DataReader*,
@@ -47,7 +57,12 @@ class ServerWatch final : public dds::DomainParticipantListener {
     bool present = false;  ///< and hears us, on so many topics
   };
   Answer take(int topics) {
+    const bool news = identities_ != nullptr && !identities_->newly_revoked().empty();
     const std::lock_guard lock(mutex_);
+    if (news) {
+      look_who_is_revoked();
+      choose();
+    }
     const auto leader = servers_.find(leader_);
     const bool present = led_ && leader != servers_.end() && leader->second.readers >= topics;
     for (auto& [prefix, server] : servers_) server.gone = server.met > 0 && !server.answers;
@@ -58,23 +73,33 @@ class ServerWatch final : public dds::DomainParticipantListener {
   bool is_past(const rtps::GuidPrefix_t& server) const {
     const std::lock_guard lock(mutex_);
     const auto found = servers_.find(server);
-    return found != servers_.end() && (found->second.gone || found->second.term < highest_term_);
+    return found != servers_.end() &&
+           (found->second.gone || found->second.revoked || found->second.term < highest_term_);
   }
 
  private:
   struct Server {
     std::uint64_t term = 0, met = 0;
-    bool answers = false, gone = false;
+    bool answers = false, gone = false, revoked = false;
     int readers = 0;
   };
   static rtps::GuidPrefix_t prefix_of(const rtps::InstanceHandle_t& handle) {
     return rtps::iHandle2GUID(handle).guidPrefix;
   }
+  void look_who_is_revoked() {
+    highest_term_ = 0;
+    for (auto& [prefix, server] : servers_) {
+      server.revoked =
+          identities_ != nullptr &&
+          identities_->is_revoked(client_key({prefix, rtps::c_EntityId_RTPSParticipant}));
+      if (!server.revoked) highest_term_ = std::max(highest_term_, server.term);
+    }
+  }
   void choose() {
     const Server* best = nullptr;
     rtps::GuidPrefix_t leader;
     for (const auto& [prefix, server] : servers_) {
-      if (!server.answers || server.term < highest_term_) continue;
+      if (!server.answers || server.revoked || server.term < highest_term_) continue;
       if (best != nullptr && server.met < best->met) continue;
       best = &server;
       leader = prefix;
@@ -87,6 +112,7 @@ class ServerWatch final : public dds::DomainParticipantListener {
   }
 
   std::string session_;
+  PeerIdentities* identities_ = nullptr;  ///< null: no security
   mutable std::mutex mutex_;
   std::map<rtps::GuidPrefix_t, Server> servers_;
   std::uint64_t highest_term_ = 0, met_ = 0;

@@ -228,7 +228,8 @@ int serve(const ServerOptions& options) {
   Drain drain(loop, held, clock);
   loop.run(
       [&] {
-        return stop_asked || loop.superseded() || (drain_asked && drain.is_ready()) ||
+        return stop_asked || loop.superseded() || !(*channel)->barred().empty() ||
+               (drain_asked && drain.is_ready()) ||
                (options.duration_s > 0.0 && loop.seconds() >= options.duration_s);
       },
       [&] {
@@ -237,7 +238,12 @@ int serve(const ServerOptions& options) {
         show_figures();
       });
   announcer.finish();
-  if (drain.begun() && !stop_asked && !loop.superseded()) {
+  const bool barred = !(*channel)->barred().empty();
+  const auto say_goodbye = [&] {
+    loop.close();
+    held.finish();
+  };
+  if (drain.begun() && !stop_asked && !loop.superseded() && !barred) {
     drain.finish([&] {
       if (metrics) metrics->beat();
       return !stop_asked;
@@ -246,16 +252,19 @@ int serve(const ServerOptions& options) {
   if (loop.superseded()) {
     spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
                   options.session, options.session);
+  } else if (barred) {
+    spdlog::error("{}", (*channel)->barred());
+    // One that stands by goes on with the session, and takes nothing more from this one.
+    if (!(*channel)->has_follower()) say_goodbye();
   } else if (drain.end() != Drain::End::kNone) {
     spdlog::info("{}", drain.text(options.session, closing.log_file));
   } else {
-    loop.close();
-    held.finish();
+    say_goodbye();
   }
   closing.channel = (*channel)->counters();
   closing.follower = held.follower_backlog();
   const int exit_code = close_session(options, std::move(closing), log->writer.get(), loop);
-  return loop.superseded() ? kExitRuntime : exit_code;
+  return loop.superseded() || barred ? kExitRuntime : exit_code;
 }
 
 }  // namespace mortise

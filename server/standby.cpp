@@ -145,6 +145,8 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
     // Asked first: what it told before it was gone is here by then.
     const bool is_gone = !channel.leader_present();
     hear(channel, told);
+    if (std::string why = channel.barred(); !why.empty())
+      return fail(Code::kRuntime, std::move(why));
     const bool another = channel.another_stands_by();
     if (!another) counts = Clock::now();
     if (told.size() > confirmed) {

@@ -53,8 +53,9 @@ bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
 /// Follows until the leader is gone, or hands over, and all that it told is computed. False when
 /// `stop`, asked before each tick, said so. What is told is confirmed as it comes, so that clients
 /// never wait for what is computed here; how far that is behind is confirmed with it, and given to
-/// `note` in words where Backlog has news. Fails (kRuntime) beyond kMostUntaken_ticks, and
-/// where the leader counts on another one that stands by: for some seconds, or as it is gone.
+/// `note` in words where Backlog has news. Fails (kRuntime) beyond kMostUntaken_ticks,
+/// where this one may no longer be a server, and where the leader counts on another one that stands
+/// by: for some seconds, or as it is gone.
 Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower& follower,
                     const std::function<bool()>& stop,
                     const std::function<void(const std::string&)>& note);

@@ -168,6 +168,10 @@ class ServerChannel {
   /// Under which this one leads, ms since 1970 or later; 0: its transport knows no other servers.
   virtual std::uint64_t term_ms() const { return 0; }
 
+  /// Why this one may no longer be a server of its session, found by take() and follow(): it is to
+  /// end. Empty: it may.
+  virtual std::string barred() const { return {}; }
+
   /// Does what is due between two ticks, for at most so long; false: nothing is due.
   virtual bool rest(std::int64_t /*at_most_ns*/) { return false; }
 };

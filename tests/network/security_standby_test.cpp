@@ -28,8 +28,11 @@ class SecurityStandby : public ::testing::Test {
     options.domain = domain;
     options.keys = keys_["anna"];
     anna_.enter(options, "anna");
-    ASSERT_TRUE(until(
-        kPatience_s, [&] { return anna_.is_in(); }, [&] { turn(); }));
+    ASSERT_TRUE(is_served());
+  }
+  void sleep_and_turn(double seconds) {
+    (void)until(
+        seconds, [] { return false; }, [&] { turn(); });
   }
   void turn() {
     anna_.listen();
@@ -39,11 +42,23 @@ class SecurityStandby : public ::testing::Test {
     return until(
         20.0, [&] { return server.errors().find(words) != std::string::npos; }, [&] { turn(); });
   }
-  void revoke(const std::string& name) {
+  /// The new list reaches only some: a user has it at once.
+  void revoke(const std::string& name, const std::vector<std::string>& told) {
     keys_.revoke(name);
-    for (const std::string& kept : {hall_, spare_})
-      std::filesystem::copy_file(keys_["anna"] + "/crl.pem", kept + "/crl.pem",
-                                 std::filesystem::copy_options::overwrite_existing);
+    ASSERT_EQ(keys_.trouble(), "");
+    for (const std::string& kept : told) tell(kept);
+  }
+  void tell(const std::string& kept) const {
+    std::filesystem::copy_file(keys_["anna"] + "/crl.pem", kept + "/crl.pem",
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  bool is_served() {
+    return until(
+        kPatience_s, [&] { return anna_.is_in(); }, [&] { turn(); });
+  }
+  bool loses_its_server() {
+    return until(
+        kPatience_s, [&] { return !anna_.is_in(); }, [&] { turn(); });
   }
   std::string logs() const { return folder_.path().string() + "/logs"; }
 
@@ -54,25 +69,66 @@ class SecurityStandby : public ::testing::Test {
   Person anna_;
 };
 
-/// What it says to have is no reason to tell clients of it.
-TEST_F(SecurityStandby, OneThatIsRevokedIsNotCountedOn) {
+/// What it says to have is no reason to tell clients of it. It does not know, and leads as the
+/// first is gone; nobody who knows is led by it.
+TEST_F(SecurityStandby, OneThatIsRevokedIsNotCountedOnNorFollowed) {
   begin(221);
   ASSERT_FALSE(HasFailure());
-  revoke("spare");
+  revoke("spare", {hall_});
+  EXPECT_TRUE(says(*first_, "'spare' (server) was not let in: it has been revoked"))
+      << first_->errors();
   EXPECT_TRUE(says(*first_, "it is not waited for any more")) << first_->errors();
-  EXPECT_NE(first_->errors().find("'spare' (server)"), std::string::npos) << first_->errors();
+  EXPECT_TRUE(anna_.is_in());
+  first_->signal(SIGKILL);
+  EXPECT_TRUE(says(*second_, "is gone: taken over at tick")) << second_->errors();
+  EXPECT_TRUE(loses_its_server());
+  sleep_and_turn(kRefused_s);
+  EXPECT_FALSE(anna_.is_in()) << "led by one that is revoked";
+  tell(spare_);
+  EXPECT_EQ(second_->wait(5), 1) << second_->errors();
 }
 
-/// It looks at the list while it follows: what a leader says that is revoked is not taken.
+/// One that learns of it ends, and does not take over.
+TEST_F(SecurityStandby, OneThatIsRevokedEnds) {
+  begin(215);
+  ASSERT_FALSE(HasFailure());
+  revoke("spare", {spare_});
+  EXPECT_EQ(second_->wait(10), 1);
+  EXPECT_NE(second_->errors().find("the certificate of 'spare' (server) has been revoked: this "
+                                   "server ends"),
+            std::string::npos)
+      << second_->errors();
+  sleep_and_turn(1.0);
+  EXPECT_TRUE(anna_.is_in());
+  EXPECT_EQ(second_->errors().find("taken over"), std::string::npos) << second_->errors();
+}
+
+/// It looks at the list while it follows: what a leader says that is revoked is not taken, and who
+/// works with that one does not any more.
 TEST_F(SecurityStandby, OneWhoseLeaderIsRevokedFollowsItNoMore) {
   begin(222);
   ASSERT_FALSE(HasFailure());
-  revoke("hall");
+  revoke("hall", {spare_});
+  EXPECT_TRUE(loses_its_server());
   EXPECT_TRUE(says(*first_, "it is not waited for any more")) << first_->errors();
   EXPECT_TRUE(second_->running());
   EXPECT_EQ(second_->errors().find("taken over"), std::string::npos) << second_->errors();
   first_->signal(SIGKILL);
   EXPECT_TRUE(says(*second_, "is gone: taken over at tick")) << second_->errors();
+  EXPECT_TRUE(is_served());
+}
+
+/// One that leads and learns of it leaves the session to the one that stands by.
+TEST_F(SecurityStandby, OneThatLeadsAndIsRevokedEndsAndTheOtherGoesOn) {
+  begin(216);
+  ASSERT_FALSE(HasFailure());
+  revoke("hall", {hall_, spare_});
+  EXPECT_EQ(first_->wait(10), 1);
+  EXPECT_NE(first_->errors().find("the certificate of 'hall' (server) has been revoked"),
+            std::string::npos)
+      << first_->errors();
+  EXPECT_TRUE(says(*second_, "is gone: taken over at tick")) << second_->errors();
+  EXPECT_TRUE(is_served());
 }
 
 }  // namespace
