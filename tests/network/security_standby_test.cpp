@@ -110,7 +110,7 @@ TEST_F(SecurityStandby, OneWhoseLeaderIsRevokedFollowsItNoMore) {
   ASSERT_FALSE(HasFailure());
   revoke("hall", {spare_});
   EXPECT_TRUE(loses_its_server());
-  EXPECT_TRUE(says(*first_, "it is not waited for any more")) << first_->errors();
+  EXPECT_TRUE(says(*first_, "going on without them")) << first_->errors();
   EXPECT_TRUE(second_->running());
   EXPECT_EQ(second_->errors().find("taken over"), std::string::npos) << second_->errors();
   first_->signal(SIGKILL);
