@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the last stage of the Dockerfile of packages that are there, on the root of clean_root_test, and plays a session in it:
-# dockerfile_test.sh SOURCE PACKAGES CACHE. In long runs also the first stage, with all that mortise is built with.
+# dockerfile_test.sh SOURCE PACKAGES CACHE. In long runs all stages, as a user builds it.
 set -euo pipefail
 source=$1 packages=$2 cache=$3 dockerfile=$1/server/packaging/Dockerfile
 work=$(mktemp -d)
@@ -49,20 +49,25 @@ bud() {  # bud NAME [OPTIONS]: what has no network is skipped, all else that goe
 bud mortise --volume "$(realpath "$cache")/archives:/var/cache/apt/archives" --build-context "build=$work/build"
 
 # 3. what the image says to be run is run, by whom it says
-container=$(store from --pull-never localhost/mortise)
-said() { store inspect --format "{{$1}}" "$container"; }
-[ "$(said .OCIv1.Config.User)" = mortise ] || fail "it runs as $(said .OCIv1.Config.User)"
-mapfile -t command < <(said 'range .OCIv1.Config.Entrypoint}}{{println .}}{{end}}{{range .OCIv1.Config.Cmd}}{{println .}}{{end')
-# A mapfile of what a template prints ends with an empty line.
-[ -n "${command[-1]}" ] || unset 'command[-1]'
-inside() { store run --isolation chroot "$container" -- "$@"; }
-inside sh -c '"$@" --domain 11 --duration 6 & sleep 1; mortise-bot --session demo --domain 11 --wait 10 --seconds 2 --quiet && wait $!' sh "${command[@]}" \
-  >"$work/said.txt" 2>&1 || { cat "$work/said.txt"; fail "no session in it: ${command[*]}"; }
-inside sh -c 'mortise-replay verify /var/lib/mortise/*.mcap' >"$work/said.txt" 2>&1 || { cat "$work/said.txt"; fail "its log"; }
-echo "built: the last stage; played: ${command[*]}"
+plays() {  # plays IMAGE
+  local container command
+  container=$(store from --pull-never "localhost/$1")
+  said() { store inspect --format "{{$1}}" "$container"; }
+  [ "$(said .OCIv1.Config.User)" = mortise ] || fail "$1: it runs as $(said .OCIv1.Config.User)"
+  mapfile -t command < <(said 'range .OCIv1.Config.Entrypoint}}{{println .}}{{end}}{{range .OCIv1.Config.Cmd}}{{println .}}{{end')
+  # A mapfile of what a template prints ends with an empty line.
+  [ -n "${command[-1]}" ] || unset 'command[-1]'
+  inside() { store run --isolation chroot "$container" -- "$@"; }
+  inside sh -c '"$@" --domain 11 --duration 6 & sleep 1; mortise-bot --session demo --domain 11 --wait 10 --seconds 2 --quiet && wait $!' sh "${command[@]}" \
+    >"$work/said.txt" 2>&1 || { cat "$work/said.txt"; fail "$1: no session in it: ${command[*]}"; }
+  inside sh -c 'mortise-replay verify /var/lib/mortise/*.mcap' >"$work/said.txt" 2>&1 || { cat "$work/said.txt"; fail "$1: its log"; }
+  store rm "$container" >/dev/null
+  echo "played in $1: ${command[*]}"
+}
+plays mortise
 
-# 4. the first stage: as much as a developer's machine has
+# 4. all stages, as a user builds it: what mortise is built with is installed, and it is compiled there
 if [ "${MORTISE_EFFORT:-1}" -gt 1 ]; then
-  bud setup --target setup
-  echo "built: the first stage"
+  bud whole
+  plays whole
 fi
