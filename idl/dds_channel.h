@@ -13,8 +13,8 @@ struct DdsOptions {
   std::string session = "default";      ///< partition "session/<name>"
   int domain = 0;                       ///< 0..232
   std::string interface = "127.0.0.1";  ///< own IPv4 address; nothing is sent or heard elsewhere
-  /// IPv4 of the server, or of all that may lead the session, comma between; empty: same as
-  /// interface.
+  /// Hosts where the session may be led, comma between: IPv4, or a name, which is looked up once
+  /// and may stand for all of them. Empty: same as interface.
   std::string server = "";
   /// First of the server's two UDP ports; one that stands by takes the next two. 0: 7402 + 250
   /// domain.

@@ -68,9 +68,6 @@ Status check(const DdsOptions& options, Participant::Side side) {
     return bad("'" + options.interface +
                "' is not an IPv4 address of this machine: see `ip -4 addr` for those it has");
   }
-  for (const std::string& address : addresses_of(options)) {
-    if (!is_ipv4(address)) return bad("server address '" + address + "' is not an IPv4 address");
-  }
   if (!(options.liveliness_lease_s > 0.0) || !(options.heartbeat_period_s > 0.0)) {
     return bad("liveliness lease and heartbeat period must be above 0 s");
   }
@@ -105,6 +102,7 @@ Locator_t locator(const std::string& address, int port) {
 /// never meet each other, a restarted server is a new participant, and any DDS implementation can
 /// take part.
 dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
+                                 const std::vector<std::string>& addresses,
                                  const std::shared_ptr<GuardCounts>& counts) {
   dds::DomainParticipantQos qos;
   const bool is_server = serves(side);
@@ -127,7 +125,7 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
     port += kSecondPlace;
   // One that stands by looks for the one that leads, which waits to be found.
   if (side != Participant::Side::kServer)
-    for (const std::string& address : addresses_of(options))
+    for (const std::string& address : addresses)
       for (const int place : {first, first + kSecondPlace})
         if (!is_server || address != options.interface || place != port)
           builtin.initialPeersList.push_back(locator(address, place));
@@ -278,6 +276,8 @@ ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
 Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options, Side side,
                                                        dds::DomainParticipantListener* listener) {
   if (Status checked = check(options, side); !checked) return checked.error();
+  const auto addresses = addresses_of(options);
+  if (!addresses) return addresses.error();
   set_up_process();
   std::unique_ptr<Participant> made(new Participant(options, side));
   if (!options.keys.empty() && options.check_keys) {
@@ -286,8 +286,8 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
     made->identity_ = *identity;
   }
   made->participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, made->guard_), listener,
-      dds::StatusMask::none());
+      static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, *addresses, made->guard_),
+      listener, dds::StatusMask::none());
   if (made->participant_ == nullptr) {
     return broken("Fast DDS refused a participant on " + options.interface + ", domain " +
                   std::to_string(options.domain) +

@@ -2,10 +2,12 @@
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <sstream>
 
@@ -14,6 +16,31 @@ namespace {
 
 // Well-known ports are 7400 + 250 domain + {0, 1, 10 + 2 i, 11 + 2 i}; 2 and 3 are nobody's.
 constexpr int kPortBase = 7400, kPortsPerDomain = 250, kServerPortOffset = 2;
+
+std::vector<std::string> hosts_of(const DdsOptions& options) {
+  std::vector<std::string> hosts;
+  std::stringstream words(options.server.empty() ? options.interface : options.server);
+  for (std::string word; std::getline(words, word, ',');) hosts.push_back(word);
+  return hosts;
+}
+
+/// IPv4 of a name, as they are told; empty: none.
+std::vector<std::string> look_up(const std::string& name) {
+  addrinfo wanted{};
+  wanted.ai_family = AF_INET;
+  wanted.ai_socktype = SOCK_DGRAM;  // each address once
+  addrinfo* list = nullptr;
+  if (getaddrinfo(name.c_str(), nullptr, &wanted, &list) != 0) return {};
+  std::vector<std::string> addresses;
+  for (const addrinfo* at = list; at != nullptr; at = at->ai_next) {
+    char text[NI_MAXHOST];
+    if (getnameinfo(at->ai_addr, at->ai_addrlen, text, sizeof text, nullptr, 0, NI_NUMERICHOST) ==
+        0)
+      addresses.emplace_back(text);
+  }
+  freeaddrinfo(list);
+  return addresses;
+}
 
 }  // namespace
 
@@ -59,10 +86,20 @@ int server_port(const DdsOptions& options) {
              : kPortBase + kPortsPerDomain * options.domain + kServerPortOffset;
 }
 
-std::vector<std::string> addresses_of(const DdsOptions& options) {
+Result<std::vector<std::string>> addresses_of(const DdsOptions& options) {
   std::vector<std::string> addresses;
-  std::stringstream words(options.server.empty() ? options.interface : options.server);
-  for (std::string word; std::getline(words, word, ',');) addresses.push_back(word);
+  for (const std::string& host : hosts_of(options)) {
+    const std::vector<std::string> found = is_ipv4(host) ? std::vector{host} : look_up(host);
+    if (found.empty())
+      return fail(Code::kInvalidInput,
+                  "server '" + host +
+                      "' is neither an IPv4 address nor a name that has one here: see `getent "
+                      "ahostsv4 " +
+                      host + "`");
+    for (const std::string& address : found)
+      if (std::find(addresses.begin(), addresses.end(), address) == addresses.end())
+        addresses.push_back(address);
+  }
   return addresses;
 }
 
@@ -71,7 +108,7 @@ bool place_is_free(const DdsOptions& options, int port) {
 }
 
 bool may_have_another_server(const DdsOptions& options) {
-  return addresses_of(options).size() > 1 ||
+  return hosts_of(options).size() > 1 ||
          !place_is_free(options, server_port(options) + kSecondPlace);
 }
 

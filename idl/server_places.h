@@ -18,8 +18,10 @@ int server_port(const DdsOptions& options);
 inline constexpr int kSecondPlace = 2;
 bool place_is_free(const DdsOptions& options, int port);
 
-/// Of all hosts where servers of the session may be.
-std::vector<std::string> addresses_of(const DdsOptions& options);
+/// IPv4 of all hosts where servers of the session may be, each once. Names are looked up as this
+/// machine looks up any (hosts file, DNS); one may stand for several hosts. Takes as long as that:
+/// seconds, where a DNS server is silent. Fails where a name has no IPv4 address.
+Result<std::vector<std::string>> addresses_of(const DdsOptions& options);
 
 /// Can there be another server of the session: at the second place of this host, or on another?
 bool may_have_another_server(const DdsOptions& options);

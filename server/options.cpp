@@ -50,8 +50,9 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--standby-of", o.standby_of,
                  "Follow this session beside its server, and go on with it when that one is gone; "
                  "--restore names its log, or the folder of it");
-  app.add_option("--peers", o.peers,
-                 "IPv4 of other hosts where a server of this session may run, comma between");
+  app.add_option(
+      "--peers", o.peers,
+      "Other hosts where a server of this session may run, comma between: IPv4, or a name of them");
   app.add_option("--session", o.session, "Name of the session that clients ask for")
       ->capture_default_str();
   app.add_option("--domain", o.domain, "DDS domain")

@@ -45,7 +45,9 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--interface", o.interface, "IPv4 address of the own interface")
       ->capture_default_str();
-  app.add_option("--server", o.server, "IPv4 address of the server; default: the own interface");
+  app.add_option("--server", o.server,
+                 "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
+                 "the own interface");
   app.add_option("--port", o.port, "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
   app.add_option("--keys", o.keys,

@@ -106,7 +106,9 @@ void add_play([[maybe_unused]] CLI::App& app, [[maybe_unused]] int& code) {
   command->add_option("--domain", o.domain, "DDS domain")->check(CLI::Range(0, 232));
   command->add_option("--interface", o.interface, "IPv4 address of the own interface")
       ->capture_default_str();
-  command->add_option("--server", o.server, "IPv4 address of the server; default: the interface");
+  command->add_option("--server", o.server,
+                      "hosts where the server may be, comma between: IPv4, or a name of them; "
+                      "default: the own interface");
   command->add_option("--keys", o.keys,
                       "folder of the own keys (mortise keys), where the server asks for some");
   command->add_option("--server-port", o.server_port, "discovery port of the server")

@@ -65,7 +65,9 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--interface", o.interface, "IPv4 address of the own interface towards the server")
       ->capture_default_str();
-  app.add_option("--server", o.server, "IPv4 address of the server; default: the own interface");
+  app.add_option("--server", o.server,
+                 "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
+                 "the own interface");
   app.add_option("--server-port", o.discovery_port,
                  "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));

@@ -98,6 +98,13 @@ TEST(Network, JoinsMovesAndSeesPoses) {
   EXPECT_EQ(session.channel->counters().send_failed, 0u);
 }
 
+TEST(Network, AServerIsFoundByTheNameOfItsHost) {
+  Session session;
+  session.options.server = "localhost,127.0.0.1";
+  session.add_client("anna");
+  EXPECT_TRUE(session.wait(5, [&] { return session.all_joined(); }));
+}
+
 TEST(Network, FourClientsSeeTheSameEventsInTheSameOrder) {
   Session session;
   for (const char* name : {"a", "b", "c", "d"}) session.add_client(name);
@@ -372,8 +379,9 @@ TEST(Network, OpeningFailsInOneLine) {
   bad.interface = "203.0.113.9";  // documentation range: nobody has it
   EXPECT_NE(open_client_channel(bad).error().text.find("203.0.113.9"), std::string::npos);
   bad = options;
-  bad.server = "localhost";
-  EXPECT_FALSE(open_client_channel(bad));
+  bad.server = "127.0.0.1,nobody.invalid";  // RFC 2606: no host has such a name
+  EXPECT_NE(open_client_channel(bad).error().text.find("'nobody.invalid' is neither an IPv4"),
+            std::string::npos);
   bad = options;
   bad.session = "*";
   EXPECT_FALSE(open_client_channel(bad));

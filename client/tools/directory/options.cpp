@@ -44,8 +44,9 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
   app.set_version_flag("--version", version_line("mortise-directory"));
   app.add_option("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
       ->capture_default_str();
-  app.add_option("--server", where.server,
-                 "IPv4 addresses of the hosts to ask, comma between; default: the own interface");
+  app.add_option(
+      "--server", where.server,
+      "Hosts to ask, comma between: IPv4, or a name of them; default: the own interface");
   app.add_option("--port", ports, "Discovery ports of servers, likewise; 0: the domain's own")
       ->capture_default_str();
   app.add_option("--interface", where.interface, "IPv4 address of the own interface")
