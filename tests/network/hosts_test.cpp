@@ -205,6 +205,10 @@ TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
   EXPECT_EQ(directory(), (Places{{second, "leads"}}));
   leave();
   for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
+  EXPECT_TRUE(otto_.is_in());  // who knows both hosts by one name
+  for (const auto& [id, part] : hands_[0].person.client->parts())
+    EXPECT_TRUE(identical(otto_.client->parts().at(id).info.X_WP, part.info.X_WP))
+        << part.info.name;
   standby_->signal(SIGTERM);
   EXPECT_EQ(standby_->wait(10), 0) << standby_->errors();
   EXPECT_EQ(lost(log_to_restore(logs_, "default")->string()), 0u);
