@@ -67,8 +67,9 @@ class DdsServerChannel final : public StandbyChannel {
   }
   std::uint64_t term_ms() const override { return term_; }
   std::string barred() const override {
-    if (!identities_ || !identities_->is_revoked(*participant_->identity())) return {};
-    return "the certificate of '" + participant_->identity()->name +
+    const std::optional<Identity>& own = participant_->identity();
+    if (!identities_ || !own || !identities_->is_revoked(*own)) return {};
+    return "the certificate of '" + own->name +
            "' (server) has been revoked: this server ends; issue a new one with mortise keys";
   }
   void confirm(const TakenTicks& taken) override {
@@ -249,7 +250,8 @@ class DdsServerChannel final : public StandbyChannel {
       if (!info.valid_data) continue;
       ++counters_.received;
       const ClientKey key = client_key(info.sample_identity.writer_guid());
-      if (identities_ && identities_->is_revoked(key)) {
+      if (identities_ && identities_->is_revoked(key) &&
+          !(std::is_same_v<Sample, wire::ServerTick> && leader_.may_be_ending(key))) {
         ++counters_.foreign;
         if constexpr (std::is_same_v<Sample, wire::Request>) refuse_revoked(sample, key);
         continue;

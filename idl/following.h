@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,15 @@ class LeaderTold {
     if (auto tick = collector_.add(sample)) ticks->push_back(std::move(*tick));
     return superseded;
   }
+  /// A leader that is revoked ends once it has the list, too. What it tells until then is heard,
+  /// for some seconds since it was first asked for: who works with it holds that for safe.
+  bool may_be_ending(const ClientKey& revoked) {
+    // Lists are looked at each second, and come one after the other.
+    constexpr std::chrono::seconds kMayTake(3);
+    const auto now = std::chrono::steady_clock::now();
+    if (std::exchange(revoked_, revoked) != revoked) revoked_at_ = now;
+    return revoked == leader_ && now - revoked_at_ < kMayTake;
+  }
   std::uint64_t term() const { return term_; }
   const ClientKey& leader() const { return leader_; }        ///< empty: none was heard
   const ClientKey& counts_on() const { return counts_on_; }  ///< the one that stands by, for it
@@ -36,6 +46,8 @@ class LeaderTold {
  private:
   std::uint64_t term_ = 0;
   ClientKey leader_, counts_on_;
+  ClientKey revoked_;  ///< of whom it was asked last
+  std::chrono::steady_clock::time_point revoked_at_{};
   TickCollector collector_;
 };
 

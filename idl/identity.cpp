@@ -276,9 +276,9 @@ std::vector<ClientKey> PeerIdentities::newly_revoked() {
   const std::lock_guard lock(mutex_);
   if (!std::exchange(has_news_, false)) return clients;
   for (auto& [client, known] : known_) {
-    if (known.told || !revoked_.contains(known.identity.serial)) continue;
-    known.told = true;
-    clients.push_back(client);
+    const bool is_news = !known.told;
+    known.told = revoked_.contains(known.identity.serial);
+    if (known.told && is_news) clients.push_back(client);
   }
   return clients;
 }

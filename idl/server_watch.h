@@ -57,9 +57,9 @@ class ServerWatch final : public dds::DomainParticipantListener {
     bool present = false;  ///< and hears us, on so many topics
   };
   Answer take(int topics) {
-    const bool news = identities_ != nullptr && !identities_->newly_revoked().empty();
+    if (identities_ != nullptr) (void)identities_->newly_revoked();  // which looks at the list
     const std::lock_guard lock(mutex_);
-    if (news) {
+    if (identities_ != nullptr) {
       look_who_is_revoked();
       choose();
     }

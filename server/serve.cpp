@@ -255,7 +255,7 @@ int serve(const ServerOptions& options) {
   } else if (barred) {
     spdlog::error("{}", (*channel)->barred());
     // One that stands by goes on with the session, and takes nothing more from this one.
-    if (!(*channel)->has_follower()) say_goodbye();
+    if (!held.follower_in_step()) say_goodbye();
   } else if (drain.end() != Drain::End::kNone) {
     spdlog::info("{}", drain.text(options.session, closing.log_file));
   } else {

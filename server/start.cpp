@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/io/log_file.h"
 #include "common/io/replay.h"
 #include "server/restore.h"
 
@@ -102,7 +103,7 @@ std::string default_log_file(const fs::path& folder, const std::string& session,
   const std::string stem = session + "-" + stamp;
   fs::path file = folder / (stem + ".mcap");
   // Two starts within a second: names must differ, and sort in the order of the starts.
-  for (int again = 1; fs::exists(file); ++again) {
+  for (int again = 1; fs::exists(file) || LogFile::is_begun(file); ++again) {
     file = folder / fmt::format("{}_{}.mcap", stem, again);
   }
   return file.string();

@@ -46,7 +46,8 @@ Result<std::unique_ptr<LogFile>> LogFile::create(const fs::path& file, const Log
     return fail(Code::kRuntime, file.string() +
                                     ": cannot create the log: it exists already, choose another "
                                     "name");
-  fs::remove(unfinished(file), error);  // of a start that was cut short
+  if (is_begun(file) && !McapWriter::is_being_written(unfinished(file)))
+    fs::remove(unfinished(file), error);  // of a start that was cut short
   auto mcap = McapWriter::create(unfinished(file), {.profile = log_layout::kProfile,
                                                     .library = "mortise " + engine_version(),
                                                     .compress = options.compress,
@@ -58,6 +59,11 @@ Result<std::unique_ptr<LogFile>> LogFile::create(const fs::path& file, const Log
   if (options.named_later) return log;
   if (Status named = log->take_name(); !named) return named.error();
   return log;
+}
+
+bool LogFile::is_begun(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(unfinished(file), error);
 }
 
 Status LogFile::take_name() {

@@ -20,6 +20,8 @@ class LogFile {
                                                  const LogHeader& header,
                                                  const LogOptions& options);
 
+  /// Is there one without its name yet, or what a start that was cut short left of it?
+  static bool is_begun(const std::filesystem::path& file);
   /// Gives it its name, where that was left for later.
   Status take_name();
   /// The same of one that is closed.

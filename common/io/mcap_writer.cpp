@@ -1,6 +1,7 @@
 #include "common/io/mcap_writer.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/uio.h>
 #include <unistd.h>
 #define ZSTD_STATIC_LINKING_ONLY  // for a compressor in memory of ours
@@ -52,6 +53,14 @@ void McapWriter::Counted::add(std::uint64_t time_ns) {
   ++messages;
 }
 
+bool McapWriter::is_being_written(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return is_locked;
+}
+
 Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::path& file,
                                                        McapWriterOptions options) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
@@ -59,6 +68,7 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::pa
     return fail(Code::kRuntime, file.string() + ": cannot create the log: " +
                                     (errno == EEXIST ? "it exists already, choose another name"
                                                      : std::strerror(errno)));
+  (void)::flock(descriptor, LOCK_EX | LOCK_NB);  // for is_being_written(); nobody else has it yet
   std::unique_ptr<McapWriter> writer(new McapWriter(descriptor, file.string(), std::move(options)));
   writer->write(std::as_bytes(std::span(mcap::kMagic)));
   ByteWriter header;

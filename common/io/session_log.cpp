@@ -276,9 +276,14 @@ void FileWriter::count_bytes() {
 Status FileWriter::take_name() {
   const std::lock_guard lock(names_mutex_);
   options_.named_later = false;
-  for (; !unnamed_.empty(); unnamed_.erase(unnamed_.begin()))
-    if (Status named = LogFile::name(unnamed_.front()); !named) return named;
-  return file_->take_name();
+  Status all = ok();
+  const auto keep_first = [&](Status named) {
+    if (all && !named) all = std::move(named);
+  };
+  for (const fs::path& file : unnamed_) keep_first(LogFile::name(file));
+  unnamed_.clear();
+  keep_first(file_->take_name());
+  return all;
 }
 
 Status FileWriter::flush() {
@@ -312,7 +317,7 @@ Status FileWriter::close() {
       if (Status closed = file_->mcap().close(); !closed) error_ = closed.error();
       settle_chunk();
     }
-    file_->remove_if_unnamed();
+    if (options_.named_later) file_->remove_if_unnamed();
     for (const fs::path& file : unnamed_) LogFile::remove_unnamed(file);
     count_bytes();
   }

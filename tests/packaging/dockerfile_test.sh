@@ -68,6 +68,8 @@ plays mortise
 
 # 4. all stages, as a user builds it: what mortise is built with is installed, and it is compiled there
 if [ "${MORTISE_EFFORT:-1}" -gt 1 ]; then
-  bud whole
+  trust=()  # of a proxy between here and npm's registry, where this machine is told of one
+  [ -z "${NODE_EXTRA_CA_CERTS:-}" ] || trust=(--volume "$NODE_EXTRA_CA_CERTS:/tmp/trust.crt:ro" --env NODE_EXTRA_CA_CERTS=/tmp/trust.crt)
+  bud whole "${trust[@]}"
   plays whole
 fi

@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "common/io/replay.h"
 #include "common/session/session_state.h"
 #include "tests/network/program.h"
@@ -152,6 +154,43 @@ TEST_F(LogChain, FilesThatAreNamedLaterAreNamedTogetherOrGo) {
   const auto whole = read_session(file("s.mcap"));
   ASSERT_TRUE(whole) << whole.error().text;
   expect_verified(*whole, kTicks, kTicks / kEvery);
+}
+
+/// Two that stand by, with one disk between them, may choose one name in the same second.
+TEST_F(LogChain, AFileWithoutItsNameThatIsBeingWrittenIsLeftAlone) {
+  const LogOptions options = {.named_later = true};
+  auto writer = SessionLogWriter::create(file("s.mcap"), session_->header, options);
+  ASSERT_TRUE(writer) << writer.error().text;
+  const auto second = SessionLogWriter::create(file("s.mcap"), session_->header, options);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().text.find("it exists already"), std::string::npos);
+  for (const TickRecord& tick : session_->ticks) (*writer)->record(tick);
+  ASSERT_TRUE((*writer)->take_name());
+  ASSERT_TRUE((*writer)->close());
+  const auto whole = read_session(file("s.mcap"));
+  ASSERT_TRUE(whole) << whole.error().text;
+  EXPECT_EQ(whole->ticks.size(), kTicks);
+  // What a start that was cut short left is nobody's.
+  std::ofstream(file("t.mcap.begun")) << "cut short";
+  ASSERT_TRUE(SessionLogWriter::create(file("t.mcap"), session_->header, options));
+}
+
+/// Of several files one cannot be named: the others are, and none is removed.
+TEST_F(LogChain, AFileThatCannotBeNamedTakesNoOtherWithIt) {
+  const LogOptions options = {.chunk_bytes = 4096, .rotate_bytes = 20'000, .named_later = true};
+  auto writer = SessionLogWriter::create(file("s.mcap"), session_->header, options);
+  ASSERT_TRUE(writer) << writer.error().text;
+  for (const TickRecord& tick : session_->ticks) {
+    (*writer)->record(tick);
+    if (tick.state) (void)(*writer)->flush();
+  }
+  const std::size_t begun = files(".begun").size();
+  ASSERT_GE(begun, 4U);
+  fs::remove(file("s.mcap.begun"));  // somebody tidied up
+  EXPECT_FALSE((*writer)->take_name());
+  ASSERT_TRUE((*writer)->close());
+  EXPECT_EQ(files().size(), begun - 1);
+  EXPECT_TRUE(files(".begun").empty());
 }
 
 TEST_F(LogChain, EachFileStandsAloneAndAllTogether) {
