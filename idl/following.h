@@ -33,7 +33,7 @@ class LeaderTold {
   /// for some seconds since it was first asked for: who works with it holds that for safe.
   bool may_be_ending(const ClientKey& revoked) {
     // Lists are looked at each second, and come one after the other.
-    constexpr std::chrono::seconds kMayTake(3);
+    constexpr std::chrono::seconds kMayTake(5);
     const auto now = std::chrono::steady_clock::now();
     if (std::exchange(revoked_, revoked) != revoked) revoked_at_ = now;
     return revoked == leader_ && now - revoked_at_ < kMayTake;
