@@ -25,11 +25,13 @@ class ServerWatch final : public dds::DomainParticipantListener {
   void know(PeerIdentities* identities) { identities_ = identities; }
   void on_participant_discovery(dds::DomainParticipant*,
                                 rtps::ParticipantDiscoveryInfo&& info) override {
-    if (identities_ == nullptr ||
-        info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT)
-      return;
+    using Info = rtps::ParticipantDiscoveryInfo;
+    if (identities_ == nullptr) return;
+    const ClientKey participant = client_key(info.info.m_guid);
+    if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT)
+      return identities_->parted(participant);  // or whoever announces much fills the memory
     const std::string subject = announced(info, "dds.cert.sn");
-    if (!subject.empty()) identities_->met(client_key(info.info.m_guid), subject);
+    if (!subject.empty()) identities_->met(participant, subject);
   }
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
     const std::lock_guard lock(mutex_);
@@ -86,12 +88,15 @@ class ServerWatch final : public dds::DomainParticipantListener {
   static rtps::GuidPrefix_t prefix_of(const rtps::InstanceHandle_t& handle) {
     return rtps::iHandle2GUID(handle).guidPrefix;
   }
+  /// Of one that is gone the last word counts.
   void look_who_is_revoked() {
     highest_term_ = 0;
     for (auto& [prefix, server] : servers_) {
-      server.revoked =
-          identities_ != nullptr &&
-          identities_->is_revoked(client_key({prefix, rtps::c_EntityId_RTPSParticipant}));
+      const auto identity =
+          identities_ == nullptr
+              ? std::nullopt
+              : identities_->identity_of(client_key({prefix, rtps::c_EntityId_RTPSParticipant}));
+      if (identity) server.revoked = identities_->is_revoked(*identity);
       if (!server.revoked) highest_term_ = std::max(highest_term_, server.term);
     }
   }

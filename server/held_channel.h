@@ -41,7 +41,9 @@ class HeldChannel final : public ServerChannel {
   void finish();
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
   /// It has the ticks and has computed them: it could lead at once.
-  bool follower_in_step() const { return waited_for_ && backlog_.in_step() && inner_.has_follower(); }
+  bool follower_in_step() const {
+    return waited_for_ && backlog_.in_step() && inner_.has_follower();
+  }
   const Backlog& follower_backlog() const { return backlog_; }
 
   ServerInput take() override;

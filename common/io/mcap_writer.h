@@ -30,7 +30,7 @@ struct McapWriterOptions {
 /// later calls do nothing, and sync() and close() say what happened. Not thread safe.
 class McapWriter {
  public:
-  /// By a writer that lives, of this host or another with the same disk.
+  /// By a writer that lives: of this host, or of another where the disk between them keeps flock().
   static bool is_being_written(const std::filesystem::path& file);
   /// Fails when the file exists: a record of a session is never overwritten.
   static Result<std::unique_ptr<McapWriter>> create(const std::filesystem::path& file,
