@@ -41,10 +41,13 @@ class HeldChannel final : public ServerChannel {
   void finish();
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
   /// It has the ticks and has computed them: it could lead at once.
-  bool follower_in_step() const {
-    return waited_for_ && backlog_.in_step() && inner_.has_follower();
+  bool follower_in_step() const { return follower_backlog().in_step(); }
+  /// Of nobody who could lead now where that one is gone or given up; what was counted stays.
+  Backlog follower_backlog() const {
+    Backlog backlog = backlog_;
+    if (!waited_for_ || !inner_.has_follower()) backlog.forget();
+    return backlog;
   }
-  const Backlog& follower_backlog() const { return backlog_; }
 
   ServerInput take() override;
   bool rest(std::int64_t at_most_ns) override;

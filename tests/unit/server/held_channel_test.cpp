@@ -139,6 +139,16 @@ TEST_F(Held, OneThatComputesLateIsSaidAndCountedAndKeepsNobodyWaiting) {
   EXPECT_EQ(held_.follower_backlog().longest_ticks(), 100u);
 }
 
+/// Also where nobody is told anything, so that nobody waits for it.
+TEST_F(Held, OneThatIsGoneIsNotInStep) {
+  tick(1);
+  taken(1);
+  ASSERT_TRUE(held_.follower_backlog().in_step());
+  wire_.follower_goes_ns = clock_.at_ns;
+  EXPECT_FALSE(held_.follower_backlog().in_step());
+  EXPECT_FALSE(held_.follower_in_step());
+}
+
 TEST_F(Held, NothingIsSaidOfWhatWasKeptWhenAnotherLeads) {
   tick(1);
   taken(1);
