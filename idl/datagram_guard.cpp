@@ -1,15 +1,15 @@
 #include "idl/datagram_guard.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <cstring>
+
+#include "idl/rtps_bytes.h"
 
 namespace mortise {
 namespace {
 
-// RTPS 2.3, section 8.3 and 9.4: header of 20 bytes, then submessages with a header of 4.
-constexpr std::size_t kHeaderSize = 20;
-constexpr std::size_t kSubmessageHeaderSize = 4;
+using namespace rtps_wire;
+
 constexpr std::uint8_t kMajorVersion = 2;
 
 enum Submessage : std::uint8_t {
@@ -22,7 +22,7 @@ enum Submessage : std::uint8_t {
   kInfoDestination = 0x0e,
   kNackFrag = 0x12,
   kHeartbeatFrag = 0x13,
-  kData = 0x15,
+  kData = kDataSubmessage,
   kDataFrag = 0x16,
   kSecureBody = 0x30,
   kSecurePrefix = 0x31,
@@ -32,39 +32,14 @@ enum Submessage : std::uint8_t {
   kStatistics = 0x80,  // eProsima's own: an assert() of the reader is reachable behind it
 };
 
-constexpr std::uint16_t kSentinel = 1;                               // ends a parameter list
 constexpr std::uint16_t kTypeIdentifier = 0x69, kTypeObject = 0x72;  // their reader crashes
 // Lengths inside these are believed by their readers.
-constexpr std::uint16_t kUserData = 0x2c, kPropertyList = 0x59, kIdentityToken = 0x1001,
-                        kPermissionsToken = 0x1002, kIdentityStatusToken = 0x1006;
+constexpr std::uint16_t kPropertyList = 0x59, kIdentityToken = 0x1001, kPermissionsToken = 0x1002,
+                        kIdentityStatusToken = 0x1006;
 constexpr std::uint32_t kMaxBitmapBits = 256;                 // of a number set, 9.4.2.6
 constexpr std::int64_t kMaxSequence = std::int64_t{1} << 48;  // no writer gets there
 constexpr std::int64_t kMaxHeartbeatRange = 10'000'000;       // far above any history
 constexpr std::int64_t kMaxGapRange = 100'000;                // a gap is walked number by number
-constexpr std::uint16_t kOctetsToInlineQos = 16;              // of DATA, fixed in RTPS 2.x
-
-/// A submessage's body, or a part of it, in its own byte order. Offsets are checked by the caller
-/// through has().
-struct Bytes {
-  std::span<const std::byte> data;
-  bool little = true;
-
-  bool has(std::size_t size) const { return data.size() >= size; }
-  std::uint8_t u8(std::size_t at) const { return std::to_integer<std::uint8_t>(data[at]); }
-  std::uint16_t u16(std::size_t at) const {
-    const unsigned a = u8(at), b = u8(at + 1);
-    return static_cast<std::uint16_t>(little ? a | b << 8 : b | a << 8);
-  }
-  std::uint32_t u32(std::size_t at) const {
-    const std::uint32_t a = u16(at), b = u16(at + 2);
-    return little ? a | b << 16 : b | a << 16;
-  }
-  /// A sequence number: signed high word, unsigned low word.
-  std::int64_t sequence(std::size_t at) const {
-    const auto high = static_cast<std::int64_t>(static_cast<std::int32_t>(u32(at)));
-    return high * (std::int64_t{1} << 32) + static_cast<std::int64_t>(u32(at + 4));
-  }
-};
 
 /// The value of a parameter, read from its front; nothing in it may be longer than what is left.
 class Value {

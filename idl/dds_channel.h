@@ -16,6 +16,9 @@ struct DdsOptions {
   /// Hosts where the session may be led, comma between: IPv4, or a name, which is looked up once
   /// and may stand for all of them. Empty: same as interface.
   std::string server = "";
+  /// Discovery servers that know where the session is led (mortise-discovery), comma between:
+  /// HOST[:PORT], IPv4 or a name. Then clients need no `server`. Empty: none is asked.
+  std::string discovery_server = "";
   /// First of the server's two UDP ports; one that stands by takes the next two. 0: 7402 + 250
   /// domain.
   int discovery_port = 0;
@@ -32,6 +35,10 @@ struct DdsOptions {
   std::string keys = {};
   bool check_keys = true;  ///< look at them first, to say what is wrong; else only the others judge
 };
+
+/// For messages: where the session is looked for, "10.0.0.1, or wherever the discovery server hall
+/// knows".
+std::string looked_at(const DdsOptions& options);
 
 /// The server's end: the fixed point that clients look for. Fails in one line when the port is in
 /// use, the interface is not of this machine, or the domain is out of range.

@@ -98,11 +98,12 @@ Locator_t locator(const std::string& address, int port) {
   return result;
 }
 
-/// A star: clients know the server's fixed port and nobody else, nothing is multicast. So clients
-/// never meet each other, a restarted server is a new participant, and any DDS implementation can
-/// take part.
+/// A star: clients know the server's fixed port, or hear of it from a discovery server, and nobody
+/// else; nothing is multicast. So clients never meet each other, a restarted server is a new
+/// participant, and any DDS implementation can take part.
 dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
                                  const std::vector<std::string>& addresses,
+                                 const std::vector<UdpPlace>& discovery_servers,
                                  const std::shared_ptr<GuardCounts>& counts) {
   dds::DomainParticipantQos qos;
   const bool is_server = serves(side);
@@ -129,6 +130,12 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
       for (const int place : {first, first + kSecondPlace})
         if (!is_server || address != options.interface || place != port)
           builtin.initialPeersList.push_back(locator(address, place));
+  for (const UdpPlace& place : discovery_servers)
+    builtin.initialPeersList.push_back(locator(to_text(place.ipv4), place.port));
+  if (!discovery_servers.empty()) {
+    const std::string text = to_text(Purpose{is_server, options.domain, options.session});
+    qos.user_data().data_vec({text.begin(), text.end()});
+  }
   if (is_server) {
     builtin.metatrafficUnicastLocatorList.push_back(locator(options.interface, port));
     qos.wire_protocol().default_unicast_locator_list.push_back(
@@ -278,6 +285,8 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
   if (Status checked = check(options, side); !checked) return checked.error();
   const auto addresses = addresses_of(options);
   if (!addresses) return addresses.error();
+  const auto discovery_servers = discovery_servers_of(options);
+  if (!discovery_servers) return discovery_servers.error();
   set_up_process();
   std::unique_ptr<Participant> made(new Participant(options, side));
   if (!options.keys.empty() && options.check_keys) {
@@ -286,8 +295,9 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
     made->identity_ = *identity;
   }
   made->participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<dds::DomainId_t>(options.domain), qos_of(options, side, *addresses, made->guard_),
-      listener, dds::StatusMask::none());
+      static_cast<dds::DomainId_t>(options.domain),
+      qos_of(options, side, *addresses, *discovery_servers, made->guard_), listener,
+      dds::StatusMask::none());
   if (made->participant_ == nullptr) {
     return broken("Fast DDS refused a participant on " + options.interface + ", domain " +
                   std::to_string(options.domain) +

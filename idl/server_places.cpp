@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <sstream>
 
@@ -16,12 +17,19 @@ namespace {
 
 // Well-known ports are 7400 + 250 domain + {0, 1, 10 + 2 i, 11 + 2 i}; 2 and 3 are nobody's.
 constexpr int kPortBase = 7400, kPortsPerDomain = 250, kServerPortOffset = 2;
+constexpr int kMaxPort = 65535;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> all;
+  std::stringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) all.push_back(word);
+  return all;
+}
 
 std::vector<std::string> hosts_of(const DdsOptions& options) {
-  std::vector<std::string> hosts;
-  std::stringstream words(options.server.empty() ? options.interface : options.server);
-  for (std::string word; std::getline(words, word, ',');) hosts.push_back(word);
-  return hosts;
+  if (!options.server.empty()) return words_of(options.server);
+  if (!options.discovery_server.empty()) return {};
+  return {options.interface};
 }
 
 /// IPv4 of a name, as they are told; empty: none.
@@ -40,6 +48,22 @@ std::vector<std::string> look_up(const std::string& name) {
   }
   freeaddrinfo(list);
   return addresses;
+}
+
+/// What it is for is said where it has none.
+Result<std::vector<std::string>> addresses_of_host(const std::string& what,
+                                                   const std::string& host) {
+  std::vector<std::string> found = is_ipv4(host) ? std::vector{host} : look_up(host);
+  if (!found.empty()) return found;
+  return fail(Code::kInvalidInput, what + " '" + host +
+                                       "' is neither an IPv4 address nor a name that has one "
+                                       "here: see `getent ahostsv4 " +
+                                       host + "`");
+}
+
+template <class Value>
+void add_once(const Value& value, std::vector<Value>& all) {
+  if (std::find(all.begin(), all.end(), value) == all.end()) all.push_back(value);
 }
 
 }  // namespace
@@ -89,18 +113,41 @@ int server_port(const DdsOptions& options) {
 Result<std::vector<std::string>> addresses_of(const DdsOptions& options) {
   std::vector<std::string> addresses;
   for (const std::string& host : hosts_of(options)) {
-    const std::vector<std::string> found = is_ipv4(host) ? std::vector{host} : look_up(host);
-    if (found.empty())
-      return fail(Code::kInvalidInput,
-                  "server '" + host +
-                      "' is neither an IPv4 address nor a name that has one here: see `getent "
-                      "ahostsv4 " +
-                      host + "`");
-    for (const std::string& address : found)
-      if (std::find(addresses.begin(), addresses.end(), address) == addresses.end())
-        addresses.push_back(address);
+    const auto found = addresses_of_host("server", host);
+    if (!found) return found.error();
+    for (const std::string& address : *found) add_once(address, addresses);
   }
   return addresses;
+}
+
+Result<std::vector<UdpPlace>> discovery_servers_of(const DdsOptions& options) {
+  std::vector<UdpPlace> places;
+  for (const std::string& word : words_of(options.discovery_server)) {
+    const std::size_t colon = word.find(':');
+    int port = kDiscoveryServerPort;
+    if (colon != std::string::npos) {
+      const char* const end = word.data() + word.size();
+      const auto read = std::from_chars(word.data() + colon + 1, end, port);
+      if (read.ec != std::errc() || read.ptr != end || port < 1 || port > kMaxPort)
+        return fail(Code::kInvalidInput, "discovery server '" + word +
+                                             "': the port behind the colon is not in 1..65535");
+    }
+    const auto found = addresses_of_host("discovery server", word.substr(0, colon));
+    if (!found) return found.error();
+    for (const std::string& address : *found) {
+      in_addr ipv4{};
+      inet_pton(AF_INET, address.c_str(), &ipv4);
+      add_once(UdpPlace{ntohl(ipv4.s_addr), static_cast<std::uint16_t>(port)}, places);
+    }
+  }
+  return places;
+}
+
+std::string looked_at(const DdsOptions& options) {
+  const std::string hosts = options.server.empty() ? options.interface : options.server;
+  if (options.discovery_server.empty()) return hosts;
+  return (options.server.empty() ? "" : hosts + ", or ") +
+         std::string("wherever the discovery server ") + options.discovery_server + " knows";
 }
 
 bool place_is_free(const DdsOptions& options, int port) {
@@ -108,7 +155,7 @@ bool place_is_free(const DdsOptions& options, int port) {
 }
 
 bool may_have_another_server(const DdsOptions& options) {
-  return hosts_of(options).size() > 1 ||
+  return hosts_of(options).size() > 1 || !options.discovery_server.empty() ||
          !place_is_free(options, server_port(options) + kSecondPlace);
 }
 

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/announcement.h"
 #include "idl/dds_channel.h"
 
 namespace mortise {
@@ -18,7 +19,13 @@ int server_port(const DdsOptions& options);
 inline constexpr int kSecondPlace = 2;
 bool place_is_free(const DdsOptions& options, int port);
 
-/// IPv4 of all hosts where servers of the session may be, each once. Names are looked up as this
+/// Where discovery servers hear, unless told.
+inline constexpr int kDiscoveryServerPort = 7398;
+/// Of DdsOptions::discovery_server, each once; names are looked up as below.
+Result<std::vector<UdpPlace>> discovery_servers_of(const DdsOptions& options);
+
+/// IPv4 of all hosts where servers of the session may be, each once; none are named where
+/// a discovery server is. Names are looked up as this
 /// machine looks up any (hosts file, DNS); one may stand for several hosts. Takes as long as that:
 /// seconds, where a DNS server is silent. Fails where a name has no IPv4 address.
 Result<std::vector<std::string>> addresses_of(const DdsOptions& options);

@@ -53,6 +53,9 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option(
       "--peers", o.peers,
       "Other hosts where a server of this session may run, comma between: IPv4, or a name of them");
+  app.add_option("--discovery-server", o.discovery_server,
+                 "Tell it where this server is: HOST[:PORT] of mortise-discovery, comma between. "
+                 "Who asks there needs to know no host of the session, nor its --port");
   app.add_option("--session", o.session, "Name of the session that clients ask for")
       ->capture_default_str();
   app.add_option("--domain", o.domain, "DDS domain")

@@ -45,6 +45,7 @@ DdsOptions dds_of(const ServerOptions& options) {
   dds.domain = options.domain;
   dds.interface = options.interface;
   dds.discovery_port = options.port;
+  dds.discovery_server = options.discovery_server;
   dds.keys = options.keys;
   if (!options.peers.empty()) dds.server = options.interface + "," + options.peers;
   return dds;

@@ -23,16 +23,7 @@ using Json = nlohmann::ordered_json;
 
 /// Joins, acts and leaves, in this process.
 int run_crew(const BotOptions& options, std::optional<Play> play, ProcessReport& report) {
-  DdsOptions dds;
-  dds.session = options.session;
-  dds.domain = options.domain;
-  dds.interface = options.interface;
-  dds.server = options.server;
-  dds.discovery_port = options.port;
-  dds.keys = options.keys;
-  dds.meshes = false;  // a bot does not look at parts
-  dds.features = options.behaviour == "guided" && !options.observer;
-  auto channel = open_client_channel(dds);
+  auto channel = open_client_channel(dds_of(options));
   if (!channel) {
     spdlog::error("{}", channel.error().text);
     return exit_code_of(channel.error().code);

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <thread>
 
+#include "idl/dds_channel.h"
+
 namespace mortise {
 namespace {
 
@@ -110,8 +112,7 @@ void Crew::say_why_not_joined() const {
   spdlog::error(
       "no server of session '{}' answered on domain {} at {} within {:g} s; start mortise-server "
       "first, or wait longer with --wait",
-      options_.session, options_.domain,
-      options_.server.empty() ? options_.interface : options_.server, options_.wait_s);
+      options_.session, options_.domain, looked_at(dds_of(options_)), options_.wait_s);
 }
 
 Status Crew::find_parts() {

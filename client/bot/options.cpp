@@ -8,6 +8,7 @@
 #include "client/bot/load_report.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
+#include "idl/dds_channel.h"
 
 namespace mortise {
 namespace {
@@ -34,6 +35,20 @@ Limit read_limit(const std::string& text) {
 
 }  // namespace
 
+DdsOptions dds_of(const BotOptions& options) {
+  DdsOptions dds;
+  dds.session = options.session;
+  dds.domain = options.domain;
+  dds.interface = options.interface;
+  dds.server = options.server;
+  dds.discovery_server = options.discovery_server;
+  dds.discovery_port = options.port;
+  dds.keys = options.keys;
+  dds.meshes = false;  // a bot does not look at parts
+  dds.features = options.behaviour == "guided" && !options.observer;
+  return dds;
+}
+
 BotCommandLine read_bot_command_line(int argc, char** argv) {
   BotCommandLine line;
   BotOptions& o = line.options;
@@ -48,6 +63,9 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
   app.add_option("--server", o.server,
                  "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
                  "the own interface");
+  app.add_option(
+      "--discovery-server", o.discovery_server,
+      "Ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");
   app.add_option("--port", o.port, "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
   app.add_option("--keys", o.keys,

@@ -18,7 +18,8 @@ struct BotOptions {
   std::string session = "default";
   int domain = 0;
   std::string interface = "127.0.0.1";
-  std::string server;  ///< empty: on the same machine
+  std::string server;            ///< empty: on the same machine
+  std::string discovery_server;  ///< HOST[:PORT] that know it, comma between; empty: none is asked
   int port = 0;
   std::string keys;  ///< folder; empty: no security
   std::vector<std::string> names;
@@ -41,6 +42,10 @@ struct BotOptions {
   std::string junit;    ///< file for the limits as a JUnit document; empty: none
   std::vector<Limit> limits;
 };
+
+struct DdsOptions;
+/// How a process of it meets the session.
+DdsOptions dds_of(const BotOptions& options);
 
 struct BotCommandLine {
   BotOptions options;

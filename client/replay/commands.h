@@ -43,7 +43,7 @@ int run_explain(const ExplainOptions& options);
 /// Plays a log to a live session (client/replay/play.h).
 struct PlayCommand {
   std::filesystem::path log;
-  std::string session = "default", interface = "127.0.0.1", server;
+  std::string session = "default", interface = "127.0.0.1", server, discovery_server;
   int domain = 0, server_port = 0;
   std::string keys;                                             ///< folder; empty: no security
   double speed = 1.0, from_s = 0.0, to_s = 0.0, wait_s = 10.0;  ///< to_s 0: to the end

@@ -109,6 +109,9 @@ void add_play([[maybe_unused]] CLI::App& app, [[maybe_unused]] int& code) {
   command->add_option("--server", o.server,
                       "hosts where the server may be, comma between: IPv4, or a name of them; "
                       "default: the own interface");
+  command->add_option(
+      "--discovery-server", o.discovery_server,
+      "ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");
   command->add_option("--keys", o.keys,
                       "folder of the own keys (mortise keys), where the server asks for some");
   command->add_option("--server-port", o.server_port, "discovery port of the server")

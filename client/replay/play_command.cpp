@@ -15,6 +15,7 @@ int run_play(const PlayCommand& command) {
   dds.domain = command.domain;
   dds.interface = command.interface;
   dds.server = command.server;
+  dds.discovery_server = command.discovery_server;
   dds.discovery_port = command.server_port;
   dds.keys = command.keys;
   dds.meshes = dds.features = false;

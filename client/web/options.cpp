@@ -68,6 +68,9 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
   app.add_option("--server", o.server,
                  "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
                  "the own interface");
+  app.add_option(
+      "--discovery-server", o.discovery_server,
+      "Ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");
   app.add_option("--server-port", o.discovery_port,
                  "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));

@@ -87,6 +87,7 @@ int serve_session(const WebOptions& options, StopSignal& stop_signal) {
   dds.domain = options.domain;
   dds.interface = options.interface;
   dds.server = options.server;
+  dds.discovery_server = options.discovery_server;
   dds.discovery_port = options.discovery_port;
   dds.keys = options.keys;
   auto channel = open_client_channel(dds);

@@ -20,10 +20,9 @@ inline double steady_s() {
 /// A participant in this process.
 struct Guest {
   Guest(int domain, const std::string& name, const std::string& role = "designer",
-        const std::string& keys = "") {
-    DdsOptions options;
-    options.domain = domain;
-    options.keys = keys;
+        const std::string& keys = "")
+      : Guest(by(domain, keys), name, role) {}
+  Guest(const DdsOptions& options, const std::string& name, const std::string& role = "designer") {
     auto opened = open_client_channel(options);
     if (!opened) return;
     channel = std::move(*opened);
@@ -75,6 +74,12 @@ struct Guest {
   std::vector<Reply> replies;
 
  private:
+  static DdsOptions by(int domain, const std::string& keys) {
+    DdsOptions options;
+    options.domain = domain;
+    options.keys = keys;
+    return options;
+  }
   std::uint64_t told_up_to_ = 0;  ///< increments up to here are taken, or in doubt
 };
 

@@ -110,7 +110,7 @@ std::string nobody_text(const DirectoryCommand& command) {
   }
   return fmt::format("no server {}answered at {} ({}) within {:g} s: {}",
                      first.session == kEverySession ? "" : "of session '" + first.session + "' ",
-                     first.server.empty() ? first.interface : first.server, where, command.wait_s,
+                     looked_at(first), where, command.wait_s,
                      first.keys.empty() ? "none runs there, or it asks for keys (--keys)"
                                         : "none runs there, or not with keys of the same site");
 }

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+
+namespace mortise {
+
+struct DiscoveryOptions {
+  std::string interface = "127.0.0.1";  ///< own IPv4 address to hear at
+  int port = 0;                         ///< 0: 7398
+};
+
+struct DiscoveryCounts {
+  std::uint64_t heard = 0;      ///< announcements taken
+  std::uint64_t passed_on = 0;  ///< datagrams to others
+  std::uint64_t not_sent = 0;   ///< of them: the network did not take them
+  std::uint64_t malformed = 0, no_purpose = 0, from_elsewhere = 0, too_often = 0, full = 0;
+  std::size_t participants = 0, servers = 0, sessions = 0;  ///< now
+  std::size_t most_participants = 0;                        ///< at one time
+};
+
+/// Where servers and clients of all sessions of a site hear of each other (DdsOptions::
+/// discovery_server): what a participant announces of itself is passed on, byte for byte, to those
+/// who are to know it (Introductions); from then on they speak with each other alone. It holds no
+/// keys and proves nothing: who may take part is settled between them, by their certificates. Lost
+/// or started again, it interrupts no session; only whoever comes meanwhile waits.
+///
+/// This is not the Discovery Server of Fast DDS, whose 2.9 brings nobody together under
+/// DDS-Security.
+class DiscoveryServer {
+ public:
+  /// Fails where the interface is not of this machine or the port is in use.
+  static Result<std::unique_ptr<DiscoveryServer>> open(const DiscoveryOptions& options);
+  virtual ~DiscoveryServer() = default;
+
+  /// Servers that come and go are told, one line each, with what is printable of their sessions'
+  /// names.
+  virtual void run_for(double seconds, const std::function<void(const std::string&)>& tell) = 0;
+  virtual std::string place() const = 0;  ///< address:port
+  virtual DiscoveryCounts counts() const = 0;
+};
+
+}  // namespace mortise

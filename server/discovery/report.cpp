@@ -1,0 +1,45 @@
+#include "server/discovery/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace mortise {
+
+std::string discovery_text(const DiscoveryCounts& c) {
+  std::string text;
+  const auto row = [&text](const char* what, std::uint64_t number) {
+    text += fmt::format("  {:<52} {:>12}\n", what, number);
+  };
+  row("announcements taken", c.heard);
+  row("passed on to others", c.passed_on);
+  row("not sent, the network did not take them", c.not_sent);
+  row("dropped: malformed", c.malformed);
+  row("dropped: of nobody who names a discovery server", c.no_purpose);
+  row("dropped: not from the host that they name", c.from_elsewhere);
+  row("dropped: too many in a second", c.too_often);
+  row("dropped: too many participants, or servers of one", c.full);
+  row("participants at most", c.most_participants);
+  row("participants at the end", c.participants);
+  row("of them servers", c.servers);
+  row("sessions at the end", c.sessions);
+  return text;
+}
+
+std::string discovery_json(const DiscoveryCounts& c) {
+  nlohmann::ordered_json document = {{"heard", c.heard},
+                                     {"passed_on", c.passed_on},
+                                     {"not_sent", c.not_sent},
+                                     {"malformed", c.malformed},
+                                     {"no_purpose", c.no_purpose},
+                                     {"from_elsewhere", c.from_elsewhere},
+                                     {"too_often", c.too_often},
+                                     {"full", c.full},
+                                     {"most_participants", c.most_participants},
+                                     {"participants", c.participants},
+                                     {"servers", c.servers},
+                                     {"sessions", c.sessions}};
+  return document.dump(2) + "\n";
+}
+
+}  // namespace mortise

@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+#include "idl/discovery_server.h"
+
+namespace mortise {
+
+/// Of a discovery server that ends: a table for people, or one JSON document.
+std::string discovery_text(const DiscoveryCounts& counts);
+std::string discovery_json(const DiscoveryCounts& counts);
+
+}  // namespace mortise

@@ -1,0 +1,200 @@
+// A discovery server as a program: sessions that are found by their name alone, wherever they are.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/network/guest.h"
+#include "tests/network/key_ring.h"
+#include "tests/network/program.h"
+#include "tests/support/small_scenarios.h"
+
+namespace mortise::test {
+namespace {
+
+constexpr int kDomain = 229, kPort = 17398, kHall = 18100, kSpare = 18200, kYard = 18300;
+const std::string kPlace = "127.0.0.1:" + std::to_string(kPort);
+
+class DiscoveryServers : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(logs());
+    discovery_ = discover();
+  }
+  std::unique_ptr<Program> discover() const {
+    auto program = std::make_unique<Program>(
+        folder_.path(), "mortise-discovery",
+        std::vector<std::string>{"--port", std::to_string(kPort), "--json"});
+    EXPECT_TRUE(says(*program, "hears at " + kPlace)) << program->errors();
+    return program;
+  }
+  std::unique_ptr<Program> serve(const std::string& session, int port,
+                                 std::vector<std::string> more = {}) const {
+    std::vector<std::string> words = {folder_.write("blocks.yaml", blocks_yaml()), "--session",
+                                      session};
+    if (!more.empty() && more.front() == "--standby-of") words.clear();
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--port", std::to_string(port), "--domain", std::to_string(kDomain),
+                               "--discovery-server", kPlace, "--log", logs()});
+    return std::make_unique<Program>(folder_.path(), "mortise-server", words);
+  }
+  std::unique_ptr<Program> stand_by(int port) const {
+    return serve("hall", port, {"--standby-of", "hall", "--restore", logs()});
+  }
+  /// One who knows the discovery server, and no host of the session.
+  std::unique_ptr<Guest> guest(const std::string& session, const std::string& name,
+                               const std::string& keys = "") const {
+    DdsOptions options;
+    options.domain = kDomain;
+    options.session = session;
+    options.discovery_server = kPlace;
+    options.keys = keys;
+    return std::make_unique<Guest>(options, name);
+  }
+  static bool says(const Program& program, const std::string& text) {
+    for (const double end_s = steady_s() + 20.0; steady_s() < end_s;) {
+      if (program.errors().find(text) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+  static nlohmann::json end(Program& discovery) {
+    discovery.signal(SIGINT);
+    EXPECT_EQ(discovery.wait(5), 0) << discovery.errors();
+    return nlohmann::json::parse(discovery.out());
+  }
+  std::string logs() const { return folder_.path().string() + "/logs"; }
+
+  TestFolder folder_;
+  std::unique_ptr<Program> discovery_;
+};
+
+TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
+  const auto early = guest("hall", "early");  // before its server
+  const auto hall = serve("hall", kHall), yard = serve("yard", kYard);
+  ASSERT_TRUE(early->joined());
+  const auto ben = guest("hall", "ben"), cleo = guest("yard", "cleo");
+  EXPECT_TRUE(ben->joined());
+  EXPECT_TRUE(cleo->joined());
+  EXPECT_TRUE(ben->grab("red"));
+  EXPECT_TRUE(early->until(3, [&] { return early->holder("red") == ben->id; }));
+  EXPECT_FALSE(cleo->holder("red")) << "a session of its own";
+
+  Program directory(folder_.path(), "mortise-directory",
+                    {"--domain", std::to_string(kDomain), "--discovery-server", kPlace, "--json"});
+  while (directory.running())
+    for (Guest* one : {early.get(), ben.get(), cleo.get()}) one->until(0.01, [] { return false; });
+  ASSERT_EQ(directory.wait(10), 0) << directory.errors();
+  const auto servers = nlohmann::json::parse(directory.out())["servers"];
+  ASSERT_EQ(servers.size(), 2u) << servers.dump();
+  EXPECT_EQ(servers[0]["session"], "hall");
+  EXPECT_EQ(servers[0]["port"], kHall);
+  EXPECT_EQ(servers[0]["users"], 2);
+  EXPECT_EQ(servers[1]["session"], "yard");
+  EXPECT_EQ(servers[1]["port"], kYard);
+
+  const auto counts = end(*discovery_);
+  EXPECT_EQ(counts["servers"], 2);
+  EXPECT_GE(counts["most_participants"], 6);
+  for (const char* dropped : {"malformed", "no_purpose", "from_elsewhere", "too_often", "full"})
+    EXPECT_EQ(counts[dropped], 0) << dropped;
+}
+
+TEST_F(DiscoveryServers, TellClientsOfOneThatStandsByAndTakesOver) {
+  const auto hall = serve("hall", kHall);
+  const auto anna = guest("hall", "anna");
+  ASSERT_TRUE(anna->joined());
+  const auto spare = stand_by(kSpare);  // later than she, on a port that nobody named
+  ASSERT_TRUE(says(*spare, "in step")) << spare->errors();
+  ASSERT_TRUE(anna->grab("red"));
+  anna->client->send(anna->user, anna->client->find_part("red"), Vec3(0, 1, 0), Vec3::Zero());
+  ASSERT_TRUE(anna->until(3, [&] { return anna->taken.size() == 1; }));
+  const double before = anna->x("red");
+  hall->signal(SIGKILL);
+  const double killed_s = steady_s();
+  double lost_s = 0.0;
+  ASSERT_TRUE(anna->until(5, [&] {
+    if (spare->errors().find("taken over") != std::string::npos && lost_s == 0.0)
+      lost_s = steady_s();
+    return lost_s > 0.0 && anna->client->user_id(anna->user) && anna->client->synced();
+  })) << spare->errors();
+  std::printf("taken over %.0f ms after the kill, as a client met by a discovery server sees it\n",
+              1e3 * (steady_s() - killed_s));
+  EXPECT_EQ(anna->x("red"), before);
+  EXPECT_TRUE(anna->until(3, [&] { return anna->holder("red") == anna->client->user_id(0); }));
+  const auto ben = guest("hall", "ben");
+  EXPECT_TRUE(ben->joined()) << "and who comes now finds the one that leads";
+}
+
+TEST_F(DiscoveryServers, MayBeGoneAndComeBack) {
+  const auto hall = serve("hall", kHall);
+  const auto anna = guest("hall", "anna");
+  ASSERT_TRUE(anna->joined());
+  discovery_->signal(SIGKILL);
+  discovery_->wait(5);
+  EXPECT_TRUE(anna->until(4, [&] { return anna->client->statistics().server_losses > 0; }) == false)
+      << "who is in stays in, beyond every lease";
+  EXPECT_TRUE(anna->grab("red"));
+  const auto ben = guest("hall", "ben");
+  EXPECT_FALSE(ben->until(2, [&] { return ben->client->user_id(ben->user).value != 0; }))
+      << "nobody tells who comes";
+  discovery_ = discover();
+  EXPECT_TRUE(ben->until(5, [&] {
+    anna->listen();
+    return ben->client->user_id(ben->user) && ben->client->synced();
+  })) << "until it is back";
+  EXPECT_TRUE(says(*discovery_, "session 'hall', domain 229: server at 127.0.0.1:18100 is here"));
+}
+
+TEST_F(DiscoveryServers, NeedNoKeysWhereSessionsDo) {
+  KeyRing keys("site"), others("elsewhere", "elsewhere");
+  keys.issue("hall", "server");
+  keys.issue("anna", "designer");
+  others.issue("mallory", "designer");
+  ASSERT_EQ(keys.trouble() + others.trouble(), "");
+  const auto hall = serve("hall", kHall, {"--keys", keys["hall"]});
+  const auto anna = guest("hall", "anna", keys["anna"]);
+  EXPECT_TRUE(anna->joined());
+  EXPECT_TRUE(anna->grab("red"));
+  const auto stranger = guest("hall", "stranger"),
+             mallory = guest("hall", "mallory", others["mallory"]);
+  const auto nobody = [&] {
+    anna->listen();
+    mallory->listen();
+    return stranger->client->user_id(stranger->user) || mallory->client->user_id(mallory->user);
+  };
+  EXPECT_FALSE(stranger->until(3, nobody)) << "to be told of a server is not to be let in";
+}
+
+TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
+  const auto fails = [&](const std::string& program, const std::vector<std::string>& words,
+                         int code, const std::string& line) {
+    Program said(folder_.path(), program, words);
+    EXPECT_EQ(said.wait(20), code) << line;
+    EXPECT_NE((said.errors() + said.out()).find(line), std::string::npos)
+        << said.errors() << said.out();
+  };
+  const std::string port = std::to_string(kPort);
+  fails("mortise-discovery", {"--port", port}, 1,
+        "UDP port 17398 of 127.0.0.1: Address already in use; choose another with --port");
+  fails("mortise-discovery", {"--interface", "10.255.255.1"}, 3,
+        "'10.255.255.1' is not an IPv4 address of this machine");
+  fails("mortise-discovery", {"--port", "70000"}, 2, "--port");
+  const std::vector<std::string> bot = {"--domain", "229", "--wait", "1", "--discovery-server"};
+  const auto with = [&bot](const std::string& place) {
+    std::vector<std::string> words = bot;
+    words.push_back(place);
+    return words;
+  };
+  fails("mortise-bot", with("127.0.0.1:x"), 3,
+        "discovery server '127.0.0.1:x': the port behind the colon is not in 1..65535");
+  fails("mortise-bot", with("nobody.invalid"), 3,
+        "discovery server 'nobody.invalid' is neither an IPv4 address nor a name");
+  fails("mortise-bot", with(kPlace), 1,
+        "no server of session 'default' answered on domain 229 at wherever the discovery server " +
+            kPlace + " knows within 1 s");
+}
+
+}  // namespace
+}  // namespace mortise::test
