@@ -4,8 +4,6 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
@@ -35,7 +33,6 @@ constexpr double kAnnouncementPeriod_s = 0.5;
 constexpr double kServerWriteWait_s = 0.01, kClientWriteWait_s = 0.1;
 // Clients wait for what one that stands by has not got: what is lost on the way comes soon.
 constexpr double kServersHeartbeat_s = 0.02;
-const std::string kTermPrefix = "term=", kVersionPrefix = "version=";
 // Samples of different sessions have one key.
 constexpr int kDirectoryDepth = 64;
 // A socket's buffer holds a whole scene's burst.
@@ -202,52 +199,7 @@ void set_common(Qos& qos, const TopicRow& row, const DdsOptions& options, int de
 
 }  // namespace
 
-std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data) {
-  const std::string text(user_data.begin(), user_data.end());
-  std::uint64_t term = 0;
-  if (!text.starts_with(kTermPrefix)) return 0;
-  std::from_chars(text.data() + kTermPrefix.size(), text.data() + text.size(), term);
-  return term;
-}
-
-std::uint64_t next_term(std::uint64_t after) {
-  using std::chrono::milliseconds;
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const auto now_ms = std::chrono::duration_cast<milliseconds>(now).count();
-  return std::max(static_cast<std::uint64_t>(std::max<std::int64_t>(now_ms, 0)), after + 1);
-}
-
 std::string partition_of(const std::string& session) { return "session/" + session; }
-
-std::uint64_t told_term(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& writer,
-                        const std::string& session) {
-  if (writer.status == eprosima::fastrtps::rtps::WriterDiscoveryInfo::REMOVED_WRITER) return 0;
-  // Who leads answers, and tells with that writer when it leads anew.
-  if (writer.info.topicName().to_string() != row_of(Topic::kAnswers).topic) return 0;
-  const std::vector<std::string> partitions = writer.info.m_qos.m_partition.names();
-  const bool is_here =
-      std::find(partitions.begin(), partitions.end(), partition_of(session)) != partitions.end();
-  return is_here ? term_of(writer.info.m_qos.m_userData.data_vec()) : 0;
-}
-
-std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data) {
-  const std::string text(user_data.begin(), user_data.end());
-  const std::size_t at = text.find(kVersionPrefix);
-  if (at == std::string::npos) return {};
-  const std::size_t first = at + kVersionPrefix.size();
-  return text.substr(first, text.find(' ', first) - first);
-}
-
-namespace {
-
-/// The term first: programs of before read it there, and nothing behind it.
-void put_term(std::uint64_t term, dds::DataWriterQos& qos) {
-  std::string text = kVersionPrefix + MORTISE_VERSION;
-  if (term != 0) text = kTermPrefix + std::to_string(term) + " " + text;
-  qos.user_data().data_vec({text.begin(), text.end()});
-}
-
-}  // namespace
 
 void Participant::change_term(dds::DataWriter& writer, std::uint64_t term) {
   set_term(term);

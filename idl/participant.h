@@ -22,6 +22,7 @@
 #include "idl/guard_transport.h"
 #include "idl/identity.h"
 #include "idl/safe_type.h"
+#include "idl/terms.h"
 #include "idl/topics.h"
 
 namespace mortise {
@@ -36,17 +37,6 @@ std::string partition_of(const std::string& session);
 
 /// Does anybody listen?
 bool matched(dds::DataWriter* writer);
-
-/// Who led a session later has the higher term: ms since 1970 of its beginning, told with the
-/// server's writers; 0: one that tells none.
-std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
-/// The one of now, or where the clock says less, the next.
-std::uint64_t next_term(std::uint64_t after);
-/// The term that a server of the session tells with this writer; 0: it is no such writer, or goes.
-std::uint64_t told_term(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& writer,
-                        const std::string& session);
-/// Of the program that wrote it, told behind the term; empty: one of before told none.
-std::string version_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
 
 /// What a participant announces of its certificate: "dds.cert.sn", its subject, or "dds.ca.sn",
 /// that of its authority; empty: it has none. Proven by nothing yet.

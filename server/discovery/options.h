@@ -1,5 +1,5 @@
 #pragma once
-#include "idl/discovery_server.h"
+#include "server/discovery/discovery_server.h"
 
 namespace mortise {
 

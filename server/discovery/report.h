@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "idl/discovery_server.h"
+#include "server/discovery/discovery_server.h"
 
 namespace mortise {
 

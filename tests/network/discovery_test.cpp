@@ -2,13 +2,19 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <span>
 
+#include "idl/announcement.h"
+#include "idl/datagram_guard.h"
 #include "tests/network/guest.h"
 #include "tests/network/key_ring.h"
 #include "tests/network/program.h"
 #include "tests/support/small_scenarios.h"
+#include "tests/support/udp_ear.h"
 
 namespace mortise::test {
 namespace {
@@ -165,6 +171,89 @@ TEST_F(DiscoveryServers, NeedNoKeysWhereSessionsDo) {
     return stranger->client->user_id(stranger->user) || mallory->client->user_id(mallory->user);
   };
   EXPECT_FALSE(stranger->until(3, nobody)) << "to be told of a server is not to be let in";
+}
+
+/// What one participant announces, made into what hundreds of others would.
+class Crowd {
+ public:
+  Crowd(std::vector<std::byte> announced, const std::string& session, int port)
+      : whole_(std::move(announced)) {
+    const auto text = std::as_bytes(std::span(session));
+    const auto found = std::search(whole_.begin(), whole_.end(), text.begin(), text.end());
+    session_ = static_cast<std::size_t>(found - whole_.begin());
+    for (std::size_t at = 20; at + 28 < whole_.size() && place_ == 0; ++at)  // PID, length, kind
+      if (whole_[at] == std::byte{0x32} && whole_[at + 1] == std::byte{0} &&
+          whole_[at + 2] == std::byte{24} && whole_[at + 4] == std::byte{1})
+        place_ = at + 8;
+    if (is_whole()) put(place_, static_cast<std::uint16_t>(port));
+  }
+  bool is_whole() const { return session_ < whole_.size() && place_ > 0; }
+  std::span<const std::byte> of(int participant, char session) {
+    put(8, static_cast<std::uint16_t>(participant));
+    whole_[session_] = static_cast<std::byte>(session);
+    return whole_;
+  }
+
+ private:
+  void put(std::size_t at, std::uint16_t value) { std::memcpy(&whole_[at], &value, sizeof value); }
+  std::vector<std::byte> whole_;
+  std::size_t session_ = 0, place_ = 0;
+};
+
+TEST_F(DiscoveryServers, ServeACrowdAndLiveThroughNoise) {
+  constexpr int kSessions = 20, kEach = 50, kRounds = 8;
+  const UdpEar ear, sink;
+  const auto announced = [&](bool serves) {
+    DdsOptions options;
+    options.domain = kDomain;
+    options.session = "0 of a crowd";
+    options.discovery_server = ear.place();
+    if (serves) options.discovery_port = kYard;
+    const auto client = serves ? nullptr : open_client_channel(options).value();
+    const auto server = serves ? open_server_channel(options).value() : nullptr;
+    for (auto told = ear.next(); !told.empty(); told = ear.next()) {
+      told.resize(admissible_length(told));
+      const auto read = read_announcement(told);
+      if (read && read->purpose && read->purpose->serves == serves)
+        return Crowd(std::move(told), options.session, sink.port());
+    }
+    return Crowd({}, options.session, 0);
+  };
+  Crowd clients = announced(false), servers = announced(true);
+  ASSERT_TRUE(clients.is_whole() && servers.is_whole());
+  const double cpu_s = discovery_->cpu_s();
+  for (int round = 0; round < kRounds; ++round)
+    for (int session = 0; session < kSessions; ++session)
+      for (int i = 0; i < kEach; ++i) {
+        const int participant = session * kEach + i + 1;
+        ear.send((i == 0 ? servers : clients).of(participant, static_cast<char>('A' + session)),
+                 kPort);
+        if (i % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const double took_s = discovery_->cpu_s() - cpu_s;
+  std::mt19937 random(3);
+  constexpr int kNoise = 20'000;
+  for (int i = 0; i < kNoise; ++i) {
+    const auto one = (random() % 2 == 0 ? servers : clients).of(7, 'A');
+    std::vector<std::byte> bytes(one.begin(), one.end());
+    for (std::size_t n = 1 + random() % 8; n > 0; --n)
+      bytes[random() % bytes.size()] = static_cast<std::byte>(random() & 0xff);
+    if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+    ear.send(bytes, kPort);
+    if (i % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const auto hall = serve("hall", kHall);
+  EXPECT_TRUE(guest("hall", "anna")->joined()) << "after all this";
+  const auto counts = end(*discovery_);
+  constexpr int kSent = kSessions * kEach * kRounds;
+  EXPECT_GE(counts["heard"], kSent);
+  EXPECT_GE(counts["most_participants"], kSessions * kEach);
+  // A client's go to its server, a server's to its clients, once both are known.
+  EXPECT_GE(counts["passed_on"], kSessions * (kEach - 1) * (2 * kRounds - 1));
+  EXPECT_GT(counts["malformed"], kNoise / 10);
+  std::printf("%d participants: %.1f us of CPU for an announcement with what it is passed on to\n",
+              kSessions * kEach, 1e6 * took_s / kSent);
 }
 
 TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {

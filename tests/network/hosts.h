@@ -32,7 +32,8 @@
 
 namespace mortise::test {
 
-inline constexpr int kDomain = 215, kServerSide = 0, kStandbySide = 1, kSides = 5;
+inline constexpr int kDomain = 215, kServerSide = 0, kStandbySide = 1, kDiscoverSide = 3,
+                     kLastSide = 4, kSides = 5;
 inline constexpr std::array<const char*, 4> kNames = {"anna", "ben", "cleo", "dan"};
 inline constexpr double kPi = 3.14159265358979323846, kBeat_s = 1.0 / 60.0;
 
@@ -64,7 +65,8 @@ struct Hand {
   std::set<std::uint64_t> sent, acknowledged;
 };
 
-/// Server, standby, two of two designers each, one that looks on; keys, 20 ms and 1 % loss.
+/// Server, standby, two of two designers each, one that looks on, where the discovery server is as
+/// well; keys, 20 ms and 1 % loss.
 class Hosts : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -78,6 +80,7 @@ class Hosts : public ::testing::Test {
     ASSERT_EQ(keys_->trouble(), "");
     logs_ = folder_.path().string() + "/logs";
     std::filesystem::create_directories(logs_);
+    link_->on_side(kLastSide, [this] { discovery_ = discover(); }).join();
     server_ = link_->on_side(kServerSide, [this] { serve(); });
     ASSERT_TRUE(until(
         10, [&] { return serving_ || !fault().empty(); }, [] {}))
@@ -95,13 +98,19 @@ class Hosts : public ::testing::Test {
     EXPECT_EQ(fault(), "");
   }
   /// Called in a thread of that side.
+  std::unique_ptr<Program> discover() const {
+    return std::make_unique<Program>(
+        folder_.path(), "mortise-discovery",
+        std::vector<std::string>{"--interface", LossyLink::address(kLastSide)});
+  }
   std::unique_ptr<Program> stand_by(int side, const std::string& name) {
     return std::make_unique<Program>(
         folder_.path(), "mortise-server",
         std::vector<std::string>{"--standby-of", "default", "--restore", logs_, "--log", logs_,
                                  "--domain", std::to_string(kDomain), "--interface",
                                  LossyLink::address(side), "--peers",
-                                 LossyLink::address(kServerSide), "--keys", (*keys_)[name]});
+                                 LossyLink::address(kServerSide), "--discovery-server",
+                                 LossyLink::address(kLastSide), "--keys", (*keys_)[name]});
   }
   bool said(const std::string& words) const {
     return standby_->errors().find(words) != std::string::npos;
@@ -119,11 +128,16 @@ class Hosts : public ::testing::Test {
     const std::lock_guard lock(mutex_);
     fault_ += fault + "\n";
   }
+  /// Servers and the first two designers know each other's hosts, the other two the discovery
+  /// server's alone.
   DdsOptions options(int side, const std::string& name) const {
     DdsOptions o;
     o.domain = kDomain;
     o.interface = LossyLink::address(side);
-    o.server = LossyLink::address(kServerSide) + "," + LossyLink::address(kStandbySide);
+    if (side != kDiscoverSide)
+      o.server = LossyLink::address(kServerSide) + "," + LossyLink::address(kStandbySide);
+    if (side == kDiscoverSide || side == kServerSide)
+      o.discovery_server = LossyLink::address(kLastSide);
     o.keys = (*keys_)[name];
     return o;
   }
@@ -343,7 +357,7 @@ class Hosts : public ::testing::Test {
   std::unique_ptr<KeyRing> keys_;
   std::string scenario_;  ///< empty: cubes and a wall
   std::string logs_, first_log_, drained_;
-  std::unique_ptr<Program> standby_;
+  std::unique_ptr<Program> discovery_, standby_;
   std::thread server_;
   std::vector<std::thread> threads_;
   std::array<Hand, 4> hands_;

@@ -2,10 +2,6 @@
 #include "idl/introductions.h"
 
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -16,6 +12,7 @@
 #include "idl/participant.h"
 #include "idl/server_places.h"
 #include "tests/support/effort.h"
+#include "tests/support/udp_ear.h"
 
 namespace mortise {
 namespace {
@@ -23,37 +20,6 @@ namespace {
 using Outcome = Introductions::Outcome;
 constexpr std::uint32_t kHere = 0x7f000001, kThere = 0x0a000002;
 constexpr int kDomain = 226;
-
-/// The place of a discovery server, where datagrams are only kept.
-class Ear {
- public:
-  Ear() {
-    sockaddr_in own{};
-    own.sin_family = AF_INET;
-    own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof own;
-    sockaddr generic{};
-    std::memcpy(&generic, &own, sizeof own);
-    EXPECT_EQ(bind(handle_, &generic, size), 0);
-    EXPECT_EQ(getsockname(handle_, &generic, &size), 0);
-    std::memcpy(&own, &generic, sizeof own);
-    port_ = ntohs(own.sin_port);
-  }
-  ~Ear() { close(handle_); }
-  std::string place() const { return "127.0.0.1:" + std::to_string(port_); }
-  std::vector<std::byte> next(int limit_ms = 5000) const {
-    std::vector<std::byte> datagram(65536);
-    pollfd ready{handle_, POLLIN, 0};
-    const ssize_t size =
-        poll(&ready, 1, limit_ms) > 0 ? recv(handle_, datagram.data(), datagram.size(), 0) : 0;
-    datagram.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    return datagram;
-  }
-
- private:
-  int handle_ = socket(AF_INET, SOCK_DGRAM, 0);
-  int port_ = 0;
-};
 
 std::string key_of(const Announcement& told) {
   constexpr char kDigits[] = "0123456789abcdef";
@@ -66,7 +32,7 @@ std::string key_of(const Announcement& told) {
 }
 
 TEST(Announcements, OfAParticipantSayWhoItIsWhatForAndWhereItHears) {
-  const Ear ear;
+  const test::UdpEar ear;
   DdsOptions options;
   options.domain = kDomain;
   options.session = "hall 3, left";
@@ -94,7 +60,7 @@ TEST(Announcements, OfAParticipantSayWhoItIsWhatForAndWhereItHears) {
 }
 
 TEST(Announcements, TellNothingWhereNoDiscoveryServerIsNamed) {
-  const Ear ear;
+  const test::UdpEar ear;
   DdsOptions options;
   options.domain = kDomain;
   options.discovery_server = ear.place();
@@ -114,7 +80,7 @@ TEST(Announcements, TellNothingWhereNoDiscoveryServerIsNamed) {
 }
 
 TEST(Announcements, OfWhateverBytesAreReadWithoutHarm) {
-  const Ear ear;
+  const test::UdpEar ear;
   DdsOptions options;
   options.domain = kDomain;
   options.discovery_server = ear.place();

@@ -1,4 +1,4 @@
-#include "idl/discovery_server.h"
+#include "server/discovery/discovery_server.h"
 
 #include <algorithm>
 #include <array>
