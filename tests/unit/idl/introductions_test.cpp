@@ -74,9 +74,39 @@ TEST(Announcements, TellNothingWhereNoDiscoveryServerIsNamed) {
   options.discovery_port = std::stoi(ear.place().substr(10));  // as if it were the server
   client = Participant::open(options, Participant::Side::kClient, nullptr);
   ASSERT_TRUE(client) << client.error().text;
-  for (int i = 0; i < 100 && told && told->purpose; ++i) told = read_announcement(ear.next());
+  for (int i = 0; i < 100 && told && key_of(*told) != (*client)->key(); ++i)
+    told = read_announcement(ear.next());
   ASSERT_TRUE(told);
+  EXPECT_EQ(key_of(*told), (*client)->key());
   EXPECT_FALSE(told->purpose);
+}
+
+TEST(Announcements, NameSomePlacesAndNoMore) {
+  const test::UdpEar ear;
+  DdsOptions options;
+  options.domain = kDomain;
+  options.discovery_server = ear.place();
+  auto client = Participant::open(options, Participant::Side::kClient, nullptr);
+  ASSERT_TRUE(client) << client.error().text;
+  auto datagram = ear.next();
+  datagram.resize(admissible_length(datagram));
+  const std::vector<std::byte> begin = {std::byte{0x32}, std::byte{0}, std::byte{24}, std::byte{0},
+                                        std::byte{1},    std::byte{0}, std::byte{0},  std::byte{0}};
+  const auto found = std::search(datagram.begin(), datagram.end(), begin.begin(), begin.end());
+  ASSERT_NE(found, datagram.end());
+  const std::vector<std::byte> place(found, found + 28);
+  for (int i = 0; i < 20; ++i) datagram.insert(datagram.end() - 4, place.begin(), place.end());
+  // DATA is the last submessage: its length is "to the end".
+  for (std::size_t at = 20; at + 4 < datagram.size();) {
+    std::uint16_t length = 0;
+    std::memcpy(&length, &datagram[at + 2], sizeof length);
+    if (datagram[at] == std::byte{0x15}) datagram[at + 2] = datagram[at + 3] = std::byte{0};
+    at += 4u + (datagram[at] == std::byte{0x15} ? datagram.size() : length);
+  }
+  ASSERT_EQ(admissible_length(datagram), datagram.size());
+  const auto told = read_announcement(datagram);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->places.size(), 8u);
 }
 
 TEST(Announcements, OfWhateverBytesAreReadWithoutHarm) {
