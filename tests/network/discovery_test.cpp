@@ -100,6 +100,10 @@ TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
   EXPECT_EQ(servers[1]["session"], "yard");
   EXPECT_EQ(servers[1]["port"], kYard);
 
+  const auto rival = serve("hall", kSpare);
+  EXPECT_EQ(rival->wait(10), 1) << "a session has one that leads, whatever its port";
+  EXPECT_NE(rival->errors().find("another server leads session 'hall'"), std::string::npos);
+
   const auto counts = end(*discovery_);
   EXPECT_EQ(counts["servers"], 2);
   EXPECT_GE(counts["most_participants"], 6);
