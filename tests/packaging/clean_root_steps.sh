@@ -118,15 +118,17 @@ session() {  # what the packages are for, with keys and without
     # shellcheck disable=SC2086
     mortise-keys issue $keys --keys site >said.txt 2>&1 || { cat said.txt; fail "mortise-keys issue $keys"; }
   done
+  mortise-discovery --quiet >discovery.txt 2>&1 &
+  local discovery=$!
   for keys in no yes; do
     with() { [ $keys = no ] || echo "--keys site/$1"; }
     # shellcheck disable=SC2046
-    mortise-server /usr/share/mortise/scenarios/gearbox.yaml --session $keys --domain 7 --log $keys.mcap --quiet $(with hall) >server.txt 2>&1 &
+    mortise-server /usr/share/mortise/scenarios/gearbox.yaml --session $keys --domain 7 --log $keys.mcap --discovery-server localhost --quiet $(with hall) >server.txt 2>&1 &
     server=$!
     # shellcheck disable=SC2046
-    said=$(mortise-bot --session $keys --domain 7 --names mill --wait 20 --seconds 2 --quiet $(with mill) 2>&1) || { cat server.txt; fail "mortise-bot, keys: $keys: $said"; }
+    said=$(mortise-bot --session $keys --domain 7 --discovery-server localhost --names mill --wait 20 --seconds 2 --quiet $(with mill) 2>&1) || { cat server.txt; fail "mortise-bot, keys: $keys: $said"; }
     # shellcheck disable=SC2046
-    said=$(mortise-directory --domain 7 --wait 2 $(with anna) 2>&1) || fail "mortise-directory, keys: $keys: $said"
+    said=$(mortise-directory --domain 7 --discovery-server localhost --wait 2 $(with anna) 2>&1) || fail "mortise-directory, keys: $keys: $said"
     grep -qw "$keys" <<<"$said" || fail "mortise-directory does not see the session: $said"
     if [ $keys = no ]; then
       if [ -x example/build/watch ]; then
@@ -148,7 +150,9 @@ session() {  # what the packages are for, with keys and without
     wait $server || { cat server.txt; fail "mortise-server, keys: $keys"; }
     mortise-replay verify $keys.mcap >said.txt || { cat said.txt; fail "the log of the session, keys: $keys"; }
   done
-  echo "a session ran from what is installed, with keys and without; its logs verify"
+  kill -INT $discovery
+  wait $discovery || { cat discovery.txt; fail "mortise-discovery"; }
+  echo "a session ran from what is installed, found by a discovery server, with keys and without; its logs verify"
 }
 
 library() {  # the package of the library brings what its users compile with; the example outside of the tree is built

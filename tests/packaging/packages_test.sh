@@ -59,9 +59,9 @@ files() { find /usr /etc /lib /opt -xdev \( -name mortise -o -name 'mortise*' -o
 [ ! -e "$2/CMakeLists.txt" ] || { echo "the sources are to be seen"; exit 1; }
 dpkg -i "$inside"/*.deb >/dev/null
 echo "installed: $(dpkg-query -W -f '${Package} ${Version} ${db:Status-Status}; ' mortise-server mortise-tools mortise-web libmortise-dev)"
-for program in server bot web replay judge lint inspect first-contact generate; do mortise-$program --help >/dev/null; done
+for program in server discovery bot directory web replay judge lint inspect first-contact generate; do mortise-$program --help >/dev/null; done
 if command -v systemd-analyze >/dev/null; then
-  said=$(systemd-analyze verify --man=no mortise-server@demo.service mortise-web@demo.service 2>&1 | grep mortise || true)
+  said=$(systemd-analyze verify --man=no mortise-server@demo.service mortise-web@demo.service mortise-discovery.service 2>&1 | grep mortise || true)
   [ -z "$said" ] || { echo "systemd: $said"; exit 1; }
 fi
 cd /
