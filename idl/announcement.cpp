@@ -20,9 +20,12 @@ const std::string kBegin = "mortise ", kServer = "server ", kClient = "client ";
 constexpr std::array<std::byte, 4> kAnnouncer = {std::byte{0x00}, std::byte{0x01}, std::byte{0x00},
                                                  std::byte{0xc2}};
 constexpr std::size_t kWriterAt = 8, kAfterSequence = 20;  // in the body of DATA
-constexpr std::uint8_t kInlineQosFlag = 2, kDataFlag = 4;
+constexpr std::uint8_t kInlineQosFlag = 2, kDataOrKeyFlag = 4 | 8;
+constexpr std::uint8_t kInfoTimestamp = 0x09;
 // Parameters, sections 9.6.2.2 and 9.6.3.9.
-constexpr std::uint16_t kMetatrafficUnicast = 0x32, kStatusInfo = 0x71;
+constexpr std::uint16_t kMulticast = 0x30, kUnicast = 0x31, kMetatrafficUnicast = 0x32,
+                        kMetatrafficMulticast = 0x33, kParticipantGuid = 0x50, kKeyHash = 0x70,
+                        kStatusInfo = 0x71;
 constexpr std::uint32_t kUdpV4 = 1;
 constexpr std::size_t kLocatorSize = 24, kIpv4InLocator = 20;
 
@@ -40,11 +43,12 @@ std::size_t for_each_parameter(const Bytes& list, Action action) {
   return at;
 }
 
-void read_place(const Bytes& locator, std::vector<UdpPlace>& places) {
-  if (!locator.has(kLocatorSize) || locator.u32(0) != kUdpV4 || places.size() >= kMostPlaces)
+void read_place(const Bytes& locator, std::vector<UdpPlace>& places, bool& otherwise) {
+  const std::uint32_t port = locator.has(kLocatorSize) ? locator.u32(4) : 0;
+  if (port == 0 || port > 0xffff || locator.u32(0) != kUdpV4 || places.size() >= kMostPlaces) {
+    otherwise = true;
     return;
-  const std::uint32_t port = locator.u32(4);
-  if (port == 0 || port > 0xffff) return;
+  }
   const Bytes in_net_order{locator.data, false};
   places.push_back({in_net_order.u32(kIpv4InLocator), static_cast<std::uint16_t>(port)});
 }
@@ -57,29 +61,53 @@ std::string text_of(const Bytes& octets) {
   return text;
 }
 
-/// False: it is another's data.
-bool read_data(const Bytes& body, std::uint8_t flags, Announcement& told) {
-  if (!body.has(kAfterSequence) ||
-      !std::equal(kAnnouncer.begin(), kAnnouncer.end(), body.data.begin() + kWriterAt))
-    return false;
-  std::size_t at = kAfterSequence;
-  if ((flags & kInlineQosFlag) != 0)
-    at += for_each_parameter({body.data.subspan(at), body.little},
-                             [&told](std::uint16_t id, const Bytes& value) {
-                               constexpr std::uint32_t kGone = 1 | 2;  // disposed, unregistered
-                               if (id == kStatusInfo && value.has(4))
-                                 told.leaves = (Bytes{value.data, false}.u32(0) & kGone) != 0;
-                             });
-  if (told.leaves) return true;
-  if ((flags & kDataFlag) == 0 || !body.has(at + 4)) return false;
-  const bool little = body.u8(at + 1) == 3;  // encapsulation: a parameter list, 2 or 3
-  for_each_parameter({body.data.subspan(at + 4), little},
-                     [&told](std::uint16_t id, const Bytes& value) {
-                       if (id == kMetatrafficUnicast) read_place(value, told.places);
-                       if (id == kUserData) told.purpose = purpose_of(text_of(value));
-                     });
-  return true;
-}
+/// Reads the body of DATA; false: it is no announcement of who sends it.
+class AnnouncementReader {
+ public:
+  explicit AnnouncementReader(Announcement& told) : told_(told) {}
+
+  bool read(const Bytes& body, std::uint8_t flags) {
+    if (!body.has(kAfterSequence) ||
+        !std::equal(kAnnouncer.begin(), kAnnouncer.end(), body.data.begin() + kWriterAt))
+      return false;
+    std::size_t at = kAfterSequence;
+    if ((flags & kInlineQosFlag) != 0)
+      at += for_each_parameter(
+          {body.data.subspan(at), body.little},
+          [this](std::uint16_t id, const Bytes& value) { take_inline(id, value); });
+    if ((flags & kDataOrKeyFlag) != 0) {
+      if (!body.has(at + 4)) return false;
+      const bool little = body.u8(at + 1) == 3;  // encapsulation: a parameter list, 2 or 3
+      for_each_parameter({body.data.subspan(at + 4), little},
+                         [this](std::uint16_t id, const Bytes& value) { take(id, value); });
+    }
+    return names_itself_ && !names_another_;
+  }
+
+ private:
+  void take_inline(std::uint16_t id, const Bytes& value) {
+    constexpr std::uint32_t kGone = 1 | 2;  // disposed, unregistered
+    if (id == kStatusInfo && value.has(4))
+      told_.leaves = (Bytes{value.data, false}.u32(0) & kGone) != 0;
+    if (id == kKeyHash) take_name(value);
+  }
+  void take(std::uint16_t id, const Bytes& value) {
+    if (id == kParticipantGuid) take_name(value);
+    if (id == kMetatrafficUnicast) read_place(value, told_.places, told_.hears_otherwise);
+    if (id == kUnicast) read_place(value, told_.inboxes, told_.hears_otherwise);
+    if (id == kMulticast || id == kMetatrafficMulticast) told_.hears_otherwise = true;
+    if (id == kUserData) told_.purpose = purpose_of(text_of(value));
+  }
+  void take_name(const Bytes& guid) {
+    const bool own =
+        guid.has(told_.participant.size()) &&
+        std::equal(told_.participant.begin(), told_.participant.end(), guid.data.begin());
+    (own ? names_itself_ : names_another_) = true;
+  }
+
+  Announcement& told_;
+  bool names_itself_ = false, names_another_ = false;
+};
 
 }  // namespace
 
@@ -124,6 +152,7 @@ std::optional<Announcement> read_announcement(std::span<const std::byte> datagra
   Announcement told;
   std::copy_n(datagram.begin() + kHeaderSize - told.participant.size(), told.participant.size(),
               told.participant.begin());
+  bool announces = false;
   std::size_t at = kHeaderSize;
   while (all.has(at + kSubmessageHeaderSize)) {
     const std::uint8_t id = all.u8(at), flags = all.u8(at + 1);
@@ -132,11 +161,17 @@ std::optional<Announcement> read_announcement(std::span<const std::byte> datagra
     at += kSubmessageHeaderSize;
     if (length == 0 && id == kDataSubmessage) length = datagram.size() - at;
     if (!all.has(at + length)) return std::nullopt;
-    if (id == kDataSubmessage && read_data({datagram.subspan(at, length), little}, flags, told))
-      return told;
+    if (id == kDataSubmessage) {
+      if (announces ||
+          !AnnouncementReader(told).read({datagram.subspan(at, length), little}, flags))
+        return std::nullopt;
+      announces = true;
+    } else if (id != kInfoTimestamp || announces) {
+      return std::nullopt;
+    }
     at += length;
   }
-  return std::nullopt;
+  return announces ? std::optional(told) : std::nullopt;
 }
 
 }  // namespace mortise

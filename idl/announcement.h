@@ -29,16 +29,19 @@ std::string to_text(const Purpose& purpose);
 std::optional<Purpose> purpose_of(const std::string& text);
 
 /// A participant's announcement of itself (RTPS 2.3, section 8.5.3), as far as one asks who does
-/// not take part: who is it, what is it for, and where does it hear of others?
+/// not take part: who is it, what is it for, and where does it hear?
 struct Announcement {
   std::array<std::byte, 12> participant{};  ///< prefix of its GUIDs
   bool leaves = false;                      ///< it takes leave; then the rest is empty
   std::optional<Purpose> purpose;           ///< none: it tells no discovery server
-  std::vector<UdpPlace> places;
+  std::vector<UdpPlace> places;             ///< of announcements, at most 8
+  std::vector<UdpPlace> inboxes;            ///< of all else, likewise
+  bool hears_otherwise = false;  ///< at more places, by multicast, or not by UDP over IPv4
 };
 
-/// Of a datagram that the guard lets through (admissible_length()); none: it announces nobody, or
-/// is encrypted. Proven by nothing. O(datagram).
+/// Of a datagram that the guard lets through (admissible_length()) and that holds one announcement
+/// of who sends it, a time at most, and nothing else: so it may be passed on whole. None: it is
+/// another. Proven by nothing. O(datagram).
 std::optional<Announcement> read_announcement(std::span<const std::byte> datagram);
 
 }  // namespace mortise

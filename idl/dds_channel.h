@@ -14,10 +14,11 @@ struct DdsOptions {
   int domain = 0;                       ///< 0..232
   std::string interface = "127.0.0.1";  ///< own IPv4 address; nothing is sent or heard elsewhere
   /// Hosts where the session may be led, comma between: IPv4, or a name, which is looked up once
-  /// and may stand for all of them. Empty: same as interface.
+  /// and may stand for all of them. Empty: same as interface; with a discovery server, for clients,
+  /// none.
   std::string server = "";
   /// Discovery servers that know where the session is led (mortise-discovery), comma between:
-  /// HOST[:PORT], IPv4 or a name. Then clients need no `server`. Empty: none is asked.
+  /// HOST[:PORT], IPv4 or a name. Empty: none is asked.
   std::string discovery_server = "";
   /// First of the server's two UDP ports; one that stands by takes the next two. 0: 7402 + 250
   /// domain.

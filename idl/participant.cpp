@@ -61,6 +61,12 @@ Status check(const DdsOptions& options, Participant::Side side) {
   if (port < 1 || port >= kMaxPort) {
     return bad("discovery port " + std::to_string(port) + " is not in 1..65534");
   }
+  if (!serves(side) && options.discovery_port != 0 && options.server.empty() &&
+      !options.discovery_server.empty()) {
+    return bad("port " + std::to_string(port) +
+               " of no host: the discovery server knows hosts and ports; leave it out, or name the "
+               "server's host as well");
+  }
   if (!is_ipv4(options.interface) || !is_own_address(options.interface)) {
     return bad("'" + options.interface +
                "' is not an IPv4 address of this machine: see `ip -4 addr` for those it has");
@@ -235,7 +241,7 @@ ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
 Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options, Side side,
                                                        dds::DomainParticipantListener* listener) {
   if (Status checked = check(options, side); !checked) return checked.error();
-  const auto addresses = addresses_of(options);
+  const auto addresses = addresses_of(options, !serves(side));
   if (!addresses) return addresses.error();
   const auto discovery_servers = discovery_servers_of(options);
   if (!discovery_servers) return discovery_servers.error();

@@ -27,9 +27,7 @@ std::vector<std::string> words_of(const std::string& text) {
 }
 
 std::vector<std::string> hosts_of(const DdsOptions& options) {
-  if (!options.server.empty()) return words_of(options.server);
-  if (!options.discovery_server.empty()) return {};
-  return {options.interface};
+  return words_of(options.server.empty() ? options.interface : options.server);
 }
 
 /// IPv4 of a name, as they are told; empty: none.
@@ -110,8 +108,9 @@ int server_port(const DdsOptions& options) {
              : kPortBase + kPortsPerDomain * options.domain + kServerPortOffset;
 }
 
-Result<std::vector<std::string>> addresses_of(const DdsOptions& options) {
+Result<std::vector<std::string>> addresses_of(const DdsOptions& options, bool is_client) {
   std::vector<std::string> addresses;
+  if (is_client && options.server.empty() && !options.discovery_server.empty()) return addresses;
   for (const std::string& host : hosts_of(options)) {
     const auto found = addresses_of_host("server", host);
     if (!found) return found.error();

@@ -24,11 +24,11 @@ inline constexpr int kDiscoveryServerPort = 7398;
 /// Of DdsOptions::discovery_server, each once; names are looked up as below.
 Result<std::vector<UdpPlace>> discovery_servers_of(const DdsOptions& options);
 
-/// IPv4 of all hosts where servers of the session may be, each once; none are named where
-/// a discovery server is. Names are looked up as this
+/// IPv4 of all hosts where servers of the session may be, each once. Where none is named it is the
+/// own one; for clients that ask a discovery server, none. Names are looked up as this
 /// machine looks up any (hosts file, DNS); one may stand for several hosts. Takes as long as that:
 /// seconds, where a DNS server is silent. Fails where a name has no IPv4 address.
-Result<std::vector<std::string>> addresses_of(const DdsOptions& options);
+Result<std::vector<std::string>> addresses_of(const DdsOptions& options, bool is_client);
 
 /// Can there be another server of the session: at the second place of this host, or on another?
 bool may_have_another_server(const DdsOptions& options);

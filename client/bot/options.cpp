@@ -62,7 +62,7 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--server", o.server,
                  "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
-                 "the own interface");
+                 "the own interface, unless a discovery server is asked");
   app.add_option(
       "--discovery-server", o.discovery_server,
       "Ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");

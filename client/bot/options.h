@@ -18,7 +18,7 @@ struct BotOptions {
   std::string session = "default";
   int domain = 0;
   std::string interface = "127.0.0.1";
-  std::string server;            ///< empty: on the same machine
+  std::string server;            ///< empty: on the same machine, or told by those:
   std::string discovery_server;  ///< HOST[:PORT] that know it, comma between; empty: none is asked
   int port = 0;
   std::string keys;  ///< folder; empty: no security

@@ -108,7 +108,7 @@ void add_play([[maybe_unused]] CLI::App& app, [[maybe_unused]] int& code) {
       ->capture_default_str();
   command->add_option("--server", o.server,
                       "hosts where the server may be, comma between: IPv4, or a name of them; "
-                      "default: the own interface");
+                      "default: the own interface, unless a discovery server is asked");
   command->add_option(
       "--discovery-server", o.discovery_server,
       "ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");

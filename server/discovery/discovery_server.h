@@ -16,8 +16,10 @@ struct DiscoveryOptions {
 struct DiscoveryCounts {
   std::uint64_t heard = 0;      ///< announcements taken
   std::uint64_t passed_on = 0;  ///< datagrams to others
-  std::uint64_t not_sent = 0;   ///< of them: the network did not take them
-  std::uint64_t malformed = 0, no_purpose = 0, from_elsewhere = 0, too_often = 0, full = 0;
+  std::uint64_t not_sent = 0;   ///< that the network did not take
+  // Datagrams that were dropped; see Introductions::Outcome.
+  std::uint64_t malformed = 0, no_announcement = 0, no_purpose = 0, from_elsewhere = 0,
+                other_purpose = 0, unknown = 0, too_often = 0, full = 0;
   std::size_t participants = 0, servers = 0, sessions = 0;  ///< now
   std::size_t most_participants = 0;                        ///< at one time
 };
@@ -36,9 +38,10 @@ class DiscoveryServer {
   static Result<std::unique_ptr<DiscoveryServer>> open(const DiscoveryOptions& options);
   virtual ~DiscoveryServer() = default;
 
-  /// Servers that come and go are told, one line each, with what is printable of their sessions'
-  /// names.
-  virtual void run_for(double seconds, const std::function<void(const std::string&)>& tell) = 0;
+  /// Servers that come and go are told, with what is printable of their sessions' names, 10 lines a
+  /// second at most; a warning, once in 10 s at most, says whom there was no room for.
+  using Tell = std::function<void(bool is_warning, const std::string& line)>;
+  virtual void run_for(double seconds, const Tell& tell) = 0;
   virtual std::string place() const = 0;  ///< address:port
   virtual DiscoveryCounts counts() const = 0;
 };

@@ -39,8 +39,9 @@ int main(int argc, char** argv) {
     return command.duration_s > 0.0 ? command.duration_s - past.count() : kTurn_s;
   };
   while (stop_asked == 0 && left_s() > 0.0)
-    server.run_for(std::min(kTurn_s, left_s()),
-                   [](const std::string& line) { spdlog::info("{}", line); });
+    server.run_for(std::min(kTurn_s, left_s()), [](bool is_warning, const std::string& line) {
+      spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, "{}", line);
+    });
   const mortise::DiscoveryCounts counts = server.counts();
   std::fputs((command.json ? discovery_json(counts) : discovery_text(counts)).c_str(), stdout);
   return mortise::kExitOk;

@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -107,7 +108,8 @@ TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
   const auto counts = end(*discovery_);
   EXPECT_EQ(counts["servers"], 2);
   EXPECT_GE(counts["most_participants"], 6);
-  for (const char* dropped : {"malformed", "no_purpose", "from_elsewhere", "too_often", "full"})
+  for (const char* dropped : {"malformed", "no_announcement", "no_purpose", "from_elsewhere",
+                              "other_purpose", "unknown", "too_often", "full"})
     EXPECT_EQ(counts[dropped], 0) << dropped;
 }
 
@@ -157,6 +159,50 @@ TEST_F(DiscoveryServers, MayBeGoneAndComeBack) {
   EXPECT_TRUE(says(*discovery_, "session 'hall', domain 229: server at 127.0.0.1:18100 is here"));
 }
 
+/// A server that is started again while the other one leads, and nobody is there to tell.
+TEST_F(DiscoveryServers, MayBeGoneWhileAServerLooksForAnother) {
+  auto hall = serve("hall", 0);
+  const auto spare = serve("hall", 0, {"--standby-of", "hall", "--restore", logs()});
+  ASSERT_TRUE(says(*spare, "in step")) << spare->errors();
+  hall->signal(SIGKILL);
+  ASSERT_TRUE(says(*spare, "taken over")) << spare->errors();
+  discovery_->signal(SIGKILL);
+  discovery_->wait(5);
+  hall = serve("hall", 0);
+  EXPECT_EQ(hall->wait(15), 1) << "servers of one host look at its places all the same";
+  EXPECT_NE(hall->errors().find("another server leads session 'hall'"), std::string::npos)
+      << hall->errors();
+}
+
+TEST_F(DiscoveryServers, OfWhichOneIsEnough) {
+  const std::string second = "127.0.0.1:" + std::to_string(kPort + 1);
+  Program other(folder_.path(), "mortise-discovery", {"--port", std::to_string(kPort + 1)});
+  ASSERT_TRUE(says(other, "hears at " + second)) << other.errors();
+  Program hall(folder_.path(), "mortise-server",
+               {folder_.write("blocks.yaml", blocks_yaml()), "--session", "hall", "--port",
+                std::to_string(kHall), "--domain", std::to_string(kDomain), "--discovery-server",
+                kPlace + "," + second, "--no-log"});
+  ASSERT_TRUE(says(other, "is here"));
+  discovery_->signal(SIGKILL);
+  const auto bots = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"--session",
+                                      "hall",
+                                      "--domain",
+                                      std::to_string(kDomain),
+                                      "--discovery-server",
+                                      kPlace + "," + second,
+                                      "--wait",
+                                      "10",
+                                      "--duration",
+                                      "0.5"};
+    words.insert(words.end(), more.begin(), more.end());
+    Program program(folder_.path(), "mortise-bot", words);
+    EXPECT_EQ(program.wait(30), 0) << program.errors();
+  };
+  bots({});
+  bots({"--processes", "2"});
+}
+
 TEST_F(DiscoveryServers, NeedNoKeysWhereSessionsDo) {
   KeyRing keys("site"), others("elsewhere", "elsewhere");
   keys.issue("hall", "server");
@@ -175,6 +221,9 @@ TEST_F(DiscoveryServers, NeedNoKeysWhereSessionsDo) {
     return stranger->client->user_id(stranger->user) || mallory->client->user_id(mallory->user);
   };
   EXPECT_FALSE(stranger->until(3, nobody)) << "to be told of a server is not to be let in";
+  const auto counts = end(*discovery_);
+  EXPECT_EQ(counts["participants"], 4);
+  EXPECT_GE(counts["passed_on"], 3 * 4) << "they were told";
 }
 
 /// What one participant announces, made into what hundreds of others would.
@@ -183,46 +232,59 @@ class Crowd {
   Crowd(std::vector<std::byte> announced, const std::string& session, int port)
       : whole_(std::move(announced)) {
     const auto text = std::as_bytes(std::span(session));
-    const auto found = std::search(whole_.begin(), whole_.end(), text.begin(), text.end());
-    session_ = static_cast<std::size_t>(found - whole_.begin());
-    for (std::size_t at = 20; at + 28 < whole_.size() && place_ == 0; ++at)  // PID, length, kind
-      if (whole_[at] == std::byte{0x32} && whole_[at + 1] == std::byte{0} &&
-          whole_[at + 2] == std::byte{24} && whole_[at + 4] == std::byte{1})
-        place_ = at + 8;
+    session_ = find(text, 0);
+    for (std::size_t at = 8; at < whole_.size(); at = find(name(), at + 1)) names_.push_back(at);
+    constexpr std::array<std::byte, 8> kLocator = {
+        std::byte{0x32}, {}, std::byte{24}, {}, std::byte{1}};  // PID, length, kind
+    place_ = find(kLocator, 20) + kLocator.size();
     if (is_whole()) put(place_, static_cast<std::uint16_t>(port));
   }
-  bool is_whole() const { return session_ < whole_.size() && place_ > 0; }
+  bool is_whole() const {
+    return session_ < whole_.size() && place_ < whole_.size() && names_.size() == 2;
+  }
   std::span<const std::byte> of(int participant, char session) {
-    put(8, static_cast<std::uint16_t>(participant));
+    for (const std::size_t at : names_) put(at, static_cast<std::uint16_t>(participant));
     whole_[session_] = static_cast<std::byte>(session);
     return whole_;
   }
 
  private:
+  std::span<const std::byte> name() const { return std::span(whole_).subspan(8, 12); }
+  std::size_t find(std::span<const std::byte> bytes, std::size_t from) const {
+    if (whole_.size() < 20) return whole_.size();
+    const auto begin = whole_.begin() + static_cast<std::ptrdiff_t>(from);
+    return static_cast<std::size_t>(std::search(begin, whole_.end(), bytes.begin(), bytes.end()) -
+                                    whole_.begin());
+  }
   void put(std::size_t at, std::uint16_t value) { std::memcpy(&whole_[at], &value, sizeof value); }
   std::vector<std::byte> whole_;
+  std::vector<std::size_t> names_;
   std::size_t session_ = 0, place_ = 0;
 };
 
-TEST_F(DiscoveryServers, ServeACrowdAndLiveThroughNoise) {
-  constexpr int kSessions = 20, kEach = 50, kRounds = 8;
-  const UdpEar ear, sink;
-  const auto announced = [&](bool serves) {
+class CrowdedDiscovery : public DiscoveryServers {
+ protected:
+  Crowd announced(bool serves) const {
     DdsOptions options;
     options.domain = kDomain;
     options.session = "0 of a crowd";
-    options.discovery_server = ear.place();
+    options.discovery_server = ear_.place();
     if (serves) options.discovery_port = kYard;
     const auto client = serves ? nullptr : open_client_channel(options).value();
     const auto server = serves ? open_server_channel(options).value() : nullptr;
-    for (auto told = ear.next(); !told.empty(); told = ear.next()) {
+    for (auto told = ear_.next(); !told.empty(); told = ear_.next()) {
       told.resize(admissible_length(told));
       const auto read = read_announcement(told);
       if (read && read->purpose && read->purpose->serves == serves)
-        return Crowd(std::move(told), options.session, sink.port());
+        return Crowd(std::move(told), options.session, sink_.port());
     }
     return Crowd({}, options.session, 0);
-  };
+  }
+  UdpEar ear_, sink_;
+};
+
+TEST_F(CrowdedDiscovery, IntroducesAThousand) {
+  constexpr int kSessions = 20, kEach = 50, kRounds = 8;
   Crowd clients = announced(false), servers = announced(true);
   ASSERT_TRUE(clients.is_whole() && servers.is_whole());
   const double cpu_s = discovery_->cpu_s();
@@ -230,34 +292,46 @@ TEST_F(DiscoveryServers, ServeACrowdAndLiveThroughNoise) {
     for (int session = 0; session < kSessions; ++session)
       for (int i = 0; i < kEach; ++i) {
         const int participant = session * kEach + i + 1;
-        ear.send((i == 0 ? servers : clients).of(participant, static_cast<char>('A' + session)),
-                 kPort);
+        ear_.send((i == 0 ? servers : clients).of(participant, static_cast<char>('A' + session)),
+                  kPort);
         if (i % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   const double took_s = discovery_->cpu_s() - cpu_s;
-  std::mt19937 random(3);
+  const auto counts = end(*discovery_);
+  constexpr int kSent = kSessions * kEach * kRounds;
+  std::printf(
+      "%d participants: %.1f us of CPU for an announcement with what it is passed on to (%d passed "
+      "on)\n",
+      kSessions * kEach, 1e6 * took_s / kSent, counts["passed_on"].get<int>());
+  // A socket's buffer may overflow where a machine is busy.
+  EXPECT_GE(counts["heard"], kSent * 9 / 10);
+  EXPECT_GE(counts["most_participants"], kSessions * kEach * 9 / 10);
+  // Four times each way between a server and each of its clients; what is said of it in the first
+  // round lacks who comes behind.
+  EXPECT_GE(counts["passed_on"], kSessions * (kEach - 1) * 8 * 9 / 10);
+  EXPECT_LE(counts["passed_on"], kSessions * (kEach - 1) * 10 + 100);
+}
+
+TEST_F(CrowdedDiscovery, LivesThroughNoise) {
   constexpr int kNoise = 20'000;
+  Crowd clients = announced(false), servers = announced(true);
+  ASSERT_TRUE(clients.is_whole() && servers.is_whole());
+  std::mt19937 random(3);
   for (int i = 0; i < kNoise; ++i) {
     const auto one = (random() % 2 == 0 ? servers : clients).of(7, 'A');
     std::vector<std::byte> bytes(one.begin(), one.end());
     for (std::size_t n = 1 + random() % 8; n > 0; --n)
       bytes[random() % bytes.size()] = static_cast<std::byte>(random() & 0xff);
     if (random() % 4 == 0) bytes.resize(random() % bytes.size());
-    ear.send(bytes, kPort);
+    ear_.send(bytes, kPort);
     if (i % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const auto hall = serve("hall", kHall);
   EXPECT_TRUE(guest("hall", "anna")->joined()) << "after all this";
   const auto counts = end(*discovery_);
-  constexpr int kSent = kSessions * kEach * kRounds;
-  EXPECT_GE(counts["heard"], kSent);
-  EXPECT_GE(counts["most_participants"], kSessions * kEach);
-  // A client's go to its server, a server's to its clients, once both are known.
-  EXPECT_GE(counts["passed_on"], kSessions * (kEach - 1) * (2 * kRounds - 1));
   EXPECT_GT(counts["malformed"], kNoise / 10);
-  std::printf("%d participants: %.1f us of CPU for an announcement with what it is passed on to\n",
-              kSessions * kEach, 1e6 * took_s / kSent);
+  EXPECT_GT(counts["no_announcement"], kNoise / 100);
 }
 
 TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
@@ -282,6 +356,10 @@ TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
   };
   fails("mortise-bot", with("127.0.0.1:x"), 3,
         "discovery server '127.0.0.1:x': the port behind the colon is not in 1..65535");
+  auto by_port = with(kPlace);
+  by_port.insert(by_port.end(), {"--port", "9000"});
+  fails("mortise-bot", by_port, 3,
+        "port 9000 of no host: the discovery server knows hosts and ports");
   fails("mortise-bot", with("nobody.invalid"), 3,
         "discovery server 'nobody.invalid' is neither an IPv4 address nor a name");
   fails("mortise-bot", with(kPlace), 1,

@@ -44,13 +44,12 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
   app.set_version_flag("--version", version_line("mortise-directory"));
   app.add_option("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
       ->capture_default_str();
-  app.add_option(
-      "--server", where.server,
-      "Hosts to ask, comma between: IPv4, or a name of them; default: the own interface");
-  app.add_option(
-      "--discovery-server", where.discovery_server,
-      "Ask these instead: HOST[:PORT] of mortise-discovery, comma between; they know all "
-      "servers of a domain that tell them, on whatever host and port");
+  app.add_option("--server", where.server,
+                 "Hosts to ask, comma between: IPv4, or a name of them; default: the own "
+                 "interface, unless a discovery server is asked");
+  app.add_option("--discovery-server", where.discovery_server,
+                 "Ask these: HOST[:PORT] of mortise-discovery, comma between; they know all "
+                 "servers of a domain that tell them, on whatever host and port");
   app.add_option("--port", ports, "Discovery ports of servers, likewise; 0: the domain's own")
       ->capture_default_str();
   app.add_option("--interface", where.interface, "IPv4 address of the own interface")
