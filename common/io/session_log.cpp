@@ -241,14 +241,18 @@ void FileWriter::rotate(Checkpoint state) {
   const Status closed = file_->mcap().close();
   settle_chunk();
   if (!closed) return;
-  const std::lock_guard lock(names_mutex_);
   header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
   header_.begin =
       LogBegin{std::move(state), statistics_, static_cast<std::int64_t>(file_->time_ns())};
-  auto next = LogFile::create(next_in_chain(file_->path()), header_, options_);
+  LogOptions options = options_;
+  options.named_later = true;  // whoever gives names does not wait for this file's disk
+  auto next = LogFile::create(next_in_chain(file_->path()), header_, options);
   header_.begin.reset();
-  if (!next) {
-    rotate_error_ = next.error();
+  const std::lock_guard lock(names_mutex_);
+  Status begun = next ? ok() : Status(next.error());
+  if (begun && !options_.named_later) begun = (*next)->take_name();
+  if (!begun) {
+    rotate_error_ = begun.error();
     return;
   }
   bytes_before_ += file_->mcap().bytes_written();

@@ -5,18 +5,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <future>
 
 #include "common/io/replay.h"
 #include "common/session/session_state.h"
 #include "tests/network/program.h"
 #include "tests/unit/io/random_session.h"
+#include "tests/unit/io/slow_file.h"
 
 namespace mortise {
 namespace {
 
 namespace fs = std::filesystem;
 using test::RandomSession;
+using test::SlowFile;
 using test::TestFolder;
 
 bool write_tick(int to, std::uint64_t tick) { return ::write(to, &tick, sizeof tick) < 0; }
@@ -154,6 +158,26 @@ TEST_F(LogChain, FilesThatAreNamedLaterAreNamedTogetherOrGo) {
   const auto whole = read_session(file("s.mcap"));
   ASSERT_TRUE(whole) << whole.error().text;
   expect_verified(*whole, kTicks, kTicks / kEvery);
+}
+
+/// A take-over must not wait for the disk that a next file is begun on.
+TEST_F(LogChain, NamesAreGivenWhileTheDiskIsSlow) {
+  const LogOptions options = {.chunk_bytes = 4096, .rotate_bytes = 20'000, .named_later = true};
+  auto writer = SessionLogWriter::create(file("s.mcap"), session_->header, options);
+  ASSERT_TRUE(writer) << writer.error().text;
+  SlowFile slow("s_p0002.mcap.begun");
+  for (const TickRecord& tick : session_->ticks) (*writer)->record(tick);
+  ASSERT_TRUE(slow.is_waited_for(20.0)) << "the log was not rotated";
+  auto named = std::async(std::launch::async, [&] { return (*writer)->take_name(); });
+  EXPECT_EQ(named.wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  slow.go_on();
+  EXPECT_TRUE(named.get());
+  ASSERT_TRUE((*writer)->close());
+  EXPECT_TRUE(files(".begun").empty());
+  EXPECT_EQ(chain_from(file("s.mcap")), files());
+  const auto whole = read_session(file("s.mcap"));
+  ASSERT_TRUE(whole) << whole.error().text;
+  EXPECT_EQ(whole->ticks.size(), kTicks);
 }
 
 /// Two that stand by, with one disk between them, may choose one name in the same second.
