@@ -244,7 +244,11 @@ void FileWriter::rotate(Checkpoint state) {
   header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
   header_.begin =
       LogBegin{std::move(state), statistics_, static_cast<std::int64_t>(file_->time_ns())};
-  LogOptions options = options_;
+  LogOptions options;
+  {
+    const std::lock_guard lock(names_mutex_);
+    options = options_;
+  }
   options.named_later = true;  // whoever gives names does not wait for this file's disk
   auto next = LogFile::create(next_in_chain(file_->path()), header_, options);
   header_.begin.reset();

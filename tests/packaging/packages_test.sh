@@ -24,7 +24,7 @@ for deb in "$packages"/*.deb; do dpkg-deb -x "$deb" "$work/unpacked"; done
 no_warnings() { local said; said=$(MANWIDTH=80 LC_ALL=C.UTF-8 man --warnings -l "$1" 2>&1 >/dev/null) || return 1; echo "$said"; [ -z "$said" ]; }
 if command -v man >/dev/null && command -v help2man >/dev/null; then
   pages=("$work"/unpacked/usr/share/man/man1/*.gz)
-  check "eleven programs have manual pages" test "${#pages[@]}" -eq 11
+  check "twelve programs have manual pages" test "${#pages[@]}" -eq 12
   for page in "${pages[@]}"; do check "man has nothing to say of $(basename "$page")" no_warnings "$page"; done
 else
   echo "note: man or help2man is not installed: manual pages are not checked"
