@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/messages/names.h"
-#include "common/session/rights.h"
+#include "common/session/world/rights.h"
 
 namespace mortise {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/messages/channel.h"
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 #include "server/increment_order.h"
 #include "server/sequence_window.h"
 #include "server/tick_bytes.h"

@@ -7,7 +7,7 @@
 
 #include "common/io/build_info.h"
 #include "common/io/replay.h"
-#include "common/session/session_state.h"
+#include "common/session/memory/session_state.h"
 
 namespace mortise {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/io/session_log.h"
-#include "common/session/statistics.h"
-#include "common/session/world.h"
+#include "common/session/tick/statistics.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

@@ -6,9 +6,9 @@
 
 #include "common/io/session_log.h"
 #include "common/messages/channel.h"
-#include "common/session/statistics.h"
-#include "common/session/step.h"
-#include "common/session/world.h"
+#include "common/session/tick/statistics.h"
+#include "common/session/tick/step.h"
+#include "common/session/world/world.h"
 #include "server/tick_bytes.h"
 #include "server/tick_recorder.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/messages/mesh_bytes.h"
-#include "common/session/feature_table.h"
+#include "common/session/guide/feature_table.h"
 
 namespace mortise {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "common/io/session_log.h"
 #include "common/messages/channel.h"
-#include "common/session/statistics.h"
-#include "common/session/step.h"
-#include "common/session/world.h"
+#include "common/session/tick/statistics.h"
+#include "common/session/tick/step.h"
+#include "common/session/world/world.h"
 #include "server/clock.h"
 #include "server/inbox.h"
 #include "server/metrics.h"

@@ -4,7 +4,7 @@
 
 #include "common/io/checkpoint.h"
 #include "common/io/session_log.h"
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

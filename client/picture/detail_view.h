@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "client/picture/chart.h"
-#include "common/session/step.h"
-#include "common/session/world.h"
+#include "common/session/tick/step.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

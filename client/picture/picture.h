@@ -6,8 +6,8 @@
 #include "client/picture/canvas.h"
 #include "client/picture/detail_view.h"
 #include "common/base/result.h"
-#include "common/session/step.h"
-#include "common/session/world.h"
+#include "common/session/tick/step.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

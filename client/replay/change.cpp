@@ -7,7 +7,7 @@
 #include "common/base/in_quotes.h"
 #include "common/io/mesh_import.h"
 #include "common/io/scenario_file.h"
-#include "common/session/surface_rules.h"
+#include "common/session/world/surface_rules.h"
 
 namespace mortise {
 namespace {

@@ -13,7 +13,7 @@
 #include "common/io/replay.h"
 #include "common/io/report_json.h"
 #include "common/messages/names.h"
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 
 namespace mortise {
 namespace {

@@ -10,7 +10,7 @@
 #include "client/report/export.h"
 #include "client/report/report.h"
 #include "common/io/replay.h"
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 
 namespace mortise {
 namespace {

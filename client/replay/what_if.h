@@ -7,7 +7,7 @@
 #include "client/replay/change.h"
 #include "common/io/report_json.h"
 #include "common/io/session_log.h"
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 
 namespace mortise {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "common/evaluation/iso286.h"
-#include "common/session/judgement.h"
+#include "common/session/tick/judgement.h"
 
 namespace mortise {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "common/base/result.h"
 #include "common/io/session_log.h"
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

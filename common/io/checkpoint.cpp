@@ -8,7 +8,7 @@
 
 #include "common/base/check.h"
 #include "common/io/state_fields.h"
-#include "common/session/surface_rules.h"
+#include "common/session/world/surface_rules.h"
 
 namespace mortise {
 namespace {

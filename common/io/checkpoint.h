@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/session/session_state.h"
-#include "common/session/world.h"
+#include "common/session/memory/session_state.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 
@@ -54,8 +54,8 @@ class CheckpointMaker {
   bool running_ = false;
   int slices_left_ = 0;
   std::vector<SessionState::Touched> settled_;  ///< of this tick
-  std::size_t slice_ = 0;  ///< memos that one tick copies
-  std::size_t at_ = 0;     ///< where to look next in SessionState::touched
+  std::size_t slice_ = 0;                       ///< memos that one tick copies
+  std::size_t at_ = 0;                          ///< where to look next in SessionState::touched
 };
 
 }  // namespace mortise

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/io/scene_rules.h"
-#include "common/session/surface_rules.h"
+#include "common/session/world/surface_rules.h"
 
 namespace mortise {
 

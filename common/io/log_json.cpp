@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/messages/names.h"
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 
 namespace mortise::log_json {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "common/base/result.h"
 #include "common/evaluation/tolerance.h"
-#include "common/session/scenario.h"
+#include "common/session/world/scenario.h"
 
 /// Statements of a scenario with the lines that say them, and how several of one face hold
 /// together. Private to scene_load.

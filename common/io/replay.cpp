@@ -9,7 +9,7 @@
 #include "common/io/checkpoint.h"
 #include "common/io/log_json.h"
 #include "common/messages/names.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 
 namespace mortise {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "common/messages/channel.h"
-#include "common/session/statistics.h"
-#include "common/session/step.h"
-#include "common/session/world.h"
+#include "common/session/tick/statistics.h"
+#include "common/session/tick/step.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/session/scenario.h"
+#include "common/session/world/scenario.h"
 
 namespace mortise {
 

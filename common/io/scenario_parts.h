@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/io/scenario_yaml.h"
-#include "common/session/scenario.h"
+#include "common/session/world/scenario.h"
 
 /// The parts of a scenario file: meshes, poses, features, tolerances. Private to the reader.
 namespace mortise {

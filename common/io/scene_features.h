@@ -7,7 +7,7 @@
 #include "common/geometry/recognition.h"
 #include "common/geometry/surface_band.h"
 #include "common/io/mesh_import.h"
-#include "common/session/scenario.h"
+#include "common/session/world/scenario.h"
 
 /// What a part takes from recognition beside what is declared of it. Private to scene_load.
 namespace mortise {

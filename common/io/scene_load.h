@@ -6,7 +6,7 @@
 #include "common/base/result.h"
 #include "common/io/mesh_import.h"
 #include "common/io/scenario_file.h"
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

@@ -8,7 +8,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/io/scenario_yaml.h"
-#include "common/session/rights.h"
+#include "common/session/world/rights.h"
 
 namespace mortise {
 namespace {

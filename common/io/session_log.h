@@ -15,7 +15,7 @@
 #include "common/io/mesh_import.h"
 #include "common/messages/increment.h"
 #include "common/messages/report.h"
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 
 namespace mortise {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "common/io/state_bytes.h"
-#include "common/session/session_state.h"
-#include "common/session/statistics.h"
+#include "common/session/memory/session_state.h"
+#include "common/session/tick/statistics.h"
 
 /// The members of all that a session is between two ticks, each named once for writing and for
 /// reading. Every type is taken apart as a whole: a member that is added to one does not compile

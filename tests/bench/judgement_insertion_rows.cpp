@@ -5,7 +5,7 @@
 
 #include "common/evaluation/iso286.h"
 #include "common/evaluation/tolerance.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "tests/bench/judgement_methods.h"
 #include "tests/bench/judgement_sections.h"
 #include "tests/bench/statistics.h"

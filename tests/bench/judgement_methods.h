@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/session/judgement.h"
+#include "common/session/tick/judgement.h"
 #include "tests/bench/judgement_cases.h"
 
 namespace mortise::bench {

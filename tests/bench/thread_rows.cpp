@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "common/ccd/first_contact.h"
-#include "common/session/worker_pool.h"
+#include "common/session/tick/worker_pool.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/sections.h"
 #include "tests/bench/statistics.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "common/math/rotation.h"
-#include "common/session/statistics.h"
-#include "common/session/step.h"
+#include "common/session/tick/statistics.h"
+#include "common/session/tick/step.h"
 #include "tests/bench/broad_phase_rows.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/sections.h"

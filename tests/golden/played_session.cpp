@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 
 namespace mortise::test {
 namespace {

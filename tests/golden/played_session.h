@@ -7,7 +7,7 @@
 #include "common/io/play_file.h"
 #include "common/io/scene_load.h"
 #include "common/io/session_log.h"
-#include "common/session/tick_work.h"
+#include "common/session/tick/tick_work.h"
 
 namespace mortise::test {
 

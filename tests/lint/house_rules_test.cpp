@@ -27,11 +27,12 @@ class PlantedTree : public testing::Test {
       write(std::string(room) + "/README.md", "What lives here.\n");
     write("common/base/ids.h", "#pragma once\n#include <cstdint>\n");
     write("common/math/pose.h", "#pragma once\n#include \"common/base/ids.h\"\n");
-    write("common/session/step.h", "#include \"common/math/pose.h\"\n");
+    write("common/session/tick/step.h", "#include \"common/math/pose.h\"\n");
     write("common/io/play_file.h", "#include <yaml-cpp/yaml.h>\n");
     write("common/broadphase/tree.cpp", "#include <fcl/fcl.h>\n");
     write("idl/topics.cpp", "#include <fastdds/dds.hpp>\n#include \"mortisePubSubTypes.h\"\n");
-    write("server/main.cpp", "#include \"common/session/step.h\"\n#include \"idl/topics.h\"\n");
+    write("server/main.cpp",
+          "#include \"common/session/tick/step.h\"\n#include \"idl/topics.h\"\n");
     write("client/client.h", "#include \"idl/topics.h\"\n");
     write("client/bot/bot.cpp",
           "#include \"client/client.h\"\n#include \"common/io/play_file.h\"\n");
@@ -58,7 +59,7 @@ TEST_F(PlantedTree, IsCleanBeforePlanting) {
   EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
 }
 TEST_F(PlantedTree, AnIncludeOfAHigherRoom) {
-  write("common/math/pose.h", "\n#include \"common/session/step.h\"\n");
+  write("common/math/pose.h", "\n#include \"common/session/tick/step.h\"\n");
   expect_one("common/math/pose.h:2", "common/math/ may not include common/session/");
 }
 TEST_F(PlantedTree, ServerAndClientApart) {
@@ -74,11 +75,11 @@ TEST_F(PlantedTree, NoEngineInTheBot) {
   expect_one("client/bot/bot.cpp:1", "client/bot/ may not include common/io/");
 }
 TEST_F(PlantedTree, ThePlayFileReachesNoEngine) {
-  write("common/io/play_file.h", "#include \"common/session/step.h\"\n");
+  write("common/io/play_file.h", "#include \"common/session/tick/step.h\"\n");
   expect_one("common/io/play_file.h:1", "may not include common/session/");
 }
 TEST_F(PlantedTree, WhichBuildItIsReachesNoEngine) {
-  write("common/io/build_info.cpp", "#include \"common/session/step.h\"\n");
+  write("common/io/build_info.cpp", "#include \"common/session/tick/step.h\"\n");
   expect_one("common/io/build_info.cpp:1", "may not include common/session/");
 }
 TEST_F(PlantedTree, ClientsMayAskWhichBuildItIsAndNoMoreOfIo) {
@@ -88,7 +89,7 @@ TEST_F(PlantedTree, ClientsMayAskWhichBuildItIsAndNoMoreOfIo) {
   expect_one("client/web/options.cpp:2", "may not include common/io/");
 }
 TEST_F(PlantedTree, TheWireKnowsNoEngine) {
-  write("idl/topics.cpp", "#include \"common/session/step.h\"\n");
+  write("idl/topics.cpp", "#include \"common/session/tick/step.h\"\n");
   expect_one("idl/topics.cpp:1", "idl/ may not include common/session/");
 }
 TEST_F(PlantedTree, LibrariesInTheirRooms) {
@@ -101,8 +102,8 @@ TEST_F(PlantedTree, LibrariesInTheirRooms) {
       {"fastrtps/utils.h", "Fast DDS"},
       {"spdlog/spdlog.h", "spdlog"}};
   for (const auto& [header, library] : planted) {
-    write("common/session/step.h", "#include <" + header + ">\n");
-    expect_one("common/session/step.h:1", library + " is not named here");
+    write("common/session/tick/step.h", "#include <" + header + ">\n");
+    expect_one("common/session/tick/step.h:1", library + " is not named here");
   }
 }
 TEST_F(PlantedTree, IncludesBeginAtTheRoot) {

@@ -8,7 +8,7 @@
 
 #include "common/io/open_scene.h"
 #include "common/messages/memory_channel.h"
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 #include "server/tick_loop.h"
 #include "tests/golden/played_session.h"
 #include "tests/unit/io/log_samples.h"

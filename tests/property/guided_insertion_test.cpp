@@ -8,8 +8,8 @@
 
 #include "common/io/scene_load.h"
 #include "common/math/rotation.h"
-#include "common/session/guidance.h"
-#include "common/session/step.h"
+#include "common/session/guide/guidance.h"
+#include "common/session/tick/step.h"
 #include "tests/support/effort.h"
 
 namespace mortise {

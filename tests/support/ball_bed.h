@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/io/session_log.h"
-#include "common/session/session_state.h"
-#include "common/session/step.h"
+#include "common/session/memory/session_state.h"
+#include "common/session/tick/step.h"
 #include "tests/support/shapes.h"
 
 namespace mortise::test {
@@ -45,8 +45,8 @@ class BallBed {
       if (!part.moving || rests(part)) continue;
       const double phase = static_cast<double>(ticks_) + 0.1 * part.id.value;
       const Vec3 way = kCircle_mm * Vec3(std::cos(phase), std::sin(phase), 0.0);
-      increments_.push_back({kHand, part.id, ++seq_, part.X_WP_scenario.p + way - part.X_WP.p,
-                             Vec3::Zero()});
+      increments_.push_back(
+          {kHand, part.id, ++seq_, part.X_WP_scenario.p + way - part.X_WP.p, Vec3::Zero()});
     }
     return report_ = step(world_, increments_, scratch_);
   }

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

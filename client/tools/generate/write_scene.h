@@ -2,7 +2,7 @@
 #include <ostream>
 #include <string>
 
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

@@ -3,7 +3,7 @@
 
 #include "common/io/open_scene.h"
 #include "common/io/report_json.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 
 namespace mortise {
 

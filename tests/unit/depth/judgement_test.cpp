@@ -1,4 +1,4 @@
-#include "common/session/judgement.h"
+#include "common/session/tick/judgement.h"
 
 #include <gtest/gtest.h>
 

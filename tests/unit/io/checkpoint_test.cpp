@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/session/session_state.h"
+#include "common/session/memory/session_state.h"
 #include "tests/support/ball_bed.h"
 #include "tests/unit/io/random_session.h"
 #include "tests/unit/session/report_digest.h"

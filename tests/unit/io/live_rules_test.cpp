@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/io/replay.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "tests/support/small_scenarios.h"
 #include "tests/unit/io/log_samples.h"
 

@@ -10,7 +10,7 @@
 #include <future>
 
 #include "common/io/replay.h"
-#include "common/session/session_state.h"
+#include "common/session/memory/session_state.h"
 #include "tests/network/program.h"
 #include "tests/unit/io/random_session.h"
 #include "tests/unit/io/slow_file.h"

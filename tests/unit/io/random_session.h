@@ -9,7 +9,7 @@
 #include "common/io/open_scene.h"
 #include "common/io/session_log.h"
 #include "common/math/rotation.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 
 /// Sessions in which several users do everything that a session lets them do, at random: pushes,
 /// groups, undo, redo, reset, hand-over, constraints, reviews, and changes of policy, tolerances,

@@ -11,7 +11,7 @@
 
 #include "common/ccd/first_contact.h"
 #include "common/io/open_scene.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {

@@ -9,7 +9,7 @@
 #include "common/ccd/first_contact.h"
 #include "common/io/mesh_import.h"
 #include "common/io/scene_load.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {

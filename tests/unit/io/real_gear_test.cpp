@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/io/scene_load.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 #include "tests/unit/io/first_error.h"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "common/io/open_scene.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "scenarios/generators/generators.h"
 
 namespace mortise {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/io/scene_load.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 
 // Statements of part, feature and pair about the same face: all of them hold.
 namespace mortise {

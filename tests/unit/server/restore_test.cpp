@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "common/io/replay.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "server/clock.h"
 #include "tests/golden/played_session.h"
 #include "tests/network/program.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 namespace mortise::testing {
 

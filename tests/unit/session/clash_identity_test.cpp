@@ -6,7 +6,7 @@
 
 #include "common/base/constants.h"
 #include "common/io/open_scene.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 #include "tests/unit/session/session_builder.h"
 
 namespace mortise {
@@ -63,10 +63,9 @@ TEST(ClashIdentity, AroundARingItIsOneClash) {
 }
 
 std::uint64_t begins_of(const StepReport& report) {
-  return static_cast<std::uint64_t>(
-      std::count_if(report.events.begin(), report.events.end(), [](const ClashEvent& event) {
-        return event.kind == ClashEvent::Kind::kBegin;
-      }));
+  return static_cast<std::uint64_t>(std::count_if(
+      report.events.begin(), report.events.end(),
+      [](const ClashEvent& event) { return event.kind == ClashEvent::Kind::kBegin; }));
 }
 
 // A wall thinner than the push is met with its front and its back, each worst somewhere else in

@@ -1,13 +1,13 @@
 // What a tick may spend on first contact: who has none is told as not examined and goes no farther
 // than it is proven clear, and gets there later.
-#include "common/session/contact_budget.h"
+#include "common/session/tick/contact_budget.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "common/session/work_budget.h"
+#include "common/session/tick/work_budget.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/session/report_digest.h"
 #include "tests/unit/session/session_builder.h"

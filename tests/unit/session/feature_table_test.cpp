@@ -1,10 +1,10 @@
 // What participants are told that constraints can name.
-#include "common/session/feature_table.h"
+#include "common/session/guide/feature_table.h"
 
 #include <gtest/gtest.h>
 
 #include "common/geometry/recognition.h"
-#include "common/session/guidance.h"
+#include "common/session/guide/guidance.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/session/session_builder.h"
 

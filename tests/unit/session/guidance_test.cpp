@@ -1,5 +1,5 @@
 // Guided assembly: constraints take freedom away, nothing else.
-#include "common/session/guidance.h"
+#include "common/session/guide/guidance.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/math/rotation.h"
-#include "common/session/guidance.h"
+#include "common/session/guide/guidance.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/session/session_builder.h"
 

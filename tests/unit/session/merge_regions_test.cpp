@@ -1,4 +1,4 @@
-#include "common/session/merge_regions.h"
+#include "common/session/tick/merge_regions.h"
 
 #include <gtest/gtest.h>
 

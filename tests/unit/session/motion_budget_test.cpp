@@ -1,4 +1,4 @@
-#include "common/session/motion_budget.h"
+#include "common/session/memory/motion_budget.h"
 
 #include <gtest/gtest.h>
 

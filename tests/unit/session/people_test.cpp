@@ -2,7 +2,7 @@
 // of it.
 #include <gtest/gtest.h>
 
-#include "common/session/session_state.h"
+#include "common/session/memory/session_state.h"
 #include "tests/unit/session/three_people.h"
 
 namespace mortise {

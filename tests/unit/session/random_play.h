@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/math/rotation.h"
-#include "common/session/tick_work.h"
+#include "common/session/tick/tick_work.h"
 #include "tests/unit/session/report_digest.h"
 #include "tests/unit/session/session_builder.h"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "common/session/step.h"
-#include "common/session/world.h"
+#include "common/session/tick/step.h"
+#include "common/session/world/world.h"
 
 namespace mortise {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/io/scene_load.h"
-#include "common/session/step.h"
+#include "common/session/tick/step.h"
 
 namespace mortise {
 namespace {

@@ -1,7 +1,7 @@
 // The state hash stands for poses, holders and open clashes, whatever way led there.
 #include <gtest/gtest.h>
 
-#include "common/session/session_state.h"
+#include "common/session/memory/session_state.h"
 #include "tests/unit/session/session_builder.h"
 
 namespace mortise {

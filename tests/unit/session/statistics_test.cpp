@@ -1,4 +1,4 @@
-#include "common/session/statistics.h"
+#include "common/session/tick/statistics.h"
 
 #include <gtest/gtest.h>
 

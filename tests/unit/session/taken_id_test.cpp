@@ -1,6 +1,6 @@
 // The id of a user who left long ago goes to somebody else: nothing of that user goes with it.
-#include "common/session/session_state.h"
-#include "common/session/statistics.h"
+#include "common/session/memory/session_state.h"
+#include "common/session/tick/statistics.h"
 #include "tests/unit/session/three_people.h"
 
 namespace mortise {

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "common/session/tick_work.h"
+#include "common/session/tick/tick_work.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/session/session_builder.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/io/open_scene.h"
-#include "common/session/judgement.h"
-#include "common/session/step.h"
+#include "common/session/tick/judgement.h"
+#include "common/session/tick/step.h"
 
 namespace mortise {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/session/tick_work.h"
+#include "common/session/tick/tick_work.h"
 #include "tests/unit/session/session_builder.h"
 
 namespace mortise {

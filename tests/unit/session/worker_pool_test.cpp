@@ -1,4 +1,4 @@
-#include "common/session/worker_pool.h"
+#include "common/session/tick/worker_pool.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "common/session/world.h"
+#include "common/session/world/world.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/broadphase/pair_filter.h"
+#include "common/broadphase/swept_box.h"
+#include "common/session/tick/tick_work.h"
+
+namespace mortise {
+namespace {
+
+PairWork& next_pair(Scratch::Impl& work) {
+  if (work.pair_count == work.pairs.size()) work.pairs.emplace_back();
+  PairWork& pair = work.pairs[work.pair_count++];
+  std::vector<SeenRegion> seen = std::move(pair.seen);
+  std::vector<char> keeps = std::move(pair.keeps);
+  pair = PairWork{};
+  pair.seen = std::move(seen);
+  pair.keeps = std::move(keeps);
+  pair.seen.clear();
+  pair.keeps.clear();
+  return pair;
+}
+
+// Legs of a slide lead elsewhere than the increments, but no faster: a projection makes nothing
+// longer, in |shift|^2 + radius^2 |turn|^2. What a leg gets away from an arc comes on top.
+double slide_upper_bound_mm(const Solid& solid, const Motion& motion) {
+  const BoundingSphere& sphere = solid.sphere();
+  const double arm_mm = (sphere.center_mm - motion.reference_P).norm() + sphere.radius_mm;
+  const double turn_mm = motion.w_W.norm() * arm_mm;
+  const double least_lever_mm = std::max(1e-3, sphere.radius_mm);
+  const double length_mm = std::hypot(motion.v_W.norm(), turn_mm);
+  return length_mm * (1.0 + arm_mm / least_lever_mm) + motion.w_W.squaredNorm() * arm_mm + 0.01;
+}
+
+Box box_at_start(const Solid& solid, const Motion& motion) {
+  Motion still = still_motion(motion.X_W0);
+  still.reference_P = solid.sphere().center_mm;
+  return swept_box({solid.bounds(), solid.sphere()}, still);
+}
+
+void set_up(const World& world, SessionState& state, const Scratch::Impl& work, IndexPair indices,
+            const PairRule* rule, PairWork& pair) {
+  const Part& a = world.parts[indices.a];
+  const Part& b = world.parts[indices.b];
+  pair.a = indices.a;
+  pair.b = indices.b;
+  pair.solid_a = a.solid.get();
+  pair.solid_b = b.solid.get();
+  pair.rule = rule;
+  JudgementQuery bands;
+  bands.a = &a;
+  bands.b = &b;
+  bands.rule = rule;
+  pair.band_a = &band_a_of(bands);
+  pair.band_b = &band_b_of(bands);
+  pair.band_mm = std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
+  pair.memo = MemoInUse(state.memo(pair.a, pair.b));
+  const auto open = state.open.find({a.id, b.id});
+  if (open != state.open.end()) pair.open = &open->second;
+  const std::uint64_t placements = state.parts[pair.a].placements + state.parts[pair.b].placements;
+  if (pair.memo->placements != placements) {
+    PairMemo& memo = pair.memo.change();
+    memo.placements = placements;
+    memo.not_contained = false;
+    memo.allowed_depth_mm = std::numeric_limits<double>::infinity();
+    memo.held.reset();
+    memo.stalled.reset();
+    memo.not_judged = memo.not_seen = pair.open != nullptr;
+  }
+  pair.move_a = work.move_of_part[pair.a];
+  pair.move_b = work.move_of_part[pair.b];
+  const auto motion_of = [&](std::int32_t move, const Part& part) {
+    if (move >= 0) return work.moves[static_cast<std::size_t>(move)].motion;
+    Motion still = still_motion(part.X_WP);
+    still.reference_P = part.solid->sphere().center_mm;
+    return still;
+  };
+  pair.motion_a = motion_of(pair.move_a, a);
+  pair.motion_b = motion_of(pair.move_b, b);
+  pair.placed = !pair.motion_a.moves() && !pair.motion_b.moves();
+  pair.together = a.group && a.group == b.group && pair.move_a >= 0 && pair.move_b >= 0 &&
+                  !work.moves[static_cast<std::size_t>(pair.move_a)].placed &&
+                  !work.moves[static_cast<std::size_t>(pair.move_b)].placed;
+}
+
+// Does it move, or was it put somewhere? Who is only looked at for one of its pairs is not.
+bool changed(const Scratch::Impl& work, std::uint32_t part) {
+  const std::int32_t index = work.move_of_part[part];
+  if (index < 0) return false;
+  const Move& move = work.moves[static_cast<std::size_t>(index)];
+  return move.placed || move.motion.moves();
+}
+
+}  // namespace
+
+void find_candidates(const World& world, SessionState& state, Scratch::Impl& work,
+                     StepReport& report) {
+  StepCounters& counters = report.counters;
+  work.pair_count = 0;
+  const PairCensus census = count_pairs(world.parts.size(), state.moving_parts, work.moves.size());
+  counters.pairs.in = census.all;
+  counters.pairs_static = census.both_static;
+  counters.pairs_still = census.both_still;
+  if (work.moves.empty()) return;
+
+  for (Move& move : work.moves) {
+    const Solid& solid = *world.parts[move.part].solid;
+    Box box = swept_box({solid.bounds(), solid.sphere()}, move.motion);
+    if (world.policy == Policy::kSlide && move.motion.moves())
+      box.add(box_at_start(solid, move.motion).grown(slide_upper_bound_mm(solid, move.motion)));
+    move.reach = box;
+    state.broad_phase->set_box(move.part, box.grown(state.parts[move.part].growth_mm));
+  }
+  state.broad_phase->find_pairs(work.moved_parts, work.candidates);
+  counters.pairs_boxes_apart =
+      census.all - census.both_static - census.both_still - work.candidates.size();
+  // Who waits for a verdict may have left each other meanwhile.
+  if (!state.owed.empty()) {
+    const auto found = static_cast<std::ptrdiff_t>(work.candidates.size());
+    work.candidates.insert(work.candidates.end(), state.owed.begin(), state.owed.end());
+    std::inplace_merge(work.candidates.begin(), work.candidates.begin() + found,
+                       work.candidates.end());
+    work.candidates.erase(std::unique(work.candidates.begin(), work.candidates.end()),
+                          work.candidates.end());
+  }
+  for (const IndexPair indices : work.candidates) {
+    const Part& a = world.parts[indices.a];
+    const Part& b = world.parts[indices.b];
+    const PairRule* rule = world.rule(a.id, b.id);
+    const auto filter_part = [&](std::uint32_t i) {
+      return FilterPart{world.parts[i].moving, work.move_of_part[i] >= 0};
+    };
+    if (filter_pair(filter_part(indices.a), filter_part(indices.b), rule && rule->excluded) !=
+        PairSkip::kAsk) {
+      ++counters.pairs_excluded;
+      continue;
+    }
+    if (!changed(work, indices.a) && !changed(work, indices.b) &&
+        !std::binary_search(state.owed.begin(), state.owed.end(), indices)) {
+      ++counters.pairs_still;
+      continue;
+    }
+    set_up(world, state, work, indices, rule, next_pair(work));
+  }
+}
+
+}  // namespace mortise

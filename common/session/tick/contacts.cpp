@@ -1,0 +1,270 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "common/base/constants.h"
+#include "common/session/memory/motion_budget.h"
+#include "common/session/tick/contact_budget.h"
+#include "common/session/tick/stop_time.h"
+#include "common/session/tick/tick_work.h"
+#include "common/session/tick/work_budget.h"
+
+namespace mortise {
+namespace {
+
+enum class AtStart { kSay, kIgnoreTouching };
+
+FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_start,
+                               CcdScratch& ccd) {
+  ContactQuery query;
+  query.a = pair.solid_a;
+  query.b = pair.solid_b;
+  query.motion_a = pair.motion_a;
+  query.motion_b = pair.motion_b;
+  query.separation_mm = separation_mm;
+  query.ignore_touching_at_start = at_start == AtStart::kIgnoreTouching;
+  query.check_contained = !pair.memo->not_contained;
+  query.work_cap = pair.contact_cap;
+  const FirstContact contact = first_contact(query, ccd);
+  note_contact_work(pair, contact.work);
+  pair.contact_short |= contact.state == ContactState::kUndecided &&
+                        pair.contact_cap < kCcdWorkCap &&
+                        contact.work.box_tests + contact.work.leaf_tests >= pair.contact_cap;
+  return contact;
+}
+
+void note_contained(PairWork& pair, bool is_free) {
+  if (pair.memo->not_contained != is_free) pair.memo.change().not_contained = is_free;
+}
+
+// Without a band the parts are their meshes: real is where interiors meet, and first contact says
+// when. Touching at the start is no reason to stop anybody; it asks on until the touching places
+// press in.
+void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
+  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kIgnoreTouching, ccd);
+  note_contained(pair, touch.state == ContactState::kFree);
+  if (touch.state == ContactState::kFree) {
+    pair.touching = touch.touched_at_start;
+    pair.apart_at_end_mm = touch.distance_mm;
+    return;
+  }
+  pair.near = true;
+  pair.undecided = touch.state == ContactState::kUndecided;
+  pair.meets = !pair.undecided;
+  pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
+  pair.t_contact = touch.touched_at_start ? 0.0 : touch.t_contact;
+  pair.t_enter = pair.undecided ? touch.t_clear : touch.t_contact;
+  if (!holds_back(world.policy)) return;
+  double t_stop = pair.t_enter;
+  if (pair.no_inside())
+    t_stop = pair.undecided ? touch.t_clear : 1.0;
+  else if (pair.overlaps_at_start)
+    pair.wants_stop_time = true;
+  if (!pair.overlaps_at_start && std::isfinite(pair.memo->allowed_depth_mm))
+    pair.memo.change().allowed_depth_mm = std::numeric_limits<double>::infinity();
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * t_stop;
+}
+
+// With a band there are two questions: when do they come so near that the real surfaces could meet,
+// and when do the meshes meet.
+void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
+  const FirstContact near = ask_first_contact(pair, pair.band_mm, AtStart::kSay, ccd);
+  if (near.state == ContactState::kFree) {
+    note_contained(pair, true);
+    pair.apart_at_end_mm = std::max(near.distance_mm, pair.band_mm);
+    return;
+  }
+  pair.near = true;
+  pair.entered = near.state == ContactState::kContact;
+  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, ccd);
+  note_contained(pair, touch.state == ContactState::kFree);
+  pair.undecided =
+      near.state == ContactState::kUndecided || touch.state == ContactState::kUndecided;
+  pair.meets = touch.state != ContactState::kFree && touch.state != ContactState::kUndecided;
+  pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
+  if (pair.meets) pair.t_contact = touch.t_contact;
+  pair.t_enter = pair.entered ? near.t_contact : 0.0;
+  if (!holds_back(world.policy)) return;
+  const SearchedTime time = stop_time_without_search(pair, touch);
+  pair.wants_stop_time = !time.known;
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * time.t;
+}
+
+double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_mm; }
+
+// Is the pair known to stay clear of everything that has to be looked at? From an earlier distance,
+// or else from the distance now where that is likely to save more than it costs.
+bool stays_clear(PairWork& pair, CcdScratch& ccd) {
+  const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
+  if (apart_lower_bound_mm(*pair.memo, budget) > needed_mm(pair)) return true;
+  if (pair.contact_cap == 0) return false;
+  // Only surfaces are apart: who may start inside the other is asked, and so is who has to end a
+  // clash.
+  if (!pair.memo->not_contained || pair.open) return false;
+  PairMemo& memo = pair.memo.change();
+  if (memo.pause > 0) {
+    --memo.pause;
+    return false;
+  }
+  // Enough for many ticks like this one, and for parts that hardly move.
+  const double spent_mm = relative_travel_upper_bound_mm(budget);
+  const double limit_mm =
+      2.0 * needed_mm(pair) + 16.0 * spent_mm +
+      0.01 * std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
+  const Pose &X_WA = pair.motion_a.X_W0, &X_WB = pair.motion_b.X_W0;
+  const double apart_mm = distance_of(pair, X_WA, X_WB, limit_mm, ccd).distance_mm;
+  remember_apart(memo, X_WA, X_WB, apart_mm);
+  if (apart_mm - needed_mm(pair) < 4.0 * spent_mm) {
+    memo.pause = memo.next_pause;
+    memo.next_pause = static_cast<std::uint8_t>(std::min(64, 2 * memo.next_pause));
+  } else {
+    memo.next_pause = 1;
+  }
+  return apart_lower_bound_mm(memo, budget) > needed_mm(pair);
+}
+
+}  // namespace
+
+DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
+                           CcdScratch& ccd) {
+  ++pair.counts.distance_queries;
+  const DistanceResult result =
+      distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm, &pair.memo->nearest);
+  if (result.within_limit) pair.memo.change().nearest = result;
+  return result;
+}
+
+void note_contact_work(PairWork& pair, const CcdWork& work) {
+  ++pair.counts.first_contact_queries;
+  pair.counts.box_tests += work.box_tests;
+  pair.counts.triangle_tests += work.triangle_tests;
+  pair.contact_tests += work.box_tests + work.leaf_tests;
+}
+
+namespace {
+
+// The tick has no work left for it: nothing is known beyond how it stands.
+void leave_unasked(const World& world, PairWork& pair) {
+  pair.near = pair.undecided = pair.contact_waits = true;
+  if (!holds_back(world.policy)) return;
+  pair.short_of_work = true;
+  pair.t_stop = pair.tau;
+}
+
+void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {
+  pair.asked = true;
+  pair.near = pair.touching = pair.entered = pair.undecided = false;
+  pair.meets = pair.overlaps_at_start = pair.blocks = false;
+  pair.t_contact = pair.t_stop = 1.0;
+  pair.never_real = pair.held_again = pair.wants_stop_time = false;
+  pair.stop_gave_up = pair.short_of_work = pair.stalled = pair.withdrawal_unsure = false;
+  pair.place = {};
+  pair.t_enter = pair.apart_at_end_mm = 0.0;
+  pair.contact_waits = false;
+  const bool cut_short = std::exchange(pair.contact_short, false);
+  if (pair.together) {
+    pair.asked = false;
+    return;
+  }
+  if (pair.placed) {  // no motion: only how it stands
+    pair.near = true;
+    return;
+  }
+  if (switches.motion_budget && !cut_short && stays_clear(pair, ccd)) {
+    pair.asked = false;
+    return;
+  }
+  if (pair.contact_cap == 0) return leave_unasked(world, pair);
+  if (pair.plain())
+    ask_plain(world, pair, ccd);
+  else
+    ask_banded(world, pair, ccd);
+  pair.short_of_work = pair.contact_short;
+  // First contact sometimes learns how far apart they end.
+  if (!pair.near && !pair.touching && pair.apart_at_end_mm > needed_mm(pair))
+    remember_apart(pair.memo.change(), pair.motion_a.X_W1, pair.motion_b.X_W1,
+                   pair.apart_at_end_mm);
+}
+
+// What is known of the stop without a search stands where there is no work left for one.
+void search_stop_time(PairWork& pair, CcdScratch& ccd) {
+  if (pair.cap == 0) {
+    pair.undecided = pair.stop_gave_up = true;
+    pair.stalled = is_stalled(pair) && pair.memo->stalled->in_full;
+    pair.short_of_work |= !pair.stalled;
+    return;
+  }
+  const bool was_undecided = std::exchange(pair.undecided, false);
+  const double t = pair.plain() ? withdrawal_time(pair, ccd) : stop_time_with_bands(pair, ccd);
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
+  note_effort(pair, WorkStage::kStop, pair.undecided);
+  pair.stop_gave_up = pair.undecided;
+  pair.short_of_work |= pair.undecided && pair.may_have_more();
+  note_stalled(pair);
+  pair.undecided |= was_undecided;
+}
+
+}  // namespace
+
+namespace {
+
+template <class Ask>
+void each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const Ask& ask) {
+  work.pool.for_each(pairs.size(), [&](std::size_t i, int thread) {
+    ask(work.pairs[pairs[i]], work.ccd[static_cast<std::size_t>(thread)]);
+  });
+}
+
+// 1. each with a share of what the tick may spend; most need no more.
+// 2. whose share did not do, or who had none, with all that a pair may have, as long as there is
+//    work.
+void ask_within_budget(const World& world, Scratch::Impl& work,
+                       std::span<const std::uint32_t> pairs) {
+  const auto ask = [&](PairWork& pair, CcdScratch& ccd) {
+    ask_pair(world, work.switches, pair, ccd);
+  };
+  if (is_contact_unlimited(work)) {
+    for (const std::uint32_t i : pairs) work.pairs[i].contact_cap = kCcdWorkCap;
+    return each(work, pairs, ask);
+  }
+  const std::vector<std::uint32_t> order = contact_order(world, work, pairs);
+  for (std::span<const std::uint32_t> rest = order; !rest.empty();) {
+    const auto batch = rest.first(std::min(rest.size(), kContactBatch));
+    rest = rest.subspan(batch.size());
+    share_contact_work(world, work, batch);
+    each(work, batch, ask);
+  }
+  std::vector<std::uint32_t> unanswered;
+  for (const std::uint32_t i : order)
+    if (work.pairs[i].contact_short || work.pairs[i].contact_waits) unanswered.push_back(i);
+  for (std::span<const std::uint32_t> rest = unanswered; !rest.empty();) {
+    const auto batch = rest.first(std::min(rest.size(), kDearBatch));
+    rest = rest.subspan(batch.size());
+    if (!share_more_contact_work(work, batch)) break;
+    each(work, batch, ask);
+  }
+  for (const std::uint32_t i : unanswered)
+    work.pairs[i].counts.pairs_waiting += work.pairs[i].contact_waits ? 1U : 0U;
+}
+
+}  // namespace
+
+void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
+  ask_within_budget(world, work, pairs);
+  work.asked.clear();
+  for (const std::uint32_t i : pairs)
+    if (work.pairs[i].wants_stop_time) work.asked.push_back(i);
+  if (work.asked.empty()) return;
+  share_out(world, work, work.asked, WorkStage::kStop);
+  each(work, work.asked, [](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, ccd); });
+}
+
+void find_contacts(const World& world, Scratch::Impl& work) {
+  work.again.resize(work.pair_count);
+  std::iota(work.again.begin(), work.again.end(), 0U);
+  ask_pairs(world, work, work.again);
+}
+
+}  // namespace mortise

@@ -1,0 +1,127 @@
+#include "common/session/tick/event_times.h"
+
+#include <algorithm>
+
+#include "common/depth/overlap.h"
+
+namespace mortise {
+namespace {
+
+// Evaluations of each of the two searches, some 10 ms of work. At the cap a time of that kind
+// is told that is not proven to be the first, and the pair is counted as not examined.
+constexpr std::uint64_t kEventTimeWorkCap = 3'000;
+// The same within a tick that has others to serve: its events are told to a share of the tick.
+constexpr std::uint64_t kEventTimeWorkCapOfTick = 750;
+
+// Halvings, and the evaluations of each look.
+constexpr int kHalvings = 13;
+constexpr std::uint64_t kLookWorkCap = 1'000;
+
+CollisionClass worst_told(const PairWork& pair) {
+  CollisionClass worst = CollisionClass::kNone;
+  for (const SeenRegion& seen : pair.seen)
+    if (seen.tell) worst = std::max(worst, seen.verdict.collision_class);
+  return worst;
+}
+
+SweptQuery swept_query(const PairWork& pair) {
+  SweptQuery query;
+  query.at_target.a = pair.solid_a;
+  query.at_target.b = pair.solid_b;
+  query.at_target.band_a = pair.band_a;
+  query.at_target.band_b = pair.band_b;
+  query.at_target.work_cap =
+      pair.cap_of(pair.limited ? kEventTimeWorkCapOfTick : kEventTimeWorkCap);
+  query.motion_a = pair.motion_a;
+  query.motion_b = pair.motion_b;
+  return query;
+}
+
+void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
+  ++pair.counts.event_time_queries;
+  pair.counts.depth_evaluations += evaluations;
+  if (capped) pair.undecided = true;
+}
+
+// Where the search leaves more of the tick open between what is clear and what is not, the time at
+// which they do interfere is told.
+constexpr double kClose = 1e-3;
+
+enum class Asked { kPossible, kReal };
+
+bool interferes_at(PairWork& pair, const SweptQuery& swept, double t, Asked asked,
+                   CcdScratch& ccd) {
+  OverlapQuery query = swept.at_target;
+  query.X_WA = swept.motion_a.pose_at(t);
+  query.X_WB = swept.motion_b.pose_at(t);
+  query.work_cap = pair.cap_of(kLookWorkCap);
+  query.want_delta = false;
+  const OverlapResult overlap = find_overlap(query, ccd);
+  pair.counts.depth_evaluations += overlap.evaluations;
+  return std::any_of(overlap.regions.begin(), overlap.regions.end(), [&](const auto& region) {
+    return asked == Asked::kPossible ? region.possible_mm.lo > 0.0 : region.certain_mm.lo > 0.0;
+  });
+}
+
+// A time at which they interfere, after `clear` and not after `known`; kNever when not even at
+// `known`.
+double halved(PairWork& pair, const SweptQuery& swept, double clear, double known, Asked asked,
+              CcdScratch& ccd) {
+  if (!interferes_at(pair, swept, known, asked, ccd)) return kNever;
+  for (int i = 0; i < kHalvings && pair.left() > 0; ++i) {
+    const double middle = 0.5 * (clear + known);
+    (interferes_at(pair, swept, middle, asked, ccd) ? known : clear) = middle;
+  }
+  return known;
+}
+
+// With bands the two times differ, and neither is that of the meshes.
+void search(PairWork& pair, CcdScratch& ccd) {
+  const auto in_tick = [&](double t) { return pair.tau + (1.0 - pair.tau) * t; };
+  const SweptQuery query = swept_query(pair);
+  const PossibleTime possible = find_possible_time(query, ccd);
+  count(pair, possible.evaluations, possible.capped);
+  const bool close = possible.t_possible - possible.t_clear <= kClose;
+  if (possible.becomes_possible)
+    pair.t_potential = in_tick(close ? possible.t_clear : possible.t_possible);
+  // The cap may come before the proof, yet after a time.
+  if (possible.capped && !possible.becomes_possible)
+    pair.t_potential =
+        in_tick(halved(pair, query, possible.t_clear, possible.t_possible, Asked::kPossible, ccd));
+  if (!possible.becomes_possible && !possible.capped) return;
+  if (pair.blocks) {
+    // The response knows it already.
+    pair.t_real = pair.t_stop;
+  } else if (!pair.no_inside() && !pair.never_real) {
+    const RealTime real = find_real_time(query, ccd);
+    count(pair, real.evaluations, real.capped);
+    if (real.becomes_real) pair.t_real = in_tick(real.t_real);
+    if (real.capped && !real.becomes_real)
+      pair.t_real = in_tick(halved(pair, query, real.t_free, real.t_real, Asked::kReal, ccd));
+  }
+}
+
+}  // namespace
+
+void find_event_times(PairWork& pair, double t_end, CcdScratch& ccd) {
+  pair.t_potential = pair.t_real = kNever;
+  const CollisionClass worst = worst_told(pair);
+  if (pair.placed) {
+    t_end = 0.0;
+  } else if (!pair.plain()) {
+    search(pair, ccd);
+  } else if (pair.meets) {
+    // The meshes are the parts: they interfere from where they press in.
+    pair.t_potential = pair.tau + (1.0 - pair.tau) * pair.t_enter;
+    if (!pair.no_inside()) pair.t_real = pair.t_potential;
+  }
+  if (pair.blocks) t_end = 1.0;
+  if (pair.t_potential > t_end) pair.t_potential = kNever;
+  if (pair.t_real > t_end) pair.t_real = kNever;
+  // What the verdict says at the end of the motion holds there at the latest.
+  if (worst >= CollisionClass::kReal) pair.t_real = std::min(pair.t_real, t_end);
+  if (worst >= CollisionClass::kPotential) pair.t_potential = std::min(pair.t_potential, t_end);
+  pair.t_potential = std::min(pair.t_potential, pair.t_real);
+}
+
+}  // namespace mortise

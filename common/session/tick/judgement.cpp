@@ -1,0 +1,176 @@
+#include "common/session/tick/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/session/tick/merge_regions.h"
+
+namespace mortise {
+namespace {
+
+// A margin that nothing bounds is not a number that the wire can carry.
+double finite_or_zero(double x) { return std::isfinite(x) ? x : 0.0; }
+
+DeviationGrade worst_of(DeviationGrade a, DeviationGrade b) { return std::max(a, b); }
+
+// Distance of the overlap to the nearest threshold that would change the class.
+double margin_of(CollisionClass collision_class, const Interval& delta_mm, const Thresholds& t) {
+  switch (collision_class) {
+    case CollisionClass::kReal:
+      return std::max(0.0, delta_mm.lo - t.real_above_mm);
+    case CollisionClass::kFake:
+      return std::max(0.0, t.fake_below_mm - delta_mm.hi);
+    case CollisionClass::kPotential:
+      return std::max(0.0, std::min(delta_mm.lo - t.fake_below_mm, t.real_above_mm - delta_mm.hi));
+    case CollisionClass::kNone:
+      break;
+  }
+  return 0.0;
+}
+
+struct Faces {
+  const SurfaceBand::Face& a;
+  const SurfaceBand::Face& b;
+};
+
+OverlapQuery overlap_query(const JudgementQuery& query) {
+  OverlapQuery overlap;
+  overlap.a = query.a->solid.get();
+  overlap.b = query.b->solid.get();
+  overlap.band_a = &band_a_of(query);
+  overlap.band_b = &band_b_of(query);
+  overlap.X_WA = query.motion_a.X_W1;
+  overlap.X_WB = query.motion_b.X_W1;
+  overlap.refinement = query.refinement;
+  overlap.work_cap = query.work_cap;
+  return overlap;
+}
+
+void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, bool no_inside,
+                     const Faces& faces, Verdict& verdict) {
+  ExplainInput input;
+  input.collision_class = verdict.collision_class;
+  input.delta_mm = region.delta_mm;
+  input.thresholds = {verdict.fake_below_mm, verdict.real_above_mm};
+  input.margin_mm = verdict.margin_mm;
+  input.face_a = &faces.a;
+  input.face_b = &faces.b;
+  input.tolerance_mm = faces.a.tolerance_mm + faces.b.tolerance_mm;
+  input.grade = verdict.grade;
+  input.probability = verdict.probability;
+  input.no_inside = no_inside;
+  input.capped = region.capped;
+  if (query.rule != nullptr) input.fit = query.rule->fit;
+  verdict.explanation = explain(input);
+}
+
+Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, bool no_inside) {
+  const Faces faces{band_a_of(query).face_of(region.deciding_triangle_a),
+                    band_b_of(query).face_of(region.deciding_triangle_b)};
+  Verdict verdict;
+  verdict.collision_class = classify(
+      {region.delta_mm, region.certain_mm, region.possible_mm, region.has_witness, no_inside});
+  verdict.delta_mm = region.delta_mm;
+  const Thresholds thresholds =
+      thresholds_of(region.delta_mm, region.certain_mm, region.possible_mm);
+  verdict.fake_below_mm = thresholds.fake_below_mm;
+  verdict.real_above_mm = thresholds.real_above_mm;
+  verdict.margin_mm =
+      finite_or_zero(margin_of(verdict.collision_class, region.delta_mm, thresholds));
+  if (verdict.collision_class == CollisionClass::kReal) verdict.probability = 1.0;
+  if (verdict.collision_class == CollisionClass::kPotential)
+    verdict.probability = interference_probability(region.certain_mm, region.possible_mm,
+                                                   faces.a.tolerance_mm, faces.b.tolerance_mm);
+  verdict.point_W = region.point_W;
+  verdict.normal_W = region.normal_W;
+  verdict.area_mm2 = region.area_mm2;
+  verdict.has_witness = region.has_witness;
+  verdict.witness_W = region.witness_W;
+  verdict.shape_a = region.shape_a;
+  verdict.shape_b = region.shape_b;
+  verdict.grade = worst_of(faces.a.grade, faces.b.grade);
+  verdict.face_a = faces.a.name;
+  verdict.face_b = faces.b.name;
+  explain_verdict(query, region, no_inside, faces, verdict);
+  return verdict;
+}
+
+void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& overlap,
+                           std::span<const OverlapRegion> regions, const OverlapRegion& region,
+                           CcdScratch& scratch, std::uint64_t& evaluations, Verdict& verdict) {
+  GpdQuery gpd;
+  gpd.overlap = overlap;
+  gpd.region = &region;
+  gpd.regions = regions;
+  gpd.motion_a = query.motion_a;
+  gpd.motion_b = query.motion_b;
+  gpd.t_contact = query.t_contact;
+  gpd.work_cap = std::min(gpd.work_cap, query.whole_cap - std::min(query.whole_cap, evaluations));
+  const GeneralizedDepth depth = generalized_depth(gpd, scratch);
+  evaluations += depth.evaluations;
+  verdict.gpd_mm = depth.gpd_mm;
+  verdict.travel_mm = depth.travel_mm;
+  verdict.normal_travel_mm = depth.normal_travel_mm;
+  verdict.separation_translation_mm = depth.translation_mm;
+  verdict.separation_rotation_rad = depth.rotation_rad;
+  verdict.separation_way = depth.way;
+}
+
+// Is the depth of the region known as closely as was asked for at most, layer by layer?
+bool is_refined(const OverlapRegion& region) {
+  const double most = 2.0 * kDepthAccuracyDefault_mm;
+  return region.delta_mm.width() <= most && region.certain_mm.width() <= most &&
+         region.possible_mm.width() <= most;
+}
+
+}  // namespace
+
+const SurfaceBand& band_a_of(const JudgementQuery& query) {
+  return query.rule != nullptr && query.rule->band_a ? *query.rule->band_a : query.a->band;
+}
+
+const SurfaceBand& band_b_of(const JudgementQuery& query) {
+  return query.rule != nullptr && query.rule->band_b ? *query.rule->band_b : query.b->band;
+}
+
+Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
+  Judgement judgement;
+  const OverlapQuery overlap = overlap_query(query);
+  judgement.overlap = find_overlap(overlap, scratch);
+  judgement.overlap.regions =
+      merge_regions(judgement.overlap.regions, *overlap.band_a, *overlap.band_b);
+  for (const OverlapRegion& region : judgement.overlap.regions) {
+    Verdict verdict = judge_region(query, region, judgement.overlap.no_inside);
+    if (verdict.collision_class == CollisionClass::kNone) continue;
+    if (query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
+        !judgement.overlap.no_inside)
+      add_generalized_depth(query, overlap, judgement.overlap.regions, region, scratch,
+                            judgement.overlap.evaluations, verdict);
+    judgement.verdicts.push_back(std::move(verdict));
+  }
+  // Worst first; the regions are sorted by depth already.
+  std::stable_sort(
+      judgement.verdicts.begin(), judgement.verdicts.end(), [](const Verdict& x, const Verdict& y) {
+        return static_cast<int>(x.collision_class) > static_cast<int>(y.collision_class);
+      });
+  return judgement;
+}
+
+void count(const JudgementQuery& query, const Judgement& judgement, StepCounters& counts) {
+  ++counts.depth_queries;
+  ++(band_a_of(query).trivial && band_b_of(query).trivial ? counts.judged_plain
+                                                          : counts.judged_with_bands);
+  counts.depth_evaluations += judgement.overlap.evaluations;
+  counts.verdicts.in += judgement.overlap.regions.size();
+  counts.verdicts.out += judgement.verdicts.size();
+  for (const Verdict& verdict : judgement.verdicts)
+    ++counts.verdicts_by_class[static_cast<std::size_t>(verdict.collision_class)];
+  for (const OverlapRegion& region : judgement.overlap.regions)
+    if (!region.capped)
+      ++(query.refinement == Refinement::kFull || is_refined(region)
+             ? counts.regions_refined
+             : counts.regions_decided_early);
+}
+
+}  // namespace mortise

@@ -1,0 +1,81 @@
+#include "common/session/tick/step.h"
+
+#include <algorithm>
+
+#include "common/session/tick/contact_budget.h"
+#include "common/session/tick/statistics.h"
+#include "common/session/tick/tick_work.h"
+#include "common/session/world/review.h"
+
+namespace mortise {
+namespace {
+
+// Counts of the pairs, added in their order.
+void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters& counters) {
+  std::vector<std::uint32_t> open_parts;
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    const PairWork& pair = work.pairs[i];
+    accumulate(counters, pair.counts);
+    if (!pair.asked) {
+      ++(pair.together ? counters.pairs_still : counters.pairs_budget);
+      continue;
+    }
+    ++counters.pairs.out;
+    ++counters.contacts.in;
+    if (pair.undecided || pair.withdrawal_unsure) ++counters.not_examined;
+    if (pair.undecided) {
+      ++counters.contacts_undecided;
+    } else if (pair.near || pair.touching) {
+      ++counters.contacts.out;
+    } else {
+      ++counters.contacts_clear;
+    }
+    if (!pair.near || !pair.judgement.overlap.no_inside) continue;
+    for (const std::uint32_t part : {pair.a, pair.b})
+      if (!world.parts[part].solid->topology().closed()) open_parts.push_back(part);
+  }
+  std::sort(open_parts.begin(), open_parts.end());
+  open_parts.erase(std::unique(open_parts.begin(), open_parts.end()), open_parts.end());
+  counters.parts_without_inside += open_parts.size();
+}
+
+void note_changed_memos(SessionState& state, Scratch::Impl& work) {
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    PairWork& pair = work.pairs[i];
+    if (pair.memo.changed()) state.touch(SessionState::key_of(pair.a, pair.b), pair.memo.change());
+  }
+}
+
+}  // namespace
+
+Scratch::Scratch(int threads) : impl_(std::make_unique<Impl>(std::max(1, threads))) {}
+Scratch::~Scratch() = default;
+
+StepReport step(World& world, std::span<const Increment> increments, Scratch& scratch) {
+  Scratch::Impl& work = scratch.impl();
+  SessionState& state = session_state(world, work.switches.brute_force_pairs);
+  state.tick = ++world.tick;
+  StepReport report;
+  report.tick = world.tick;
+  tell_reviews(world, state, report);
+  gather(world, increments, work, report);
+  find_candidates(world, state, work, report);
+  open_budget(world, state, work);
+  open_contact_budget(world, state, work);
+  if (!work.moves.empty()) {
+    find_contacts(world, work);
+    respond(world, work, report);
+    judge_pairs(world, work);
+    commit(world, state, work, report);
+    note_held(world, work);
+    report_clashes(world, state, work, report);
+    count_pairs_of(world, work, report.counters);
+    note_changed_memos(state, work);
+  }
+  close_budget(world, state, work);
+  close_contact_budget(world, state, work);
+  report.state_hash = state_hash(world, state);
+  return report;
+}
+
+}  // namespace mortise

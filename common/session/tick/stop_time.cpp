@@ -1,0 +1,334 @@
+#include "common/session/tick/stop_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/constants.h"
+#include "common/session/memory/motion_budget.h"
+
+namespace mortise {
+namespace {
+
+// Evaluations of one search for the time at which a pair becomes real, some 30 ms of work. Where it
+// ends the search the mover is left at the time proven so far and the pair is counted as not
+// examined; larger holds up everybody for one pair.
+constexpr std::uint64_t kRealTimeWorkCap = 10'000;
+
+// Evaluations of one look at the depth on the way; where it ends, the bracket is wide and the look
+// is worth nothing.
+constexpr std::uint64_t kLookWorkCap = 2'000;
+// The same of a look at what is withdrawn: the shafts of the demo need 1,100. Where it ends, the
+// depth is told too small; the pair is counted as not examined.
+constexpr std::uint64_t kWithdrawalLookWorkCap = 5'000;
+
+// How closely the advance approaches the time at which the pair becomes real, mm of depth, and the
+// steps it may take: head-on it needs two or three; a part that slides along at constant depth
+// needs many and is left to the search.
+constexpr double kAdvanceAccuracy_mm = 0.5 * kDepthAccuracyDefault_mm;
+constexpr int kAdvanceSteps = 12;
+// A part that is real within so much of its path stays where it stands. mm; the first is what the
+// search for the time is content with, too.
+constexpr double kHeldPaths_mm[] = {0.02, 0.004, 0.0008};
+// The same where the search had to give up: nothing closer is known of the stop anyway.
+constexpr double kHeldAfterGivingUp_mm[] = {0.2, 0.06};
+// Motions from the same place whose directions have a larger cosine are one push.
+constexpr double kSamePushCosine = 0.95;
+// Parts that approach by less than this share of their speed slide.
+constexpr double kLeastApproach = 0.1;
+// Path by which a part leaves the brink of being real, mm.
+constexpr double kLeaveBrink_mm = 0.05;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
+
+// Upper bound of the lower outward offset of any face: what the real surface has at least.
+double largest_lower_offset_mm(const SurfaceBand& band) {
+  double largest = 0.0;
+  for (const SurfaceBand::Face& face : band.faces) {
+    // With a surface the deviation is e(x) +- residual, and e + residual + tolerance.hi is at most
+    // the largest offset of the band.
+    const double lower = face.surface ? band.largest_offset_mm - face.tolerance_mm.width()
+                                      : face.deviation_mm.lo + face.tolerance_mm.lo;
+    largest = std::max(largest, lower);
+  }
+  return largest;
+}
+
+// Lower bound of what any face may have at most beyond what it has at least.
+double narrowest_mm(const SurfaceBand& band) {
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (const SurfaceBand::Face& face : band.faces)
+    narrowest = std::min(
+        narrowest, face.tolerance_mm.width() + (face.surface ? 0.0 : face.deviation_mm.width()));
+  return std::max(0.0, narrowest);
+}
+
+// Upper bound of the certain depth of a place that an overlap does not speak of: it is not even
+// possible there.
+double elsewhere_mm(const PairWork& pair) {
+  return -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
+}
+
+OverlapQuery overlap_query(const PairWork& pair) {
+  OverlapQuery query;
+  query.a = pair.solid_a;
+  query.b = pair.solid_b;
+  query.band_a = pair.band_a;
+  query.band_b = pair.band_b;
+  return query;
+}
+
+// Bracket of the deepest overlap that is certain at one time of the segment, mm.
+struct Look {
+  Interval depth_mm;
+  bool capped = false;
+  bool witnessed = false;  // some point is in both parts for certain
+  bool has_place = false;  // where the deepest region lies, world frame, and its normal from B to A
+  Vec3 point_W = Vec3::Zero(), normal_W = Vec3::UnitZ();
+};
+
+constexpr double kAll = -kInfinity;
+
+// What is no deeper than ignore_below_mm is only known to be so.
+Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
+                   double ignore_below_mm, CcdScratch& ccd) {
+  OverlapQuery query = overlap_query(pair);
+  query.X_WA = pair.motion_a.pose_at(t);
+  query.X_WB = pair.motion_b.pose_at(t);
+  query.refinement = refinement;
+  query.accuracy_mm = accuracy_mm;
+  // What is withdrawn is held against the least that is certain: half a look would let it deeper.
+  query.only_certain = refinement == Refinement::kFull;
+  query.ignore_below_mm = ignore_below_mm;
+  query.work_cap = query.only_certain ? kWithdrawalLookWorkCap : pair.cap_of(kLookWorkCap);
+  query.prove_not_certain = true;
+  query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
+  const OverlapResult overlap = find_overlap(query, ccd);
+  ++pair.counts.depth_queries;
+  pair.counts.depth_evaluations += overlap.evaluations;
+  Look look;
+  look.depth_mm = {elsewhere_mm(pair), elsewhere_mm(pair)};
+  for (const OverlapRegion& region : overlap.regions) {
+    look.capped |= region.capped;
+    look.witnessed |= region.has_witness;
+    look.depth_mm.lo = std::max(look.depth_mm.lo, region.certain_mm.lo);
+    if (region.certain_mm.hi < look.depth_mm.hi) continue;
+    look.depth_mm.hi = region.certain_mm.hi;
+    look.has_place = true;
+    look.point_W = region.point_W;
+    look.normal_W = region.normal_W;
+  }
+  return look;
+}
+
+// Do the parts slide past each other at the place, rather than approach? mm a segment.
+bool slides(const PairWork& pair, const Look& look, double t, double speed_mm) {
+  if (!look.has_place) return false;
+  const auto end = [&](const Motion& motion) -> Vec3 {
+    return motion.X_W1 * (motion.pose_at(t).inverse() * look.point_W);
+  };
+  const double approach_mm = -look.normal_W.dot(end(pair.motion_a) - end(pair.motion_b));
+  return approach_mm < kLeastApproach * (1.0 - t) * speed_mm;
+}
+
+enum class Advanced { kDone, kRealAtStart, kUnsure };
+
+struct Advance {
+  Advanced state = Advanced::kUnsure;
+  double t_free = 0.0;
+};
+
+// The depth that is certain changes no faster than the parts move against each other: where it
+// lacks g, no motion of less than g makes it real (collision.md section 5).
+//   1. depth at t; not below zero for certain: the last t was the last one proven.
+//   2. go on by as much time as the parts need for that depth.
+Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  Advance advance;
+  double t = advance.t_free = t_start;
+  for (int i = 0; i < kAdvanceSteps; ++i) {
+    const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, kAll, ccd);
+    const Interval& depth_mm = look.depth_mm;
+    if (look.witnessed && t == 0.0) {
+      advance.state = Advanced::kRealAtStart;
+      return advance;
+    }
+    if (depth_mm.hi > 0.0) return advance;
+    advance.t_free = t;
+    const double lacking_mm = -depth_mm.hi;
+    if (lacking_mm <= kAdvanceAccuracy_mm) {
+      // Reached it, when the bracket is tight as well; whether a part may slide along at the limit
+      // is for the search to say.
+      if (i > 0 && depth_mm.lo >= -4.0 * kAdvanceAccuracy_mm) advance.state = Advanced::kDone;
+      return advance;
+    }
+    t += lacking_mm / speed_mm;
+    if (t < 1.0 && slides(pair, look, advance.t_free, speed_mm)) return advance;
+    if (!(t < 1.0)) {
+      advance = {Advanced::kDone, 1.0};
+      return advance;
+    }
+  }
+  return advance;
+}
+
+// Up to the time t_most at the latest.
+double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
+  constexpr int kLooks = 4;
+  const auto depth_mm = [&](double t, double ignore_below_mm) {
+    const Look look =
+        certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ignore_below_mm, ccd);
+    pair.withdrawal_unsure |= look.capped;
+    return std::max(0.0, look.depth_mm.lo);
+  };
+  double& allowed_mm = pair.memo.change().allowed_depth_mm;
+  allowed_mm = std::min(allowed_mm, depth_mm(0.0, kAll));
+  // The less it interferes, the less it may gain: what one tick grants must not be the licence of
+  // the next.
+  const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
+  const double most_mm = allowed_mm + slack_mm;
+  for (int i = 1; i <= kLooks; ++i)
+    if (depth_mm(t_most * i / kLooks, most_mm) > most_mm) return t_most * (i - 1) / kLooks;
+  return t_most;
+}
+
+// Who has come out of the other until both just touch is neither real nor can any search say how
+// long it stays so. It goes on as it came, by so little that nothing is passed over between two
+// looks; from there it is searched like any other.
+double leave_brink(PairWork& pair, CcdScratch& ccd) {
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  return withdrawal_until(pair, std::min(1.0, kLeaveBrink_mm / speed_mm), ccd);
+}
+
+// A part that is pushed on where its last push has left it: is it the same place that holds it? The
+// poses at the start are proven already, so that nothing has to be searched.
+bool is_held_again(PairWork& pair) {
+  const auto& held = pair.memo->held;
+  // Who slides goes another way than what was held.
+  if (!held || pair.blocked || std::isfinite(pair.memo->allowed_depth_mm) ||
+      !identical(held->X_WA, pair.motion_a.X_W0) || !identical(held->X_WB, pair.motion_b.X_W0))
+    return false;
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  OverlapQuery query = overlap_query(pair);
+  const auto holds_at = [&](double path_mm) {
+    const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
+    query.X_WA = pair.motion_a.pose_at(t);
+    query.X_WB = pair.motion_b.pose_at(t);
+    return is_certain_at(query, held->place, pair.counts.depth_evaluations);
+  };
+  const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
+                     (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),
+                                                   std::end(kHeldAfterGivingUp_mm), holds_at));
+  if (again) pair.place = held->place;
+  return again;
+}
+
+PairMemo::Stalled push_of(const PairWork& pair) {
+  const double rim_mm =
+      std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
+  return {pair.motion_a.X_W0,
+          pair.motion_b.X_W0,
+          pair.motion_a.v_W - pair.motion_b.v_W,
+          rim_mm * (pair.motion_a.w_W - pair.motion_b.w_W),
+          false,
+          false,
+          0};
+}
+
+SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
+  double t_start = pair.t_enter;
+  if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
+    // Real needs an overlap of the meshes.
+    if (touch.state == ContactState::kFree) return {1.0, true};
+    if (touch.state == ContactState::kUndecided) return {touch.t_clear, true};
+    if (touch.state == ContactState::kContact) t_start = touch.t_contact;
+  }
+  pair.held_again = is_held_again(pair);
+  if (pair.held_again) ++pair.counts.pairs_held_again;
+  return pair.held_again ? SearchedTime{0.0, true} : SearchedTime{t_start, false};
+}
+
+double free_time(PairWork& pair, CcdScratch& ccd) {
+  const double t_start = pair.t_stop_start;
+  // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
+  const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
+  const Advance advance =
+      may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
+  if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
+  const double allowed_mm = pair.memo->allowed_depth_mm;
+  if (std::isfinite(allowed_mm)) pair.memo.change().allowed_depth_mm = kInfinity;
+  if (advance.state == Advanced::kDone) return advance.t_free;
+
+  SweptQuery query;
+  query.at_target = overlap_query(pair);
+  query.motion_a = pair.motion_a;
+  query.motion_b = pair.motion_b;
+  query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
+  const RealTime real = find_real_time(query, ccd);
+  ++pair.counts.depth_queries;
+  pair.counts.depth_evaluations += real.evaluations;
+  pair.place = real.certain_place;
+  if (real.real_at_start) return withdrawal_time(pair, ccd);
+  const double t_free = std::max(advance.t_free, real.t_free);
+  if (real.capped && t_free == 0.0 && std::isfinite(allowed_mm)) {
+    pair.memo.change().allowed_depth_mm = allowed_mm;
+    return leave_brink(pair, ccd);
+  }
+  if (real.capped) pair.undecided = true;
+  return t_free;
+}
+
+}  // namespace
+
+double withdrawal_time(PairWork& pair, CcdScratch& ccd) { return withdrawal_until(pair, 1.0, ccd); }
+
+void note_stalled(PairWork& pair) {
+  const std::uint8_t in_vain = times_in_vain(pair);
+  if (pair.memo->stalled) pair.memo.change().stalled.reset();
+  if (!pair.undecided || pair.t_stop > 0.0) return;
+  PairMemo::Stalled& stalled = pair.memo.change().stalled.emplace(push_of(pair));
+  stalled.in_full = !pair.short_of_work;
+  stalled.in_vain =
+      static_cast<std::uint8_t>(std::min(in_vain + (pair.short_of_work ? 0 : 1), 250));
+}
+
+std::uint8_t times_in_vain(const PairWork& pair) {
+  const auto& before = pair.memo->stalled;
+  return before && identical(before->X_WA, pair.motion_a.X_W0) &&
+                 identical(before->X_WB, pair.motion_b.X_W0)
+             ? before->in_vain
+             : std::uint8_t{0};
+}
+
+bool is_stalled(const PairWork& pair) {
+  const auto& before = pair.memo->stalled;
+  if (!before) return false;
+  const PairMemo::Stalled now = push_of(pair);
+  const auto dot = [](const PairMemo::Stalled& x, const PairMemo::Stalled& y) {
+    return x.shift.dot(y.shift) + x.turn.dot(y.turn);
+  };
+  return identical(before->X_WA, now.X_WA) && identical(before->X_WB, now.X_WB) &&
+         dot(*before, now) >= kSamePushCosine * std::sqrt(dot(*before, *before) * dot(now, now));
+}
+
+SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch) {
+  // Without an inside there is no depth and so no real verdict: nobody is stopped.
+  if (pair.no_inside())
+    return {touch.state == ContactState::kUndecided ? touch.t_clear : 1.0, true};
+  const SearchedTime time = start_of_search(pair, touch);
+  pair.t_stop_start = time.t;
+  pair.never_real = time.known && time.t >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
+  return time;
+}
+
+double stop_time_with_bands(PairWork& pair, CcdScratch& ccd) {
+  const double t_free = free_time(pair, ccd);
+  // Who withdraws is real all the while.
+  pair.never_real = t_free >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
+  return t_free;
+}
+
+}  // namespace mortise

@@ -1,0 +1,224 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/session/memory/session_state.h"
+#include "common/session/tick/bodies.h"
+#include "common/session/tick/judgement.h"
+#include "common/session/tick/step.h"
+#include "common/session/tick/tangent_cone.h"
+#include "common/session/tick/worker_pool.h"
+
+namespace mortise {
+
+/// One part that the tick moves, or that was put somewhere since the last tick (then still).
+struct Move {
+  std::uint32_t part = 0;  ///< index
+  UserId user;
+  Motion motion;            ///< as asked for
+  double turned_rad = 0.0;  ///< sum of the rotations of its increments
+  bool placed = false;      ///< was put somewhere: nothing is known of its pairs
+  bool owed = false;        ///< a pair of it waits for a verdict
+  double stop = 1.0;        ///< time at which the response ends it
+  bool stopped = false;
+  Pose X_WP_end;  ///< after the response
+  GroupId group;  ///< moves as one with the other parts of it
+  /// The piece of its path that it is on: `motion`, or, where it slides, what goes on from time
+  /// leg_start of the tick to its end.
+  Motion leg;
+  double leg_start = 0.0;
+  Box reach;                  ///< no pair is asked for what the part does outside of it
+  std::int32_t sliding = -1;  ///< index among the sliding bodies; -1: it does not slide
+};
+
+/// A body on its way along what it met (policy slide).
+struct SlidingBody {
+  Body body;                        ///< at the start of the tick
+  std::vector<std::int32_t> moves;  ///< of its parts
+  std::vector<Relation> relations;  ///< that guide it, at the start of the tick
+  std::vector<Hold> holds;          ///< of pairs with bands, as they are at the start of the leg
+  Twist wanted, given;              ///< of the present leg, whole; about its centre
+  double lift_mm = 0.0;             ///< by which a turning leg gets away from what holds it
+  int legs = 0, stalls = 0;
+  double look = 2.0;  ///< time at which what holds it lets go; 2: it does not
+  bool look_due = false;
+};
+
+/// What a pair was asked over an earlier piece of the tick, to be judged in place of the last one.
+struct AskedEarlier {
+  double tau = 0.0, t_contact = 1.0, t_enter = 0.0, t_stop = 1.0;
+  Motion motion_a, motion_b;
+  bool entered = false, meets = false, overlaps_at_start = false, short_of_work = false;
+  bool stop_gave_up = false;
+  CertainPlace place;
+  double t_end = 1.0;  ///< of the tick: until then
+};
+
+/// One region of a pair as judged in this tick, and the open clash that it continues.
+struct SeenRegion {
+  Verdict verdict;
+  Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< its place, as a point of either part
+  int open = -1;         ///< index among the open clashes of the pair; -1: a new clash
+  bool tell = false;     ///< begin or change is due
+  bool passing = false;  ///< begins and ends within the tick
+};
+
+/// What a pair is given work for: the time at which it stops, and its verdict.
+enum class WorkStage : std::uint8_t { kStop = 0, kVerdict = 1 };
+
+/// One candidate pair on its way through the tick; a < b.
+struct PairWork {
+  std::uint32_t a = 0, b = 0;
+  std::int32_t move_a = -1, move_b = -1;  ///< index of the part's Move; -1: still
+  const Solid *solid_a = nullptr, *solid_b = nullptr;
+  const PairRule* rule = nullptr;
+  const SurfaceBand *band_a = nullptr, *band_b = nullptr;
+  double band_mm = 0.0;  ///< distance at which the pair has to be looked at
+  MemoInUse memo;
+  std::vector<OpenClash>* open = nullptr;  ///< null: none
+  bool placed = false;                     ///< neither moves, one was put somewhere
+
+  // Stage 3, over the segment [tau, 1] of the tick in which motion_a and motion_b run from 0 to 1;
+  // times are of the segment, but for t_stop.
+  double tau = 0.0;
+  Motion motion_a, motion_b;
+  bool asked = false;      ///< false: an earlier or a new distance says that they stay apart
+  bool near = false;       ///< overlapping or within the band at some time: to be judged
+  bool touching = false;   ///< touched at the start and got no deeper: nothing to judge
+  bool entered = false;    ///< came within the band during the segment
+  bool undecided = false;  ///< a work cap was reached
+  bool meets = false;      ///< the meshes touch or overlap at some time, first at t_contact
+  bool overlaps_at_start = false;
+  double t_contact = 1.0;
+  double t_enter = 0.0;  ///< nothing to judge before: plain pairs do not overlap, others stay clear
+  double t_stop = 1.0;   ///< of the tick: the pair is proven not to become real before
+  bool never_real = false;       ///< proven by the search for t_stop, over the whole segment
+  double apart_at_end_mm = 0.0;  ///< lower bound, when neither near nor touching
+  bool blocks = false;           ///< the response stopped a part because of this pair
+  bool held_again = false;       ///< at once, by the place that has held it back before
+  CertainPlace place;            ///< that makes it real, where one is known
+
+  bool together = false;  ///< both move as one: what was said of them stays
+  double t_left = 2.0;    ///< of the tick: the parts went other ways from then on; 2: they did not
+  std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
+                                                ///< back; near, and left again
+
+  // Work on first contact, in tests; see contact_budget.h.
+  std::uint64_t contact_cap = kCcdWorkCap,
+                contact_tests = 0;  ///< of one question; used in the tick
+  bool contact_short = false;       ///< a question came to the end of that
+  bool contact_waits = false;       ///< none was asked, for want of work
+
+  // Work on depth, in evaluations; see work_budget.h.
+  std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
+  std::uint64_t most_work = 0;     ///< that a pair may have in the stage
+  bool limited = false;            ///< by what the tick may spend
+  bool wants_stop_time = false;    ///< its t_stop is what needs no search
+  double t_stop_start = 0.0;       ///< of the segment: where that search begins
+  bool stop_gave_up = false;       ///< that search came to the end of its work
+  bool short_of_work = false;      ///< and was given less of it than it may have
+  bool stalled = false;            ///< or none, because the same push has come to nothing before
+  bool withdrawal_unsure = false;  ///< a look at what is withdrawn came to the end of its work
+  bool owed = false;               ///< near, but not judged to the end: again in the next tick
+
+  /// Was it given less than that?
+  bool may_have_more() const { return cap < most_work; }
+  /// What is left to it of the stage.
+  std::uint64_t left() const {
+    const std::uint64_t used = counts.depth_evaluations - stage_start;
+    return used < cap ? cap - used : 0;
+  }
+  /// The cap of one question: never nothing, so that an answer is at least a bracket.
+  std::uint64_t cap_of(std::uint64_t most) const {
+    constexpr std::uint64_t kGlance = 100;
+    return std::min(most, std::max(left(), kGlance));
+  }
+
+  // Stage 4.
+  Judgement judgement;
+  std::vector<SeenRegion> seen;
+  bool unsettled = false;  ///< a better class than told, but not by enough to be told
+  bool in_full = false;    ///< then its depth is looked at as closely as may be
+  double t_potential = kNever, t_real = kNever;  ///< of the tick; where somebody is told
+  std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)
+
+  StepCounters counts;  ///< of this pair alone, merged in pair order
+
+  /// The meshes are the parts: nothing is known of deviation or tolerance.
+  bool plain() const { return band_a->trivial && band_b->trivial; }
+  /// A part without an inside is potential at best, so that it stops nobody.
+  bool no_inside() const { return !solid_a->topology().closed() || !solid_b->topology().closed(); }
+};
+
+/// Ways to do the same with less cleverness, for tests; the report must not change but for
+/// counters.
+struct StepSwitches {
+  bool motion_budget = true;
+  bool brute_force_pairs = false;  ///< at the first step of a world
+  bool work_budget = true;         ///< false: every pair has the most that one may have
+};
+
+struct Scratch::Impl {
+  explicit Impl(int threads) : pool(threads), ccd(static_cast<std::size_t>(pool.threads())) {}
+  WorkerPool pool;
+  std::vector<CcdScratch> ccd;  ///< one a thread
+  StepSwitches switches;
+
+  std::vector<Move> moves;                 ///< by part
+  std::vector<std::int32_t> move_of_part;  ///< -1: still
+  std::vector<std::uint32_t> moved_parts;  ///< part index of moves[i]
+  std::vector<IndexPair> candidates;
+  std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
+  std::size_t pair_count = 0;
+  std::uint64_t budget = 0, stock = 0;  ///< evaluations of depth: of this tick, and what was saved
+  std::uint64_t contact_budget = 0;     ///< tests of first contact, what was saved included
+  std::vector<std::uint32_t> asked;     ///< pairs that want work of the stage
+  std::vector<std::uint32_t> again;     ///< pairs to ask again in a round of the response
+  std::vector<SlidingBody> sliding;
+};
+
+// The stages, in the order of the tick. Each reads what the ones before have written.
+
+/// What the tick may spend on depth, and what is saved for later ones.
+void open_budget(const World& world, const SessionState& state, Scratch::Impl& work);
+void close_budget(const World& world, SessionState& state, const Scratch::Impl& work);
+
+/// 1. Increments to moves: checks, composition in order of arrival.
+void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
+            StepReport& report);
+/// 2. Candidate pairs: broad phase, filter.
+void find_candidates(const World& world, SessionState& state, Scratch::Impl& work,
+                     StepReport& report);
+/// 3. First contact of every pair; for policy stop, when it becomes real.
+void find_contacts(const World& world, Scratch::Impl& work);
+/// 3b. Policy: who stops when.
+void respond(const World& world, Scratch::Impl& work, StepReport& report);
+/// 4. Depth, thresholds and verdict of what is near; which clash each region continues.
+void judge_pairs(const World& world, Scratch::Impl& work);
+/// 5. New poses, written once.
+void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& report);
+/// 6. Begin, change and end of clashes.
+void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
+                    StepReport& report);
+
+/// Notes for the next tick by which place each pair held its parts back.
+void note_held(const World& world, Scratch::Impl& work);
+
+/// Asks pairs over the segments set in them; used by 3 and by the rounds of 3b.
+void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs);
+
+/// Counts what a question of first contact took.
+void note_contact_work(PairWork& pair, const CcdWork& work);
+
+/// Distance of the meshes of a pair at these poses, mm, up to limit_mm; counted, and begun where
+/// the last one was found.
+DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
+                           CcdScratch& ccd);
+
+/// The open clash that each region of pair.seen continues, whether its event is due, and which open
+/// clashes stay although nothing was seen of them. Reads pair.judgement; distance_mm: of the meshes
+/// at the end, infinite when not asked.
+void match_clashes(const World& world, PairWork& pair, double distance_mm);
+
+}  // namespace mortise

@@ -1,0 +1,316 @@
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "common/base/constants.h"
+#include "common/session/tick/event_times.h"
+#include "common/session/tick/tick_work.h"
+#include "common/session/tick/work_budget.h"
+
+namespace mortise {
+namespace {
+
+// Evaluations of one overlap within a tick at most, whatever work there is. A pair at the very
+// brink of a threshold can take any number; where it ends, brackets stay wide, the verdict is
+// potential and the pair is counted as not examined to the end.
+constexpr std::uint64_t kTickOverlapCap = 10'000;
+// Tests of the look back from the end of a motion that passes through something.
+constexpr std::uint64_t kLeastWorkBack = 2'000;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The two motions of a pair over some part of the tick; t_contact and t_enter (see PairWork) count
+// in them, 1: not within them.
+struct PairMotion {
+  Motion a, b;
+  double t_contact = 1.0, t_enter = 0.0;
+};
+
+PairMotion as_asked(const PairWork& pair) {
+  return {pair.motion_a, pair.motion_b, pair.t_contact, pair.t_enter};
+}
+
+Judgement judge_along(const World& world, PairWork& pair, const PairMotion& motion, bool want_gpd,
+                      CcdScratch& ccd) {
+  JudgementQuery query;
+  query.a = &world.parts[pair.a];
+  query.b = &world.parts[pair.b];
+  query.rule = pair.rule;
+  query.motion_a = motion.a;
+  query.motion_b = motion.b;
+  query.t_contact = motion.t_contact;
+  query.want_gpd = want_gpd;
+  if (pair.in_full) query.refinement = Refinement::kFull;
+  query.work_cap = query.whole_cap = pair.cap_of(kTickOverlapCap);
+  Judgement judgement = judge_pair(query, ccd);
+  count(query, judgement, pair.counts);
+  for (const OverlapRegion& region : judgement.overlap.regions)
+    if (region.capped) pair.undecided = true;
+  return judgement;
+}
+
+double share_of(double t, double end) { return end > 0.0 ? std::min(1.0, t / end) : 1.0; }
+
+// Both motions up to time t of their own.
+PairMotion up_to(const PairMotion& motion, double t) {
+  return {until(motion.a, t), until(motion.b, t), share_of(motion.t_contact, t),
+          share_of(motion.t_enter, t)};
+}
+
+// What the response left of the segment of one part.
+Motion as_moved(const Scratch::Impl& work, std::int32_t index, const Motion& segment, double tau) {
+  if (index < 0) return segment;
+  const Move& move = work.moves[static_cast<std::size_t>(index)];
+  if (!move.stopped) return segment;
+  Motion cut = until(segment, (move.stop - tau) / (1.0 - tau));
+  if (!cut.moves()) cut.X_W0 = move.X_WP_end;
+  cut.X_W1 = move.X_WP_end;
+  return cut;
+}
+
+// Time of the tick up to which a part of the pair moves.
+double end_of(const Scratch::Impl& work, const PairWork& pair) {
+  double end = pair.tau;
+  for (const std::int32_t index : {pair.move_a, pair.move_b})
+    if (index >= 0) end = std::max(end, work.moves[static_cast<std::size_t>(index)].stop);
+  return end;
+}
+
+PairMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
+  if (pair.t_left < 1.0) return up_to(as_asked(pair), (pair.t_left - pair.tau) / (1.0 - pair.tau));
+  PairMotion motion = as_asked(pair);
+  motion.a = as_moved(work, pair.move_a, pair.motion_a, pair.tau);
+  motion.b = as_moved(work, pair.move_b, pair.motion_b, pair.tau);
+  const double local_end = (end_of(work, pair) - pair.tau) / (1.0 - pair.tau);
+  motion.t_contact = share_of(pair.t_contact, local_end);
+  motion.t_enter = pair.t_enter > 0.0 ? share_of(pair.t_enter, local_end) : 0.0;
+  return motion;
+}
+
+Motion backward(const Motion& motion) {
+  if (!motion.moves()) return motion;
+  return linear_motion(motion.X_W1, motion.X_W0, motion.reference_P);
+}
+
+SeenRegion seen_at(const Verdict& verdict, const Pose& X_WA, const Pose& X_WB) {
+  SeenRegion seen;
+  seen.verdict = verdict;
+  seen.p_A = X_WA.inverse() * verdict.point_W;
+  seen.p_B = X_WB.inverse() * verdict.point_W;
+  return seen;
+}
+
+void prefix(Verdict& verdict, const char* what, double t) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%s at t = %.4f: ", what, t);
+  verdict.explanation.insert(0, text);
+}
+
+// The parts meet within the segment but nothing is seen at its end: they passed each other, through
+// or by. Looks inside the interval between the first and the last contact, whose ends are known to
+// the accuracy of first contact however thin the wall; middle first.
+std::optional<SeenRegion> passing(const World& world, PairWork& pair, const PairMotion& whole,
+                                  bool want_gpd, CcdScratch& ccd) {
+  ContactQuery back;
+  back.a = pair.solid_a;
+  back.b = pair.solid_b;
+  back.motion_a = backward(whole.a);
+  back.motion_b = backward(whole.b);
+  back.separation_mm = pair.band_mm;
+  back.check_contained = false;
+  back.ignore_touching_at_start = pair.plain();
+  back.work_cap = std::max(pair.contact_cap, kLeastWorkBack);
+  const FirstContact last = first_contact(back, ccd);
+  note_contact_work(pair, last.work);
+  if (last.state == ContactState::kUndecided) pair.undecided = true;
+  const double t_out = std::max(whole.t_enter, 1.0 - last.t_clear);
+  for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
+    if (pair.left() == 0) {
+      pair.undecided = true;
+      break;
+    }
+    const double t = whole.t_enter + share * (t_out - whole.t_enter);
+    const PairMotion there = up_to(whole, t);
+    const Judgement judgement = judge_along(world, pair, there, want_gpd, ccd);
+    if (judgement.verdicts.empty()) continue;
+    SeenRegion region = seen_at(judgement.verdicts.front(), there.a.X_W1, there.b.X_W1);
+    prefix(region.verdict, "worst found", pair.tau + (1.0 - pair.tau) * t);
+    return region;
+  }
+  return std::nullopt;
+}
+
+// The collision that made the response stop this pair, judged where the increments would have led.
+// Where the part was stopped it stands at the very brink of being real: nothing is to be learned
+// there.
+void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch& ccd) {
+  const PairMotion asked = as_asked(pair);
+  pair.judgement = judge_along(world, pair, asked, want_gpd, ccd);
+  for (const Verdict& verdict : pair.judgement.verdicts)
+    pair.seen.push_back(seen_at(verdict, asked.a.X_W1, asked.b.X_W1));
+  for (const OverlapRegion& region : pair.judgement.overlap.regions)
+    if (!pair.place.known()) pair.place = region.certain_place;
+  if (pair.seen.empty() || pair.seen.front().verdict.collision_class != CollisionClass::kReal) {
+    pair.seen.clear();
+    if (auto region = passing(world, pair, asked, want_gpd, ccd))
+      pair.seen.push_back(std::move(*region));
+  }
+  for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
+}
+
+// The place that holds a part holds it again, or the same push comes to nothing again: what was
+// said of it holds on.
+bool stays_told(const PairWork& pair) {
+  if (pair.memo->not_judged) return false;
+  if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
+  return pair.near && pair.blocks && pair.held_again && pair.open &&
+         std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
+           return clash.now.collision_class == CollisionClass::kReal;
+         });
+}
+
+// Nobody looked: the open clashes stay as they are.
+void keep_told(PairWork& pair) {
+  pair.seen.clear();
+  pair.judgement = {};
+  if (pair.open) pair.keeps.assign(pair.open->size(), 1);
+}
+
+void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
+                CcdScratch& ccd) {
+  const PairMotion motion = as_moved(work, pair);
+  pair.seen.clear();
+  pair.unsettled = false;
+  if (pair.blocks) {
+    judge_attempt(world, pair, want_gpd, ccd);
+  } else {
+    pair.judgement = judge_along(world, pair, motion, want_gpd, ccd);
+    for (const Verdict& verdict : pair.judgement.verdicts)
+      pair.seen.push_back(seen_at(verdict, motion.a.X_W1, motion.b.X_W1));
+    if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start)))
+      if (auto region = passing(world, pair, motion, want_gpd, ccd)) {
+        region->passing = true;
+        pair.seen.push_back(std::move(*region));
+      }
+  }
+  if (pair.t_left < 1.0)
+    for (SeenRegion& seen : pair.seen) seen.passing = true;
+  double distance_mm = kInfinity;
+  if (pair.open && pair.judgement.overlap.regions.empty()) {
+    const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
+                                              2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
+    if (result.within_limit) distance_mm = result.distance_mm;
+  }
+  match_clashes(world, pair, distance_mm);
+}
+
+void note_seen(PairWork& pair) {
+  if (!pair.memo->not_judged && !pair.memo->not_seen) return;
+  PairMemo& memo = pair.memo.change();
+  memo.not_judged = memo.not_seen = false;
+}
+
+// Clear of the band, but an open clash ends only at some distance.
+void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  pair.seen.clear();
+  pair.judgement = {};
+  const PairMotion motion = as_moved(work, pair);
+  const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
+                                            2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
+  match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
+  note_seen(pair);
+}
+
+bool anything_to_tell(const PairWork& pair) {
+  return std::any_of(pair.seen.begin(), pair.seen.end(),
+                     [](const SeenRegion& seen) { return seen.tell; });
+}
+
+// Half a verdict is none: the next ticks look again, at the parts as they stand if they rest. What
+// stopped a part is not to be seen there, but for that there is nothing else.
+void put_off(PairWork& pair) {
+  keep_told(pair);
+  pair.undecided = true;
+  pair.owed = !pair.blocks || !pair.open;
+}
+
+// After a decision: what was open is judged by what holds now, and as the parts stand.
+void note_judged(PairWork& pair) {
+  if (!pair.blocks) return note_seen(pair);
+  if (pair.memo->not_judged) pair.memo.change().not_judged = false;
+}
+
+// A class was left, but perhaps only because no more was asked than what class it is now. While
+// parts move that may be; when they rest it is asked once.
+void settle(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  if (!pair.unsettled || pair.blocks) return;
+  if (!pair.placed) {
+    pair.owed = true;
+    return;
+  }
+  pair.in_full = true;
+  judge_near(world, work, pair, false, ccd);
+}
+
+void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  if (pair.cap == 0) {
+    put_off(pair);
+    return;
+  }
+  const bool was_undecided = std::exchange(pair.undecided, false);
+  // The separating motion is needed only where somebody is told of it.
+  judge_near(world, work, pair, pair.open == nullptr, ccd);
+  settle(world, work, pair, ccd);
+  const bool capped = pair.undecided;
+  if (capped && pair.may_have_more()) {
+    put_off(pair);
+  } else {
+    if (anything_to_tell(pair)) {
+      if (pair.open && pair.left() > 0) judge_near(world, work, pair, true, ccd);
+      find_event_times(pair, end_of(work, pair), ccd);
+    }
+    note_judged(pair);
+  }
+  if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo.change().stalled->judged = true;
+  note_effort(pair, WorkStage::kVerdict, capped);
+  pair.undecided |= was_undecided;
+}
+
+}  // namespace
+
+void judge_pairs(const World& world, Scratch::Impl& work) {
+  work.asked.clear();
+  work.again.clear();
+  for (std::uint32_t i = 0; i < work.pair_count; ++i) {
+    PairWork& pair = work.pairs[i];
+    if (!pair.asked) continue;
+    // A part that was stopped before this pair came near is clear of it.
+    const bool looked_at =
+        pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0);
+    // Who was held back only because there was no work to let it go on has met nothing yet.
+    if (looked_at && pair.blocks && pair.short_of_work)
+      put_off(pair);
+    else if (looked_at)
+      (stays_told(pair) ? work.again : work.asked).push_back(i);
+    else if (pair.open)
+      work.again.push_back(i);
+  }
+  share_out(world, work, work.asked, WorkStage::kVerdict);
+  work.pool.for_each(work.again.size(), [&](std::size_t i, int thread) {
+    PairWork& pair = work.pairs[work.again[i]];
+    if (stays_told(pair))
+      keep_told(pair);
+    else
+      judge_clear(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);
+  });
+  work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
+    judge_asked(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
+  });
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    PairWork& pair = work.pairs[i];
+    pair.owed |= pair.asked && pair.open && pair.memo->not_seen;
+  }
+}
+
+}  // namespace mortise

@@ -1,0 +1,50 @@
+#include "common/session/tick/worker_pool.h"
+
+namespace mortise {
+
+WorkerPool::WorkerPool(int threads) {
+  for (int t = 1; t < threads; ++t)
+    workers_.emplace_back([this, t](const std::stop_token& stop) { work(stop, t); });
+}
+
+WorkerPool::~WorkerPool() {
+  for (std::jthread& worker : workers_) worker.request_stop();
+  start_.notify_all();
+}
+
+void WorkerPool::run(std::size_t count, void* body, Call call) {
+  {
+    const std::lock_guard lock(mutex_);
+    count_ = count;
+    body_ = body;
+    call_ = call;
+    next_.store(0);
+    busy_ = static_cast<int>(workers_.size());
+    ++round_;
+  }
+  start_.notify_all();
+  take_indices(0);
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void WorkerPool::take_indices(int thread) {
+  for (std::size_t i = next_.fetch_add(1); i < count_; i = next_.fetch_add(1))
+    call_(body_, i, thread);
+}
+
+void WorkerPool::work(const std::stop_token& stop, int thread) {
+  std::uint64_t seen = 0;
+  while (true) {
+    {
+      std::unique_lock lock(mutex_);
+      if (!start_.wait(lock, stop, [&] { return round_ != seen; })) return;
+      seen = round_;
+    }
+    take_indices(thread);
+    const std::lock_guard lock(mutex_);
+    if (--busy_ == 0) done_.notify_one();
+  }
+}
+
+}  // namespace mortise

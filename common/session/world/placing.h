@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "common/session/world/world.h"
+
+namespace mortise {
+
+/// Puts a part somewhere without a motion.
+void put(World& world, Part& part, const Pose& X_WP, const Decision& by);
+
+/// Gives a part to a user, or to nobody. Its last move is over; who asked for it is answered by it.
+void give(World& world, Part& part, UserId holder);
+
+PartPose pose_of(const Part& part);
+
+/// "'anna'", for sentences.
+std::string quoted_name(const World& world, UserId user);
+
+}  // namespace mortise

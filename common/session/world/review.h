@@ -1,0 +1,24 @@
+#pragma once
+#include "common/messages/report.h"
+#include "common/session/memory/session_state.h"
+
+namespace mortise {
+
+/// The open clash of this id; null when there is none.
+OpenClash* find_open(World& world, ClashId clash);
+const OpenClash* find_open(const World& world, ClashId clash);
+
+/// Sets what people say of an open clash; told in the next tick. No-op when it is not open.
+void review(World& world, const Decision& decision);
+
+/// Tells the reviews made since the last tick, before anything else that the tick tells.
+void tell_reviews(const World& world, SessionState& state, StepReport& report);
+
+/// Is an approved clash now worse than what was approved: of a worse class, or deeper for certain
+/// than it can have been then?
+bool is_worse_than_approved(const OpenClash& clash, double hysteresis_mm);
+
+/// Makes an approved clash active again and says why in the comment.
+void take_back_approval(OpenClash& clash, std::uint64_t tick);
+
+}  // namespace mortise

@@ -1,0 +1,83 @@
+#include "common/session/world/world.h"
+
+#include <algorithm>
+
+#include "common/session/guide/guidance.h"
+#include "common/session/memory/session_state.h"
+#include "common/session/world/placing.h"
+
+namespace mortise {
+const Part* World::find_part(const std::string& part_name) const {
+  for (const Part& part : parts)
+    if (part.name == part_name) return &part;
+  return nullptr;
+}
+
+const PairRule* World::rule(PartId a, PartId b) const {
+  if (pair_rules.empty()) return nullptr;
+  const auto it = pair_rules.find(std::minmax(a, b));
+  return it == pair_rules.end() ? nullptr : &it->second;
+}
+
+Snapshot snapshot_of(const World& world) {
+  Snapshot snapshot;
+  snapshot.session = world.name;
+  snapshot.tick = world.tick;
+  snapshot.tick_rate_hz = world.tick_rate_hz;
+  snapshot.policy = name_of(world.policy);
+  snapshot.standing = world.standing;
+  for (const Part& part : world.parts)
+    snapshot.parts.push_back({part.id, part.name, part.solid->hash(), part.moving, part.holder,
+                              part.X_WP, part.solid->sphere().center_mm,
+                              part.solid->sphere().radius_mm});
+  for (const Part& part : world.parts) {
+    if (!part.asked_by) continue;
+    Decision& ask = snapshot.standing.emplace_back();
+    ask.kind = Decision::Kind::kAskHandOver;
+    ask.user = part.asked_by;
+    ask.part = part.id;
+    ask.details.other_user = part.holder;
+  }
+  for (const Guide& guide : world.guides) {
+    Decision& added = snapshot.standing.emplace_back();
+    added.kind = Decision::Kind::kAddConstraint;
+    added.user = guide.user;
+    added.part = guide.constraint.held.part;
+    added.details.constraint = guide.constraint;
+    added.details.constraint_id = guide.id;
+  }
+  for (const User& user : world.users)
+    snapshot.users.push_back({user.id, user.name, user.present, user.role});
+  if (!world.state) return snapshot;
+  snapshot.event_seq = world.state->event_seq;
+  for (const auto& [pair, clashes] : world.state->open)
+    for (const OpenClash& clash : clashes) snapshot.open_clashes.push_back(clash.last);
+  std::sort(snapshot.open_clashes.begin(), snapshot.open_clashes.end(),
+            [](const ClashEvent& x, const ClashEvent& y) { return x.clash < y.clash; });
+  return snapshot;
+}
+
+void put(World& world, Part& part, const Pose& X_WP, const Decision& by) {
+  part.X_WP = X_WP;
+  rest_guides_of(world, part.id);
+  note_placed(world, part.id.value - 1, by);
+}
+
+void give(World& world, Part& part, UserId holder) {
+  part.holder = holder;
+  part.asked_by = UserId{};
+  part.group = {};
+  part.history.end_move();
+  drop_constraints_of(world, part.id);
+  note_holder(world, part.id.value - 1);
+}
+
+PartPose pose_of(const Part& part) { return {part.id, part.holder, part.X_WP}; }
+
+std::string quoted_name(const World& world, UserId id) {
+  if (!id) return "somebody who left long ago";
+  const User* user = world.find(id);
+  return user ? "'" + user->name + "'" : "user " + std::to_string(id.value);
+}
+
+}  // namespace mortise
