@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/io/build_info.h"
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/session/memory/session_state.h"
 
 namespace mortise {

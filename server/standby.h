@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 #include "common/messages/channel.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/step.h"

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/io/log_file.h"
-#include "common/io/replay.h"
+#include "common/io/log/log_file.h"
+#include "common/io/log/replay.h"
 #include "server/restore.h"
 
 namespace mortise {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "common/io/scene_load.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
+#include "common/io/scenario/scene_load.h"
 #include "server/options.h"
 
 namespace mortise {

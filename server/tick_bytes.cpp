@@ -1,7 +1,7 @@
 #include "server/tick_bytes.h"
 
-#include "common/io/bytes.h"
-#include "common/io/log_records.h"
+#include "common/io/log/log_records.h"
+#include "common/io/state/bytes.h"
 
 namespace mortise {
 namespace {

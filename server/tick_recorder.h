@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/io/checkpoint.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
+#include "common/io/state/checkpoint.h"
 #include "common/session/world/world.h"
 
 namespace mortise {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/client.h"
-#include "common/io/play_file.h"
+#include "common/io/scenario/play_file.h"
 
 namespace mortise {
 

@@ -13,7 +13,7 @@
 #include "client/bot/crew.h"
 #include "client/bot/load_text.h"
 #include "client/bot/processes.h"
-#include "common/io/play_file.h"
+#include "common/io/scenario/play_file.h"
 #include "idl/dds_channel.h"
 
 namespace mortise {

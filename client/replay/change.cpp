@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "common/base/in_quotes.h"
-#include "common/io/mesh_import.h"
-#include "common/io/scenario_file.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/io/scenario/scenario_file.h"
 #include "common/session/world/surface_rules.h"
 
 namespace mortise {

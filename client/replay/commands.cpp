@@ -10,7 +10,7 @@
 #include "client/replay/output.h"
 #include "client/replay/progress.h"
 #include "common/io/build_info.h"
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/io/report_json.h"
 #include "common/messages/names.h"
 #include "common/session/tick/statistics.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/geometry/signed_distance.h"
-#include "common/io/log_json.h"
-#include "common/io/replay.h"
+#include "common/io/log/log_json.h"
+#include "common/io/log/replay.h"
 #include "common/math/rotation.h"
 #include "common/messages/names.h"
 

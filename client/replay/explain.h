@@ -2,8 +2,8 @@
 #include <functional>
 #include <string>
 
+#include "common/io/log/session_log.h"
 #include "common/io/report_json.h"
-#include "common/io/session_log.h"
 
 namespace mortise {
 

@@ -9,7 +9,7 @@
 #include "client/report/bcf.h"
 #include "client/report/export.h"
 #include "client/report/report.h"
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/session/tick/statistics.h"
 
 namespace mortise {

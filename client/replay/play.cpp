@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "common/io/scenario_file.h"
+#include "common/io/scenario/scenario_file.h"
 #include "common/math/rotation.h"
 #include "common/messages/names.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/messages/names.h"
 
 namespace mortise {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "client/replay/change.h"
+#include "common/io/log/session_log.h"
 #include "common/io/report_json.h"
-#include "common/io/session_log.h"
 #include "common/session/tick/statistics.h"
 
 namespace mortise {

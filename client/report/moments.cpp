@@ -5,7 +5,7 @@
 #include <map>
 #include <string_view>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/math/rotation.h"
 #include "common/motion/motion.h"
 

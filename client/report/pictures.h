@@ -7,7 +7,7 @@
 
 #include "client/report/circumstances.h"
 #include "client/report/session_tables.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 
 namespace mortise {
 
@@ -33,8 +33,8 @@ struct PartPicture {
 struct Pictures {
   std::map<std::uint64_t, std::string> of_clash;  ///< section as SVG, by clash
   std::map<std::uint64_t, std::string> png_of_clash;
-  std::vector<PartPicture> of_part;        ///< by the deepest overlap
-  std::map<std::uint64_t, Touch> touches;  ///< by clash; all of them
+  std::vector<PartPicture> of_part;                      ///< by the deepest overlap
+  std::map<std::uint64_t, Touch> touches;                ///< by clash; all of them
   std::map<std::uint64_t, Circumstances> circumstances;  ///< likewise
   std::size_t clashes_left_out = 0, parts_left_out = 0;
   std::string missing;  ///< why there are none, or empty

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
-#include "common/io/scenario_file.h"
+#include "common/io/scenario/scenario_file.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -206,10 +206,10 @@ Table Session::clashes() const {
   append(table.columns, columns(Type::kInteger, {"clash"}));
   append(table.columns, columns(Type::kText, {"class", "status", "status_by", "comment", "part_a",
                                               "face_a", "part_b", "face_b", "user"}));
-  append(table.columns, columns(Type::kInteger, {"begin_tick", "end_tick", "worst_tick",
-                                                 "real_ticks", "potential_ticks", "fake_ticks",
-                                                 "approval_lost", "status_tick", "occurrences",
-                                                 "group_id"}));
+  append(table.columns,
+         columns(Type::kInteger,
+                 {"begin_tick", "end_tick", "worst_tick", "real_ticks", "potential_ticks",
+                  "fake_ticks", "approval_lost", "status_tick", "occurrences", "group_id"}));
   append(table.columns, columns(Type::kNumber, {"begin_s",
                                                 "duration_s",
                                                 "contact_in_tick",

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/io/log/session_log.h"
 #include "common/io/report_json.h"
-#include "common/io/session_log.h"
 
 namespace mortise {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 
 namespace mortise::web {
 namespace {

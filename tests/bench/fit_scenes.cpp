@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "common/base/check.h"
-#include "common/io/obj_exact.h"
+#include "common/io/mesh/obj_exact.h"
 #include "tests/bench/scenes.h"
 #include "tests/unit/ccd/shapes.h"
 #include "tests/unit/ccd/workload.h"

@@ -6,8 +6,8 @@
 #include <random>
 #include <thread>
 
-#include "common/io/log_records.h"
-#include "common/io/replay.h"
+#include "common/io/log/log_records.h"
+#include "common/io/log/replay.h"
 #include "tests/bench/records_sections.h"
 #include "tests/bench/statistics.h"
 #include "tests/network/program.h"

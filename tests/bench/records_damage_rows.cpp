@@ -10,7 +10,7 @@
 #include <random>
 #include <thread>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "tests/bench/records_sections.h"
 
 namespace mortise::bench {

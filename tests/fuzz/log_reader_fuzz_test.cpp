@@ -8,10 +8,10 @@
 #include <iterator>
 #include <random>
 
-#include "common/io/log_json.h"
-#include "common/io/mcap_format.h"
-#include "common/io/mcap_reader.h"
-#include "common/io/mcap_writer.h"
+#include "common/io/log/log_json.h"
+#include "common/io/log/mcap_format.h"
+#include "common/io/log/mcap_reader.h"
+#include "common/io/log/mcap_writer.h"
 #include "tests/fuzz/mutated.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/effort.h"

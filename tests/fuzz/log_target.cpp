@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/base/check.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 #include "tests/fuzz/targets.h"
 
 namespace mortise::test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/messages/names.h"
 #include "tests/golden/played_session.h"
 

@@ -11,7 +11,7 @@
 
 #include "common/base/hash.h"
 #include "common/io/build_info.h"
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/messages/names.h"
 #include "tests/golden/played_session.h"
 

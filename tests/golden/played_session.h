@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/io/play_file.h"
-#include "common/io/scene_load.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
+#include "common/io/scenario/play_file.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/session/tick/tick_work.h"
 
 namespace mortise::test {

@@ -28,14 +28,14 @@ class PlantedTree : public testing::Test {
     write("common/base/ids.h", "#pragma once\n#include <cstdint>\n");
     write("common/math/pose.h", "#pragma once\n#include \"common/base/ids.h\"\n");
     write("common/session/tick/step.h", "#include \"common/math/pose.h\"\n");
-    write("common/io/play_file.h", "#include <yaml-cpp/yaml.h>\n");
+    write("common/io/scenario/play_file.h", "#include <yaml-cpp/yaml.h>\n");
     write("common/broadphase/tree.cpp", "#include <fcl/fcl.h>\n");
     write("idl/topics.cpp", "#include <fastdds/dds.hpp>\n#include \"mortisePubSubTypes.h\"\n");
     write("server/main.cpp",
           "#include \"common/session/tick/step.h\"\n#include \"idl/topics.h\"\n");
     write("client/client.h", "#include \"idl/topics.h\"\n");
     write("client/bot/bot.cpp",
-          "#include \"client/client.h\"\n#include \"common/io/play_file.h\"\n");
+          "#include \"client/client.h\"\n#include \"common/io/scenario/play_file.h\"\n");
     write("build/generated.cpp", "#include \"nowhere.h\"\n");
   }
   void TearDown() override { fs::remove_all(root_); }
@@ -71,12 +71,12 @@ TEST_F(PlantedTree, ClientAndServerApart) {
   expect_one("client/client.h:1", "client/ may not include server/");
 }
 TEST_F(PlantedTree, NoEngineInTheBot) {
-  write("client/bot/bot.cpp", "#include \"common/io/session_log.h\"\n");
+  write("client/bot/bot.cpp", "#include \"common/io/log/session_log.h\"\n");
   expect_one("client/bot/bot.cpp:1", "client/bot/ may not include common/io/");
 }
 TEST_F(PlantedTree, ThePlayFileReachesNoEngine) {
-  write("common/io/play_file.h", "#include \"common/session/tick/step.h\"\n");
-  expect_one("common/io/play_file.h:1", "may not include common/session/");
+  write("common/io/scenario/play_file.h", "#include \"common/session/tick/step.h\"\n");
+  expect_one("common/io/scenario/play_file.h:1", "may not include common/session/");
 }
 TEST_F(PlantedTree, WhichBuildItIsReachesNoEngine) {
   write("common/io/build_info.cpp", "#include \"common/session/tick/step.h\"\n");
@@ -85,7 +85,7 @@ TEST_F(PlantedTree, WhichBuildItIsReachesNoEngine) {
 TEST_F(PlantedTree, ClientsMayAskWhichBuildItIsAndNoMoreOfIo) {
   write("client/web/README.md", "# web\n");
   write("client/web/options.cpp",
-        "#include \"common/io/build_info.h\"\n#include \"common/io/replay.h\"\n");
+        "#include \"common/io/build_info.h\"\n#include \"common/io/log/replay.h\"\n");
   expect_one("client/web/options.cpp:2", "may not include common/io/");
 }
 TEST_F(PlantedTree, TheWireKnowsNoEngine) {

@@ -8,7 +8,7 @@
 
 #include "client/web/gateway.h"
 #include "client/web/live_feed.h"
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/network/page_client.h"

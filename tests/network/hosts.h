@@ -16,9 +16,9 @@
 #include <span>
 
 #include "client/bot/behaviour.h"
-#include "common/io/play_file.h"
-#include "common/io/replay.h"
-#include "common/io/session_log.h"
+#include "common/io/log/replay.h"
+#include "common/io/log/session_log.h"
+#include "common/io/scenario/play_file.h"
 #include "server/drain.h"
 #include "server/held_channel.h"
 #include "server/restore.h"

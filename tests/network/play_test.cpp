@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/messages/memory_channel.h"
 #include "common/session/tick/statistics.h"
 #include "server/tick_loop.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 #include "tests/network/program.h"
 #include "tests/network/same_everywhere.h"
 #include "tests/support/small_scenarios.h"

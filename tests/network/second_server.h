@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/replay.h"
-#include "common/io/session_log.h"
+#include "common/io/log/replay.h"
+#include "common/io/log/session_log.h"
 #include "server/restore.h"
 #include "tests/network/guest.h"
 #include "tests/network/program.h"

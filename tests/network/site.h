@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/client.h"
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "idl/dds_channel.h"
 #include "server/tick_loop.h"
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/math/rotation.h"
 #include "common/session/guide/guidance.h"
 #include "common/session/tick/step.h"

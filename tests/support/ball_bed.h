@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/tick/step.h"
 #include "tests/support/shapes.h"

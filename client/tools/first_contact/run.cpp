@@ -7,8 +7,8 @@
 
 #include "client/tools/first_contact/motions_file.h"
 #include "common/ccd/first_contact.h"
-#include "common/io/mesh_import.h"
-#include "common/io/obj_exact.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/io/mesh/obj_exact.h"
 
 namespace mortise {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "client/tools/generate/write_mesh.h"
 #include "client/tools/generate/write_scene.h"
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "scenarios/generators/generators.h"
 
 namespace mortise {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "client/tools/inspect/propose.h"
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 
 namespace mortise {
 namespace {

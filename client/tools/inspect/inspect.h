@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/geometry/recognition.h"
-#include "common/io/mesh_import.h"
+#include "common/io/mesh/mesh_import.h"
 #include "common/io/report_json.h"
 #include "common/math/pose.h"
 

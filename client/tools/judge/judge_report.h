@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "common/io/open_scene.h"
 #include "common/io/report_json.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {

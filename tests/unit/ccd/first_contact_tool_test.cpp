@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/io/obj_exact.h"
+#include "common/io/mesh/obj_exact.h"
 
 namespace mortise::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 

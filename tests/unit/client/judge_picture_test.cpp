@@ -8,7 +8,7 @@
 
 #include "client/picture/detail_view.h"
 #include "client/picture/picture.h"
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "tests/support/shapes.h"
 
 namespace mortise {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "common/ccd/first_contact.h"
-#include "common/io/play_file.h"
-#include "common/io/scenario_file.h"
-#include "common/io/scene_load.h"
+#include "common/io/scenario/play_file.h"
+#include "common/io/scenario/scenario_file.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/math/rotation.h"
 
 namespace mortise {

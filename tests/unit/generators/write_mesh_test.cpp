@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/io/mesh_import.h"
+#include "common/io/mesh/mesh_import.h"
 #include "scenarios/generators/generators.h"
 
 namespace mortise {

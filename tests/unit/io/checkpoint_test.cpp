@@ -1,6 +1,6 @@
 // A checkpoint holds all that a session is: from any of them it goes on as if it had never stopped,
 // bit for bit, to its end.
-#include "common/io/checkpoint.h"
+#include "common/io/state/checkpoint.h"
 
 #include <algorithm>
 #include <cstring>

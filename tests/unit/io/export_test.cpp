@@ -4,7 +4,7 @@
 #include "client/report/report.h"
 #include "client/report/summary_tables.h"
 #include "common/geometry/signed_distance.h"
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>

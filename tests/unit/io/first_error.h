@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 
 namespace mortise::test {
 

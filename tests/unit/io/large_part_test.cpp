@@ -4,8 +4,8 @@
 #include <set>
 
 #include "common/ccd/first_contact.h"
-#include "common/io/mesh_import.h"
-#include "common/io/scene_load.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/io/scenario/scene_load.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {

@@ -2,7 +2,7 @@
 // becomes of open clashes, and that a log's replay goes the same way.
 #include <gtest/gtest.h>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/session/tick/step.h"
 #include "tests/support/small_scenarios.h"
 #include "tests/unit/io/log_samples.h"

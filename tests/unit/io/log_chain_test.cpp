@@ -9,7 +9,7 @@
 #include <fstream>
 #include <future>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/session/memory/session_state.h"
 #include "tests/network/program.h"
 #include "tests/unit/io/random_session.h"

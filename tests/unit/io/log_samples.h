@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 
 /// Made-up sessions for tests of the log: every field of every record takes unusual values.
 namespace mortise::test {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "common/io/log_json.h"
-#include "common/io/spool.h"
+#include "common/io/log/log_json.h"
+#include "common/io/log/spool.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {

@@ -1,4 +1,4 @@
-#include "common/io/mesh_import.h"
+#include "common/io/mesh/mesh_import.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,8 +14,8 @@
 #include <random>
 
 #include "common/geometry/topology.h"
-#include "common/io/mesh_clean.h"
-#include "common/io/raw_soup.h"
+#include "common/io/mesh/mesh_clean.h"
+#include "common/io/mesh/raw_soup.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {

@@ -1,4 +1,4 @@
-#include "common/io/play_file.h"
+#include "common/io/scenario/play_file.h"
 
 #include <gtest/gtest.h>
 

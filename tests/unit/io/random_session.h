@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/io/open_scene.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/math/rotation.h"
 #include "common/session/tick/step.h"
 

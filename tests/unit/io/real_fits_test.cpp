@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/ccd/first_contact.h"
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 

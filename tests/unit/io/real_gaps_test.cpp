@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "common/ccd/first_contact.h"
-#include "common/io/mesh_import.h"
-#include "common/io/scene_load.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 #include "tests/unit/io/first_error.h"

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "common/geometry/recognition.h"
-#include "common/io/mesh_import.h"
-#include "common/io/obj_exact.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/io/mesh/obj_exact.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {

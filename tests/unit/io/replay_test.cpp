@@ -1,8 +1,8 @@
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 
 #include <gtest/gtest.h>
 
-#include "common/io/log_json.h"
+#include "common/io/log/log_json.h"
 #include "tests/golden/played_session.h"
 #include "tests/unit/io/log_samples.h"
 

@@ -1,4 +1,4 @@
-#include "common/io/scenario_file.h"
+#include "common/io/scenario/scenario_file.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "common/io/scenario_file.h"
+#include "common/io/scenario/scenario_file.h"
 
 namespace mortise {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/session/tick/step.h"
 #include "scenarios/generators/generators.h"
 

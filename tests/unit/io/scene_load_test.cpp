@@ -1,4 +1,4 @@
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 
 #include <gtest/gtest.h>
 

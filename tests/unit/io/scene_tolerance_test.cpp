@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
 
 // Statements of part, feature and pair about the same face: all of them hold.

@@ -1,4 +1,4 @@
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "common/io/build_info.h"
-#include "common/io/log_json.h"
-#include "common/io/log_records.h"
+#include "common/io/log/log_json.h"
+#include "common/io/log/log_records.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {

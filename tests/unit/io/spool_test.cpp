@@ -1,4 +1,4 @@
-#include "common/io/spool.h"
+#include "common/io/log/spool.h"
 
 #include <gtest/gtest.h>
 

@@ -13,10 +13,10 @@
 #include <thread>
 
 #include "client/client.h"
-#include "common/io/checkpoint.h"
-#include "common/io/replay.h"
-#include "common/io/scenario_file.h"
-#include "common/io/session_log.h"
+#include "common/io/log/replay.h"
+#include "common/io/log/session_log.h"
+#include "common/io/scenario/scenario_file.h"
+#include "common/io/state/checkpoint.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/network/program.h"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "common/io/replay.h"
+#include "common/io/log/replay.h"
 #include "common/session/tick/step.h"
 #include "server/clock.h"
 #include "tests/golden/played_session.h"

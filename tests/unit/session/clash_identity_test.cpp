@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/constants.h"
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/session/tick/step.h"
 #include "tests/unit/session/session_builder.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {

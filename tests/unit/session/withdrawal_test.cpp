@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/open_scene.h"
+#include "common/io/scenario/open_scene.h"
 #include "common/session/tick/judgement.h"
 #include "common/session/tick/step.h"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "common/io/scene_load.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
 #include "common/messages/names.h"
 #include "server/tick_loop.h"

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "client/client.h"
-#include "common/io/scene_load.h"
-#include "common/io/session_log.h"
+#include "common/io/log/session_log.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/support/small_scenarios.h"

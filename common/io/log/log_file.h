@@ -1,0 +1,60 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/io/log/log_json.h"
+#include "common/io/log/mcap_writer.h"
+#include "common/io/log/session_log.h"
+
+namespace mortise {
+
+/// One file of a session log as it is written: its head, then ticks with what belongs to them. Not
+/// thread safe; private to session_log.
+class LogFile {
+ public:
+  /// Writes the head and waits until it is on disk: only then has the file its name. Fails when a
+  /// file of that name exists.
+  static Result<std::unique_ptr<LogFile>> create(const std::filesystem::path& file,
+                                                 const LogHeader& header,
+                                                 const LogOptions& options);
+
+  /// Is there one without its name yet, or what a start that was cut short left of it?
+  static bool is_begun(const std::filesystem::path& file);
+  /// Gives it its name, where that was left for later.
+  Status take_name();
+  /// The same of one that is closed.
+  static Status name(const std::filesystem::path& file);
+  static void remove_unnamed(const std::filesystem::path& file);
+  /// Takes it away where it never got its name.
+  void remove_if_unnamed();
+  void write(const TickRecord& tick);
+  void write(const Checkpoint& state);
+  void write_gap(const log_json::Gap& gap);
+  void write_statistics();
+
+  /// Of what is written from now on; never falls.
+  void set_time(std::int64_t time_ns);
+  std::uint64_t time_ns() const { return time_ns_; }
+  const std::filesystem::path& path() const { return path_; }
+  McapWriter& mcap() { return *mcap_; }
+  const McapWriter& mcap() const { return *mcap_; }
+
+ private:
+  LogFile(std::unique_ptr<McapWriter> mcap, std::filesystem::path path)
+      : mcap_(std::move(mcap)), path_(std::move(path)) {}
+  void write_head(const LogHeader& header);
+  void message(std::uint16_t channel, std::span<const std::byte> data);
+  void message(std::uint16_t channel, const std::string& text);
+
+  std::unique_ptr<McapWriter> mcap_;
+  std::filesystem::path path_;
+  std::uint16_t decisions_ = 0, increments_ = 0, poses_ = 0, clashes_ = 0, ticks_ = 0,
+                statistics_ = 0, gaps_ = 0, checkpoints_ = 0, totals_ = 0;
+  std::uint64_t time_ns_ = 0, statistics_time_ns_ = 0;
+  bool has_time_ = false, named_ = false;
+  log_json::CounterSums sums_;
+};
+
+}  // namespace mortise

@@ -1,0 +1,380 @@
+#include "common/io/log/mcap_reader.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <set>
+
+#include "common/io/log/crc32.h"
+#include "common/io/log/input_file.h"
+#include "common/io/log/mcap_format.h"
+#include "common/io/state/bytes.h"
+
+namespace mortise {
+namespace {
+
+// A damaged file must not fill the report with one line per byte.
+constexpr std::size_t kMostNotes = 50;
+
+std::map<std::string, std::string> read_map(ByteReader& in) {
+  ByteReader entries(in.raw(in.u32()));
+  std::map<std::string, std::string> values;
+  while (entries.left() > 0) {
+    std::string key = entries.string();
+    std::string value = entries.string();
+    if (entries.ok()) values[std::move(key)] = std::move(value);
+  }
+  return values;
+}
+
+class Scanner {
+ public:
+  Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits)
+      : file_(file), handler_(handler), limits_(limits) {
+    const std::uint64_t size = file.size();
+    expansion_left_ = size > UINT64_MAX / limits.expansion ? UINT64_MAX : size * limits.expansion;
+    expansion_left_ = std::max(expansion_left_, limits.expansion_floor_bytes);
+    scan_.file_bytes = size;
+  }
+
+  McapScan run();
+
+ private:
+  enum class Next { kGoOn, kResync, kEnd };
+  Next record(std::uint8_t opcode, std::uint64_t length, std::span<const std::byte> content);
+  Next data_end(std::span<const std::byte> content, std::uint64_t next_offset);
+  bool chunk(std::span<const std::byte> content);
+  void chunk_records(std::span<const std::byte> records);
+  void schema(std::span<const std::byte> content);
+  void channel(std::span<const std::byte> content);
+  void message(std::span<const std::byte> content);
+  void attachment(std::span<const std::byte> content);
+  std::uint64_t find_chunk(std::uint64_t from);
+  void note(const std::string& what);
+  void loss(const std::string& what);
+
+  const InputFile& file_;
+  const McapHandler& handler_;
+  const McapLimits& limits_;
+  McapScan scan_;
+  std::uint64_t at_ = 0;  ///< of the record in work
+  std::uint64_t expansion_left_ = 0;
+  bool crc_known_ = true;
+  std::uint32_t crc_ = 0;
+  std::map<std::uint16_t, McapChannel> channels_;
+  std::set<std::uint16_t> unknown_channels_;
+  std::vector<std::byte> buffer_, search_buffer_, decompressed_;
+};
+
+void Scanner::note(const std::string& what) {
+  if (scan_.notes.size() < kMostNotes)
+    scan_.notes.push_back("byte " + std::to_string(at_) + ": " + what);
+  else if (scan_.notes.size() == kMostNotes)
+    scan_.notes.push_back("more findings of this kind are not listed");
+}
+
+void Scanner::loss(const std::string& what) {
+  note(what);
+  if (handler_.on_loss) handler_.on_loss("byte " + std::to_string(at_) + ": " + what);
+}
+
+McapScan Scanner::run() {
+  crc_ = crc32(file_.read(0, mcap::kMagic.size(), buffer_));
+  at_ = mcap::kMagic.size();
+  while (true) {
+    if (at_ == file_.size()) {
+      note("the file ends without footer: it was not closed");
+      break;
+    }
+    const auto head = file_.read(at_, mcap::kRecordHeaderBytes, buffer_);
+    ByteReader reader(head);
+    const std::uint8_t opcode = reader.u8();
+    const std::uint64_t length = reader.u64();
+    const std::uint64_t content_at = at_ + mcap::kRecordHeaderBytes;
+    Next next = Next::kResync;
+    if (reader.ok() && opcode != 0 && content_at <= file_.size() &&
+        length <= file_.size() - content_at) {
+      if (opcode != mcap::kDataEnd) crc_ = crc32(head, crc_);
+      const auto content = file_.read(content_at, length, buffer_);
+      if (content.size() == length) {
+        next = opcode == mcap::kDataEnd ? data_end(content, content_at + length)
+                                        : record(opcode, length, content);
+        if (opcode != mcap::kDataEnd) crc_ = crc32(content, crc_);
+      }
+    }
+    if (next == Next::kEnd) break;
+    if (next == Next::kGoOn) {
+      if (handler_.is_enough && handler_.is_enough()) break;
+      at_ = content_at + length;
+      if (handler_.on_progress)
+        handler_.on_progress(static_cast<double>(at_) / static_cast<double>(file_.size()));
+      continue;
+    }
+    crc_known_ = false;
+    const std::uint64_t found = find_chunk(at_ + 1);
+    if (found == file_.size()) {
+      loss("the tail is cut off or damaged: " + std::to_string(file_.size() - at_) +
+           " bytes are no whole record");
+      break;
+    }
+    loss("damaged: " + std::to_string(found - at_) + " bytes left out up to the next whole chunk");
+    at_ = found;
+  }
+  return std::move(scan_);
+}
+
+Scanner::Next Scanner::record(std::uint8_t opcode, std::uint64_t length,
+                              std::span<const std::byte> content) {
+  ++scan_.records;
+  switch (opcode) {
+    case mcap::kHeader: {
+      ByteReader reader(content);
+      scan_.profile = reader.string();
+      scan_.library = reader.string();
+      break;
+    }
+    case mcap::kSchema:
+      schema(content);
+      break;
+    case mcap::kChannel:
+      channel(content);
+      break;
+    case mcap::kMessage:
+      message(content);
+      break;
+    case mcap::kChunk:
+      return chunk(content) ? Next::kGoOn : Next::kResync;
+    case mcap::kAttachment:
+      attachment(content);
+      break;
+    case mcap::kMetadata: {
+      ByteReader reader(content);
+      const std::string name = reader.string();
+      const auto values = read_map(reader);
+      if (!reader.ok())
+        note("metadata record is damaged and left out");
+      else if (handler_.on_metadata)
+        handler_.on_metadata(name, values);
+      break;
+    }
+    case mcap::kFooter:
+      note("a footer without end of data");
+      return length == mcap::kFooterBytes ? Next::kEnd : Next::kResync;
+    case mcap::kMessageIndex:
+      break;
+    default:
+      if (opcode > mcap::kDataEnd)
+        note("record of unknown kind " + std::to_string(opcode) + " left out");
+      break;
+  }
+  return Next::kGoOn;
+}
+
+Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_t next_offset) {
+  ByteReader reader(content);
+  const std::uint32_t data_crc = reader.u32();
+  const std::size_t tail_bytes =
+      mcap::kRecordHeaderBytes + mcap::kFooterBytes + mcap::kMagic.size();
+  const std::uint64_t footer_at = file_.size() - std::min<std::uint64_t>(file_.size(), tail_bytes);
+  std::vector<std::byte> tail_buffer;
+  ByteReader tail(file_.read(footer_at, tail_bytes, tail_buffer));
+  const bool footer = tail.u8() == mcap::kFooter && tail.u64() == mcap::kFooterBytes;
+  const std::uint64_t summary_start = tail.u64();
+  tail.u64();
+  const std::uint32_t summary_crc = tail.u32();
+  const auto magic = tail.raw(mcap::kMagic.size());
+  const bool closed =
+      reader.ok() && tail.ok() && footer &&
+      std::ranges::equal(magic, std::as_bytes(std::span(mcap::kMagic))) &&
+      (summary_start == next_offset || (summary_start == 0 && footer_at == next_offset));
+  if (!closed) {
+    // Either the file lost its tail inside the summary, or this is no end of data at all.
+    if (reader.ok() && content.size() == 4 && find_chunk(next_offset) == file_.size()) {
+      note("the index at the end is cut off or damaged; the data before it are whole");
+      return Next::kEnd;
+    }
+    return Next::kResync;
+  }
+  scan_.complete = true;
+  if (crc_known_ && data_crc != 0 && data_crc != crc_)
+    note(
+        "the checksum of the data section does not fit: some record between the chunks is damaged");
+  if (summary_start != 0 && summary_crc != 0) {
+    const auto summary =
+        file_.read(summary_start, file_.size() - mcap::kMagic.size() - 4 - summary_start, buffer_);
+    if (crc32(summary) != summary_crc) note("the index at the end is damaged; it is not needed");
+  }
+  return Next::kEnd;
+}
+
+bool Scanner::chunk(std::span<const std::byte> content) {
+  ByteReader reader(content);
+  reader.u64();
+  reader.u64();
+  const std::uint64_t size = reader.u64();
+  const std::uint32_t crc = reader.u32();
+  const std::string compression = reader.string();
+  const std::uint64_t stored = reader.u64();
+  if (!reader.ok() || stored != reader.left()) return false;  // the lengths disagree
+  std::span<const std::byte> records = reader.raw(stored);
+  ++scan_.chunks;
+  const auto lost = [&](const std::string& why) {
+    ++scan_.lost_chunks;
+    loss("chunk left out: " + why);
+    return true;
+  };
+  if (size > limits_.chunk_bytes) return lost("it claims " + std::to_string(size) + " bytes");
+  if (size > expansion_left_) return lost("the file expands beyond the limit");
+  expansion_left_ -= size;
+  if (compression == "zstd") {
+    const unsigned long long claimed = ZSTD_getFrameContentSize(records.data(), records.size());
+    if (claimed == ZSTD_CONTENTSIZE_ERROR ||
+        (claimed != ZSTD_CONTENTSIZE_UNKNOWN && claimed != size))
+      return lost("its compressed data are damaged");
+    if (decompressed_.size() < size) decompressed_.resize(static_cast<std::size_t>(size));
+    const std::size_t got = ZSTD_decompress(decompressed_.data(), static_cast<std::size_t>(size),
+                                            records.data(), records.size());
+    if (ZSTD_isError(got) != 0 || got != size) return lost("its compressed data are damaged");
+    records = std::span<const std::byte>(decompressed_).first(got);
+  } else if (!compression.empty()) {
+    return lost("unknown compression");
+  } else if (size != stored) {
+    return lost("its size is wrong");
+  }
+  if (crc != 0 && crc32(records) != crc) return lost("its checksum does not fit");
+  chunk_records(records);
+  return true;
+}
+
+void Scanner::chunk_records(std::span<const std::byte> records) {
+  ByteReader reader(records);
+  while (reader.left() > 0) {
+    const std::uint8_t opcode = reader.u8();
+    const auto content = reader.raw(reader.u64());
+    if (!reader.ok()) {
+      ++scan_.lost_chunks;
+      loss("the end of a chunk is damaged and left out");
+      return;
+    }
+    ++scan_.records;
+    if (opcode == mcap::kSchema)
+      schema(content);
+    else if (opcode == mcap::kChannel)
+      channel(content);
+    else if (opcode == mcap::kMessage)
+      message(content);
+    else
+      note("record of kind " + std::to_string(opcode) + " inside a chunk left out");
+  }
+}
+
+void Scanner::schema(std::span<const std::byte> content) {
+  ByteReader reader(content);
+  McapSchema schema;
+  schema.id = reader.u16();
+  schema.name = reader.string();
+  schema.encoding = reader.string();
+  schema.data = reader.raw(reader.u32());
+  if (!reader.ok() || schema.id == 0)
+    note("schema record is damaged and left out");
+  else if (handler_.on_schema)
+    handler_.on_schema(schema);
+}
+
+void Scanner::channel(std::span<const std::byte> content) {
+  ByteReader reader(content);
+  McapChannel channel;
+  channel.id = reader.u16();
+  channel.schema = reader.u16();
+  channel.topic = reader.string();
+  channel.message_encoding = reader.string();
+  channel.metadata = read_map(reader);
+  if (!reader.ok()) {
+    note("channel record is damaged and left out");
+    return;
+  }
+  const auto [entry, is_new] = channels_.try_emplace(channel.id, std::move(channel));
+  if (is_new && handler_.on_channel) handler_.on_channel(entry->second);
+}
+
+void Scanner::message(std::span<const std::byte> content) {
+  ByteReader reader(content);
+  const std::uint16_t channel = reader.u16();
+  McapMessage message;
+  message.sequence = reader.u32();
+  message.log_time_ns = reader.u64();
+  message.publish_time_ns = reader.u64();
+  message.data = reader.raw(reader.left());
+  const auto known = channels_.find(channel);
+  if (!reader.ok() || known == channels_.end()) {
+    if (unknown_channels_.insert(channel).second)
+      loss("messages of channel " + std::to_string(channel) + " left out: it was never announced");
+    return;
+  }
+  ++scan_.messages;
+  if (handler_.on_message) handler_.on_message(known->second, message);
+}
+
+void Scanner::attachment(std::span<const std::byte> content) {
+  ++scan_.attachments;
+  ByteReader reader(content);
+  McapAttachment attachment;
+  attachment.log_time_ns = reader.u64();
+  reader.u64();
+  attachment.name = reader.string();
+  attachment.media_type = reader.string();
+  attachment.data = reader.raw(reader.u64());
+  const std::uint32_t crc = reader.u32();
+  if (!reader.ok() || (crc != 0 && crc32(content.first(content.size() - 4)) != crc)) {
+    ++scan_.lost_attachments;
+    note("attachment is damaged and left out");
+    return;
+  }
+  if (handler_.on_attachment) handler_.on_attachment(attachment);
+}
+
+// The next place at or after `from` that is a chunk by all its lengths; the size of the file when
+// there is none. Linear: each byte is looked at once.
+std::uint64_t Scanner::find_chunk(std::uint64_t from) {
+  constexpr std::uint64_t kWindow = 1 << 16;
+  constexpr std::size_t kHeadBytes = mcap::kRecordHeaderBytes + mcap::kChunkFixedBytes + 4;
+  for (std::uint64_t start = from; start < file_.size(); start += kWindow) {
+    const auto window = file_.read(start, kWindow + kHeadBytes, search_buffer_);
+    for (std::size_t i = 0; i < window.size() && i < kWindow; ++i) {
+      if (window[i] != std::byte{mcap::kChunk}) continue;
+      const std::uint64_t here = start + i;
+      ByteReader reader(window.subspan(i, std::min(kHeadBytes, window.size() - i)));
+      reader.u8();
+      const std::uint64_t length = reader.u64();
+      const std::uint64_t content_at = here + mcap::kRecordHeaderBytes;
+      if (!reader.ok() || content_at > file_.size() || length > file_.size() - content_at) continue;
+      reader.raw(8 + 8 + 8 + 4);
+      const std::string compression = reader.string();
+      const std::uint64_t stored = reader.u64();
+      const std::uint64_t fixed = mcap::kChunkFixedBytes + compression.size();
+      if (reader.ok() && (compression.empty() || compression == "zstd") && length >= fixed &&
+          stored == length - fixed)
+        return here;
+    }
+  }
+  return file_.size();
+}
+
+}  // namespace
+
+Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler& handler,
+                           const McapLimits& limits) {
+  const InputFile input(file);
+  if (!input.is_open())
+    return fail(Code::kNotFound, file.string() + ": cannot open the log: " + std::strerror(errno));
+  std::vector<std::byte> magic;
+  if (!std::ranges::equal(input.read(0, mcap::kMagic.size(), magic),
+                          std::as_bytes(std::span(mcap::kMagic))))
+    return fail(Code::kInvalidInput,
+                file.string() + ": not an MCAP file: it does not begin as one");
+  return Scanner(input, handler, limits).run();
+}
+
+}  // namespace mortise

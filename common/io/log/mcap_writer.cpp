@@ -1,0 +1,346 @@
+#include "common/io/log/mcap_writer.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/uio.h>
+#include <unistd.h>
+#define ZSTD_STATIC_LINKING_ONLY  // for a compressor in memory of ours
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "common/io/log/crc32.h"
+#include "common/io/log/mcap_format.h"
+
+namespace mortise {
+namespace {
+
+// Fast and small enough: a log is written beside a running session.
+constexpr int kCompressionLevel = 3;
+
+void put_map(ByteWriter& out, const std::map<std::string, std::string>& values) {
+  ByteWriter entries;
+  for (const auto& [key, value] : values) {
+    entries.string(key);
+    entries.string(value);
+  }
+  out.u32(static_cast<std::uint32_t>(entries.size()));
+  out.raw(entries.bytes());
+}
+
+template <class Key>
+void put_map(ByteWriter& out, const std::map<Key, std::uint64_t>& values) {
+  out.u32(static_cast<std::uint32_t>(values.size() * (sizeof(Key) + 8)));
+  for (const auto& [key, value] : values) {
+    out.u16(key);
+    out.u64(value);
+  }
+}
+
+void put_record(ByteWriter& out, std::uint8_t opcode, const ByteWriter& content) {
+  out.u8(opcode);
+  out.u64(content.size());
+  out.raw(content.bytes());
+}
+
+}  // namespace
+
+void McapWriter::Counted::add(std::uint64_t time_ns) {
+  start_time = messages == 0 ? time_ns : std::min(start_time, time_ns);
+  end_time = std::max(end_time, time_ns);
+  ++messages;
+}
+
+bool McapWriter::is_being_written(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return is_locked;
+}
+
+Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::path& file,
+                                                       McapWriterOptions options) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (descriptor < 0)
+    return fail(Code::kRuntime, file.string() + ": cannot create the log: " +
+                                    (errno == EEXIST ? "it exists already, choose another name"
+                                                     : std::strerror(errno)));
+  (void)::flock(descriptor, LOCK_EX | LOCK_NB);  // for is_being_written(); nobody else has it yet
+  std::unique_ptr<McapWriter> writer(new McapWriter(descriptor, file.string(), std::move(options)));
+  writer->write(std::as_bytes(std::span(mcap::kMagic)));
+  ByteWriter header;
+  header.string(writer->options_.profile);
+  header.string(writer->options_.library);
+  writer->write_record(mcap::kHeader, header);
+  if (writer->error_) return *writer->error_;
+  return writer;
+}
+
+McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions options)
+    : descriptor_(descriptor),
+      file_(std::move(file)),
+      options_(std::move(options)),
+      chunk_indexes_(std::filesystem::path(file_).parent_path()) {
+  // So that it does not grow when a busy hour brings the first full chunk, nor shrink in a quiet
+  // one.
+  if (options_.compress) {
+    const std::size_t size = ZSTD_estimateCCtxSize(kCompressionLevel);
+    compressor_memory_ = std::make_unique<std::byte[]>(size);
+    compressor_ = ZSTD_initStaticCCtx(compressor_memory_.get(), size);
+  }
+  // Room that is not touched costs nothing: a chunk is full once a tick has gone beyond it.
+  chunk_.reserve(2 * options_.chunk_bytes);
+}
+
+McapWriter::~McapWriter() {
+  static_cast<void>(close());
+  ::close(descriptor_);
+}
+
+void McapWriter::set_error(const char* doing) {
+  if (!error_)
+    error_ =
+        fail(Code::kRuntime, file_ + ": cannot " + doing + " the log: " + std::strerror(errno) +
+                                 "; what was written stays readable");
+}
+
+void McapWriter::write(std::span<const std::byte> bytes, std::span<const std::byte> more) {
+  if (error_) return;
+  for (auto rest = bytes, then = more; !rest.empty() || !then.empty();) {
+    const iovec parts[] = {{const_cast<std::byte*>(rest.data()), rest.size()},
+                           {const_cast<std::byte*>(then.data()), then.size()}};
+    const ssize_t count = ::writev(descriptor_, parts, 2);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      set_error("write");
+      // Best effort: a torn record would be found and left out by the reader as well.
+      if (::ftruncate(descriptor_, static_cast<off_t>(offset_.load())) != 0) return;
+      return;
+    }
+    const std::size_t of_rest = std::min(static_cast<std::size_t>(count), rest.size());
+    rest = rest.subspan(of_rest);
+    then = then.subspan(static_cast<std::size_t>(count) - of_rest);
+  }
+  for (const auto& part : {bytes, more})
+    if (!part.empty()) crc_ = crc32(part, crc_);  // that of nothing would begin a new one
+  offset_.fetch_add(bytes.size() + more.size(), std::memory_order_relaxed);
+}
+
+void McapWriter::write_record(std::uint8_t opcode, const ByteWriter& content,
+                              std::span<const std::byte> more) {
+  ByteWriter record;
+  record.u8(opcode);
+  record.u64(content.size() + more.size());
+  record.raw(content.bytes());
+  write(record.bytes(), more);
+}
+
+std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view encoding,
+                                     std::string_view data) {
+  ByteWriter content;
+  content.u16(++schemas_);
+  content.string(name);
+  content.string(encoding);
+  content.string(data);
+  write_record(mcap::kSchema, content);
+  put_record(summary_[mcap::kSchema], mcap::kSchema, content);
+  return schemas_;
+}
+
+std::uint16_t McapWriter::add_channel(std::string_view topic, std::string_view message_encoding,
+                                      std::uint16_t schema,
+                                      const std::map<std::string, std::string>& metadata) {
+  ByteWriter content;
+  content.u16(++channels_);
+  content.u16(schema);
+  content.string(topic);
+  content.string(message_encoding);
+  put_map(content, metadata);
+  write_record(mcap::kChannel, content);
+  put_record(summary_[mcap::kChannel], mcap::kChannel, content);
+  messages_of_channel_[channels_] = 0;
+  return channels_;
+}
+
+void McapWriter::add_attachment(std::string_view name, std::string_view media_type,
+                                std::span<const std::byte> data, std::uint64_t time_ns) {
+  end_chunk();
+  ByteWriter content;
+  content.u64(time_ns);
+  content.u64(0);  // time of creation: not known
+  content.string(name);
+  content.string(media_type);
+  content.u64(data.size());
+  content.raw(data);
+  content.u32(crc32(content.bytes()));
+  ByteWriter index;
+  index.u64(bytes_written());
+  index.u64(mcap::kRecordHeaderBytes + content.size());
+  index.u64(time_ns);
+  index.u64(0);
+  index.u64(data.size());
+  index.string(name);
+  index.string(media_type);
+  write_record(mcap::kAttachment, content);
+  put_record(summary_[mcap::kAttachmentIndex], mcap::kAttachmentIndex, index);
+  ++attachments_;
+}
+
+void McapWriter::add_metadata(std::string_view name,
+                              const std::map<std::string, std::string>& values) {
+  end_chunk();
+  ByteWriter content;
+  content.string(name);
+  put_map(content, values);
+  ByteWriter index;
+  index.u64(bytes_written());
+  index.u64(mcap::kRecordHeaderBytes + content.size());
+  index.string(name);
+  write_record(mcap::kMetadata, content);
+  put_record(summary_[mcap::kMetadataIndex], mcap::kMetadataIndex, index);
+  ++metadata_;
+}
+
+void McapWriter::add_message(std::uint16_t channel, std::uint64_t time_ns,
+                             std::span<const std::byte> data) {
+  chunk_index_[channel].emplace_back(time_ns, chunk_.size());
+  chunk_.u8(mcap::kMessage);
+  chunk_.u64(2 + 4 + 8 + 8 + data.size());
+  chunk_.u16(channel);
+  chunk_.u32(static_cast<std::uint32_t>(++messages_of_channel_[channel]));
+  chunk_.u64(time_ns);
+  chunk_.u64(time_ns);
+  chunk_.raw(data);
+  chunk_counted_.add(time_ns);
+  file_counted_.add(time_ns);
+}
+
+std::span<const std::byte> McapWriter::compressed(std::span<const std::byte> records) {
+  if (!compressor_) return {};
+  const std::size_t most = ZSTD_compressBound(records.size());
+  if (compressed_bytes_ < most) {
+    compressed_bytes_ = std::max(most, ZSTD_compressBound(2 * options_.chunk_bytes));
+    compressed_ = std::make_unique_for_overwrite<std::byte[]>(compressed_bytes_);
+  }
+  const std::size_t size = ZSTD_compressCCtx(compressor_, compressed_.get(), most, records.data(),
+                                             records.size(), kCompressionLevel);
+  if (ZSTD_isError(size) != 0) return {};
+  return {compressed_.get(), size};
+}
+
+void McapWriter::end_chunk() {
+  if (chunk_.empty()) return;
+  std::span<const std::byte> records = compressed(chunk_.bytes());
+  const std::string_view compression = records.empty() ? "" : "zstd";
+  if (records.empty()) records = chunk_.bytes();
+  ByteWriter content;
+  content.u64(chunk_counted_.start_time);
+  content.u64(chunk_counted_.end_time);
+  content.u64(chunk_.size());
+  content.u32(crc32(chunk_.bytes()));
+  content.string(compression);
+  content.u64(records.size());
+
+  ByteWriter index;
+  index.u64(chunk_counted_.start_time);
+  index.u64(chunk_counted_.end_time);
+  index.u64(bytes_written());
+  index.u64(mcap::kRecordHeaderBytes + content.size() + records.size());
+  write_record(mcap::kChunk, content, records);
+  if (!error_) ++chunks_;
+
+  const std::uint64_t index_start = bytes_written();
+  std::map<std::uint16_t, std::uint64_t> index_offsets;
+  for (const auto& [channel, entries] : chunk_index_) {
+    index_offsets[channel] = bytes_written();
+    ByteWriter message_index;
+    message_index.u16(channel);
+    message_index.u32(static_cast<std::uint32_t>(entries.size() * 16));
+    for (const auto& [time_ns, offset] : entries) {
+      message_index.u64(time_ns);
+      message_index.u64(offset);
+    }
+    write_record(mcap::kMessageIndex, message_index);
+  }
+  put_map(index, index_offsets);
+  index.u64(bytes_written() - index_start);
+  index.string(compression);
+  index.u64(records.size());
+  index.u64(chunk_.size());
+  ByteWriter record;
+  put_record(record, mcap::kChunkIndex, index);
+  chunk_indexes_.append(record.bytes());
+  chunk_.clear();
+  chunk_index_.clear();
+  chunk_counted_ = {};
+}
+
+Status McapWriter::sync() {
+  end_chunk();
+  if (!error_ && ::fdatasync(descriptor_) != 0) set_error("flush");
+  if (error_) return *error_;
+  return ok();
+}
+
+void McapWriter::write_summary() {
+  ByteWriter data_end;
+  data_end.u32(crc_);
+  write_record(mcap::kDataEnd, data_end);
+
+  ByteWriter statistics;
+  statistics.u64(file_counted_.messages);
+  statistics.u16(schemas_);
+  statistics.u32(channels_);
+  statistics.u32(attachments_);
+  statistics.u32(metadata_);
+  statistics.u32(chunks_);
+  statistics.u64(file_counted_.start_time);
+  statistics.u64(file_counted_.end_time);
+  put_map(statistics, messages_of_channel_);
+  put_record(summary_[mcap::kStatistics], mcap::kStatistics, statistics);
+
+  const std::uint64_t summary_start = bytes_written();
+  crc_ = 0;  // from here on: of the summary section
+  ByteWriter offsets;
+  if (chunk_indexes_.size() > 0) summary_[mcap::kChunkIndex].clear();  // has its place among them
+  for (const auto& [opcode, records] : summary_) {
+    const std::uint64_t group_start = bytes_written();
+    write(records.bytes());
+    if (opcode == mcap::kChunkIndex && !chunk_indexes_.read([&](auto bytes) { write(bytes); })) {
+      set_error("read back the index of");
+      return;
+    }
+    offsets.u8(mcap::kSummaryOffset);
+    offsets.u64(1 + 8 + 8);
+    offsets.u8(opcode);
+    offsets.u64(group_start);
+    offsets.u64(bytes_written() - group_start);
+  }
+  const std::uint64_t offsets_start = bytes_written();
+  write(offsets.bytes());
+
+  ByteWriter footer;
+  footer.u8(mcap::kFooter);
+  footer.u64(mcap::kFooterBytes);
+  footer.u64(summary_start);
+  footer.u64(offsets_start);
+  footer.u32(crc32(footer.bytes(), crc_));
+  footer.raw(std::as_bytes(std::span(mcap::kMagic)));
+  write(footer.bytes());
+}
+
+Status McapWriter::close() {
+  if (!closed_) {
+    closed_ = true;
+    end_chunk();
+    write_summary();
+    return sync();
+  }
+  if (error_) return *error_;
+  return ok();
+}
+
+}  // namespace mortise

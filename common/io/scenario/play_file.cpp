@@ -1,0 +1,148 @@
+#include "common/io/scenario/play_file.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+namespace mortise {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// Stops the reading at the first fault; never leaves this file.
+struct Fault {
+  int line;
+  std::string text;
+};
+
+int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
+
+void only_keys(const YAML::Node& map, std::initializer_list<const char*> known) {
+  for (const auto& entry : map) {
+    const auto key = entry.first.as<std::string>();
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    std::string list;
+    for (const char* name : known) list += (list.empty() ? "" : ", ") + std::string(name);
+    throw Fault{line_of(entry.first), "unknown key '" + key + "'; known here: " + list};
+  }
+}
+
+double number(const YAML::Node& node, const std::string& what) {
+  double value = 0.0;
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value)) {
+    throw Fault{line_of(node), what + " must be a finite number"};
+  }
+  return value;
+}
+
+Vec3 vector(const YAML::Node& node, const std::string& what) {
+  if (!node.IsSequence() || node.size() != 3) {
+    throw Fault{line_of(node), what + " must be a list of three numbers"};
+  }
+  return {number(node[0], what), number(node[1], what), number(node[2], what)};
+}
+
+std::string text_of(const YAML::Node& map, const char* key) {
+  const YAML::Node node = map[key];
+  if (!node || !node.IsScalar() || node.Scalar().empty()) {
+    throw Fault{line_of(map), std::string("'") + key + "' is missing; each act names one"};
+  }
+  return node.Scalar();
+}
+
+Play::Step read_step(const YAML::Node& node) {
+  if (!node.IsMap()) throw Fault{line_of(node), "a step must be a map {by, rotate_deg, seconds}"};
+  only_keys(node, {"by", "rotate_deg", "seconds"});
+  Play::Step step;
+  if (node["by"]) step.by_mm = vector(node["by"], "by (mm)");
+  if (node["rotate_deg"]) {
+    step.rotate_rad = vector(node["rotate_deg"], "rotate_deg") * kRadPerDeg;
+  }
+  if (!node["seconds"]) throw Fault{line_of(node), "'seconds' is missing; how long does it take?"};
+  step.seconds = number(node["seconds"], "seconds");
+  if (!(step.seconds > 0.0)) throw Fault{line_of(node), "seconds must be above zero"};
+  return step;
+}
+
+Play::Act read_act(const YAML::Node& node) {
+  if (!node.IsMap()) throw Fault{line_of(node), "an act must be a map {user, part, steps}"};
+  only_keys(node, {"user", "part", "at", "steps", "release"});
+  Play::Act act;
+  act.line = line_of(node);
+  act.user = text_of(node, "user");
+  act.part = text_of(node, "part");
+  if (node["at"]) act.at_s = number(node["at"], "at (s)");
+  if (act.at_s < 0.0) throw Fault{line_of(node["at"]), "at must not be negative"};
+  if (node["release"] && !YAML::convert<bool>::decode(node["release"], act.release)) {
+    throw Fault{line_of(node["release"]), "release must be true or false"};
+  }
+  const YAML::Node steps = node["steps"];
+  if (!steps || !steps.IsSequence() || steps.size() == 0) {
+    throw Fault{line_of(node), "'steps' must be a list with at least one step"};
+  }
+  for (const YAML::Node& step : steps) act.steps.push_back(read_step(step));
+  return act;
+}
+
+Play read_document(const YAML::Node& root) {
+  if (!root.IsMap()) throw Fault{1, "the file must be a map with the key 'acts'"};
+  only_keys(root, {"acts"});
+  const YAML::Node acts = root["acts"];
+  if (!acts || !acts.IsSequence() || acts.size() == 0) {
+    throw Fault{line_of(root), "'acts' must be a list with at least one act"};
+  }
+  Play play;
+  for (const YAML::Node& act : acts) play.acts.push_back(read_act(act));
+  return play;
+}
+
+}  // namespace
+
+std::vector<std::string> Play::users() const {
+  std::vector<std::string> names;
+  for (const Act& act : acts) {
+    if (std::find(names.begin(), names.end(), act.user) == names.end()) names.push_back(act.user);
+  }
+  return names;
+}
+
+double Play::seconds() const {
+  std::map<std::string, double> end_s;
+  double last_s = 0.0;
+  for (const Act& act : acts) {
+    double& end = end_s[act.user];
+    end = std::max(end, act.at_s);
+    for (const Step& step : act.steps) end += step.seconds;
+    last_s = std::max(last_s, end);
+  }
+  return last_s;
+}
+
+Result<Play> read_play_text(std::string_view yaml, const std::string& name) {
+  try {
+    return read_document(YAML::Load(std::string(yaml)));
+  } catch (const Fault& fault) {
+    return fail(Code::kInvalidInput, name + ":" + std::to_string(fault.line) + ": " + fault.text);
+  } catch (const YAML::Exception& error) {
+    return fail(Code::kInvalidInput,
+                name + ":" + std::to_string(error.mark.line + 1) + ": not YAML: " + error.msg);
+  }
+}
+
+Result<Play> read_play(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  if (!in || std::filesystem::is_directory(file)) {
+    return fail(Code::kInvalidInput, file.string() + ": cannot be read");
+  }
+  return read_play_text(text.str(), file.string());
+}
+
+}  // namespace mortise

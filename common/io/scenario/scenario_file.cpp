@@ -1,0 +1,247 @@
+#include "common/io/scenario/scenario_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "common/io/scenario/scenario_parts.h"
+#include "common/io/scenario/scenario_yaml.h"
+
+namespace mortise {
+namespace {
+
+// 1. the head: everything but the lists
+
+void read_units(YamlContext& context, const YamlMap& top) {
+  struct Unit {
+    const char* name;
+    double mm;
+  };
+  constexpr Unit kUnits[] = {{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}, {"um", 1e-3}};
+  const auto text = top.text("units");
+  if (!text) {
+    if (!top.has("units"))
+      top.error(
+          "units is missing: say in which unit lengths are written, e.g. units: mm "
+          "(known: mm, cm, m, in, um)");
+    return;
+  }
+  for (const Unit& unit : kUnits)
+    if (*text == unit.name) {
+      context.unit_mm = unit.mm;
+      return;
+    }
+  top.error("units", "'" + *text + "' is not known; write mm, cm, m, in or um");
+}
+
+void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
+  read_units(context, top);
+  if (const auto name = top.text("name"))
+    scenario.name = *name;
+  else if (!top.has("name"))
+    top.error("name is missing: give the scenario a name");
+
+  if (const auto rate = top.number("tick_rate_hz")) {
+    if (*rate >= 1.0 && *rate <= 1000.0)
+      scenario.tick_rate_hz = *rate;
+    else
+      top.error("tick_rate_hz", "must lie between 1 and 1000");
+  }
+  if (const auto policy = top.text("policy")) {
+    if (const auto known = policy_named(*policy))
+      scenario.policy = *known;
+    else
+      top.error("policy", "'" + *policy + "' is not known; write " + std::string(kPolicyNames));
+  }
+  if (const auto undeclared = read_deviation(top)) scenario.undeclared = *undeclared;
+  if (const auto jump = top.positive_length_mm("max_jump")) scenario.max_jump_mm = *jump;
+  if (const auto lease = top.number("lease_s")) {
+    if (*lease >= 0.1 && *lease <= 86400.0)
+      scenario.lease_s = *lease;
+    else
+      top.error("lease_s", "must lie between 0.1 and 86400");
+  }
+}
+
+// 2. rules
+
+// "plate.bore" -> part and feature; without a dot the whole part.
+struct Side {
+  std::string part, feature;
+};
+
+Side split_side(const std::string& text) {
+  const std::size_t dot = text.find('.');
+  return dot == std::string::npos ? Side{text, ""}
+                                  : Side{text.substr(0, dot), text.substr(dot + 1)};
+}
+
+std::optional<std::vector<std::string>> read_between(const YamlMap& map) {
+  const auto between = map.texts("between");
+  if (!between) {
+    if (!map.has("between")) map.error("between is missing: name the two sides, between: [a, b]");
+    return std::nullopt;
+  }
+  if (between->size() == 2) return between;
+  map.error("between", "expected two names, e.g. [plate.bore, pin.journal]");
+  return std::nullopt;
+}
+
+void read_fit(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
+  const YamlMap map(
+      context, node, "fit",
+      {"between", "code", "plus_minus", "profile", "unequal", "lower", "upper", "nominal"});
+  if (!map.usable()) return;
+  const auto between = read_between(map);
+  Scenario::FitSpec fit;
+  fit.at.line = map.line();
+  const std::string way = read_fit_statement(context, map, fit);
+  if (!between) return;
+  const Side a = split_side((*between)[0]), b = split_side((*between)[1]);
+  fit.part_a = a.part, fit.feature_a = a.feature;
+  fit.part_b = b.part, fit.feature_b = b.feature;
+  if (way == "code" && (a.feature.empty() || b.feature.empty()))
+    map.error("between",
+              "a fit code needs a feature on both sides, e.g. [plate.bore, pin.journal]");
+  if (way.empty() || (way != "code" && !fit.tolerance)) return;
+  scenario.fits.push_back(std::move(fit));
+}
+
+void read_exclusion(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
+  const YamlMap map(context, node, "exclusion", {"between", "reason"});
+  if (!map.usable()) return;
+  Scenario::Exclusion exclusion;
+  exclusion.at.line = map.line();
+  const auto between = read_between(map);
+  const auto reason = map.text("reason");
+  if (!map.has("reason"))
+    map.error("reason is missing: whoever reads the report must know why the pair is left out");
+  if (!between || !reason) return;
+  exclusion.part_a = (*between)[0], exclusion.part_b = (*between)[1];
+  exclusion.reason = *reason;
+  scenario.exclusions.push_back(std::move(exclusion));
+}
+
+void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
+  const YamlMap map(context, node, "user", {"name", "may_hold", "may", "role"});
+  if (!map.usable()) return;
+  Scenario::UserSpec user;
+  user.at.line = map.line();
+  if (const auto name = map.text("name"))
+    user.name = *name;
+  else if (!map.has("name"))
+    map.error("name is missing");
+  if (const auto may_hold = map.texts("may_hold"))
+    user.may_hold = *may_hold;
+  else if (!map.has("may_hold"))
+    map.error("may_hold is missing: list part names ('*' allowed); [] makes an observer");
+  if (const auto may = map.texts("may")) {
+    user.may.emplace();
+    for (const std::string& word : *may) {
+      if (const auto right = right_named(word))
+        user.may->push_back(*right);
+      else
+        map.error("may", "'" + word + "' is not known; list policy, tolerance, exclusions, review");
+    }
+  }
+  if (const auto word = map.text("role")) {
+    const auto role = role_named(*word);
+    if (!role) map.error("role", "'" + *word + "' is not known; write designer, observer or bot");
+    user.role = role.value_or(Role::kUnknown);
+  }
+  for (const auto& other : scenario.users)
+    if (!user.name.empty() && other.name == user.name)
+      map.error("user '" + user.name + "' stands here twice; keep one");
+  scenario.users.push_back(std::move(user));
+}
+
+template <class Read>
+void read_list(YamlContext& context, const YamlMap& top, std::string_view key, Scenario& scenario,
+               Read read) {
+  const YAML::Node list = top.find(key);
+  if (!list) return;
+  if (!list.IsSequence()) {
+    top.error(key, "expected a list, one '- ' an entry");
+    return;
+  }
+  for (const auto& entry : list) {
+    if (scenario.parts.size() > kMaxParts) return;
+    read(context, entry, scenario);
+  }
+}
+
+// 3. what only the whole can tell
+
+void check_names(YamlContext& context, const Scenario& scenario) {
+  std::set<std::string> names;
+  for (const auto& part : scenario.parts)
+    if (!part.name.empty() && !names.insert(part.name).second)
+      context.findings.push_back({true, context.file + ":" + std::to_string(part.at.line) +
+                                            ": part '" + part.name +
+                                            "' stands here twice; rename one"});
+}
+
+ScenarioReading read_document(const YAML::Node& document, const std::string& name) {
+  ScenarioReading reading;
+  reading.scenario.file = name;
+  YamlContext context;
+  context.file = name;
+  const YamlMap top(context, document, "scenario",
+                    {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation",
+                     "parts", "fits", "exclusions", "users"});
+  if (top.usable()) {
+    read_head(context, top, reading.scenario);
+    read_list(context, top, "parts", reading.scenario, read_part);
+    read_list(context, top, "fits", reading.scenario, read_fit);
+    read_list(context, top, "exclusions", reading.scenario, read_exclusion);
+    read_list(context, top, "users", reading.scenario, read_user);
+    if (!top.has("parts")) top.error("parts is missing: a scenario needs at least one part");
+    if (top.has("parts") && top.find("parts").IsSequence() && top.find("parts").size() == 0)
+      top.error("parts", "is empty; a scenario needs at least one part");
+    if (reading.scenario.parts.size() > kMaxParts)
+      top.error("parts", "more than " + std::to_string(kMaxParts) + " parts; split the scenario");
+    check_names(context, reading.scenario);
+    const auto& parts = reading.scenario.parts;
+    if (!parts.empty() &&
+        std::none_of(parts.begin(), parts.end(), [](auto& p) { return p.moving; }))
+      context.warning(document, "no part has moving: true; nobody can move anything");
+  }
+  reading.scenario.unit_mm = context.unit_mm;
+  reading.findings = std::move(context.findings);
+  return reading;
+}
+
+}  // namespace
+
+bool ScenarioReading::usable() const {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& finding) { return finding.is_error; });
+}
+
+Result<ScenarioReading> read_scenario(const std::filesystem::path& file) {
+  std::error_code problem;
+  if (std::filesystem::is_directory(file, problem))
+    return fail(Code::kNotFound, file.string() + ": is a folder; name a scenario file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return fail(Code::kNotFound, file.string() + ": cannot be read; check the path");
+  // One byte more than allowed tells a file that is too large without reading all of it.
+  std::string text((std::size_t{16} << 20) + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return read_scenario_text(text, file.string());
+}
+
+Result<ScenarioReading> read_scenario_text(std::string_view yaml, const std::string& name) {
+  const Result<YAML::Node> document = parse_yaml(yaml, name);
+  if (!document) return document.error();
+  if (!*document || document->IsNull())
+    return fail(Code::kInvalidInput,
+                name + ":1: is empty; a scenario starts with name: and units:");
+  try {
+    return read_document(*document, name);
+  } catch (const std::exception& e) {
+    return fail(Code::kInvalidInput, name + ": not a scenario: " + e.what());
+  }
+}
+
+}  // namespace mortise

@@ -1,0 +1,281 @@
+#include "common/io/scenario/scenario_yaml.h"
+
+#include <yaml-cpp/eventhandler.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <sstream>
+
+namespace mortise {
+namespace {
+
+/// A scenario is written by people: 16 MiB is a hundred thousand parts with room to spare.
+constexpr std::size_t kMaxBytes = 16U << 20;
+/// Nodes after aliases are followed. The largest scenario by size has fewer; an alias bomb has
+/// more.
+constexpr std::uint64_t kMaxExpandedNodes = 8'000'000;
+
+// Counts nodes as if every alias were written out, without writing any out.
+class ExpandedSize : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override { ++documents_; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t anchor) override { leaf(anchor); }
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t anchor,
+                const std::string&) override {
+    leaf(anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto known = sizes_.find(anchor);
+    if (known == sizes_.end()) {  // still open: the node would contain itself
+      endless_line_ = mark.line + 1;
+      return;
+    }
+    add(known->second);
+  }
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+  std::uint64_t total() const { return total_; }
+  int documents() const { return documents_; }
+  int endless_line() const { return endless_line_; }
+
+ private:
+  struct Open {
+    YAML::anchor_t anchor;
+    std::uint64_t start;
+  };
+  void add(std::uint64_t nodes) {
+    total_ = std::min(total_ + nodes, 2 * kMaxExpandedNodes);  // no overflow on the way up
+  }
+  void leaf(YAML::anchor_t anchor) {
+    add(1);
+    if (anchor != 0) sizes_[anchor] = 1;
+  }
+  void open(YAML::anchor_t anchor) {
+    open_.push_back({anchor, total_});
+    add(1);
+  }
+  void close() {
+    if (open_.back().anchor != 0) sizes_[open_.back().anchor] = total_ - open_.back().start;
+    open_.pop_back();
+  }
+
+  std::map<YAML::anchor_t, std::uint64_t> sizes_;
+  std::vector<Open> open_;
+  std::uint64_t total_ = 0;
+  int documents_ = 0;
+  int endless_line_ = 0;
+};
+
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+void YamlContext::error(const YAML::Node& at, const std::string& text) {
+  findings.push_back({true, file + ":" + std::to_string(line_of(at)) + ": " + text});
+}
+
+void YamlContext::warning(const YAML::Node& at, const std::string& text) {
+  findings.push_back({false, file + ":" + std::to_string(line_of(at)) + ": " + text});
+}
+
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
+  const std::string* best = nullptr;
+  for (const std::string& candidate : known)
+    if (best == nullptr || edits(word, candidate) < edits(word, *best)) best = &candidate;
+  return best == nullptr ? "" : *best;
+}
+
+YamlMap::YamlMap(YamlContext& context, const YAML::Node& node, std::string what,
+                 std::initializer_list<std::string_view> known)
+    : context_(context), node_(node), what_(std::move(what)) {
+  if (!node_.IsMap()) {
+    error("expected keys and values, e.g. " + std::string(*known.begin()) + ": ...");
+    return;
+  }
+  usable_ = true;
+  const std::vector<std::string> words(known.begin(), known.end());
+  std::vector<std::string> seen;
+  for (const auto& entry : node_) {
+    if (!entry.first.IsScalar()) {
+      context_.error(entry.first, what_ + ": a key must be a word");
+      continue;
+    }
+    const std::string& key = entry.first.Scalar();
+    if (std::find(words.begin(), words.end(), key) == words.end())
+      context_.error(entry.first, what_ + ": unknown key '" + key + "'; did you mean '" +
+                                      nearest_word(key, words) + "'? Known: " + list_of(words));
+    if (std::find(seen.begin(), seen.end(), key) != seen.end())
+      context_.error(entry.first, what_ + ": key '" + key + "' stands here twice; keep one");
+    seen.push_back(key);
+  }
+}
+
+YAML::Node YamlMap::find(std::string_view key) const {
+  if (usable_)
+    for (const auto& entry : node_)
+      if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
+  return YAML::Node(YAML::NodeType::Undefined);
+}
+
+void YamlMap::error(std::string_view key, const std::string& text) const {
+  const YAML::Node value = find(key);
+  context_.error(value ? value : node_, what_ + ": " + std::string(key) + ": " + text);
+}
+
+std::optional<std::string> YamlMap::text(std::string_view key) const {
+  const YAML::Node value = find(key);
+  if (!value) return std::nullopt;
+  if (!value.IsScalar() || value.Scalar().empty()) {
+    error(key, "expected a word or a sentence");
+    return std::nullopt;
+  }
+  return value.Scalar();
+}
+
+std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
+                                  const std::string& what) {
+  double value = 0.0;
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value)) {
+    context.error(node, what + ": expected a number");
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<double> YamlMap::number(std::string_view key) const {
+  const YAML::Node value = find(key);
+  if (!value) return std::nullopt;
+  return yaml_number(context_, value, what_ + ": " + std::string(key));
+}
+
+std::optional<double> YamlMap::length_mm(std::string_view key) const {
+  const std::optional<double> value = number(key);
+  return value ? std::optional(*value * context_.unit_mm) : std::nullopt;
+}
+
+std::optional<double> YamlMap::positive_length_mm(std::string_view key) const {
+  const std::optional<double> value = length_mm(key);
+  if (!value || *value > 0.0) return value;
+  error(key, "must be greater than 0");
+  return std::nullopt;
+}
+
+std::optional<bool> YamlMap::boolean(std::string_view key) const {
+  const YAML::Node value = find(key);
+  if (!value) return std::nullopt;
+  bool truth = false;
+  if (!value.IsScalar() || !YAML::convert<bool>::decode(value, truth)) {
+    error(key, "expected true or false");
+    return std::nullopt;
+  }
+  return truth;
+}
+
+std::optional<std::vector<double>> YamlMap::numbers(std::string_view key, std::size_t count) const {
+  const YAML::Node value = find(key);
+  if (!value) return std::nullopt;
+  if (!value.IsSequence() || value.size() != count) {
+    error(key, "expected a list of " + std::to_string(count) + " numbers");
+    return std::nullopt;
+  }
+  std::vector<double> list;
+  for (const auto& item : value) {
+    const auto x = yaml_number(context_, item, what_ + ": " + std::string(key));
+    if (!x) return std::nullopt;
+    list.push_back(*x);
+  }
+  return list;
+}
+
+std::optional<Vec3> YamlMap::vector(std::string_view key) const {
+  const auto list = numbers(key, 3);
+  return list ? std::optional(Vec3((*list)[0], (*list)[1], (*list)[2])) : std::nullopt;
+}
+
+std::optional<std::vector<std::string>> YamlMap::texts(std::string_view key) const {
+  const YAML::Node value = find(key);
+  if (!value) return std::nullopt;
+  std::vector<std::string> list;
+  if (value.IsSequence())
+    for (const auto& item : value)
+      if (item.IsScalar() && !item.Scalar().empty()) list.push_back(item.Scalar());
+  if (!value.IsSequence() || list.size() != value.size()) {
+    error(key, "expected a list of words");
+    return std::nullopt;
+  }
+  return list;
+}
+
+std::string YamlMap::one_of(std::initializer_list<std::string_view> keys) const {
+  std::string found;
+  for (const std::string_view key : keys) {
+    if (!has(key)) continue;
+    if (!found.empty()) error(key, "stands beside '" + found + "', which says the same; keep one");
+    if (found.empty()) found = key;
+  }
+  return found;
+}
+
+Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name) {
+  if (yaml.size() > kMaxBytes)
+    return fail(Code::kLimit, name + ": larger than 16 MiB; keep meshes in files of their own");
+  try {
+    const std::string text(yaml);
+    ExpandedSize size;
+    {
+      std::istringstream stream(text);
+      YAML::Parser parser(stream);
+      while (parser.HandleNextDocument(size)) {
+        if (size.total() > kMaxExpandedNodes || size.documents() > 1) break;
+      }
+    }
+    if (size.endless_line() != 0)
+      return fail(Code::kInvalidInput, name + ":" + std::to_string(size.endless_line()) +
+                                           ": an alias contains itself; write it out");
+    if (size.total() > kMaxExpandedNodes)
+      return fail(Code::kLimit, name + ": aliases expand to more than " +
+                                    std::to_string(kMaxExpandedNodes) +
+                                    " values; use fewer aliases");
+    if (size.documents() > 1)
+      return fail(Code::kInvalidInput, name + ": holds more than one document; keep the first");
+    return YAML::Load(text);
+  } catch (const YAML::Exception& e) {
+    return fail(Code::kInvalidInput, name + ":" + std::to_string(e.mark.line + 1) +
+                                         ": not YAML: " + e.msg + "; check indent and quotes");
+  } catch (const std::exception& e) {
+    return fail(Code::kInvalidInput, name + ": not YAML: " + std::string(e.what()));
+  }
+}
+
+}  // namespace mortise

@@ -1,0 +1,72 @@
+#pragma once
+#include <yaml-cpp/yaml.h>
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/io/scenario/scenario_file.h"
+#include "common/math/types.h"
+
+/// Strict access to YAML for io/scenario_file: every read says what it expects, and what is wrong
+/// becomes a finding with file and line instead of an exception. Private to the scenario reader.
+namespace mortise {
+
+/// What all levels of the document share: where findings go, and the unit of lengths.
+struct YamlContext {
+  std::string file;
+  std::vector<Finding> findings;
+  double unit_mm = 1.0;
+
+  void error(const YAML::Node& at, const std::string& text);
+  void warning(const YAML::Node& at, const std::string& text);
+  int line_of(const YAML::Node& node) const { return node.Mark().line + 1; }
+};
+
+/// One mapping of the document. Unknown and doubled keys are errors as soon as it is made; a node
+/// that is no mapping is one error and then reads as empty.
+class YamlMap {
+ public:
+  YamlMap(YamlContext& context, const YAML::Node& node, std::string what,
+          std::initializer_list<std::string_view> known);
+
+  bool usable() const { return usable_; }
+  bool has(std::string_view key) const { return static_cast<bool>(find(key)); }
+  YAML::Node find(std::string_view key) const;  ///< an undefined node when absent
+  const YAML::Node& node() const { return node_; }
+  int line() const { return context_.line_of(node_); }
+  void error(const std::string& text) const { context_.error(node_, what_ + ": " + text); }
+  void error(std::string_view key, const std::string& text) const;
+
+  std::optional<std::string> text(std::string_view key) const;
+  std::optional<double> number(std::string_view key) const;
+  std::optional<double> length_mm(std::string_view key) const;
+  std::optional<double> positive_length_mm(std::string_view key) const;
+  std::optional<bool> boolean(std::string_view key) const;
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count) const;
+  std::optional<Vec3> vector(std::string_view key) const;  ///< as written, unit not applied
+  std::optional<std::vector<std::string>> texts(std::string_view key) const;
+  /// Which of these keys is present; more than one is an error, none gives "".
+  std::string one_of(std::initializer_list<std::string_view> keys) const;
+
+ private:
+  YamlContext& context_;
+  YAML::Node node_;
+  std::string what_;
+  bool usable_ = false;
+};
+
+/// The known word that is fewest edits away, for "did you mean".
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
+
+/// A finite number, or an error at the node.
+std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
+                                  const std::string& what);
+
+/// Parses text into one document. Refused: more than one document, too deep, too large, or aliases
+/// that expand to more than `kMaxExpandedNodes` nodes.
+Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name);
+
+}  // namespace mortise

@@ -1,0 +1,57 @@
+#include "common/io/scenario/scene_features.h"
+
+#include <algorithm>
+
+namespace mortise {
+
+const Recognition& RecognizedMeshes::of(const Solid& solid, double quantum_mm) {
+  const auto key = std::pair(solid.hash(), quantum_mm);
+  const auto known = known_.find(key);
+  if (known != known_.end()) return known->second;
+  return known_.emplace(key, recognize_features(solid, {.quantum_mm = quantum_mm})).first->second;
+}
+
+const Feature* find_recognized(const Recognition& recognition, const std::string& name) {
+  const auto found = std::find_if(recognition.features.begin(), recognition.features.end(),
+                                  [&](const Feature& f) { return f.name == name; });
+  return found == recognition.features.end() ? nullptr : &*found;
+}
+
+std::string recognized_names(const Recognition& recognition) {
+  constexpr std::size_t kShown = 8;
+  const auto& features = recognition.features;
+  if (features.empty()) return "nothing was recognized in its mesh; add kind: and the surface";
+  std::string names = "recognized: ";
+  for (std::size_t i = 0; i < std::min(kShown, features.size()); ++i)
+    names += (i == 0 ? "" : ", ") + features[i].name;
+  if (features.size() > kShown)
+    names += " and " + std::to_string(features.size() - kShown) + " more (mortise inspect)";
+  return names;
+}
+
+std::vector<Feature> undeclared_features(const Recognition& recognition,
+                                         const std::vector<Feature>& declared,
+                                         std::size_t triangles) {
+  std::vector<bool> taken(triangles, false);
+  for (const Feature& f : declared)
+    for (const std::uint32_t t : f.triangles) taken[t] = true;
+  std::vector<Feature> rest;
+  for (Feature feature : recognition.features) {
+    std::erase_if(feature.triangles, [&](std::uint32_t t) { return taken[t]; });
+    if (feature.triangles.empty()) continue;
+    const auto same_name = [&](const Feature& f) { return f.name == feature.name; };
+    if (std::any_of(declared.begin(), declared.end(), same_name)) feature.name += "_recognized";
+    rest.push_back(std::move(feature));
+  }
+  return rest;
+}
+
+std::optional<Interval> estimated_deviation_of(const SurfaceBand& band) {
+  std::optional<Interval> all;
+  for (const SurfaceBand::Face& face : band.faces)
+    if (face.grade == DeviationGrade::kEstimated)
+      all = all ? hull(*all, face.deviation_mm) : face.deviation_mm;
+  return all;
+}
+
+}  // namespace mortise

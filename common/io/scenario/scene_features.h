@@ -1,0 +1,39 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/recognition.h"
+#include "common/geometry/surface_band.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/session/world/scenario.h"
+
+/// What a part takes from recognition beside what is declared of it. Private to scene_load.
+namespace mortise {
+
+/// Recognizes each distinct mesh once.
+class RecognizedMeshes {
+ public:
+  const Recognition& of(const Solid& solid, double quantum_mm);
+
+ private:
+  std::map<std::pair<std::string, double>, Recognition> known_;
+};
+
+/// The recognized feature of this name; nothing when there is none.
+const Feature* find_recognized(const Recognition& recognition, const std::string& name);
+
+/// "known: bore_1, bore_2, ...", the first of them, for messages.
+std::string recognized_names(const Recognition& recognition);
+
+/// The recognized features that nobody declared, without the triangles of declared ones; those of
+/// which nothing is left go. A name that is taken by a declared feature gets "_recognized".
+std::vector<Feature> undeclared_features(const Recognition& recognition,
+                                         const std::vector<Feature>& declared,
+                                         std::size_t triangles);
+
+/// The summary of all estimated faces of a band: their hull. Nothing when there are none.
+std::optional<Interval> estimated_deviation_of(const SurfaceBand& band);
+
+}  // namespace mortise

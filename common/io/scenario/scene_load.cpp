@@ -1,0 +1,400 @@
+#include "common/io/scenario/scene_load.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "common/evaluation/band.h"
+#include "common/evaluation/deviation.h"
+#include "common/io/scenario/live_rules.h"
+#include "common/io/scenario/scene_features.h"
+#include "common/io/scenario/scene_rules.h"
+#include "scenarios/generators/generators.h"
+
+namespace mortise {
+namespace {
+
+// Byte-exact key of what makes parts alike, so that instances share all work.
+class AlikeKey {
+ public:
+  AlikeKey& add(const std::string& text) {
+    key_ += std::to_string(text.size()) + ":" + text;
+    return *this;
+  }
+  AlikeKey& add(double value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof bytes);
+    key_.append(bytes, sizeof bytes);
+    return *this;
+  }
+  AlikeKey& add(const Vec3& v) { return add(v.x()).add(v.y()).add(v.z()); }
+  AlikeKey& add(const std::optional<Scenario::Tolerance>& t) {
+    return t ? add(t->offset_mm.lo).add(t->offset_mm.hi).add(t->text) : add(std::string("none"));
+  }
+  const std::string& text() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+AlikeKey key_of(const Scenario::MeshSource& mesh) {
+  AlikeKey key;
+  key.add(mesh.file).add(mesh.unit_mm).add(mesh.generator);
+  for (const auto& [name, value] : mesh.parameters) key.add(name).add(value);
+  return key;
+}
+
+AlikeKey key_of(const Scenario::PartSpec& part) {
+  AlikeKey key = key_of(part.mesh);
+  key.add(part.chord_error_mm.value_or(-1.0)).add(part.tolerance);
+  key.add(static_cast<double>(part.undeclared));
+  for (const auto& f : part.features) {
+    const Surface& s = f.surface;
+    key.add(f.name).add(static_cast<double>(s.kind)).add(s.point).add(s.axis).add(s.radius_mm);
+    key.add(s.tube_radius_mm).add(s.half_angle_rad).add(s.inward ? 1.0 : 0.0);
+    key.add(f.along_mm ? f.along_mm->lo : NAN).add(f.along_mm ? f.along_mm->hi : NAN);
+    key.add(f.tolerance).add(f.iso_class).add(f.nominal_mm).add(f.position.zone_mm).add(f.width_to);
+    key.add(static_cast<double>(f.position.condition));
+  }
+  return key;
+}
+
+struct LoadedMesh {
+  SolidPtr solid;
+  ImportReport report;
+  std::vector<Feature> generated;  // features that a generator brings
+};
+
+// All parts that are alike: mesh, features, band.
+struct PartKind {
+  SolidPtr solid;
+  ImportReport report;
+  std::vector<Feature> features;
+  SurfaceBand band;
+  StatedPart stated;
+};
+
+class SceneLoader {
+ public:
+  SceneLoader(const Scenario& scenario, const MeshProvider& meshes)
+      : scenario_(scenario), meshes_(meshes) {}
+
+  LoadedScene run() {
+    World& world = scene_.world;
+    world.name = scenario_.name;
+    world.tick_rate_hz = scenario_.tick_rate_hz;
+    world.policy = scenario_.policy;
+    world.max_jump_mm = scenario_.max_jump_mm;
+    world.lease_s = scenario_.lease_s;
+    world.may_hold = scenario_.users;
+    for (const auto& spec : scenario_.parts) add_part(spec);
+    // Rules speak of features: with a part missing they would only repeat what is said already.
+    if (scene_.usable()) {
+      RuleOutcome rules = rules_of({scenario_, world.parts, stated_});
+      world.pair_rules = std::move(rules.pair_rules);
+      scene_.fits = std::move(rules.fits);
+      scene_.findings.insert(scene_.findings.end(), rules.findings.begin(), rules.findings.end());
+    }
+    if (scene_.usable()) world.rules = make_live_rules(scenario_, stated_);
+    world.evaluates = evaluates();
+    return std::move(scene_);
+  }
+
+ private:
+  void finding(bool is_error, SourceLine at, const std::string& text) {
+    scene_.findings.push_back({is_error, place_of(scenario_, at) + text});
+  }
+
+  // 1. parts, one kind for all that are alike
+
+  void add_part(const Scenario::PartSpec& spec) {
+    const std::string key = key_of(spec).text();
+    auto known = kind_of_.find(key);
+    if (known == kind_of_.end()) {
+      known = kind_of_.emplace(key, kinds_.size()).first;
+      kinds_.push_back(make_kind(spec, kinds_.size()));
+    }
+    const std::optional<PartKind>& kind = kinds_[known->second];
+    if (!kind) return;  // said once, at the first of them
+    Part part;
+    part.id = PartId{static_cast<std::uint32_t>(scene_.world.parts.size() + 1)};
+    part.name = spec.name;
+    part.solid = kind->solid;
+    part.band = kind->band;
+    part.features = kind->features;
+    part.moving = spec.moving;
+    part.X_WP = part.X_WP_scenario = spec.X_WP;
+    scene_.imports.push_back(kind->report);
+    resolve_for_report(part);
+    scene_.world.parts.push_back(std::move(part));
+    stated_.push_back(kind->stated);
+  }
+
+  void resolve_for_report(const Part& part) {
+    for (const SurfaceBand::Face& face : part.band.faces) {
+      if (face.name.empty() && face.tolerance_source.empty() &&
+          face.grade != DeviationGrade::kDeclaredChord)
+        continue;
+      if (face.grade == DeviationGrade::kEstimated) continue;  // all in one line below
+      scene_.tolerances.push_back({part.name, face.name, face.tolerance_source, face.tolerance_mm,
+                                   face.grade, face.deviation_mm, face.residual_mm});
+    }
+    if (const auto estimated = estimated_deviation_of(part.band))
+      scene_.tolerances.push_back({part.name, "", part.band.faces[0].tolerance_source,
+                                   part.band.faces[0].tolerance_mm, DeviationGrade::kEstimated,
+                                   *estimated, 0.0});
+  }
+
+  std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, std::size_t index) {
+    const std::optional<LoadedMesh>& mesh = mesh_of(spec);
+    if (!mesh) return std::nullopt;
+    PartKind kind;
+    kind.solid = mesh->solid;
+    kind.report = mesh->report;
+    kind.stated.kind = index;
+    if (spec.tolerance)
+      kind.stated.rest = {{spec.tolerance->offset_mm, spec.tolerance->text}, spec.tolerance->at};
+    const Recognition* recognized = spec.undeclared == UndeclaredSurface::kNominal
+                                        ? nullptr
+                                        : &recognized_.of(*kind.solid, kind.report.quantum_mm);
+    if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
+    if (recognized != nullptr) add_undeclared(*recognized, kind);
+    kind.band =
+        build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
+                    for_band(kind.stated.rest), for_band(kind.stated.of_feature),
+                    spec.undeclared == UndeclaredSurface::kEstimated, kind.report.quantum_mm});
+    return kind;
+  }
+
+  // 2. meshes, one a source, one solid a content
+
+  const std::optional<LoadedMesh>& mesh_of(const Scenario::PartSpec& spec) {
+    const std::string key = key_of(spec.mesh).text();
+    const auto known = mesh_of_.find(key);
+    if (known != mesh_of_.end()) return known->second;
+    return mesh_of_.emplace(key, load_mesh(spec)).first->second;
+  }
+
+  std::optional<LoadedMesh> load_mesh(const Scenario::PartSpec& spec) {
+    Result<ImportedMesh> imported = meshes_(scenario_, spec);
+    if (!imported) {
+      finding(true, spec.at, "part " + spec.name + ": " + imported.error().text);
+      return std::nullopt;
+    }
+    if (imported->mesh.triangles.empty()) {
+      finding(true, spec.at, "part " + spec.name + ": its mesh has no triangles; check the file");
+      return std::nullopt;
+    }
+    LoadedMesh mesh;
+    mesh.report = imported->report;
+    SolidPtr solid = std::make_shared<const Solid>(std::move(imported->mesh));
+    mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
+    if (!mesh.report.closed)
+      finding(false, spec.at,
+              "part " + spec.name + ": mesh " + mesh.report.file + " is open or not a manifold (" +
+                  std::to_string(mesh.report.boundary_edges) + " boundary, " +
+                  std::to_string(mesh.report.non_manifold_edges) + " non-manifold, " +
+                  std::to_string(mesh.report.misoriented_edges) +
+                  " misoriented edges): crossing is found, depth is not; repair it "
+                  "for more than potential");
+    if (!spec.mesh.generator.empty()) {
+      Result<GeneratedPart> generated = generate(spec.mesh.generator, spec.mesh.parameters);
+      if (generated) {
+        // A mesh from elsewhere (a log) may be another one: then its faces are found, not known.
+        if (mesh_hash(generated->mesh) != mesh.solid->hash())
+          for (Feature& feature : generated->features) feature.triangles.clear();
+        mesh.generated = std::move(generated->features);
+      }
+    }
+    return mesh;
+  }
+
+  // 3. features
+
+  static void add_undeclared(const Recognition& recognized, PartKind& kind) {
+    for (Feature& feature :
+         undeclared_features(recognized, kind.features, kind.solid->mesh().triangles.size())) {
+      kind.features.push_back(std::move(feature));
+      kind.stated.of_feature.push_back(kind.stated.rest);
+    }
+  }
+
+  bool match_features(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                      const Recognition* recognized, PartKind& kind) {
+    std::vector<Scenario::FeatureSpec> specs = with_generated(spec, mesh);
+    bool good = true;
+    for (auto& declared : specs) {
+      const std::string who = "part " + spec.name + ": feature " + declared.name + ": ";
+      const bool named = declared.surface.kind == SurfaceKind::kUnknown;
+      const Feature* own =
+          named && recognized != nullptr ? find_recognized(*recognized, declared.name) : nullptr;
+      if (named && own == nullptr) {
+        finding(true, declared.at, who + not_known(spec, mesh, recognized));
+        good = false;
+        continue;
+      }
+      if (own != nullptr) declared.surface = own->surface;
+      Result<FeatureMatch> match = own != nullptr ? Result<FeatureMatch>(FeatureMatch{*own, ""})
+                                                  : match_of(spec, declared, mesh);
+      if (!match) {
+        finding(true, declared.at, who + match.error().text);
+        good = false;
+        continue;
+      }
+      if (!match->note.empty()) finding(false, declared.at, who + match->note);
+      const bool in_file = &declared < specs.data() + spec.features.size();
+      match->feature.origin = in_file ? FeatureOrigin::kDeclared : FeatureOrigin::kGenerated;
+      kind.features.push_back(std::move(match->feature));
+      Result<PlacedStatement> statement =
+          statement_of_feature(declared, specs, kind.features.back().residual_mm, kind.stated.rest);
+      if (!statement) {
+        finding(true, declared.at, who + statement.error().text);
+        good = false;
+        continue;
+      }
+      kind.stated.of_feature.push_back(std::move(statement).value());
+    }
+    kind.stated.declared = std::move(specs);
+    return good && share_out_triangles(spec, kind);
+  }
+
+  static Result<FeatureMatch> match_of(const Scenario::PartSpec& spec,
+                                       const Scenario::FeatureSpec& declared,
+                                       const LoadedMesh& mesh) {
+    const FeatureDeclaration declaration{declared.name, declared.surface, declared.along_mm,
+                                         spec.chord_error_mm.value_or(0.0)};
+    const auto own = std::find_if(mesh.generated.begin(), mesh.generated.end(), [&](auto& f) {
+      return f.name == declared.name && f.surface.kind == declared.surface.kind;
+    });
+    if (own == mesh.generated.end() || own->triangles.empty() || declared.along_mm ||
+        declared_in_file(spec, declared.name))
+      return match_feature(mesh.solid->mesh(), declaration);
+    return check_feature(mesh.solid->mesh(), declaration, own->triangles);
+  }
+
+  // Does the file give this feature a surface of its own?
+  static bool declared_in_file(const Scenario::PartSpec& spec, const std::string& name) {
+    return std::any_of(spec.features.begin(), spec.features.end(), [&](auto& f) {
+      return f.name == name && f.surface.kind != SurfaceKind::kUnknown;
+    });
+  }
+
+  // The file's features, those without a surface taking the generator's; then the generator's other
+  // ones, whose exact surface is known even where nobody speaks of them.
+  static std::vector<Scenario::FeatureSpec> with_generated(const Scenario::PartSpec& spec,
+                                                           const LoadedMesh& mesh) {
+    std::vector<Scenario::FeatureSpec> specs = spec.features;
+    for (const Feature& generated : mesh.generated) {
+      const auto same = std::find_if(specs.begin(), specs.end(),
+                                     [&](auto& s) { return s.name == generated.name; });
+      if (same == specs.end()) {
+        Scenario::FeatureSpec extra;
+        extra.name = generated.name;
+        extra.surface = generated.surface;
+        extra.at = spec.at;
+        specs.push_back(std::move(extra));
+      } else if (same->surface.kind == SurfaceKind::kUnknown) {
+        same->surface = generated.surface;
+      }
+    }
+    return specs;
+  }
+
+  static std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                               const Recognition* recognized) {
+    if (spec.mesh.generator.empty() && recognized != nullptr)
+      return "no feature of this name was recognized; " + recognized_names(*recognized);
+    return "generator " + spec.mesh.generator + " has no feature of this name; " +
+           known_names(mesh);
+  }
+
+  static std::string known_names(const LoadedMesh& mesh) {
+    std::string names;
+    for (const Feature& f : mesh.generated) names += (names.empty() ? "" : ", ") + f.name;
+    return names.empty() ? "it has none; add kind: and the surface" : "known: " + names;
+  }
+
+  // A triangle that lies on two declared surfaces (a thin rim, or one round declared twice) belongs
+  // to the one it lies closer to, the earlier one on a tie.
+  bool share_out_triangles(const Scenario::PartSpec& spec, PartKind& kind) {
+    constexpr double kTie_mm = 1e-9;
+    const TriangleMesh& mesh = kind.solid->mesh();
+    std::vector<std::int32_t> owner(mesh.triangles.size(), -1);
+    const auto off = [&](std::int32_t f, std::uint32_t t) {
+      double most = 0.0;
+      for (int k = 0; k < 3; ++k)
+        most = std::max(most,
+                        std::fabs(kind.features[f].surface.signed_distance_mm(mesh.corner(t, k))));
+      return most;
+    };
+    for (std::int32_t f = 0; f < static_cast<std::int32_t>(kind.features.size()); ++f)
+      for (const std::uint32_t t : kind.features[f].triangles)
+        if (owner[t] < 0 || off(f, t) < off(owner[t], t) - kTie_mm) owner[t] = f;
+    bool good = true;
+    for (std::int32_t f = 0; f < static_cast<std::int32_t>(kind.features.size()); ++f) {
+      auto& mine = kind.features[f].triangles;
+      const std::size_t before = mine.size();
+      std::erase_if(mine, [&](std::uint32_t t) { return owner[t] != f; });
+      if (mine.size() == before) continue;
+      const std::string who = "part " + spec.name + ": feature " + kind.features[f].name + ": ";
+      const SourceLine at = line_of_feature(spec, kind.features[f].name);
+      if (mine.empty()) {
+        finding(true, at,
+                who +
+                    "all of its triangles belong to another feature as well; say which "
+                    "length each one has with along: [from, to]");
+        good = false;
+      } else if (2 * mine.size() < before) {
+        finding(false, at,
+                who + std::to_string(before - mine.size()) +
+                    " triangles lie on another feature as well, which has them; along: "
+                    "[from, to] tells them apart");
+      }
+    }
+    return good;
+  }
+
+  static SourceLine line_of_feature(const Scenario::PartSpec& spec, const std::string& name) {
+    for (const auto& feature : spec.features)
+      if (feature.name == name) return feature.at;
+    return spec.at;
+  }
+
+  bool evaluates() const {
+    const World& world = scene_.world;
+    return std::any_of(world.parts.begin(), world.parts.end(),
+                       [](const Part& part) { return !part.band.trivial; }) ||
+           std::any_of(world.pair_rules.begin(), world.pair_rules.end(), [](const auto& entry) {
+             const PairRule& rule = entry.second;
+             return (rule.band_a && !rule.band_a->trivial) ||
+                    (rule.band_b && !rule.band_b->trivial);
+           });
+  }
+
+  const Scenario& scenario_;
+  const MeshProvider& meshes_;
+  LoadedScene scene_;
+  std::vector<StatedPart> stated_;
+  std::map<std::string, std::size_t> kind_of_;
+  std::vector<std::optional<PartKind>> kinds_;  // nothing: could not be made, said in findings
+  std::map<std::string, std::optional<LoadedMesh>> mesh_of_;
+  std::map<std::string, SolidPtr> solid_of_;
+  RecognizedMeshes recognized_;
+};
+
+}  // namespace
+
+bool LoadedScene::usable() const {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& finding) { return finding.is_error; });
+}
+
+Result<LoadedScene> load_scene(const Scenario& scenario, const MeshProvider& meshes) {
+  if (scenario.parts.empty())
+    return fail(Code::kInvalidInput,
+                place_of(scenario, {}) + "has no parts; a scenario needs at least one");
+  return SceneLoader(scenario, meshes).run();
+}
+
+}  // namespace mortise

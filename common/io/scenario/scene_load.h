@@ -1,0 +1,47 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/io/mesh/mesh_import.h"
+#include "common/io/scenario/scenario_file.h"
+#include "common/session/world/world.h"
+
+namespace mortise {
+
+/// Gives the mesh of a part; the default reads files and runs generators, a replay takes them from
+/// its log.
+using MeshProvider =
+    std::function<Result<ImportedMesh>(const Scenario& scenario, const Scenario::PartSpec& part)>;
+MeshProvider default_meshes();
+
+/// A scenario made ready: meshes loaded once per distinct content, features matched to triangles
+/// and checked, tolerances and fits resolved to offsets.
+struct LoadedScene {
+  World world;
+  std::vector<ImportReport> imports;  ///< one per part spec
+  std::vector<Finding> findings;      ///< errors: the scene must not be played
+  struct ResolvedTolerance {
+    std::string part, feature, source;
+    Interval offset_mm;
+    DeviationGrade grade;
+    Interval deviation_mm;
+    double residual_mm = 0.0;
+  };
+  std::vector<ResolvedTolerance> tolerances;
+  struct ResolvedFit {
+    std::string part_a, feature_a, part_b, feature_b, code;
+    double nominal_mm = 0.0;
+    Interval clearance_mm;  ///< diametral, of what holds between both: see `tighter`
+    /// What else holds of these faces in this pair, end by end: "plate.bore: ±0.005 mm". Empty when
+    /// the fit is all that is said of them.
+    std::vector<std::string> tighter;
+  };
+  std::vector<ResolvedFit> fits;
+  bool usable() const;
+};
+
+Result<LoadedScene> load_scene(const Scenario& scenario, const MeshProvider& meshes);
+
+}  // namespace mortise

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "common/io/scenario/placed_statement.h"
+#include "common/io/scenario/scene_load.h"
+
+/// What pairs of parts say of each other: fits, exclusions, who may hold what. Private to
+/// scene_load.
+namespace mortise {
+
+/// One part while the scene is put together; same index as World::parts. Parts that are alike in
+/// mesh, features and tolerances share a `kind`.
+struct StatedPart {
+  std::size_t kind = 0;
+  PlacedStatement rest;
+  /// Its features as they are declared, in the file or by its generator; those that the mesh alone
+  /// shows come behind and have no declaration.
+  std::vector<Scenario::FeatureSpec> declared;
+  std::vector<PlacedStatement> of_feature;  ///< by index of Part::features; what the part's own
+                                            ///< and the feature's statement leave together
+};
+
+/// "file:line: " of a statement.
+std::string place_of(const Scenario& scenario, SourceLine at);
+
+/// Two features, or whole parts, of a pair: part, index of its feature; the lower part first.
+using FeaturePair = std::tuple<PartId, std::size_t, PartId, std::size_t>;
+inline constexpr std::size_t kWholePart = static_cast<std::size_t>(-1);
+
+/// What the running session says of one pair of ends instead of the file.
+struct LiveFit {
+  FeaturePair ends;
+  std::optional<Scenario::FitSpec> fit;  ///< nothing: no fit
+};
+
+struct RuleInput {
+  const Scenario& scenario;
+  const std::vector<Part>& parts;
+  const std::vector<StatedPart>& stated;
+  std::span<const LiveFit> live = {};
+  std::optional<PartId> only = {};  ///< only pairs with this part, and no more than their fits
+};
+
+struct RuleOutcome {
+  std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
+  std::vector<LoadedScene::ResolvedFit> fits;
+  std::vector<Finding> findings;
+};
+
+/// Pair rules for fits and exclusions, and the findings and resolved fits that come with them. A
+/// rule that matches nothing, or contradicts another, is an error.
+RuleOutcome rules_of(const RuleInput& input);
+
+}  // namespace mortise
