@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 
 namespace mortise {
 

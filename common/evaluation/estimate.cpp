@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/constants.h"
-#include "common/geometry/facets.h"
+#include "common/geometry/recognition/facets.h"
 
 namespace mortise {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/bvh.h"
+#include "common/geometry/bvh/bvh.h"
 #include "common/geometry/mesh.h"
 #include "common/geometry/shells.h"
 #include "common/geometry/topology.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "common/geometry/bvh.h"
+#include "common/geometry/bvh/bvh.h"
 #include "common/geometry/topology.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/sections.h"

@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "tests/bench/judgement_parts.h"
 
 namespace mortise::bench {

@@ -1,7 +1,7 @@
 // The truth that the benchmark judges by, itself held against dense sampling and against depths of
 // meshes found by brute force.
 #include "tests/bench/judgement_truth.h"
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/report_json.h"
 #include "common/math/pose.h"

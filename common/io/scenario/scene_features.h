@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/geometry/surface_band.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/session/world/scenario.h"

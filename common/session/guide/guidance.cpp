@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "common/base/constants.h"
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/messages/names.h"
 #include "common/session/tick/bodies.h"
 

@@ -1,4 +1,4 @@
-#include "common/geometry/bvh.h"
+#include "common/geometry/bvh/bvh.h"
 
 #include <fenv.h>
 #include <gtest/gtest.h>

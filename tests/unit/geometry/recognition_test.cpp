@@ -1,4 +1,4 @@
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 
 #include <gtest/gtest.h>
 

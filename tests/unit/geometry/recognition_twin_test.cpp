@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "tests/support/effort.h"
 #include "tests/support/turned_part.h"
 #include "tests/unit/geometry/recognition_twin.h"

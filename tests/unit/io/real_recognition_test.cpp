@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/mesh/obj_exact.h"
 #include "tests/support/test_data.h"

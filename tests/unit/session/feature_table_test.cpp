@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/session/guide/guidance.h"
 #include "tests/support/shapes.h"
 #include "tests/unit/session/session_builder.h"

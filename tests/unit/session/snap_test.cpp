@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 #include "tests/unit/session/guided_pair.h"
 #include "tests/unit/session/report_digest.h"
 

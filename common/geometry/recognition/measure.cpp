@@ -1,4 +1,4 @@
-#include "common/geometry/recognition_measure.h"
+#include "common/geometry/recognition/measure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "common/geometry/recognition_region.h"
+#include "common/geometry/recognition/region.h"
 
 /// Private to recognition: from which few triangles a surface may be guessed.
 namespace mortise {

@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "common/geometry/surface_fit.h"
+#include "common/geometry/recognition/surface_fit.h"
 
 namespace mortise {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <map>
 
 #include "common/base/constants.h"
-#include "common/geometry/recognition_finish.h"
-#include "common/geometry/recognition_seeds.h"
+#include "common/geometry/recognition/finish.h"
+#include "common/geometry/recognition/seeds.h"
 
 namespace mortise {
 namespace {

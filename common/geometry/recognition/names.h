@@ -1,5 +1,5 @@
 #pragma once
-#include "common/geometry/recognition.h"
+#include "common/geometry/recognition/recognition.h"
 
 /// Private to recognition.
 namespace mortise {

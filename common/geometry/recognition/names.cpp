@@ -1,4 +1,4 @@
-#include "common/geometry/recognition_names.h"
+#include "common/geometry/recognition/names.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "common/geometry/bvh_split.h"
+#include "common/geometry/bvh/bvh_split.h"
 
 #include <algorithm>
 #include <cstring>

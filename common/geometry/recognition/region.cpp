@@ -1,4 +1,4 @@
-#include "common/geometry/recognition_region.h"
+#include "common/geometry/recognition/region.h"
 
 #include <algorithm>
 #include <array>

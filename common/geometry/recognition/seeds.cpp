@@ -1,4 +1,4 @@
-#include "common/geometry/recognition_seeds.h"
+#include "common/geometry/recognition/seeds.h"
 
 #include <algorithm>
 #include <cmath>

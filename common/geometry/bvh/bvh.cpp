@@ -1,4 +1,4 @@
-#include "common/geometry/bvh.h"
+#include "common/geometry/bvh/bvh.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,9 +7,9 @@
 
 #include "common/base/check.h"
 #include "common/base/constants.h"
-#include "common/geometry/bvh_orient.h"
-#include "common/geometry/bvh_split.h"
-#include "common/geometry/bvh_threads.h"
+#include "common/geometry/bvh/bvh_orient.h"
+#include "common/geometry/bvh/bvh_split.h"
+#include "common/geometry/bvh/bvh_threads.h"
 
 namespace mortise {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/geometry/facets.h"
+#include "common/geometry/recognition/facets.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #pragma once
-#include "common/geometry/bvh.h"
+#include "common/geometry/bvh/bvh.h"
 
 namespace mortise::bvh {
 

@@ -1,4 +1,4 @@
-#include "common/geometry/surface_fit.h"
+#include "common/geometry/recognition/surface_fit.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "common/geometry/recognition.h"
-#include "common/geometry/recognition_region.h"
+#include "common/geometry/recognition/recognition.h"
+#include "common/geometry/recognition/region.h"
 
 /// Private to recognition: from regions to named features.
 namespace mortise {

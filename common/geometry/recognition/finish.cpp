@@ -1,4 +1,4 @@
-#include "common/geometry/recognition_finish.h"
+#include "common/geometry/recognition/finish.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "common/base/constants.h"
-#include "common/geometry/recognition_names.h"
+#include "common/geometry/recognition/names.h"
 
 namespace mortise {
 namespace {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/facets.h"
-#include "common/geometry/recognition_measure.h"
-#include "common/geometry/surface_fit.h"
+#include "common/geometry/recognition/facets.h"
+#include "common/geometry/recognition/measure.h"
+#include "common/geometry/recognition/surface_fit.h"
 
 /// Private to recognition: triangles that stand for one surface.
 namespace mortise {

@@ -1,4 +1,4 @@
-#include "common/geometry/bvh_orient.h"
+#include "common/geometry/bvh/bvh_orient.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/base/constants.h"
-#include "common/geometry/bvh_threads.h"
+#include "common/geometry/bvh/bvh_threads.h"
 
 namespace mortise::bvh {
 namespace {

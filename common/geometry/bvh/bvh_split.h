@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "common/geometry/bvh.h"
+#include "common/geometry/bvh/bvh.h"
 
 // Where a set of triangles is cut in two: binned surface area heuristic. Used by bvh.cpp alone.
 namespace mortise::bvh {
