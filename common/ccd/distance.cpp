@@ -3,7 +3,7 @@
 #include "common/base/check.h"
 #include "common/ccd/first_contact.h"
 #include "common/ccd/hull_gap.h"
-#include "common/ccd/leaf_discard.h"
+#include "common/ccd/kernels/leaf_discard.h"
 #include "common/ccd/pair_tree.h"
 
 namespace mortise {

@@ -1,7 +1,7 @@
 #pragma once
-#include "common/ccd/box_advance.h"
 #include "common/ccd/first_contact.h"
-#include "common/ccd/leaf_kernel.h"
+#include "common/ccd/kernels/box_advance.h"
+#include "common/ccd/kernels/leaf_kernel.h"
 
 // Two bodies during one tick, seen from B.
 namespace mortise::ccd {

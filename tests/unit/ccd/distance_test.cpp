@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "common/ccd/hull_gap.h"
-#include "common/ccd/leaf_discard.h"
+#include "common/ccd/kernels/leaf_discard.h"
 #include "common/geometry/triangle_distance.h"
 #include "tests/support/effort.h"
 #include "tests/unit/ccd/shapes.h"

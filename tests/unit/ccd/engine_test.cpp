@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "common/ccd/box_advance.h"
+#include "common/ccd/kernels/box_advance.h"
 #include "common/ccd/pair_motion.h"
 #include "common/geometry/triangle_distance.h"
 #include "tests/unit/ccd/shapes.h"

@@ -1,8 +1,8 @@
-#include "common/ccd/box_advance.h"
+#include "common/ccd/kernels/box_advance.h"
 
 namespace mortise::ccd {
 namespace {
-#include "common/ccd/box_advance_impl.h"
+#include "common/ccd/kernels/box_advance_impl.h"
 }  // namespace
 
 const BoxKernels& portable_box_kernels() {

@@ -1,21 +1,20 @@
 // Compiled for AVX2 where the compiler knows it (see CMakeLists.txt); entered only where the
 // machine has it.
-#include "common/ccd/leaf_discard.h"
+#include "common/ccd/kernels/leaf_kernel.h"
 
 namespace mortise::ccd {
 
 #ifdef __AVX2__
 namespace {
-#include "common/ccd/leaf_discard_impl.h"
+#include "common/ccd/kernels/leaf_kernel_impl.h"
 }  // namespace
 
-const DiscardKernels* wide_discard_kernels() {
-  static constexpr DiscardKernels kernels = kKernels;
+LeafKernel wide_leaf_kernel() {
   static const bool supported = __builtin_cpu_supports("avx2") != 0;
-  return supported ? &kernels : nullptr;
+  return supported ? advance : nullptr;
 }
 #else
-const DiscardKernels* wide_discard_kernels() { return nullptr; }
+LeafKernel wide_leaf_kernel() { return nullptr; }
 #endif
 
 }  // namespace mortise::ccd

@@ -1,8 +1,8 @@
-#include "common/ccd/leaf_discard.h"
+#include "common/ccd/kernels/leaf_discard.h"
 
 namespace mortise::ccd {
 namespace {
-#include "common/ccd/leaf_discard_impl.h"
+#include "common/ccd/kernels/leaf_discard_impl.h"
 }  // namespace
 
 const DiscardKernels& portable_discard_kernels() {

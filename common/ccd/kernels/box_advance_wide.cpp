@@ -1,12 +1,12 @@
 // Compiled for AVX2 where the compiler knows it (see CMakeLists.txt); entered only where the
 // machine has it.
-#include "common/ccd/box_advance.h"
+#include "common/ccd/kernels/box_advance.h"
 
 namespace mortise::ccd {
 
 #ifdef __AVX2__
 namespace {
-#include "common/ccd/box_advance_impl.h"
+#include "common/ccd/kernels/box_advance_impl.h"
 }  // namespace
 
 const BoxKernels* wide_box_kernels() {

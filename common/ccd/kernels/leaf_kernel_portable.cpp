@@ -1,8 +1,8 @@
-#include "common/ccd/leaf_kernel.h"
+#include "common/ccd/kernels/leaf_kernel.h"
 
 namespace mortise::ccd {
 namespace {
-#include "common/ccd/leaf_kernel_impl.h"
+#include "common/ccd/kernels/leaf_kernel_impl.h"
 }  // namespace
 
 LeafKernel portable_leaf_kernel() { return advance; }
