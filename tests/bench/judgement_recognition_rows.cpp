@@ -4,8 +4,8 @@
 #include <map>
 #include <numbers>
 
+#include "common/generators/generators.h"
 #include "common/math/rotation.h"
-#include "scenarios/generators/generators.h"
 #include "tests/bench/judgement_cases.h"
 #include "tests/bench/judgement_recognition.h"
 #include "tests/bench/judgement_sections.h"

@@ -5,7 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/ccd/first_contact.h"
-#include "scenarios/generators/generators.h"
+#include "common/generators/generators.h"
 #include "tests/unit/ccd/shapes.h"
 #include "tests/unit/ccd/workload.h"
 

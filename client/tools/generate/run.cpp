@@ -6,8 +6,8 @@
 
 #include "client/tools/generate/write_mesh.h"
 #include "client/tools/generate/write_scene.h"
+#include "common/generators/generators.h"
 #include "common/io/scenario/open_scene.h"
-#include "scenarios/generators/generators.h"
 
 namespace mortise {
 namespace {

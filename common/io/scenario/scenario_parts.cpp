@@ -6,8 +6,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "common/generators/generators.h"
 #include "common/math/rotation.h"
-#include "scenarios/generators/generators.h"
 
 namespace mortise {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
+#include "common/generators/generators.h"
 #include "common/io/scenario/live_rules.h"
 #include "common/io/scenario/scene_features.h"
 #include "common/io/scenario/scene_rules.h"
-#include "scenarios/generators/generators.h"
 
 namespace mortise {
 namespace {

@@ -1,5 +1,5 @@
+#include "common/generators/generators.h"
 #include "common/io/scenario/scene_load.h"
-#include "scenarios/generators/generators.h"
 
 namespace mortise {
 namespace {

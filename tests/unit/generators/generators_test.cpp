@@ -1,4 +1,4 @@
-#include "scenarios/generators/generators.h"
+#include "common/generators/generators.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <numbers>
 #include <set>
 
+#include "common/generators/triangulate.h"
 #include "common/geometry/topology.h"
-#include "scenarios/generators/triangulate.h"
 
 namespace mortise {
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/generators/generators.h"
 #include "common/io/mesh/mesh_import.h"
-#include "scenarios/generators/generators.h"
 
 namespace mortise {
 namespace {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/generators/generators.h"
 #include "common/io/scenario/open_scene.h"
 #include "common/session/tick/step.h"
-#include "scenarios/generators/generators.h"
 
 namespace mortise {
 namespace {

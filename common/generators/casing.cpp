@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "scenarios/generators/family.h"
-#include "scenarios/generators/shape.h"
+#include "common/generators/family.h"
+#include "common/generators/shape.h"
 
 /// The two halves of a gearbox for two parallel shafts along z: the input axis through the origin,
 /// the output axis at x = distance. Both share the same outline and hole pattern.

@@ -1,10 +1,10 @@
-#include "scenarios/generators/generators.h"
+#include "common/generators/generators.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "scenarios/generators/family.h"
+#include "common/generators/family.h"
 
 namespace mortise {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "scenarios/generators/family.h"
-#include "scenarios/generators/shape.h"
+#include "common/generators/family.h"
+#include "common/generators/shape.h"
 
 /// Bolt and nut with a real helical thread of the ISO 68 profile (60 degrees, crest P/8, root P/4),
 /// right-handed, cut flat at both ends.

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenarios/generators/family.h"
-#include "scenarios/generators/shape.h"
+#include "common/generators/family.h"
+#include "common/generators/shape.h"
 
 /// Spur gears with involute teeth, a bore and a keyway, z in [0, width].
 namespace mortise {

@@ -3,8 +3,8 @@
 #include <numbers>
 #include <optional>
 
-#include "scenarios/generators/family.h"
-#include "scenarios/generators/shape.h"
+#include "common/generators/family.h"
+#include "common/generators/shape.h"
 
 /// Turned parts: shafts with steps, keyseat and chamfers; dowels and screws, which are shafts with
 /// other names; rings and bearings. Axis z, from z = 0 upwards.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/generators/generators.h"
+#include "common/generators/generators.h"
 
 namespace mortise {
 

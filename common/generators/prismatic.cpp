@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "scenarios/generators/family.h"
-#include "scenarios/generators/shape.h"
+#include "common/generators/family.h"
+#include "common/generators/shape.h"
 
 /// Parts with flat sides: block, key, slotted block, plates with round holes.
 namespace mortise {

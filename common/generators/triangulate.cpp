@@ -1,4 +1,4 @@
-#include "scenarios/generators/triangulate.h"
+#include "common/generators/triangulate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/generators/generators.h"
-#include "scenarios/generators/triangulate.h"
+#include "common/generators/generators.h"
+#include "common/generators/triangulate.h"
 
 namespace mortise {
 

@@ -1,4 +1,4 @@
-#include "scenarios/generators/shape.h"
+#include "common/generators/shape.h"
 
 #include <algorithm>
 #include <cmath>
