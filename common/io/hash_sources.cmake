@@ -1,7 +1,6 @@
 # cmake -DROOT=<tree> -DOUT=<file.cpp> -P hash_sources.cmake: one hash over everything that decides a verdict, so that a
 # log knows whether it was recorded by these very sources.
-file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/common/*.h ${ROOT}/common/*.cpp
-  ${ROOT}/scenarios/generators/*.h ${ROOT}/scenarios/generators/*.cpp)
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/common/*.h ${ROOT}/common/*.cpp)
 list(SORT sources)
 set(all "")
 foreach(source IN LISTS sources)
