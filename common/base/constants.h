@@ -56,8 +56,9 @@ inline constexpr std::uint64_t kCcdWorkCap = 2'000'000;
 inline constexpr double kClashHysteresis_mm = 2e-4;
 static_assert(kClashHysteresis_mm >= 2.0 * kDepthAccuracyDefault_mm);
 
-/// Where the thresholds are farther apart the hysteresis is this share of their distance (ALG 5.4),
-/// up to so much, mm: a part that is held by hand and trembles must not make an event a tick.
+/// Where the thresholds are farther apart the hysteresis is this share of their distance
+/// (session/README.md, section 6), up to so much, mm: a part that is held by hand and trembles must
+/// not make an event a tick.
 inline constexpr double kClashHysteresisShare = 0.01;
 inline constexpr double kClashHysteresisMost_mm = 1e-3;
 static_assert(kClashHysteresis_mm <= kClashHysteresisMost_mm);

@@ -84,8 +84,8 @@ struct CcdScratch {
 };
 
 /// First contact of two rigid meshes in one tick. Guarantee: never a miss, never late; see
-/// ContactState. Deterministic. Per-pair advancement on the trees, earliest first (collision.md
-/// section 2; bounds: ALG 2.1 B3').
+/// ContactState. Deterministic. Per-pair advancement on the trees, earliest first
+/// (README, sections 2 and 3).
 FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch);
 
 struct DistanceResult {

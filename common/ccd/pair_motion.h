@@ -6,8 +6,9 @@
 // Two bodies during one tick, seen from B.
 namespace mortise::ccd {
 
-/// The path of one body, in closed form from what does not change during the tick (ALG A1); places
-/// are those of the origin of the body's tree, axes those in which the path was given.
+/// The path of one body, in closed form from what does not change during the tick
+/// (motion/README.md); places are those of the origin of the body's tree, axes those in which the
+/// path was given.
 class BodyPath {
  public:
   BodyPath() = default;
@@ -37,7 +38,7 @@ struct BodyState {
 /// Both bodies at time t. A point u of A (relative to the origin of A's tree, part axes) is at
 /// R u + p; points of B are taken relative to the origin of B's tree. Velocities are those of the
 /// world, only written in axes of B: a direction n is kept fixed in the world while time advances
-/// (both bodies: ALG A2; the bound: TurnTerms in leaf_kernel.h).
+/// (README, section 2; the bound: TurnTerms in leaf_kernel.h).
 struct PairState {
   double t = -1.0;
   Mat3 R = Mat3::Identity();
@@ -69,7 +70,7 @@ class PairMotion {
   const PairState& state() const { return state_; }
   bool turns_a() const { return path_a_.speed() > 0.0; }
   bool turns_b() const { return path_b_.speed() > 0.0; }
-  /// Rounding of any coordinate or distance of the pair, mm: 32 u (L + D) (ALG 2.12).
+  /// Rounding of any coordinate or distance of the pair, mm: 32 u (L + D) (README, section 4).
   double rounding_mm() const { return rounding_mm_; }
   /// Rounding of a speed along a direction, mm per tick.
   double speed_rounding_mm() const { return speed_rounding_mm_; }

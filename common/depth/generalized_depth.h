@@ -15,7 +15,7 @@ struct GpdQuery {
   std::uint64_t work_cap = 4'000;          ///< evaluations of all proofs that a pose is free
 };
 
-/// Generalized penetration depth of a region (paper; Zhang et al. 2006; bracket ours, ALG 3.2).
+/// Generalized penetration depth of a region (README, section 7).
 /// gpd_mm.lo = delta.lo: any separating motion moves some point at least that far.
 /// gpd_mm.hi = least over verified separating motions of the largest path length of any point of A:
 /// back along the tick, along the region normal, rotation + translation fitted to the region's

@@ -54,7 +54,7 @@ struct CertainPlace {
 ///   delta_mm:     overlap of the meshes, -min(sd_A + sd_B) over the region; negative when apart (=
 ///   -distance). certain_mm:   bracket of sup over pairs of faces of (overlap + lower offsets): > 0
 ///   means that every admissible pair
-///                 of real surfaces interferes (collision.md section 5);
+///                 of real surfaces interferes (README, section 3);
 ///   possible_mm:  the same with upper offsets: <= 0 means that none does.
 /// Lower ends are reached at a point (true lower bounds); upper ends are proven over the continuous
 /// surface.
@@ -110,7 +110,7 @@ struct RealTime {
   std::uint64_t evaluations = 0;
 };
 
-/// First time at which certain_mm > 0 somewhere (collision.md section 5), found by branch and bound
+/// First time at which certain_mm > 0 somewhere (README, section 6), found by branch and bound
 /// over the swept surface, so that a thin wall cannot be passed between ticks even when the meshes
 /// overlapped before.
 RealTime find_real_time(const SweptQuery& query, CcdScratch& scratch);

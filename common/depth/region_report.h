@@ -9,14 +9,15 @@ namespace mortise {
 
 /// Shape of the face that a triangle belongs to, near x (part frame): from its declared or
 /// recognized surface, else from the edges across which it goes on smoothly (concave-convex
-/// determination of the paper; ALG 3.6). A torus is convex (a groove: concave) on the side away
-/// from its axis and a saddle on the side towards it. Without a surface, facets that meet at more
-/// than kSharpEdge_rad are taken for planes: a coarse round cannot be told from a prism.
+/// determination of the paper; geometry/README.md, section 1). A torus is convex (a groove:
+/// concave) on the side away from its axis and a saddle on the side towards it. Without a surface,
+/// facets that meet at more than kSharpEdge_rad are taken for planes: a coarse round cannot be told
+/// from a prism.
 FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x);
 
 /// A point inside both real parts, whatever their offsets: tried halfway between the deepest point
-/// of one least surface and the other, and verified in both parts (ALG 3.5c). World frame. Costs up
-/// to some 300 evaluations, where there is none.
+/// of one least surface and the other, and verified in both parts (README, section 7). World frame.
+/// Costs up to some 300 evaluations, where there is none.
 std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
                                  std::uint64_t& evaluations);
 

@@ -272,8 +272,8 @@ class Matcher {
 };
 
 // Could the true surface pass smoothly over this edge? Two facets of widths up to w that meet at an
-// exterior angle phi hide a sagitta of (w/2) tan(phi/4) (ALG 4.1); more than the declared chord
-// error means that the edge is an edge.
+// exterior angle phi hide a sagitta of (w/2) tan(phi/4) (geometry/README.md, section 2); more than
+// the declared chord error means that the edge is an edge.
 bool may_be_smooth(const TriangleMesh& mesh, const Topology& topology, std::uint32_t t, int k,
                    double chord_error_mm) {
   const std::uint32_t other = topology.neighbor[t][k];

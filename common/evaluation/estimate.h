@@ -7,9 +7,9 @@
 namespace mortise {
 
 /// Where the true surface may lie above each triangle, outward positive, mm, estimated from the
-/// mesh alone (ALG 4.4); never a guarantee. Flat groups of triangles are facets; facets of widths
-/// w1, w2 that meet smoothly (exterior angle phi up to kSmoothEdge_rad) bend by phi over (w1 +
-/// w2)/2, so that this one hides (w1/2) tan(phi w1 / (w1 + w2) / 2): the sagitta, exact for a
+/// mesh alone (README, section 1); never a guarantee. Flat groups of triangles are facets; facets
+/// of widths w1, w2 that meet smoothly (exterior angle phi up to kSmoothEdge_rad) bend by phi over
+/// (w1 + w2)/2, so that this one hides (w1/2) tan(phi w1 / (w1 + w2) / 2): the sagitta, exact for a
 /// cylinder of any steps. Two transverse directions add up. Convex bends are offsets outward,
 /// concave ones inward.
 ///

@@ -36,12 +36,13 @@ struct FaceStatement {
 std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b);
 
 /// The statement as a band needs it: a feature of size whose axis may lie anywhere in a zone of
-/// diameter T moves its surface by up to T/2 either way, in addition to its size (ALG 5.2). Under a
-/// material condition the zone grows with the size, so that one end stays at the virtual condition:
-/// at maximum material the outer end (pin MMC + T, hole MMC - T), at least material the inner one.
+/// diameter T moves its surface by up to T/2 either way, in addition to its size (README, section
+/// 2). Under a material condition the zone grows with the size, so that one end stays at the
+/// virtual condition: at maximum material the outer end (pin MMC + T, hole MMC - T), at least
+/// material the inner one.
 FaceStatement with_position(const FaceStatement& statement);
 
-/// Limits of size as offsets of the modelled surface of radius R (collision.md section 4):
+/// Limits of size as offsets of the modelled surface of radius R (README, section 2):
 /// shaft [(D+ei)/2 - R, (D+es)/2 - R], hole, outward of its material, [R - (D+ES)/2, R - (D+EI)/2].
 Interval size_offset_mm(const SizeLimits& limits, double modelled_radius_mm);
 

@@ -11,7 +11,8 @@ namespace mortise {
 namespace {
 
 /// A corner that lies off the plane of the neighbour by less than this part of the longest edge
-/// counts as in the plane (ALG 3.6). Scale-free; far above rounding, far below any drawn chamfer.
+/// counts as in the plane (README, section 1). Scale-free; far above rounding, far below any drawn
+/// chamfer.
 constexpr double kFlatEdge = 1e-9;
 
 /// Which way an edge is passed by one triangle.

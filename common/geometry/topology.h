@@ -11,8 +11,8 @@ namespace mortise {
 /// the edge in the same direction (misoriented), or an edge without length; no side can be told.
 enum class EdgeKind : std::uint8_t { kBoundary = 0, kFlat, kConvex, kConcave, kNonManifold };
 
-/// Neighbours and edge classes of a mesh (ALG 3.6). Edge k of a triangle runs from corner k to
-/// corner k+1.
+/// Neighbours and edge classes of a mesh (README, section 1). Edge k of a triangle runs from corner
+/// k to corner k+1.
 struct Topology {
   static constexpr std::uint32_t kNone = 0xffffffffU;
 

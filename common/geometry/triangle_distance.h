@@ -13,7 +13,7 @@ struct TriangleDistance {
   bool crossing = false;  ///< an edge of one passes through the face of the other
 };
 
-/// Distance of two solid triangles with witness points (after Larsen et al. 1999; ALG A9).
+/// Distance of two solid triangles with witness points (README, section 3).
 /// Scale-free: no absolute epsilon; error a few ulp of the coordinates, for needles of any aspect
 /// too. A triangle without area is its edges. Corners must be finite: of others the distance is no
 /// number or infinite, and nothing else happens (no check here: every number of an answer comes

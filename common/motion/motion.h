@@ -9,8 +9,8 @@ enum class PathKind : std::uint8_t { kStill = 0, kLinear, kScrew };
 
 /// The path of one part P in world W during one tick, t in [0, 1].
 ///   kLinear: the reference point moves straight with v_W, the part turns about it with constant
-///   w_W (ALG A1); kScrew:  the part turns with constant w_W about the line through axis_W and
-///   slides along it by pitch_mm.
+///   w_W (README, section 1); kScrew:  the part turns with constant w_W about the line through
+///   axis_W and slides along it by pitch_mm.
 /// Ends are exact: pose_at(0) is X_W0 and pose_at(1) is X_W1 to the last bit.
 struct Motion {
   PathKind kind = PathKind::kStill;

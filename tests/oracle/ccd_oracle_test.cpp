@@ -1,5 +1,6 @@
 // Our contact times and distances against FCL's collision test and distance at single poses. FCL's
-// own continuous collision detection of meshes is not asked: it misses contacts (ALG 2.4).
+// own continuous collision detection of meshes is not asked: it misses contacts (ccd/README.md,
+// section 8).
 #include <gtest/gtest.h>
 
 #include <cstdio>

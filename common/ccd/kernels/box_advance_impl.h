@@ -166,7 +166,7 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     Lanes n[3];
     for (int k = 0; k < 3; ++k) n[k] = (d[k] > zero ? apart[k] : -apart[k]) * inverse;
     Going going{dot(f.v, n) + all(f.speed_allowance), all(f.bend_allowance)};
-    // Whichever way a body will have turned: |n x w| |w x e| (ALG 2.1 B3').
+    // Whichever way a body will have turned: |n x w| |w x e| (ccd/README.md, section 2).
     Lanes largest_bend = all(f.bend_allowance);
     if constexpr (kTurnsA) {
       Lanes m[3], g[3], m_A[3], g_A[3];

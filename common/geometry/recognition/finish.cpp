@@ -29,7 +29,8 @@ struct Edge {
   int k = 0;
 };
 
-// A smooth edge may hide (w/2) tan(phi/4) under it, w the wider of both facets (ALG 4.1).
+// A smooth edge may hide (w/2) tan(phi/4) under it, w the wider of both facets (geometry/README.md,
+// section 2).
 double hidden_mm(double width_mm, double angle_rad) {
   return 0.5 * width_mm * std::tan(0.25 * angle_rad);
 }

@@ -13,10 +13,10 @@ struct BudgetQuery {
 };
 
 /// Lower bound of the distance of the surfaces at every t of the motions, mm, from a distance that
-/// was measured earlier (ALG A5): measured, minus the way between then and now of any point of one
-/// part as seen from the other, minus the way within the tick. Negative when nothing is known.
-/// OURS: counted from pose to pose instead of summed over ticks, so that parts carried together and
-/// parts that come back spend nothing, and a teleport is a motion like any other.
+/// was measured earlier (README, section 3): measured, minus the way between then and now of any
+/// point of one part as seen from the other, minus the way within the tick. Negative when nothing
+/// is known. OURS: counted from pose to pose instead of summed over ticks, so that parts carried
+/// together and parts that come back spend nothing, and a teleport is a motion like any other.
 double apart_lower_bound_mm(const PairMemo& memo, const BudgetQuery& query);
 
 /// Upper bound of the way of any point of A seen from B within the motions, mm.

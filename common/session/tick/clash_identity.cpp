@@ -74,7 +74,7 @@ void go_on_holding(PairWork& pair, const std::vector<OpenClash>& open, double ra
 }
 
 // How far beyond a threshold a class has to be left behind: 1 % of the width of the zone between
-// both, within bounds (ALG 5.4).
+// both, within bounds (README, section 6).
 double hysteresis_mm(const Verdict& verdict) {
   const double width = verdict.real_above_mm - verdict.fake_below_mm;
   if (!(width > 0.0)) return kClashHysteresis_mm;

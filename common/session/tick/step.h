@@ -23,7 +23,7 @@ class Scratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// One tick (house.md): gather, pairs, first contact, depth and verdict, commit, report.
+/// One tick (README): gather, pairs, first contact, depth and verdict, commit, report.
 /// Deterministic: same world, same increments, same build -> the same report bit for bit, at any
 /// number of threads. No clock, no I/O, no logging.
 StepReport step(World& world, std::span<const Increment> increments, Scratch& scratch);

@@ -139,7 +139,7 @@ struct Advance {
 };
 
 // The depth that is certain changes no faster than the parts move against each other: where it
-// lacks g, no motion of less than g makes it real (collision.md section 5).
+// lacks g, no motion of less than g makes it real (depth/README.md, section 6).
 //   1. depth at t; not below zero for certain: the last t was the last one proven.
 //   2. go on by as much time as the parts need for that depth.
 Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {

@@ -1,4 +1,4 @@
-// Contact times that are known in closed form (collision.md 7, ALG 6.1).
+// Contact times that are known in closed form (ccd/README.md, section 7).
 #include <gtest/gtest.h>
 
 #include <cmath>

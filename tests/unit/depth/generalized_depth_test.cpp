@@ -50,7 +50,7 @@ TEST(GeneralizedDepth, CubesComeApartAlongTheNormal) {
   EXPECT_NEAR(gpd.translation_mm.normalized().x(), -1.0, 1e-6);
 }
 
-// ALG 6.2.2: a sphere of radius 1 sinks 0.3 below a plane, coming at 60 degrees from its normal.
+// A sphere of radius 1 sinks 0.3 below a plane, coming at 60 degrees from its normal.
 TEST(GeneralizedDepth, SphereComesInAtSixtyDegrees) {
   Scene s{solid(sphere(1, Vec3::Zero(), 32)), solid(box({10, 10, 2}, {0, 0, -2}))};
   const Vec3 end(0, 0, 0.7);
@@ -68,7 +68,7 @@ TEST(GeneralizedDepth, SphereComesInAtSixtyDegrees) {
   EXPECT_NEAR(gpd.gpd_mm.hi, 0.3, 0.006);
 }
 
-// ALG 6.2.6: a turn by 0.1 rad at 10 mm is a path of 1 mm, its chord 0.99958.
+// A turn by 0.1 rad at 10 mm is a path of 1 mm, its chord 0.99958.
 TEST(GeneralizedDepth, PathOfATurn) {
   Scene s{solid(box({10, .5, .5})), solid(box({.5, .5, .5}, {9.5, 1.2, 0}))};
   s.motion_a = linear_motion(Pose(), Pose{rotation_exp({0, 0, 0.1}), Vec3::Zero()}, Vec3::Zero());
@@ -100,7 +100,7 @@ bool a_translation_frees(const Scene& s, double length_mm) {
   return false;
 }
 
-// ALG 6.2.8: a key turned in its slot by 0.02 jams between the walls. A turn back by as much, 11 mm
+// A key turned in its slot by 0.02 jams between the walls. A turn back by as much, 11 mm
 // from its centre at most, frees it; a translation has to lift it out of the slot by 8 mm.
 TEST(GeneralizedDepth, ATurnFreesTheKeyOfASlotSooner) {
   Scene s{solid(box({3.98, 3, 10})), solid(u_slot(10, 4, 8, 5, 0, 30))};

@@ -21,7 +21,7 @@ void expect_depth(const OverlapResult& result, double depth_mm, double accuracy_
   EXPECT_LE(delta.hi, depth_mm + accuracy_mm);
 }
 
-// ALG 6.2.1: the failure of vertex sampling was a depth that changed with the number of triangles.
+// The failure of vertex sampling was a depth that changed with the number of triangles.
 TEST(Overlap, CubesAreAsDeepAtAnyTessellation) {
   for (const int n : {1, 2, 4, 8, 20})
     for (const int m : {1, 3}) {
@@ -56,7 +56,7 @@ TEST(Overlap, FlushCubesAndDeepCubes) {
   EXPECT_LE(half.hi, 0.5 + 1.1e-4);
 }
 
-// ALG 6.2.4.
+// depth/README.md, section 9: crossing bars.
 TEST(Overlap, CrossingBarsWithoutAnyVertexInside) {
   for (const int n : {1, 3, 6}) {
     const Case c{solid(box({5, .5, .5}, Vec3::Zero(), n)), solid(box({.5, 5, .5}, {0, 0, .8}, n))};
@@ -66,7 +66,8 @@ TEST(Overlap, CrossingBarsWithoutAnyVertexInside) {
   }
 }
 
-// ALG 6.2.6b: boundary to boundary, a documented underestimate for parts thinner than the overlap.
+// depth/README.md, section 1: surface to surface, a documented underestimate for parts thinner than
+// the overlap.
 TEST(Overlap, BarThroughSlabIsALowerBound) {
   const OverlapResult result = overlap_of({solid(box({.2, .2, 3})), solid(box({5, 5, .2}))});
   ASSERT_FALSE(result.regions.empty());
@@ -85,7 +86,7 @@ TEST(Overlap, Spheres) {
   }
 }
 
-// ALG 6.2.5 and collision.md section 7.
+// depth/README.md, section 9: pegs and holes of 32 facets.
 TEST(Overlap, PegAndHolePolygons) {
   for (const int rows : {1, 2}) {
     const SolidPtr hole = solid(ring({10, 0, 20, 32, rows, 0}, 20));

@@ -14,7 +14,7 @@ namespace {
 using namespace shapes;
 using Case = OverlapCase;
 
-// collision.md section 7: a 20 mm fit at 32 facets.
+// evaluation/README.md, section 5: a 20 mm fit at 32 facets.
 struct FitCase {
   const char* code;
   CollisionClass expected;
@@ -149,7 +149,8 @@ TEST(Overlap, FakeFitNumbers) {
   EXPECT_EQ(worst_class(overlap_of(c)), CollisionClass::kPotential);
 }
 
-// With only a bound on the mesh error 32 facets cannot tell, 223 can (ALG 6.3).
+// With only a bound on the mesh error 32 facets cannot tell, 223 can (evaluation/README.md, section
+// 5).
 TEST(Overlap, DeclaredChordError) {
   const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
   for (const int n : {32, 223}) {

@@ -185,7 +185,7 @@ TEST(RealTime, SlidingPegIsFreeAndCheap) {
 }
 
 TEST(RealTime, TurningBarMeetsCube) {
-  // collision.md section 7: bar 4 x 0.2 x 0.2 turning 90 degrees against a 0.2 cube at (0, 1.5).
+  // ccd/README.md, section 7: bar 4 x 0.2 x 0.2 turning 90 degrees against a 0.2 cube at (0, 1.5).
   Sweep s{solid(box({2, .1, .1})), solid(box({.1, .1, .1}, {0, 1.5, 0}))};
   s.motion_a = linear_motion(Pose(), Pose{rotation_exp({0, 0, std::numbers::pi / 2}), Vec3::Zero()},
                              Vec3::Zero());

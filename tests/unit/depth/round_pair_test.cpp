@@ -142,7 +142,7 @@ TEST(RoundPair, CoaxialAndEccentricShaftsAreExact) {
   ASSERT_TRUE(eccentric);
   EXPECT_NEAR(eccentric->reach_mm.lo, 0.04, 1e-8);
   EXPECT_NEAR(eccentric->reach_mm.hi, 0.04, 1e-8);
-  // Tilted about the middle of the hole: ALG 6.1, the end circle of the shaft meets the wall.
+  // Tilted about the middle of the hole: the end circle of the shaft meets the wall.
   const double tilt = 0.004, half = 12.5;
   shaft = {Vec3::Zero(), rotation_exp(Vec3(tilt, 0, 0)) * Vec3::UnitZ(), 9.95, 0.0, {-half, half}};
   const RoundFace long_hole{Vec3::Zero(), Vec3::UnitZ(), 10.0, 0.0, {-50.0, 50.0}};

@@ -72,8 +72,8 @@ TEST(Tolerance, AModelledSizeOutsideTheLimitsIsRefused) {
   EXPECT_TRUE(iso_statement("H7", 0.0, bore, 0.0));
 }
 
-// ALG 6.3: half a phase turned, R 10, 32 facets: overlap 48.152733 um, all of it mesh error of the
-// hole's facet at its middle.
+// evaluation/README.md, section 5: half a phase turned, R 10, 32 facets: overlap 48.152733 um, all
+// of it mesh error of the hole's facet at its middle.
 struct Case63 {
   const char* code;
   double certain_mm, possible_mm;

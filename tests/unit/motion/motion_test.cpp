@@ -43,7 +43,8 @@ TEST(Motion, EndsAreExactToTheLastBit) {
 }
 
 TEST(Motion, ScrewLiftsAPointWhileItTurns) {
-  // ALG 6.1.5: (1,0,0), half a turn about z with lift 2, is at y = 0.5, z = 1/3 at t = 1/6.
+  // ccd/README.md, section 7: (1,0,0), half a turn about z with lift 2, is at y = 0.5, z = 1/3 at t
+  // = 1/6.
   const Motion m = screw_motion({}, pose({0, 0, kPi}, {0, 0, 2}), Vec3::Zero());
   ASSERT_EQ(m.kind, PathKind::kScrew);
   const Vec3 x = m.pose_at(1.0 / 6.0) * Vec3(1, 0, 0);
@@ -52,7 +53,7 @@ TEST(Motion, ScrewLiftsAPointWhileItTurns) {
 }
 
 TEST(Motion, ThePathIsPartOfTheContract) {
-  // ALG 6.1.6: the same two poses, two paths. Middle of the origin: (1,0,0) and (1, 1 - sqrt 2, 0).
+  // The same two poses, two paths. Middle of the origin: (1,0,0) and (1, 1 - sqrt 2, 0).
   const Pose end = pose({0, 0, kPi / 2}, {2, 0, 0});
   const Vec3 linear = linear_motion({}, end, Vec3::Zero()).pose_at(0.5).p;
   const Vec3 screw = screw_motion({}, end, Vec3::Zero()).pose_at(0.5).p;
