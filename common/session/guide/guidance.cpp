@@ -6,7 +6,7 @@
 #include "common/base/constants.h"
 #include "common/geometry/recognition/recognition.h"
 #include "common/messages/names.h"
-#include "common/session/tick/bodies.h"
+#include "common/session/world/moving_group.h"
 
 namespace mortise {
 namespace {
@@ -26,10 +26,11 @@ std::string names_of(const Part& part) {
   return names;
 }
 
-GuidedDisplacement as_it_stands(const World& world, const Body& body, const Relation* added) {
-  std::vector<Relation> relations = relations_of(world, body);
+GuidedDisplacement as_it_stands(const World& world, const MovingGroup& group,
+                                const Relation* added) {
+  std::vector<Relation> relations = relations_of(world, group);
   if (added) relations.push_back(*added);
-  return guided({relations, body.reference_W, std::max(body.radius_mm, 1e-3), {}});
+  return guided({relations, group.reference_W, std::max(group.radius_mm, 1e-3), {}});
 }
 
 // The relation in the frames of the parts, in the sense that is nearer; or why there is none.
@@ -87,8 +88,8 @@ GuidanceReply check_parts(const World& world, UserId user_id, const Constraint& 
     return refuse(Refusal::kConstraintUnfit, "'" + held.name + "' and '" + other.name +
                                                  "' move as one body: name a part "
                                                  "outside of it");
-  const Body body = body_of(world, held.id.value - 1);
-  if (relations_of(world, body).size() >= kMostRelations)
+  const MovingGroup group = moving_group_of(world, held.id.value - 1);
+  if (relations_of(world, group).size() >= kMostRelations)
     return refuse(Refusal::kConstraintConflict, "'" + held.name + "' has " +
                                                     std::to_string(kMostRelations) +
                                                     " constraints already: drop one first");
@@ -101,12 +102,12 @@ Resolved check_all(const World& world, UserId user, const Constraint& constraint
   if (resolved.reply.refusal != Refusal::kNone) return resolved;
   resolved = resolve(world, constraint);
   if (resolved.reply.refusal != Refusal::kNone) return resolved;
-  const Body body = body_of(world, constraint.held.part.value - 1);
+  const MovingGroup group = moving_group_of(world, constraint.held.part.value - 1);
   Relation placed = resolved.relation;
   placed.a = moved(placed.a, world.find(constraint.held.part)->X_WP);
   placed.b = moved(placed.b, world.find(constraint.other.part)->X_WP);
-  const GuidedDisplacement there = as_it_stands(world, body, &placed);
-  const double extent_mm = body.reference_W.norm() + body.radius_mm + placed.b.point.norm();
+  const GuidedDisplacement there = as_it_stands(world, group, &placed);
+  const double extent_mm = group.reference_W.norm() + group.radius_mm + placed.b.point.norm();
   const double least_mm = std::max(kGuideAccuracy_mm, kRoundingFactor * kUnitRoundoff * extent_mm);
   if (there.residual_mm > least_mm) {
     char off[48];
@@ -203,13 +204,13 @@ void settle_guides(World& world, std::span<const PartId> moved, std::span<const 
 
 GuidedState guided_state(const World& world, PartId part) {
   if (!world.find(part)) return {};
-  const Body body = body_of(world, part.value - 1);
-  const std::vector<Relation> relations = relations_of(world, body);
+  const MovingGroup group = moving_group_of(world, part.value - 1);
+  const std::vector<Relation> relations = relations_of(world, group);
   if (relations.empty()) return {};
-  const double lever_mm = std::max(body.radius_mm, 1e-3);
+  const double lever_mm = std::max(group.radius_mm, 1e-3);
   GuidedState state;
-  state.freedom = guided({relations, body.reference_W, lever_mm, {}}).freedom;
-  state.residual_mm = violation_mm({relations, body.reference_W, lever_mm, {}});
+  state.freedom = guided({relations, group.reference_W, lever_mm, {}}).freedom;
+  state.residual_mm = violation_mm({relations, group.reference_W, lever_mm, {}});
   return state;
 }
 

@@ -7,7 +7,7 @@
 
 #include "common/messages/names.h"
 #include "common/session/guide/guidance.h"
-#include "common/session/tick/bodies.h"
+#include "common/session/world/moving_group.h"
 
 namespace mortise {
 namespace {
@@ -87,7 +87,7 @@ std::vector<SnapCandidate> snap_candidates(const World& world, PartId part_id,
   std::vector<SnapCandidate> candidates;
   if (!world.find(part_id)) return candidates;
   const Part& part = *world.find(part_id);
-  const Body body = body_of(world, part_id.value - 1);
+  const MovingGroup group = moving_group_of(world, part_id.value - 1);
   const std::vector<Placed> own = placed_features(world, part);
   const Vec3 reference_W = part.X_WP * part.solid->sphere().center_mm;
   for (const Part& other : world.parts) {
@@ -95,7 +95,7 @@ std::vector<SnapCandidate> snap_candidates(const World& world, PartId part_id,
     const double gap_mm = (other.X_WP * ball.center_mm - reference_W).norm() - ball.radius_mm -
                           part.solid->sphere().radius_mm;
     if (gap_mm > limits.distance_mm) continue;
-    if (std::binary_search(body.parts.begin(), body.parts.end(), other.id.value - 1)) continue;
+    if (std::binary_search(group.parts.begin(), group.parts.end(), other.id.value - 1)) continue;
     for (const Placed& b : placed_features(world, other))
       for (const Placed& a : own) {
         SnapCandidate candidate;

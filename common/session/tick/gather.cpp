@@ -52,8 +52,8 @@ struct Target {
 Target target_of(const World& world, std::uint32_t index) {
   const Part& part = world.parts[index];
   if (!part.group) return {index, part.X_WP, part.solid->sphere().center_mm};
-  const Body body = body_of(world, index);
-  return {body.parts.front(), Pose::translation(body.reference_W), Vec3::Zero()};
+  const MovingGroup group = moving_group_of(world, index);
+  return {group.parts.front(), Pose::translation(group.reference_W), Vec3::Zero()};
 }
 
 Move& move_of(Scratch::Impl& work, const Target& target) {
@@ -77,7 +77,7 @@ bool is_guided(const World& world, const Move& move) {
   });
 }
 
-// What was composed of the increments, as a displacement about the reference point of the body.
+// What was composed of the increments, as a displacement about the reference point of its group.
 Displacement wanted_of(const Move& move) {
   const Pose &X_W0 = move.motion.X_W0, &X_W1 = move.motion.X_W1;
   const Vec3& reference_P = move.motion.reference_P;
@@ -102,17 +102,17 @@ Displacement within_a_jump(const World& world, Displacement by) {
 // The motions of a guided part or of a group, one a part, all with one displacement: what the
 // constraints leave of the wanted one. The first takes the place of the move that stood for all.
 void spread(const World& world, std::size_t at, Scratch::Impl& work) {
-  const Body body = body_of(world, work.moves[at].part);
-  const std::vector<Relation> relations = relations_of(world, body);
+  const MovingGroup group = moving_group_of(world, work.moves[at].part);
+  const std::vector<Relation> relations = relations_of(world, group);
   Displacement by = wanted_of(work.moves[at]);
   if (!relations.empty()) {
-    by = guided({relations, body.reference_W, std::max(body.radius_mm, 1e-3), by}).displacement;
+    by = guided({relations, group.reference_W, std::max(group.radius_mm, 1e-3), by}).displacement;
     by = within_a_jump(world, by);
   }
-  const Vec3 center_W = straight_point(body, relations);
-  by = about(by, body.reference_W, center_W);
+  const Vec3 center_W = straight_point(group, relations);
+  by = about(by, group.reference_W, center_W);
   const std::size_t others = work.moves.size();
-  for (const std::uint32_t part : body.parts) {
+  for (const std::uint32_t part : group.parts) {
     if (part == work.moves[at].part) continue;
     const UserId user = work.moves[at].user;
     Move& move = work.moves.emplace_back();

@@ -60,7 +60,7 @@ SlidingBody& sliding_of(const World& world, Scratch::Impl& work, std::int32_t in
   if (move.sliding < 0) {
     const auto number = static_cast<std::int32_t>(work.sliding.size());
     SlidingBody& sliding = work.sliding.emplace_back();
-    sliding.body = body_of(world, move.part);
+    sliding.body = moving_group_of(world, move.part);
     sliding.relations = relations_of(world, sliding.body);
     for (const std::uint32_t part : sliding.body.parts)
       if (const std::int32_t m = work.move_of_part[part]; m >= 0) {

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "common/session/memory/session_state.h"
-#include "common/session/tick/bodies.h"
 #include "common/session/tick/judgement.h"
 #include "common/session/tick/step.h"
 #include "common/session/tick/tangent_cone.h"
 #include "common/session/tick/worker_pool.h"
+#include "common/session/world/moving_group.h"
 
 namespace mortise {
 
@@ -34,7 +34,7 @@ struct Move {
 
 /// A body on its way along what it met (policy slide).
 struct SlidingBody {
-  Body body;                        ///< at the start of the tick
+  MovingGroup body;                 ///< at the start of the tick
   std::vector<std::int32_t> moves;  ///< of its parts
   std::vector<Relation> relations;  ///< that guide it, at the start of the tick
   std::vector<Hold> holds;          ///< of pairs with bands, as they are at the start of the leg

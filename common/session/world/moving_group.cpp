@@ -1,4 +1,4 @@
-#include "common/session/tick/bodies.h"
+#include "common/session/world/moving_group.h"
 
 #include <algorithm>
 
@@ -11,23 +11,23 @@ Vec3 reference_of(const Part& part) { return part.X_WP * part.solid->sphere().ce
 
 }  // namespace
 
-Body body_of(const World& world, std::uint32_t index) {
-  Body body;
-  const GroupId group = world.parts[index].group;
-  if (!group) {
+MovingGroup moving_group_of(const World& world, std::uint32_t index) {
+  MovingGroup group;
+  const GroupId id = world.parts[index].group;
+  if (!id) {
     const Part& part = world.parts[index];
     return {{index}, reference_of(part), part.solid->sphere().radius_mm};
   }
   for (std::uint32_t i = 0; i < world.parts.size(); ++i)
-    if (world.parts[i].group == group) body.parts.push_back(i);
-  for (const std::uint32_t i : body.parts) body.reference_W += reference_of(world.parts[i]);
-  body.reference_W /= static_cast<double>(body.parts.size());
-  for (const std::uint32_t i : body.parts) {
+    if (world.parts[i].group == id) group.parts.push_back(i);
+  for (const std::uint32_t i : group.parts) group.reference_W += reference_of(world.parts[i]);
+  group.reference_W /= static_cast<double>(group.parts.size());
+  for (const std::uint32_t i : group.parts) {
     const Part& part = world.parts[i];
-    body.radius_mm = std::max(body.radius_mm, (reference_of(part) - body.reference_W).norm() +
-                                                  part.solid->sphere().radius_mm);
+    group.radius_mm = std::max(group.radius_mm, (reference_of(part) - group.reference_W).norm() +
+                                                    part.solid->sphere().radius_mm);
   }
-  return body;
+  return group;
 }
 
 Motion rigid_motion(const Pose& X_W0, const Vec3& center_W, const Displacement& by) {
@@ -50,22 +50,22 @@ Displacement about(const Displacement& by, const Vec3& from_W, const Vec3& to_W)
   return {by.turn, by.shift_mm + (by.turn * arm - arm)};
 }
 
-Vec3 straight_point(const Body& body, const std::vector<Relation>& relations) {
+Vec3 straight_point(const MovingGroup& group, const std::vector<Relation>& relations) {
   for (const Relation& relation : relations) {
     if (relation.a.kind == ElementKind::kPlane || relation.b.kind == ElementKind::kPlane ||
         relation.distance_mm != 0.0)
       continue;
     if (relation.a.kind == ElementKind::kPoint) return relation.a.point;
     const Vec3 along = relation.a.direction;
-    return relation.a.point + (body.reference_W - relation.a.point).dot(along) * along;
+    return relation.a.point + (group.reference_W - relation.a.point).dot(along) * along;
   }
-  return body.reference_W;
+  return group.reference_W;
 }
 
-std::vector<Relation> relations_of(const World& world, const Body& body) {
+std::vector<Relation> relations_of(const World& world, const MovingGroup& group) {
   std::vector<Relation> relations;
   const auto within = [&](PartId part) {
-    return std::binary_search(body.parts.begin(), body.parts.end(), part.value - 1);
+    return std::binary_search(group.parts.begin(), group.parts.end(), part.value - 1);
   };
   for (const Guide& guide : world.guides) {
     const PartId held = guide.constraint.held.part, other = guide.constraint.other.part;
