@@ -4,14 +4,49 @@
 
 #include <fstream>
 #include <random>
+#include <set>
 
 namespace mortise::lint {
 namespace {
 
 namespace fs = std::filesystem;
 
+// What was too long when the limits were set and still is. Nothing is added here.
+const std::set<std::string> kKnownLong = {
+    "client/: Client",
+    "client/bot/options.cpp: read_bot_command_line",
+    "client/replay/commands.cpp: run_info",
+    "client/report/session_tables.cpp: Session::clashes",
+    "client/web/: LiveFeed",
+    "client/web/options.cpp: read_web_command_line",
+    "common/ccd/box_frame.cpp: PairMotion::frame",
+    "common/ccd/kernels/box_advance_impl.h: advance",
+    "common/ccd/kernels/leaf_kernel_impl.h: advance",
+    "common/depth/generalized_depth.cpp: Separation",
+    "common/depth/overlap.cpp: Overlap",
+    "common/depth/proof.cpp: Neighbourhood",
+    "common/depth/real_time.cpp: InterferenceSearch",
+    "common/geometry/recognition/finish.cpp: Finisher",
+    "common/io/log/: McapWriter",
+    "common/io/log/mcap_reader.cpp: Scanner",
+    "common/io/log/session_log_recover.cpp: recover_session_log",
+    "common/io/scenario/scene_load.cpp: SceneLoader",
+    "common/io/scenario/scene_rules.cpp: RuleBook",
+    "common/messages/names.cpp: name_of",
+    "common/session/tick/gather.cpp: gather",
+    "common/session/tick/slide.cpp: start_leg",
+    "idl/dds_client_channel.cpp: DdsClientChannel",
+    "idl/dds_server_channel.cpp: DdsServerChannel",
+    "server/: Inbox",
+    "server/: TickLoop",
+    "server/options.cpp: read_command_line",
+    "server/serve.cpp: serve",
+    "tests/network/: Hosts",
+    "tests/unit/evaluation/iso286_test.cpp: TEST(Iso286, WorkedLimits)",
+};
+
 TEST(HouseRules, HoldInThisTree) {
-  const auto broken = broken_house_rules(MORTISE_SOURCE_DIR);
+  const auto broken = broken_house_rules(MORTISE_SOURCE_DIR, kKnownLong);
   std::string all;
   for (const std::string& line : broken) all += line + "\n";
   EXPECT_TRUE(broken.empty()) << all;
@@ -50,6 +85,16 @@ class PlantedTree : public testing::Test {
     ASSERT_EQ(broken.size(), 1u) << testing::PrintToString(broken);
     EXPECT_TRUE(broken[0].starts_with(file)) << broken[0];
     EXPECT_NE(broken[0].find(what), std::string::npos) << broken[0];
+  }
+
+  static std::string lines_of(const std::string& line, int count) {
+    std::string lines;
+    for (int i = 0; i < count; ++i) lines += line + "\n";
+    return lines;
+  }
+  /// `lines` lines from `head`, whose own last line is one of them, to the closing brace.
+  static std::string function(const std::string& head, int lines) {
+    return head + "\n" + lines_of("  if (i > 0) { i = f([i] { return i; }); }", lines - 2) + "}\n";
   }
 
   fs::path root_;
@@ -118,15 +163,65 @@ TEST_F(PlantedTree, CodeOutsideOfTheRooms) {
   write("misc/helper.cpp", "int x;\n");
   expect_one("misc/helper.cpp", "no room");
 }
-TEST_F(PlantedTree, LongFiles) {
-  std::string lines;
-  for (int i = 0; i < 61; ++i) lines += "//\n";
-  write("server/main.cpp", lines);
+TEST_F(PlantedTree, AMainThatDoesMoreThanStart) {
+  write("server/main.cpp", lines_of("//", 61));
   expect_one("server/main.cpp", "61 lines, at most 60");
   write("server/main.cpp", "");
-  for (int i = 0; i < 340; ++i) lines += "//\n";
-  write("server/inbox.cpp", lines);
-  expect_one("server/inbox.cpp", "401 lines, at most 400");
+  write("server/inbox.cpp", lines_of("//", 5000));
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+}
+TEST_F(PlantedTree, LongFunctions) {
+  write("server/inbox.cpp", function("void take(int i) {", 61));
+  expect_one("server/inbox.cpp: take (line 1)", "61 lines, at most 60");
+  write("server/inbox.cpp", function("Inbox::Inbox(int i) : a_{i}, b_(i) {", 61));
+  expect_one("server/inbox.cpp: Inbox::Inbox (line 1)", "61 lines, at most 60");
+  write("server/inbox.cpp", "namespace a {\nclass Inbox {\n public:\n" +
+                                function("  Row row(std::vector<int> x = {1}) const {", 61) +
+                                "};\n}\n");
+  expect_one("server/inbox.cpp: Inbox::row (line 4)", "61 lines, at most 60");
+  write("server/inbox.cpp", function("const auto take = [](int i) {", 61));
+  expect_one("server/inbox.cpp", "61 lines, at most 60");
+  write("server/inbox.cpp", function("template <class T>\nbool operator==(T a, T b) {", 61));
+  expect_one("server/inbox.cpp: operator== (line 2)", "61 lines, at most 60");
+}
+TEST_F(PlantedTree, FunctionsOfSixtyLinesAndTablesOfAny) {
+  write("server/inbox.cpp",
+        function("void take(int i) {", 60) + "\n" + function("void give(int i) {", 60));
+  EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
+  write("server/inbox.cpp",
+        "const Table kRows = {\n" + lines_of("    {row(1), {2}},", 99) + "};\n");
+  EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
+}
+TEST_F(PlantedTree, BracesInCommentsAndLiteralsOpenNothing) {
+  write("server/inbox.cpp",
+        "const char* a = \"{(\";  // {(\nconst char b = '{', *c = R\"x({)\")x\";\n"
+        "#define OPEN {\nint d = 1'000; /* {\n */\n" +
+            function("void take(int i) {", 61));
+  expect_one("server/inbox.cpp: take (line 6)", "61 lines, at most 60");
+}
+TEST_F(PlantedTree, LongTests) {
+  write("tests/README.md", "# tests\n");
+  write("tests/inbox_test.cpp", function("TEST_F(Inbox, Takes) {", 100));
+  EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
+  write("tests/inbox_test.cpp", function("TEST_F(Inbox, Takes) {", 101));
+  expect_one("tests/inbox_test.cpp: TEST_F(Inbox, Takes)", "101 lines, at most 100");
+}
+TEST_F(PlantedTree, LongClasses) {
+  write("server/inbox.h", "class Inbox {\n" + lines_of("  int a();", 298) + "};\n");
+  EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
+  // Its members count, in whichever source of the folder they stand.
+  write("server/inbox_rows.cpp", "int Inbox::a() { return 1; }\n");
+  expect_one("server/: Inbox ", "301 lines, at most 300");
+  write("server/inbox_rows.cpp", "class Inbox {};\nint Inbox::a() { return 1; }\n");
+  EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{});
+}
+TEST_F(PlantedTree, WhatIsKnownToBeLongIsStruckWhenItIsNot) {
+  write("server/inbox.cpp", function("void take(int i) {", 61));
+  EXPECT_TRUE(broken_house_rules(root_, {"server/inbox.cpp: take"}).empty());
+  write("server/inbox.cpp", function("void take(int i) {", 60));
+  const auto broken = broken_house_rules(root_, {"server/inbox.cpp: take"});
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_NE(broken[0].find("strike it"), std::string::npos) << broken[0];
 }
 TEST_F(PlantedTree, ARoomWithoutReadme) {
   fs::remove(root_ / "common/math/README.md");
