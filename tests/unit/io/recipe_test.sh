@@ -9,9 +9,9 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 mkdir days
 cp "$source"/tests/golden/*.mcap days/
-# The two lines from "parallel" on, with a part that these logs have.
-recipe=$(sed -n '/^parallel .* ::: days/,/^```/p' "$source/client/replay/README.md" | grep -v '^```' | sed 's/tolerance cover/tolerance cube/')
-[ "$(wc -l <<<"$recipe")" -eq 2 ] || { echo "the recipe is not where it was:"; echo "$recipe"; exit 1; }
+# The command from "parallel" on and the loop behind it, with a part that these logs have.
+recipe=$(sed -n '/^parallel .*--joblog/,/^```/p' "$source/client/replay/README.md" | grep -v '^```' | sed 's/tolerance cover/tolerance cube/')
+[ "$(wc -l <<<"$recipe")" -eq 4 ] || { echo "the recipe is not where it was:"; echo "$recipe"; exit 1; }
 bash -euo pipefail -c "$recipe"
 for log in days/*.mcap; do
   name=$(basename "$log" .mcap)
