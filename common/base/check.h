@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// A broken promise of our own code, not of the world: says where and stops. Stays on in release
-/// builds.
+/// Checks a promise of our own code, not of its input: prints the place and aborts. Stays on in
+/// release builds.
 #define MORTISE_CHECK(condition, what)                                                             \
   do {                                                                                             \
     if (!(condition)) [[unlikely]] {                                                               \

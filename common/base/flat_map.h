@@ -5,12 +5,12 @@
 
 namespace mortise {
 
-/// Values by index for a few of very many indices: open addressing, no memory for what was never
-/// asked for. Not for 0xffffffff. References last until the next insertion.
+/// A sparse map from index to value: open addressing, memory only for indices that were used. The
+/// index 0xffffffff is not allowed. References are valid until the next insertion.
 template <class Value>
 class FlatMap {
  public:
-  /// The value of an index, made when it is not there yet.
+  /// The value of an index, created when absent.
   Value& operator[](std::uint32_t index) {
     if (2 * (size_ + 1) > slots_.size()) grow();
     Slot& slot = slots_[place_of(index)];
@@ -20,7 +20,7 @@ class FlatMap {
     }
     return slot.value;
   }
-  /// Null: never asked for.
+  /// Null when absent.
   const Value* find(std::uint32_t index) const {
     if (slots_.empty()) return nullptr;
     const Slot& slot = slots_[place_of(index)];

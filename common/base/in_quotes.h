@@ -4,8 +4,8 @@
 
 namespace mortise {
 
-/// The text between single quotes, for messages that show what a file says: in one line whatever it
-/// holds (control characters become '?'), and no more of it than helps to find the place.
+/// The text between single quotes, for messages that quote a file: always one line (control
+/// characters become '?'), cut to the length that helps to find the place.
 inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMost = 120;
   std::string text_in(1, '\'');

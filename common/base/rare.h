@@ -4,7 +4,7 @@
 
 namespace mortise {
 
-/// A value that is mostly not there: like std::optional, but where it is not it takes the room of a
+/// A value that is mostly absent: like std::optional, but an absent value takes only the size of a
 /// pointer.
 template <class T>
 class Rare {

@@ -6,8 +6,8 @@
 
 namespace mortise {
 
-/// What went wrong, for a program to act on. The text says what, where, and what to do, in one
-/// line.
+/// The kind of an error, for a program to act on. The text of an Error says what, where, and what
+/// to do, in one line.
 enum class Code { kInvalidInput, kNotFound, kUnsupported, kLimit, kMismatch, kRuntime };
 
 struct Error {

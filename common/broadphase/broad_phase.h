@@ -15,14 +15,14 @@ struct IndexPair {
   friend constexpr auto operator<=>(const IndexPair&, const IndexPair&) = default;
 };
 
-/// Which parts could meet: boxes in, candidate pairs out. Keeps the boxes between ticks, so that a
-/// tick pays only for the parts that it names. The answer is a function of the boxes alone: closed
-/// boxes that share a point are candidates, in every implementation alike.
+/// Which parts could meet: boxes in, candidate pairs out. The boxes are kept between ticks, so that
+/// a tick costs only the parts that it names. The answer depends on the boxes alone: closed boxes
+/// that share a point are candidates in every implementation.
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
   /// World box of part `part`, mm, finite; the first call for a part adds it. Parts are numbered
-  /// from 0. A part whose box is empty meets nobody.
+  /// from 0. A part whose box is empty has no candidates.
   virtual void set_box(std::uint32_t part, const Box& box) = 0;
   /// All pairs of overlapping boxes of which at least one part is in `moved` (no repeats in it, all
   /// of them added).
@@ -31,8 +31,8 @@ class BroadPhase {
 };
 
 /// FCL's dynamic AABB tree (Debian's libfcl, used for boxes only) over boxes somewhat larger than
-/// those given, with a list of neighbours for each part that ever moved. A part that stays within
-/// its larger box costs a look at its neighbours; O(log n) once in some ticks when it leaves it.
+/// those given, with a list of neighbours for each part that ever moved. A part inside its larger
+/// box costs a comparison with its neighbours; a part that leaves it costs O(log n).
 std::unique_ptr<BroadPhase> make_dynamic_tree();
 
 /// The slow twin: every moved part against every part.

@@ -6,21 +6,21 @@ namespace mortise {
 /// What the filter knows of one part of a pair in this tick.
 struct FilterPart {
   bool can_move = false;  ///< declared moving; false: static
-  bool moved = false;     ///< moves in this tick, or was put somewhere since the last
+  bool moved = false;     ///< moves in this tick, or was placed since the last one
 };
 
 /// Why a pair need not be asked, first reason that applies.
 enum class PairSkip : std::uint8_t { kAsk = 0, kStatic, kStill, kExcluded };
 
-/// Static parts never meet each other anew; two parts that are both still keep their last answer;
-/// excluded pairs are accepted by the scenario.
+/// Two static parts need no new answer, two still parts keep their last one, and the scenario
+/// accepts excluded pairs.
 constexpr PairSkip filter_pair(FilterPart a, FilterPart b, bool excluded) {
   if (!a.can_move && !b.can_move) return PairSkip::kStatic;
   if (!a.moved && !b.moved) return PairSkip::kStill;
   return excluded ? PairSkip::kExcluded : PairSkip::kAsk;
 }
 
-/// How the pairs of a whole scene fall under the filter, by counting alone.
+/// How many pairs of a whole scene the filter skips, by counting alone.
 struct PairCensus {
   std::uint64_t all = 0, both_static = 0, both_still = 0;
 };

@@ -12,7 +12,7 @@ struct BodyBounds {
 
 /// World box that contains the body at every t in [0, 1] of the motion, mm. Exact for a pure
 /// translation of a box; for a rotation by w grown by the sagitta radius * (1 - cos(w/2)) of the
-/// arcs. Rounding is not covered: the caller grows the box anyway.
+/// arcs. Rounding is not covered, because the caller grows the box anyway.
 Box swept_box(const BodyBounds& body, const Motion& motion);
 
 }  // namespace mortise

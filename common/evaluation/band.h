@@ -20,12 +20,12 @@ struct BandInput {
   double quantum_mm = 0.0;  ///< rounding of the file's coordinates, for the estimate
 };
 
-/// faces[0] is the rest of the part, faces[1 + i] feature i; under a declared chord error the rest
-/// is split by shape into further faces behind, under an estimate by its size. Triangles and
-/// topology are only asked for when something is declared.
+/// faces[0] is the rest of the part, faces[1 + i] feature i. With a declared chord error the rest
+/// is split by shape into further faces behind them, with an estimate by its size. Triangles and
+/// topology are used only when something is declared.
 SurfaceBand build_band(const BandInput& input);
 
-/// The same faces under other statements: what a pair with a fit of its own uses.
+/// The same faces under other statements, for a pair with its own fit.
 SurfaceBand with_statements(const SurfaceBand& band, const FaceStatement& rest,
                             std::span<const FaceStatement> of_feature);
 

@@ -11,7 +11,7 @@
 
 namespace mortise {
 
-/// A feature as it is declared, before the mesh was asked.
+/// A feature as it is declared, not yet matched to the mesh.
 struct FeatureDeclaration {
   std::string name;
   Surface surface;
@@ -19,7 +19,7 @@ struct FeatureDeclaration {
   double chord_error_mm = 0.0;       ///< of the part; 0: none declared
 };
 
-/// A declared feature found in the mesh. `note` says what was left out and why, or is empty.
+/// A declared feature matched to the mesh. `note` says what was left out and why, or is empty.
 struct FeatureMatch {
   Feature feature;
   std::string note;
@@ -27,14 +27,14 @@ struct FeatureMatch {
 
 /// Finds the triangles that stand for a declared surface: all corners near it, normal along it.
 /// Near is max(2e-4 R, chord error); for a plane 2e-5 of the mesh radius. An error when none is
-/// found, when the material lies on the other side, or when the mesh contradicts the radius; it
-/// says which radius the mesh has about that axis. Facets far deeper than the others (a flat cut
-/// whose corners lie on the round) are left out and noted. residual_mm: largest distance of a
-/// corner from the surface.
+/// found, when the material is on the other side, or when the mesh contradicts the radius; the
+/// error says which radius the mesh has about that axis. Facets far deeper than the others (a flat
+/// cut whose corners lie on the round face) are left out and noted. residual_mm: largest distance
+/// of a corner from the surface.
 Result<FeatureMatch> match_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared);
 
-/// The same where it is known which triangles stand for the surface (generated parts): only checks
-/// that their corners lie near it.
+/// The same for known triangles (generated parts): only checks that their corners are near the
+/// surface.
 Result<FeatureMatch> check_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared,
                                    std::span<const std::uint32_t> triangles);
 

@@ -13,14 +13,14 @@ namespace mortise {
 /// cylinder of any steps. Two transverse directions add up. Convex bends are offsets outward,
 /// concave ones inward.
 ///
-/// Not seen: what a coarser drawing than 35 degrees hides (a hexagon stays a hexagon), and a curve
-/// beside a facet more than four times as wide, which is taken for a plane tangent to it.
-/// Without kEstimatedDeviationFactor. Deterministic, O(n log n). quantum_mm: rounding of the file's
-/// coordinates.
+/// Not detected: a curve drawn with facets that meet at more than 35 degrees (a hexagon stays a
+/// hexagon), and a curve beside a facet more than four times as wide, which counts as a plane
+/// tangent to it. Without kEstimatedDeviationFactor. Deterministic, O(n log n). quantum_mm:
+/// rounding of the file's coordinates.
 std::vector<Interval> estimated_deviation_mm(const Solid& solid, double quantum_mm = 0.0);
 
-/// What a band takes for an estimate: times kEstimatedDeviationFactor, each end rounded outward to
-/// the preferred numbers R10 (1, 1.25, 1.6, 2, ...), so that few faces are told apart.
+/// The estimate as a band uses it: times kEstimatedDeviationFactor, each end rounded outward to the
+/// preferred numbers R10 (1, 1.25, 1.6, 2, ...), so that few distinct faces result.
 Interval coarsened(const Interval& estimate_mm);
 
 }  // namespace mortise

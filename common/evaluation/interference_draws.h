@@ -21,9 +21,9 @@ struct InterferenceEstimate {
   double sampling_error(double p) const;
 };
 
-/// The slow twin of interference_probability: draws both offsets, and what the mesh leaves in
-/// doubt, one by one (normal, +-3 sigma at the limits) and counts how often they interfere. Same
-/// seed and draws, same count. draws > 0; O(draws).
+/// The slow twin of interference_probability: draws both offsets and the doubt about the mesh
+/// (normal, +-3 sigma at the limits) and counts how often they interfere. The same seed and number
+/// of draws give the same count. draws > 0; O(draws).
 InterferenceEstimate draw_interference(const InterferenceZones& zones, std::uint64_t seed,
                                        std::uint64_t draws);
 

@@ -10,8 +10,8 @@
 
 namespace mortise {
 
-/// From which size on a position zone grows: never (RFS), by what the size stays away from its
-/// maximum material (the largest shaft, the smallest hole), or from its least material.
+/// How a position zone grows with the size: not at all (RFS), as the size departs from its maximum
+/// material (the largest shaft, the smallest hole), or from its least material.
 enum class MaterialCondition : std::uint8_t { kRegardless = 0, kMaximum, kLeast };
 
 /// Diameter of the zone in which the real axis or centre of a feature of size may lie; 0: at its
@@ -22,16 +22,16 @@ struct Position {
   Interval size_offset_mm = {};  ///< of the limits of size that the condition counts from
 };
 
-/// What is stated of a face: where its real surface may lie, outward of the modelled surface, and
-/// who says so ("Ø20 H7", "±0.05", "" when nothing is stated of size or profile).
+/// A statement about a face: where its real surface may lie, outward of the modelled surface, and
+/// its source ("Ø20 H7", "±0.05", "" without a statement of size or profile).
 struct FaceStatement {
   Interval offset_mm;
   std::string source;
   Position position = {};  ///< not part of offset_mm, see with_position
 };
 
-/// Two statements of one face hold both: the offsets that satisfy both. The source is that of the
-/// tighter one (of b when they are alike), or of both when each bounds another end. Nothing when
+/// Two statements about one face hold together: the offsets that satisfy both. The source is that
+/// of the tighter one (of b when they are equal), or of both when each bounds one end. Nothing when
 /// they exclude each other by more than a nanometre.
 std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b);
 

@@ -32,7 +32,8 @@ CollisionClass classify(const ClassifyInput& input);
 double interference_probability(Interval certain_mm, Interval possible_mm, Interval tolerance_a_mm,
                                 Interval tolerance_b_mm);
 
-/// One sentence that explains the class: overlap, thresholds, what set each, margin. Micrometres.
+/// One sentence that explains the class: overlap, thresholds, what determined each, margin.
+/// Micrometres.
 struct ExplainInput {
   CollisionClass collision_class = CollisionClass::kNone;
   Interval delta_mm;

@@ -19,8 +19,8 @@ struct TriangleMesh {
   }
 };
 
-/// Every index names a point; coordinates are finite and not beyond kLargestCoordinate_mm. What the
-/// functions of this room expect of a mesh; it may be empty. O(n).
+/// Every index names a point; coordinates are finite and not beyond kLargestCoordinate_mm.
+/// Functions of this room expect such a mesh; it may be empty. O(n).
 bool valid(const TriangleMesh& mesh);
 
 /// Hash of points and triangles: 32 hex digits, the name of the mesh everywhere.

@@ -12,8 +12,8 @@ struct NearestPoint {
   std::uint32_t triangle = 0;
 };
 
-/// Nearest point of the mesh to x (part frame), not farther than limit_mm: triangle is kNone
-/// beyond. Ties go to the lower triangle id. Exact to rounding. O(log n) typical.
+/// Nearest point of the mesh to x (part frame) within limit_mm; triangle is kNone where there is
+/// none. Ties go to the lower triangle id. Exact to rounding. O(log n) typical.
 NearestPoint nearest_point(const Solid& solid, const Vec3& x,
                            double limit_mm = std::numeric_limits<double>::infinity());
 
@@ -31,8 +31,8 @@ struct SurfacePoint {
 
 /// Side by the angle-weighted pseudonormal (Baerentzen and Aanaes 2005), exact for closed meshes of
 /// one shell; several shells and meshes with defects ask inside(). O(log n) typical.
-/// `near`: a triangle that is likely close to x, e.g. the one met by a point beside it; with one
-/// that is close the same answer comes sooner, with any other no other.
+/// `near`: a triangle that is likely close to x, for example that of a neighbouring point. It makes
+/// the query faster and never changes the answer.
 SurfacePoint nearest_surface(const Solid& solid, const Vec3& x,
                              std::uint32_t near = Topology::kNone);
 
@@ -44,7 +44,7 @@ bool inside(const Solid& solid, const Vec3& x);
 /// Negative inside.
 double signed_distance_mm(const Solid& solid, const Vec3& x);
 
-/// The slow twins: every triangle asked.
+/// The slow twins: they look at every triangle.
 NearestPoint nearest_point_brute_force(const TriangleMesh& mesh, const Vec3& x);
 double winding_number_brute_force(const TriangleMesh& mesh, const Vec3& x);
 

@@ -13,12 +13,12 @@
 
 namespace mortise {
 
-/// One distinct mesh with all that is derived from it; immutable, shared by every instance of it.
-/// The tree and the topology are built when first asked for (thread safe): a scene in which nothing
+/// One distinct mesh with all that is derived from it; immutable, shared by every instance. Tree
+/// and topology are built when first asked for (thread safe), so that a scene in which nothing
 /// moves builds none.
 class Solid {
  public:
-  /// mesh must be valid(). One without triangles can be carried about but not asked.
+  /// The mesh must be valid(). One without triangles may be stored but not queried.
   explicit Solid(TriangleMesh mesh);
   Solid(const Solid&) = delete;
   Solid& operator=(const Solid&) = delete;

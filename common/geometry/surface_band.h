@@ -22,8 +22,8 @@ struct SurfaceBand {
                             ///< set: bound of e(x) +- residual over all triangles of the face
     Interval tolerance_mm;  ///< outward positive, of the modelled surface
     DeviationGrade grade = DeviationGrade::kNominal;
-    /// How far the real surface may be off `surface`: a declared one is the truth, whatever the
-    /// corners of the mesh; of a recognized one they are all that is known.
+    /// How far the true surface may be off `surface`: a declared surface is the truth, whatever the
+    /// corners of the mesh; a recognized one is known only as well as the corners fit.
     double doubt_mm() const {
       return grade == DeviationGrade::kDeclaredFeature ? 0.0 : residual_mm;
     }
@@ -46,7 +46,7 @@ struct SurfaceBand {
   bool trivial = true;
 };
 
-/// A band that says nothing: the mesh is taken for the surface.
+/// A band without offsets: the mesh is taken for the surface.
 SurfaceBand nominal_band();
 
 }  // namespace mortise

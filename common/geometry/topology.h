@@ -33,11 +33,10 @@ struct Topology {
   }
 };
 
-/// Deterministic; O(n) for meshes of bounded valence (0.1 s for 263,730 triangles). Every index of
-/// a triangle must name a point.
+/// Deterministic; O(n) for meshes of bounded valence. Every index of a triangle must name a point.
 Topology build_topology(const TriangleMesh& mesh);
 
-/// The slow twin: every pair of triangles asked, O(n^2). For tests.
+/// The slow twin: compares every pair of triangles, O(n^2). For tests.
 Topology build_topology_brute_force(const TriangleMesh& mesh);
 
 }  // namespace mortise

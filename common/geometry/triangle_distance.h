@@ -14,10 +14,9 @@ struct TriangleDistance {
 };
 
 /// Distance of two solid triangles with witness points (README, section 3).
-/// Scale-free: no absolute epsilon; error a few ulp of the coordinates, for needles of any aspect
-/// too. A triangle without area is its edges. Corners must be finite: of others the distance is no
-/// number or infinite, and nothing else happens (no check here: every number of an answer comes
-/// this way).
+/// Scale-free: no absolute epsilon; the error is a few ulp of the coordinates, also for needles. A
+/// triangle without area is treated as its edges. Corners must be finite, else the distance is NaN
+/// or infinite (not checked here, because this is the hot path).
 TriangleDistance triangle_distance(const Triangle& a, const Triangle& b);
 
 /// The same for triangles that are known not to cross: the test for crossing is left out.
@@ -36,10 +35,10 @@ struct TriangleSeparation {
 /// Best of the separating axes: both normals, edge by edge, edges in their planes.
 TriangleSeparation triangle_separation(const Triangle& a, const Triangle& b);
 
-/// The same for triangles with an outside (counter-clockwise seen from there): they are not parted
-/// by a direction that points right behind the back of both. A face that passed straight through
-/// one that faced it is then as deep as it went, where triangle_separation() says they are apart
-/// again.
+/// The same for triangles with an outside (counter-clockwise seen from there). A direction that
+/// points behind the back of both does not separate them. So a face that has passed straight
+/// through a face opposite to it is as deep as it went, where triangle_separation() calls them
+/// apart again.
 TriangleSeparation triangle_separation_outside(const Triangle& a, const Triangle& b);
 
 }  // namespace mortise

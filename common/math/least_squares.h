@@ -6,8 +6,8 @@ namespace mortise {
 /// Small dense systems, a few dozen rows; one place for the decompositions, which are slow to
 /// compile. Deterministic.
 
-/// x of least norm that makes |A x - b| least. Singular values below rank_share of the largest
-/// count as none; `rank` is how many count (may be null).
+/// The x of least norm that minimises |A x - b|. Singular values below rank_share of the largest
+/// are ignored; `rank` receives how many are not (may be null).
 Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                                     double rank_share, int* rank = nullptr);
 

@@ -20,15 +20,14 @@ struct Pose {
   Mat3 rotation() const { return q.toRotationMatrix(); }
 };
 
-/// Bit-wise the same pose.
+/// The same pose bit for bit.
 inline bool identical(const Pose& a, const Pose& b) {
   return (a.q.coeffs().array() == b.q.coeffs().array()).all() && (a.p.array() == b.p.array()).all();
 }
 
-/// A rigid motion that can be computed with: finite, a unit quaternion, no coordinate beyond
-/// kLargestCoordinate_mm.
+/// A usable rigid motion: finite, a unit quaternion, no coordinate beyond kLargestCoordinate_mm.
 inline bool valid(const Pose& X) {
-  // Quiet comparisons: what is no number raises nothing.
+  // Quiet comparisons: NaN raises no floating-point exception.
   const auto within = [](double x) { return std::islessequal(std::abs(x), kLargestCoordinate_mm); };
   return std::islessequal(std::abs(X.q.coeffs().squaredNorm() - 1.0), 2.0 * kUnitSlack) &&
          within(X.p.x()) && within(X.p.y()) && within(X.p.z());

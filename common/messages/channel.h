@@ -15,8 +15,8 @@
 
 namespace mortise {
 
-/// Names the sender of a message as the transport knows it (DDS: hex of the GUID prefix). What it
-/// sends for a user that it did not join as is refused.
+/// Names the sender of a message as the transport knows it (DDS: hex of the GUID prefix). Messages
+/// for a user that the sender did not join as are refused.
 using ClientKey = std::string;
 
 struct JoinRequest {
@@ -39,8 +39,8 @@ struct SentIncrement {
   Increment increment;
   std::int64_t sent_ns = 0;  ///< sender's clock, only for latency figures
 };
-/// What one datagram holds: increments of one user, in rising sequence; those that were not
-/// acknowledged yet are repeated beside what is new.
+/// The content of one datagram: increments of one user, in rising sequence. Increments that are not
+/// acknowledged yet are repeated together with new ones.
 struct IncrementBatch {
   std::uint64_t kept_from = 0;   ///< the sender can repeat from here on; 0: it never repeats
   std::uint64_t fresh_from = 0;  ///< from here on: sent for the first time
@@ -50,10 +50,11 @@ struct IncrementBatch {
 inline IncrementBatch batch_of(const Increment& increment, std::int64_t sent_ns) {
   return {0, increment.seq, {{increment, sent_ns}}};
 }
-/// More in one batch could pass one Ethernet frame, and a datagram of several is lost more often.
+/// More in one batch could exceed one Ethernet frame, and a datagram of several frames is lost more
+/// often.
 inline constexpr std::size_t kMaxBatchIncrements = 16;
-/// So many increments of a user are kept for repetition, by the sender and, beyond a hole, by the
-/// server: 4 s at 240 Hz.
+/// Increments of a user that are kept for repetition by the sender, and behind a gap by the server:
+/// 4 s at 240 Hz.
 inline constexpr std::size_t kMaxKeptIncrements = 1024;
 
 struct ReceivedIncrement {
@@ -74,25 +75,25 @@ struct LostUser {
   bool said_goodbye = false;  ///< left, as against lost liveliness
 };
 
-/// What a server tells of a tick to one that stands by; what the bytes say is the servers' affair.
+/// A tick as a server sends it to its standby. The transport does not interpret the bytes.
 struct ToldTick {
   std::uint64_t tick = 0;
   std::vector<std::byte> bytes;
 };
-/// How far one that stands by has the ticks that it was told.
+/// Which ticks a standby has.
 struct TakenTicks {
-  std::uint64_t received = 0;  ///< all up to here are with it; 0: it has said nothing
-  std::uint64_t computed = 0;  ///< and up to here computed; the rest comes before it could lead
+  std::uint64_t received = 0;  ///< it has all up to here; 0: it has not reported yet
+  std::uint64_t computed = 0;  ///< computed up to here; the rest is computed before it leads
 };
-/// Of `received`: it goes, and needs nothing more.
+/// Value of `received` of a standby that leaves and needs nothing more.
 inline constexpr std::uint64_t kTakenAll = ~std::uint64_t{0};
 
 /// What the transport dropped at the door, by reason; never silent.
 struct ChannelCounters {
   std::uint64_t received = 0, malformed = 0, foreign = 0, lost = 0, send_failed = 0,
                 guard_dropped = 0;
-  std::uint64_t trailers_cut = 0;  ///< statistics of the sender's DDS, cut off: no sign of trouble
-  std::uint64_t turned_away = 0;  ///< participants that could not prove who they are, or may not be
+  std::uint64_t trailers_cut = 0;  ///< statistics of the sender's DDS, cut off; harmless
+  std::uint64_t turned_away = 0;   ///< participants without a valid identity or permission
 };
 
 struct ServerInput {
@@ -101,10 +102,10 @@ struct ServerInput {
   std::vector<ReceivedIncrement> increments;
   std::vector<LostUser> lost;
   std::vector<UserId> heartbeats;
-  std::vector<ClientKey> snapshot_requests;  ///< who missed something: publish a snapshot again
-  std::vector<std::string> turned_away;      ///< who was not let in by the transport, in words
-  bool follower_came = false;                ///< a server stands by that did not before
-  bool superseded = false;                   ///< another server has taken the session over: end
+  std::vector<ClientKey> snapshot_requests;  ///< clients that missed something: publish a snapshot
+  std::vector<std::string> turned_away;      ///< participants that the transport refused, in words
+  bool follower_came = false;                ///< a new standby has appeared
+  bool superseded = false;                   ///< another server has taken over: this one must end
 };
 
 struct Ack {
@@ -132,7 +133,7 @@ struct SessionPulse {
   std::uint64_t missed_deadlines = 0;  ///< that ticks ran past wholly
   std::uint64_t refused = 0, not_examined = 0;
   std::uint32_t users = 0;
-  bool draining = false;  ///< this server ends soon: the session goes on with another, or later
+  bool draining = false;  ///< this server ends soon; the session continues on another one, or later
 };
 
 /// The server's end of a transport. take() and publish_*() never block and are called from the tick
@@ -155,38 +156,38 @@ class ServerChannel {
   virtual bool has_readers() const = 0;
   virtual ChannelCounters counters() const = 0;
 
-  /// Does another server stand by? Then publish_tick() tells it each tick, before anything that
-  /// the tick acknowledges is published.
+  /// Is there a standby? Then publish_tick() sends it each tick before anything that the tick
+  /// acknowledges is published.
   virtual bool has_follower() const { return false; }
   virtual void publish_tick(const ToldTick&) {}
-  /// What the one that stands by has said since the last call.
+  /// What the standby has reported since the last call.
   virtual TakenTicks taken_up_to() { return {}; }
-  /// Returns when it has said something since the last call, or after so long.
+  /// Returns when the standby has reported since the last call, or after the given time.
   virtual void await_taken(std::int64_t /*at_most_ns*/) {}
-  /// The one that stood by may have taken over elsewhere: from now on this one is the later leader.
+  /// The standby may have taken over elsewhere: takes a new term, higher than the standby's.
   virtual void lead_anew() {}
-  /// Under which this one leads, ms since 1970 or later; 0: its transport knows no other servers.
+  /// The term under which this server leads, ms since 1970 or later; 0: the transport knows no
+  /// other servers.
   virtual std::uint64_t term_ms() const { return 0; }
 
-  /// Why this one may no longer be a server of its session, found by take() and follow(): it is to
-  /// end. Empty: it may.
+  /// Why this server must end, as found by take() and follow(); empty: it may continue.
   virtual std::string barred() const { return {}; }
 
-  /// Does what is due between two ticks, for at most so long; false: nothing is due.
+  /// Does work that is due between two ticks, for at most the given time; false: nothing is due.
   virtual bool rest(std::int64_t /*at_most_ns*/) { return false; }
 };
 
-/// The end of a server that stands by: it hears what the one that leads tells of its ticks. Once it
-/// has taken over it is the end of a server like any other; before, it publishes nothing.
+/// The channel of a standby: it receives the leader's ticks and publishes nothing. After a
+/// take-over it is the channel of an ordinary server.
 class StandbyChannel : public ServerChannel {
  public:
   virtual std::vector<ToldTick> follow() = 0;
-  /// Tells the one that leads what is here; it waits for what is received before it lets clients
-  /// know.
+  /// Tells the leader which ticks are here. The leader publishes a tick to clients only after its
+  /// standby has received it.
   virtual void confirm(const TakenTicks& taken) = 0;
-  /// Is the one that leads alive? Known within 0.15 s.
+  /// Is the leader alive? Known within 0.15 s.
   virtual bool leader_present() const = 0;
-  /// Does the one that leads count on another one that stands by? Only that one may take over.
+  /// Does the leader count on another standby? Only that one may take over.
   virtual bool another_stands_by() const = 0;
   virtual Status take_over() = 0;
 };
@@ -210,7 +211,7 @@ struct ClientInput {
   std::vector<FeatureTable> features;  ///< the last one counts
   std::uint64_t poses_missed = 0;      ///< pose batches known to be lost since the last take()
   bool server_lost = false;            ///< noticed since the last take()
-  bool server_present = false;         ///< as of now
+  bool server_present = false;
 };
 
 /// A participant's end. Thread-compatible; take() never blocks.
@@ -222,7 +223,7 @@ class ClientChannel {
   virtual void heartbeat(UserId user) = 0;
   virtual void send(const IncrementBatch& batch) = 0;
   virtual void send(const Command& command) = 0;
-  virtual void request_snapshot() = 0;  ///< after a gap, or when none has come
+  virtual void request_snapshot() = 0;  ///< after a gap, or when none has arrived
   virtual ClientInput take() = 0;
   virtual ChannelCounters counters() const = 0;
 };

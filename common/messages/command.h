@@ -11,17 +11,17 @@
 
 namespace mortise {
 
-/// What a user may ask for. Goes over the wire, so numbers never change. Beside `part`, a kind uses
-/// the details that it names.
+/// What a user may request. Goes over the wire, so numbers never change. Beside `part`, a kind uses
+/// the details that its comment names.
 enum class CommandKind : std::uint8_t {
   kUnknown = 0,
-  kGrab = 1,         ///< parts: several, all or none of them
-  kRelease = 2,      ///< likewise
+  kGrab = 1,         ///< part, or parts: all of them or none
+  kRelease = 2,      ///< part, or parts: all of them or none
   kUndo = 3,         ///< the user's own last move of the part
-  kReset = 4,        ///< back to where the scenario put it
+  kReset = 4,        ///< back to the pose of the scenario
   kRedo = 5,         ///< the move that was undone last
-  kAskHandOver = 6,  ///< of whoever holds the part
-  kConsent = 7,      ///< the holder gives it to who asked
+  kAskHandOver = 6,  ///< asks the holder of the part for it
+  kConsent = 7,      ///< the holder gives it to the user who asked
   kDecline = 8,      ///< text: why, may be empty
   kSetPolicy = 9,    ///< text: stop, report
   kSetTolerance =
@@ -31,7 +31,7 @@ enum class CommandKind : std::uint8_t {
   kReview = 13,          ///< clash, status; text: the comment, may be empty
   kAddConstraint = 14,   ///< constraint; its held.part is `part`
   kDropConstraint = 15,  ///< constraint_id
-  kSnap = 16,            ///< constraint: what of it is none or empty the server chooses
+  kSnap = 16,            ///< constraint: the server chooses the fields that are left empty
 };
 inline constexpr std::uint8_t kCommandKindCount = 17;
 
@@ -55,14 +55,14 @@ enum class Refusal : std::uint8_t {
   kSessionFull = 15,
   kUnknownFeature = 16,
   kConstraintUnfit = 17,     ///< the kind cannot hold between these surfaces
-  kConstraintConflict = 18,  ///< it contradicts those that hold already
+  kConstraintConflict = 18,  ///< it contradicts constraints in force
   kUnknownConstraint = 19,
-  kObserver = 20,  ///< observers look only
+  kObserver = 20,  ///< observers may not change anything
   kNothingToRedo = 21,
   kNoRight = 22,       ///< the scenario does not let this user change this
   kNotHeld = 23,       ///< nobody holds the part: grab it
   kNotAsked = 24,      ///< nobody asked for the part
-  kAlreadyAsked = 25,  ///< somebody else has, and waits for an answer
+  kAlreadyAsked = 25,  ///< another user has asked and waits for an answer
   kBadRule = 26,       ///< not understood, contradicts another statement, or changes nothing
   kUnknownClash = 27,
   kBadGroup = 28,     ///< a group of no parts, or with one twice
@@ -83,7 +83,7 @@ struct Details {
   ConstraintId constraint_id;  ///< of a decision also with kAddConstraint
 };
 
-/// Most parts of one group: a sentence of refusal and a tick have to bear it.
+/// Most parts of one group: bounds the work of a tick and the length of a refusal.
 inline constexpr std::size_t kMostGroupParts = 256;
 
 struct Command {
@@ -92,8 +92,8 @@ struct Command {
   std::uint64_t seq = 0;  ///< per user, echoed in the reply
   CommandKind kind = CommandKind::kUnknown;
   Details details = {};
-  /// The user's increments up to this sequence were sent before, and not all are known to have
-  /// arrived; 0: all have. What ends a drag waits for those that are still on their way.
+  /// The user sent increments up to this sequence before the command, and not all of them are known
+  /// to have arrived; 0: all have. A command that ends a drag waits for them.
   std::uint64_t after = 0;
 };
 
@@ -103,7 +103,7 @@ struct Reply {
   std::uint64_t seq = 0;
   Refusal refusal = Refusal::kNone;
   UserId holder;     ///< who holds the part now
-  std::string text;  ///< reason in words; when done what there is to say of it, mostly nothing
+  std::string text;  ///< the reason in words; when done mostly empty
 };
 
 /// A change of the session that the server decided outside of `step` and applied before it. Logged,
@@ -123,7 +123,7 @@ struct Decision {
     kAskHandOver = 10,  ///< user asks details.other_user, who holds the part
     kHandOver = 11,     ///< user gives the part to details.other_user
     kDecline = 12,      ///< user keeps the part that details.other_user asked for
-    kAskEnd = 13,       ///< what user asked for was answered by nobody in time
+    kAskEnd = 13,       ///< the request of user was not answered in time
     kSetPolicy = 14,
     kSetTolerance = 15,
     kSetExclusion = 16,
@@ -137,11 +137,11 @@ struct Decision {
   PartId part;
   std::string user_name;       ///< with kJoin
   Role role = Role::kUnknown;  ///< with kJoin
-  Details details = {};        ///< with kJoin: text is who had the user's id before, see below
+  Details details = {};        ///< with kJoin: text is the former owner of the user id, see below
 };
 inline constexpr std::uint8_t kDecisionKindCount = 21;
 
-/// Does somebody join with the id of a user who left long ago? Nothing of that user is theirs.
+/// Does a user join with the id of another one who left long ago? Nothing of that user passes on.
 inline bool takes_over_id(const Decision& decision) {
   return decision.kind == Decision::Kind::kJoin && !decision.details.text.empty();
 }

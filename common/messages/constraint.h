@@ -9,7 +9,7 @@ namespace mortise {
 using ConstraintId = Id<struct ConstraintTag>;
 using GroupId = Id<struct GroupTag>;  ///< parts that are held and moved as one
 
-/// What two features keep to each other. Numbers go over the wire and into the log.
+/// The relation that two features keep. Numbers go over the wire and into the log.
 enum class ConstraintKind : std::uint8_t {
   kUnknown = 0,
   kCoaxial = 1,           ///< axes (cylinder, cone, torus) on one line; a sphere's centre on it
@@ -26,17 +26,17 @@ struct FeatureOf {
   std::string feature;
 };
 
-/// A relation between a feature of a part that the user holds and one of another part. As long as
-/// it holds, increments move the part only as far as the relation leaves it free. Directions keep
-/// the sense that is nearer when it is set.
+/// A relation between a feature of a part that the user holds and one of another part. While it is
+/// in force, increments move the part only in the freedom that it leaves. Of two opposite
+/// directions the nearer one is chosen when the constraint is set.
 struct Constraint {
   ConstraintKind kind = ConstraintKind::kUnknown;
   FeatureOf held, other;
   /// With kParallelDistance. From a plane: along its outward normal (of `other` when both are
   /// planes), may be negative; else >= 0.
   double distance_mm = 0.0;
-  /// True: the part sets out for the nearest pose that satisfies it by itself, as by an increment:
-  /// what it meets on the way stops it. False: with the user's next increment.
+  /// True: the part moves at once to the nearest pose that satisfies the constraint, as by an
+  /// increment; a contact on the way stops it. False: with the user's next increment.
   bool snap = false;
 };
 

@@ -9,11 +9,11 @@
 
 namespace mortise {
 
-/// A time that does not come within the tick.
+/// A time that is not reached within the tick.
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Begin, change, end or review of one clash. Same pair and near the same place is one clash for as
-/// long as it lasts.
+/// Begin, change, end or review of one clash. A clash is one pair of parts near one place, as long
+/// as it lasts.
 struct ClashEvent {
   enum class Kind : std::uint8_t { kUnknown = 0, kBegin = 1, kChange = 2, kEnd = 3, kReview = 4 };
   Kind kind = Kind::kUnknown;
@@ -21,19 +21,18 @@ struct ClashEvent {
   std::uint64_t tick = 0;
   ClashId clash;
   PartId part_a, part_b;  ///< part_a < part_b
-  UserId user;            ///< who moved a part of the pair last, none when nobody did; with a
-                          ///< cause: who decided
+  UserId user;            ///< who moved a part of the pair last, or none; with a cause: who decided
   Verdict verdict;
   double t_contact = 1.0;       ///< time of first contact of the meshes inside the tick, 0..1
-  double t_potential = kNever;  ///< 0..1: before, no admissible pair of real surfaces interferes
-  double t_real = kNever;       ///< 0..1: first time at which every admissible pair does; both are
-                                ///< those of the pair of parts, and kNever when they do not come
+  double t_potential = kNever;  ///< 0..1: before it no admissible pair of real surfaces interferes
+  double t_real = kNever;       ///< 0..1: first time at which every admissible pair interferes;
+                                ///< both times are those of the pair of parts
   std::uint64_t begin_tick = 0;
   CollisionClass worst_class = CollisionClass::kNone;
   Interval worst_delta_mm;
   /// The decision that put a part somewhere or changed a rule in this tick; kUnknown: a motion.
   Decision::Kind cause = Decision::Kind::kUnknown;
-  Review review;               ///< as it stands after this event
+  Review review;               ///< after this event
   bool approval_lost = false;  ///< by this event: the clash got worse than what was approved
 };
 

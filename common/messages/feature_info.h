@@ -20,12 +20,12 @@ enum class SurfaceKind : std::uint8_t {
 };
 inline constexpr std::uint8_t kSurfaceKindCount = 6;
 
-/// Who says that a mesh has this feature. Goes over the wire, so numbers never change.
+/// Where a feature of a mesh comes from. Goes over the wire, so numbers never change.
 enum class FeatureOrigin : std::uint8_t {
   kUnknown = 0,
   kDeclared = 1,    ///< named in the scenario
-  kGenerated = 2,   ///< brought by the generator of the mesh
-  kRecognized = 3,  ///< shown by the mesh
+  kGenerated = 2,   ///< declared by the generator of the mesh
+  kRecognized = 3,  ///< found in the mesh
 };
 inline constexpr std::uint8_t kFeatureOriginCount = 4;
 
@@ -37,12 +37,12 @@ struct FeatureInfo {
   bool inward = false;           ///< bore, countersink, socket: material lies outside of the radius
   Vec3 point_P = Vec3::Zero();   ///< on the plane / on the axis / apex of the cone / centre
   Vec3 axis_P = Vec3::UnitZ();   ///< unit: outward normal of the plane; axis, of a cone to its wide
-                                 ///< side; means nothing for a sphere
+                                 ///< side; unused for a sphere
   double radius_mm = 0.0;        ///< cylinder, sphere; torus: of the centre circle
   double tube_radius_mm = 0.0;   ///< torus
   double half_angle_rad = 0.0;   ///< cone
   Interval along_mm{0.0, 0.0};   ///< where its facets lie along axis_P, from point_P
-  Vec3 middle_P = Vec3::Zero();  ///< of its facets, by area: where to point at it
+  Vec3 middle_P = Vec3::Zero();  ///< centroid of its facets
 };
 
 /// Parts that have the same mesh and the same features.
@@ -51,12 +51,12 @@ struct FeatureSet {
   std::vector<FeatureInfo> features;
 };
 
-/// All features of a session. A part may stand in several sets: it has the features of all.
+/// All features of a session. A part may be in several sets and has the features of all of them.
 struct FeatureTable {
   std::vector<FeatureSet> sets;
-  std::uint32_t meshes_waiting = 0;    ///< will be looked at for more; then a new table comes
-  std::uint32_t meshes_too_large = 0;  ///< not looked at: what is declared of them is here
-  std::uint32_t left_out = 0;          ///< features that are not here for lack of room
+  std::uint32_t meshes_waiting = 0;    ///< not yet searched for features; a new table will follow
+  std::uint32_t meshes_too_large = 0;  ///< never searched; their declared features are in the table
+  std::uint32_t left_out = 0;          ///< features that did not fit into the table
 };
 
 }  // namespace mortise

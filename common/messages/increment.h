@@ -15,7 +15,7 @@ namespace mortise {
 struct Increment {
   UserId user;
   PartId part;
-  std::uint64_t seq = 0;  ///< per user, rising; gaps are losses, repeats are dropped
+  std::uint64_t seq = 0;  ///< per user, rising; a gap is a loss, a repetition is dropped
   Vec3 translation_mm = Vec3::Zero();
   Vec3 rotation_rad = Vec3::Zero();  ///< rotation vector, |.| <= pi
 };

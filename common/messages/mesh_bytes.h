@@ -46,7 +46,7 @@ inline std::vector<std::byte> mesh_to_bytes(
   return bytes;
 }
 
-/// Nothing when the bytes are not such a mesh, or a triangle names a point that is not there.
+/// Nothing when the bytes are not such a mesh, or a triangle names a missing point.
 inline std::optional<WireMesh> mesh_from_bytes(std::span<const std::byte> bytes) {
   std::array<std::uint32_t, 4> header;
   if (bytes.size() < kMeshHeaderBytes) return std::nullopt;

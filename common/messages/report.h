@@ -10,14 +10,14 @@
 
 namespace mortise {
 
-/// One stage of the tick: in = out + sum of skipped. Cheap, always on.
+/// One stage of the tick: in = out + sum of skipped. Always counted.
 struct StageCount {
   std::uint64_t in = 0, out = 0;
 };
 
 /// What the tick did, did not do, and why.
 struct StepCounters {
-  StageCount increments;                               ///< offered -> applied
+  StageCount increments;                               ///< given to the tick -> applied
   std::array<std::uint64_t, kRefusalCount> refused{};  ///< by Refusal
   StageCount moves;  ///< parts with increments -> parts that really move
   std::uint64_t moves_below_rounding = 0;
@@ -28,8 +28,8 @@ struct StepCounters {
   std::uint64_t contacts_clear = 0, contacts_undecided = 0;
   std::uint64_t first_contact_queries = 0, distance_queries = 0, depth_queries = 0;
   std::uint64_t event_time_queries = 0;  ///< searches for when an event became possible or real
-  /// Pairs judged (depth_queries that asked for verdicts): with bands, or with the meshes taken for
-  /// the parts because nothing is declared of either; these ask for no deviation and no tolerance.
+  /// Pairs judged (depth_queries that asked for verdicts): with bands, or as plain meshes because
+  /// nothing is declared of either part. Plain pairs ask for no deviation and no tolerance.
   std::uint64_t judged_with_bands = 0, judged_plain = 0;
   /// Regions whose class was decided while their depth was still a wide bracket, and those that
   /// were refined to the accuracy of depth.
@@ -37,17 +37,17 @@ struct StepCounters {
   StageCount verdicts;  ///< regions judged -> regions with a class
   std::uint64_t verdicts_by_class[4] = {0, 0, 0, 0};
   std::uint64_t stopped_parts = 0, rounds = 0;
-  /// Policy slide: parts that went on along what they met, pieces of their paths, places they were
-  /// held by, and bodies that were left where they were because they had too many pieces.
+  /// Policy slide: parts that slid along a contact, pieces of their paths (legs), places that held
+  /// them, and bodies that stayed where they were because they had too many legs.
   std::uint64_t slid_parts = 0, slide_legs = 0, slide_holds = 0, slides_cut_short = 0;
   std::uint64_t box_tests = 0, triangle_tests = 0, depth_evaluations = 0;
   std::uint64_t parts_without_inside =
       0;  ///< open or non-manifold parts that took part: crossing is found, depth is not
-  /// Pairs that were left waiting for a search or a verdict because the tick had no work left.
+  /// Pairs that wait for a search or a verdict because the tick's work budget was used up.
   std::uint64_t pairs_waiting = 0;
-  /// Pairs that hold a part where the same place held it before: no search, no new verdict.
+  /// Pairs that hold a part at the place that held it before, without a search or a new verdict.
   std::uint64_t pairs_held_again = 0;
-  /// Parts that wait for work and were pushed by more meanwhile than is kept for them.
+  /// Parts that wait for work and were pushed farther than is kept for them.
   std::uint64_t pushes_cut = 0;
   std::uint64_t not_examined =
       0;  ///< pairs given up by a work cap or overload; never reported as clear

@@ -6,21 +6,21 @@
 
 namespace mortise {
 
-/// What people have made of a clash; its class is physics and stands apart. A clash that gets worse
-/// loses its approval: it is active again.
+/// The review status that people give to a clash; it is independent of the class. A clash that gets
+/// worse loses its approval and is active again.
 enum class ReviewStatus : std::uint8_t {
-  kNew = 0,       ///< nobody has looked at it
-  kActive = 1,    ///< somebody works on it
+  kNew = 0,       ///< not looked at yet
+  kActive = 1,    ///< in work
   kReviewed = 2,  ///< looked at, not decided
   kApproved = 3,  ///< may stay as it is
-  kResolved = 4,  ///< taken care of, though it may still be seen
+  kResolved = 4,  ///< solved, though it may still be open
 };
 inline constexpr std::uint8_t kReviewStatusCount = 5;
 
 struct Review {
   ReviewStatus status = ReviewStatus::kNew;
   std::string comment;
-  UserId user;             ///< who said so; none: nobody, or the session took an approval back
+  UserId user;             ///< who set it; none: never set, or an approval lapsed
   std::uint64_t tick = 0;  ///< when, 0: never
 };
 

@@ -5,7 +5,7 @@
 
 namespace mortise {
 
-/// As what a user takes part. An observer may look only.
+/// The role of a user. An observer may not change anything.
 enum class Role : std::uint8_t { kUnknown = 0, kDesigner = 1, kObserver = 2, kBot = 3 };
 inline constexpr std::uint8_t kRoleCount = 4;
 

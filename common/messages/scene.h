@@ -27,7 +27,7 @@ struct UserInfo {
   Role role = Role::kUnknown;
 };
 
-/// All that a late joiner needs; the live stream goes on from event_seq + 1.
+/// All that a late joiner needs; the live stream continues with event_seq + 1.
 struct Snapshot {
   std::string session;
   std::uint64_t tick = 0;
@@ -37,8 +37,8 @@ struct Snapshot {
   std::vector<PartInfo> parts;
   std::vector<UserInfo> users;
   std::vector<ClashEvent> open_clashes;
-  /// Decisions of before that still hold: policy, tolerances, exclusions, and what was asked for
-  /// and not answered, in the order in which they were made.
+  /// Earlier decisions that are in force: policy, tolerances, exclusions, and hand-over requests
+  /// that are not answered yet, in the order in which they were made.
   std::vector<Decision> standing;
 };
 

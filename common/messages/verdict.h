@@ -10,8 +10,8 @@ namespace mortise {
 /// The paper's three classes. kNone: nothing to report (no overlap, nor any possible).
 enum class CollisionClass : std::uint8_t { kNone = 0, kFake = 1, kPotential = 2, kReal = 3 };
 
-/// Where the knowledge of the mesh error comes from, best first; a verdict names the worst grade it
-/// rests on.
+/// Where the knowledge of the mesh error comes from, best first. A verdict names the worst grade
+/// that it used.
 enum class DeviationGrade : std::uint8_t {
   kUnknown = 0,
   kPlanar = 1,  ///< planar faces: no error
@@ -26,7 +26,7 @@ enum class DeviationGrade : std::uint8_t {
 /// paper).
 enum class FaceShape : std::uint8_t { kUnknown = 0, kPlanar, kConvex, kConcave, kSaddle, kEdge };
 
-/// How part A comes free of part B by the shortest motion that was verified.
+/// How the shortest verified motion separates part A from part B.
 enum class SeparationWay : std::uint8_t {
   kNone = 0,    ///< none was found
   kBack = 1,    ///< back along the tick's motion

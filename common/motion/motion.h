@@ -39,7 +39,7 @@ struct Motion {
   bool moves() const { return kind != PathKind::kStill; }
 };
 
-/// A path that can be asked: a known kind, valid poses, finite velocities, |w| <= pi.
+/// A usable path: a known kind, valid poses, finite velocities, |w| <= pi.
 bool valid(const Motion& motion);
 
 /// Poses must be valid() here and below.

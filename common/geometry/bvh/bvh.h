@@ -22,11 +22,12 @@ struct Bvh {
     float half[3][kWidth];
     std::int32_t child[kWidth];  ///< >= 0: node; < 0: ~leaf
     std::int32_t count = 0;      ///< used lanes
-    std::int32_t oriented = -1;  ///< into Bvh::oriented; -1: no axes fit better than the part's
+    std::int32_t oriented = -1;  ///< index in Bvh::oriented; -1: the axes of the part fit best
     float size = 0.0F;           ///< sum of the half extents of the node's own box
   };
-  /// The boxes of the children of a node that are a patch once more, in axes that fit it: its mean
-  /// normal and its edges. A point x of the part (from Bvh::origin) is at axes (x - from_origin).
+  /// The boxes of the children of a node again, in axes that fit the patch of surface below it (its
+  /// mean normal and its edges). A point x of the part (from Bvh::origin) is at
+  /// axes (x - from_origin).
   struct alignas(32) Oriented {
     float center[3][kWidth];
     float half[3][kWidth];  ///< rounded outward
@@ -57,9 +58,9 @@ struct Bvh {
   std::size_t bytes() const;
 };
 
-/// Deterministic: the same tree to the last bit at any number of threads. mesh must have at least
-/// one triangle, its coordinates be finite and below 1e12 mm. O(n log n). threads 0: one for small
-/// meshes, those of the machine for large ones.
+/// Deterministic: the same tree to the last bit at any number of threads. The mesh must have at
+/// least one triangle and finite coordinates below 1e12 mm. O(n log n). threads 0: one for small
+/// meshes, all of the machine for large ones.
 Bvh build_bvh(const TriangleMesh& mesh, int threads = 0);
 
 }  // namespace mortise

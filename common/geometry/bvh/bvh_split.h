@@ -32,9 +32,9 @@ struct Range {
 
 FloatBox box_of(const BoxedTriangle* triangles, std::uint32_t count);
 
-/// Cuts `range` (of the array `triangles`, at least two of them) in two parts that are not empty,
-/// and orders the array accordingly. Which triangles go where depends on coordinates and ids only,
-/// never on the order in which they lie: trees are the same on every build. `balanced`: halves it,
+/// Cuts `range` (of the array `triangles`, at least two of them) into two parts that are not empty,
+/// and orders the array accordingly. The cut depends on coordinates and ids only, never on the
+/// order of the array, so that trees are the same on every build. `balanced`: cuts in the middle
 /// whatever the boxes, which bounds the depth.
 void split(BoxedTriangle* triangles, const Range& range, bool balanced, Range& left, Range& right);
 

@@ -6,8 +6,8 @@
 
 namespace mortise::bvh {
 
-/// Calls body(i) for every i below count, on up to `threads` threads; body writes only what belongs
-/// to i.
+/// Calls body(i) for every i below count, on up to `threads` threads. body(i) may only write data
+/// of i.
 template <class Body>
 void for_each(std::size_t count, int threads, const Body& body) {
   std::atomic<std::size_t> next{0};

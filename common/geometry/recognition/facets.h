@@ -7,8 +7,8 @@
 
 namespace mortise {
 
-/// Flat groups of triangles connected across edges: what a tessellator drew as one polygon. The
-/// atoms of recognition and of estimated deviations, so that a quad's diagonal counts for nothing.
+/// Flat groups of triangles connected across edges: the polygons that a tessellator drew.
+/// Recognition and estimated deviations work on them, so that the diagonal of a quad has no effect.
 struct Facets {
   std::vector<std::uint32_t> of_triangle;  ///< facet of each triangle
   std::vector<std::uint32_t> begin;        ///< members of facet f: members[begin[f] .. begin[f+1])
@@ -30,11 +30,11 @@ struct Facets {
 Facets build_facets(const Solid& solid, double flat_mm);
 
 /// Half the step of a decimal grid on which all coordinates lie (files with a fixed number of
-/// decimals: 5e-4 mm for six of a metre); 0 when there is none between 1e-6 and 1e-3 mm, or too few
-/// coordinates to tell it from a design in round numbers. O(n).
+/// decimals: 5e-4 mm for six of a metre); 0 when there is no such grid between 1e-6 and 1e-3 mm, or
+/// too few coordinates to distinguish it from a design in round numbers. O(n).
 double grid_quantum_mm(const TriangleMesh& mesh);
 
-/// How far corners of one flat face may stand off its plane: twice the rounding of the file's
+/// How far corners of one flat face may be off its plane: twice the rounding of the file's
 /// coordinates (0: doubles), and a share of the extent.
 double flat_allowance_mm(const Solid& solid, double quantum_mm);
 

@@ -26,13 +26,13 @@ double size_mm(const Surface& surface, const TriangleMesh& mesh,
 RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
                              std::span<const std::uint32_t> triangles);
 
-/// Farthest that a facet stands off the surface, mm; sampled, within a few percent from below.
+/// Largest distance of a facet from the surface, mm; sampled, within a few percent from below.
 double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
                       std::span<const std::uint32_t> triangles);
 
 double distance_from_axis_mm(const Surface& surface, const Vec3& x);
 
-/// How far a triangle stands off at its middles, where it is deepest or nearly so.
+/// Distance of a triangle from the surface at its middles, where it is largest or nearly so.
 double depth_at_middles_mm(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t);
 
 }  // namespace mortise

@@ -4,7 +4,7 @@
 /// Private to recognition.
 namespace mortise {
 
-/// Puts features and measures in the order that Recognition promises, and names them.
+/// Sorts features and measures into the order that Recognition promises, and names them.
 void name_features(Recognition& recognition);
 
 }  // namespace mortise

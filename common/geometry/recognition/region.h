@@ -19,15 +19,15 @@ struct Region {
   double share = 0.0;       ///< of the size, without rounding
 };
 
-/// Grows regions over smooth edges. Holds marks of its own: one per thread.
+/// Grows regions over smooth edges. Not thread safe: one per thread.
 class RegionGrower {
  public:
   RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm);
 
   /// The region of a surface fitted to seed triangles: grown in doubling steps with a fit after
-  /// each, cut back to corners within share * size + rounding. Nothing when fewer than
-  /// the seeds remain, or when the region shows too little of the surface to tell it. What was
-  /// grown before from other seeds along the same surface is not grown again.
+  /// each, cut back to corners within share * size + rounding. Nothing when fewer triangles than
+  /// the seeds remain, or when the region shows too little of the surface. A surface that other
+  /// seeds have grown before is not grown again.
   std::optional<Region> grow(const Surface& guess, std::span<const std::uint32_t> seeds,
                              double share);
 

@@ -7,8 +7,8 @@
 namespace mortise {
 
 /// Sets of triangles about a facet that may belong to one surface. ribbons: facets in a row across
-/// opposite edges, since each facet of a cylinder may touch a fillet at both of its ends; patches:
-/// all neighbours, near ones first. Longer sets come first: they average noise.
+/// opposite edges, because each facet of a cylinder may touch a fillet at both ends; patches: all
+/// neighbours, near ones first. Longer sets come first, because they average noise.
 struct SeedSets {
   std::vector<std::vector<std::uint32_t>> ribbons, patches;
 };

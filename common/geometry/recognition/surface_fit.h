@@ -14,11 +14,11 @@ struct OrientedPoint {
 };
 
 /// Moves a surface to the least sum of squared distances of the points (Levenberg-Marquardt on
-/// orthogonal distances, analytic derivatives). From a start within its basin it ends at rounding
-/// for points that lie on a surface of this kind. `inward` is kept. It stops where a step wins less
-/// than worth_going_on of the cost, and gives up when the points stay farther off than hopeless_mm
-/// (root mean square) after a few steps. A surface that degenerates (a
-/// radius without bound, a cone without angle) gives nothing. O(iterations n).
+/// orthogonal distances, analytic derivatives). From a start within its basin it converges to
+/// rounding for points that lie on a surface of this kind. `inward` is kept. It stops when a step
+/// reduces the cost by less than worth_going_on, and gives up when the points are farther off than
+/// hopeless_mm (root mean square) after a few steps. A surface that degenerates (an unbounded
+/// radius, a cone without angle) gives nothing. O(iterations n).
 std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3> points,
                                       double worth_going_on = 1e-6, double hopeless_mm = 1e300);
 
@@ -26,12 +26,12 @@ std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3
 double residual_of(const Surface& surface, std::span<const Vec3> points);
 
 /// The unit direction along which normals vary least, counted from `about`: the axis of a cylinder
-/// (about zero) or a cone (about their mean). Nothing when they hardly vary at all.
+/// (about zero) or a cone (about their mean). Nothing when the normals hardly vary.
 std::optional<Vec3> steady_direction(std::span<const OrientedPoint> facets, const Vec3& about);
 
-/// First guesses. Each needs a few points and facets of one surface; nothing comes back where these
-/// do not determine it. Unrefined; the guess is exact for a sphere, and for cylinders and cones
-/// whose facets stand symmetrically.
+/// First guesses. Each needs a few points and facets of one surface, and gives nothing where these
+/// do not determine it. Not refined; exact for a sphere, and for cylinders and cones with symmetric
+/// facets.
 std::optional<Surface> guess_cylinder(std::span<const Vec3> points,
                                       std::span<const OrientedPoint> facets);
 std::optional<Surface> guess_cone(std::span<const Vec3> points,
