@@ -15,11 +15,11 @@
 
 namespace mortise {
 
-/// Which surface of a part is meant: the mesh, or the least or the largest real surface that the
-/// band admits.
+/// The surface of a part that is meant: the mesh, or the least or the largest real surface that the
+/// band admits (README, section 3).
 enum class Layer : std::uint8_t { kMesh = 0, kLower, kUpper };
 
-/// One part of a depth query with what the search asks of its band again and again. Part frame, mm.
+/// One part of a depth query with what the search repeatedly needs of its band. Part frame, mm.
 struct Body {
   Body(const Solid& solid_of, const SurfaceBand& band_of);
 
@@ -60,8 +60,8 @@ struct Body {
   /// Outward offset of the layer at mesh point x of a triangle.
   double offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const;
 
-  /// Depth of x in the layer, positive inside, given its nearest mesh point: never more than the
-  /// truth where it is positive. Over a declared face its own distance counts, exact however coarse
+  /// Depth of x in the layer, positive inside, given its nearest mesh point: a lower bound where it
+  /// is positive. Over a declared face the distance from its surface counts, exact however coarse
   /// the mesh; elsewhere the triangles with their offsets.
   double depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const;
 

@@ -19,8 +19,8 @@ struct FaceEnds {
   bool level[2] = {false, false};
 };
 
-/// What depth works out of one part and its band, and asks again at every pose. Filled in by Body
-/// when it is first needed; holds nothing that depends on anything but the part and the band.
+/// What depth derives from one part and its band, and reuses at every pose. Body fills it in when
+/// it is first needed. It depends on the part and the band alone.
 struct BodyIndex {
   struct Range {
     std::uint32_t first = Topology::kNone, count = 0;
@@ -31,8 +31,8 @@ struct BodyIndex {
   std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;  ///< see Body::face_of_child
 };
 
-/// The index of a part with a band: one that this thread made before when both are, value for
-/// value, what it was made of; else a new one. Cost: one comparison of the band.
+/// The index of a part with a band: one that this thread has made of an equal part and band, else a
+/// new one. Costs one comparison of the band.
 std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& band);
 
 }  // namespace mortise

@@ -20,10 +20,10 @@ struct KnownFacePair {
 struct Candidates {
   std::vector<std::uint32_t> triangles[2];  ///< near the other part, ascending
   std::vector<KnownFacePair> known;         ///< not contained in `triangles` on their account
-  /// Asked for: triangles that go through one of the other part, and which.
+  /// With want_meetings: triangles that cross one of the other part, and which one.
   FlatMap<std::uint32_t> crossing[2];
   bool has_meetings = false;
-  std::vector<KnownFacePair> bounded;  ///< not tight: only their upper ends are of use
+  std::vector<KnownFacePair> bounded;  ///< not tight: only their upper ends are used
   bool cross = false;                  ///< asked for when a part has no inside
   std::uint32_t cross_triangle[2] = {0, 0};
   Vec3 cross_point_B = Vec3::Zero();
@@ -57,8 +57,8 @@ Candidates find_candidates(const CandidateQuery& query);
 /// bores that cannot interfere in the upper layer.
 KnownOverlaps known_overlaps(const PairFrame& pair, const Candidates& candidates);
 
-/// Has a pair of faces that has a closed form searched all the same: its triangles are candidates,
-/// and what is known of it serves proofs only.
+/// Leaves a pair of faces with a closed form to the search: its triangles become candidates, and
+/// the closed form serves proofs only.
 void leave_to_search(const KnownFacePair& pair, Candidates& candidates, KnownOverlaps& known);
 
 }  // namespace mortise

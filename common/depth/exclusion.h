@@ -21,9 +21,8 @@ struct Exclusion {
   double most_mm = -std::numeric_limits<double>::infinity();
 
   /// The first interval, as brief as `moment`, over which the bound exceeds touch; [1, 1]: none.
-  /// overlap_over(span, t): the bound at time t for all that is near at any time of the span. What
-  /// is near over an interval is near, but for the way between, at both of its ends; there a convex
-  /// bound is largest, up to the path's own curvature.
+  /// overlap_over(span, t): the bound at time t for everything that is near at any time of the
+  /// span. A convex bound is largest at one of the two ends, up to the curvature of the path.
   template <class OverlapOver>
   Span first(const OverlapOver& overlap_over) {
     most_mm = -std::numeric_limits<double>::infinity();

@@ -46,14 +46,14 @@ std::optional<FacePairOverlap> face_pair_overlap(
     const Surface& a, const FaceExtent& extent_a, const Surface& b, const FaceExtent& extent_b,
     const Pose& X_BA, double margin_mm, const std::array<PairOffsets, 2>* layers = nullptr);
 
-/// Its near_hi_mm alone, as closely as it takes to say whether it is beyond limit_mm. Infinity:
+/// Its near_hi_mm alone, refined only until it is known whether it exceeds limit_mm. Infinity:
 /// there is no closed form.
 double near_overlap_upper_bound_mm(const Surface& a, const FaceExtent& extent_a, const Surface& b,
                                    const FaceExtent& extent_b, const Pose& X_BA, double margin_mm,
                                    double limit_mm);
 
-/// How deep in a ball a point may lie that is not within the sphere of its socket, mm, and between
-/// which heights along the socket's axis that holds: the ends of its face and `margin_mm` more.
+/// The largest depth in a ball of a point outside the sphere of its socket, mm, and the heights
+/// along the socket's axis between which that holds: the ends of its face and `margin_mm` more.
 /// Nothing when it holds nowhere.
 struct BeyondSocket {
   double depth_mm = 0.0;

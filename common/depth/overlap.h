@@ -10,8 +10,8 @@
 
 namespace mortise {
 
-/// How far to refine. kDecided: until every region's class is decided by the bands (lazy); kFull:
-/// until the brackets of delta and gpd are narrower than accuracy_mm.
+/// How far to refine. kDecided: until the class of every region is decided; kFull: until the
+/// brackets of delta and gpd are narrower than accuracy_mm.
 enum class Refinement : std::uint8_t { kDecided, kFull };
 
 struct OverlapQuery {
@@ -30,17 +30,17 @@ struct OverlapQuery {
   /// With only_certain: regions in which even the least surfaces are no farther apart than this
   /// are wanted, too. mm, <= 0.
   double certain_from_mm = 0.0;
-  /// With only_certain: no more is asked than whether something is certain to be deeper than this.
+  /// With only_certain: only whether something is certainly deeper than this is asked.
   double ignore_below_mm = -std::numeric_limits<double>::infinity();
-  /// True: what is not certain is proven not to be, as far as work_cap goes. Else, under kDecided,
-  /// a glance at it may do, and the class is potential.
+  /// True: where nothing is certain, that is proven as far as work_cap allows. Otherwise, under
+  /// kDecided, the search may stop early, and the class is potential.
   bool prove_not_certain = false;
   std::uint64_t work_cap =
       200'000;  ///< branch-and-bound evaluations; on the cap brackets stay wide, never wrong
 };
 
-/// A point of the least surface of one part (of A for role 0, of B for role 1), near one of its
-/// triangles and in its frame, that was found inside the other part whatever the offsets.
+/// A point of the least surface of one part (A for role 0, B for role 1), near one of its triangles
+/// and in its frame, that was found inside the other part for all admissible offsets.
 struct CertainPlace {
   int role = -1;  ///< -1: none
   std::uint32_t triangle = 0;
@@ -69,8 +69,8 @@ struct OverlapRegion {
   FaceShape shape_a = FaceShape::kUnknown, shape_b = FaceShape::kUnknown;
   bool has_witness = false;
   Vec3 witness_W =
-      Vec3::Zero();  ///< inside both real parts whatever the tolerances, when certain_mm.lo > 0
-  CertainPlace certain_place;  ///< whose point the witness was found from
+      Vec3::Zero();  ///< inside both real parts for all tolerances, when certain_mm.lo > 0
+  CertainPlace certain_place;  ///< the place from which the witness was found
   bool capped = false;         ///< work cap reached: brackets are wide
   std::vector<Vec3> points_W;  ///< sample of contact points for the fitted separating motion
 };
@@ -87,8 +87,9 @@ struct OverlapResult {
 /// within the band (sum of the largest offsets). Two movers, any poses; deterministic.
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 
-/// True implies: the overlap is certain at the poses of the query, for this place is inside. False
-/// says nothing. Adds to `evaluations` one for the nearest point and those of find_witness().
+/// True implies: the overlap is certain at the poses of the query, because this place is inside.
+/// False implies nothing. Adds to `evaluations` one for the nearest point and those of
+/// find_witness().
 bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,
                    std::uint64_t& evaluations);
 
@@ -104,9 +105,9 @@ struct RealTime {
   double t_free = 1.0;  ///< at no t <= t_free is anything certain deeper than accuracy_mm, proven;
                         ///< the pose at which `stop` leaves the part
   double t_real = 1.0;  ///< real at t_real, when becomes_real
-  bool capped = false;  ///< t_free is still proven; beyond it nothing is said
+  bool capped = false;  ///< work cap: t_free is still proven, nothing is known beyond it
   bool real_at_start = false;
-  CertainPlace certain_place;  ///< of t_real, where one was named
+  CertainPlace certain_place;  ///< at t_real, where one was found
   std::uint64_t evaluations = 0;
 };
 
@@ -121,7 +122,7 @@ struct PossibleTime {
   double t_clear = 1.0;     ///< at no t <= t_clear do any admissible surfaces interfere deeper than
                             ///< accuracy_mm, proven
   double t_possible = 1.0;  ///< some admissible pair interferes there, when becomes_possible
-  bool capped = false;      ///< t_clear is still proven; beyond it nothing is said
+  bool capped = false;      ///< work cap: t_clear is still proven, nothing is known beyond it
   std::uint64_t evaluations = 0;
 };
 

@@ -18,7 +18,7 @@ struct PairFrame {
     X_KS[1] = X_KS[0].inverse();
     rounding_mm = kRoundingFactor * kUnitRoundoff *
                   (query.a->bvh().extent_mm + query.b->bvh().extent_mm + X_KS[0].p.norm());
-    // Overlaps that first contact calls touching are touching here too.
+    // What first contact calls touching is touching here too.
     touch_mm = std::max(kAccuracyDefault_mm, rounding_mm);
     trivial = query.band_a->trivial && query.band_b->trivial;
     near_mm =

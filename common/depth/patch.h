@@ -68,9 +68,8 @@ struct Piece {
   std::uint32_t triangle = 0;
 };
 
-/// What a piece of S is in a layer, wherever it stands: made once where several poses are asked.
-/// Frame S, mm; the names are those of Patch. The polygon is empty when the neighbours' surfaces
-/// cut all of it away.
+/// A piece of S in a layer, independent of its pose: made once for several poses. Frame S, mm; the
+/// names are those of Patch. The polygon is empty when the neighbours' surfaces cut all of it away.
 struct PieceShape {
   std::vector<Vec3> polygon;
   Vec3 center = Vec3::Zero(), normal = Vec3::Zero(), axis = Vec3::Zero();

@@ -25,8 +25,7 @@ struct ProofScratch {
   std::vector<Near> open;  ///< those that nothing covers yet
 };
 
-/// What is already known of a pair of faces (closed forms): upper bounds of the nominal overlap,
-/// mm.
+/// Closed forms of pairs of faces: upper bounds of the nominal overlap, mm.
 struct KnownOverlaps {
   struct Row {
     std::uint16_t face[2];
@@ -36,16 +35,16 @@ struct KnownOverlaps {
     /// Heights along the axis of A's and of B's surface: a patch of the other part between them is
     /// no deeper below the surface, ended or not, than `overlap_mm`.
     Interval holds_along_mm[2] = {kEverywhere_mm, kEverywhere_mm};
-    /// Of any point not outside of the convex face's surface; faces that end on it keep to it.
+    /// For any point not outside of the convex face's surface; faces that end on it satisfy that.
     double within_mm = std::numeric_limits<double>::infinity();
     /// Where `within_mm` holds: between these heights along the axis of the convex face.
     Interval within_extent_mm = kEverywhere_mm;
-    /// The pair is reported by its closed form. Else the row only serves proofs.
+    /// The pair is reported by its closed form. Otherwise the row serves proofs only.
     bool told = true;
   };
   std::vector<Row> rows;
-  /// Where neither part moves: then a shaft in a bore and a ball in a socket are also bounded where
-  /// a patch is.
+  /// Set when neither part moves: then a shaft in a bore and a ball in a socket are also bounded at
+  /// the place of a patch.
   std::optional<Pose> X_BA;
   /// Of face_s of body `role` with face_k of the other; null when not known.
   const Row* find(int role, std::uint16_t face_s, std::uint16_t face_k) const;
@@ -66,8 +65,8 @@ struct DepthProof {
 };
 
 /// True implies: no point of the patch lies deeper than limit_mm in the layer of k (for a negative
-/// limit: none is nearer than -limit_mm). False says nothing. The patch is one connected set and
-/// its centre is not deeper than the limit.
+/// limit: none is nearer than -limit_mm). False implies nothing. The patch is one connected set and
+/// its centre is not deeper than the limit. The proof is in the README, section 5.
 ///
 /// Why it is right. Let m be the outward normal of k's facet nearest to the centre and u the limit.
 /// Each facet f of k near the patch is a wall when the patch moved by u m lies wholly above f. Let

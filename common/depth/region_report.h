@@ -15,14 +15,14 @@ namespace mortise {
 /// from a prism.
 FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x);
 
-/// A point inside both real parts, whatever their offsets: tried halfway between the deepest point
+/// A point inside both real parts for all their offsets: tried halfway between the deepest point
 /// of one least surface and the other, and verified in both parts (README, section 7). World frame.
 /// Costs up to some 300 evaluations, where there is none.
 std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
                                  std::uint64_t& evaluations);
 
-/// A point inside both meshes below two coinciding faces that look the same way; how deep it lies
-/// in both together.
+/// A point inside both meshes below two coinciding faces with the same outward direction, and the
+/// sum of its depths in both.
 struct SharedInside {
   Vec3 point_W = Vec3::Zero();
   double depth_mm = 0.0;
@@ -30,11 +30,11 @@ struct SharedInside {
 };
 std::optional<SharedInside> find_shared_inside(const PairFrame& pair, const Candidates& candidates);
 
-/// Where, along what and by which faces: from the deepest sample.
+/// Fills in point, normal and faces of the region from the deepest sample.
 void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,
               OverlapRegion& region);
 
-/// Values within touch of zero are zero: rounding and the accuracy of first contact.
+/// Sets values within touch_mm of zero to zero (rounding and the accuracy of first contact).
 Interval without_touch(Interval value, double touch_mm);
 
 }  // namespace mortise

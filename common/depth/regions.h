@@ -23,15 +23,15 @@ struct RegionsQuery {
   const Candidates* candidates = nullptr;
   const KnownOverlaps* known = nullptr;
   std::uint64_t work_cap = 0;
-  /// Where no real surfaces can interfere, look only briefly whether the meshes overlap.
+  /// Where no real surfaces can interfere, spend little on whether the meshes overlap.
   bool brief = false;
 };
 
-/// Asks every candidate triangle whether it stays out of the other part, floods over neighbours
-/// from those that do not, and groups them.
+/// Decides for every candidate triangle whether it stays out of the other part, spreads over the
+/// neighbours of those that do not, and groups them.
 Regions find_regions(const RegionsQuery& query, SearchScratch& scratch, std::uint64_t& evaluations);
 
-/// Is a shell of A inside B, or of B inside A, without any crossing? Its first triangle then.
+/// A shell of one part inside the other one without any crossing, by its first triangle.
 struct ContainedShell {
   int role = 0;
   std::uint32_t triangle = 0;

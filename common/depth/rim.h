@@ -5,8 +5,8 @@
 
 namespace mortise {
 
-/// Where a bore of a part ends in a plane. What lies near it of either face is neither inside the
-/// cylinder nor above the plane. mm.
+/// The circle in which a bore of a part ends in a plane. Points of either face near it are neither
+/// inside the cylinder nor above the plane. mm.
 struct Rim {
   Vec3 center = Vec3::Zero();  ///< of its circle
   Vec3 axis = Vec3::UnitZ();   ///< of the bore, unit, out of the material
@@ -15,14 +15,14 @@ struct Rim {
   Rim seen_from(const Pose& X) const { return {X * center, X.q * axis, radius_mm}; }
 };
 
-/// Those that a triangle ends on in the layer, as many as there is room for; how many. None on the
-/// mesh, whose bores are no cylinders. Part frame.
+/// Fills `rims` with the rims on which a triangle ends in the layer and returns their number; more
+/// than fit are left out. None on the mesh, whose bores are not cylinders. Part frame.
 int rims_of(const Body& s, Layer layer, std::uint32_t triangle, std::span<Rim> rims);
 
 /// No point that is neither inside the rim's cylinder nor above its plane is deeper than this below
-/// a convex cone or cylinder, mm. Closed form: each such point is held against the tangent plane
+/// a convex cone or cylinder, mm. Closed form: each such point is compared with the tangent plane
 /// that faces it; exact where the axes are parallel, else to second order of the tilt. The points
-/// end below_mm under the rim, which counts for a tilted cylinder. Infinite where a cone does not
+/// end below_mm under the rim, which matters for a tilted cylinder. Infinite where a cone does not
 /// narrow into the bore. One frame. OURS.
 double depth_at_rim_mm(const Rim& rim, const Surface& round, double below_mm);
 

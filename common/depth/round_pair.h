@@ -7,7 +7,7 @@
 
 namespace mortise {
 
-/// Axes farther apart in angle are no sliding fit: bounds would be far from tight.
+/// Above this angle between the axes the bounds of a sliding fit are far from tight and not used.
 inline constexpr double kSlidingFitCosine = 0.95;
 
 /// A cylinder or cone about its axis: radius = radius_mm + widening * z, z along the axis from
@@ -36,13 +36,13 @@ struct RoundReach {
 /// over the convex face within margin_mm of the hollow one's ends, lo within both; -infinity where
 /// there is no such point.
 ///
-/// f is convex, so that along a generator it is largest at an end. Around the ends it is at most
-/// what it is at the corners of the triangles about its arcs, and, a square root of a trigonometric
-/// polynomial of second degree, bends little where the axes nearly meet: branch and bound over the
-/// angle closes hi to accuracy_mm in a few dozen steps. Exact to rounding; some 5 us.
+/// f is convex, so that along a generator it is largest at an end. Around an end circle it is
+/// bounded by its values at the corners of triangles about arcs; it is a square root of a
+/// trigonometric polynomial of second degree and bends little where the axes nearly meet, so branch
+/// and bound over the angle closes hi to accuracy_mm in a few dozen steps. Exact to rounding.
 ///
-/// With limit_mm it is only asked whether the reach is beyond that: the bracket stays wide where it
-/// certainly is, and a quarter of what it lacks wide where it is not.
+/// With limit_mm only the comparison with that limit is asked: the bracket stays wide where the
+/// reach exceeds it, and otherwise as wide as a quarter of the difference.
 std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
                                       double margin_mm, double accuracy_mm,
                                       double limit_mm = std::numeric_limits<double>::infinity());

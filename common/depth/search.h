@@ -43,14 +43,14 @@ struct SearchQuery {
   const KnownOverlaps* known = nullptr;
   const std::vector<Root>* roots = nullptr;
   std::size_t regions = 1;
-  /// Regions by triangle of the primary part : pieces of the other part follow the
-  /// region of the triangle they meet. Null: pieces stay in their root's region.
+  /// Regions by triangle of the primary part: pieces of the other part belong to the region of the
+  /// triangle that they meet. Null: pieces stay in their root's region.
   const FlatMap<std::uint32_t>* region_of_triangle = nullptr;
   int primary = 0;
   double accuracy_mm = 1e-4;
-  /// What is no deeper than this is of no interest, and one point that is ends the search.
+  /// Depths up to this are ignored; one deeper point ends the search.
   double ignore_below_mm = -std::numeric_limits<double>::infinity();
-  bool sign_only = false;      ///< stop when every region is known to be above touch or not
+  bool sign_only = false;      ///< stop when it is known for every region whether it exceeds touch
   std::uint64_t work_cap = 0;  ///< evaluations of this search
 };
 
@@ -62,8 +62,8 @@ struct SearchScratch {
 std::vector<Bracket> search_depth(const SearchQuery& query, SearchScratch& scratch,
                                   std::uint64_t& evaluations);
 
-/// Is a whole triangle of S proven no deeper than limit_mm in K, or is some point deeper? Stops
-/// after a few evaluations.
+/// Whether a whole triangle of S is proven no deeper than limit_mm in K, or some point is deeper.
+/// Stops after a few evaluations.
 enum class RootState : std::uint8_t { kUnknown = 0, kBelow, kAbove };
 struct RootQuery {
   const PairFrame* pair = nullptr;

@@ -18,7 +18,7 @@ class Values {
   std::map<std::string, double> values_;
 };
 
-/// A kind of part: what it is called and how it is made. make() checks what ranges cannot say.
+/// A kind of part: its name and how it is made. make() checks what ranges cannot express.
 struct Family {
   GeneratorInfo info;
   Result<GeneratedPart> (*make)(const Values& values);

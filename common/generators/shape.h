@@ -13,13 +13,13 @@ namespace mortise {
 /// A closed polyline in space, counter-clockwise seen from +z, as point numbers.
 using Ring = std::vector<std::uint32_t>;
 
-/// Builds a part from walls and caps. Points at exactly the same place are one point, triangles
-/// with two equal corners are left out, so that pieces that share corners close by themselves.
+/// Builds a part from walls and caps. Points at exactly the same place are one point, and triangles
+/// with two equal corners are left out, so that pieces that share corners form a closed mesh.
 class Shape {
  public:
   static constexpr int kNoFace = -1;
 
-  /// Declares a face; its number goes to the pieces that stand for it.
+  /// Declares a face and returns its number, which is passed to its pieces.
   int plane(const std::string& name, const Vec3& point, const Vec3& outward);
   int cylinder(const std::string& name, const Vec3& on_axis, double radius_mm, bool inward);
   int cone(const std::string& name, const Vec3& apex, const Vec3& axis, double half_angle_rad,

@@ -11,11 +11,11 @@ std::string engine_version();
 /// replay each other's logs bit for bit.
 std::string version_line(const std::string& program);
 
-/// What decides the bits of a result: sources of the engine, compiler, its version and flags, kind
-/// of build, processor family. A replay is promised to agree bit for bit where this is the same.
+/// Everything that determines the bits of a result: sources of the engine, compiler, its version
+/// and flags, build type, processor family. With equal fingerprints a replay agrees bit for bit.
 std::string build_fingerprint();
 
-/// The same without the sources: where this is the same, only a change of the engine changes bits.
+/// The same without the sources: with equal values only a change of the engine changes bits.
 std::string toolchain_fingerprint();
 
 /// The same by name, for the metadata of a log.

@@ -10,8 +10,8 @@
 
 namespace mortise {
 
-/// Keys stay in the order in which they are written. Infinity becomes null (JSON has no word for
-/// it): a gpd upper end of null means that no separating motion was verified.
+/// Keys keep the order in which they are written. Infinity becomes null, because JSON has no
+/// infinity: a gpd upper end of null means that no separating motion was verified.
 using Json = nlohmann::ordered_json;
 
 /// Names for ids in everything that people read.
@@ -33,13 +33,13 @@ Json json_of(const ClashEvent& event, const SessionNames& names);
 Json json_of(const PairVerdicts& pair, const SessionNames& names);
 Json json_of(const ChannelCounters& counters);
 
-/// Everything that the engineers' statistic holds: by class, pair, part, user, and each clash.
+/// All statistics for engineers: by class, pair, part, user, and each clash.
 Json json_of(const SessionStatistics& statistics, const SessionNames& names);
 
 /// The same for people: collisions by class, pair and user, the worst ones explained.
 std::string collision_table(const SessionStatistics& statistics, const SessionNames& names);
 
-/// What each stage took in, gave out, and skipped for which reason. One stage a line.
+/// For each stage: in, out, and skipped by reason. One stage a line.
 std::string stage_table(const StepCounters& counters);
 
 }  // namespace mortise

@@ -10,31 +10,31 @@
 
 namespace mortise {
 
-/// One file of a session log as it is written: its head, then ticks with what belongs to them. Not
-/// thread safe; private to session_log.
+/// One file of a session log as it is written: its head, then ticks. Not thread safe; private to
+/// session_log.
 class LogFile {
  public:
-  /// Writes the head and waits until it is on disk: only then has the file its name. Fails when a
-  /// file of that name exists.
+  /// Writes the head, waits until it is on disk, and only then gives the file its name. Fails when
+  /// a file of that name exists.
   static Result<std::unique_ptr<LogFile>> create(const std::filesystem::path& file,
                                                  const LogHeader& header,
                                                  const LogOptions& options);
 
-  /// Is there one without its name yet, or what a start that was cut short left of it?
+  /// Is there a file that has not got its name yet, also one left by an interrupted start?
   static bool is_begun(const std::filesystem::path& file);
-  /// Gives it its name, where that was left for later.
+  /// Gives the file its name, with LogOptions::named_later.
   Status take_name();
-  /// The same of one that is closed.
+  /// The same for a closed file.
   static Status name(const std::filesystem::path& file);
   static void remove_unnamed(const std::filesystem::path& file);
-  /// Takes it away where it never got its name.
+  /// Removes the file if it never got its name.
   void remove_if_unnamed();
   void write(const TickRecord& tick);
   void write(const Checkpoint& state);
   void write_gap(const log_json::Gap& gap);
   void write_statistics();
 
-  /// Of what is written from now on; never falls.
+  /// The time of records written from now on; never falls.
   void set_time(std::int64_t time_ns);
   std::uint64_t time_ns() const { return time_ns_; }
   const std::filesystem::path& path() const { return path_; }

@@ -13,7 +13,7 @@ namespace mortise::log_json {
 /// One clash event; doubles are written so that they read back to the last bit. JSON has no
 /// infinity: null means "no limit on this side".
 std::string encode(const ClashEvent& event);
-/// Takes any text; false when it is no clash event. Unknown keys are ignored.
+/// Accepts any text; false when it is no clash event. Unknown keys are ignored.
 bool decode(std::string_view text, ClashEvent& event);
 /// Names the first key whose value differs, with both values; empty when the events are the same.
 std::string first_difference(const ClashEvent& logged, const ClashEvent& computed);

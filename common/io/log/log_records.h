@@ -11,7 +11,7 @@
 #include "common/messages/report.h"
 
 /// The binary records of a session log, byte by byte as in session_log_format.md. Every decoder
-/// takes any bytes: it gives false when they are no such record, and allocates no more than a small
+/// accepts any bytes: it returns false when they are no such record, and allocates at most a small
 /// multiple of their length.
 namespace mortise::log_records {
 
@@ -29,7 +29,7 @@ struct Poses {
   std::uint64_t tick = 0;
   std::vector<PartPose> poses;
 };
-/// The last record of a tick: without it, the tick is not whole.
+/// The last record of a tick; a tick without it is incomplete.
 struct TickEnd {
   std::uint64_t tick = 0;
   std::uint64_t state_hash = 0;

@@ -32,7 +32,8 @@ struct McapAttachment {
   std::span<const std::byte> data;
 };
 
-/// Called in the order of the file; an empty function skips its kind. Spans live during the call.
+/// Called in the order of the file; an empty function skips its kind. Spans are valid during the
+/// call.
 struct McapHandler {
   std::function<void(const McapSchema&)> on_schema = {};
   std::function<void(const McapChannel&)> on_channel = {};  ///< first sight of each channel
@@ -41,32 +42,32 @@ struct McapHandler {
   std::function<void(const std::string& name, const std::map<std::string, std::string>&)>
       on_metadata = {};
   std::function<void(const std::string& what)> on_loss = {};  ///< messages were lost here
-  /// After each record: so much of the file is read, 0 to 1.
+  /// After each record: the share of the file that is read, 0 to 1.
   std::function<void(double share)> on_progress = {};
-  std::function<bool()> is_enough = {};  ///< asked after each record: the rest is left unread
+  std::function<bool()> is_enough = {};  ///< after each record; true: the rest is not read
 };
 
-/// What a hostile file may cost.
+/// Limits for a hostile file.
 struct McapLimits {
   std::uint64_t chunk_bytes = 256ULL << 20;  ///< of one decompressed chunk
-  /// All chunks together, as a multiple of the file's size: records of ours carry hashes and an
-  /// index, which keeps true logs below ten.
+  /// All chunks together, as a multiple of the file's size: our records contain hashes and an
+  /// index, which keeps genuine logs below ten.
   std::uint64_t expansion = 64;
   std::uint64_t expansion_floor_bytes = 64ULL << 20;  ///< allowed to the smallest file
 };
 
 struct McapScan {
   std::string profile, library;
-  bool complete = false;  ///< footer and closing magic were found where they belong
+  bool complete = false;  ///< footer and closing magic were found
   std::uint64_t file_bytes = 0, records = 0, chunks = 0, messages = 0, attachments = 0;
   std::uint64_t lost_chunks = 0, lost_attachments = 0;
-  std::vector<std::string> notes;  ///< what was lost or odd, with its place in the file
+  std::vector<std::string> notes;  ///< what was lost or unexpected, with its place in the file
 };
 
-/// Reads an MCAP file from front to back without need of its index: a file without its tail, or
-/// with damage in the middle, gives all chunks that are whole. Fails only when the file cannot be
-/// opened or does not begin as MCAP. Never throws on any content; memory is bounded by the limits
-/// and the size of the file.
+/// Reads an MCAP file from front to back without its index: a file without its tail, or with damage
+/// in the middle, gives all chunks that are whole. Fails only when the file cannot be opened or
+/// does not begin as MCAP. Never throws on any content; memory is bounded by the limits and the
+/// size of the file.
 Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler& handler,
                            const McapLimits& limits = {});
 

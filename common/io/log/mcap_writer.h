@@ -25,12 +25,13 @@ struct McapWriterOptions {
   std::size_t chunk_bytes = 1 << 20;  ///< a chunk is closed when it holds this much
 };
 
-/// Writes one MCAP file front to back, records whole: after a crash the file ends in the middle of
-/// at most one record. Errors of the disk stick: the file is cut back to its last whole record,
-/// later calls do nothing, and sync() and close() say what happened. Not thread safe.
+/// Writes one MCAP file from front to back: after a crash the file ends in the middle of at most
+/// one record. After an error of the disk the file is cut back to its last whole record, later
+/// calls do nothing, and sync() and close() return the error. Not thread safe.
 class McapWriter {
  public:
-  /// By a writer that lives: of this host, or of another where the disk between them keeps flock().
+  /// Is the file being written by a living process of this host, or of another one where the disk
+  /// between them supports flock()?
   static bool is_being_written(const std::filesystem::path& file);
   /// Fails when the file exists: a record of a session is never overwritten.
   static Result<std::unique_ptr<McapWriter>> create(const std::filesystem::path& file,
@@ -49,13 +50,13 @@ class McapWriter {
   void add_metadata(std::string_view name, const std::map<std::string, std::string>& values);
   void add_message(std::uint16_t channel, std::uint64_t time_ns, std::span<const std::byte> data);
 
-  /// Bytes in the open chunk. The caller closes chunks, so that what belongs together stays
-  /// together; see McapWriterOptions::chunk_bytes.
+  /// Is the open chunk full (McapWriterOptions::chunk_bytes)? The caller closes chunks, so that
+  /// records that belong together stay together.
   bool chunk_is_full() const { return chunk_.size() >= options_.chunk_bytes; }
   void end_chunk();
   /// Closes the open chunk and waits until all is on disk.
   Status sync();
-  /// Adds index, statistics and footer. The writer is of no use afterwards.
+  /// Adds index, statistics and footer. Afterwards the writer may only be destroyed.
   Status close();
 
   /// Chunks that are whole in the file, also when what follows them could not be written.

@@ -12,19 +12,19 @@
 namespace mortise {
 
 /// The scene with which a logged session began: scenario and meshes from the log, no other file.
-/// Of a log that goes on where another ended, the world stands as at its beginning. `log` must
-/// outlive the call only.
+/// For a log that continues another one the world is that of its beginning. `log` must outlive the
+/// call only.
 Result<LoadedScene> scene_of(const SessionLog& log);
-/// The same without what happened before the log's first tick.
+/// The same without what happened before the first tick of the log.
 Result<LoadedScene> bare_scene_of(const SessionLog& log);
 
-/// The scene as it stood after the last checkpoint of the log that is of use: whole, kept by the
-/// reader, of this build; else as at the log's beginning.
+/// The scene after the last usable checkpoint of the log (whole, kept by the reader, of this
+/// build), or else at the log's beginning.
 struct SceneAtCheckpoint {
   LoadedScene scene;
   std::uint64_t tick = 0;  ///< of the world: later ticks are still to be computed
   bool from_checkpoint = false;
-  std::vector<std::string> notes;  ///< which checkpoints were passed over, and why
+  std::vector<std::string> notes;  ///< which checkpoints were skipped, and why
 };
 Result<SceneAtCheckpoint> scene_at_last_checkpoint(const SessionLog& log);
 
@@ -37,15 +37,15 @@ struct ReplayDifference {
 struct ReplayReport {
   std::uint64_t ticks_logged = 0;
   std::uint64_t ticks_compared = 0;  ///< of these
-  std::uint64_t idle_ticks = 0;      ///< computed between them: not logged, since nothing went in
+  std::uint64_t idle_ticks = 0;      ///< computed between them; without input and so not logged
   std::uint64_t increments = 0, decisions = 0, events_compared = 0;
   std::uint64_t verified_to_tick = 0;      ///< every tick up to this one agrees
-  std::uint64_t checkpoints_compared = 0;  ///< each of the same bytes as the state computed here
+  std::uint64_t checkpoints_compared = 0;  ///< equal byte by byte to the state computed here
   std::optional<ReplayDifference> difference;
   std::string not_verifiable;  ///< why ticks after verified_to_tick could not be compared, or empty
   bool same_build = false;     ///< bit for bit agreement is promised
-  bool bit_for_bit = true;     ///< that is how it was compared; else within accuracy
-  double largest_pose_off_mm = 0.0;  ///< of a moved part against the log, where that is how
+  bool bit_for_bit = true;     ///< how it was compared; false: within accuracy
+  double largest_pose_off_mm = 0.0;  ///< of a moved part from the log, when within accuracy
 };
 
 /// A tick as it was computed again. `logged` is null for an idle one.
@@ -56,7 +56,7 @@ struct ReplayedTick {
 };
 using OnReplayedTick = std::function<void(const ReplayedTick&)>;
 
-/// How closely a replay is held to its log.
+/// How closely a replay must agree with its log.
 enum class Agreement : std::uint8_t {
   kBitForBit = 0,
   /// For a log of another build: the same refusals, the same events in the same order with the same
@@ -65,17 +65,16 @@ enum class Agreement : std::uint8_t {
 };
 inline constexpr double kOtherBuild_mm = 1e-3;
 
-/// Computes a logged session again in `world`, which stands as scene_of(log) made it, tick by tick,
-/// and compares refusals, events, state hashes and, on the build that wrote them, checkpoints.
-/// Ticks that the world has behind it already are passed over. Stops at the first difference, and
-/// at the first gap: what was lost there cannot be computed. Fails when the log cannot be replayed
-/// at all.
+/// Computes a logged session again tick by tick in `world`, as scene_of(log) made it, and compares
+/// refusals, events, state hashes and, on the build that wrote them, checkpoints. Ticks that the
+/// world has already computed are skipped. Stops at the first difference and at the first gap,
+/// because ticks after a gap cannot be computed. Fails when the log cannot be replayed at all.
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
                             const OnReplayedTick& on_tick = {},
                             Agreement agreement = Agreement::kBitForBit);
 
-/// The same without comparing: what the log's decisions and increments come to in a world that is
-/// not as it was (another policy, tolerance, mesh). Stops at the first gap, and says so.
+/// The same without comparing: applies the log's decisions and increments to a changed world
+/// (another policy, tolerance, mesh). Stops at the first gap and reports that.
 struct Recomputation {
   std::uint64_t ticks = 0;    ///< idle ones included
   std::string stopped_early;  ///< why ticks of the log were left out, or empty

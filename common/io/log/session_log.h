@@ -21,16 +21,16 @@ namespace mortise {
 
 struct LoadedScene;
 
-/// The whole state of the session after a tick, as it stands in a log.
+/// The whole state of the session after a tick, as it is stored in a log.
 struct Checkpoint {
   std::uint64_t tick = 0, state_hash = 0;
-  std::string build;             ///< fingerprint of who wrote it
+  std::string build;             ///< fingerprint of the build that wrote it
   std::string hash;              ///< content hash of the bytes
   std::vector<std::byte> bytes;  ///< see checkpoint.h; empty where a reader did not keep them
   StepCounters counters;         ///< of all ticks of the session up to it that were recorded
 };
 
-/// What stands at the front of a log that goes on where another one ended.
+/// The beginning of a log that continues another one.
 struct LogBegin {
   Checkpoint state;
   SessionStatistics statistics;  ///< of all ticks before
@@ -39,7 +39,7 @@ struct LogBegin {
 
 /// The place of a file among those of one session.
 struct LogChain {
-  std::string previous;    ///< name of the file before, in the same folder; empty: it is the first
+  std::string previous;    ///< name of the previous file, in the same folder; empty: the first file
   std::uint64_t part = 1;  ///< 1, 2, 3 ...
 };
 
@@ -55,8 +55,8 @@ struct LogHeader {
   LogChain chain = {};
 };
 
-/// Of a session that begins as `scene` was loaded. The meshes stay those of the scene, which must
-/// outlive the header.
+/// The header of a session that begins with the scene as loaded. It refers to the meshes of the
+/// scene, which must outlive it.
 LogHeader log_header(const LoadedScene& scene, std::string session, std::string scenario_name,
                      std::string scenario_yaml);
 
@@ -68,7 +68,7 @@ struct TickRecord {
   std::vector<Decision> decisions;
   std::vector<Increment> increments;
   StepReport report;
-  StateDraft state = {};  ///< the state after it, made into bytes by the writer; mostly none
+  StateDraft state = {};  ///< the state after the tick, serialized by the writer; mostly empty
 };
 
 struct LogOptions {
@@ -80,21 +80,20 @@ struct LogOptions {
   double flush_s = 0.9;
   /// Beyond this size the next file is begun with the next checkpoint; 0: all in one.
   std::uint64_t rotate_bytes = 0;
-  /// The file, and those that follow it, have their names with take_name() only, "x.mcap.begun"
-  /// until then, and go when closed without: of a server that stands by, whose log must not be
-  /// taken for the session's.
+  /// The file and those that follow it are called "x.mcap.begun" until take_name(), and are removed
+  /// when closed before. For a standby, whose log must not be mistaken for the session's.
   bool named_later = false;
 };
 
 /// The file that follows `file` when it has become too large: "x.mcap", "x_p0002.mcap" ...
 std::filesystem::path next_in_chain(const std::filesystem::path& file);
 
-/// Writes an MCAP file off the caller's thread. One thread records, flushes and closes; record()
-/// only queues (bounded) and never waits for the disk nor the writer; a full queue drops nothing
-/// silently: the dropped ticks are counted, said in dropped_ticks(), and marked in the log as a
-/// gap. Chunks are flushed each second. Ticks must rise; ticks in which nothing went in may be left
-/// out, a replay steps through them. Layout: session_log_format.md. A file has its name once its
-/// head is on disk. With rotation the meshes of the header have to live as long as the writer.
+/// Writes an MCAP file in a thread of its own. All calls come from one thread. record() only queues
+/// (bounded) and never waits for the disk or the writer. Ticks that a full queue drops are counted
+/// in dropped_ticks() and marked in the log as a gap. Chunks are flushed each second. Ticks must
+/// rise; ticks without input may be left out, because a replay steps through them. Layout:
+/// session_log_format.md. A file gets its name once its head is on disk. With rotation the meshes
+/// of the header must live as long as the writer.
 class SessionLogWriter {
  public:
   static Result<std::unique_ptr<SessionLogWriter>> create(const std::filesystem::path& file,
@@ -102,10 +101,10 @@ class SessionLogWriter {
                                                           const LogOptions& options = {});
   virtual ~SessionLogWriter() = default;  ///< closes
   virtual void record(TickRecord record) = 0;
-  /// An empty record that brings the memory of one that is written: nothing is allocated to fill
-  /// it. Only for the thread that records.
+  /// An empty record with the memory of a written one, so that filling it allocates nothing. Only
+  /// for the recording thread.
   virtual TickRecord spare() { return {}; }
-  /// A record with a state is wanted, so that the next file can begin.
+  /// Does the next file wait for a record with a state?
   virtual bool wants_state() const { return false; }
   /// See LogOptions::named_later.
   virtual Status take_name() { return ok(); }
@@ -115,60 +114,60 @@ class SessionLogWriter {
   virtual std::uint64_t dropped_ticks() const = 0;
   virtual std::uint64_t bytes_written() const = 0;
   virtual std::size_t queued_ticks() const { return 0; }  ///< recorded, but not yet written
-  virtual Status status() const = 0;  ///< fails once the disk did: later ticks count as dropped
+  virtual Status status() const = 0;  ///< fails after an error of the disk: later ticks are dropped
 };
 
-/// Ticks that are not in the log though they happened.
+/// Ticks that happened and are missing in the log.
 struct LogGap {
   std::uint64_t after_tick = 0;  ///< last tick before it (0: none)
   std::uint64_t until_tick = 0;  ///< first tick after it (0: none)
   std::string reason;
 };
 
-/// A log read back. Readable without its tail: `complete` says whether the end was found. Poses of
-/// ticks are rounded, for viewing; a replay computes the exact ones.
+/// A log that was read. It is readable without its tail; `complete` says whether the end was found.
+/// Poses of ticks are rounded, for viewing; a replay computes the exact ones.
 struct SessionLog {
   std::string session, scenario_name, scenario_yaml, engine_version, build_fingerprint;
   std::vector<std::pair<std::string, TriangleMesh>> meshes;
   std::vector<std::string> mesh_of_part;
   std::vector<ImportReport> imports;  ///< by part index; may be empty
   std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
-  std::optional<LogBegin> begin;      ///< set: the file goes on where another one ended
+  std::optional<LogBegin> begin;      ///< set: the file continues another one
   LogChain chain;
   /// By tick; with those at the front of later files, but without that of `begin`.
   std::vector<Checkpoint> checkpoints;
   bool complete = false;
   std::vector<LogGap> gaps;  ///< in the order of the log
-  /// Sums of /statistics by name: what was examined and skipped. What is lost of the log is not in
-  /// them.
+  /// Sums of /statistics by name: what was examined and skipped, without lost parts of the log.
   std::map<std::string, std::uint64_t> counted;
   std::vector<std::string> notes;  ///< what was lost or skipped, in words
 };
 
-/// Server clock of the last tick that a log tells, or that it begins with; 0: it tells none.
+/// Server clock of the last tick of a log, or of the tick that it begins with; 0: it has neither.
 std::int64_t last_time_ns(const SessionLog& log);
 
 struct LogReading {
-  /// Of so many last checkpoints the bytes are kept; all others are known by their hash.
+  /// Keep the bytes of so many last checkpoints; of all others only the hash.
   std::size_t keep_checkpoints = 0;
-  /// Told, as it goes on, how many files are read, with a part of the one that is.
+  /// Called with the number of files read so far, the current one in part.
   std::function<void(double files)> on_progress = {};
 };
 Result<SessionLog> read_session_log(const std::filesystem::path& file,
                                     const LogReading& reading = {});
 
-/// The files of a session in their order: `file` and what goes on from it in the same folder. Where
-/// two files go on from one, the one whose name comes last. Reads only the heads of files.
+/// The files of a session in their order: `file` and those that continue it in the same folder. Of
+/// two files that continue the same one, the one whose name is later. Reads only the heads of
+/// files.
 std::vector<std::filesystem::path> chain_from(const std::filesystem::path& file);
 
-/// Several files of one session as one log, each going on where the one before ends; ticks of a
-/// file beyond the beginning of the next are left out, and ticks that are in none are a gap. A
-/// single file brings its chain along. Fails when the files are not of one session, in order.
+/// Several files of one session as one log, each continuing the previous one. Ticks of a file
+/// beyond the beginning of the next are left out; ticks in no file are a gap. A single file brings
+/// its chain with it. Fails when the files are not of one session, in order.
 Result<SessionLog> read_session(std::span<const std::filesystem::path> files,
                                 const LogReading& reading = {});
 Result<SessionLog> read_session(const std::filesystem::path& file, const LogReading& reading = {});
 
-/// What `recover` did.
+/// The outcome of recover_session_log().
 struct Recovery {
   std::uint64_t ticks = 0, messages = 0, lost_chunks = 0;
   bool was_complete = false;

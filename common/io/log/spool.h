@@ -9,14 +9,14 @@
 
 namespace mortise {
 
-/// Bytes that come in one after the other and are read once at the end. What is beyond a block of
-/// 4 KiB lies in a file without a name, so that memory does not grow with them; where the folder
-/// has no such files, or the disk is full, they stay in memory.
+/// Bytes that are appended and read once at the end. All but the last block of 4 KiB are in a file
+/// without a name, so that memory does not grow. Where the folder has no such files, or the disk is
+/// full, they stay in memory.
 class Spool {
  public:
   static constexpr std::size_t kBlockBytes = 1 << 12;
 
-  /// The file lies in `folder` and is gone with the process.
+  /// The file is in `folder` and disappears with the process.
   explicit Spool(const std::filesystem::path& folder);
   ~Spool();
   Spool(const Spool&) = delete;

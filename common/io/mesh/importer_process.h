@@ -12,9 +12,9 @@ namespace mortise {
 /// running program.
 std::filesystem::path importer_program();
 
-/// Runs the importer on a file and takes what it says. Whatever happens to it (crash, hang, limits,
-/// garbage) becomes one line; it is dead when this returns. `extension` is lower case, with the
-/// dot.
+/// Runs the importer on a file and returns its result. Every failure of it (crash, hang, limits,
+/// garbage) becomes one line. The process has ended when this returns. `extension` is lower case,
+/// with the dot.
 Result<RawSoup> run_importer(const std::filesystem::path& file, const std::string& extension,
                              const ImportLimits& limits);
 

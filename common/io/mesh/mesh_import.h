@@ -14,16 +14,16 @@ struct ImportLimits {
   std::uint64_t memory_bytes = 4ULL << 30;  ///< its address space
 };
 
-/// What was found in a file and what was done about it.
+/// What was found in a file and what was corrected.
 struct ImportReport {
   std::string file, format;
   std::uint64_t raw_vertices = 0, points = 0, raw_triangles = 0, triangles = 0;
   std::uint64_t degenerate_dropped = 0, duplicate_triangles = 0, points_and_lines_dropped = 0;
-  std::uint64_t triangles_split = 0;  ///< so that no dropped triangle left an open edge
+  std::uint64_t triangles_split = 0;  ///< split so that no dropped triangle left an open edge
   std::uint64_t boundary_edges = 0, non_manifold_edges = 0, misoriented_edges = 0, components = 0;
   double volume_mm3 = 0.0;
   bool closed = false;
-  bool flipped = false;     ///< all triangles were turned: the volume was negative
+  bool flipped = false;     ///< all triangles were reversed, because the volume was negative
   double quantum_mm = 0.0;  ///< coordinates are floats: half an ulp of the largest coordinate, plus
                             ///< what the node transforms of the file add
   std::vector<std::string> notes;  ///< what a designer should know, one line each; often empty

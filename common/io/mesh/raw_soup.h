@@ -9,7 +9,7 @@
 
 namespace mortise {
 
-/// What the importer process says of a file: a reason why not, or loose triangles. File units.
+/// The result of the importer process for a file: a refusal, or loose triangles. File units.
 struct RawSoup {
   std::string refusal;          ///< not empty: nothing else is set
   std::string format;           ///< "STL", "OBJ", ...
@@ -24,11 +24,11 @@ struct RawSoup {
 /// measured has 263,730); a hostile file can place one mesh a million times.
 inline constexpr std::uint64_t kMostRawTriangles = 20'000'000;
 
-/// The bytes that go from the importer process to ours. Same machine, same byte order.
+/// The bytes that the importer process sends to ours. Same machine, same byte order.
 std::vector<std::byte> encode(const RawSoup& soup);
 
-/// The sender may have been taken over by the file it read: every length is checked against the
-/// bytes that are there, every coordinate must be finite.
+/// The file may have taken over the sender, so every length is checked against the bytes that are
+/// there, and every coordinate must be finite.
 Result<RawSoup> decode(std::span<const std::byte> bytes);
 
 }  // namespace mortise

@@ -7,8 +7,8 @@
 
 namespace mortise {
 
-/// What a scenario says of tolerances, changeable while its session runs. Statements are read,
-/// checked and combined by what reads and loads the file. Private to scene_load.
+/// The tolerances of a scenario, changeable while its session runs. The reader of the file also
+/// reads, checks and combines the changes. Private to scene_load.
 std::shared_ptr<SurfaceRules> make_live_rules(const Scenario& scenario,
                                               std::vector<StatedPart> stated);
 

@@ -30,12 +30,12 @@ std::optional<Scenario::Tolerance> tolerance_of(const YamlMap& map);
 std::optional<Position> read_position(YamlContext& context, const YAML::Node& node,
                                       const std::string& what);
 
-/// What a feature is stated to be: iso (with nominal and width_to), tolerance, position.
+/// The statements of a feature: iso (with nominal and width_to), tolerance, position.
 void read_feature_statement(YamlContext& context, const YamlMap& map,
                             Scenario::FeatureSpec& feature);
 
-/// What holds between both sides of a fit: code (with nominal), plus_minus, profile, lower. Gives
-/// the key that says so, empty and an error when there is none.
+/// The statement of a fit: code (with nominal), plus_minus, profile, lower. Returns the key that
+/// was used; empty, with an error, when there is none.
 std::string read_fit_statement(YamlContext& context, const YamlMap& map, Scenario::FitSpec& fit);
 
 /// Splits "Ø20 H7/g6" into its nominal diameter (file unit, 0 when none) and "H7/g6".

@@ -10,8 +10,8 @@
 #include "common/io/scenario/scenario_file.h"
 #include "common/math/types.h"
 
-/// Strict access to YAML for io/scenario_file: every read says what it expects, and what is wrong
-/// becomes a finding with file and line instead of an exception. Private to the scenario reader.
+/// Strict access to YAML: every read names the type that it expects, and an error becomes a finding
+/// with file and line instead of an exception. Private to the scenario reader.
 namespace mortise {
 
 /// What all levels of the document share: where findings go, and the unit of lengths.
@@ -25,8 +25,8 @@ struct YamlContext {
   int line_of(const YAML::Node& node) const { return node.Mark().line + 1; }
 };
 
-/// One mapping of the document. Unknown and doubled keys are errors as soon as it is made; a node
-/// that is no mapping is one error and then reads as empty.
+/// One mapping of the document. The constructor reports unknown and duplicate keys. A node that is
+/// no mapping is one error and then reads as empty.
 class YamlMap {
  public:
   YamlMap(YamlContext& context, const YAML::Node& node, std::string what,

@@ -9,7 +9,7 @@
 #include "common/io/mesh/mesh_import.h"
 #include "common/session/world/scenario.h"
 
-/// What a part takes from recognition beside what is declared of it. Private to scene_load.
+/// Recognized features of a part beside its declared ones. Private to scene_load.
 namespace mortise {
 
 /// Recognizes each distinct mesh once.
@@ -27,8 +27,8 @@ const Feature* find_recognized(const Recognition& recognition, const std::string
 /// "known: bore_1, bore_2, ...", the first of them, for messages.
 std::string recognized_names(const Recognition& recognition);
 
-/// The recognized features that nobody declared, without the triangles of declared ones; those of
-/// which nothing is left go. A name that is taken by a declared feature gets "_recognized".
+/// The recognized features that are not declared, without the triangles of declared ones; a feature
+/// without any triangle left is dropped. A name that a declared feature has gets "_recognized".
 std::vector<Feature> undeclared_features(const Recognition& recognition,
                                          const std::vector<Feature>& declared,
                                          std::size_t triangles);

@@ -33,9 +33,8 @@ struct LoadedScene {
   struct ResolvedFit {
     std::string part_a, feature_a, part_b, feature_b, code;
     double nominal_mm = 0.0;
-    Interval clearance_mm;  ///< diametral, of what holds between both: see `tighter`
-    /// What else holds of these faces in this pair, end by end: "plate.bore: ±0.005 mm". Empty when
-    /// the fit is all that is said of them.
+    Interval clearance_mm;  ///< diametral, of all statements about both faces: see `tighter`
+    /// Other statements that are tighter than the fit, for each end: "plate.bore: ±0.005 mm".
     std::vector<std::string> tighter;
   };
   std::vector<ResolvedFit> fits;

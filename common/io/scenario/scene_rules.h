@@ -12,17 +12,16 @@
 #include "common/io/scenario/placed_statement.h"
 #include "common/io/scenario/scene_load.h"
 
-/// What pairs of parts say of each other: fits, exclusions, who may hold what. Private to
-/// scene_load.
+/// Rules of pairs of parts and users: fits, exclusions, who may hold what. Private to scene_load.
 namespace mortise {
 
-/// One part while the scene is put together; same index as World::parts. Parts that are alike in
-/// mesh, features and tolerances share a `kind`.
+/// One part while the scene is loaded; same index as World::parts. Parts with equal mesh, features
+/// and tolerances share a `kind`.
 struct StatedPart {
   std::size_t kind = 0;
   PlacedStatement rest;
-  /// Its features as they are declared, in the file or by its generator; those that the mesh alone
-  /// shows come behind and have no declaration.
+  /// Its declared features, from the file or the generator; recognized features come behind and
+  /// have no declaration.
   std::vector<Scenario::FeatureSpec> declared;
   std::vector<PlacedStatement> of_feature;  ///< by index of Part::features; what the part's own
                                             ///< and the feature's statement leave together
@@ -35,7 +34,7 @@ std::string place_of(const Scenario& scenario, SourceLine at);
 using FeaturePair = std::tuple<PartId, std::size_t, PartId, std::size_t>;
 inline constexpr std::size_t kWholePart = static_cast<std::size_t>(-1);
 
-/// What the running session says of one pair of ends instead of the file.
+/// A statement of the running session about one pair of ends; it replaces that of the file.
 struct LiveFit {
   FeaturePair ends;
   std::optional<Scenario::FitSpec> fit;  ///< nothing: no fit
@@ -55,8 +54,8 @@ struct RuleOutcome {
   std::vector<Finding> findings;
 };
 
-/// Pair rules for fits and exclusions, and the findings and resolved fits that come with them. A
-/// rule that matches nothing, or contradicts another, is an error.
+/// Pair rules for fits and exclusions, with their findings and resolved fits. A rule that matches
+/// nothing, or contradicts another one, is an error.
 RuleOutcome rules_of(const RuleInput& input);
 
 }  // namespace mortise

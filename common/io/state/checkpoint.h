@@ -12,37 +12,37 @@
 
 namespace mortise {
 
-/// All that a session is between two ticks, as bytes: poses, holders, users, rules, constraints,
-/// what can be undone, open clashes with their reviews, and everything that the engine remembers of
-/// pairs of parts. The scene (meshes, features, scenario) is not in it. The same state gives the
-/// same bytes. The world has been stepped at least once. Costs 0.1 us a number.
+/// The complete state of a session between two ticks, as bytes: poses, holders, users, rules,
+/// constraints, undo history, open clashes with their reviews, and everything that the engine
+/// remembers of pairs of parts. The scene (meshes, features, scenario) is not included. The same
+/// state gives the same bytes. The world must have been stepped at least once.
 std::vector<std::byte> encode_state(const World& world);
 
-/// Puts such a state into a world that stands as its scene was loaded and was never stepped; then
-/// it goes on as the one from which the bytes came, bit for bit. Takes any bytes: fails, and leaves
-/// the world of no use, when they are no state of this scene.
+/// Restores such a state into a world that was loaded and never stepped. It then continues bit for
+/// bit like the world from which the bytes came. Accepts any bytes: when they are no state of this
+/// scene it fails, and the world must not be used any more.
 Status restore_state(World& world, std::span<const std::byte> bytes);
 
-/// Number of the layout of these bytes: a checkpoint of another number is not read.
+/// Version of the layout of these bytes; a checkpoint of another version is not read.
 inline constexpr std::uint8_t kStateLayout = 1;
 
-/// A state to be had as bytes later, on another thread, and once.
+/// A state that another thread can serialize later, once.
 using StateDraft = std::function<std::vector<std::byte>()>;
 
-/// Makes checkpoints beside a running session without holding up its ticks: what is remembered of
-/// pairs is copied in slices, a few pairs in each tick, those first that the tick has left alone,
-/// until few are left or the time is over; the rest in one go. Sorting, bytes and compression are
-/// left to who finishes the draft. One maker a world.
+/// Makes checkpoints beside a running session without delaying its ticks. The memory of pairs is
+/// copied in slices, a few pairs in each tick, unchanged pairs first, until few are left or the
+/// time is over; then the rest at once. Sorting, serializing and compressing are done by whoever
+/// calls the draft. One maker for each world.
 class CheckpointMaker {
  public:
   CheckpointMaker();
   ~CheckpointMaker();
-  /// Before the first tick that it is to see.
+  /// Call before the first tick that it is to see.
   void begin(World& world);
-  /// After each tick; `due` begins a checkpoint. Gives one within kMostSlices ticks: of the state
-  /// as it stands after this tick. Drafts are finished in their order, or not at all.
+  /// Call after each tick; `due` begins a checkpoint. Returns one within kMostSlices ticks, of the
+  /// state after that tick. Drafts must be called in their order, or not at all.
   StateDraft after_tick(World& world, bool due);
-  /// Begun and not given yet: what is due meanwhile is this one.
+  /// Is a checkpoint begun and not yet returned? Then `due` has no effect.
   bool running() const { return running_; }
 
  private:

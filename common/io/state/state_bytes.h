@@ -15,8 +15,8 @@
 #include "common/io/state/bytes.h"
 #include "common/math/types.h"
 
-/// Values to bytes and back by one list of their members, `fields(archive, value)`, see
-/// state_fields.h. Doubles keep every bit.
+/// Serializes values and reads them back by one list of their members, `fields(archive, value)`,
+/// see state_fields.h. Doubles keep every bit.
 namespace mortise::state_bytes {
 
 template <class T>
@@ -105,7 +105,7 @@ void visit(Archive& archive, T& value) { fields(archive, value); }
 class Writer {
  public:
   Writer() = default;
-  /// Into memory of before, which saves fetching it.
+  /// Reuses the given memory.
   explicit Writer(std::vector<std::byte> memory) : bytes_(std::move(memory)) {}
   template <class... T>
   void operator()(const T&... values) {
@@ -139,7 +139,7 @@ class Writer {
   }
 
  private:
-  // Grown by each number, a vector would cost more than what is written.
+  // Growing the vector for each number would cost more than writing it.
   std::byte* room(std::size_t bytes) {
     const std::size_t at = size_;
     size_ += bytes;
@@ -152,7 +152,8 @@ class Writer {
   std::size_t size_ = 0;
 };
 
-/// Never reads past its end; what does not fit makes ok() false, and all after it zero.
+/// Never reads past its end: the first value that does not fit makes ok() false, and it and all
+/// after it are zero.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : in_(bytes) {}
@@ -177,7 +178,7 @@ class Reader {
   void plains(T* values, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) plain(values[i]);
   }
-  /// Every item takes a byte at least: a larger count is none.
+  /// Every item takes at least one byte; a count larger than that allows becomes 0.
   std::size_t count(std::size_t) {
     std::uint32_t count = 0;
     plain(count);

@@ -3,9 +3,9 @@
 #include "common/session/memory/session_state.h"
 #include "common/session/tick/statistics.h"
 
-/// The members of all that a session is between two ticks, each named once for writing and for
-/// reading. Every type is taken apart as a whole: a member that is added to one does not compile
-/// until it stands here.
+/// The members of the state of a session between two ticks, each named once for writing and
+/// reading. Every type is decomposed completely: after a new member the file does not compile until
+/// the member is listed here.
 namespace mortise {
 
 template <class A>
@@ -91,7 +91,7 @@ void fields(A& a, MoveHistory& x) {
   auto& [done, undone, moves, open] = x;
   a(done, undone, moves, open);
 }
-/// Of a part what a session changes, but for its band; the rest comes with the scene.
+/// The members of a part that a session changes, without its band; the rest comes with the scene.
 template <class A>
 void fields(A& a, Part& x) {
   auto& [id, name, solid, band, features, moving, X_WP_scenario, X_WP, holder, asked_by, history,
