@@ -6,18 +6,18 @@
 
 namespace mortise {
 
-/// More features are not told: 100,000 of them are 20 MB, which every participant would have to
-/// take. Read by session.
+/// Most features that are published: 100,000 of them are 20 MB for every participant. Read by
+/// session.
 inline constexpr std::size_t kMostFeaturesTold = 100'000;
 
-/// What constraints can name: the features of the load and, of meshes in world.recognized, what
-/// they show beside. A recognized feature that stands for triangles of declared ones alone, or
-/// whose name is taken, is not told twice. Alike parts share a set. Features beyond `most` are left
-/// out, whole sets, and counted. O(parts * features + triangles of distinct meshes).
+/// The features that constraints can name: those of the scene and the recognized ones of meshes in
+/// world.recognized. A recognized feature whose triangles all belong to declared ones, or whose
+/// name is taken, is left out. Equal parts share a set. Sets beyond `most` features are left out
+/// and counted. O(parts * features + triangles of distinct meshes).
 FeatureTable feature_table(const World& world, std::size_t most = kMostFeaturesTold);
 
-/// Meshes, each once and the smallest first, of which nothing is recognized yet and whose size
-/// permits it on demand (kRecognizedOnDemand).
+/// Meshes, each once and the smallest first, that were not yet searched for features and are small
+/// enough for it (kRecognizedOnDemand).
 std::vector<SolidPtr> unrecognized_meshes(const World& world);
 
 }  // namespace mortise

@@ -7,54 +7,54 @@
 
 namespace mortise {
 
-/// What became of a request about a constraint.
+/// The answer to a request about a constraint.
 struct GuidanceReply {
   Refusal refusal = Refusal::kNone;
-  std::string text;  ///< the reason of a refusal; else which freedom the part keeps
+  std::string text;  ///< the reason of a refusal; else the freedom that the part keeps
   ConstraintId id;   ///< of the constraint that was added or dropped
   int freedom = 6;   ///< motions that the constraints of the part (its group) leave, 0..6
 };
 
 /// May the user set this constraint now? Changes nothing. Only the holder of the part may; the
-/// other part may be anyone's. Refused: unknown user, part or feature, not the holder, a kind that
-/// cannot hold between these surfaces, and what contradicts the constraints that hold already. No
-/// freedom left is no refusal: it is said.
+/// other part may be held by anybody. Refused: unknown user, part or feature, not the holder, a
+/// kind that cannot hold between these surfaces, and a contradiction to constraints in force. A
+/// constraint that leaves no freedom is not refused; the reply says so.
 GuidanceReply check_constraint(const World& world, UserId user, const Constraint& constraint);
 
 /// Checks and sets. Ids count up, so that a replay of the same calls gives the same ones.
 GuidanceReply add_constraint(World& world, UserId user, const Constraint& constraint);
 
-/// Takes a constraint back; only the holder of its part may.
+/// Removes a constraint; only the holder of its part may.
 GuidanceReply drop_constraint(World& world, UserId user, ConstraintId id);
 
-/// A part that is released (or changes hands) loses the constraints that guided it; those of other
-/// parts to it stay. Returns them, by id. Called where a holder changes.
+/// Removes the constraints of a part that is released or changes its holder and returns them, by
+/// id. Constraints of other parts to it stay.
 std::vector<ConstraintId> drop_constraints_of(World& world, PartId part);
 
-/// A part that was put somewhere (undo, reset) stays there until it is pushed.
+/// A part that was placed (undo, reset) stays there until it is pushed.
 void rest_guides_of(World& world, PartId part);
 
-/// After a tick: a guided part that got where it went follows its constraints from now on; one that
-/// was held back waits to be pushed.
+/// Call after a tick: a guided part that reached its target follows its constraints from now on;
+/// one that was held back waits to be pushed.
 void settle_guides(World& world, std::span<const PartId> moved, std::span<const PartId> held_back);
 
-/// How far the part (its group) is off its constraints, and what they leave.
+/// How far the part (its group) is off its constraints, and the freedom that they leave.
 struct GuidedState {
   double residual_mm = 0.0;
   int freedom = 6;
 };
 GuidedState guided_state(const World& world, PartId part);
 
-/// A feature of a part by name: those of the scenario and of generators; where there is none of
-/// that name, what the mesh shows ("bore_1"), asked of meshes up to kRecognizedOnDemand triangles,
-/// some 10 us each; larger ones have to be recognized at the load. Null: none.
+/// A feature of a part by name: of the scenario or the generator, else a recognized one ("bore_1").
+/// Meshes up to kRecognizedOnDemand triangles are searched on demand; larger ones must be
+/// recognized when the scene is loaded. Null: no such feature.
 const Feature* find_feature(const World& world, PartId part, const std::string& name);
 inline constexpr std::size_t kRecognizedOnDemand = 20'000;
 
-/// What a client may offer to snap to.
+/// How near features must be to be offered for a snap.
 struct SnapLimits {
   double angle_rad = 0.26;     ///< between axes or normals, either sense
-  double distance_mm = 20.0;   ///< between axes, planes, centres as they are
+  double distance_mm = 20.0;   ///< between axes, planes, centres
   double radius_share = 0.05;  ///< difference of two radii, of the larger
   std::size_t most = 16;
 };
@@ -65,24 +65,23 @@ struct SnapCandidate {
   double radius_off_mm = 0.0;  ///< difference of the radii; 0 for planes
 };
 
-/// Features of like kind near those of the part, nearest first: a round outside with a round inside
-/// of nearly the same radius, planes that face each other. Searched are the features of the load
-/// and those of meshes that were looked at since (world.recognized). O(features of the part times
-/// features of all others within reach).
+/// Features near those of the part that fit them, nearest first: a shaft and a bore of nearly the
+/// same radius, planes that face each other. Considers the features of the scene and recognized
+/// ones (world.recognized). O(features of the part times features of all others within reach).
 std::vector<SnapCandidate> snap_candidates(const World& world, PartId part,
                                            const SnapLimits& limits);
 
-/// What a wish to snap comes to.
+/// The answer to a wish to snap.
 struct SnapChoice {
   Refusal refusal = Refusal::kNone;
   std::string text;  ///< the reason of a refusal; else what was chosen, in words
   Constraint constraint;
 };
 
-/// The nearest candidate that the wish allows, that agrees with the constraints that hold, and that
-/// takes some freedom away. Of the wish, whose held.part must be, everything else may be none or
-/// empty: then any. With other.part named, however far and askew it stands; else within the limits
-/// above. Changes nothing. Cost: the search, and a check of each candidate up to the chosen one.
+/// The nearest candidate that the wish allows, that agrees with the constraints in force, and that
+/// reduces the freedom. The wish must name held.part; all its other fields may be empty and then
+/// allow anything. With other.part named any distance and angle is allowed, else the limits above
+/// hold. Changes nothing. Costs the search, and a check of each candidate up to the chosen one.
 SnapChoice choose_snap(const World& world, UserId user, const Constraint& wish);
 
 }  // namespace mortise

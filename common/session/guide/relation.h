@@ -10,20 +10,21 @@
 
 namespace mortise {
 
-/// Singular values below this share of the largest count as none when a part is guided: what two
-/// constraints say in common to a millionth is said once. Far above the rounding of features that
-/// were fitted to a mesh (1e-9), far below what a designer means by an angle. Read by session.
+/// Singular values below this share of the largest count as zero when a part is guided, so that
+/// what two constraints have in common to a millionth counts once. Far above the rounding of
+/// features that were fitted to a mesh (1e-9), far below what a designer means by an angle. Read by
+/// session.
 inline constexpr double kGuideRankShare = 1e-6;
 
-/// A guided part counts as standing on its constraints up to this, mm, and constraints that cannot
-/// all be kept this closely contradict each other. A thousandth of the distance at which meshes
-/// count as touching: no drift of a guided part is ever felt by a collision. Read by session.
+/// A guided part satisfies its constraints up to this, mm, and constraints that cannot all be
+/// satisfied this closely contradict each other. A thousandth of the distance at which meshes count
+/// as touching, so that drift of a guided part never matters to a collision. Read by session.
 inline constexpr double kGuideAccuracy_mm = 1e-9;
 static_assert(kGuideAccuracy_mm <= 1e-3 * kAccuracyDefault_mm);
 
 enum class ElementKind : std::uint8_t { kPoint, kLine, kPlane };
 
-/// What of a feature a constraint speaks of: a centre, an axis, a plane. mm.
+/// The element of a feature that a constraint uses: a centre, an axis, a plane. mm.
 struct Element {
   ElementKind kind = ElementKind::kPoint;
   Vec3 point = Vec3::Zero();
@@ -39,9 +40,9 @@ struct Relation {
   double distance_mm = 0.0;
 };
 
-/// The relation that a constraint of this kind asks of two surfaces, each in its own frame. An
-/// error says in one sentence why the kind cannot hold between them. Tangent: cylinders touch along
-/// a line, their axes parallel.
+/// The relation that a constraint of this kind requires of two surfaces, each in its own frame. An
+/// error explains in one sentence why the kind cannot hold between them. Tangent: cylinders touch
+/// along a line, their axes parallel.
 Result<Relation> relation_between(ConstraintKind kind, const Surface& a, const Surface& b,
                                   double distance_mm);
 
@@ -54,27 +55,28 @@ struct Displacement {
 };
 
 struct GuideQuery {
-  std::span<const Relation> relations;  ///< world frame, a as it stands before the displacement
+  std::span<const Relation> relations;  ///< world frame, a before the displacement
   Vec3 center_W = Vec3::Zero();
   double lever_mm = 1.0;  ///< a turn by w counts as a shift by lever_mm * w: the body's radius
   Displacement wanted;
 };
 
-/// Where the relations let the body go.
+/// The displacement that the relations allow.
 struct GuidedDisplacement {
-  Displacement displacement;  ///< nearest to the wanted one, to second order in what was taken away
+  Displacement displacement;  ///< nearest to the wanted one, to second order in the difference
   double residual_mm = 0.0;   ///< largest violation left, turns times the lever
   int freedom = 6;            ///< motions left to first order, 0..6
 };
 
 /// Newton steps of least norm (shift, lever * turn) from the wanted displacement to the relations.
-/// They converge quadratically, to rounding, from anywhere near; redundant relations are the normal
-/// case: singular values below kGuideRankShare of the largest count as none. What contradicts each
-/// other ends in the least-squares middle, with residual_mm > 0. At most kMostRelations relations.
+/// They converge quadratically, to rounding, from any near start. Redundant relations are the
+/// normal case: singular values below kGuideRankShare of the largest count as zero. Contradicting
+/// relations end at the least-squares solution, with residual_mm > 0. At most kMostRelations
+/// relations.
 GuidedDisplacement guided(const GuideQuery& query);
 inline constexpr std::size_t kMostRelations = 8;
 
-/// What stays zero to first order, row by row over (shift, lever * turn), at the wanted
+/// The rows over (shift, lever * turn) that must stay zero to first order, at the wanted
 /// displacement.
 std::vector<Eigen::Matrix<double, 6, 1>> guide_rows(const GuideQuery& query);
 

@@ -7,8 +7,8 @@
 
 namespace mortise {
 
-/// What users did to one part, so that each can take back and repeat their own moves. A move is all
-/// that one user does to the part between a grab and the next grab, release, undo, redo or reset.
+/// The moves of one part, so that each user can undo and redo their own. A move is everything that
+/// one user does to the part between a grab and the next grab, release, undo, redo or reset.
 struct MoveHistory {
   struct Done {
     UserId user;
@@ -23,13 +23,14 @@ struct MoveHistory {
   std::vector<Done> done;      ///< oldest first, at most kMostUndoMoves
   std::vector<Undone> undone;  ///< last undone last, at most kMostUndoMoves
   std::uint64_t moves = 0;
-  bool open = false;  ///< the last move goes on
+  bool open = false;  ///< the last move has not ended
 
-  /// The part is about to leave X_WP_before by this user's doing; no news while their move is open.
-  /// What this user has undone before can no longer be repeated.
+  /// Call before this user moves the part away from X_WP_before. Has no effect while the user's
+  /// move is open; else it begins a move, and what the user has undone can no longer be redone.
   void note(UserId user, const Pose& X_WP_before);
   void end_move() { open = false; }
-  /// Nobody is this user any more: their moves stay, and are nobody's to take back or repeat.
+  /// The user id passes to another user: the former user's moves stay and can no longer be undone
+  /// or redone.
   void forget(UserId user);
 
   /// kNone, kNothingToUndo, or kMovedBySomeoneElse: then `by` has moved the part last.
@@ -41,9 +42,10 @@ struct MoveHistory {
   /// kNone, kNothingToRedo, or kMovedBySomeoneElse: then `by` has moved the part since the undo.
   Answer may_redo(UserId user) const;
 
-  /// Where the part goes, from X_WP. Only when there is a move to undo.
+  /// The pose to which the part goes from X_WP. Requires a move to undo.
   Pose undo(const Pose& X_WP);
-  /// Where the part goes: the move of this user that was undone last. Only when there is one.
+  /// The pose to which the part goes: redoes the move of this user that was undone last. Requires
+  /// one.
   Pose redo(UserId user);
 };
 

@@ -5,10 +5,11 @@
 
 namespace mortise {
 
-/// Puts a part somewhere without a motion.
+/// Places a part at a pose without a motion.
 void put(World& world, Part& part, const Pose& X_WP, const Decision& by);
 
-/// Gives a part to a user, or to nobody. Its last move is over; who asked for it is answered by it.
+/// Gives a part to a user, or frees it. This ends its last move and answers a pending request for
+/// it.
 void give(World& world, Part& part, UserId holder);
 
 PartPose pose_of(const Part& part);

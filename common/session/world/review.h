@@ -8,17 +8,18 @@ namespace mortise {
 OpenClash* find_open(World& world, ClashId clash);
 const OpenClash* find_open(const World& world, ClashId clash);
 
-/// Sets what people say of an open clash; told in the next tick. No-op when it is not open.
+/// Sets the review status of an open clash; published in the next tick. No effect when the clash is
+/// not open.
 void review(World& world, const Decision& decision);
 
-/// Tells the reviews made since the last tick, before anything else that the tick tells.
+/// Publishes the reviews made since the last tick, before all other events of the tick.
 void tell_reviews(const World& world, SessionState& state, StepReport& report);
 
-/// Is an approved clash now worse than what was approved: of a worse class, or deeper for certain
-/// than it can have been then?
+/// Is an approved clash worse than what was approved: of a worse class, or certainly deeper than it
+/// can have been then?
 bool is_worse_than_approved(const OpenClash& clash, double hysteresis_mm);
 
-/// Makes an approved clash active again and says why in the comment.
+/// Makes an approved clash active again and gives the reason in the comment.
 void take_back_approval(OpenClash& clash, std::uint64_t tick);
 
 }  // namespace mortise

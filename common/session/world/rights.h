@@ -5,7 +5,7 @@
 
 namespace mortise {
 
-/// "pin*" against "pin_3": '*' stands for any run of characters, the empty one included.
+/// Does "pin_3" match "pin*"? '*' stands for any sequence of characters, also an empty one.
 bool matches_name(std::string_view pattern, std::string_view text);
 
 /// May the user hold the part, by role and by the `users` of the scenario? Observers hold nothing;
@@ -13,11 +13,11 @@ bool matches_name(std::string_view pattern, std::string_view text);
 bool may_hold(const World& world, const User& user, const Part& part);
 
 /// May the user change this, by role and by the `users` of the scenario? Observers change nothing.
-/// Without `users` designers change everything, bots set the review status of clashes. With `users`
-/// a user changes what `may` says; where it says nothing, who may hold something may review.
+/// Without `users` designers change everything and bots set the review status of clashes. With
+/// `users` a user changes what `may` lists; without `may`, users who may hold something may review.
 bool may_change(const World& world, const User& user, Right right);
 
-/// The role in which the scenario wants a user of this name to join; kUnknown: any.
+/// The role that the scenario requires of a user of this name; kUnknown: any.
 Role role_wanted(const World& world, const std::string& user_name);
 
 }  // namespace mortise

@@ -12,13 +12,13 @@
 
 namespace mortise {
 
-/// Where a statement stands in its file, for messages; line 0 when it was made in code.
+/// The line of a statement in its file, for messages; 0 when it was made in code.
 struct SourceLine {
   int line = 0;
 };
 
-/// What happens to a part at a real contact: it is left there (stop), the rest of its increments
-/// goes along the contact (slide), or it is only told (report).
+/// What happens to a part at a real contact: it stops there (stop), the rest of its increment goes
+/// along the contact (slide), or the contact is only reported (report).
 enum class Policy : std::uint8_t { kUnknown = 0, kStop, kReport, kSlide };
 
 constexpr std::string_view name_of(Policy policy) {
@@ -26,18 +26,18 @@ constexpr std::string_view name_of(Policy policy) {
   if (policy == Policy::kReport) return "report";
   return policy == Policy::kSlide ? "slide" : "unknown";
 }
-/// None when there is no policy of that name.
+/// Nothing for an unknown name.
 constexpr std::optional<Policy> policy_named(std::string_view name) {
   for (const Policy policy : {Policy::kStop, Policy::kReport, Policy::kSlide})
     if (name_of(policy) == name) return policy;
   return std::nullopt;
 }
-/// Is nobody let into a real collision?
+/// Does the policy keep parts out of real collisions?
 constexpr bool holds_back(Policy policy) {
   return policy == Policy::kStop || policy == Policy::kSlide;
 }
 
-/// All of them, for messages.
+/// All policies, for messages.
 inline constexpr std::string_view kPolicyNames = "stop, slide or report";
 
 /// What a user may change while the session runs.
@@ -47,14 +47,15 @@ enum class Right : std::uint8_t { kUnknown = 0, kPolicy, kTolerance, kExclusions
 std::string_view name_of(Right value);
 std::optional<Right> right_named(std::string_view name);
 
-/// What is taken for known of surfaces of which nothing is declared.
+/// What is assumed about surfaces without a declaration.
 enum class UndeclaredSurface : std::uint8_t {
   kNominal = 0,  ///< the mesh is taken for the surface
-  kRecognized,   ///< what the mesh shows of planes, cylinders, cones, spheres, tori
-  kEstimated,    ///< that, and the rest by estimate
+  kRecognized,   ///< planes, cylinders, cones, spheres and tori found in the mesh
+  kEstimated,    ///< these, and the rest by estimate
 };
 
-/// A scenario as it is written, in mm and rad; read from YAML by io/scenario_file, or made in code.
+/// A scenario as it is written, in mm and rad; read from YAML by io/scenario/scenario_file, or made
+/// in code.
 struct Scenario {
   struct MeshSource {
     std::string file;                          ///< relative to the scenario; empty when generated
@@ -105,8 +106,9 @@ struct Scenario {
     std::string name;
     std::vector<std::string> may_hold;  ///< part names, '*' allowed; empty: nothing (observer)
     SourceLine at;
-    std::optional<std::vector<Right>> may = {};  ///< none: review, for who may hold something
-    Role role = Role::kUnknown;                  ///< kUnknown: as they ask to
+    std::optional<std::vector<Right>> may =
+        {};                      ///< absent: review, for users who may hold something
+    Role role = Role::kUnknown;  ///< kUnknown: as the user requests
   };
 
   std::string name;
@@ -116,7 +118,7 @@ struct Scenario {
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;  ///< largest translation of one increment
   double lease_s = 5.0;
-  UndeclaredSurface undeclared = UndeclaredSurface::kNominal;  ///< of parts that say nothing
+  UndeclaredSurface undeclared = UndeclaredSurface::kNominal;  ///< of parts without their own
   std::vector<PartSpec> parts;
   std::vector<FitSpec> fits;
   std::vector<Exclusion> exclusions;

@@ -10,40 +10,39 @@
 
 namespace mortise {
 
-/// What a scenario says of tolerances, for as long as its session lives: lets a statement be
-/// changed while the session runs, with the checks of the file. Implemented where scenarios are
-/// read.
+/// Changes tolerances of a scenario while its session runs, with the checks of the file.
+/// Implemented in io/scenario, where scenarios are read.
 class SurfaceRules {
  public:
   virtual ~SurfaceRules() = default;
 
-  /// Of a part, of one of its features, or of a pair of parts or features.
+  /// A part, one of its features, or a pair of parts or features.
   struct Target {
     PartId part;
     std::string feature;  ///< empty: the whole part
-    PartId other_part;    ///< none: the statement is of `part` alone
+    PartId other_part;    ///< none: the statement is about `part` alone
     std::string other_feature;
   };
-  /// What takes the place of what the world has.
+  /// Replaces bands and pair rules of the world.
   struct Change {
     std::vector<std::pair<PartId, SurfaceBand>> bands;
     /// Every rule of a pair with target.part in it that has bands; only part ids, bands and fit are
     /// filled in.
     std::vector<PairRule> pairs;
   };
-  /// States `text` of the target, as it stands in a scenario file behind tolerance:, iso: or in a
-  /// fit ("±0.05", "{profile: 0.1}", "H7", "H7/g6"); empty: nothing is stated of it any more. Fails
-  /// with the sentence of the file's finding, and is then as before.
+  /// States `text` about the target, as behind tolerance: or iso: of a scenario file or in a fit
+  /// ("±0.05", "{profile: 0.1}", "H7", "H7/g6"); empty: removes the statement. On failure it
+  /// returns the finding of the reader and changes nothing.
   virtual Result<Change> restate(const World& world, const Target& target,
                                  const std::string& text) = 0;
 };
 
-/// Puts a change into the world. Cost: the rules of the part, and the judging of its pairs in the
+/// Applies a change to the world. Costs the rules of the part, and the judging of its pairs in the
 /// next tick.
 void apply_change(World& world, const Decision& by, SurfaceRules::Change change);
 
-/// Restates what a decision of kind kSetTolerance says, by the rules of the world; fails, and
-/// changes nothing, when it cannot hold.
+/// Applies a decision of kind kSetTolerance by the rules of the world; fails, and changes nothing,
+/// when the statement cannot hold.
 Status set_tolerance(World& world, const Decision& decision);
 
 }  // namespace mortise

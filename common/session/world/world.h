@@ -31,12 +31,12 @@ struct Part {
   Pose X_WP_scenario;  ///< where the scenario put it
   Pose X_WP;
   UserId holder;
-  UserId asked_by;  ///< who waits for its holder to hand it over
+  UserId asked_by;  ///< the user who waits for a hand-over of the part
   MoveHistory history;
-  GroupId group;  ///< parts of one group have one holder and move as one body; none: by itself
+  GroupId group;  ///< parts of one group have one holder and move as one body; none: no group
 };
 
-/// What a pair of parts has of its own: bands that replace the parts' bands, or an exclusion.
+/// The rule of a pair of parts: bands that replace the parts' bands, or an exclusion.
 struct PairRule {
   PartId a, b;                                        ///< a < b
   std::shared_ptr<const SurfaceBand> band_a, band_b;  ///< null: the part's own
@@ -53,23 +53,24 @@ struct User {
   Role role = Role::kDesigner;
 };
 
-/// One constraint that holds.
+/// One constraint in force.
 struct Guide {
   ConstraintId id;
   UserId user;  ///< who set it
   Constraint constraint;
   Relation relation;  ///< elements in the frames of the two parts
-  /// The part goes for the constraint without being pushed: after a snap, and once it has kept it.
+  /// The part moves to satisfy the constraint without being pushed: after a snap, and once it has
+  /// satisfied it.
   bool follows = false;
 };
 
 class SurfaceRules;   ///< session/surface_rules.h
 struct SessionState;  ///< caches and open clashes between ticks, session/session_state.h
 
-/// A session between two ticks: what `step` reads and, at its end, writes. Nothing here knows a
-/// clock or a socket. After the first step poses and holders change only by `step`,
-/// `apply_command` and `apply_decision`: caches lean on it. A copy shares `state` and must not be
-/// stepped beside the original.
+/// A session between two ticks: `step` reads it and, at its end, writes it. There is no clock or
+/// socket here. After the first step poses and holders may change only by `step`, `apply_command`
+/// and `apply_decision`, because caches depend on it. A copy shares `state` and must not be stepped
+/// beside the original.
 struct World {
   std::string name;
   double tick_rate_hz = 60.0;
@@ -81,14 +82,14 @@ struct World {
   std::vector<User> users;  ///< users[i].id.value == i + 1
   std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
   std::vector<Scenario::UserSpec> may_hold;  ///< who may hold and change what, see rights.h
-  std::vector<Decision> standing;  ///< changes of policy, tolerance and exclusions that hold now
+  std::vector<Decision> standing;       ///< changes of policy, tolerance and exclusions in force
   std::shared_ptr<SurfaceRules> rules;  ///< null: tolerances cannot be changed
-  /// Every change of a tolerance that was accepted, in order: said again of a fresh scene they give
-  /// the bands of now. Of several in a row about one thing the last.
+  /// Every accepted change of a tolerance, in order: applied to a fresh scene they give the present
+  /// bands. Of several consecutive changes of one target only the last is kept.
   std::vector<Decision> restated;
   std::vector<Guide> guides;  ///< by id, see session/guidance.h
   std::uint32_t next_constraint = 1, next_group = 1;
-  /// What meshes show, by hash; filled when a constraint first names such a feature. A cache.
+  /// Recognized features of meshes, by hash; filled when a constraint first names one. A cache.
   mutable std::map<std::string, std::shared_ptr<const std::vector<Feature>>> recognized;
   bool evaluates = false;  ///< some part has deviation or tolerance: near pairs are examined
   std::shared_ptr<SessionState> state;  ///< made by the first step
@@ -105,18 +106,18 @@ struct World {
   const PairRule* rule(PartId a, PartId b) const;
 };
 
-/// What the wire tells a participant of the world.
+/// The world as participants are told of it.
 Snapshot snapshot_of(const World& world);
 
-/// Checks and applies one request of a user. On success `decision` is what to log. What is refused
-/// changes nothing, and says why in a sentence.
+/// Checks and applies one request of a user. On success `decision` is what to log. A refused
+/// request changes nothing, and the reply gives the reason in a sentence.
 Reply apply_command(World& world, const Command& command, Decision& decision);
 
-/// Applies a decision without asking: join, leave (frees the user's parts), lease end, and, in a
-/// replay, all the others. A join without a user id takes the next one, which is then
-/// users.back().id; with the id of an absent user it brings that user back, or, where
-/// takes_over_id(), gives the id to somebody else, to whom nothing of that user belongs. Returns
-/// the parts whose holder or pose changed, by id. What cannot apply (unknown user or part) changes
+/// Applies a decision without checking rights: join, leave (frees the user's parts), lease end, and
+/// in a replay all others. A join without a user id takes the next one, which is then
+/// users.back().id. With the id of an absent user it brings that user back, or, where
+/// takes_over_id(), gives the id to another user, who inherits nothing. Returns the parts whose
+/// holder or pose changed, by id. A decision that cannot apply (unknown user or part) changes
 /// nothing.
 std::vector<PartPose> apply_decision(World& world, const Decision& decision);
 
