@@ -14,18 +14,17 @@
 namespace mortise {
 
 struct ClientOptions {
-  double heartbeat_s =
-      0.2;  ///< below a quarter of the liveliness lease is wasted, above half risky
+  double heartbeat_s = 0.2;   ///< a quarter to a half of the liveliness lease
   double join_retry_s = 1.0;  ///< an unanswered join is sent again after this
   double resync_after_s =
-      0.2;  ///< so long may a gap of events stand before a snapshot is asked for
+      0.2;  ///< time that a gap of events may last before a snapshot is requested
   double resync_retry_s = 1.0;   ///< between two requests for a snapshot
   double repeat_after_s = 0.05;  ///< increments unacknowledged for so long are sent again
   double ack_timeout_s = 2.0;    ///< increments unanswered for so long: ask to join again
-  double pose_resync_s = 2.0;    ///< so long may lost poses wait for a keyframe
+  double pose_resync_s = 2.0;    ///< time that lost poses may wait for a keyframe
 };
 
-/// A user of this client, in the order of add_user(); one who left makes room for the next.
+/// A user of this client, in the order of add_user(); the number of a user who left is reused.
 using LocalUser = std::size_t;
 
 enum class JoinState : std::uint8_t { kUnknown = 0, kJoining, kJoined, kRefused, kLeft };
@@ -40,7 +39,7 @@ struct KnownPart {
 struct SeenAck {
   LocalUser user = 0;
   std::uint64_t seq = 0, tick = 0;
-  std::int64_t sent_ns = 0;  ///< when that one was sent, by our clock; 0: not known
+  std::int64_t sent_ns = 0;  ///< when that increment was sent, by our clock; 0: not known
 };
 
 /// What one poll() brought.
@@ -48,7 +47,7 @@ struct ClientUpdate {
   std::vector<PartId> changed;            ///< parts with a new pose or holder, by id, each once
   std::vector<ClashEvent> events;         ///< in order of seq, without gap and repeat
   std::vector<Reply> replies;             ///< to our users
-  std::vector<Decision> decisions;        ///< of the server about anybody, in order
+  std::vector<Decision> decisions;        ///< of the server about all users, in order
   std::vector<RefusedIncrement> refused;  ///< of our users
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here
@@ -57,26 +56,26 @@ struct ClientUpdate {
   std::optional<SessionPulse> pulse;      ///< the latest
   std::vector<MeshBytes> meshes;          ///< arrived
   bool features = false;                  ///< features() is new
-  bool resynced = false;                  ///< a snapshot took the place of what was known
+  bool resynced = false;                  ///< a snapshot has replaced what was known
   bool server_lost = false;               ///< users join again by themselves when it is back
 };
 
-/// Never silent: what was missed, repeated or repaired.
+/// What was missed, repeated or repaired.
 struct ClientStatistics {
   std::uint64_t events_applied = 0, events_duplicate = 0,
                 events_skipped = 0;  ///< skipped: covered by a snapshot
   std::uint64_t gaps = 0, snapshots_requested = 0, snapshots_applied = 0, snapshots_stale = 0;
   std::uint64_t poses_missed = 0, poses_stale = 0;
   std::uint64_t joins_sent = 0, server_losses = 0, increments_sent = 0, not_joined = 0;
-  std::uint64_t increments_repeated = 0;  ///< entries sent again, lest the first was lost
-  std::uint64_t increments_given_up = 0;  ///< never acknowledged, and not kept any longer
+  std::uint64_t increments_repeated = 0;  ///< sent again in case the first was lost
+  std::uint64_t increments_given_up = 0;  ///< never acknowledged, and no longer kept
   std::uint64_t highest_event_seq = 0, highest_tick = 0;
-  std::uint64_t known_event_seq = 0;  ///< the server has said that this one exists
+  std::uint64_t known_event_seq = 0;  ///< highest event that the server has announced
 };
 
-/// A participant of a session without an engine: asks the server and keeps what it answers. Holds
-/// any number of logical users over one channel. Thread-compatible; call poll() at least each
-/// heartbeat_s.
+/// A participant of a session without an engine: sends requests to the server and keeps its
+/// answers. Holds any number of logical users over one channel. Thread-compatible; call poll() at
+/// least each heartbeat_s.
 class Client {
  public:
   /// Nanoseconds of a clock that never goes back.
@@ -94,8 +93,9 @@ class Client {
   const std::string& refusal_text(LocalUser user) const;
   std::size_t user_count() const { return users_.size(); }  ///< those who left included
 
-  /// Commands: the sequence number that the reply will echo, 0 when the user has not joined
-  /// (counted). What a refusal says is in the reply; what was done is in ClientUpdate::decisions.
+  /// Commands return the sequence number that the reply will echo, or 0 when the user has not
+  /// joined (counted). The reason of a refusal is in the reply; what was done is in
+  /// ClientUpdate::decisions.
   std::uint64_t command(LocalUser user, CommandKind kind, PartId part, Details details = {});
   std::uint64_t grab(LocalUser user, PartId part);
   std::uint64_t grab(LocalUser user, std::vector<PartId> parts);  ///< all or none, as one body
@@ -106,7 +106,7 @@ class Client {
   std::uint64_t reset(LocalUser user, PartId part);
   /// Asks its holder for a part; the answer is a decision kHandOver, kDecline or kAskEnd.
   std::uint64_t ask_hand_over(LocalUser user, PartId part);
-  std::uint64_t consent(LocalUser user, PartId part);  ///< to whoever asks for it
+  std::uint64_t consent(LocalUser user, PartId part);  ///< to the user who asked for it
   std::uint64_t decline(LocalUser user, PartId part, const std::string& why = "");
   std::uint64_t set_policy(LocalUser user, const std::string& policy);
   /// text as in a scenario ("±0.05", "H7"), of the whole part or one feature; empty: nothing.
@@ -120,9 +120,9 @@ class Client {
   std::uint64_t review(LocalUser user, ClashId clash, ReviewStatus status,
                        const std::string& comment = "");
   std::uint64_t add_constraint(LocalUser user, const Constraint& constraint);
-  /// Constrains a held part to the nearest feature that fits, and has it set out for it. What is
-  /// none or empty the server chooses; the reply says what in words, the decision kAddConstraint in
-  /// values.
+  /// Constrains a held part to the nearest feature that fits, and moves it there. The server
+  /// chooses what is left empty; the reply says in words what it chose, the decision kAddConstraint
+  /// in values.
   std::uint64_t snap(LocalUser user, PartId held, const FeatureOf& other = {},
                      const std::string& feature = "",
                      ConstraintKind kind = ConstraintKind::kUnknown);
@@ -133,7 +133,8 @@ class Client {
   std::uint64_t send(LocalUser user, PartId part, const Vec3& translation_mm,
                      const Vec3& rotation_rad = Vec3::Zero());
 
-  /// Takes what has come, never blocks, sends what is due (joins, heartbeats, snapshot requests).
+  /// Takes what has arrived, never blocks, sends what is due (joins, heartbeats, snapshot
+  /// requests).
   ClientUpdate poll();
 
   bool synced() const { return synced_; }  ///< a snapshot has come and no gap has stood for long
@@ -143,13 +144,13 @@ class Client {
   double tick_rate_hz() const { return tick_rate_hz_; }
   /// Before the first snapshot a part may be known by its pose alone, without a name.
   const std::map<PartId, KnownPart>& parts() const { return parts_; }
-  /// Everybody who was ever there, present or not, with the role of the last time.
+  /// All users that the session knows, present or not, with their last role.
   const std::vector<UserInfo>& users() const { return session_users_; }
   /// Changes of policy, tolerances and exclusions that hold, constraints, and unanswered asks.
   const std::vector<Decision>& standing() const { return standing_; }
   const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
-  /// What constraints can name. Comes soon after the first snapshot, and once or twice more while
-  /// the server still looks at meshes.
+  /// The features that constraints can name. Arrives soon after the first snapshot, and once or
+  /// twice more while the server still searches meshes.
   const KnownFeatures& features() const { return features_; }
   PartId find_part(const std::string& name) const;  ///< none when unknown
   ClientStatistics statistics() const;
@@ -162,8 +163,8 @@ class Client {
     std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
     Unacknowledged unacknowledged;
     bool was_joined = false;     ///< joins again by itself, also when refused
-    bool awaits_answer = false;  ///< left while the server was being asked
-    bool in_doubt = false;       ///< the server may have taken us for gone: ask to join again
+    bool awaits_answer = false;  ///< left while a join was not answered yet
+    bool in_doubt = false;       ///< the server may count us as absent: ask to join again
     std::optional<std::int64_t> join_sent_ns, unacked_since_ns;
     std::int64_t heartbeat_at_ns = 0;
     std::string refusal;
@@ -172,7 +173,7 @@ class Client {
   void apply_decision(const Decision& decision, ClientUpdate& update);
   UserInfo& known_user(UserId id);
   void forget_user(UserId id);
-  /// Is it a user of ours, gone, or somebody else by now? Then ours has to join again.
+  /// If one of our users is absent, or its id belongs to another user now, it has to join again.
   void doubt(const UserInfo& who);
   void let_go(UserId user, PartId part);
   LocalUserState* own_user(UserId id);
@@ -205,10 +206,10 @@ class Client {
   std::map<std::uint64_t, ClashEvent> pending_;  ///< events beyond a gap, by seq
   std::optional<Snapshot> held_snapshot_;        ///< ahead of the events, which may still come
   std::uint64_t event_seq_ = 0;                  ///< applied up to here
-  std::uint64_t known_event_seq_ = 0;            ///< the server has said that this one exists
+  std::uint64_t known_event_seq_ = 0;            ///< highest event that the server has announced
   std::uint64_t stale_tick_ = 0;                 ///< poses up to here may have been missed
   bool have_snapshot_ = false, synced_ = false, server_present_ = false;
-  /// Since when; none: there is no such thing.
+  /// The time since when; absent: no such state.
   std::optional<std::int64_t> gap_since_ns_, poses_stale_since_ns_, requested_at_ns_;
   std::set<PartId> changed_;  ///< in this poll()
   std::int64_t now_ns_ = 0;

@@ -6,9 +6,9 @@
 
 namespace mortise {
 
-/// The increments of one user that the server has not acknowledged yet, for repetition: what comes
-/// next repeats them, and when nothing comes next they are sent again after a while. So a datagram
-/// that is lost costs one period of sending, and holds up nothing but what is in it.
+/// The increments of one user that the server has not acknowledged yet. The next datagram repeats
+/// them; without a next one they are sent again after a while. So a lost datagram costs one sending
+/// period and delays only its own content.
 class Unacknowledged {
  public:
   /// The batch to send now: the new one, and before it some of the others.
@@ -33,7 +33,7 @@ class Unacknowledged {
   IncrementBatch batch(std::uint64_t fresh_from, std::int64_t now_ns);
 
   std::deque<SentIncrement> kept_;  ///< rising, without gap
-  std::uint64_t next_older_ = 0;    ///< sequence: whose turn it is to be repeated
+  std::uint64_t next_older_ = 0;    ///< sequence of the next one to repeat
   std::int64_t last_sent_ns_ = 0;
   std::uint64_t repeated_ = 0, given_up_ = 0;
 };

@@ -15,11 +15,11 @@ namespace mortise {
 /// What a designer sees when it is time for the next increment.
 struct View {
   double time_s = 0.0;  ///< since the acts began
-  double beat_s = 0.0;  ///< since the last beat: what an increment stands for
+  double beat_s = 0.0;  ///< since the last beat: the time that an increment covers
   UserId self;
   const std::map<PartId, KnownPart>* parts = nullptr;
   const std::map<ClashId, ClashEvent>* clashes = nullptr;  ///< that are open; may be null
-  const std::vector<Decision>* standing = nullptr;         ///< what is asked for; may be null
+  const std::vector<Decision>* standing = nullptr;         ///< open requests; may be null
   const KnownFeatures* features = nullptr;                 ///< may be null
 
   const KnownPart* find(PartId part) const {
@@ -32,7 +32,7 @@ struct View {
   }
 };
 
-/// What it does. Any of it may be nothing.
+/// What a designer does at one beat. Every field may be empty.
 struct Wish {
   PartId grab, release;
   PartId move;  ///< the part of the increment
@@ -47,7 +47,7 @@ struct Wish {
   std::vector<Ask> asks;
 };
 
-/// Tries of putting a shaft into a bore.
+/// Attempts to put a shaft into a bore.
 struct Insertions {
   std::uint64_t tries = 0, inserted = 0;
   std::uint64_t not_aligned = 0;  ///< no constraint was set
@@ -55,7 +55,7 @@ struct Insertions {
   std::vector<double> seconds;    ///< of those inserted, from the first push
 };
 
-/// How the behaviour guided goes about it.
+/// Settings of the behaviour `guided`.
 struct GuidedSettings {
   std::size_t first = 0;  ///< number of the moving part, of those that fit somewhere
   PartId only, target;    ///< the part; the part with the bore. None: which fit, the nearest
@@ -65,14 +65,14 @@ struct GuidedSettings {
   bool free_hand = false;  ///< without a constraint, by eye
 };
 
-/// A designer without hands. Same seed and same view, same wishes.
+/// A designer without hands. The same seed and view give the same wishes.
 class Behaviour {
  public:
   virtual ~Behaviour() = default;
   virtual Wish beat(const View& view) = 0;
-  /// What could not be done, in words.
+  /// What failed, in words.
   virtual const std::vector<std::string>& troubles() const;
-  /// What became of tries to insert a part; null: it tries nothing of the kind.
+  /// The outcome of attempts to insert a part; null for other behaviours.
   virtual const Insertions* insertions() const { return nullptr; }
 };
 
@@ -84,14 +84,14 @@ struct Offset {
 class Path {
  public:
   virtual ~Path() = default;
-  /// Called once for each grab, with the part and all others as they are then.
+  /// Called once for each grab, with the part and all others at that time.
   virtual void begin(const View& view, const KnownPart& part) = 0;
   virtual Offset at(double held_s) const = 0;
 };
 
 /// Grabs a part (beginning with number `first` of the moving ones, going on to the next when it is
 /// refused), leads it along a path for `hold_s`, releases it and begins again. A part that is
-/// pushed back stays where the server leaves it; the next increments go on from there.
+/// pushed back stays where the server leaves it; the next increments continue from there.
 class Carrier : public Behaviour {
  public:
   struct Settings {

@@ -22,8 +22,7 @@ class Crew {
  public:
   Crew(const BotOptions& options, ClientChannel& channel, std::optional<Play> play);
 
-  /// Plays from the first join to the last goodbye. What fails is said aloud; else what was
-  /// measured is in `report`.
+  /// Plays from the first join to the last goodbye. Prints what fails, else fills in `report`.
   int run(ProcessReport& report);
 
  private:

@@ -9,15 +9,15 @@
 
 namespace mortise {
 
-/// Time from an increment to the events that it brought: an event names its mover and tick, the
-/// acknowledgement of that tick names the newest increment that was in it and when it was sent. The
-/// two come by different topics, in either order.
+/// Time from an increment to the events that it caused. An event names its mover and tick; the
+/// acknowledgement of that tick names the newest increment in it and when it was sent. The two
+/// arrive by different topics, in either order.
 class EventDelay {
  public:
   /// Delays of this poll, ms. Events of others are not looked at.
   std::vector<double> add(const ClientUpdate& update, const Client& client);
-  /// Events of ours without an increment in the same tick (an undo, say), or whose acknowledgement
-  /// was lost.
+  /// Own events without an increment in the same tick (for example an undo), or whose
+  /// acknowledgement was lost.
   std::uint64_t unmatched() const { return unmatched_; }
 
  private:

@@ -11,8 +11,8 @@
 
 namespace mortise {
 
-/// What one process of bots measured: its report, and what must be whole to be put together with
-/// those of others.
+/// What one process of bots measured: its report, and the samples that are needed to merge it with
+/// others.
 struct ProcessReport {
   nlohmann::ordered_json document;
   std::vector<double> latency_ms, event_latency_ms;
@@ -23,20 +23,20 @@ std::vector<std::uint8_t> to_bytes(const ProcessReport& report);
 /// False when the bytes are no report: the process ended before it could write one.
 bool from_bytes(const std::vector<std::uint8_t>& bytes, ProcessReport& report);
 
-/// p50, p90, p99, max by nearest rank, 0 when there is none; and how many.
+/// p50, p90, p99 and max by nearest rank, 0 without samples; and their number.
 nlohmann::ordered_json percentiles(std::vector<double> values);
 
-/// What became of tries to insert parts; null when nobody tried.
+/// The outcome of attempts to insert parts; null without any.
 nlohmann::ordered_json insertions_json(const std::vector<std::unique_ptr<Behaviour>>& behaviours);
 
 /// One document of all processes: counts are sums, percentiles are of all samples, and
 /// `streams` says whether all saw the same sequence of events.
 nlohmann::ordered_json merged(const std::vector<ProcessReport>& reports);
 
-/// Names that --limit knows, and what each stands for.
+/// Names that --limit knows, with their meaning.
 const std::vector<std::pair<std::string, std::string>>& limit_names();
 
-/// A limit and what became of it.
+/// A limit and its outcome.
 struct LimitResult {
   Limit limit;
   std::string meaning;

@@ -8,8 +8,8 @@ namespace mortise {
 /// Behaviours about each other's parts and about clashes rather than about motion.
 
 /// Wants one part (number `first` of the moving ones): grabs it when it is free, else asks its
-/// holder for it; once it has been held for hold_s, consents to who asks, declining first when
-/// `hesitates`.
+/// holder for it. After holding it for hold_s it consents to a request, and declines the first one
+/// when `hesitates`.
 struct ShareSettings {
   PartId only;
   double hold_s = 0.5;

@@ -6,9 +6,9 @@
 
 namespace mortise {
 
-/// Runs `work(k)` in `count` processes of their own, k = 0 .. count - 1, and gathers their reports.
-/// To be called before there is any thread. SIGINT and SIGTERM are passed on to the processes.
-/// A process that ends without a report is said aloud; the worst exit code is returned.
+/// Runs `work(k)` in `count` processes, k = 0 .. count - 1, and gathers their reports. Call it
+/// before any thread is started. SIGINT and SIGTERM are forwarded to the processes. Prints when a
+/// process ends without a report; returns the worst exit code.
 int run_processes(int count, const std::function<int(int, ProcessReport&)>& work,
                   std::vector<ProcessReport>& reports);
 

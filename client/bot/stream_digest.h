@@ -15,7 +15,7 @@ class StreamDigest {
  public:
   static constexpr std::uint64_t kBlock = 64;
 
-  /// Events in order of seq. One that does not follow the last closes the block before it unseen.
+  /// Events in order of seq. After a gap the block that it interrupts is dropped.
   void add(const ClashEvent& event);
 
   std::uint64_t hash() const { return hash_; }  ///< of all, in order
@@ -27,7 +27,7 @@ class StreamDigest {
   std::map<std::uint64_t, std::uint64_t> blocks_;
 };
 
-/// Did all who saw a block see the same?
+/// Whether participants that saw the same blocks saw the same events.
 struct StreamComparison {
   std::uint64_t blocks = 0;     ///< seen by two or more
   std::uint64_t differing = 0;  ///< of these

@@ -27,7 +27,7 @@ class Canvas {
   Canvas& operator=(Canvas&&) noexcept;
   ~Canvas();
 
-  /// Several closed outlines as one area: what an even number of them encloses is not part of it.
+  /// Several closed outlines as one area by the even-odd rule.
   void fill(const std::vector<std::vector<Vec2>>& outlines, const Color& color);
   void line(const std::vector<Vec2>& points, const Pen& pen);
   void rectangle(const Box2& box, const Color& color);

@@ -18,14 +18,14 @@ struct RegionQuery {
 
 using ChartLine = std::vector<Vec2>;
 
-/// A run of one face along the cut: where its real surface lies at least and at most, and as it is
-/// modelled (the declared or recognized surface; the mesh where none is known). Point by point.
+/// A stretch of one face along the cut: the least, the most and the modelled position of its real
+/// surface (the declared or recognized surface, or else the mesh). Point by point.
 struct DrawnZone {
   ChartLine least, most, modelled;
   bool has_surface = false;
 };
 
-/// What is seen of one part near the deciding point, in the chart.
+/// One part near the deciding point, in the chart.
 struct DrawnPart {
   std::string name, face;         ///< "plate", "bore"
   std::vector<ChartLine> fills;   ///< closed outlines of the mesh
@@ -34,9 +34,9 @@ struct DrawnPart {
   std::optional<Interval> zone_at_point;  ///< h of the least and the most real surface, in order
 };
 
-/// The section through the deciding point, across what is round, near to. The cut's `up` leads away
-/// from the axis of what is round; else along the normal of the region, as far as may be upwards in
-/// the world. At the point one part lies above, the other below.
+/// The section through the deciding point, across a round face, enlarged. The cut's `up` points
+/// away from the axis of the round face; without one along the normal of the region, upwards in the
+/// world where possible. At the point one part is above, the other below.
 struct DetailView {
   CutPlane plane;
   Chart chart;

@@ -15,7 +15,7 @@ inline constexpr Color kInk{0.13, 0.13, 0.15}, kGrey{0.45, 0.45, 0.48}, kPale{0.
 /// Micrometres with one decimal, never "-0.0".
 std::string um_text(double mm);
 
-/// What a world window is on the sheet. Up is up.
+/// Maps a window of the world to the sheet. Up stays up.
 struct Frame {
   Box2 box;
   Interval x_mm, y_mm;

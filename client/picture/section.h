@@ -32,7 +32,7 @@ struct CutLine {
 /// closed meshes give closed lines. O(n).
 std::vector<CutLine> cut_lines(const TriangleMesh& mesh, const Pose& X_WP, const CutPlane& plane);
 
-/// What of a polygon lies on the side x . normal >= offset of a line (Sutherland and Hodgman 1974).
+/// The part of a polygon on the side x . normal >= offset of a line (Sutherland and Hodgman 1974).
 std::vector<Vec2> clipped(const std::vector<Vec2>& polygon, const Vec2& normal, double offset_mm);
 
 }  // namespace mortise

@@ -6,8 +6,8 @@
 
 namespace mortise {
 
-/// An SVG written down as it is drawn. No ids, so that several can stand in one page; coordinates
-/// to a hundredth of a unit; text as text, stretched to the width that it was measured to have.
+/// Writes an SVG as it is drawn. No ids, so that several fit into one page; coordinates to a
+/// hundredth of a unit; text as text, stretched to its measured width.
 class SvgText {
  public:
   struct Letters {

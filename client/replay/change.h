@@ -9,14 +9,14 @@
 
 namespace mortise {
 
-/// One thing that a what-if has otherwise than the session had it, as people write it:
+/// One change of a what-if, as people write it:
 ///   policy = report
 ///   tolerance PART[.FEATURE] = ±0.02        (as behind tolerance: or iso: of a scenario)
 ///   fit PART[.FEATURE], PART[.FEATURE] = H7/p6
 ///   exclude PART, PART = why
 ///   include PART, PART                      (drops an exclusion)
 ///   mesh PART = FILE                        (numbers in mm)
-/// Nothing behind "=" of a tolerance or fit: nothing is stated any more.
+/// Nothing behind "=" of a tolerance or fit removes the statement.
 struct Change {
   enum class Kind { kPolicy, kTolerance, kFit, kExclude, kInclude, kMesh };
   Kind kind = Kind::kPolicy;

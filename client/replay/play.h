@@ -12,12 +12,12 @@ namespace mortise {
 
 struct PlayOptions {
   double speed = 1.0;   ///< 0.1 to 100
-  double from_s = 0.0;  ///< of the log; what lies before is played as fast as it goes
+  double from_s = 0.0;  ///< of the log; what is before is played as fast as possible
   double to_s = std::numeric_limits<double>::infinity();
   double wait_s = 10.0;  ///< for the session, and for each user to be let in
 };
 
-/// What playing came to. Nothing is passed over in silence.
+/// The outcome of playing. Everything that was not done is counted.
 struct PlayOutcome {
   std::uint64_t ticks = 0;
   std::uint64_t increments = 0;       ///< of the log

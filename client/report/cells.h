@@ -18,8 +18,8 @@ class Cells {
   const Json& operator[](std::string_view name) const;  ///< null when there is no such column
   std::string raw(std::string_view name) const;         ///< "" for null
   std::string text(std::string_view name) const { return escaped(raw(name)); }
-  double number(std::string_view name) const;            ///< NaN for what is none
-  std::string micrometres(std::string_view name) const;  ///< one decimal; a dash for what is none
+  double number(std::string_view name) const;            ///< NaN when it is no number
+  std::string micrometres(std::string_view name) const;  ///< one decimal; a dash when no number
 
  private:
   const Table& table_;

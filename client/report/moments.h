@@ -9,8 +9,8 @@
 
 namespace mortise {
 
-/// One event of a log, with the parts where its verdict was judged: at the end of the tick, where
-/// the increments would have led a part that was stopped, or where it passed through another.
+/// One event of a log, with the parts at the poses of its verdict: at the end of the tick, where
+/// the increments would have led a part that was stopped, or where it passed through another part.
 struct Moment {
   const World& world;
   const ClashEvent& event;
@@ -19,11 +19,10 @@ struct Moment {
 /// Which events: tick and clash.
 using EventKeys = std::set<std::pair<std::uint64_t, ClashId>>;
 
-/// Goes through a log without computing it, and shows the wanted events in order. Poses are those
-/// of the log (a float, 4e-6 rad): good for pictures, and for what is left of a damaged log. Rules
-/// that people changed are in force from their tick on. Parts that were guided or in a group are
-/// shown where they ended. Fails when the scene of the log cannot be loaded. Cost: the scene, and
-/// one pass.
+/// Visits the wanted events of a log in order without computing it. Poses are those of the log (a
+/// float, 4e-6 rad), good enough for pictures, and available in a damaged log. Changed rules are in
+/// force from their tick on. Guided parts and groups are shown where they ended. Fails when the
+/// scene of the log cannot be loaded. Costs the scene and one pass.
 Status for_moments(const SessionLog& log, const EventKeys& wanted,
                    const std::function<void(const Moment&)>& visit);
 

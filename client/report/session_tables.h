@@ -10,7 +10,7 @@
 namespace mortise {
 
 /// One table of a session, the same in CSV, JSON, SQLite and HTML. Lengths in mm, angles in rad,
-/// times in s; null: nothing is known or nothing bounds it.
+/// times in s; null: unknown or unbounded.
 struct Table {
   enum class Type { kText, kInteger, kNumber };
   struct Column {
@@ -23,11 +23,10 @@ struct Table {
 };
 
 /// session, parts, users, exclusions, clashes, events, decisions, by_pair, by_part, by_user,
-/// coverage: from what the log says, without computing it again. Coverage: the counters of a
-/// recomputation, where there was one, else what the log counted of the ticks in it. A clash is
-/// real until the zones of its faces are wider by real_until_widened_mm to each side (negative: it
-/// would be if they were narrower by that much), fake likewise. Cost: one pass; an hour of a busy
-/// session takes seconds.
+/// coverage: from the log, without computing it again. Coverage: the counters of a recomputation,
+/// or else those in the log. A clash is real until the zones of its faces are wider by
+/// real_until_widened_mm to each side (negative: it would be real if they were narrower by that
+/// much), fake likewise. Costs one pass.
 Result<std::vector<Table>> tables_of(const SessionLog& log,
                                      const std::optional<StepCounters>& coverage);
 

@@ -5,16 +5,16 @@
 
 namespace mortise::web {
 
-/// Where people learn the addresses that let them in.
+/// Where the addresses with the tokens are published.
 struct AddressesTo {
-  /// "-": stdout. A file: its owner reads it, nobody else; it is replaced as a whole. Empty: stdout
-  /// if that is a terminal, else nowhere: what a service prints is kept in a journal that others
+  /// "-": stdout. A file: readable by its owner only, replaced as a whole. Empty: stdout if that is
+  /// a terminal, else nowhere, because the output of a service is kept in a journal that others
   /// read.
   std::string file;
-  std::string tokens;  ///< file of the tokens, named where addresses are not said
+  std::string tokens;  ///< file of the tokens, named where addresses are not printed
 };
 
-/// Lines "ROLE [NAME] ADDRESS" on stdout or into the file, and else where the tokens are.
+/// Writes lines "ROLE [NAME] ADDRESS" to stdout or the file, or else prints where the tokens are.
 Status say_addresses(const AddressesTo& to, const Gateway& gateway, const Tokens& tokens);
 
 }  // namespace mortise::web

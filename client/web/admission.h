@@ -6,9 +6,9 @@
 
 namespace mortise::web {
 
-/// Is this `Host` one that we may be asked for under? Addresses written as numbers, "localhost",
-/// and the given names are, with any port (it may be forwarded); another name is that of a page
-/// that was made to point here.
+/// May requests use this `Host`? Addresses written as numbers, "localhost" and the given names,
+/// with any port (it may be forwarded). Any other name may be that of a foreign page whose DNS name
+/// points here.
 bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
 /// Does this `Origin` belong to a page of ours: the scheme and the Host of the request, or one of

@@ -14,7 +14,7 @@ namespace mortise::web {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
-/// What is answered to a request, before it is written.
+/// The answer to a request, before it is written.
 struct Answer {
   boost::beast::http::status status = boost::beast::http::status::ok;
   std::string type = "text/plain; charset=utf-8";
@@ -28,14 +28,14 @@ Answer sentence(boost::beast::http::status status, const std::string& text);
 /// Everything but WebSockets. `from` names the asker in messages.
 Answer answer_to(GatewayState& state, const Request& request, bool tls, const std::string& from);
 
-/// The report takes seconds, so it is made beside (report_maker.h). An answer when this asker gets
-/// none now.
+/// The report takes seconds, so another thread makes it (report_maker.h). refusal_of_report() gives
+/// the answer when there is no report now.
 bool asks_for_report(const Request& request);
 std::optional<Answer> refusal_of_report(GatewayState& state, const Request& request,
                                         const std::string& from);
 Answer answer_with_report(Result<std::string> page);
 
-/// May this request become a WebSocket, and as what? An answer when not.
+/// The bearer as whom this request may become a WebSocket, or the answer that refuses it.
 std::variant<Bearer, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,
                                            const std::string& from);
 

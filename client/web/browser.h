@@ -14,8 +14,8 @@
 
 namespace mortise::web {
 
-/// One page: a WebSocket with a token that was good. Lives until its connection ends; the feed
-/// then hears of it at once.
+/// One page: a WebSocket with a valid token. It lives until its connection ends, and the feed is
+/// told at once.
 class Browser final : public Viewer, public std::enable_shared_from_this<Browser> {
  public:
   using Request = beast::http::request<beast::http::empty_body>;
@@ -32,9 +32,9 @@ class Browser final : public Viewer, public std::enable_shared_from_this<Browser
   void show_scene(SharedBytes scene) override;
   std::uint64_t folded_frames() const override { return outbox_.folded(); }
 
-  /// Says why, and closes once what is being written is written; at the latest a moment later.
+  /// Closes with this reason after the present write, or after a short time at the latest.
   void end(CloseCode code, const std::string& reason);
-  /// Looks whether it is still worth waiting for. Called every so often.
+  /// Closes the connection when it has been stalled or silent for too long. Called regularly.
   void check(double now_s);
 
  private:

@@ -10,8 +10,7 @@
 
 namespace mortise::web {
 
-/// One connected page, as what feeds it sees it. Nothing here waits: what a page does not take is
-/// kept in its outbox.
+/// One connected page as a feed sees it. No call waits: unsent data is kept in the page's outbox.
 class Viewer {
  public:
   virtual ~Viewer() = default;
@@ -40,9 +39,9 @@ class Feed {
   virtual const char* mode() const = 0;  ///< "live" or "replay"
   virtual void enter(Viewer& viewer) = 0;
   virtual void leave(Viewer& viewer) = 0;  ///< frees what it held
-  /// Fails with a sentence for the page when this cannot be meant.
+  /// Fails with a sentence for the page when the message makes no sense in this state.
   virtual Status take(Viewer& viewer, const PageMessage& message) = 0;
-  /// Brings viewers what is new. Called every few milliseconds, by a clock that never goes back.
+  /// Sends news to the viewers. Called every few milliseconds with a monotonic clock.
   virtual void turn(double now_s) = 0;
   virtual SharedBytes frame(const Viewer& viewer, const std::vector<PartId>& parts) const = 0;
   virtual MeshAnswer mesh(const std::string& hash) const = 0;

@@ -15,18 +15,18 @@ namespace mortise::web {
 struct GatewayOptions {
   std::string address = "127.0.0.1";  ///< IPv4 to listen on
   int port = 0;                       ///< 0: a free one
-  std::vector<std::string> names;     ///< hosts that we may be asked for under, beside numbers
-  std::vector<std::string> origins;   ///< of pages of others that may connect, "https://host:port"
+  std::vector<std::string> names;     ///< host names that requests may use, beside addresses
+  std::vector<std::string> origins;   ///< foreign pages that may connect, "https://host:port"
   std::string certificate, key;       ///< PEM files; empty: no TLS
   Limits limits;
-  /// Makes the page that is downloaded as the report of the session; called in a thread of its own,
-  /// once at a time. Empty: there is none to download.
+  /// Makes the report of the session for download; called in another thread, one call at a time.
+  /// Empty: no report.
   std::function<Result<std::string>()> report;
-  double turn_s = 0.004;  ///< the feed is asked so often while somebody looks on
+  double turn_s = 0.004;  ///< time between two turns of the feed while a browser is connected
 };
 
-/// HTTP and WebSocket for pages, in one thread: that of run(). A client that is slow, stuck or
-/// hostile costs a connection and a time limit.
+/// HTTP and WebSocket for pages, in the thread that calls run(). A slow, stuck or hostile client
+/// costs one connection for a limited time.
 class Gateway {
  public:
   /// The feed must outlive the gateway. Fails in one line when the address is not ours, the port
@@ -38,7 +38,7 @@ class Gateway {
   virtual int port() const = 0;
   /// What to give to people: "http://127.0.0.1:8080/#token=...".
   virtual std::string address(const std::string& token) const = 0;
-  /// Serves until stop(), then takes leave of everybody.
+  /// Serves until stop(), then closes all connections in order.
   virtual void run() = 0;
   virtual void stop() = 0;  ///< from any thread
 };

@@ -15,13 +15,13 @@ namespace mortise::web {
 class Browser;
 class HttpConnection;
 
-/// What was served, in all.
+/// Totals of what was served.
 struct Traffic {
   std::uint64_t connections = 0, requests = 0, browsers = 0, messages_in = 0, texts_out = 0,
                 frames_out = 0, bytes_out = 0, frames_folded = 0, closed = 0;
 };
 
-/// What the connections of one gateway share. Touched by its thread only; outlives them.
+/// State that the connections of one gateway share. Used by its thread only; outlives them.
 struct GatewayState {
   GatewayState(const GatewayOptions& o, const Tokens& t, PageFiles p, Feed& f, Incidents::Say say)
       : options(o), tokens(t), page(std::move(p)), feed(f), incidents(std::move(say)) {}

@@ -13,15 +13,15 @@
 
 namespace mortise::web {
 
-/// One connection that speaks HTTP: request, answer, again; gone when it is too slow for either. An
-/// upgrade makes it a Browser.
+/// One HTTP connection: request, answer, and so on; closed when the client is too slow for either.
+/// An upgrade makes it a Browser.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(GatewayState& state, asio::ip::tcp::socket socket);
   ~HttpConnection();
 
   void start();
-  void give_way();  ///< to a newer one: closed
+  void give_way();  ///< closes it in favour of a newer one
 
  private:
   using Response = beast::http::response<beast::http::span_body<const char>>;

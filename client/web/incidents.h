@@ -8,19 +8,19 @@
 
 namespace mortise::web {
 
-/// What strangers and broken clients do.
+/// Faults of strangers and broken clients.
 enum class Incident : std::uint8_t {
   kBadRequest = 0,  ///< not HTTP, header too large, wrong method
-  kSlowRequest,     ///< a request or handshake that was not there in time
-  kWrongHost,       ///< asked for under a name that is not ours
-  kWrongOrigin,     ///< a page of somebody else
-  kWrongToken,      ///< or none
+  kSlowRequest,     ///< a request or handshake that was not complete in time
+  kWrongHost,       ///< requested under a foreign host name
+  kWrongOrigin,     ///< a foreign page
+  kWrongToken,      ///< a wrong or missing token
   kTooManyConnections,
   kTooManyBrowsers,
   kOversized,  ///< message over the limit
   kMalformed,  ///< message not understood
   kFlood,      ///< messages over the rate
-  kStalled,    ///< takes nothing any more
+  kStalled,    ///< no longer takes data
   kSilent,     ///< no answer to a ping
   kTls,        ///< handshake failed
   kCount,
@@ -28,8 +28,8 @@ enum class Incident : std::uint8_t {
 
 std::string_view name_of(Incident incident);
 
-/// Counts incidents and says each kind at most once a second, with how many went unsaid: what
-/// floods the gateway must not flood its log.
+/// Counts incidents and logs each kind at most once a second, with the number of unlogged ones, so
+/// that a flood of the gateway does not flood its log.
 class Incidents {
  public:
   using Say = std::function<void(const std::string& line)>;

@@ -10,7 +10,7 @@
 
 namespace mortise::web {
 
-/// What a page asks for (protocol.md), checked: ids in range, numbers finite, texts bounded.
+/// Messages of a page (protocol.md), checked: ids in range, numbers finite, texts bounded.
 struct JoinWish {
   std::string name;
 };
@@ -38,7 +38,7 @@ struct ReplayWish {
 };
 using PageMessage = std::variant<JoinWish, MoveWish, CommandWish, ViewWish, PingWish, ReplayWish>;
 
-/// The one door for what browsers say. Fails with a sentence that names what was wrong.
+/// The only place where messages of browsers are read. Fails with a sentence that names the error.
 Result<PageMessage> read_page_message(std::string_view text);
 
 }  // namespace mortise::web

@@ -13,10 +13,10 @@ namespace mortise::web {
 
 using Json = nlohmann::ordered_json;
 
-/// Class bits of parts (frames.h), by id; 0 of those that are not there.
+/// Class bits of parts (frames.h), by id; a missing part has 0.
 using ClassBits = std::map<PartId, std::uint32_t>;
 
-/// What pages are told, as in protocol.md.
+/// Messages to pages, as in protocol.md.
 Json json_of(const Vec3& v);
 Json json_of(const Pose& pose);  ///< {"p": [3], "q": [x, y, z, w]}
 Json json_of(const PartInfo& part, std::uint32_t classes);
@@ -47,7 +47,7 @@ Json json_of(const Scene& scene, const ClassBits& classes);
 
 ClassBits class_bits_of(std::span<const ClashEvent> open);
 
-/// The text of a frame. Names that are not UTF-8 are mended.
+/// The text of a frame. Invalid UTF-8 in names is replaced.
 SharedBytes text_of(const Json& json);
 
 }  // namespace mortise::web

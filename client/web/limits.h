@@ -3,15 +3,15 @@
 
 namespace mortise::web {
 
-/// What strangers may cost. Everything that is refused by one of these is counted and said.
+/// Limits for strangers. Every refusal by one of them is counted and logged.
 struct Limits {
   std::size_t connections = 256;    ///< open at one time; beyond, the oldest idle one gives way
   std::size_t browsers = 64;        ///< WebSockets at one time
   std::size_t header_bytes = 8192;  ///< of a request
   std::size_t message_bytes = 16384;
-  double messages_per_s = 300.0;        ///< of one browser; a burst of twice as many is borne
+  double messages_per_s = 300.0;        ///< of one browser; a burst may have twice as many
   std::size_t bad_messages = 5;         ///< in 10 s, then it is closed
-  double views_per_s = 10.0;            ///< where a browser looks from is told on so often
+  double views_per_s = 10.0;            ///< how often a browser's view is forwarded
   std::size_t unsent_bytes = 8u << 20;  ///< of text that a browser does not take
   double request_s = 5.0;               ///< for a whole request, a TLS or WebSocket handshake
   double idle_s = 30.0;                 ///< between two requests; for taking an answer

@@ -30,12 +30,12 @@ class LiveFeed final : public Feed {
   Json statistics() const override;
 
  private:
-  /// What is known of a page.
+  /// The state of a page.
   struct Seat {
     std::optional<LocalUser> user;
     std::string name;
-    double rejoin_s = 0.0;                         ///< a join was refused, try again then; 0: no
-    double give_up_s = 0.0;                        ///< do so no longer
+    double rejoin_s = 0.0;   ///< a join was refused: time of the next attempt; 0: none
+    double give_up_s = 0.0;  ///< end of these attempts
     std::map<std::uint64_t, std::uint64_t> asked;  ///< sequence of a command to the page's id
     std::map<std::pair<PartId, Refusal>, std::uint64_t> refused;  ///< increments, not said yet
     std::vector<double> latency_ms;                               ///< since the last pulse

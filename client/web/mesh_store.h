@@ -10,7 +10,7 @@ namespace mortise::web {
 /// Meshes of the scene in the form of the page, by content hash.
 class MeshStore {
  public:
-  /// Those of these parts are awaited, all others are forgotten.
+  /// Awaits the meshes of these parts and drops all others.
   void expect(const std::vector<PartInfo>& parts) {
     wanted_.clear();
     for (const PartInfo& part : parts) wanted_.insert(part.mesh_hash);

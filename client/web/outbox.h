@@ -11,9 +11,9 @@
 
 namespace mortise::web {
 
-/// What one browser has still to be sent. Text is kept, in order, whatever it costs: the owner
-/// closes who does not take it. Of poses only the newest of each part is kept, so a browser that is
-/// slow is behind by one frame and by no part.
+/// What is still to be sent to one browser. Text is kept in order without a limit; the owner closes
+/// a browser that does not take it. Of poses only the newest of each part is kept, so a slow
+/// browser misses frames but no part.
 class Outbox {
  public:
   struct Message {
@@ -24,15 +24,15 @@ class Outbox {
   using Encode = std::function<SharedBytes(const std::vector<PartId>&)>;
 
   void say(SharedBytes text);
-  /// In the place of the last such text, if that is still here.
+  /// Replaces the last such text if that has not been sent.
   void say_views(SharedBytes text) { views_ = std::move(text); }
   /// These parts have changed; `frame` is a frame of exactly them.
   void changed(const std::vector<PartId>& parts, SharedBytes frame);
-  /// A text that was said holds all poses: what changed before is covered.
+  /// Drops pending poses: the last text contains all of them.
   void forget_changes();
 
   bool empty() const { return texts_.empty() && !views_ && parts_.empty(); }
-  /// What to write now: text before poses.
+  /// The next message to write: text before poses.
   std::optional<Message> next(const Encode& encode);
 
   std::size_t unsent_bytes() const { return unsent_bytes_; }  ///< of text

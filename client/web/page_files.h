@@ -17,7 +17,8 @@ struct PageFile {
   bool is_page = false;  ///< index.html: gets a content security policy
 };
 
-/// The files of the page. Read anew at each request: what is edited is seen at the next load.
+/// The files of the page. They are read anew at each request, so that an edit shows at the next
+/// load.
 class PageFiles {
  public:
   /// Fails when there is no index.html.

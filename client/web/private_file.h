@@ -5,8 +5,8 @@
 
 namespace mortise::web {
 
-/// Makes a file with secrets in it, readable by its owner only. One that is there already is not
-/// touched: the error says so.
+/// Creates a file with secrets, readable by its owner only. Fails, without touching it, when the
+/// file exists.
 Status write_private(const std::string& file, const std::string& text);
 
 }  // namespace mortise::web

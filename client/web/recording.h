@@ -11,14 +11,14 @@
 
 namespace mortise::web {
 
-/// A logged session, laid out so that any moment of it can be shown at once.
+/// A logged session in a form in which any moment of it can be shown at once.
 struct Recording {
-  /// Where a part was put in a tick, and who held it after.
+  /// The pose and holder of a part after a tick.
   struct Step {
     std::uint64_t tick = 0;
     PartState state;
   };
-  /// What people had agreed on after a tick with decisions.
+  /// Users, policy and rules after a tick with decisions.
   struct Agreement {
     std::uint64_t tick = 0;
     std::string policy;
@@ -35,19 +35,19 @@ struct Recording {
   std::vector<ClashEvent> events;             ///< by tick
   std::vector<Agreement> agreements;          ///< by tick, the first from before all
   std::map<std::string, SharedBytes> meshes;  ///< by hash, as pages read them
-  std::vector<std::string> notes;             ///< what is missing of it, in words
+  std::vector<std::string> notes;             ///< what is missing, in words
 
-  /// All that holds at the end of a tick.
+  /// The scene at the end of a tick.
   Scene scene_at(std::uint64_t tick) const;
   const Agreement& agreement_at(std::uint64_t tick) const;
   PartState state_at(PartId part, std::uint64_t tick) const;
-  /// Parts that were put somewhere in the ticks after `from` up to `to`.
+  /// Parts whose pose or holder changed in the ticks after `from` up to `to`.
   std::vector<PartId> moved_between(std::uint64_t from, std::uint64_t to) const;
 };
 
-/// Reads a session log and computes it again, so that what is shown is what was, to the last bit.
-/// Where engine and log come to disagree, or a piece is missing, the recording ends, and a note
-/// says so. Costs about as long as the busy ticks took.
+/// Reads a session log and computes it again, so that the recording is exact to the last bit. Where
+/// engine and log disagree, or a piece is missing, the recording ends, and a note says so. Takes
+/// about as long as the busy ticks took.
 Result<Recording> read_recording(const std::filesystem::path& file);
 
 }  // namespace mortise::web

@@ -14,9 +14,9 @@ class ReportMaker {
   using Done = std::function<void(Result<std::string>)>;
 
   bool is_busy() const { return busy_; }
-  /// `done` runs where `where` runs what is posted. Not while busy.
+  /// Runs `make` in another thread and then posts `done` to `where`. Not while busy.
   void start(asio::any_io_executor where, Make make, Done done);
-  /// Waits for the one that is being made.
+  /// Waits until the present report is finished.
   void finish();
 
  private:

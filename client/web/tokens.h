@@ -9,14 +9,13 @@
 
 namespace mortise::web {
 
-/// Whom a token is for.
+/// The role and name that a token grants.
 struct Bearer {
   Role role = Role::kUnknown;
-  std::string name;  ///< empty: whoever has it, under any name
+  std::string name;  ///< empty: any name
 };
 
-/// Who may come in: one secret for those who take part and another for those who look on, or one
-/// for each person.
+/// The tokens that grant access: one for designers and one for observers, or one for each person.
 struct Tokens {
   std::string designer, observer;  ///< empty where each person has one
   struct Personal {
@@ -30,11 +29,11 @@ struct Tokens {
 Tokens make_tokens();
 
 /// Either two lines, the tokens of designers and of observers, or a line "ROLE NAME TOKEN" for each
-/// person, as `mortise-keys token` makes them. A file that is not there is made with two lines,
-/// readable by its owner only, so that addresses outlive the program.
+/// person, as `mortise-keys token` makes them. A missing file is created with two lines, readable
+/// by its owner only, so that addresses outlive the program.
 Result<Tokens> tokens_of_file(const std::string& file);
 
-/// Whom `token` is for; nothing when it is nobody's. Takes as long whatever is wrong with it.
+/// The bearer of `token`; nothing for an unknown one. Takes the same time for every wrong token.
 std::optional<Bearer> bearer_of(const Tokens& tokens, std::string_view token);
 
 }  // namespace mortise::web

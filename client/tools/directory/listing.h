@@ -12,14 +12,15 @@ struct ListedServer {
   KnownServer server;
 };
 
-/// For people: a table, one line a server. What is not known is a dash; what is no printable ASCII
-/// in a name, a question mark.
+/// For people: a table, one line a server. An unknown value is a dash; a character of a name that
+/// is not printable ASCII is a question mark.
 std::string listing_text(const std::vector<ListedServer>& servers);
 
 /// The same as one document; what is not known is null.
 std::string listing_json(const std::vector<ListedServer>& servers);
 
-/// One line without its end: nobody was found, where, and what that may mean.
+/// The message when no server was found: where it was looked for and what that may mean. No
+/// newline.
 std::string nobody_text(const DirectoryCommand& command);
 
 }  // namespace mortise

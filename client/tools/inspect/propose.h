@@ -9,8 +9,8 @@ struct ProposedFit {
   double clearance_mm = 0.0;  ///< of diameters, as modelled; negative: interference
 };
 
-/// Bores and shafts of more than half a turn with radii within 3 percent; where poses are known
-/// only those whose axes run together within 1 degree and a tenth of the radius.
+/// Bores and shafts of more than half a turn with radii within 3 percent; where poses are known,
+/// only pairs whose axes agree within 1 degree and a tenth of the radius.
 std::vector<ProposedFit> proposed_fits(const std::vector<InspectedPart>& parts);
 
 /// Parts, features and fits as a scenario would have them, to be pasted.

@@ -7,8 +7,8 @@
 
 namespace mortise {
 
-/// Verdicts of all pairs for people: per region class, overlap and separation brackets, thresholds,
-/// what they rest on, and the sentence that explains them.
+/// Verdicts of all pairs for people: for each region class, overlap and separation brackets,
+/// thresholds and their sources, and the explaining sentence.
 std::string judge_text(const OpenedScene& opened, const JudgeReport& report, bool color);
 
 /// The same as one document.
