@@ -10,8 +10,8 @@ namespace mortise {
 /// One line about the running session: tick, users, open clashes by class, tick p99.
 std::string live_line(const SessionPulse& pulse, double seconds);
 
-/// Says aloud what a tick brought: who came and went, clashes that begin and end, refusals and
-/// overloads at most once a second, and, on wish, the live line: overwritten on a terminal,
+/// Prints the news of a tick: users who join and leave, clashes that begin and end, refusals and
+/// overloads at most once a second, and optionally the live line: overwritten on a terminal,
 /// otherwise one line every five seconds.
 class Announcer {
  public:

@@ -4,15 +4,15 @@
 
 namespace mortise {
 
-/// The ticks that one that stands by was told and has not computed yet. They are safe with it; but
-/// were the one that leads gone, users would wait until it has computed them.
+/// The ticks that the standby has received and not computed yet. They are safe, but at a take-over
+/// users would wait until they are computed.
 class Backlog {
  public:
   /// At 60 Hz half a second, and a tenth. A tick of a full budget is 3 of them.
   static constexpr std::uint64_t kBehind_ticks = 30, kInStep_ticks = 6;
   enum class News { kNone = 0, kInStep, kBehind, kInStepAgain };
 
-  /// So many they are now; says what has changed by that.
+  /// Sets the present number and returns what has changed by it.
   News now_is(std::uint64_t ticks) {
     ticks_ = ticks;
     longest_ticks_ = std::max(longest_ticks_, ticks);
@@ -27,7 +27,7 @@ class Backlog {
     was_in_step_ = true;
     return again ? News::kInStepAgain : News::kInStep;
   }
-  /// That one is gone; another may come.
+  /// The standby is gone; another one may come.
   void forget() {
     in_step_ = was_in_step_ = false;
     ticks_ = 0;

@@ -3,7 +3,7 @@
 
 namespace mortise {
 
-/// The time as the server sees it; tests put their own in its place.
+/// The clock of the server; tests replace it.
 class Clock {
  public:
   virtual ~Clock() = default;
@@ -14,8 +14,8 @@ class Clock {
 };
 
 /// CLOCK_MONOTONIC with absolute deadlines, so that a late tick does not make the next ones late.
-/// wall_ns() never goes back, nor is it before `not_before_ns`: where the machine's clock is set
-/// back, it goes on from where it was, until that one has caught up.
+/// wall_ns() never goes back and is never before `not_before_ns`: when the machine's clock is set
+/// back, it continues from its last value until the machine's clock has caught up.
 class SystemClock : public Clock {
  public:
   explicit SystemClock(std::int64_t not_before_ns = 0);

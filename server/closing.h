@@ -8,13 +8,13 @@
 
 namespace mortise {
 
-/// What is said at the end of a session.
+/// The closing report of a session.
 struct Closing {
   std::string session, scenario, policy;
   std::string log_file;  ///< empty: none was written
   std::uint64_t log_bytes = 0, log_dropped_ticks = 0;
-  std::string log_error;      ///< what the disk said; empty: it took all
-  std::string restored_from;  ///< log of before; empty: the scenario began anew
+  std::string log_error;      ///< error of the disk; empty: none
+  std::string restored_from;  ///< the earlier log; empty: the scenario began anew
   std::uint64_t restored_ticks = 0, restore_left_out_ticks = 0;
   std::vector<std::string> parts_without_inside;
   ChannelCounters channel;

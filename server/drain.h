@@ -10,28 +10,28 @@
 
 namespace mortise {
 
-/// The end of a server that was told to go (SIGUSR1) while its session is to stay: the one that
-/// stands by goes on with it at once, or a server that is started on its log does so later.
+/// The end of a server that is drained (SIGUSR1) while its session continues: the standby takes
+/// over at once, or a server that is started on its log continues later.
 class Drain {
  public:
   enum class End {
     kNone = 0,
     kHandedOver,  ///< another server leads the session
-    kNotTaken,    ///< one that stood by was to, and does not: the log holds the session
-    kAlone,       ///< nobody stood by, or was in step: the log holds the session
+    kNotTaken,    ///< the standby did not take over: the log holds the session
+    kAlone,       ///< no standby in step: the log holds the session
   };
-  /// One that stands by and is not in step yet is waited for so long.
+  /// How long a standby that is not in step yet is waited for.
   static constexpr double kCatchUp_s = 10.0;
 
   /// All must outlive this.
   Drain(TickLoop& loop, HeldChannel& held, Clock& clock)
       : loop_(loop), held_(held), clock_(clock) {}
 
-  /// Asked before each tick once the server was told to go: is this the moment?
+  /// Asked before each tick of a draining server: is this the moment to leave?
   bool is_ready();
   bool begun() const { return begun_ns_.has_value(); }
-  /// The last tick, and what comes after it. `goes_on`, asked while the other is waited for, says
-  /// false where the server is to end at once.
+  /// Does the last tick and waits for the standby. `goes_on` is asked meanwhile; false: end at
+  /// once.
   void finish(const std::function<bool()>& goes_on);
 
   End end() const { return end_; }
@@ -43,7 +43,7 @@ class Drain {
   HeldChannel& held_;
   Clock& clock_;
   std::optional<std::int64_t> begun_ns_;
-  bool not_in_step_ = false;  ///< one stood by, and did not come in step in time
+  bool not_in_step_ = false;  ///< the standby did not come in step in time
   End end_ = End::kNone;
 };
 

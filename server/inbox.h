@@ -22,10 +22,10 @@ struct InboxLimits {
   double session_messages_per_s = 100'000.0;
   /// A session with more is refused: one user costs up to one broad-phase move a tick.
   std::uint32_t max_users = 256;
-  /// Names that the session remembers, of who is there and who was: an id each, in every snapshot.
-  /// With more, a newcomer takes the id of who has been gone longest. At least max_users.
+  /// Names that the session remembers, of present and absent users: an id each, in every snapshot.
+  /// A further name gets the id of the user who has been absent longest. At least max_users.
   std::uint32_t names_kept = 1024;
-  /// Refusals told to one user in one tick; the rest is only counted, so that nonsense is not
+  /// Refusals sent to one user in one tick; further ones are only counted, so that a flood is not
   /// amplified.
   std::uint32_t refusals_told_per_tick = 8;
   /// Increments of one user in one tick; more wait for the next ticks, in order. Twice what the
@@ -33,23 +33,23 @@ struct InboxLimits {
   /// at whatever rate the session ticks. Without it the increments that piled up in one slow tick
   /// would make the next one a single long leap, slower still.
   std::uint32_t increments_per_tick = 8;
-  /// Increments of one user that wait; more are refused as too many (kRateTooHigh). A second of the
-  /// highest rate, four of a device of 240 Hz: so long may the session stand still.
+  /// Increments of one user that may wait; more are refused (kRateTooHigh). One second of the
+  /// highest rate, or four of a 240 Hz device: the session may stand still for that long.
   std::uint32_t increments_waiting = 1000;
-  /// Parts in the hands of one user: more are refused at the grab. A hand needs one, a group move
-  /// some; who takes all keeps the others from working.
+  /// Parts that one user may hold; more are refused at the grab, because a user who holds all parts
+  /// keeps the others from working.
   std::uint32_t parts_per_user = 64;
-  /// So long a command waits for increments that its sender sent before it and that have not come:
-  /// ten repetitions. Then it is carried out without them, and counted.
+  /// How long a command waits for earlier increments of its sender that have not arrived: ten
+  /// repetitions. Then it is applied without them, and counted.
   double after_wait_s = 0.5;
 };
 
-/// What one user sent since the session began here, and what became of it.
+/// What one user has sent since the session began here, and its outcome.
 struct UserCounters {
-  std::uint64_t received = 0;  ///< increments, silent repeats not counted
+  std::uint64_t received = 0;  ///< increments without repetitions
   std::uint64_t accepted = 0, refused = 0;
-  std::uint64_t repaired = 0;  ///< came only by repetition
-  std::uint64_t lost = 0;      ///< numbered by the user, and never came
+  std::uint64_t repaired = 0;  ///< arrived only by repetition
+  std::uint64_t lost = 0;      ///< numbered by the user, and never arrived
   std::uint64_t commands = 0, commands_refused = 0;
 };
 
@@ -58,12 +58,12 @@ struct InboxCounters {
                 ask_ends = 0;
   std::uint64_t joins_put_off = 0;  ///< not answered by a server that is about to end
   std::uint64_t commands = 0, commands_refused = 0, commands_deferred = 0;
-  std::uint64_t commands_overdue = 0;  ///< carried out before increments that were sent before them
+  std::uint64_t commands_overdue = 0;  ///< applied without increments that were sent before them
   std::uint64_t increments = 0, accepted = 0;  ///< arrived for the first time; of these taken
-  std::uint64_t repeats = 0;   ///< arrived again, which is how a lossy link is made good
-  std::uint64_t repaired = 0;  ///< arrived only by repetition
-  std::uint64_t lost = 0;      ///< numbered by their sender, and never came
-  std::uint64_t foreign = 0;   ///< sent for a user that another participant joined as
+  std::uint64_t repeats = 0;                   ///< arrived again: repetition repairs a lossy link
+  std::uint64_t repaired = 0;                  ///< arrived only by repetition
+  std::uint64_t lost = 0;                      ///< numbered by their sender, and never arrived
+  std::uint64_t foreign = 0;  ///< sent for a user that another participant joined as
   std::array<std::uint64_t, kRefusalCount> refused{};  ///< increments, by Refusal
   std::uint64_t refusals_untold = 0;
   std::uint64_t longest_backlog = 0;  ///< increments that waited for a later tick, at most
@@ -71,7 +71,7 @@ struct InboxCounters {
   std::uint64_t refused_in_all() const;
 };
 
-/// What one drain gives to the tick. Decisions are applied already, in this order.
+/// The result of one drain for the tick. The decisions are already applied, in this order.
 struct Intake {
   std::vector<Decision> decisions;
   std::vector<Increment> increments;  ///< checked; per user in rising sequence
@@ -81,14 +81,14 @@ struct Intake {
   std::vector<Ack> acks;                           ///< one per user that sent increments, by user
   std::vector<std::string> turned_away;            ///< by the transport, in words
   bool follower_came = false, superseded = false;  ///< see ServerInput
-  bool joined = false;                             ///< somebody came in: a snapshot is due
+  bool joined = false;                             ///< a user has joined: a snapshot is due
 
   void clear();
 };
 
-/// The door between what users send and what the tick works on: who may speak for whom, in which
-/// order, how fast, about which part, and for how long a part is theirs. Many senders, read by the
-/// tick thread only. Knows no clock: the time comes in.
+/// Checks and orders what users send before the tick works on it: who may send for which user, in
+/// which order, how fast, about which part, and how long a user keeps a part. Many senders, read by
+/// the tick thread only. Has no clock: the time is passed in.
 class Inbox {
  public:
   explicit Inbox(const InboxLimits& limits) : limits_(limits) {}
@@ -96,19 +96,19 @@ class Inbox {
   /// Checks `input`, applies joins, commands, leaves and lease ends to `world`, and puts the rest
   /// into `intake` (cleared first). now_ns never goes back.
   ///
-  /// A release, undo, redo, reset or consent waits until the increments of the same user and part
-  /// that came before it were carried out: decisions are applied before the increments of a tick.
-  /// It also waits for those that were sent before it and are still on their way (Command::after),
-  /// for at most after_wait_s.
+  /// A release, undo, redo, reset or consent waits until earlier increments of the same user and
+  /// part were applied, because decisions are applied before the increments of a tick. It also
+  /// waits for increments that were sent before it and are still under way (Command::after), for at
+  /// most after_wait_s.
   void admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake);
 
-  /// Takes over from another server's inbox: its users stay who they are, and are gone when they do
-  /// not ask to join again in time. Called once, before admit().
+  /// Takes over from another server's inbox: its users keep their ids and count as absent when they
+  /// do not ask to join again in time. Call once, before admit().
   void adopt(const std::vector<SeatRecord>& seats, std::int64_t now_ns);
   std::vector<SeatRecord> seats() const;  ///< of all who are present
 
-  /// From now on who asks to join and is not here already gets no answer: clients ask again, and
-  /// come in where the session goes on.
+  /// From now on a join of a new user gets no answer: the client asks again, and joins at the next
+  /// leader.
   void put_off_newcomers() { puts_off_newcomers_ = true; }
 
   const InboxCounters& counters() const { return counters_; }
@@ -118,11 +118,11 @@ class Inbox {
   std::uint32_t users_present() const;
 
  private:
-  struct Seat {  ///< what the inbox knows of one user; seats_[i] is user i + 1
+  struct Seat {  ///< the state of one user; seats_[i] is user i + 1
     ClientKey client;
     std::uint64_t nonce = 0;
     bool present = false;
-    std::uint64_t left = 0;  ///< the how manieth departure; 0: never here, or before this server
+    std::uint64_t left = 0;  ///< number of the departure; 0: never here, or before this server
     std::int64_t awaited_until_ns = 0;  ///< adopted, and has not asked again yet; 0: is there
     IncrementOrder increments;
     std::uint64_t acknowledged = 0;         ///< of the increments
@@ -148,7 +148,7 @@ class Inbox {
   };
 
   Seat* seat_of(UserId user, const ClientKey& client);
-  /// Of the user who has been gone longest; none: all are here.
+  /// The id of the user who has been absent longest; none: all are present.
   UserId longest_gone(const World& world) const;
   UserId first_user_of(const ClientKey& client) const;
   bool take_token(Seat& seat, std::int64_t now_ns);
@@ -169,12 +169,12 @@ class Inbox {
   void receive_increment(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
   /// The same for what is in order now.
   void queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
-  /// Takes this tick's share from the backlogs, against the holders as they are now.
+  /// Takes this tick's share from the backlogs, checked against the present holders.
   void take_increments(const World& world, std::int64_t now_ns, Intake& intake);
   /// Takes the first one of the backlog of a user, or refuses it.
   void take_first(UserId user, const World& world, std::int64_t now_ns, Intake& intake);
   bool waits(UserId user, PartId part, std::uint64_t up_to_seq) const;
-  /// The same of a command; counts those that will not wait any longer.
+  /// The same for a command; counts commands that no longer wait.
   bool waits(const DeferredCommand& deferred, std::int64_t now_ns);
   /// Does one about the same part wait already? Then this one waits behind it.
   static bool is_behind(const std::vector<DeferredCommand>& waiting, const Command& command);
@@ -192,7 +192,7 @@ class Inbox {
   void acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns, Intake& intake);
 
   InboxLimits limits_;
-  UserCounters& counters_of(UserId user);  ///< of nobody in particular for who never joined
+  UserCounters& counters_of(UserId user);  ///< shared counters for users who never joined
 
   InboxCounters counters_;
   std::vector<UserCounters> user_counters_;
@@ -200,7 +200,7 @@ class Inbox {
   std::vector<Seat> seats_;
   std::vector<std::uint32_t> moving_;     ///< parts that can be held, by index: not all of a scene
   std::vector<std::int64_t> renewed_ns_;  ///< by part index: when its lease was last renewed
-  std::vector<std::int64_t> asked_ns_;    ///< by part index: since when somebody asks for it
+  std::vector<std::int64_t> asked_ns_;    ///< by part index: time of the open request for it
   bool puts_off_newcomers_ = false;
   std::uint64_t departures_ = 0;
   std::vector<ReceivedIncrement> ready_;   ///< in order now, of one arrival

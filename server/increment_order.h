@@ -8,22 +8,21 @@
 
 namespace mortise {
 
-/// Puts the increments of one user into the order in which they were sent, however the network
-/// loses, doubles and overtakes them: what comes beyond a hole is held until the sender has filled
-/// the hole by repetition, or says (kept_from) that it cannot. A sender that never repeats loses
-/// what the network loses, and nobody waits for it.
+/// Restores the order in which a user sent increments, whatever the network loses, duplicates and
+/// reorders. An increment behind a gap is held until the sender has repeated what is missing, or
+/// says (kept_from) that it cannot. For a sender that never repeats nothing is held.
 class IncrementOrder {
  public:
   enum class Arrival : std::uint8_t { kUnknown = 0, kNew, kSeen, kStale };
 
-  /// Appends to `ready` what is in order now, in rising sequence. kSeen: came before; kStale: late,
-  /// was given up.
+  /// Appends to `ready` what is in order now, in rising sequence. kSeen: a repetition; kStale: too
+  /// late, was given up.
   Arrival receive(const ReceivedIncrement& received, std::vector<ReceivedIncrement>& ready);
 
   std::uint64_t newest() const { return newest_; }      ///< up to here all was handed out or lost
-  std::uint64_t lost() const { return lost_; }          ///< numbered, and not even came repeated
-  std::uint64_t repaired() const { return repaired_; }  ///< came only by repetition
-  std::size_t held() const { return held_.size(); }     ///< beyond a hole
+  std::uint64_t lost() const { return lost_; }          ///< numbered, and never arrived
+  std::uint64_t repaired() const { return repaired_; }  ///< arrived only by repetition
+  std::size_t held() const { return held_.size(); }     ///< behind a gap
 
  private:
   void hand_out(std::vector<ReceivedIncrement>& ready);

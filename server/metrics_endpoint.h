@@ -8,9 +8,9 @@
 
 namespace mortise {
 
-/// HTTP for those who watch the server: GET /metrics (Prometheus text) and GET /healthz (200 while
-/// ticks go on, 503 when none came for a while). One thread of its own: a client that is slow,
-/// stuck or hostile costs a connection and a time limit, never a tick.
+/// HTTP for monitoring: GET /metrics (Prometheus text) and GET /healthz (200 while ticks go on, 503
+/// when none came for a while). Runs in its own thread: a slow, stuck or hostile client costs one
+/// connection for a limited time, never a tick.
 class MetricsEndpoint {
  public:
   /// port 0: a free one. Fails in one line when the address is not ours or the port is taken.
@@ -18,9 +18,9 @@ class MetricsEndpoint {
   virtual ~MetricsEndpoint() = default;  ///< ends the thread and all connections
 
   virtual int port() const = 0;
-  /// The tick thread lives. Costs one store.
+  /// Reports that the tick thread is alive. Costs one store.
   virtual void beat() = 0;
-  /// New figures for whoever asks next. Never waits for a client.
+  /// Sets new figures for the next request. Never waits for a client.
   virtual void show(SessionFigures figures) = 0;
 };
 

@@ -10,14 +10,14 @@
 
 namespace mortise {
 
-/// What is told of a distribution of durations, s.
+/// Summary of a distribution of durations, s.
 struct DurationFigures {
   std::uint64_t count = 0;
   double p50_s = 0.0, p90_s = 0.0, p99_s = 0.0, max_s = 0.0;
 };
 
-/// The figures of a running session at one time: values only, so that another thread may read them
-/// while the session goes on.
+/// The figures of a running session at one time: plain values, so that another thread may read them
+/// while the session continues.
 struct SessionFigures {
   std::string session, policy;
   double tick_rate_hz = 0.0, seconds = 0.0;
@@ -35,7 +35,7 @@ struct SessionFigures {
   std::array<std::uint64_t, 4> clashes_open{}, clashes_total{};  ///< by CollisionClass
   StepCounters stages;
   ChannelCounters channel;
-  Backlog follower;  ///< of the server that stands by
+  Backlog follower;  ///< of the standby
   bool has_log = false, log_failed = false;
   std::uint64_t log_bytes = 0, log_queued_ticks = 0, log_dropped_ticks = 0;
 };

@@ -33,11 +33,10 @@ struct ServerOptions {
   std::string messages = "text";    ///< or json: a line is an object
 };
 
-/// Reads the command line. Empty when the program must go on; else the exit code, with what had to
-/// be said (help, usage error) already said.
+/// Reads the command line and prints help or a usage error.
 struct CommandLine {
   ServerOptions options;
-  int exit_code = -1;  ///< -1: go on
+  int exit_code = -1;  ///< -1: continue, else end with it
 };
 CommandLine read_command_line(int argc, char** argv);
 

@@ -3,14 +3,13 @@
 
 namespace mortise {
 
-/// Lets the calling thread, and those that it starts from now on, run before every thread of
-/// ordinary priority: SCHED_RR, the least of the real-time priorities. A tick then begins when it
-/// is due, whatever else the machine does; the kernel leaves the others their share (5 % of each
-/// second by default). Fails where it is not permitted (RLIMIT_RTPRIO); the thread is then as it
-/// was.
+/// Gives the calling thread, and those that it starts from now on, a priority above every ordinary
+/// thread: SCHED_RR, the lowest real-time priority. A tick then begins when it is due, whatever
+/// else the machine does; the kernel reserves a share for the others (5 % of each second by
+/// default). Fails without an effect where it is not permitted (RLIMIT_RTPRIO).
 Status run_before_others();
 
-/// The calling thread as any other again: what such a thread starts inherits its priority.
+/// Gives the calling thread ordinary priority again, because threads inherit the priority.
 void run_as_others();
 
 }  // namespace mortise

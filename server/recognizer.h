@@ -9,15 +9,14 @@
 
 namespace mortise {
 
-/// Looks for features in meshes, one after another, in a thread of its own that only takes what
-/// the machine has left: some 10 to 100 us a triangle, so that a scene of many meshes is known
-/// seconds after a session began, and no tick waits for it.
+/// Searches meshes for features, one after another, in a thread of lowest priority. A scene of many
+/// meshes is done seconds after the session begins, and no tick waits for it.
 class Recognizer {
  public:
   using Shown = std::pair<std::string, std::shared_ptr<const std::vector<Feature>>>;
 
   explicit Recognizer(std::vector<SolidPtr> meshes);
-  ~Recognizer();  ///< does not wait: the thread ends by itself behind the mesh at hand
+  ~Recognizer();  ///< does not wait: the thread ends after its present mesh
   Recognizer(const Recognizer&) = delete;
   Recognizer& operator=(const Recognizer&) = delete;
 

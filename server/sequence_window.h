@@ -5,7 +5,7 @@
 
 namespace mortise {
 
-/// Sequence numbers seen, with a memory of 64: tells a repeat from one that comes too late.
+/// The sequence numbers seen, with a memory of 64: distinguishes a repetition from a late arrival.
 class SequenceWindow {
  public:
   /// kNone: new and newest. kDuplicate: seen. kStale: older than the newest, whether lost before or

@@ -3,7 +3,7 @@
 
 namespace mortise {
 
-/// Loads the scenario, opens log and channel, plays the session to its end, and says what came out.
+/// Loads the scenario, opens log and channel, plays the session to its end, and prints the result.
 /// Returns the exit code; every failure is one line on stderr.
 int serve(const ServerOptions& options);
 

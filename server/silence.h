@@ -3,19 +3,19 @@
 
 namespace mortise {
 
-/// How long the other server said nothing, of the time in which this process could have heard it.
-/// After a freeze, or on a machine that gives it no processor, what was told still lies in the
-/// sockets, and the other may have stood still as well, for as long and a little later.
+/// How long the other server has been silent, counting only time in which this process ran. After a
+/// freeze, or without a processor, messages may still be in the sockets, and the other server may
+/// have been frozen too, for as long and a little later.
 class Silence {
  public:
   static constexpr double kTurnCounts_s = 0.01;  ///< one turn for no longer
-  static constexpr double kStall_s = 0.05;       ///< so long without processor is standing still
-  /// The lease says the same, of datagrams. After standing still: by as much longer, up to kWary_s.
+  static constexpr double kStall_s = 0.05;       ///< a longer time without processor is a stall
+  /// The lease of datagrams is as long. After a stall: longer by the stall, up to kWary_s.
   static constexpr double kSilent_s = 0.1, kWary_s = 1.0;
   static constexpr double kCalm_s = 1.0;  ///< after which a stall is forgotten
 
   void heard() { silent_s_ = 0.0; }
-  /// A turn of its loop that took so long, of which this process computed so long.
+  /// One turn of the loop: how long it took, and how long of that this process computed.
   void turn(double took_s, double computed_s) {
     const double stood_still_s = took_s - computed_s;
     silent_s_ += std::min(took_s, kTurnCounts_s);

@@ -9,7 +9,7 @@
 
 namespace mortise {
 
-/// What a session begins with: a scenario, or the log of a session of before.
+/// What a session begins with: a scenario, or the log of an earlier session.
 struct SessionStart {
   std::string source;  ///< the file it came from
   std::string scenario_name, scenario_yaml;
@@ -17,15 +17,15 @@ struct SessionStart {
   std::optional<SessionLog> log;  ///< to be played again before the session goes on
   LogChain log_chain;             ///< place of that log, and
   std::string log_name;           ///< its file name
-  std::int64_t led_until_ns = 0;  ///< wall clock of the last tick of that log; 0: there is none
+  std::int64_t led_until_ns = 0;  ///< wall clock of the last tick of that log; 0: no tick
 };
 
-/// Reads what the options name; says every finding. With a folder to restore from that holds no log
-/// of the session, the scenario begins anew.
+/// Reads the files that the options name and prints every finding. If the folder to restore from
+/// has no log of the session, the scenario begins anew.
 Result<SessionStart> read_start(const ServerOptions& options);
 
-/// The new log. With `begin` it goes on where the log of the start ends, from that state. A log is
-/// never overwritten.
+/// The new log. With `begin` it continues the log of the start from that state. A log is never
+/// overwritten.
 struct NewLog {
   std::unique_ptr<SessionLogWriter> writer;  ///< null: none is written
   std::string file;                          ///< empty: none is written

@@ -14,8 +14,8 @@ struct CheckpointTimes {
   double work_s = 0.3, changed_s = 10.0, idle_s = 600.0;
 };
 
-/// Hands ticks to the log of a session, with the state whenever a checkpoint is due or the log
-/// wants to begin its next file: the same for a server that leads and for one that stands by.
+/// Passes ticks to the log of a session, with the state whenever a checkpoint is due or the log
+/// begins its next file. The leader and the standby both use it.
 class TickRecorder {
  public:
   /// `log` may be null: nothing is done then. Both must outlive this.
@@ -34,9 +34,9 @@ class TickRecorder {
   };
   /// After the step, while the world stands as after this tick.
   void begin(const Stepped& stepped);
-  /// What is begun goes to the log, with what went into the tick and came out. All are given away,
-  /// once everybody has read them: a copy would be the largest part of what recording takes from a
-  /// tick. Does nothing where nothing is begun.
+  /// Passes the begun record to the log, with the input and the report of the tick. They are moved,
+  /// after everybody has read them, because copying would be the largest cost of recording. Does
+  /// nothing when no record is begun.
   void hand_over(std::vector<Decision>& decisions, std::vector<Increment>& increments,
                  StepReport& report);
 

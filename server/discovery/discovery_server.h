@@ -24,13 +24,13 @@ struct DiscoveryCounts {
   std::size_t most_participants = 0;                        ///< at one time
 };
 
-/// Where servers and clients of all sessions of a site hear of each other (DdsOptions::
-/// discovery_server): what a participant announces of itself is passed on, byte for byte, to those
-/// who are to know it (Introductions); from then on they speak with each other alone. It holds no
-/// keys and proves nothing: who may take part is settled between them, by their certificates. Lost
-/// or started again, it interrupts no session; only whoever comes meanwhile waits.
+/// Introduces servers and clients of all sessions of a site to each other (DdsOptions::
+/// discovery_server): it forwards the announcement of a participant, byte for byte, to those that
+/// need it (Introductions); after that they communicate directly. It has no keys and proves
+/// nothing: server and client check each other's certificates. When it is lost or restarted,
+/// sessions that run are not interrupted; only a newcomer waits.
 ///
-/// This is not the Discovery Server of Fast DDS, whose 2.9 brings nobody together under
+/// This is not the Discovery Server of Fast DDS, which in version 2.9 does not work with
 /// DDS-Security.
 class DiscoveryServer {
  public:
@@ -38,8 +38,8 @@ class DiscoveryServer {
   static Result<std::unique_ptr<DiscoveryServer>> open(const DiscoveryOptions& options);
   virtual ~DiscoveryServer() = default;
 
-  /// Servers that come and go are told, with what is printable of their sessions' names, 10 lines a
-  /// second at most; a warning, once in 10 s at most, says whom there was no room for.
+  /// Reports servers that come and go, at most 10 lines a second, with the printable characters of
+  /// session names; and warns of participants that did not fit, at most once in 10 s.
   using Tell = std::function<void(bool is_warning, const std::string& line)>;
   virtual void run_for(double seconds, const Tell& tell) = 0;
   virtual std::string place() const = 0;  ///< address:port

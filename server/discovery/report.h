@@ -5,7 +5,7 @@
 
 namespace mortise {
 
-/// Of a discovery server that ends: a table for people, or one JSON document.
+/// The closing report of a discovery server: a table for people, or one JSON document.
 std::string discovery_text(const DiscoveryCounts& counts);
 std::string discovery_json(const DiscoveryCounts& counts);
 
