@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# The script `mortise` in a folder of its own, where cmake, ninja, ctest, apt-get and npm only write down that they were called:
+# mortise_script_test.sh SOURCE
+set -euo pipefail
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp "$1/mortise" "$1"/packages*.txt "$work"
+mkdir -p "$work/bin" "$work/tests/bench" "$work/tests/unit/io/mcap_check/node_modules" "$work/client/tools/keys"
+cp "$1/tests/summary.awk" "$work/tests"
+touch "$work/tests/bench/session_bench.cpp"
+for stub in cmake ninja ctest apt-get npm node chromium dpkg-query sudo; do
+  printf '#!/bin/sh\necho "%s $*" >>%s/called\n' "$stub" "$work" >"$work/bin/$stub"
+done
+cat >>"$work/bin/cmake" <<'TXT'
+[ "$1" = --preset ] || exit 0
+mkdir -p "build/$2/bin"
+touch "build/$2/build.ninja"
+for option; do case $option in -D*) echo "$option" | sed 's/-D\(.*\)=/\1:BOOL=/' >>"build/$2/CMakeCache.txt" ;; esac; done
+TXT
+# Nothing to do where `fresh` is; otherwise a program is made that says its name and what it is given.
+cat >>"$work/bin/ninja" <<'TXT'
+[ "$3" != -n ] || { [ ! -e fresh ] || echo 'ninja: no work to do.'; exit 0; }
+shift 2
+for target; do printf '#!/bin/sh\necho "ran %s $*"\n' "$target" >"build/release/bin/$target"; chmod +x "build/release/bin/$target"; done
+TXT
+# Every package is there.
+echo 'shift 2; for package; do echo "$package installed"; done' >>"$work/bin/dpkg-query"
+echo 'echo 12' >>"$work/bin/node"
+chmod +x "$work"/bin/*
+export PATH=$work/bin:$PATH
+cd "$work"
+
+fail() { echo "FAILED: $*"; cat called 2>/dev/null; exit 1; }
+exits() {  # exits CODE ARGUMENTS
+  local wanted=$1 code=0
+  shift
+  rm -f called
+  ./mortise "$@" >said 2>&1 || code=$?
+  [ "$code" -eq "$wanted" ] || fail "./mortise $*: exit $code, not $wanted: $(cat said)"
+}
+called() { grep -qE -- "$1" called || fail "not called: $1"; }
+not_called() { ! grep -qsE -- "$1" called || fail "called: $1"; }
+
+# 1. what is wrong is said before anything is installed or built
+for wrong in 'demo --bogus' 'demo --seconds' 'demo --seconds x' 'test --sanitize' 'test --sanitize memory' 'bench nosuch' nosuch; do
+  # shellcheck disable=SC2086
+  exits 2 $wrong
+  [ ! -e called ] || fail "./mortise $wrong called something"
+done
+
+# 2. a program builds itself alone, without tests, and is not called stale
+exits 0 lint some.yaml
+grep -q 'ran mortise-lint some.yaml' said || fail "lint: $(cat said)"
+called 'cmake --preset release -DMORTISE_TESTS=OFF'
+called '^ninja -C build/release mortise-lint$'
+exits 0 lint some.yaml
+called '^ninja -C build/release mortise-lint$'
+not_called '^cmake'
+touch fresh
+exits 0 lint some.yaml
+not_called '^ninja -C build/release mortise-lint$'
+grep -qx 'ran mortise-lint some.yaml' said || fail "more than the program is heard: $(cat said)"
+rm fresh
+
+# 3. the demo builds what it runs
+exits 0 demo --seconds 3
+called '^ninja -C build/release mortise-server mortise-bot$'
+
+# 4. tests are configured when they are asked for; the long ones with --soak; then not again
+exits 0 test -R some_name
+called '^cmake --preset release -DMORTISE_TESTS=ON -DMORTISE_SOAK=OFF$'
+called '^ninja -C build/release all$'
+called '^ctest --test-dir build/release .* -R some_name$'
+exits 0 test
+not_called '^cmake'
+exits 0 test --soak
+called '^cmake --preset release -DMORTISE_SOAK=ON$'
+called '^ctest .* -C Soak$'
+exits 0 test --sanitize thread
+called '^cmake --preset tsan '
+called '^ctest --test-dir build/tsan '
+
+# 5. the last line of what was tested
+cat >results.xml <<'TXT'
+	<testcase name="a" classname="a" time="0.1" status="run">
+	</testcase>
+	<testcase name="b" classname="b" time="0.1" status="notrun">
+		<skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
+		<system-out>[ RUN      ] B.B
+/b.cpp:12: Skipped
+data absent: &quot;it&apos;s far&quot;
+	</testcase>
+	<testcase name="c" classname="c" time="0.1" status="notrun">
+		<skipped message="SKIP_RETURN_CODE=77"/>
+		<system-out>SKIPPED: not root
+	</testcase>
+	<testcase name="d" classname="d" time="0.1" status="fail">
+	</testcase>
+	<testcase name="e" classname="e" time="0" status="notrun">
+		<skipped message="Unable to find executable"/>
+	</testcase>
+TXT
+said=$(awk -f tests/summary.awk results.xml)
+[ "${said%%:*}" = mortise ] && [[ $said == *": 1 passed, 2 failed, 2 skipped: "* && $said == *'1 data absent: "it'"'"'s far"'* && $said == *'1 not root'* ]] ||
+  fail "summary: $said"
+echo "the script calls what it should"
