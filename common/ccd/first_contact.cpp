@@ -50,7 +50,7 @@ class Query {
       result_.distance_mm = apart_mm - motion_.travel_mm();
       return result_;
     }
-    if (query_.check_contained && apart_mm <= 0.0 &&
+    if (query_.check_contained && query_.t_from == 0.0 && apart_mm <= 0.0 &&
         contained(a_, query_.motion_a.X_W0, b_, query_.motion_b.X_W0, accuracy_mm_)) {
       result_.contained = true;
       return at_start(ContactState::kOverlappingAtStart, {});
@@ -118,7 +118,9 @@ class Query {
     const BoxKernels& kernels = query_.portable ? portable_box_kernels() : box_kernels();
     CcdWork& work = result_.work;
     PairQueue queue(a, b, scratch_);
-    queue.push_now(root_pair(a, b));
+    Item root = root_pair(a, b);
+    root.t = query_.t_from;
+    queue.push_now(root);
     while (!queue.empty()) {
       const Item item = queue.pop();
       if (work.box_tests + work.leaf_tests >= query_.work_cap) {
@@ -211,6 +213,7 @@ FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
                 "an accuracy must be a length");
   MORTISE_CHECK(query.separation_mm >= 0.0 && query.separation_mm <= kLargestCoordinate_mm,
                 "a separation must be a length");
+  MORTISE_CHECK(query.t_from >= 0.0 && query.t_from < 1.0, "t_from must be a time of the tick");
   return Query(query, scratch).answer();
 }
 

@@ -30,6 +30,9 @@ struct ContactQuery {
   double accuracy_mm = kAccuracyDefault_mm;
   double separation_mm = 0.0;  ///< first time within this distance (0: first touch)
   std::uint64_t work_cap = kCcdWorkCap;
+  /// Known to be clear before: t_clear of an answer to this query that came to the end of its work
+  /// cap, and with which the parts did not touch at the start. 0: nothing is known.
+  double t_from = 0.0;
   bool check_contained = true;  ///< ask whether one starts inside the other
   /// Parts that touch at the start are the normal case in assembly. When set, such a pair is not
   /// answered with kTouchingAtStart; the answer is the first time at which some triangle lies

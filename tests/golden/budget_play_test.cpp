@@ -9,16 +9,17 @@
 #include "common/io/log/replay.h"
 #include "common/messages/names.h"
 #include "tests/golden/played_session.h"
+#include "tests/support/effort.h"
 
 namespace mortise {
 namespace {
 
-Result<test::PlayedSession> gearbox(bool work_budget) {
+Result<test::PlayedSession> gearbox(bool work_budget, std::uint64_t arrival_seed = 0) {
   const auto scenarios = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
   StepSwitches switches;
   switches.work_budget = work_budget;
   return test::play_session(scenarios / "gearbox.yaml", scenarios / "gearbox.play.yaml", 1,
-                            switches);
+                            switches, arrival_seed);
 }
 
 // Begin, end and every other class of every pair of parts, in their order. That a depth has grown
@@ -63,6 +64,22 @@ TEST(BudgetPlay, TheDemoTellsWhatItTellsWithout) {
   ASSERT_TRUE(report) << report.error().text;
   EXPECT_FALSE(report->difference) << report->difference->what;
   EXPECT_EQ(report->ticks_compared, with->ticks.size());
+}
+
+// However the increments arrive: the press fit is told real, and the bearing stays at the mouth.
+TEST(BudgetPlay, ThePressFitIsToldHoweverIncrementsArrive) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(5)); ++seed) {
+    const auto played = gearbox(true, seed);
+    ASSERT_TRUE(played) << played.error().text;
+    const Told told = told_in(*played);
+    const auto pair = told.find("cover - bearing_out_upper");
+    ASSERT_NE(pair, told.end()) << "seed " << seed << " " << testing::PrintToString(told);
+    EXPECT_EQ(pair->second.back().substr(pair->second.back().find(' ') + 1), "real") << seed;
+    const World& world = played->scene.world;
+    EXPECT_GT(world.find_part("bearing_out_upper")->X_WP.p.z(),
+              world.find_part("bearing_in_upper")->X_WP.p.z() + 1.0)
+        << seed;
+  }
 }
 
 }  // namespace

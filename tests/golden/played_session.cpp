@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <random>
 
 #include "common/session/tick/step.h"
 
@@ -47,6 +48,27 @@ std::map<std::uint64_t, Wishes> schedule(const Play& play, const World& world,
   return wishes;
 }
 
+// Moves what each user sends to later ticks, in order: a stall begins in one of forty ticks and
+// lasts for up to eight.
+std::map<std::uint64_t, Wishes> late(const std::map<std::uint64_t, Wishes>& wishes,
+                                     std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::map<UserId, std::uint64_t> not_before;
+  std::map<std::uint64_t, Wishes> arrived;
+  const auto arrival = [&](UserId user, std::uint64_t tick) {
+    std::uint64_t& earliest = not_before[user];
+    if (earliest < tick) earliest = random() % 40 == 0 ? tick + random() % 8 : tick;
+    return earliest;
+  };
+  for (const auto& [tick, wish] : wishes) {
+    for (const Command& command : wish.commands)
+      arrived[arrival(command.user, tick)].commands.push_back(command);
+    for (const Increment& increment : wish.increments)
+      arrived[arrival(increment.user, tick)].increments.push_back(increment);
+  }
+  return arrived;
+}
+
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -55,7 +77,8 @@ std::string text_of(const std::filesystem::path& file) {
 }  // namespace
 
 Result<PlayedSession> play_session(const std::string& scenario_name, const std::string& yaml,
-                                   const Play& play, int threads, const StepSwitches& switches) {
+                                   const Play& play, int threads, const StepSwitches& switches,
+                                   std::uint64_t arrival_seed) {
   auto reading = read_scenario_text(yaml, scenario_name);
   if (!reading) return reading.error();
   if (!reading->usable()) return fail(Code::kInvalidInput, reading->findings.front().text);
@@ -70,7 +93,8 @@ Result<PlayedSession> play_session(const std::string& scenario_name, const std::
   std::map<std::string, UserId> users;
   std::uint32_t next_id = 1;
   for (const std::string& name : play.users()) users[name] = UserId{next_id++};
-  const auto wishes = schedule(play, world, users);
+  auto wishes = schedule(play, world, users);
+  if (arrival_seed != 0) wishes = late(wishes, arrival_seed);
 
   Scratch scratch(threads);
   scratch.impl().switches = switches;
@@ -101,10 +125,11 @@ Result<PlayedSession> play_session(const std::string& scenario_name, const std::
 
 Result<PlayedSession> play_session(const std::filesystem::path& scenario,
                                    const std::filesystem::path& play, int threads,
-                                   const StepSwitches& switches) {
+                                   const StepSwitches& switches, std::uint64_t arrival_seed) {
   auto acts = read_play(play);
   if (!acts) return acts.error();
-  return play_session(scenario.filename().string(), text_of(scenario), *acts, threads, switches);
+  return play_session(scenario.filename().string(), text_of(scenario), *acts, threads, switches,
+                      arrival_seed);
 }
 
 Status write_log(const PlayedSession& session, const std::filesystem::path& file) {

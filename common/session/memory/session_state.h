@@ -57,13 +57,13 @@ struct PairMemo {
     std::uint8_t in_vain = 0;
   };
   Rare<Stalled> stalled;
-  /// What a stage of the last ticks needed of depth, and for how many ticks it has waited for it;
+  /// What a stage of the last ticks needed of work, and for how many ticks it has waited for it;
   /// see work_budget.h. By WorkStage.
   struct Effort {
-    std::uint32_t wanted = 0;  ///< evaluations; 0: not yet asked
+    std::uint32_t wanted = 0;  ///< tests or evaluations; 0: not yet asked
     std::uint8_t waited = 0;
   };
-  std::array<Effort, 2> effort;
+  std::array<Effort, 3> effort;
   bool touched = false;            ///< listed in SessionState::touched
   std::uint64_t touched_tick = 0;  ///< when it last was
 };
@@ -149,7 +149,7 @@ struct SessionState {
   std::map<PartPair, std::vector<OpenClash>> open;  ///< clashes of a pair by ClashId
   std::vector<ClashEvent> reviews;                  ///< made since the last tick, told in the next
   bool clashes_changed = true;
-  std::int64_t saved_work = 0;   ///< evaluations, see work_budget.h; negative: overdrawn
+  std::int64_t saved_work = 0;   ///< evaluations, see depth_budget.h; negative: owed
   std::int64_t saved_tests = 0;  ///< the same of first contact, see contact_budget.h
   std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
   std::uint64_t clashes_hash = 0;

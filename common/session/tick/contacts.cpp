@@ -7,17 +7,19 @@
 #include "common/base/constants.h"
 #include "common/session/memory/motion_budget.h"
 #include "common/session/tick/contact_budget.h"
+#include "common/session/tick/depth_budget.h"
 #include "common/session/tick/stop_time.h"
 #include "common/session/tick/tick_work.h"
-#include "common/session/tick/work_budget.h"
 
 namespace mortise {
 namespace {
 
 enum class AtStart { kSay, kIgnoreTouching };
 
+// `clear`: how far an earlier question of the same kind got; a touch at the start is looked at
+// anew.
 FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_start,
-                               CcdScratch& ccd) {
+                               double& clear, CcdScratch& ccd) {
   ContactQuery query;
   query.a = pair.solid_a;
   query.b = pair.solid_b;
@@ -27,11 +29,14 @@ FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_
   query.ignore_touching_at_start = at_start == AtStart::kIgnoreTouching;
   query.check_contained = !pair.memo->not_contained;
   query.work_cap = pair.contact_cap;
+  query.t_from = clear;
   const FirstContact contact = first_contact(query, ccd);
   note_contact_work(pair, contact.work);
-  pair.contact_short |= contact.state == ContactState::kUndecided &&
-                        pair.contact_cap < kCcdWorkCap &&
-                        contact.work.box_tests + contact.work.leaf_tests >= pair.contact_cap;
+  if (contact.state == ContactState::kUndecided && pair.contact_cap < kCcdWorkCap &&
+      contact.work.box_tests + contact.work.leaf_tests >= pair.contact_cap) {
+    pair.contact_short = true;
+    clear = contact.touched_at_start ? 0.0 : contact.t_clear;
+  }
   return contact;
 }
 
@@ -43,7 +48,8 @@ void note_contained(PairWork& pair, bool is_free) {
 // when. Touching at the start is no reason to stop anybody; it asks on until the touching places
 // press in.
 void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
-  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kIgnoreTouching, ccd);
+  const FirstContact touch =
+      ask_first_contact(pair, 0.0, AtStart::kIgnoreTouching, pair.clear_of_touch, ccd);
   note_contained(pair, touch.state == ContactState::kFree);
   if (touch.state == ContactState::kFree) {
     pair.touching = touch.touched_at_start;
@@ -70,7 +76,8 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
 // With a band there are two questions: when do they come so near that the real surfaces could meet,
 // and when do the meshes meet.
 void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
-  const FirstContact near = ask_first_contact(pair, pair.band_mm, AtStart::kSay, ccd);
+  const FirstContact near =
+      ask_first_contact(pair, pair.band_mm, AtStart::kSay, pair.clear_of_band, ccd);
   if (near.state == ContactState::kFree) {
     note_contained(pair, true);
     pair.apart_at_end_mm = std::max(near.distance_mm, pair.band_mm);
@@ -78,7 +85,7 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   }
   pair.near = true;
   pair.entered = near.state == ContactState::kContact;
-  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, ccd);
+  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, pair.clear_of_touch, ccd);
   note_contained(pair, touch.state == ContactState::kFree);
   pair.undecided =
       near.state == ContactState::kUndecided || touch.state == ContactState::kUndecided;
@@ -145,6 +152,18 @@ void note_contact_work(PairWork& pair, const CcdWork& work) {
 
 namespace {
 
+// Pushed on where it is told that it is held: by the place that has held it before, without any
+// other question. Under slide what holds a part is looked at anew for each leg.
+bool stays_held(const World& world, PairWork& pair) {
+  if (world.policy != Policy::kStop || pair.plain() || pair.no_inside() || !is_told_real(pair) ||
+      !is_held_again(pair))
+    return false;
+  ++pair.counts.pairs_held_again;
+  pair.near = pair.held_again = true;
+  pair.t_stop = pair.tau;
+  return true;
+}
+
 // The tick has no work left for it: nothing is known beyond how it stands.
 void leave_unasked(const World& world, PairWork& pair) {
   pair.near = pair.undecided = pair.contact_waits = true;
@@ -176,6 +195,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     pair.asked = false;
     return;
   }
+  if (stays_held(world, pair)) return;
   if (pair.contact_cap == 0) return leave_unasked(world, pair);
   if (pair.plain())
     ask_plain(world, pair, ccd);
@@ -199,7 +219,7 @@ void search_stop_time(PairWork& pair, CcdScratch& ccd) {
   const bool was_undecided = std::exchange(pair.undecided, false);
   const double t = pair.plain() ? withdrawal_time(pair, ccd) : stop_time_with_bands(pair, ccd);
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
-  note_effort(pair, WorkStage::kStop, pair.undecided);
+  note_depth_effort(pair, WorkStage::kStop, pair.undecided);
   pair.stop_gave_up = pair.undecided;
   pair.short_of_work |= pair.undecided && pair.may_have_more();
   note_stalled(pair);
@@ -210,6 +230,12 @@ void search_stop_time(PairWork& pair, CcdScratch& ccd) {
 
 namespace {
 
+void begin_contact(PairWork& pair, std::uint64_t cap) {
+  pair.contact_cap = cap;
+  pair.contact_short = false;
+  pair.clear_of_band = pair.clear_of_touch = 0.0;
+}
+
 template <class Ask>
 void each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const Ask& ask) {
   work.pool.for_each(pairs.size(), [&](std::size_t i, int thread) {
@@ -217,36 +243,33 @@ void each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const Ask& 
   });
 }
 
-// 1. each with a share of what the tick may spend; most need no more.
-// 2. whose share did not do, or who had none, with all that a pair may have, as long as there is
-//    work.
+// The earliest in the order are asked first, at once as many as the tick has work for. Whose share
+// did not do is asked again with twice as much, in rounds, as long as there is work.
 void ask_within_budget(const World& world, Scratch::Impl& work,
                        std::span<const std::uint32_t> pairs) {
   const auto ask = [&](PairWork& pair, CcdScratch& ccd) {
     ask_pair(world, work.switches, pair, ccd);
   };
-  if (is_contact_unlimited(work)) {
-    for (const std::uint32_t i : pairs) work.pairs[i].contact_cap = kCcdWorkCap;
-    return each(work, pairs, ask);
+  const bool limited = work.contact_budget.is_limited();
+  for (const std::uint32_t i : pairs) begin_contact(work.pairs[i], limited ? 0 : kCcdWorkCap);
+  if (!limited) return each(work, pairs, ask);
+  std::vector<std::uint32_t> order =
+      in_order(world, std::span(work.pairs).first(work.pair_count), pairs, WorkStage::kContact);
+  for (bool first = true; !order.empty(); first = false) {
+    std::vector<std::uint32_t> again;
+    std::span<const std::uint32_t> rest = order;
+    while (const std::size_t count = share_contact_work(work, rest)) {
+      const auto batch = rest.first(count);
+      rest = rest.subspan(count);
+      each(work, batch, ask);
+      for (const std::uint32_t i : batch)
+        if (note_contact_effort(work.pairs[i])) again.push_back(i);
+    }
+    if (first) each(work, rest, ask);  // without work: those that are known to stay clear need none
+    for (const std::uint32_t i : order)
+      if (first) note_contact_waiting(work.pairs[i]);
+    order = std::move(again);
   }
-  const std::vector<std::uint32_t> order = contact_order(world, work, pairs);
-  for (std::span<const std::uint32_t> rest = order; !rest.empty();) {
-    const auto batch = rest.first(std::min(rest.size(), kContactBatch));
-    rest = rest.subspan(batch.size());
-    share_contact_work(world, work, batch);
-    each(work, batch, ask);
-  }
-  std::vector<std::uint32_t> unanswered;
-  for (const std::uint32_t i : order)
-    if (work.pairs[i].contact_short || work.pairs[i].contact_waits) unanswered.push_back(i);
-  for (std::span<const std::uint32_t> rest = unanswered; !rest.empty();) {
-    const auto batch = rest.first(std::min(rest.size(), kDearBatch));
-    rest = rest.subspan(batch.size());
-    if (!share_more_contact_work(work, batch)) break;
-    each(work, batch, ask);
-  }
-  for (const std::uint32_t i : unanswered)
-    work.pairs[i].counts.pairs_waiting += work.pairs[i].contact_waits ? 1U : 0U;
 }
 
 }  // namespace
@@ -257,7 +280,7 @@ void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uin
   for (const std::uint32_t i : pairs)
     if (work.pairs[i].wants_stop_time) work.asked.push_back(i);
   if (work.asked.empty()) return;
-  share_out(world, work, work.asked, WorkStage::kStop);
+  share_depth_work(world, work, work.asked, WorkStage::kStop);
   each(work, work.asked, [](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, ccd); });
 }
 

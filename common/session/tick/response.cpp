@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "common/base/constants.h"
+#include "common/session/tick/depth_budget.h"
 #include "common/session/tick/slide.h"
 #include "common/session/tick/tick_work.h"
-#include "common/session/tick/work_budget.h"
 
 namespace mortise {
 namespace {
@@ -159,7 +159,7 @@ class Response {
   // A leg is looked for along what holds the body, which costs as much as a search.
   bool may_slide() {
     if (world_.policy != Policy::kSlide) return false;
-    if (work_left(work_) > 0 || !work_.switches.work_budget) return true;
+    if (depth_work_left(work_) > 0 || !work_.switches.work_budget) return true;
     ++counters_.slides_cut_short;
     return false;
   }

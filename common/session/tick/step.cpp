@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/session/tick/contact_budget.h"
+#include "common/session/tick/depth_budget.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
 #include "common/session/world/review.h"
@@ -60,7 +61,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   tell_reviews(world, state, report);
   gather(world, increments, work, report);
   find_candidates(world, state, work, report);
-  open_budget(world, state, work);
+  open_depth_budget(world, state, work);
   open_contact_budget(world, state, work);
   if (!work.moves.empty()) {
     find_contacts(world, work);
@@ -72,8 +73,8 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
     count_pairs_of(world, work, report.counters);
     note_changed_memos(state, work);
   }
-  close_budget(world, state, work);
-  close_contact_budget(world, state, work);
+  close_depth_budget(state, work);
+  close_contact_budget(state, work);
   report.state_hash = state_hash(world, state);
   return report;
 }

@@ -202,30 +202,6 @@ double leave_brink(PairWork& pair, CcdScratch& ccd) {
   return withdrawal_until(pair, std::min(1.0, kLeaveBrink_mm / speed_mm), ccd);
 }
 
-// A part that is pushed on where its last push has left it: is it the same place that holds it? The
-// poses at the start are proven already, so that nothing has to be searched.
-bool is_held_again(PairWork& pair) {
-  const auto& held = pair.memo->held;
-  // Who slides goes another way than what was held.
-  if (!held || pair.blocked || std::isfinite(pair.memo->allowed_depth_mm) ||
-      !identical(held->X_WA, pair.motion_a.X_W0) || !identical(held->X_WB, pair.motion_b.X_W0))
-    return false;
-  const double speed_mm =
-      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
-  OverlapQuery query = overlap_query(pair);
-  const auto holds_at = [&](double path_mm) {
-    const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
-    query.X_WA = pair.motion_a.pose_at(t);
-    query.X_WB = pair.motion_b.pose_at(t);
-    return is_certain_at(query, held->place, pair.counts.depth_evaluations);
-  };
-  const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
-                     (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),
-                                                   std::end(kHeldAfterGivingUp_mm), holds_at));
-  if (again) pair.place = held->place;
-  return again;
-}
-
 PairMemo::Stalled push_of(const PairWork& pair) {
   const double rim_mm =
       std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
@@ -282,6 +258,28 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
 }
 
 }  // namespace
+
+bool is_held_again(PairWork& pair) {
+  const auto& held = pair.memo->held;
+  // Who slides goes another way than what was held.
+  if (!held || pair.blocked || std::isfinite(pair.memo->allowed_depth_mm) ||
+      !identical(held->X_WA, pair.motion_a.X_W0) || !identical(held->X_WB, pair.motion_b.X_W0))
+    return false;
+  const double speed_mm =
+      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  OverlapQuery query = overlap_query(pair);
+  const auto holds_at = [&](double path_mm) {
+    const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
+    query.X_WA = pair.motion_a.pose_at(t);
+    query.X_WB = pair.motion_b.pose_at(t);
+    return is_certain_at(query, held->place, pair.counts.depth_evaluations);
+  };
+  const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
+                     (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),
+                                                   std::end(kHeldAfterGivingUp_mm), holds_at));
+  if (again) pair.place = held->place;
+  return again;
+}
 
 double withdrawal_time(PairWork& pair, CcdScratch& ccd) { return withdrawal_until(pair, 1.0, ccd); }
 

@@ -14,6 +14,11 @@ struct SearchedTime {
 /// before: a few evaluations.
 SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch);
 
+/// A part that is pushed on where its last push has left it: is it the same place that holds it?
+/// The poses at the start are proven already, so that nothing has to be searched. True: it is, and
+/// PairWork::place names it.
+bool is_held_again(PairWork& pair);
+
 /// By the search from there, at most PairWork::cap evaluations of it.
 double stop_time_with_bands(PairWork& pair, CcdScratch& ccd);
 

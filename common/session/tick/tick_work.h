@@ -7,6 +7,7 @@
 #include "common/session/tick/judgement.h"
 #include "common/session/tick/step.h"
 #include "common/session/tick/tangent_cone.h"
+#include "common/session/tick/work_budget.h"
 #include "common/session/tick/worker_pool.h"
 #include "common/session/world/moving_group.h"
 
@@ -64,9 +65,6 @@ struct SeenRegion {
   bool passing = false;  ///< begins and ends within the tick
 };
 
-/// What a pair is given work for: the time at which it stops, and its verdict.
-enum class WorkStage : std::uint8_t { kStop = 0, kVerdict = 1 };
-
 /// One candidate pair on its way through the tick; a < b.
 struct PairWork {
   std::uint32_t a = 0, b = 0;
@@ -105,12 +103,16 @@ struct PairWork {
                                                 ///< back; near, and left again
 
   // Work on first contact, in tests; see contact_budget.h.
-  std::uint64_t contact_cap = kCcdWorkCap,
-                contact_tests = 0;  ///< of one question; used in the tick
-  bool contact_short = false;       ///< a question came to the end of that
-  bool contact_waits = false;       ///< none was asked, for want of work
+  std::uint64_t contact_cap = kCcdWorkCap;  ///< of one question
+  std::uint64_t contact_tests = 0;          ///< used in the tick
+  std::uint64_t contact_start = 0;          ///< and before the present question
+  bool contact_short = false;               ///< a question came to the end of that
+  bool contact_waits = false;               ///< none was asked, for want of work
+  /// How far the questions that came to the end of their work got: at the distance of the band, and
+  /// at which the meshes touch. Times of the segment.
+  double clear_of_band = 0.0, clear_of_touch = 0.0;
 
-  // Work on depth, in evaluations; see work_budget.h.
+  // Work on depth, in evaluations; see depth_budget.h.
   std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
   std::uint64_t most_work = 0;     ///< that a pair may have in the stage
   bool limited = false;            ///< by what the tick may spend
@@ -171,18 +173,14 @@ struct Scratch::Impl {
   std::vector<IndexPair> candidates;
   std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
   std::size_t pair_count = 0;
-  std::uint64_t budget = 0, stock = 0;  ///< evaluations of depth: of this tick, and what was saved
-  std::uint64_t contact_budget = 0;     ///< tests of first contact, what was saved included
-  std::vector<std::uint32_t> asked;     ///< pairs that want work of the stage
-  std::vector<std::uint32_t> again;     ///< pairs to ask again in a round of the response
+  WorkBudget contact_budget;         ///< tests of first contact
+  WorkBudget depth_budget;           ///< evaluations of depth
+  std::vector<std::uint32_t> asked;  ///< pairs that want work of the stage
+  std::vector<std::uint32_t> again;  ///< pairs to ask again in a round of the response
   std::vector<SlidingBody> sliding;
 };
 
 // The stages, in the order of the tick. Each reads what the ones before have written.
-
-/// What the tick may spend on depth, and what is saved for later ones.
-void open_budget(const World& world, const SessionState& state, Scratch::Impl& work);
-void close_budget(const World& world, SessionState& state, const Scratch::Impl& work);
 
 /// 1. Increments to moves: checks, composition in order of arrival.
 void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
@@ -201,6 +199,9 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
 /// 6. Begin, change and end of clashes.
 void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
                     StepReport& report);
+
+/// Is the pair told to be real, by a verdict that holds?
+bool is_told_real(const PairWork& pair);
 
 /// Notes for the next tick by which place each pair held its parts back.
 void note_held(const World& world, Scratch::Impl& work);

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "common/base/constants.h"
+#include "common/session/tick/depth_budget.h"
 #include "common/session/tick/event_times.h"
 #include "common/session/tick/tick_work.h"
-#include "common/session/tick/work_budget.h"
 
 namespace mortise {
 namespace {
@@ -164,10 +164,7 @@ void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch
 bool stays_told(const PairWork& pair) {
   if (pair.memo->not_judged) return false;
   if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
-  return pair.near && pair.blocks && pair.held_again && pair.open &&
-         std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
-           return clash.now.collision_class == CollisionClass::kReal;
-         });
+  return pair.near && pair.blocks && pair.held_again && is_told_real(pair);
 }
 
 // Nobody looked: the open clashes stay as they are.
@@ -273,11 +270,18 @@ void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, 
     note_judged(pair);
   }
   if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo.change().stalled->judged = true;
-  note_effort(pair, WorkStage::kVerdict, capped);
+  note_depth_effort(pair, WorkStage::kVerdict, capped);
   pair.undecided |= was_undecided;
 }
 
 }  // namespace
+
+bool is_told_real(const PairWork& pair) {
+  return !pair.memo->not_judged && pair.open &&
+         std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
+           return clash.now.collision_class == CollisionClass::kReal;
+         });
+}
 
 void judge_pairs(const World& world, Scratch::Impl& work) {
   work.asked.clear();
@@ -296,7 +300,7 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
     else if (pair.open)
       work.again.push_back(i);
   }
-  share_out(world, work, work.asked, WorkStage::kVerdict);
+  share_depth_work(world, work, work.asked, WorkStage::kVerdict);
   work.pool.for_each(work.again.size(), [&](std::size_t i, int thread) {
     PairWork& pair = work.pairs[work.again[i]];
     if (stays_told(pair))

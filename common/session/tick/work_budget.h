@@ -1,35 +1,75 @@
 #pragma once
-#include "common/session/tick/tick_work.h"
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/session/memory/session_state.h"
 
 namespace mortise {
 
-// What a tick may spend on depth, counted in evaluations (some 3 us each) and never in time, so
-// that a replay decides the same. Pairs are served in the order of what users hold, who has waited
-// longest first; each is given what it needed the last time and half as much again, and twice that
-// after it came to the end of it. Who would not get that much waits rather than begin in vain: it
-// is left at the time proven without a search, or with a short one, keeps the clashes that it has
-// as they are, and is counted in pairs_waiting and not_examined. What ticks do not need is saved,
-// up to a limit, for pairs that need more than one tick has.
+struct PairWork;
 
-/// Of all work a tick has so many times more under slide: a leg is searched like a push of its own,
-/// and there are several of them in a tick.
-inline constexpr std::uint64_t kSlideTimes = 2;
+/// What a tick is given work for: first contact, the time at which a pair stops, its verdict.
+enum class WorkStage : std::uint8_t { kContact = 0, kStop = 1, kVerdict = 2 };
+
+/// How much of one kind of work ticks may spend. Work is counted and never timed, so that a replay
+/// decides the same.
+struct WorkRules {
+  double per_second = 0.0;
+  std::int64_t least = 0;         ///< in a tick, however high the tick rate is
+  std::int64_t saved_ticks = 0;   ///< what ticks may save together, in ticks' own work
+  std::int64_t owed_ticks = 0;    ///< more than this is not paid back, in ticks' own work
+  double extra_per_second = 0.0;  ///< saved in every tick, whatever it used
+};
+
+/// The work of one tick: its own, and what earlier ticks have saved or taken in advance.
+class WorkBudget {
+ public:
+  /// A quarter of what a tick does not need is saved.
+  static constexpr std::int64_t kSavedShare = 4;
+
+  /// The first tick of a session has no limit: nobody waits for it yet. `times`: of the tick's own
+  /// work.
+  void open(const WorkRules& rules, const World& world, std::int64_t saved, bool limited,
+            std::int64_t times = 1);
+  bool is_limited() const { return limited_; }
+  std::uint64_t own() const { return static_cast<std::uint64_t>(own_); }
+  /// What was saved before this tick; 0 when work is owed.
+  std::uint64_t saved() const { return static_cast<std::uint64_t>(saved_ > 0 ? saved_ : 0); }
+  /// What may still be spent when `used` is spent; what is owed is paid from the tick's own work.
+  std::uint64_t left(std::uint64_t used) const;
+  /// What is saved (or, negative, owed) for the next tick. Debts are paid in full before anything
+  /// is saved.
+  std::int64_t close(std::uint64_t used) const;
+
+ private:
+  std::int64_t own_ = 0, saved_ = 0, saved_most_ = 0, owed_most_ = 0, extra_ = 0;
+  bool limited_ = true, first_ = false;
+};
+
+/// x - y, or 0.
+inline std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x > y ? x - y : 0; }
 
 /// Does a user hold a part that moves in it?
 bool is_held(const World& world, const PairWork& pair);
 
-/// x - y, or nothing.
-inline std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x > y ? x - y : 0; }
+/// The pairs in the order in which they are served: who has waited longest first. A pair whose
+/// parts nobody holds comes after one that is held, unless it has waited half a second longer (30
+/// ticks).
+std::vector<std::uint32_t> in_order(const World& world, std::span<const PairWork> work,
+                                    std::span<const std::uint32_t> pairs, WorkStage stage);
 
-/// Evaluations that are left of the tick, what is saved included.
-std::uint64_t work_left(const Scratch::Impl& work);
-
-/// Sets PairWork::cap and most_work of these pairs; cap 0 for those that have nothing; called
-/// before they are asked.
-void share_out(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
-               WorkStage stage);
-
-/// Remembers what it needed.
-void note_effort(PairWork& pair, WorkStage stage, bool capped);
+/// What a pair used of the work that it was given in a stage.
+struct UsedWork {
+  std::uint64_t used = 0, cap = 0;
+  bool capped = false;      ///< it was not enough
+  std::uint64_t first = 0;  ///< estimate for a pair of which nothing is known yet
+};
+/// Remembers it: half as much again as it used is asked for the next time, twice the cap when that
+/// was not enough. An easy tick lowers the estimate by an eighth only, and a pair that was given
+/// less than it wanted has learned nothing of what it needs.
+void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work);
+/// Counts for how many ticks in a row the pair was not served.
+void note_waiting(PairWork& pair, WorkStage stage, bool served);
 
 }  // namespace mortise

@@ -1,0 +1,179 @@
+#include "common/session/tick/depth_budget.h"
+
+#include <algorithm>
+#include <array>
+
+#include "common/session/tick/stop_time.h"
+
+namespace mortise {
+namespace {
+
+// 3,000 evaluations in a tick of 60 Hz, some 7 ms. More holds up everybody, less leaves more pairs
+// waiting. Four ticks' work is saved, so that the first verdict on a clash and a stop at a brink
+// are found at once where the session is not always short of work.
+constexpr WorkRules kRules{.per_second = 180'000.0,
+                           .least = 500,
+                           .saved_ticks = 4,
+                           .owed_ticks = 2,
+                           .extra_per_second = 1'200.0};
+// Share of a tick that the search for stops leaves to the verdicts.
+constexpr std::uint64_t kVerdictShare = 3;
+
+// By stage: what a tick may have taken of the saved work by its end, and what one pair may have.
+// What the search for stops has taken is not there for the verdicts. kContact has its own budget.
+constexpr std::array<std::uint64_t, 3> kMostOfSaved{0, 2'000, 3'500}, kMostEffort{0, 4'000, 5'000};
+// The same where work is not limited.
+constexpr std::uint64_t kUnlimitedEffort = 10'000;
+// Evaluations of one pair the first time; and the fewest that are of use to a search for the stop:
+// parts that leave each other need no more.
+constexpr std::uint64_t kFirstEffort = 1'500, kGlance = 250;
+
+// A search that has come to nothing is not repeated for so many ticks while nothing has changed;
+// nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
+// the parts leave each other.
+constexpr std::uint8_t kStalledTicks = 30;
+// The pair that is first in the order and has waited so many ticks is served whatever is left: one
+// in a tick, so that a tick takes one pair's most work in advance and no more. Without it a pair
+// that needs nearly a whole tick's work waits for ever in a session that is always a little short.
+constexpr std::uint8_t kLongestWait_ticks = 8;
+
+std::uint64_t spent(const Scratch::Impl& work) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < work.pair_count; ++i) sum += work.pairs[i].counts.depth_evaluations;
+  return sum;
+}
+
+// What is left of the tick's own work, and of what was saved, from which so much was taken.
+struct Left {
+  std::uint64_t own = 0, saved = 0, taken_of_saved = 0;
+};
+
+Left left_of(const Scratch::Impl& work) {
+  const WorkBudget& budget = work.depth_budget;
+  const std::uint64_t used = spent(work), beyond = less(used, budget.own());
+  return {less(budget.own(), used), less(budget.saved(), beyond), beyond};
+}
+
+std::uint64_t wanted_of(const PairWork& pair, WorkStage stage, std::uint64_t most) {
+  const std::uint32_t wanted = pair.memo->effort[static_cast<std::size_t>(stage)].wanted;
+  return std::min<std::uint64_t>(wanted == 0 ? kFirstEffort : wanted, most);
+}
+
+std::uint8_t waited_of(const PairWork& pair, WorkStage stage) {
+  return pair.memo->effort[static_cast<std::size_t>(stage)].waited;
+}
+
+// Is it known from where it stands that a search for its stop is of little use?
+bool rests(const PairWork& pair, std::uint8_t waited) {
+  if (waited >= kStalledTicks) return false;
+  if (is_stalled(pair) && pair.memo->stalled->in_full) return true;
+  const int times = times_in_vain(pair);
+  return times > 0 && waited < std::min<int>(kStalledTicks, 1 << std::min(times, 5));
+}
+
+// It is given half as much again as it needed the last time, and mostly needs that again.
+std::uint64_t expected(std::uint64_t wanted) { return wanted - wanted / 3; }
+
+// One stage of one tick shares out its work.
+class Sharing {
+ public:
+  Sharing(const World& world, Scratch::Impl& work, WorkStage stage)
+      : work_(work), stage_(stage), left_(left_of(work)) {
+    const WorkBudget& budget = work.depth_budget;
+    const auto at = static_cast<std::size_t>(stage);
+    const std::uint64_t times = world.policy == Policy::kSlide ? kSlideTimes : 1;
+    const std::uint64_t for_verdicts = budget.own() / kVerdictShare;
+    // No more than there is in some tick, whatever little is asked besides.
+    std::uint64_t own_most = for_verdicts;
+    if (stage == WorkStage::kStop) {
+      left_.own = less(left_.own, for_verdicts);
+      own_most = budget.own() - for_verdicts;
+    }
+    left_.saved = std::min(left_.saved, less(times * kMostOfSaved[at], left_.taken_of_saved));
+    limited_ = budget.is_limited();
+    most_ = limited_ ? std::min(times * kMostEffort[at], own_most / 2 + times * kMostOfSaved[at])
+                     : kUnlimitedEffort;
+  }
+
+  void among(const std::vector<std::uint32_t>& order) {
+    std::uint64_t sum = 0;
+    for (const std::uint32_t i : order) sum += expected(wanted_of(work_.pairs[i], stage_, most_));
+    // What nobody needs is shared, should somebody need more than it expects.
+    more_ = order.empty() || sum > left_.own ? 0 : (left_.own - sum) / order.size();
+    for (const std::uint32_t i : order) give(work_.pairs[i]);
+  }
+
+ private:
+  void give(PairWork& pair) {
+    pair.stage_start = pair.counts.depth_evaluations;
+    pair.most_work = most_;
+    pair.limited = limited_;
+    if (!limited_) {
+      pair.cap = most_;
+      return;
+    }
+    const std::uint8_t waited = waited_of(pair, stage_);
+    const bool at_rest = stage_ == WorkStage::kStop && rests(pair, waited);
+    const std::uint64_t wanted = wanted_of(pair, stage_, most_);
+    const bool overdue = !at_rest && is_first_ && waited >= kLongestWait_ticks;
+    is_first_ &= at_rest;
+    const bool served = !at_rest && (overdue || expected(wanted) <= left_.own + left_.saved);
+    if (served)
+      serve(pair, overdue ? most_ : std::min(most_, wanted + more_), expected(wanted));
+    else
+      put_off(pair, at_rest);
+    note_waiting(pair, stage_, served);
+  }
+
+  void serve(PairWork& pair, std::uint64_t cap, std::uint64_t taken) {
+    pair.cap = cap;
+    left_.saved = less(left_.saved, less(taken, left_.own));
+    left_.own = less(left_.own, taken);
+  }
+
+  // A verdict that is cut short is discarded, and a push that came to nothing before comes to
+  // nothing again; a short search is of use to others.
+  void put_off(PairWork& pair, bool at_rest) {
+    const bool glances = stage_ == WorkStage::kStop && !is_stalled(pair) && left_.own >= kGlance;
+    pair.cap = glances ? kGlance : 0;
+    left_.own = less(left_.own, pair.cap);
+    if (!at_rest) left_.saved = 0;  // kept for who has waited longest
+    ++pair.counts.pairs_waiting;
+  }
+
+  Scratch::Impl& work_;
+  WorkStage stage_;
+  Left left_;
+  bool limited_ = true;
+  bool is_first_ = true;  // of those that do not rest
+  std::uint64_t most_ = 0, more_ = 0;
+};
+
+}  // namespace
+
+void open_depth_budget(const World& world, const SessionState& state, Scratch::Impl& work) {
+  const std::int64_t times = world.policy == Policy::kSlide ? kSlideTimes : 1;
+  work.depth_budget.open(kRules, world, state.saved_work, work.switches.work_budget, times);
+}
+
+void close_depth_budget(SessionState& state, const Scratch::Impl& work) {
+  state.saved_work = work.depth_budget.close(spent(work));
+}
+
+std::uint64_t depth_work_left(const Scratch::Impl& work) {
+  const Left left = left_of(work);
+  return left.own + left.saved;
+}
+
+void share_depth_work(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
+                      WorkStage stage) {
+  Sharing(world, work, stage)
+      .among(in_order(world, std::span(work.pairs).first(work.pair_count), pairs, stage));
+}
+
+void note_depth_effort(PairWork& pair, WorkStage stage, bool capped) {
+  note_effort(pair, stage,
+              {pair.counts.depth_evaluations - pair.stage_start, pair.cap, capped, kFirstEffort});
+}
+
+}  // namespace mortise

@@ -1,0 +1,31 @@
+#pragma once
+#include "common/session/tick/tick_work.h"
+
+namespace mortise {
+
+// What a tick may spend on depth, counted in evaluations (some 3 us each). Pairs are served in the
+// order of in_order(); each is given what it needed the last time and half as much again. A pair
+// that would not get that much waits rather than begin in vain: it is left at the time proven
+// without a search, or with a short one, keeps the clashes that it has as they are, and is counted
+// in pairs_waiting and not_examined. The pair that has waited longest is served after a few ticks,
+// whatever is left. What ticks do not need is saved, up to a limit.
+
+/// Of all work a tick has so many times more under slide: a leg is searched like a push of its own,
+/// and there are several of them in a tick.
+inline constexpr std::uint64_t kSlideTimes = 2;
+
+void open_depth_budget(const World& world, const SessionState& state, Scratch::Impl& work);
+void close_depth_budget(SessionState& state, const Scratch::Impl& work);
+
+/// Evaluations that are left of the tick, what is saved included.
+std::uint64_t depth_work_left(const Scratch::Impl& work);
+
+/// Sets PairWork::cap and most_work of these pairs; cap 0 for those that have nothing; called
+/// before they are asked.
+void share_depth_work(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
+                      WorkStage stage);
+
+/// Remembers what the pair used in the stage.
+void note_depth_effort(PairWork& pair, WorkStage stage, bool capped);
+
+}  // namespace mortise
