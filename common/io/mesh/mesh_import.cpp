@@ -76,7 +76,7 @@ void orient(TriangleMesh& mesh, Topology& topology, ImportReport& report) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   topology.volume_mm3 = -topology.volume_mm3;
   report.flipped = true;
-  report.notes.push_back("all triangles faced inwards and were turned");
+  report.notes.emplace_back("all triangles faced inwards and were turned");
 }
 
 void note_findings(const RawSoup& soup, double unit_mm, ImportReport& report) {

@@ -13,8 +13,9 @@ namespace {
 constexpr WorkRules kRules{
     .per_second = 1'800'000.0, .least = 2'000, .saved_ticks = 2, .owed_ticks = 10};
 
-// What a pair is given that was not asked before: enough for nearly all.
-constexpr std::uint64_t kFirstShare = 5'000;
+// What a pair is given that was not asked before: enough for nearly all, and little beside what the
+// tick has where it is not.
+constexpr std::uint64_t kFirstShare = 2'000;
 // The least: a question of a pair that was cheap so far still meets a surprise.
 constexpr std::uint64_t kLeastShare = 500;
 // So many pairs are asked at least before what was spent is counted again: one for each of two
@@ -28,10 +29,16 @@ std::uint64_t spent(const Scratch::Impl& work) {
 }
 
 std::uint64_t share_of(const PairWork& pair) {
+  if (pair.contact_short) return kMostContactTests;
   const std::uint32_t wanted =
       pair.memo->effort[static_cast<std::size_t>(WorkStage::kContact)].wanted;
   return wanted == 0 ? kFirstShare
                      : std::clamp<std::uint64_t>(wanted, kLeastShare, kMostContactTests);
+}
+
+// Was it cut short, and may it have more?
+bool may_go_on(const PairWork& pair) {
+  return pair.contact_short && pair.contact_cap < kMostContactTests;
 }
 
 }  // namespace
@@ -63,12 +70,12 @@ std::size_t share_contact_work(Scratch::Impl& work, std::span<const std::uint32_
 bool note_contact_effort(PairWork& pair) {
   note_effort(pair, WorkStage::kContact,
               {pair.contact_tests - pair.contact_start, pair.contact_cap, pair.contact_short, 0});
-  return pair.contact_short && pair.contact_cap < kMostContactTests;
+  return may_go_on(pair);
 }
 
 void note_contact_waiting(PairWork& pair) {
   pair.counts.pairs_waiting += pair.contact_waits ? 1U : 0U;
-  note_waiting(pair, WorkStage::kContact, !pair.contact_waits);
+  note_waiting(pair, WorkStage::kContact, !pair.contact_waits && !may_go_on(pair));
 }
 
 }  // namespace mortise

@@ -5,10 +5,11 @@ namespace mortise {
 
 // What a tick may spend on first contact, counted in tests of boxes and leaves (1 to 2 us each).
 // Pairs are served in the order of in_order(). Each is asked with what it needed the last time, or
-// with a first share; a question that came to the end of that goes on from where it is proven clear
-// with twice as much, as long as the tick has work left. Whose turn it is may take more than is
-// left: the next ticks pay for it. A pair that is not asked, or not to the end, is proven clear up
-// to FirstContact::t_clear and no farther: it is left there, and counted in not_examined.
+// with a first share; then those whose share did not do go on from where they are proven clear, two
+// at a time, with all that a pair may have, as long as the tick has work left. Whose turn it is may
+// take more than is left: the next ticks pay for it. A pair that is not asked, or not to the end,
+// is proven clear up to FirstContact::t_clear and no farther: it is left there, and counted in
+// not_examined.
 
 /// The most of one question, some 50 ms and more: where that does not do, the pair is left where it
 /// is clear.
@@ -23,7 +24,7 @@ std::size_t share_contact_work(Scratch::Impl& work, std::span<const std::uint32_
 
 /// Remembers what the pair used of it. True: that was not enough, and it may have more.
 bool note_contact_effort(PairWork& pair);
-/// Counts whether it was asked at all in this tick.
+/// Counts whether it was asked in this tick, with all that it wanted.
 void note_contact_waiting(PairWork& pair);
 
 }  // namespace mortise

@@ -243,8 +243,24 @@ void each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const Ask& 
   });
 }
 
-// The earliest in the order are asked first, at once as many as the tick has work for. Whose share
-// did not do is asked again with twice as much, in rounds, as long as there is work.
+// Asks pairs as long as the tick has work; those that could go on are added to `again`. Returns the
+// pairs for which there was none.
+template <class Ask>
+std::span<const std::uint32_t> ask_in_turn(Scratch::Impl& work,
+                                           std::span<const std::uint32_t> order, const Ask& ask,
+                                           std::vector<std::uint32_t>& again) {
+  while (const std::size_t count = share_contact_work(work, order)) {
+    const auto batch = order.first(count);
+    order = order.subspan(count);
+    each(work, batch, ask);
+    for (const std::uint32_t i : batch)
+      if (note_contact_effort(work.pairs[i])) again.push_back(i);
+  }
+  return order;
+}
+
+// 1. as many of the earliest in the order as the tick has work for, each with its share.
+// 2. whose share did not do goes on with all that a pair may have, as long as there is work.
 void ask_within_budget(const World& world, Scratch::Impl& work,
                        std::span<const std::uint32_t> pairs) {
   const auto ask = [&](PairWork& pair, CcdScratch& ccd) {
@@ -255,21 +271,12 @@ void ask_within_budget(const World& world, Scratch::Impl& work,
   if (!limited) return each(work, pairs, ask);
   std::vector<std::uint32_t> order =
       in_order(world, std::span(work.pairs).first(work.pair_count), pairs, WorkStage::kContact);
-  for (bool first = true; !order.empty(); first = false) {
-    std::vector<std::uint32_t> again;
-    std::span<const std::uint32_t> rest = order;
-    while (const std::size_t count = share_contact_work(work, rest)) {
-      const auto batch = rest.first(count);
-      rest = rest.subspan(count);
-      each(work, batch, ask);
-      for (const std::uint32_t i : batch)
-        if (note_contact_effort(work.pairs[i])) again.push_back(i);
-    }
-    if (first) each(work, rest, ask);  // without work: those that are known to stay clear need none
-    for (const std::uint32_t i : order)
-      if (first) note_contact_waiting(work.pairs[i]);
-    order = std::move(again);
-  }
+  std::vector<std::uint32_t> again;
+  std::span<const std::uint32_t> rest = ask_in_turn(work, order, ask, again);
+  each(work, rest, ask);  // without work: those that are known to stay clear need none
+  std::vector<std::uint32_t> dear = std::exchange(again, {});
+  ask_in_turn(work, dear, ask, again);
+  for (const std::uint32_t i : pairs) note_contact_waiting(work.pairs[i]);
 }
 
 }  // namespace

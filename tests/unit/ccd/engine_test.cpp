@@ -297,5 +297,38 @@ TEST(Twin, FindsOutContactsThatAreTenThousandthLate) {
   EXPECT_GT(contacts, 20);
 }
 
+// A question that is cut short again and again and goes on each time from where it was proven clear
+// ends as the same question without a cap.
+TEST(FirstContact, GoesOnFromWhereItWasCutShort) {
+  std::mt19937_64 random(77);
+  const SolidPtr a = solid(sphere_mesh(3, 40, 20)), b = solid(sphere_mesh(5, 30, 20));
+  CcdScratch scratch;
+  int cut = 0, contacts = 0;
+  for (int i = 0; i < 300; ++i) {
+    ContactQuery query;
+    query.a = a.get();
+    query.b = b.get();
+    query.motion_a = move(random_pose(random, 9, kPi), random_pose(random, 9, kPi));
+    query.motion_b = move(random_pose(random, 9, kPi), random_pose(random, 9, kPi));
+    query.separation_mm = i % 3 == 0 ? 0.05 : 0.0;
+    const FirstContact whole = first_contact(query, scratch);
+    if (whole.state == ContactState::kOverlappingAtStart) continue;
+    query.work_cap = 20;
+    FirstContact part = first_contact(query, scratch);
+    for (; part.state == ContactState::kUndecided; part = first_contact(query, scratch)) {
+      ++cut;
+      ASSERT_GE(part.t_clear, query.t_from);
+      ASSERT_LE(part.t_clear, whole.t_contact);
+      if (part.t_clear == query.t_from) query.work_cap *= 2;
+      query.t_from = part.t_clear;
+    }
+    ASSERT_EQ(part.state, whole.state) << i;
+    EXPECT_NEAR(part.t_contact, whole.t_contact, 1e-6) << i;
+    contacts += whole.state == ContactState::kContact ? 1 : 0;
+  }
+  EXPECT_GT(cut, 300);
+  EXPECT_GT(contacts, 50);
+}
+
 }  // namespace
 }  // namespace mortise::testing
