@@ -63,7 +63,7 @@ void Announcer::say_people(const TickLoop& loop) {
         spdlog::info("{} left", name);
         break;
       case Decision::Kind::kLivelinessLost:
-        spdlog::warn("{} is gone without goodbye; all that was held is free", name);
+        spdlog::warn("{} left without goodbye; its parts are free", name);
         break;
       case Decision::Kind::kLeaseEnd:
         spdlog::warn("{} was silent for {:g} s: '{}' is free", name, world.lease_s,
@@ -127,7 +127,7 @@ void Announcer::say_trouble(const TickLoop& loop) {
     if (const Status status = loop.log()->status(); !status) {
       log_failed_ = true;
       clear_line();
-      spdlog::error("{}; the session goes on, and what is not recorded is counted",
+      spdlog::error("{}; the session continues, and unrecorded ticks are counted",
                     status.error().text);
     }
   }

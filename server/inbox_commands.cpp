@@ -72,7 +72,7 @@ void Inbox::admit_command(const ReceivedCommand& received, World& world, std::in
     reply.text = std::string(name_of(order));
   } else if (!take_token(*seat, now_ns)) {
     reply.refusal = Refusal::kRateTooHigh;
-    reply.text = "more messages a second than the session takes from one user, or from all";
+    reply.text = "more messages a second than the session accepts from one user, or from all";
   }
   ++counters_of(reply.user).commands;
   if (reply.refusal != Refusal::kNone) {

@@ -12,7 +12,7 @@ void add_operation(CLI::App& app, ServerOptions& o) {
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   app.add_option("--max-names", o.limits.names_kept,
-                 "Names that the session remembers, also of who left")
+                 "Names that the session remembers, also of absent users")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--max-messages", o.limits.messages_per_s,
@@ -20,10 +20,10 @@ void add_operation(CLI::App& app, ServerOptions& o) {
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   app.add_option("--max-session-messages", o.limits.session_messages_per_s,
-                 "The same of all users together")
+                 "The same for all users together")
       ->check(CLI::Range(1.0, 1e7))
       ->capture_default_str();
-  app.add_option("--max-parts", o.limits.parts_per_user, "Parts in the hands of one user")
+  app.add_option("--max-parts", o.limits.parts_per_user, "Parts that one user may hold")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--metrics-port", o.metrics_port,
@@ -44,11 +44,12 @@ CommandLine read_command_line(int argc, char** argv) {
   CLI::App app{"mortise-server: plays a scenario as a shared session and judges every collision"};
   app.set_version_flag("--version", version_line("mortise-server"));
   app.add_option("scenario", o.scenario, "Scenario file (YAML)");
-  app.add_option("--restore", o.restore,
-                 "Go on from this session log, or from the newest of the session in this folder "
-                 "(none there: begin SCENARIO)");
+  app.add_option(
+      "--restore", o.restore,
+      "Continue from this session log, or from the newest one of the session in this folder "
+      "(none there: begin SCENARIO)");
   app.add_option("--standby-of", o.standby_of,
-                 "Follow this session beside its server, and go on with it when that one is gone; "
+                 "Stand by for the server of this session, and take over when it is gone; "
                  "--restore names its log, or the folder of it");
   app.add_option(
       "--peers", o.peers,
@@ -61,7 +62,7 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--domain", o.domain, "DDS domain")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();
-  app.add_option("--interface", o.interface, "IPv4 address of the interface to be met on")
+  app.add_option("--interface", o.interface, "IPv4 address of the interface to listen on")
       ->capture_default_str();
   app.add_option("--port", o.port, "Discovery port; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
@@ -84,7 +85,7 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--stats", o.stats, "Write the closing statistics to this file (JSON)");
   app.add_flag("--json", o.json, "Closing statistics as one JSON document instead of tables");
-  app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
+  app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
   app.add_flag("--live", o.live, "Status line: ticks, users, open clashes, tick time");
   app.add_option("--policy", o.policy, "Response to a real contact instead of the scenario's")
       ->check(CLI::IsMember({"stop", "slide", "report"}));

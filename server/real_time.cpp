@@ -13,7 +13,7 @@ Status run_before_others() {
   priority.sched_priority = sched_get_priority_min(SCHED_RR);
   const int error = pthread_setschedparam(pthread_self(), SCHED_RR, &priority);
   if (error != 0) {
-    return fail(Code::kRuntime, std::string("ticks run at ordinary priority, SCHED_RR: ") +
+    return fail(Code::kRuntime, std::string("ticks run at ordinary priority; SCHED_RR: ") +
                                     std::strerror(error) +
                                     "; `ulimit -r 1` or LimitRTPRIO=1 would permit it");
   }

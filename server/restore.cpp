@@ -107,8 +107,7 @@ Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bo
   if (report->difference) {
     return fail(Code::kMismatch,
                 "at tick " + std::to_string(report->difference->tick) +
-                    " this engine computes something else than the log tells (" +
-                    report->difference->what + ")" +
+                    " this engine disagrees with the log (" + report->difference->what + ")" +
                     (report->same_build ? "" : "; the log was written by another build") +
                     "; restore with the build that wrote it, or start the scenario anew");
   }

@@ -90,7 +90,7 @@ bool Crew::wait_until_joined() {
   };
   while (any(JoinState::kJoining) || any(JoinState::kRefused) || !client_.synced()) {
     if (stop_asked) {
-      spdlog::error("told to end before all had joined: nothing was done");
+      spdlog::error("stopped before all users had joined: nothing was done");
       return false;
     }
     if (any(JoinState::kRefused) || seconds_since(start) > options_.wait_s) {

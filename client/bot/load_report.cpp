@@ -76,12 +76,12 @@ const std::vector<std::pair<std::string, std::string>>& limit_names() {
       {"event_p99_ms", "increment to event, 99th percentile"},
       {"event_max_ms", "increment to event, longest"},
       {"refused", "increments refused"},
-      {"lost_events", "events that neither came nor were covered by a snapshot"},
+      {"lost_events", "events that neither arrived nor were covered by a snapshot"},
       {"unanswered", "commands without an answer"},
       {"unacknowledged", "increments without an acknowledgement"},
-      {"resyncs", "snapshots that took the place of events"},
-      {"missed_poses", "pose batches that did not come"},
-      {"not_inserted", "tries of the behaviour guided that did not insert the part"},
+      {"resyncs", "snapshots that replaced events"},
+      {"missed_poses", "pose batches that did not arrive"},
+      {"not_inserted", "attempts of the behaviour guided that did not insert the part"},
       {"differing_streams", "blocks of the event stream that participants saw differently"},
   };
   return names;

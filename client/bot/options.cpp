@@ -65,11 +65,11 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
                  "the own interface, unless a discovery server is asked");
   app.add_option(
       "--discovery-server", o.discovery_server,
-      "Ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");
+      "Ask these for the server of the session: HOST[:PORT] of mortise-discovery, comma between");
   app.add_option("--port", o.port, "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
   app.add_option("--keys", o.keys,
-                 "Folder of the own keys (mortise keys), where the server asks for some");
+                 "Folder of the own keys (mortise keys), when the server requires keys");
   app.add_option("--users", o.users, "So many users in this process")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
@@ -116,7 +116,7 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--observer", o.observer, "Only look and count");
   app.add_flag("--json", o.json, "Report as one JSON document");
-  app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
+  app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
   std::vector<std::string> limits;
   app.add_option(
       "--limit", limits,

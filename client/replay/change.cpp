@@ -124,8 +124,8 @@ Result<Change> read_change(std::string_view text) {
                                      : known->things == 1 ? "one part"
                                                           : "two parts with a comma between them"));
   if (known->has_value != (equals != std::string_view::npos))
-    return not_understood(text, known->has_value ? "there is no = with what it shall be"
-                                                 : "there is nothing to say behind =");
+    return not_understood(
+        text, known->has_value ? "there is no = with the new value" : "there is no value behind =");
   if (known->has_value) change.value = trimmed(text.substr(equals + 1));
   return change;
 }
@@ -174,7 +174,7 @@ Status change_log(SessionLog& log, const Change& change) {
   if (!mesh) return mesh.error();
   const std::string hash = mesh_hash(mesh->mesh);
   if (hash == log.mesh_of_part[index])
-    return not_understood(change.text, "that is the mesh which it had");
+    return not_understood(change.text, "the part already has this mesh");
   log.mesh_of_part[index] = hash;
   log.imports.resize(log.mesh_of_part.size());
   log.imports[index] = mesh->report;

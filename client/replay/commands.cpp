@@ -245,7 +245,8 @@ int run_recover(const RecoverOptions& options) {
            {"notes", recovery->notes}});
     return kExitOk;
   }
-  for (const std::string& note : recovery->notes) std::cout << "lost or odd: " << note << '\n';
+  for (const std::string& note : recovery->notes)
+    std::cout << "lost or unexpected: " << note << '\n';
   std::cout << options.out.string() << ": " << recovery->ticks << " ticks, " << recovery->messages
             << " messages; " << recovery->lost_chunks << " chunks lost; "
             << (recovery->was_complete ? "the log had been closed" : "the log had not been closed")

@@ -39,10 +39,9 @@ std::string place(const Json& face) {
 std::string increments(const Json& chain) {
   std::string out = "1 Increments of this tick\n";
   if (chain["increments"].empty())
-    out +=
-        chain["cause"] == "motion"
-            ? std::string("  none for these two parts: what is told follows from before\n")
-            : fmt::format("  none; the decision \"{}\" brought it about\n", text(chain["cause"]));
+    out += chain["cause"] == "motion"
+               ? std::string("  none for these two parts: the event follows from earlier ticks\n")
+               : fmt::format("  none; the decision \"{}\" caused it\n", text(chain["cause"]));
   for (const Json& row : chain["increments"])
     out += fmt::format(
         "  {} by {}, number {}: {} mm, {} rad{}\n", text(row["part"]), text(row["user"]),

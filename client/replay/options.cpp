@@ -111,9 +111,9 @@ void add_play([[maybe_unused]] CLI::App& app, [[maybe_unused]] int& code) {
                       "default: the own interface, unless a discovery server is asked");
   command->add_option(
       "--discovery-server", o.discovery_server,
-      "ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");
+      "ask these for the server of the session: HOST[:PORT] of mortise-discovery, comma between");
   command->add_option("--keys", o.keys,
-                      "folder of the own keys (mortise keys), where the server asks for some");
+                      "folder of the own keys (mortise keys), when the server requires keys");
   command->add_option("--server-port", o.server_port, "discovery port of the server")
       ->check(CLI::Range(0, 65535));
   command->add_option("--speed", o.speed, "times the recorded pace")

@@ -99,8 +99,9 @@ std::string clash_section(const SessionReport& report) {
   std::string html =
       "<h2>Clashes</h2>\n<p class=\"dim\">Each by its worst moment. Lengths in µm; overlap of the "
       "meshes against two thresholds: fake up to the first, real above the second, potential "
-      "between. GPD: generalized penetration depth, as a bracket. Mesh error: how far the surface that "
-      "is meant lies outside of the mesh there. Clearance: of the diameters of the fit.</p>\n" +
+      "between. GPD: generalized penetration depth, as a bracket. Mesh error: how far the true "
+      "surface "
+      "lies outside of the mesh there. Clearance: of the diameters of the fit.</p>\n" +
       filters() +
       "<div class=\"wide\"><table id=\"clashes\"><thead><tr><th>#</th><th>class</th><th>parts, "
       "faces</th><th>from, for</th><th>overlap</th><th>fake up to, real above</th><th>margin</th>"

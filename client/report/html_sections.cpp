@@ -116,7 +116,7 @@ std::string tolerance_section(const SessionReport& report) {
   const Table& table = table_named(report.tables, "tolerance");
   if (table_named(report.tables, "clashes").rows.empty()) return "";
   std::string html =
-      "<h2>If tolerances were other</h2>\n<p class=\"dim\">How many clashes would be what if the "
+      "<h2>With other tolerances</h2>\n<p class=\"dim\">Number of clashes by class if the "
       "zone of every face were wider (+) or narrower (−) by so many µm to each side, each at its "
       "worst recorded moment. Parts that would have stopped elsewhere are not moved here: "
       "<code>mortise replay whatif</code> computes the session again.</p>\n<table><thead><tr>"
@@ -149,7 +149,7 @@ std::string limits_section(const SessionReport& report) {
     if (number > 0) lines.push_back(fmt::format("{} {}", number, what));
   };
   say(count("mesh_error", [](const std::string& grade) { return grade == "nominal"; }),
-      "clashes rest on nothing that is declared: the mesh is taken for the surface.");
+      "clashes are judged without any declaration: the mesh is taken for the surface.");
   say(count("mesh_error", [](const std::string& grade) { return grade == "estimated"; }),
       "clashes rest on an estimate of the mesh error, which is not guaranteed.");
   say(count("explanation",

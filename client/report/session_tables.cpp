@@ -97,7 +97,7 @@ class Session {
 
   Table exclusions() const {
     Table table{"exclusions",
-                "pairs that the scenario leaves out, and why; those of people are decisions",
+                "pairs that the scenario excludes, and why; exclusions by users are decisions",
                 columns(Type::kText, {"part_a", "part_b", "reason"}),
                 {}};
     for (const auto& rule : scenario_.exclusions)
@@ -299,7 +299,7 @@ Table Session::clashes() const {
 }
 
 Table Session::events() const {
-  Table table{"events", "what was told of clashes, in order", {}, {}};
+  Table table{"events", "events of clashes, in order", {}, {}};
   append(table.columns, columns(Type::kInteger, {"seq", "tick", "clash"}));
   append(table.columns,
          columns(Type::kText, {"kind", "class", "part_a", "part_b", "user", "cause", "status"}));
@@ -319,7 +319,7 @@ Table Session::events() const {
 }
 
 Table Session::decisions() const {
-  Table table{"decisions", "what people and the server decided", {}, {}};
+  Table table{"decisions", "decisions of users and the server", {}, {}};
   append(table.columns, columns(Type::kInteger, {"tick"}));
   append(table.columns, columns(Type::kText, {"decision", "user", "part", "feature", "other_part",
                                               "other_feature", "other_user", "text"}));
@@ -376,7 +376,7 @@ Result<std::vector<Table>> tables_of(const SessionLog& log,
       session.sums("by_part", "clashes by part", "part",
                    Session::named(sums.by_part(), [&](PartId id) { return names.part(id); })));
   tables.push_back(
-      session.sums("by_user", "clashes by who caused them", "user",
+      session.sums("by_user", "clashes by the user who caused them", "user",
                    Session::named(sums.by_user(), [&](UserId id) { return names.user(id); })));
   tables.push_back(coverage_table(log, coverage));
   for (const Table& table : tables)

@@ -28,7 +28,7 @@ Status replace(const std::string& file, const std::string& text) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
     return fail(Code::kInvalidInput,
-                "--addresses " + file + ": is there and no file; - stands for stdout");
+                "--addresses " + file + ": exists and is not a file; - means stdout");
   }
   const std::string unfinished = file + ".new";
   fs::remove(unfinished, error);

@@ -36,11 +36,11 @@ Answer mesh(GatewayState& state, std::string_view path) {
             {{"Cache-Control", "private, max-age=31536000, immutable"}}};
   }
   if (found.state == MeshAnswer::State::kAwaited) {
-    Answer answer = sentence(status::service_unavailable, "this mesh has not come yet");
+    Answer answer = sentence(status::service_unavailable, "this mesh has not arrived yet");
     answer.fields.emplace_back("Retry-After", "1");
     return answer;
   }
-  return sentence(status::not_found, "no part of the session has this mesh");
+  return sentence(status::not_found, "the session has no part with this mesh");
 }
 
 Answer statistics(const GatewayState& state) {
@@ -99,7 +99,7 @@ Answer file(const GatewayState& state, const Request& request, bool tls) {
 bool is_own(GatewayState& state, const Request& request, const std::string& from) {
   const std::string_view host = view_of(request[http::field::host]);
   if (is_own_host(host, state.options.names)) return true;
-  state.incidents.note(Incident::kWrongHost, from, "asked for under a name that is not ours",
+  state.incidents.note(Incident::kWrongHost, from, "requested under a foreign host name",
                        state.now_s());
   return false;
 }
@@ -109,7 +109,7 @@ std::optional<Answer> without_token(GatewayState& state, const Request& request,
                                     const std::string& from) {
   if (bearer_of(state.tokens, bearer_token(view_of(request[http::field::authorization]))))
     return std::nullopt;
-  state.incidents.note(Incident::kWrongToken, from, "a request without a token that is good",
+  state.incidents.note(Incident::kWrongToken, from, "a request without a valid token",
                        state.now_s());
   Answer answer = sentence(status::unauthorized, "the token is missing or wrong");
   answer.fields.emplace_back("WWW-Authenticate", "Bearer");
@@ -118,7 +118,7 @@ std::optional<Answer> without_token(GatewayState& state, const Request& request,
 
 Answer wrong_host() {
   return sentence(status::misdirected_request,
-                  "asked for under a name that is not ours; --name makes it so");
+                  "requested under a foreign host name; --name allows it");
 }
 
 }  // namespace
@@ -187,7 +187,7 @@ std::variant<Bearer, Answer> admit_browser(GatewayState& state, const Request& r
   const std::string_view origin = view_of(request[http::field::origin]);
   if (!is_own_origin(origin, view_of(request[http::field::host]), tls, state.options.origins)) {
     return refuse(Incident::kWrongOrigin, status::forbidden,
-                  "a WebSocket from a page that is not ours; --origin lets one in");
+                  "a WebSocket of a foreign page; --origin allows it");
   }
   const auto token = subprotocol_token(view_of(request[http::field::sec_websocket_protocol]));
   if (!token) {

@@ -199,7 +199,7 @@ void Browser::failed(beast::error_code error) {
         "a message over " + std::to_string(state_.options.limits.message_bytes) + " bytes; closed");
   } else if (error == websocket::condition::protocol_violation ||
              error == websocket::condition::handshake_failed) {
-    note(Incident::kMalformed, "no WebSocket as it should be: " + error.message() + "; closed");
+    note(Incident::kMalformed, "not a valid WebSocket: " + error.message() + "; closed");
   }
   drop();
 }

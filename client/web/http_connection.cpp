@@ -86,14 +86,14 @@ void HttpConnection::read(double patience_s) {
 void HttpConnection::failed(beast::error_code error) {
   const bool has_begun = parser_->got_some() || buffer_.size() > 0;
   if (came_partly(error)) {
-    if (has_begun) note(Incident::kSlowRequest, "a request that was not whole in time; closed");
+    if (has_begun) note(Incident::kSlowRequest, "a request that was not complete in time; closed");
     return;
   }
   const std::string category = error.category().name();
   if (category != "beast.http" || error == http::error::end_of_stream) return;
-  note(Incident::kBadRequest, "no request as it should be: " + error.message() + "; closed");
+  note(Incident::kBadRequest, "not a valid request: " + error.message() + "; closed");
   parser_.emplace();  // what there is of it may not even have a version
-  write(sentence(http::status::bad_request, "this is no request that can be answered"));
+  write(sentence(http::status::bad_request, "this request cannot be answered"));
 }
 
 void HttpConnection::take() {

@@ -63,7 +63,7 @@ class Keys {
   template <class Id>
   Id id(const char* key) {
     const auto value = count(key, std::numeric_limits<std::uint32_t>::max());
-    if (value == 0) throw Wrong{std::string("'") + key + "' is 0, ids begin with 1"};
+    if (value == 0) throw Wrong{std::string("'") + key + "' is 0; ids begin with 1"};
     return Id{static_cast<std::uint32_t>(value)};
   }
   std::vector<PartId> ids(const char* key) {
@@ -240,7 +240,7 @@ ReplayWish replay_of(Keys& keys) {
     wish.speed = keys.number("speed");
     if (wish.speed < kSlowest || wish.speed > kFastest) throw Wrong{"'speed' is not 0.1 to 16"};
   } else {
-    throw Wrong{"'do' is none of play, pause, seek, speed"};
+    throw Wrong{"'do' must be play, pause, seek or speed"};
   }
   return wish;
 }
@@ -259,7 +259,7 @@ PageMessage message_of(const std::string& type, Keys& keys) {
   if (type == "view") return ViewWish{keys.vector("p"), keys.vector("target"), keys.vector("up")};
   if (type == "ping") return PingWish{keys.number("at")};
   if (type == "replay") return replay_of(keys);
-  throw Wrong{"is no type of message"};
+  throw Wrong{"is not a type of message"};
 }
 
 }  // namespace

@@ -350,8 +350,8 @@ SharedBytes LiveFeed::frame(const Viewer&, const std::vector<PartId>& parts) con
 }
 
 std::string LiveFeed::trouble() const {
-  if (!client_.server_present()) return "no server of the session is there";
-  return has_scene_ ? "" : "the server has not said yet what is in the session";
+  if (!client_.server_present()) return "the session has no server at present";
+  return has_scene_ ? "" : "the server has not sent the scene yet";
 }
 
 Json LiveFeed::statistics() const {

@@ -70,12 +70,12 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
                  "the own interface, unless a discovery server is asked");
   app.add_option(
       "--discovery-server", o.discovery_server,
-      "Ask these where the session is led: HOST[:PORT] of mortise-discovery, comma between");
+      "Ask these for the server of the session: HOST[:PORT] of mortise-discovery, comma between");
   app.add_option("--server-port", o.discovery_port,
                  "Discovery port of the server; 0: the domain's own")
       ->check(CLI::Range(0, 65535));
   app.add_option("--keys", o.keys,
-                 "Folder of the gateway's keys (mortise keys), where the server asks for some");
+                 "Folder of the gateway's keys (mortise keys), when the server requires keys");
   app.add_option("--page", o.page, "Folder of the page")->capture_default_str();
   app.add_option(
       "--tokens", o.tokens,
@@ -86,7 +86,7 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
                  "File for the addresses with their tokens, which only its owner reads; -: stdout. "
                  "Default: stdout where that is a terminal, else none are said");
   add_web(app, o.gateway);
-  app.add_flag("--quiet", o.quiet, "Say warnings and errors only");
+  app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
   app.footer(
       "Prints two addresses, one for designers and one for who only looks on, or one for each "
       "person; whoever has one may come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 "

@@ -29,7 +29,7 @@ Status ReplayFeed::take(Viewer& viewer, const PageMessage& message) {
                         {"id", command->id},
                         {"done", false},
                         {"refusal", name_of(Refusal::kObserver)},
-                        {"text", "this is a replay: what was done stays as it was"},
+                        {"text", "this is a replay: nothing can be changed"},
                         {"part", command->part.value},
                         {"holder", 0}}));
   } else if (std::holds_alternative<JoinWish>(message)) {

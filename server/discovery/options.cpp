@@ -17,7 +17,7 @@ DiscoveryCommand read_discovery_command(int argc, char** argv) {
   app.add_option("--duration", command.duration_s, "End after so many seconds; 0: at a signal")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--json", command.json, "Closing counts as one JSON document instead of a table");
-  app.add_flag("--quiet", command.quiet, "Say warnings and errors only");
+  app.add_flag("--quiet", command.quiet, "Print warnings and errors only");
   app.footer(
       "Whoever is to be found, or looks, is started with --discovery-server HOST[:PORT]: "
       "mortise-server, mortise-bot, mortise-web, mortise-directory, mortise-replay play. Several "

@@ -94,7 +94,7 @@ TEST_F(Addresses, TokensThatNobodyWouldLearnAreNoUse) {
 TEST_F(Addresses, WhatIsNoFileIsNotReplaced) {
   Program web(folder.path(), "mortise-web", words({"--addresses", folder.path()}));
   EXPECT_EQ(web.wait(kPatience_s), 3);
-  EXPECT_NE(web.errors().find("is there and no file"), std::string::npos) << web.errors();
+  EXPECT_NE(web.errors().find("exists and is not a file"), std::string::npos) << web.errors();
 }
 
 TEST_F(Addresses, ATerminalIsToldThem) {

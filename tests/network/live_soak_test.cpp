@@ -63,8 +63,9 @@ class ComesAndGoes {
     EXPECT_NE(code, -1) << name_ << " does not end";
     // It may be told to end before it is ready for the signal, or has joined.
     const bool too_early =
-        !ends_itself && (code == 128 + SIGTERM ||
-                         program_->errors().find("before all had joined") != std::string::npos);
+        !ends_itself &&
+        (code == 128 + SIGTERM ||
+         program_->errors().find("before all users had joined") != std::string::npos);
     if (!kill && !too_early) {
       EXPECT_EQ(code, 0) << name_ << (ends_itself ? " ended: " : " was ended: ")
                          << program_->errors() << program_->out().substr(0, 2000);

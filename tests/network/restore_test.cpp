@@ -262,7 +262,8 @@ TEST_F(RestoreAfterCrash, AFullDiskIsSaidOnceAndTheSessionGoesOn) {
   expect_nothing_lost(anna, "anna", Json::parse(server->out()));
   const std::string errors = server->errors();
   std::size_t times = 0;
-  for (std::size_t at = 0; (at = errors.find("the session goes on", at)) != std::string::npos; ++at)
+  for (std::size_t at = 0;
+       (at = errors.find("the session continues, and", at)) != std::string::npos; ++at)
     ++times;
   EXPECT_EQ(times, 1U) << errors;
   const Json log = Json::parse(server->out())["log"];

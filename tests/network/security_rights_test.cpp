@@ -126,7 +126,7 @@ TEST_F(Security, ABotThatIsTooFastIsRefused) {
           const Reply* reply = bot.answer(seq);
           return reply != nullptr && reply->refusal == Refusal::kRateTooHigh &&
                  reply->text ==
-                     "more messages a second than the session takes from one user, or from all";
+                     "more messages a second than the session accepts from one user, or from all";
         });
       },
       [&] {

@@ -143,7 +143,7 @@ Result<LoadedScene> scene_of(const SessionLog& log) {
   if (!scene || !log.begin) return scene;
   if (Status restored = restore_state(scene->world, log.begin->state.bytes); !restored)
     return fail(Code::kInvalidInput,
-                "the state that the log begins with is of no use: " + restored.error().text);
+                "the state at the beginning of the log cannot be used: " + restored.error().text);
   return scene;
 }
 
@@ -264,8 +264,8 @@ Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
       ++report.checkpoints_compared;
       if (content_hash(encode_state(tick.world)) != next->hash)
         what =
-            "the checkpoint in the log is not the state computed here, though all that was "
-            "told is the same";
+            "the checkpoint in the log differs from the state computed here, although all events "
+            "agree";
     }
     if (!what.empty()) {
       report.difference = ReplayDifference{tick.computed.tick, std::move(what)};

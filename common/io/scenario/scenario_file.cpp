@@ -115,7 +115,7 @@ void read_exclusion(YamlContext& context, const YAML::Node& node, Scenario& scen
   const auto between = read_between(map);
   const auto reason = map.text("reason");
   if (!map.has("reason"))
-    map.error("reason is missing: whoever reads the report must know why the pair is left out");
+    map.error("reason is missing: the report must say why the pair is left out");
   if (!between || !reason) return;
   exclusion.part_a = (*between)[0], exclusion.part_b = (*between)[1];
   exclusion.reason = *reason;

@@ -166,7 +166,7 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
     if (!fits(world, key, memo)) return bad("it speaks of parts that the scene does not have");
     state->memos.insert_or_assign(key, std::move(memo));
   }
-  if (!in.at_end()) return bad("its bytes are none of a state");
+  if (!in.at_end()) return bad("its bytes are not a state");
   if (!fits(world) || !fits(world, *state)) return bad("it does not fit the scene");
   // 2. Rules, said again; what is judged anew for them is in the state already.
   if (Status said = state_rules(world, restated, statements); !said) return said;

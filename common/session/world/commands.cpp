@@ -167,8 +167,7 @@ Refused check_exclusion(const World& world, const User& user, const Command& com
   const PairRule* rule = world.rule(command.part, command.details.other_part);
   const bool excluded = rule && rule->excluded;
   if (command.kind == CommandKind::kSetExclusion && command.details.text.empty())
-    return {Refusal::kBadRule,
-            "reason is missing: whoever reads the report must know why the pair is left out"};
+    return {Refusal::kBadRule, "reason is missing: the report must say why the pair is left out"};
   if (command.kind == CommandKind::kDropExclusion && !excluded)
     return {Refusal::kBadRule, "'" + world.find(command.part)->name + "' and '" +
                                    world.find(command.details.other_part)->name +

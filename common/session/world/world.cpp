@@ -75,7 +75,7 @@ void give(World& world, Part& part, UserId holder) {
 PartPose pose_of(const Part& part) { return {part.id, part.holder, part.X_WP}; }
 
 std::string quoted_name(const World& world, UserId id) {
-  if (!id) return "somebody who left long ago";
+  if (!id) return "a user who left long ago";
   const User* user = world.find(id);
   return user ? "'" + user->name + "'" : "user " + std::to_string(id.value);
 }

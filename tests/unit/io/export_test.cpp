@@ -277,7 +277,7 @@ TEST_F(Export, ThePageHasPicturesAndSaysItsLimits) {
     EXPECT_NE(svg.find("wall × cube"), std::string::npos);
     EXPECT_NE(html.find("id=\"clash-" + std::to_string(clash)), std::string::npos);
   }
-  for (const char* section : {"Where parts were touched", "By face", "If tolerances were other",
+  for (const char* section : {"Where parts were touched", "By face", "With other tolerances",
                               "Coverage", "Limits", "data:image/png;base64,iVBOR"})
     EXPECT_NE(html.find(section), std::string::npos) << section;
   EXPECT_EQ(html.find("src=\"http"), std::string::npos);

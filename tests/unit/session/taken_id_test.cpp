@@ -38,7 +38,7 @@ TEST_F(TakenIdTest, MovesOfBeforeAreNobodysToTakeBack) {
   ask(ada, CommandKind::kGrab, peg);
   const Reply undo = ask(ada, CommandKind::kUndo, peg);
   EXPECT_EQ(undo.refusal, Refusal::kMovedBySomeoneElse);
-  EXPECT_NE(undo.text.find("somebody who left"), std::string::npos) << undo.text;
+  EXPECT_NE(undo.text.find("a user who left"), std::string::npos) << undo.text;
   move(ada, peg, Vec3(1, 0, 0));  // her own she can
   EXPECT_EQ(refusal(ada, CommandKind::kUndo, peg), Refusal::kNone);
   EXPECT_EQ(refusal(ada, CommandKind::kUndo, peg), Refusal::kMovedBySomeoneElse);

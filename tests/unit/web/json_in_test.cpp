@@ -96,7 +96,7 @@ TEST(PageMessage, RefusesWhatIsNone) {
       {"null", "not a JSON object"},
       {"{}", "'type' is missing"},
       {R"({"type":3})", "'type' is not a text"},
-      {R"({"type":"fly"})", "no type of message"},
+      {R"({"type":"fly"})", "not a type of message"},
       {R"({"type":"join"})", "'name' is missing"},
       {R"({"type":"join","name":""})", "'name' is empty"},
       {R"({"type":"join","name":"a\nb"})", "control characters"},
@@ -125,7 +125,7 @@ TEST(PageMessage, RefusesWhatIsNone) {
       {R"({"type":"command","id":1,"do":"constrain","kind":"coaxial","part":1,"feature":"a","other":2,"other_feature":"b","snap":1})",
        "neither true nor false"},
       {R"({"type":"replay","do":"speed","speed":1000})", "0.1 to 16"},
-      {R"({"type":"replay","do":"rewind"})", "none of play"},
+      {R"({"type":"replay","do":"rewind"})", "must be play"},
   };
   for (const auto& [text, why] : bad) {
     const auto message = read_page_message(text);
