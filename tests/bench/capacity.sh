@@ -1,11 +1,16 @@
 #!/usr/bin/env bash
-# What a session costs its server, by what is in it: capacity.sh [BIN [SECONDS [ROWS]]]. One table on stdout; the formulas that read
-# it stand in server/README.md. Processor time is that of the server's process, of one core, while all act; bytes are those on lo, in
+# What a session costs its server, by what is in it: capacity.sh [BIN [SECONDS [ROWS]]] [--json FILE]. One table on stdout, and in FILE as
+# other benchmarks write it; the formulas that read it are in server/packaging/OPERATING.md. Processor time is that of the server's process, of one core, while all act; bytes are those on lo, in
 # a network namespace of its own where that is permitted, or of the whole machine. ROWS: those whose name has this regular expression
 # in it. CAPACITY_WARM_S: what goes before each measurement. 1 when a program fails, 2 when there is nothing to measure.
 set -euo pipefail
 if [ -z "${CAPACITY_ALONE:-}" ] && unshare -n true 2>/dev/null; then CAPACITY_ALONE=1 exec unshare -n "$0" "$@"; fi
 [ -z "${CAPACITY_ALONE:-}" ] || ip link set lo up
+json='' words=()
+while [ $# -gt 0 ]; do
+  if [ "$1" = --json ]; then json=${2:?a file}; shift 2; else words+=("$1"); shift; fi
+done
+set -- "${words[@]}"
 bin=${1:-build/release/bin} seconds=${2:-6} rows=${3:-.} warm=${CAPACITY_WARM_S:-3} scenarios=$(dirname "$0")/../../scenarios
 usage() { echo "capacity.sh: $*" >&2; exit 2; }
 for number in "$seconds" "$warm"; do [[ "$number" =~ ^[1-9][0-9]*$ ]] || usage "'$number' is no number of seconds"; done
@@ -65,7 +70,7 @@ row() {
   for pid in "${bots[@]}"; do bots_cpu=$(awk "BEGIN {print $bots_cpu + $(cpu "$pid")}"); done
   awk -v n="$name" -v c="$(awk "BEGIN {print 100 * ($after_cpu - $before_cpu) / $took}")" -v b="$(awk "BEGIN {print ($after_bytes - $before_bytes) / $took / 1000}")" \
     -v k="$(awk "BEGIN {print 100 * $bots_cpu / $took}")" -v m="$(awk '/VmRSS/ {print $2 / 1000}' "/proc/$server/status")" -v u=$((processes * users)) \
-    'BEGIN {printf "| %s | %d | %.1f | %.1f | %.0f | %.0f |\n", n, u, c, k, b, m}'
+    'BEGIN {printf "| %s | %d | %.1f | %.1f | %.0f | %.0f |\n", n, u, c, k, b, m}' | tee -a "$work/rows"
   for i in "${!bots[@]}"; do { kill -INT "${bots[i]}" && wait "${bots[i]}"; } || fail "$name: a bot failed" "$work/$domain.bot$i"; done
   if [ -n "$other" ]; then
     { kill -INT "$other" && wait "$other"; } || fail "$name: the second server failed" "$work/$domain.standby"
@@ -76,7 +81,8 @@ row() {
 "$bin/mortise-keys" --help >/dev/null 2>&1 && keys_program=$bin/mortise-keys || keys_program=$(dirname "$0")/../../client/tools/keys/mortise-keys
 { "$keys_program" init --keys "$work/keys" && "$keys_program" issue hall --role server --keys "$work/keys" &&
   "$keys_program" issue mill --role bot --keys "$work/keys"; } >"$work/keys.out" 2>&1 || fail "no keys" "$work/keys.out"
-echo "load average $(cut -d' ' -f1 /proc/loadavg), $(nproc) processors, $seconds s each"
+note="load average $(cut -d' ' -f1 /proc/loadavg), $(nproc) processors, $seconds s each"
+echo "$note"
 echo "| session | users | server, % of a core | clients, % of a core | on the wire, kB/s | server, MB |"
 echo "|--|--|--|--|--|--|"
 row "nobody" gearbox.yaml 201 '' no 0 0 shake
@@ -86,3 +92,9 @@ row "the same with keys" gearbox.yaml 204 "$work/keys" no 4 2 shake
 row "the same with a second server" gearbox.yaml 205 '' yes 4 2 shake
 row "mixed: insertions, pushes, hand-overs" gearbox.yaml 206 '' no 4 2 mixed
 [ "$measured" -gt 0 ] || usage "no row is called '$rows'"
+[ -n "$json" ] || exit 0
+awk -F' *[|] *' -v note="$note" '
+  BEGIN { printf "{\"tables\": [{\"title\": \"What a session costs its server\", \"rows\": [" }
+  { printf "%s\n{\"session\": \"%s\", \"users\": %s, \"server, %% of a core\": %s, \"clients, %% of a core\": %s, \"on the wire, kB/s\": %s, \"server, MB\": %s}",
+      (NR > 1 ? "," : ""), $2, $3, $4, $5, $6, $7 }
+  END { printf "]}],\n\"notes\": [\"%s\"],\n\"bars\": []}\n", note }' "$work/rows" >"$json"

@@ -91,8 +91,11 @@ nlohmann::ordered_json Report::json() const {
   nlohmann::ordered_json document = {{"tables", tables_}, {"notes", notes_}};
   document["bars"] = nlohmann::ordered_json::array();
   for (const Bar& bar : bars_)
-    document["bars"].push_back(
-        {{"name", bar.name}, {"figure", bar.figure}, {"bound", bar.bound}, {"holds", bar.holds()}});
+    document["bars"].push_back({{"name", bar.name},
+                                {"figure", bar.figure},
+                                {"kind", bar.kind == BoundKind::kAtLeast ? "at least" : "at most"},
+                                {"bound", bar.bound},
+                                {"holds", bar.holds()}});
   return document;
 }
 

@@ -36,7 +36,7 @@ class Report {
   /// The bars as the last table.
   void print_bars() const;
   /// {"tables": [{"title", "rows": [{column: value}]}], "notes", "bars": [{"name", "figure",
-  /// "bound", "holds"}]}. A figure that is not a number is null.
+  /// "kind" ("at least", "at most"), "bound", "holds"}]}. A figure that is not a number is null.
   nlohmann::ordered_json json() const;
 
  private:

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <sstream>
 
+#include "tests/bench/figures.h"
 #include "tests/bench/plot_labels.h"
 #include "tests/bench/statistics.h"
 
@@ -50,8 +53,56 @@ TEST(Report, JsonHoldsTheCellsAndEndsWithTheBars) {
   EXPECT_EQ(rows[0]["ms"], 0.123456789);
   EXPECT_NE(document.dump().find("\"ms\":null"), std::string::npos);
   EXPECT_EQ(document.back(), document["bars"]);
-  EXPECT_EQ(document["bars"][0].dump(),
-            R"({"name":"times as fast","figure":80.0,"bound":75.0,"holds":true})");
+  EXPECT_EQ(
+      document["bars"][0].dump(),
+      R"({"name":"times as fast","figure":80.0,"kind":"at least","bound":75.0,"holds":true})");
+}
+
+std::string text_of_file(const std::string& path) {
+  std::ifstream in(std::string(MORTISE_SOURCE_DIR) + "/" + path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+const char* const kMake = "make it again: ./mortise bench --figures";
+
+TEST(Figures, ThePageIsWhatTheKeptRunsSay) {
+  const auto runs = runs_in(MORTISE_SOURCE_DIR "/tests/bench/figures");
+  ASSERT_FALSE(runs.empty());
+  EXPECT_EQ(text_of_file("tests/bench/FIGURES.md"), figures_page(runs)) << kMake;
+}
+
+TEST(Figures, TheTableOfTheReadmeIsWhatTheKeptRunsSay) {
+  const std::string readme = text_of_file("README.md");
+  const std::string made = with_figures(readme, runs_in(MORTISE_SOURCE_DIR "/tests/bench/figures"));
+  EXPECT_EQ(readme, made) << kMake;
+  EXPECT_NE(made.find("<!-- figures -->\n| question |"), std::string::npos);
+}
+
+TEST(Figures, WideTablesAreCutAndLongNotesAreWrapped) {
+  Report report;
+  std::vector<std::string> columns;
+  std::vector<Cell> cells;
+  for (int i = 0; i < 30; ++i) {
+    columns.push_back("column " + std::to_string(i));
+    cells.push_back(static_cast<long long>(i));
+  }
+  report.table("wide", columns);
+  report.row(cells);
+  std::string words;
+  for (int i = 0; i < 60; ++i) words += "word ";
+  report.note(words);
+  report.bar("fast", kNaN, 1.0, BoundKind::kAtMost);
+  const KeptRun run = kept_run("example", "./mortise bench example", report.json());
+  EXPECT_EQ(KeptRun::parse(text_of(run)), run);
+  std::istringstream page(figures_page({run}));
+  std::size_t lines = 0, with_first_column = 0, last_column = 0;
+  for (std::string line; std::getline(page, line); ++lines) {
+    EXPECT_LE(line.size(), 160u) << line;
+    with_first_column += line.starts_with("| column 0 |");
+    last_column += line.find("| column 29 |") != std::string::npos;
+  }
+  EXPECT_EQ(with_first_column, 3u);
+  EXPECT_EQ(last_column, 1u);
 }
 
 TEST(Statistics, QuantilesAreValuesThatWereMeasured) {

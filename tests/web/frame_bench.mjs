@@ -90,7 +90,7 @@ for (const parts of quick ? [200] : [50, 200, 400]) {
 }
 await browser.close();
 const figure = rows.find((row) => row.parts === 200).frame_ms;
-const bars = [{ name: 'script of a page frame with 200 moving parts, ms', figure, bound: BOUND_MS, holds: figure <= BOUND_MS }];
+const bars = [{ name: 'script of a page frame with 200 moving parts, ms', figure, kind: 'at most', bound: BOUND_MS, holds: figure <= BOUND_MS }];
 for (const { name, holds } of bars) console.log(`${holds ? 'holds ' : 'MISSED'}  ${name}: ${figure.toFixed(2)}, bound ${BOUND_MS}`);
-if (json) writeFileSync(json, `${JSON.stringify({ rows, bars }, null, 2)}\n`);
+if (json) writeFileSync(json, `${JSON.stringify({ tables: [{ title: 'Script of a frame of the page', rows }], notes: [], bars }, null, 2)}\n`);
 process.exit(bars.every(({ holds }) => holds) ? 0 : 5);
