@@ -100,6 +100,9 @@ const std::regex kGenerated("mortise[A-Za-z]*\\.(h|hpp|ipp)");
 constexpr std::size_t kMostClassLines = 300, kMostFunctionLines = 60, kMostTestLines = 100,
                       kMostMainLines = 60;
 
+// A document is read beside code: a longer line does not fit.
+constexpr std::size_t kMostLineLength = 160;
+
 const std::set<std::string> kCodeEndings = {".h", ".hpp", ".cpp", ".c"};
 const std::set<std::string> kTextEndings = {
     ".h",    ".hpp", ".cpp",   ".c",    ".mjs", ".js",  ".html", ".css", ".md", ".txt",
@@ -171,14 +174,17 @@ class HouseCheck {
     std::ostringstream text;
     text << in.rdbuf();
     std::istringstream whole(text.str());
-    std::string line;
+    std::string line, comments;
     std::size_t lines = 0;
     while (std::getline(whole, line)) {
       ++lines;
       const std::string place = name + ":" + std::to_string(lines);
       if (is_code && room != nullptr) include_line(*room, name, place, line);
       machine_path(place, line);
+      if (ending == ".md") document_line(place, line);
+      if (is_code) add_comment(line, comments);
     }
+    citations(name, comments);
     if (path.filename() == "main.cpp") too_long(name, "", lines, kMostMainLines);
     if (is_code) lengths(name, text.str());
   }
@@ -246,6 +252,56 @@ class HouseCheck {
     static const std::regex kPath(std::string("(^|[^A-Za-z0-9_.])/(") + "work|root" + ")/");
     if (std::regex_search(line, kPath))
       broken_.push_back(place + ": names a path of somebody's machine");
+  }
+
+  void document_line(const std::string& place, const std::string& line) {
+    const auto length = std::count_if(line.begin(), line.end(), [](unsigned char c) {
+      return (c & 0xc0U) != 0x80U;  // bytes of UTF-8 that begin a character
+    });
+    if (length > static_cast<std::ptrdiff_t>(kMostLineLength))
+      broken_.push_back(place + ": " + std::to_string(length) + " characters, at most " +
+                        std::to_string(kMostLineLength));
+  }
+
+  // The comments of a file as one text, so that a citation may go over two lines.
+  static void add_comment(const std::string& line, std::string& comments) {
+    const std::size_t at = line.find("//");
+    if (at == std::string::npos) return;
+    const std::size_t begin = line.find_first_not_of("/< ", at);
+    if (begin != std::string::npos) comments.append(line, begin).append(" ");
+  }
+
+  // A cited document (of the room, or of the room that is named before it) is there, and has the
+  // section that is named behind it.
+  void citations(const std::string& name, const std::string& comments) {
+    static const std::regex kCited("([A-Za-z0-9_./]*\\.md|README)(, sections? ([0-9]+))?");
+    for (auto cited = std::sregex_iterator(comments.begin(), comments.end(), kCited);
+         cited != std::sregex_iterator(); ++cited) {
+      const std::string document = (*cited)[1] == "README" ? "README.md" : (*cited)[1].str();
+      const fs::path found = document_near(name, document);
+      if (found.empty())
+        broken_.push_back(name + ": cites " + document + ", which is not there");
+      else if ((*cited)[3].matched && !has_section(found, (*cited)[3]))
+        broken_.push_back(name + ": cites section " + (*cited)[3].str() + " of " +
+                          found.lexically_relative(root_).generic_string() + ", which has none");
+    }
+  }
+
+  // In the folder of the file or one above it, or in common/; empty: nowhere.
+  fs::path document_near(const std::string& name, const std::string& document) const {
+    for (fs::path folder = (root_ / name).parent_path();; folder = folder.parent_path()) {
+      if (fs::exists(folder / document)) return folder / document;
+      if (folder == root_) break;
+    }
+    return fs::exists(root_ / "common" / document) ? root_ / "common" / document : fs::path();
+  }
+
+  static bool has_section(const fs::path& document, const std::string& number) {
+    std::ifstream in(document);
+    std::string line;
+    while (std::getline(in, line))
+      if (line.starts_with("## " + number + " ")) return true;
+    return false;
   }
 
   fs::path root_;

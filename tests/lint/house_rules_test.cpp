@@ -227,6 +227,22 @@ TEST_F(PlantedTree, ARoomWithoutReadme) {
   fs::remove(root_ / "common/math/README.md");
   expect_one("common/math", "no README.md");
 }
+TEST_F(PlantedTree, LongLinesOfDocuments) {
+  std::string line(159, 'x');
+  write("server/README.md", "What lives here.\n" + line + "µ\n");
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+  write("server/README.md", "What lives here.\n" + line + "µµ\n");
+  expect_one("server/README.md:2", "161 characters, at most 160");
+}
+TEST_F(PlantedTree, CitationsOfWhatIsNotThere) {
+  write("common/math/README.md", "## 2 Rotations\n");
+  write("common/math/pose.h", "// As in the README,\n// section 2, and math/README.md.\n");
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+  write("common/math/pose.h", "// As in the README, section\n// 3.\n");
+  expect_one("common/math/pose.h", "cites section 3 of common/math/README.md");
+  write("common/math/pose.h", std::string("const int x = 1;  ///< see missing") + ".md\n");
+  expect_one("common/math/pose.h", std::string("cites missing") + ".md");
+}
 TEST_F(PlantedTree, PathsOfAMachine) {
   write("server/README.md", std::string("see /") + "work/main/x\n");
   expect_one("server/README.md:1", "somebody's machine");
