@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/messages/names.h"
+#include "common/session/world/decisions.h"
 #include "common/session/world/rights.h"
 
 namespace mortise {

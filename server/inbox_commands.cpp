@@ -1,3 +1,4 @@
+#include "common/session/world/commands.h"
 #include "server/inbox.h"
 
 #include <algorithm>

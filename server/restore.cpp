@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "common/io/build_info.h"
+#include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 #include "common/session/memory/session_state.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/world/world.h"
 

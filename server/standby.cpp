@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/session/world/decisions.h"
 #include "server/backlog.h"
 #include "server/silence.h"
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/io/scenario/scene_load.h"
 #include "server/options.h"
 

@@ -7,6 +7,7 @@
 #include "common/base/in_quotes.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/scenario/scenario_file.h"
+#include "common/session/world/decisions.h"
 #include "common/session/world/surface_rules.h"
 
 namespace mortise {

@@ -2,7 +2,7 @@
 #include <functional>
 #include <string>
 
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/io/report_json.h"
 
 namespace mortise {

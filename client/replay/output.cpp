@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "client/replay/progress.h"
+#include "common/io/log/log_chain.h"
 
 namespace mortise {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "client/client.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 
 namespace mortise {
 

@@ -2,6 +2,7 @@
 #include "client/replay/output.h"
 #include "client/replay/play.h"
 #include "client/replay/progress.h"
+#include "common/io/log/log_chain.h"
 #include "idl/dds_channel.h"
 
 namespace mortise {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "client/replay/change.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/io/report_json.h"
 #include "common/session/tick/statistics.h"
 

@@ -7,6 +7,7 @@
 #include "client/replay/progress.h"
 #include "client/replay/sweep.h"
 #include "common/io/build_info.h"
+#include "common/io/log/log_chain.h"
 
 namespace mortise {
 namespace {

@@ -8,6 +8,7 @@
 #include "common/io/log/replay.h"
 #include "common/math/rotation.h"
 #include "common/motion/motion.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/base/result.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/session/world/world.h"
 
 namespace mortise {

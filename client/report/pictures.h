@@ -7,7 +7,7 @@
 
 #include "client/report/circumstances.h"
 #include "client/report/session_tables.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 
 namespace mortise {
 

@@ -1,6 +1,7 @@
 #include "client/report/report.h"
 
 #include "client/report/summary_tables.h"
+#include "common/io/log/log_chain.h"
 
 namespace mortise {
 

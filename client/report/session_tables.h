@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/io/report_json.h"
 
 namespace mortise {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 
 namespace mortise::web {

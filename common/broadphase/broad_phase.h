@@ -1,7 +1,6 @@
 #pragma once
 #include <compare>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,13 +28,5 @@ class BroadPhase {
   /// Sorted, each pair once. `pairs` is replaced, its capacity reused.
   virtual void find_pairs(std::span<const std::uint32_t> moved, std::vector<IndexPair>& pairs) = 0;
 };
-
-/// FCL's dynamic AABB tree (Debian's libfcl, used for boxes only) over boxes somewhat larger than
-/// those given, with a list of neighbours for each part that ever moved. A part inside its larger
-/// box costs a comparison with its neighbours; a part that leaves it costs O(log n).
-std::unique_ptr<BroadPhase> make_dynamic_tree();
-
-/// The slow twin: every moved part against every part.
-std::unique_ptr<BroadPhase> make_brute_force();
 
 }  // namespace mortise

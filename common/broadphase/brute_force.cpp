@@ -1,7 +1,8 @@
+#include "common/broadphase/brute_force.h"
+
 #include <algorithm>
 
 #include "common/base/check.h"
-#include "common/broadphase/broad_phase.h"
 
 namespace mortise {
 namespace {

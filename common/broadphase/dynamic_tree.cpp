@@ -1,11 +1,12 @@
 // The only file of the library that names FCL.
+#include "common/broadphase/dynamic_tree.h"
+
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/sphere.h>
 
 #include <algorithm>
 
 #include "common/base/check.h"
-#include "common/broadphase/broad_phase.h"
 
 namespace mortise {
 namespace {

@@ -1,9 +1,10 @@
+#include "common/ccd/distance.h"
+
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/check.h"
-#include "common/ccd/first_contact.h"
 #include "common/ccd/hull_gap.h"
-#include "common/ccd/kernels/leaf_discard.h"
 #include "common/ccd/pair_tree.h"
 
 namespace mortise {
@@ -56,7 +57,7 @@ class Search {
   // Depth first, of the children the nearest first: the first pops go straight down to the most
   // promising leaves, whose distance then prunes.
   const Nearest& run() {
-    const BoxKernels& kernels = box_kernels();
+    const BoxKernels& kernels = best_kernels().box;
     const BoxFrame& frame = motion_.frame(0.0);
     std::vector<Item>& stack = scratch_.heap;
     stack.clear();
@@ -184,7 +185,7 @@ class Search {
   const Bvh& b_;
   double limit_mm_, enough_mm_;
   CcdScratch& scratch_;
-  const DiscardKernels& kernels_ = discard_kernels();
+  const DiscardKernels& kernels_ = best_kernels().discard;
   Placement placement_;
   FourTriangles placed_;
   std::int32_t placed_leaf_ = 0;  // leaves are below zero
@@ -222,47 +223,6 @@ bool surfaces_cross(const Solid& a, const Pose& X_WA, const Solid& b, const Pose
   const double rounding_mm = motion.rounding_mm();
   return Search(motion, a.bvh(), b.bvh(), rounding_mm, rounding_mm, scratch).run().distance_mm <
          kFar;
-}
-
-// Slow, simple, and no proof of freedom: what first_contact is compared with.
-FirstContact first_contact_by_sampling(const ContactQuery& query, int steps, CcdScratch& scratch) {
-  MORTISE_CHECK(query.a != nullptr && query.b != nullptr && steps > 0, "two solids and a step");
-  MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
-                "poses must be finite and unit, rotations at most half a turn");
-  MORTISE_CHECK(query.accuracy_mm >= 0.0 && query.accuracy_mm <= kLargestCoordinate_mm,
-                "an accuracy must be a length");
-  MORTISE_CHECK(query.separation_mm >= 0.0 && query.separation_mm <= kLargestCoordinate_mm,
-                "a separation must be a length");
-  const double contact_mm = query.separation_mm + query.accuracy_mm;
-  FirstContact result;
-  const auto end = [&](ContactState state, double t, const DistanceResult& d) {
-    result.state = state;
-    result.t_contact = t;
-    result.distance_mm = d.distance_mm;
-    result.triangle_a = d.triangle_a;
-    result.triangle_b = d.triangle_b;
-    result.point_a_W = d.point_a_W;
-    result.point_b_W = d.point_b_W;
-    return result;
-  };
-  if (query.check_contained &&
-      contained(*query.a, query.motion_a.X_W0, *query.b, query.motion_b.X_W0, query.accuracy_mm)) {
-    result.contained = true;
-    return end(ContactState::kOverlappingAtStart, 0.0, {});
-  }
-  for (int i = 0; i <= steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
-    const DistanceResult d = distance(*query.a, query.motion_a.pose_at(t), *query.b,
-                                      query.motion_b.pose_at(t), scratch, contact_mm);
-    if (d.within_limit) {
-      if (i > 0) return end(ContactState::kContact, t, d);
-      return end(
-          d.distance_mm > 0.0 ? ContactState::kTouchingAtStart : ContactState::kOverlappingAtStart,
-          0.0, d);
-    }
-    result.t_clear = t;
-  }
-  return end(ContactState::kFree, 1.0, {});
 }
 
 }  // namespace mortise

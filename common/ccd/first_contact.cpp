@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/check.h"
+#include "common/ccd/distance.h"
 #include "common/ccd/leaf_pair.h"
 #include "common/ccd/pair_queue.h"
 #include "common/ccd/start_state.h"
@@ -35,7 +36,7 @@ class Query {
         b_(*query.b),
         motion_(a_, query.motion_a, b_, query.motion_b),
         accuracy_mm_(std::max(query.accuracy_mm, kRoundingsPerAccuracy * motion_.rounding_mm())),
-        kernel_(query.portable ? portable_leaf_kernel() : leaf_kernel()) {}
+        kernels_(query.portable ? portable_kernels() : best_kernels()) {}
 
   // 1. spheres too far for the tick.
   // 2. one inside the other: no surface need ever meet.
@@ -115,7 +116,6 @@ class Query {
   void run(const Goal& goal) {
     const Bvh& a = a_.bvh();
     const Bvh& b = b_.bvh();
-    const BoxKernels& kernels = query_.portable ? portable_box_kernels() : box_kernels();
     CcdWork& work = result_.work;
     PairQueue queue(a, b, scratch_);
     Item root = root_pair(a, b);
@@ -136,7 +136,7 @@ class Query {
       alignas(32) float dt[Bvh::kWidth];
       // At the start a pair within contact_mm must be seen.
       const double taken_mm = item.t == 0.0 ? goal.contact_mm : goal.target_mm;
-      const bool opened_a = open_oriented(item, a, b, motion_, taken_mm, kernels, dt);
+      const bool opened_a = open_oriented(item, a, b, motion_, taken_mm, kernels_.box, dt);
       queue.push_children(item, opened_a, dt);
     }
     result_.state = ContactState::kFree;
@@ -152,8 +152,9 @@ class Query {
       motion_.at(t);
       ++result_.work.advances;
       const double next_pair = queue.next_time(t);
-      const LeafAdvance advance = leaves.advance(
-          motion_, goal, t == 0.0, std::max(kWorthWhile, next_pair - t), kernel_, result_.work);
+      const LeafAdvance advance =
+          leaves.advance(motion_, goal, t == 0.0, std::max(kWorthWhile, next_pair - t),
+                         kernels_.leaf, result_.work);
       if (advance.contact) {
         contact(advance.nearest, t);
         return false;
@@ -199,13 +200,11 @@ class Query {
   const Solid& b_;
   PairMotion motion_;
   double accuracy_mm_;
-  LeafKernel kernel_;
+  const Kernels& kernels_;
   FirstContact result_;
 };
 
-}  // namespace
-
-FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
+void check(const ContactQuery& query) {
   MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
   MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
                 "poses must be finite and unit, rotations at most half a turn");
@@ -214,7 +213,49 @@ FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
   MORTISE_CHECK(query.separation_mm >= 0.0 && query.separation_mm <= kLargestCoordinate_mm,
                 "a separation must be a length");
   MORTISE_CHECK(query.t_from >= 0.0 && query.t_from < 1.0, "t_from must be a time of the tick");
+}
+
+}  // namespace
+
+FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
+  check(query);
   return Query(query, scratch).answer();
+}
+
+// Slow, simple, and no proof of freedom: what first_contact is compared with.
+FirstContact first_contact_by_sampling(const ContactQuery& query, int steps, CcdScratch& scratch) {
+  check(query);
+  MORTISE_CHECK(steps > 0, "sampling needs a step");
+  const double contact_mm = query.separation_mm + query.accuracy_mm;
+  FirstContact result;
+  const auto end = [&](ContactState state, double t, const DistanceResult& d) {
+    result.state = state;
+    result.t_contact = t;
+    result.distance_mm = d.distance_mm;
+    result.triangle_a = d.triangle_a;
+    result.triangle_b = d.triangle_b;
+    result.point_a_W = d.point_a_W;
+    result.point_b_W = d.point_b_W;
+    return result;
+  };
+  if (query.check_contained &&
+      contained(*query.a, query.motion_a.X_W0, *query.b, query.motion_b.X_W0, query.accuracy_mm)) {
+    result.contained = true;
+    return end(ContactState::kOverlappingAtStart, 0.0, {});
+  }
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    const DistanceResult d = distance(*query.a, query.motion_a.pose_at(t), *query.b,
+                                      query.motion_b.pose_at(t), scratch, contact_mm);
+    if (d.within_limit) {
+      if (i > 0) return end(ContactState::kContact, t, d);
+      return end(
+          d.distance_mm > 0.0 ? ContactState::kTouchingAtStart : ContactState::kOverlappingAtStart,
+          0.0, d);
+    }
+    result.t_clear = t;
+  }
+  return end(ContactState::kFree, 1.0, {});
 }
 
 }  // namespace mortise

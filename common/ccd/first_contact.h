@@ -1,9 +1,8 @@
 #pragma once
 #include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "common/base/constants.h"
+#include "common/ccd/ccd_scratch.h"
 #include "common/geometry/solid.h"
 #include "common/motion/motion.h"
 
@@ -64,59 +63,10 @@ struct FirstContact {
   CcdWork work;
 };
 
-/// Reused between queries so that a warm query does not allocate. One per thread.
-struct CcdScratch {
-  struct Item {
-    double t;
-    std::int32_t a, b, parent_a, parent_b;
-    std::int8_t slot_a, slot_b;
-  };
-  std::vector<Item> heap;
-  // first_contact: see PairQueue.
-  struct Entry {
-    std::uint64_t t_bits, member;
-  };
-  struct Family {
-    Item parent;
-    std::int32_t opened;
-    float dt[8];
-  };
-  std::vector<Item> now;
-  std::vector<Entry> entries;
-  std::vector<Family> families;
-};
-
 /// First contact of two rigid meshes in one tick. Guarantee: never a miss, never late; see
 /// ContactState. Deterministic. Per-pair advancement on the trees, earliest first
 /// (README, sections 2 and 3).
 FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch);
-
-struct DistanceResult {
-  double distance_mm = 0.0;  ///< 0 when the surfaces cross or touch
-  std::uint32_t triangle_a = 0, triangle_b = 0;
-  Vec3 point_a_W = Vec3::Zero(), point_b_W = Vec3::Zero();
-  bool within_limit =
-      false;  ///< false: farther apart than limit_mm, distance_mm is then limit_mm (a lower bound)
-};
-
-/// Distance of two meshes at fixed poses, exact to rounding. `seed`: an answer about the same pair
-/// at poses nearby; it makes the answer come sooner, no different (of several places that are
-/// equally near another may be named). A seed that is no answer, or of other solids, is of no use
-/// and does no harm.
-DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                        CcdScratch& scratch,
-                        double limit_mm = std::numeric_limits<double>::infinity(),
-                        const DistanceResult* seed = nullptr);
-
-/// Do the surfaces cross or touch (to rounding) at these poses? One part wholly inside the other
-/// does not count: see contained().
-bool surfaces_cross(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                    CcdScratch& scratch);
-
-/// Does a shell of one part lie inside the other, deeper than margin_mm, at these poses? For
-/// surfaces that do not cross. Open meshes have no inside: never.
-bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-               double margin_mm);
 
 /// The slow twin: sub-steps [0,1] and asks distance at each; never proves freedom, finds contacts
 /// no finer than a step.

@@ -11,8 +11,54 @@ namespace {
 // gives away at the end is a 25th of the speed by turning. Ticks seldom turn as far.
 constexpr double kHorizon_rad = 1.0;
 
-void copy(const Vec3& from, double* to) {
-  for (int c = 0; c < 3; ++c) to[c] = from[c];
+// Float arithmetic of one box test makes at most some forty errors of half an ulp, 6e-8 of the
+// extent.
+constexpr double kFloatRounding = 3e-6;
+
+// Of a value that is not negative: at least x, at most three ulp more.
+float rounded_up(double x) { return static_cast<float>(x) * (1.0F + 0x1p-22F); }
+
+template <class Vector, class Scalar>
+void copy(const Vector& from, Scalar* to) {
+  const Vec3 x = from;
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<Scalar>(x[c]);
+}
+
+// The pair in axes of the boxes of B, from their origin; see BoxFrame.
+struct SeenFromBoxes {
+  Mat3 R;
+  Vec3 p, v, w_a, arm_a, w_b, arm_b;
+
+  SeenFromBoxes(const PairState& s, const BoxAxes& boxes_a, const BoxAxes& boxes_b) {
+    const Vec3 from_origin_a = s.R * boxes_a.from_origin;
+    R = s.R;
+    p = s.p + from_origin_a - boxes_b.from_origin;
+    v = s.a.v - s.b.v;
+    w_a = s.a.w;
+    arm_a = s.a.arm + from_origin_a;
+    w_b = s.b.w;
+    arm_b = s.b.arm + boxes_b.from_origin;
+    if (boxes_a.axes != nullptr) R = R * boxes_a.axes->transpose();
+    if (boxes_b.axes == nullptr) return;
+    const Mat3& N = *boxes_b.axes;
+    R = N * R;
+    for (Vec3* x : {&p, &v, &w_a, &arm_a, &w_b, &arm_b}) *x = N * *x;
+  }
+};
+
+void set_turn(BoxTurn& turn, const TurnTerms& terms, const Mat3& R, const Vec3& w, const Vec3& arm,
+              double speed) {
+  turn.turns = terms.turns;
+  if (!turn.turns) return;
+  copy(w, turn.w);
+  copy(arm, turn.arm);
+  copy(R.transpose() * w, turn.w_A);
+  for (int j = 0; j < 3; ++j) copy(R.col(j).cross(w), turn.r_w[j]);
+  turn.speed2 = static_cast<float>(speed * speed);
+  turn.speed = rounded_up(speed);
+  // Half an ulp of float more than what the rounding to nearest may lose.
+  turn.lift = rounded_up(terms.lift);
+  turn.bow = static_cast<float>(terms.bow) * (1.0F - 1.2e-7F);
 }
 
 // A group that is moved as one: nothing changes between its parts.
@@ -138,6 +184,46 @@ void PairMotion::set_bounds(TurnTerms& terms, double speed, double horizon) cons
   terms.turns = speed > 0.0;
   terms.bow = 1.0 - phi * phi / 12.0;
   terms.lift = speed * speed * ticks / 3.0;
+}
+
+const BoxFrame& PairMotion::frame(double target_mm) {
+  return frame(target_mm, {nullptr, Vec3::Zero(), radius_a_}, {nullptr, Vec3::Zero(), radius_b_});
+}
+
+const BoxFrame& PairMotion::frame(double target_mm, const BoxAxes& boxes_a,
+                                  const BoxAxes& boxes_b) {
+  BoxFrame& f = frame_;
+  const bool of_parts = boxes_a.axes == nullptr && boxes_b.axes == nullptr;
+  if (of_parts && frame_t_ == state_.t && frame_target_ == target_mm) return f;
+  frame_t_ = of_parts ? state_.t : -1.0;
+  frame_target_ = target_mm;
+  const SeenFromBoxes s(state_, boxes_a, boxes_b);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      f.r[i][j] = static_cast<float>(s.R(i, j));
+      f.abs_r[i][j] = std::fabs(f.r[i][j]);
+    }
+  copy(s.p, f.p);
+  copy(s.v, f.v);
+  copy(s.R.transpose() * s.v, f.v_A);
+  const double ends = horizon();
+  f.rest = rounded_up(1.0 - state_.t);
+  f.horizon = static_cast<float>(ends);
+  const double speed_a = path_a_.speed(), speed_b = path_b_.speed();
+  TurnTerms terms_a, terms_b;
+  set_bounds(terms_a, speed_a, ends);
+  set_bounds(terms_b, speed_b, ends);
+  set_turn(f.a, terms_a, s.R, s.w_a, s.arm_a, speed_a);
+  set_turn(f.b, terms_b, s.R, s.w_b, s.arm_b, speed_b);
+  const double extent = boxes_a.radius_mm + boxes_b.radius_mm + s.p.norm();
+  f.gap_allowance = rounded_up(std::max(target_mm, 0.0) + rounding_mm_ + kFloatRounding * extent);
+  const double wide_a = speed_a > 0.0 ? boxes_a.radius_mm + s.arm_a.norm() : 0.0;
+  const double wide_b = speed_b > 0.0 ? boxes_b.radius_mm + s.arm_b.norm() : 0.0;
+  f.speed_allowance = rounded_up(
+      speed_rounding_mm_ + kFloatRounding * (s.v.norm() + speed_a * wide_a + speed_b * wide_b));
+  f.bend_allowance =
+      rounded_up(kFloatRounding * (speed_a * speed_a * wide_a + speed_b * speed_b * wide_b));
+  return f;
 }
 
 const LeafFrame& PairMotion::leaf_frame(double taken_mm, double suspect_mm) {

@@ -1,7 +1,6 @@
 #pragma once
 #include "common/ccd/first_contact.h"
-#include "common/ccd/kernels/box_advance.h"
-#include "common/ccd/kernels/leaf_kernel.h"
+#include "common/ccd/kernels/kernels.h"
 
 // Two bodies during one tick, seen from B.
 namespace mortise::ccd {

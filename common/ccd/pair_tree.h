@@ -73,7 +73,7 @@ void open(const Item& item, const Bvh& a, const Bvh& b, const BoxFrame& frame, K
 template <class F>
 bool each_leaf_pair_within(PairMotion& motion, const Bvh& a, const Bvh& b, double limit_mm,
                            CcdScratch& scratch, CcdWork& work, F f) {
-  const BoxKernels& kernels = box_kernels();
+  const BoxKernels& kernels = best_kernels().box;
   const BoxFrame& frame = motion.frame(0.0);
   scratch.heap.clear();
   scratch.heap.push_back(root_pair(a, b));

@@ -23,3 +23,12 @@ StartState start_state(PairMotion& motion, const Solid& a, const Solid& b, const
                        CcdScratch& scratch, CcdWork& work);
 
 }  // namespace mortise::ccd
+
+namespace mortise {
+
+/// Does a shell of one part lie inside the other, deeper than margin_mm, at these poses? For
+/// surfaces that do not cross. Open meshes have no inside: never.
+bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+               double margin_mm);
+
+}  // namespace mortise

@@ -32,6 +32,36 @@ struct Attempt {
   Vec3 rotation = Vec3::Zero();     // about it
 };
 
+// Motion of A seen by B over [t, 1], as the displacement of world points fixed to A at the
+// target.
+Pose relative_from(const GpdQuery& query, double t) {
+  const Pose back_b = query.motion_b.X_W1 * query.motion_b.pose_at(t).inverse();
+  return back_b * query.motion_a.pose_at(t) * query.motion_a.X_W1.inverse();
+}
+
+// Of a point that is fixed to A: exact for a constant speed, else by parts.
+double path_length(const GpdQuery& query, const Vec3& x_W1) {
+  const double t0 = query.t_contact;
+  const Vec3 x_A = query.motion_a.X_W1.inverse() * x_W1;
+  const auto relative = [&](double t) -> Vec3 {
+    return query.motion_b.X_W1 *
+           (query.motion_b.pose_at(t).inverse() * (query.motion_a.pose_at(t) * x_A));
+  };
+  const double turned = (query.motion_a.w_W.norm() + query.motion_b.w_W.norm()) * (1.0 - t0);
+  const int parts = turned > 0.0 ? 32 : 1;
+  double sum = 0.0;
+  Vec3 from = relative(t0);
+  for (int i = 1; i <= parts; ++i) {
+    const Vec3 to = relative(t0 + (1.0 - t0) * i / parts);
+    const double chord = (to - from).norm();
+    const double half_angle = 0.5 * turned / parts;
+    // Arc over chord of a turn about one axis.
+    sum += half_angle > 1e-4 ? chord * half_angle / std::sin(half_angle) : chord;
+    from = to;
+  }
+  return sum;
+}
+
 class Separation {
  public:
   Separation(const GpdQuery& query, CcdScratch& scratch)
@@ -98,44 +128,14 @@ class Separation {
     return {contact.x_W, -((X * query_.overlap.X_WA).q * at.outward), at.depth_mm};
   }
 
-  // Motion of A seen by B over [t, 1], as the displacement of world points fixed to A at the
-  // target.
-  Pose relative_from(double t) const {
-    const Pose back_b = query_.motion_b.X_W1 * query_.motion_b.pose_at(t).inverse();
-    return back_b * query_.motion_a.pose_at(t) * query_.motion_a.X_W1.inverse();
-  }
-
   void measure_travel() {
     if (!query_.motion_a.moves() && !query_.motion_b.moves()) return;
     const double t = query_.t_contact;
-    const Pose back = relative_from(t);
+    const Pose back = relative_from(query_, t);
     for (const Vec3& x : region_.points_W) {
-      best_.travel_mm = std::max(best_.travel_mm, path_length(x));
+      best_.travel_mm = std::max(best_.travel_mm, path_length(query_, x));
       best_.normal_travel_mm = std::max(best_.normal_travel_mm, region_.normal_W.dot(back * x - x));
     }
-  }
-
-  // Of a point that is fixed to A: exact for a constant speed, else by parts.
-  double path_length(const Vec3& x_W1) const {
-    const double t0 = query_.t_contact;
-    const Vec3 x_A = query_.motion_a.X_W1.inverse() * x_W1;
-    const auto relative = [&](double t) -> Vec3 {
-      return query_.motion_b.X_W1 *
-             (query_.motion_b.pose_at(t).inverse() * (query_.motion_a.pose_at(t) * x_A));
-    };
-    const double turned = (query_.motion_a.w_W.norm() + query_.motion_b.w_W.norm()) * (1.0 - t0);
-    const int parts = turned > 0.0 ? 32 : 1;
-    double sum = 0.0;
-    Vec3 from = relative(t0);
-    for (int i = 1; i <= parts; ++i) {
-      const Vec3 to = relative(t0 + (1.0 - t0) * i / parts);
-      const double chord = (to - from).norm();
-      const double half_angle = 0.5 * turned / parts;
-      // Arc over chord of a turn about one axis.
-      sum += half_angle > 1e-4 ? chord * half_angle / std::sin(half_angle) : chord;
-      from = to;
-    }
-    return sum;
   }
 
   // Do the meshes stay out of each other with A displaced by X (world)?
@@ -192,7 +192,7 @@ class Separation {
                                                .norm(),
                               t, 1.0);
     if (length >= best_.gpd_mm.hi) return;
-    const Pose back = relative_from(t);
+    const Pose back = relative_from(query_, t);
     if (!is_free(back)) return;
     Attempt attempt;
     const Vec3 center = query_.overlap.X_WA * center_A_;

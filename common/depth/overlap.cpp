@@ -27,6 +27,67 @@ std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
   return {a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (a + b + c) / 3.0};
 }
 
+double smaller_radius(const PairFrame& pair) {
+  return std::min(pair.bodies[0].solid->sphere().radius_mm,
+                  pair.bodies[1].solid->sphere().radius_mm);
+}
+
+void set_shapes(const PairFrame& pair, OverlapRegion& region) {
+  region.shape_a =
+      face_shape(pair.bodies[0], region.triangle_a, pair.X_W[0].inverse() * region.point_W);
+  region.shape_b =
+      face_shape(pair.bodies[1], region.triangle_b, pair.X_W[1].inverse() * region.point_W);
+}
+
+// Identical parts in one place: no surface lies inside the other, and yet the parts are one.
+OverlapRegion region_of(const PairFrame& pair, const SharedInside& shared) {
+  OverlapRegion region;
+  region.delta_mm = {shared.depth_mm, 2.0 * smaller_radius(pair)};
+  const auto reach = [&](Layer layer) {
+    return pair.bodies[0].largest_offset_mm[static_cast<int>(layer)] +
+           pair.bodies[1].largest_offset_mm[static_cast<int>(layer)];
+  };
+  region.certain_mm = {shared.depth_mm - reach(Layer::kLower), region.delta_mm.hi};
+  region.possible_mm = {shared.depth_mm - reach(Layer::kUpper),
+                        region.delta_mm.hi + reach(Layer::kUpper)};
+  region.point_W = region.witness_W = shared.point_W;
+  region.has_witness = region.certain_mm.lo > 0.0;
+  region.triangle_a = region.deciding_triangle_a = shared.triangle[0];
+  region.triangle_b = region.deciding_triangle_b = shared.triangle[1];
+  region.normal_W = -(pair.X_W[0].q * pair.bodies[0].normal(region.triangle_a));
+  set_shapes(pair, region);
+  region.points_W = {region.point_W};
+  return region;
+}
+
+// Without an inside there is no depth: the crossing itself, or that the parts are near, is the
+// finding.
+OverlapRegion region_without_depth(const PairFrame& pair, const Candidates& candidates) {
+  OverlapRegion region;
+  const double depth = 2.0 * smaller_radius(pair);
+  if (candidates.cross) {
+    region.delta_mm = {0.0, depth};
+    region.possible_mm = {0.0, depth};
+    region.certain_mm = {-depth, 0.0};
+    region.point_W = pair.X_W[1] * candidates.cross_point_B;
+    region.triangle_a = candidates.cross_triangle[0];
+    region.triangle_b = candidates.cross_triangle[1];
+  } else {
+    region.delta_mm = {-pair.near_mm, 0.0};
+    region.possible_mm = {0.0, pair.near_mm};
+    region.certain_mm = {-depth, 0.0};
+    region.triangle_a = candidates.triangles[0].front();
+    region.triangle_b = candidates.triangles[1].front();
+    region.point_W = pair.X_W[0] * pair.bodies[0].mesh->corner(region.triangle_a, 0);
+  }
+  region.deciding_triangle_a = region.triangle_a;
+  region.deciding_triangle_b = region.triangle_b;
+  region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
+  set_shapes(pair, region);
+  region.points_W = {region.point_W};
+  return region;
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query) {}
@@ -51,8 +112,9 @@ class Overlap {
     }
     // Regions that were left out because nothing is certain in them are told apart from none.
     if (result_.regions.empty() && !(query_.only_certain && regions_.count > 0))
-      add_shared_inside(candidates);
-    if (result_.no_inside) add_crossing(candidates);
+      if (const auto shared = find_shared_inside(pair_, candidates))
+        result_.regions.push_back(region_of(pair_, *shared));
+    if (result_.no_inside) add_without_depth(candidates);
     for (const OverlapRegion& region : result_.regions)
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
     result_.contained = result_.meshes_cross && candidates.triangles[0].empty() &&
@@ -297,70 +359,13 @@ class Overlap {
     return full;
   }
 
-  // Identical parts in one place: no surface lies inside the other, and yet the parts are one.
-  void add_shared_inside(const Candidates& candidates) {
-    const auto shared = find_shared_inside(pair_, candidates);
-    if (!shared) return;
-    OverlapRegion region;
-    region.delta_mm = {shared->depth_mm, 2.0 * smaller_radius()};
-    const auto reach = [&](Layer layer) {
-      return pair_.bodies[0].largest_offset_mm[static_cast<int>(layer)] +
-             pair_.bodies[1].largest_offset_mm[static_cast<int>(layer)];
-    };
-    region.certain_mm = {shared->depth_mm - reach(Layer::kLower), region.delta_mm.hi};
-    region.possible_mm = {shared->depth_mm - reach(Layer::kUpper),
-                          region.delta_mm.hi + reach(Layer::kUpper)};
-    region.point_W = region.witness_W = shared->point_W;
-    region.has_witness = region.certain_mm.lo > 0.0;
-    region.triangle_a = region.deciding_triangle_a = shared->triangle[0];
-    region.triangle_b = region.deciding_triangle_b = shared->triangle[1];
-    region.normal_W = -(pair_.X_W[0].q * pair_.bodies[0].normal(region.triangle_a));
-    set_shapes(region);
-    region.points_W = {region.point_W};
-    result_.regions.push_back(std::move(region));
-  }
-
-  void set_shapes(OverlapRegion& region) const {
-    region.shape_a =
-        face_shape(pair_.bodies[0], region.triangle_a, pair_.X_W[0].inverse() * region.point_W);
-    region.shape_b =
-        face_shape(pair_.bodies[1], region.triangle_b, pair_.X_W[1].inverse() * region.point_W);
-  }
-
-  double smaller_radius() const {
-    return std::min(query_.a->sphere().radius_mm, query_.b->sphere().radius_mm);
-  }
-
-  // Without an inside there is no depth: the crossing itself is the finding.
-  void add_crossing(const Candidates& candidates) {
+  void add_without_depth(const Candidates& candidates) {
     const bool near = !pair_.trivial && !candidates.triangles[0].empty();
     if (!candidates.cross && !near) return;
     for (const OverlapRegion& region : result_.regions)
       if (region.delta_mm.lo > 0.0) return;  // the closed part of the two found it already
     if (!result_.regions.empty() && !candidates.cross) return;
-    OverlapRegion region;
-    const double depth = 2.0 * smaller_radius();
-    if (candidates.cross) {
-      region.delta_mm = {0.0, depth};
-      region.possible_mm = {0.0, depth};
-      region.certain_mm = {-depth, 0.0};
-      region.point_W = pair_.X_W[1] * candidates.cross_point_B;
-      region.triangle_a = candidates.cross_triangle[0];
-      region.triangle_b = candidates.cross_triangle[1];
-    } else {
-      region.delta_mm = {-pair_.near_mm, 0.0};
-      region.possible_mm = {0.0, pair_.near_mm};
-      region.certain_mm = {-depth, 0.0};
-      region.triangle_a = candidates.triangles[0].front();
-      region.triangle_b = candidates.triangles[1].front();
-      region.point_W = pair_.X_W[0] * pair_.bodies[0].mesh->corner(region.triangle_a, 0);
-    }
-    region.deciding_triangle_a = region.triangle_a;
-    region.deciding_triangle_b = region.triangle_b;
-    region.normal_W = pair_.X_W[1].q * pair_.bodies[1].normal(region.triangle_b);
-    set_shapes(region);
-    region.points_W = {region.point_W};
-    result_.regions.push_back(std::move(region));
+    result_.regions.push_back(region_without_depth(pair_, candidates));
   }
 
   const OverlapQuery& query_;

@@ -25,6 +25,58 @@ constexpr double kOnePlane = 1e-9;
 using Corners = std::array<Vec3, 3>;
 using Facet = ProofScratch::Facet;
 
+// Normal and point of a facet, at the centre of the patch. No normal: a triangle without area.
+void set_out(Facet& facet, const Corners& c, const Vec3& center) {
+  if (facet.surface == nullptr) {
+    const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+    const double length = n.norm();
+    if (!(length > 0.0)) return;
+    facet.normal = n / length;
+    facet.point = c[0];
+    return;
+  }
+  facet.normal = facet.surface->outward_normal(center);
+  facet.point = center - facet.surface->signed_distance_mm(center) * facet.normal;
+}
+
+// Upper bound of how far a cylinder or cone between two heights rises above a wall, which is a
+// plane or a shaft: the face lies within the hull of its end circles.
+double highest_above(const Surface& round, const Interval& extent, const Facet& wall) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const double z : {extent.lo, extent.hi}) {
+    const Vec3 center = round.point + z * round.axis;
+    const double radius =
+        round.kind == SurfaceKind::kCone ? z * std::tan(round.half_angle_rad) : round.radius_mm;
+    if (wall.surface == nullptr) {
+      const double along = wall.normal.dot(round.axis);
+      highest = std::max(highest, wall.normal.dot(center - wall.point) +
+                                      radius * std::sqrt(std::max(0.0, 1.0 - along * along)));
+    } else {
+      const Surface& shaft = *wall.surface;
+      const Vec3 d = center - shaft.point;
+      highest =
+          std::max(highest, (d - d.dot(shaft.axis) * shaft.axis).norm() + radius - shaft.radius_mm);
+    }
+  }
+  return highest;
+}
+
+// By how much the normal of a hollow surface turns over the patch.
+double turn_of(const Surface& surface, const Patch& patch) {
+  return std::min(1.0, surface.curvature_bound(patch.center) * patch.radius_mm);
+}
+
+// Does a triangle of k lie in the plane of the wall?
+bool is_in_plane(const Body& k, std::uint32_t t, const Facet& wall, double rounding_mm) {
+  return k.normal(t).dot(wall.normal) > 1.0 - kOnePlane &&
+         std::fabs(wall.normal.dot(k.mesh->corner(t, 0) - wall.point)) <= rounding_mm;
+}
+
+bool is_within(const Patch& patch, double reach_mm, const Corners& c) {
+  return (nearest_on_triangle(patch.center, c[0], c[1], c[2]) - patch.center).norm() <=
+         patch.radius_mm + reach_mm;
+}
+
 class Neighbourhood {
  public:
   Neighbourhood(const DepthProof& proof, const Patch& patch, ProofScratch& scratch)
@@ -150,23 +202,9 @@ class Neighbourhood {
     return known;
   }
 
-  // Normal and point of a facet, at the patch. No normal: a triangle without area.
-  void set_out(Facet& facet, const Corners& c) const {
-    if (facet.surface == nullptr) {
-      const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
-      const double length = n.norm();
-      if (!(length > 0.0)) return;
-      facet.normal = n / length;
-      facet.point = c[0];
-      return;
-    }
-    facet.normal = facet.surface->outward_normal(patch_.center);
-    facet.point = patch_.center - facet.surface->signed_distance_mm(patch_.center) * facet.normal;
-  }
-
   // By where the patch is and the facet's surface continued.
   double depth_below_surface(Facet& facet, const Corners& c) const {
-    set_out(facet, c);
+    set_out(facet, c, patch_.center);
     if (facet.normal.isZero(0.0)) return 0.0;
     if (facet.surface == nullptr)
       return facet.offset_mm + patch_.depth_below_plane(facet.normal, facet.point, 0.0);
@@ -175,7 +213,7 @@ class Neighbourhood {
     if (surface.inward) {  // the distance is convex
       for (int i = 0; i < patch_.count; ++i)
         deepest = std::max(deepest, -surface.signed_distance_mm(patch_.points[i]));
-      deepest += patch_.beyond(facet.normal, turn_of(surface));
+      deepest += patch_.beyond(facet.normal, turn_of(surface, patch_));
     } else {  // it lies below each of its tangent planes
       deepest = patch_.depth_below_plane(facet.normal, facet.point, 0.0);
       if (deepest + facet.offset_mm > std::min(0.0, proof_.limit_mm))
@@ -216,19 +254,14 @@ class Neighbourhood {
     const std::uint16_t face = k_.face_index(wall.triangle);
     for (const std::uint32_t other : k_.sharp_neighbours(t)) {
       if (k_.face_index(other) != face) continue;
-      if (wall.surface != nullptr || other == wall.triangle || is_in_plane(other, wall))
+      if (wall.surface != nullptr || other == wall.triangle ||
+          is_in_plane(k_, other, wall, proof_.rounding_mm))
         return true;
     }
     return false;
   }
 
-  bool is_in_plane(std::uint32_t t, const Facet& wall) const {
-    return k_.normal(t).dot(wall.normal) > 1.0 - kOnePlane &&
-           std::fabs(wall.normal.dot(k_.mesh->corner(t, 0) - wall.point)) <= proof_.rounding_mm;
-  }
-
-  // A round face lies within the hull of its end circles: its true surface is below a plane or a
-  // shaft when they are.
+  // The true surface of a round face is below a plane or a shaft when its end circles are.
   bool round_face_below(std::uint32_t t, const Facet& wall) const {
     const SurfaceBand::Face& face = k_.face(t);
     const Surface* round = Body::surface_of(face, proof_.layer);
@@ -237,21 +270,7 @@ class Neighbourhood {
     if (shaft != nullptr && (shaft->inward || shaft->kind != SurfaceKind::kCylinder)) return false;
     const Interval& extent = k_.extent_of(k_.face_index(t));
     if (round->kind == SurfaceKind::kCone && !(extent.lo >= 0.0)) return false;
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const double z : {extent.lo, extent.hi}) {
-      const Vec3 center = round->point + z * round->axis;
-      const double radius = round->kind == SurfaceKind::kCone ? z * std::tan(round->half_angle_rad)
-                                                              : round->radius_mm;
-      if (shaft == nullptr) {
-        const double along = wall.normal.dot(round->axis);
-        highest = std::max(highest, wall.normal.dot(center - wall.point) +
-                                        radius * std::sqrt(std::max(0.0, 1.0 - along * along)));
-      } else {
-        const Vec3 d = center - shaft->point;
-        highest = std::max(
-            highest, (d - d.dot(shaft->axis) * shaft->axis).norm() + radius - shaft->radius_mm);
-      }
-    }
+    const double highest = highest_above(*round, extent, wall);
     const double rise = std::max(0.0, Body::offset_of(face, proof_.layer) - wall.offset_mm);
     return highest + rise <= wall.slack_mm + proof_.rounding_mm;
   }
@@ -294,11 +313,6 @@ class Neighbourhood {
     return rise * (length > 0.0 ? std::max(0.0, n.dot(wall.normal) / length) : 1.0);
   }
 
-  // By how much the normal of a hollow surface turns over the patch.
-  double turn_of(const Surface& surface) const {
-    return std::min(1.0, surface.curvature_bound(patch_.center) * patch_.radius_mm);
-  }
-
   // The plane or bore of a triangle, when all near facets lie below it.
   std::optional<ConvexWall> wall_over_all(std::uint32_t t, const Corners& c) const {
     Facet facet;
@@ -306,17 +320,12 @@ class Neighbourhood {
     facet.surface = Body::surface_of(k_.face(t), proof_.layer);
     if (facet.surface != nullptr && !facet.surface->inward) return std::nullopt;
     facet.offset_mm = Body::offset_of(k_.face(t), proof_.layer);
-    set_out(facet, c);
+    set_out(facet, c, patch_.center);
     if (facet.normal.isZero(0.0)) return std::nullopt;
     for (const ProofScratch::Near& near : scratch_.near)
       if (!below(near.triangle, near.corners, facet)) return std::nullopt;
-    const double turn_rad = facet.surface != nullptr ? turn_of(*facet.surface) : 0.0;
+    const double turn_rad = facet.surface != nullptr ? turn_of(*facet.surface, patch_) : 0.0;
     return ConvexWall{facet.surface, facet.normal, facet.point, facet.offset_mm, turn_rad};
-  }
-
-  bool is_there(const Corners& c) const {
-    return (nearest_on_triangle(patch_.center, c[0], c[1], c[2]) - patch_.center).norm() <=
-           patch_.radius_mm + reach_;
   }
 
   bool below_two_walls() const {
@@ -329,7 +338,7 @@ class Neighbourhood {
       const Surface* surface = Body::surface_of(k_.face(near.triangle), proof_.layer);
       if (surface != nullptr && surface == asked) continue;  // another triangle of the same bore
       // Where a point has to leave k, the wall that it leaves by must be there.
-      if (proof_.limit_mm > 0.0 && !is_there(near.corners)) continue;
+      if (proof_.limit_mm > 0.0 && !is_within(patch_, reach_, near.corners)) continue;
       const auto second = wall_over_all(near.triangle, near.corners);
       if (second && mean_keeps_off(*first, *second, patch_, proof_.limit_mm)) return true;
       if (surface != nullptr) asked = surface;

@@ -11,12 +11,36 @@
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
 #include "common/depth/search.h"
-#include "common/depth/search_effort.h"
 
 namespace mortise {
 namespace {
 
-using namespace search_effort;
+// How far the search goes into detail, and when it has done enough.
+
+// Items are cut down to this share of the accuracy.
+constexpr double kSmallestShare = 0.25;
+
+// Paths longer than this many widths are cut in time without asking.
+constexpr double kLongPath = 4.0;
+
+// After the time at which a closed form stops excluding an overlap, so many of the briefest
+// intervals are looked at. An overlap that is certain by then counts as certain from that time on.
+constexpr double kSoon = 256.0;
+
+// After so many evaluations, and again whenever they have doubled, the search looks this many times
+// the accuracy of the path ahead whether the parts interfere: a part that the last tick stopped
+// stands a little before the contact.
+constexpr std::uint64_t kFirstLook = 400, kLookWorkCap = 2'000;
+constexpr double kSoonShare = 4.0;
+
+// After this share of the work cap the proven time may stay this far, mm of path, before a time at
+// which the parts interfere: two rims that just meet take ten times the work for the rest.
+constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
+constexpr double kCloseEnough_mm = 0.02;
+
+// Steps back, doubling from the accuracy, from a time at which the overlap is already certain; and
+// the work of these steps and the search, in work caps, after which the start of the tick is used.
+constexpr std::uint64_t kBackOff = 12, kBackOffCaps = 2;
 
 // Branch and bound over (piece of surface) x (interval of time), earliest first, in the layer of
 // the least surfaces (of the largest, where it is asked what is possible):
@@ -38,6 +62,99 @@ struct Item {
 bool later(const Item& a, const Item& b) {
   if (a.span.t0 != b.span.t0) return a.span.t0 > b.span.t0;
   return a.order > b.order;
+}
+
+bool has_closed_form(const Surface& a, const Surface& b) {
+  return a.inward != b.inward && (a.kind == b.kind || is_round_in_bore(a, b));
+}
+
+// Two declared faces with a closed form: upper bounds of how far they overlap in the layer, over an
+// interval of time and at a pose of it.
+class FaceBounds {
+ public:
+  FaceBounds(const Body (&bodies)[2], Layer layer, std::array<std::uint16_t, 2> faces,
+             const Surface& sa, const Surface& sb, const PairPath& path, double touch_mm)
+      : sa_(sa),
+        sb_(sb),
+        ea_(extent_of(bodies[0], faces[0], sa)),
+        eb_(extent_of(bodies[1], faces[1], sb)),
+        path_(path),
+        touch_mm_(touch_mm) {
+    const double a_mm = Body::offset_of(bodies[0].band->faces[faces[0]], layer);
+    const double b_mm = Body::offset_of(bodies[1].band->faces[faces[1]], layer);
+    offsets_mm = a_mm + b_mm;
+    in_bore_ = {&sa_, &sb_, ea_, eb_, std::max(0.0, sa.inward ? -b_mm : -a_mm), 0.0};
+  }
+
+  double within_mm(const Span& span, double t) const {
+    return in_bore(span, t).within_mm + offsets_mm;
+  }
+  double along_mm(const Span& span, double t) const {
+    return in_bore(span, t).along_mm + offsets_mm;
+  }
+  double overlap_mm(const Span& span, double t) const {
+    const double hi_mm = near_overlap_upper_bound_mm(sa_, ea_, sb_, eb_, path_.pose(0, t),
+                                                     margin_mm(span), touch_mm_ - offsets_mm);
+    return (std::isfinite(hi_mm) ? hi_mm : in_bore(span, t).face_mm) + offsets_mm;
+  }
+  std::optional<FacePairOverlap> overlap_at(double t) const {
+    return face_pair_overlap(sa_, ea_, sb_, eb_, path_.pose(0, t), touch_mm_);
+  }
+
+  void set_where_it_holds(KnownOverlaps::Row& row) const {
+    for (int i = 0; i < 2; ++i) {
+      const FaceExtent& extent = i == 0 ? ea_ : eb_;
+      const bool ball = sa_.kind == SurfaceKind::kSphere && (i == 0) != sa_.inward;
+      // Bounds of a cone in a bore know no ends of the bore, and no margin.
+      const bool cone_in_bore = sa_.kind != sb_.kind;
+      const bool convex = (i == 0) != sa_.inward;
+      if (ball || (cone_in_bore && !convex)) continue;
+      const double more = cone_in_bore ? 0.0 : touch_mm_;
+      row.holds_along_mm[i] = {extent.lo_mm - more, extent.hi_mm + more};
+    }
+  }
+
+  double offsets_mm = 0.0;  ///< of both layers from the declared surfaces
+
+ private:
+  double margin_mm(const Span& span) const {
+    return path_.speed_upper_bound() * (span.t1 - span.t0) + touch_mm_;
+  }
+  InBoreBound in_bore(const Span& span, double t) const {
+    InBoreQuery query = in_bore_;
+    query.margin_mm = margin_mm(span);
+    return in_bore_bound(query, path_.pose(0, t));
+  }
+
+  const Surface &sa_, &sb_;
+  const FaceExtent ea_, eb_;
+  const PairPath& path_;
+  double touch_mm_;
+  InBoreQuery in_bore_;
+};
+
+// A region in which the surfaces of the layer interfere; null: there is none.
+const OverlapRegion* interfering_region(const OverlapResult& result, Layer layer) {
+  for (const OverlapRegion& region : result.regions)
+    if (layer == Layer::kUpper ? region.possible_mm.lo > 0.0
+                               : region.certain_mm.lo > 0.0 && region.has_witness)
+      return &region;
+  return nullptr;
+}
+
+double longest_edge(const Piece& piece) {
+  double longest = 0.0;
+  for (int c = 0; c < 3; ++c)
+    longest = std::max(longest, (piece.corners[(c + 1) % 3] - piece.corners[c]).norm());
+  return longest;
+}
+
+// Of the corners between two poses.
+double longest_way(const Piece& piece, const Pose& X0, const Pose& X1) {
+  double longest = 0.0;
+  for (const Vec3& corner : piece.corners)
+    longest = std::max(longest, (X1 * corner - X0 * corner).norm());
+  return longest;
 }
 
 class InterferenceSearch {
@@ -99,64 +216,32 @@ class InterferenceSearch {
     if (trivial_) return;
     for (std::uint16_t i = 0; i < bodies_[0].band->faces.size(); ++i)
       for (std::uint16_t j = 0; j < bodies_[1].band->faces.size(); ++j) {
-        const SurfaceBand::Face& fa = bodies_[0].band->faces[i];
-        const SurfaceBand::Face& fb = bodies_[1].band->faces[j];
-        const Surface* sa = Body::surface_of(fa, layer_);
-        const Surface* sb = Body::surface_of(fb, layer_);
-        if (sa == nullptr || sb == nullptr || sa->inward == sb->inward) continue;
-        if (sa->kind != sb->kind && !is_round_in_bore(*sa, *sb)) continue;
-        add_known({i, j}, *sa, *sb);
+        const Surface* sa = Body::surface_of(bodies_[0].band->faces[i], layer_);
+        const Surface* sb = Body::surface_of(bodies_[1].band->faces[j], layer_);
+        if (sa != nullptr && sb != nullptr && has_closed_form(*sa, *sb))
+          add_known({i, j}, *sa, *sb);
       }
   }
 
   void add_known(std::array<std::uint16_t, 2> faces, const Surface& sa, const Surface& sb) {
-    const SurfaceBand::Face& fa = bodies_[0].band->faces[faces[0]];
-    const SurfaceBand::Face& fb = bodies_[1].band->faces[faces[1]];
-    const FaceExtent ea = extent_of(bodies_[0], faces[0], sa);
-    const FaceExtent eb = extent_of(bodies_[1], faces[1], sb);
-    const double offsets = Body::offset_of(fa, layer_) + Body::offset_of(fb, layer_);
-    const auto margin = [&](const Span& span) {
-      return path_.speed_upper_bound() * (span.t1 - span.t0) + touch_mm_;
-    };
-    InBoreQuery in_bore{
-        &sa, &sb, ea, eb, std::max(0.0, -Body::offset_of(sa.inward ? fb : fa, layer_)), 0.0};
-    const auto within_over = [&](const Span& span, double t) {
-      in_bore.margin_mm = margin(span);
-      return in_bore_bound(in_bore, path_.pose(0, t)).within_mm + offsets;
-    };
-    const auto along_over = [&](const Span& span, double t) {
-      in_bore.margin_mm = margin(span);
-      return in_bore_bound(in_bore, path_.pose(0, t)).along_mm + offsets;
-    };
-    const auto overlap_over = [&](const Span& span, double t) {
-      const Pose X_BA = path_.pose(0, t);
-      in_bore.margin_mm = margin(span);
-      const double hi_mm =
-          near_overlap_upper_bound_mm(sa, ea, sb, eb, X_BA, in_bore.margin_mm, touch_mm_ - offsets);
-      return (std::isfinite(hi_mm) ? hi_mm : in_bore_bound(in_bore, X_BA).face_mm) + offsets;
-    };
+    const FaceBounds bounds(bodies_, layer_, faces, sa, sb, path_, touch_mm_);
+    const double offsets = bounds.offsets_mm;
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
+    bounds.set_where_it_holds(row);
     Exclusion excluded{path_, touch_mm_, moment()};
-    for (int i = 0; i < 2; ++i) {
-      const FaceExtent& extent = i == 0 ? ea : eb;
-      const bool ball = sa.kind == SurfaceKind::kSphere && (i == 0) != sa.inward;
-      // Bounds of a cone in a bore know no ends of the bore, and no margin.
-      const bool cone_in_bore = sa.kind != sb.kind;
-      const bool convex = (i == 0) != sa.inward;
-      if (ball || (cone_in_bore && !convex)) continue;
-      const double more = cone_in_bore ? 0.0 : touch_mm_;
-      row.holds_along_mm[i] = {extent.lo_mm - more, extent.hi_mm + more};
-    }
-    const Span first = excluded.first(overlap_over);
+    const Span first =
+        excluded.first([&](const Span& span, double t) { return bounds.overlap_mm(span, t); });
     row.overlap_mm = excluded.most_mm - offsets;
     // As long as the faces themselves keep clear nothing else need be known.
-    if (excluded.first(within_over).t0 >= first.t0) row.within_mm = excluded.most_mm - offsets;
-    if (excluded.first(along_over).t0 >= first.t0) row.along_mm = excluded.most_mm - offsets;
+    const auto within = [&](const Span& span, double t) { return bounds.within_mm(span, t); };
+    if (excluded.first(within).t0 >= first.t0) row.within_mm = excluded.most_mm - offsets;
+    const auto along = [&](const Span& span, double t) { return bounds.along_mm(span, t); };
+    if (excluded.first(along).t0 >= first.t0) row.along_mm = excluded.most_mm - offsets;
     answer_.evaluations += excluded.work() + 3 * Exclusion::kWork;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;
-      const auto overlap = face_pair_overlap(sa, ea, sb, eb, path_.pose(0, t), touch_mm_);
+      const auto overlap = bounds.overlap_at(t);
       if (!overlap || overlap->lo_mm + offsets <= -query_.accuracy_mm) return false;
       pair.overlap = *overlap;
       std::copy(faces.begin(), faces.end(), pair.face);
@@ -178,7 +263,7 @@ class InterferenceSearch {
     double step = std::max(1e-12, moment());
     for (double t = span.t0 <= 0.0 ? 0.0 : span.t1; t <= 1.0; t = span.t0 + step, step *= 2.0) {
       if (!meet_at(t)) continue;
-      if (!is_real_at(t)) return false;
+      if (!is_real_at(t, query_.at_target.work_cap)) return false;
       t_real_ = std::min(t_real_, t);
       if (t - span.t0 > kSoon * moment()) return false;
       free_until_ = std::min(free_until_, span.t0);
@@ -201,7 +286,6 @@ class InterferenceSearch {
   }
 
   // By the search at fixed poses, whose word is what a verdict rests on.
-  bool is_real_at(double t) { return is_real_at(t, query_.at_target.work_cap); }
   bool is_real_at(double t, std::uint64_t work_cap) {
     OverlapQuery query = query_.at_target;
     query.work_cap = work_cap;
@@ -212,13 +296,9 @@ class InterferenceSearch {
     CcdScratch scratch;
     const OverlapResult result = find_overlap(query, scratch);
     answer_.evaluations += result.evaluations;
-    for (const OverlapRegion& region : result.regions)
-      if (layer_ == Layer::kUpper ? region.possible_mm.lo > 0.0
-                                  : region.certain_mm.lo > 0.0 && region.has_witness) {
-        answer_.certain_place = region.certain_place;
-        return true;
-      }
-    return false;
+    const OverlapRegion* region = interfering_region(result, layer_);
+    if (region != nullptr) answer_.certain_place = region->certain_place;
+    return region != nullptr;
   }
 
   // Triangles that the path may bring near the other part, and shells that start inside it.
@@ -317,12 +397,8 @@ class InterferenceSearch {
   // deeper than the accuracy, or small in both, is free within the accuracy.
   void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1,
            const PieceShape& shape, const Patch& swept, const Sample& center) {
-    double path = path_.spread(item.role, span), width = 0.0;
-    for (int c = 0; c < 3; ++c) {
-      path = std::max(path, (X1 * item.piece.corners[c] - X0 * item.piece.corners[c]).norm() +
-                                path_.spread(item.role, span));
-      width = std::max(width, (item.piece.corners[(c + 1) % 3] - item.piece.corners[c]).norm());
-    }
+    const double path = path_.spread(item.role, span) + longest_way(item.piece, X0, X1);
+    const double width = longest_edge(item.piece);
     const double smallest = kSmallestShare * query_.accuracy_mm;
     const double middle = 0.5 * (span.t0 + span.t1);
     const bool brief = path <= smallest || !(middle > span.t0) || !(middle < span.t1);

@@ -1,9 +1,10 @@
+#include "common/evaluation/explain.h"
+
 #include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
-#include "common/evaluation/verdict.h"
 #include "common/messages/names.h"
 
 namespace mortise {

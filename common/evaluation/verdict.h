@@ -1,7 +1,4 @@
 #pragma once
-#include <string>
-
-#include "common/geometry/surface_band.h"
 #include "common/math/interval.h"
 #include "common/messages/verdict.h"
 
@@ -31,23 +28,5 @@ CollisionClass classify(const ClassifyInput& input);
 /// ranks potential clashes, never changes a class (README, section 4). Closed form.
 double interference_probability(Interval certain_mm, Interval possible_mm, Interval tolerance_a_mm,
                                 Interval tolerance_b_mm);
-
-/// One sentence that explains the class: overlap, thresholds, what determined each, margin.
-/// Micrometres.
-struct ExplainInput {
-  CollisionClass collision_class = CollisionClass::kNone;
-  Interval delta_mm;
-  Thresholds thresholds;
-  double margin_mm = 0.0;
-  const SurfaceBand::Face* face_a = nullptr;
-  const SurfaceBand::Face* face_b = nullptr;
-  Interval tolerance_mm;  ///< sum of both
-  DeviationGrade grade = DeviationGrade::kUnknown;
-  double probability = 0.0;
-  bool no_inside = false;
-  bool capped = false;
-  std::string fit;  ///< "Ø20 H7/g6" when the pair has one
-};
-std::string explain(const ExplainInput& input);
 
 }  // namespace mortise

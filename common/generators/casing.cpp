@@ -1,7 +1,8 @@
+#include "common/generators/casing.h"
+
 #include <algorithm>
 #include <numbers>
 
-#include "common/generators/family.h"
 #include "common/generators/shape.h"
 
 /// The two halves of a gearbox for two parallel shafts along z: the input axis through the origin,

@@ -24,12 +24,6 @@ struct Family {
   Result<GeneratedPart> (*make)(const Values& values);
 };
 
-std::vector<Family> turned_families();     ///< revolve.cpp: shaft, dowel, screw, ring, bearing
-std::vector<Family> prismatic_families();  ///< prismatic.cpp: block, key, slot_block, plates
-std::vector<Family> casing_families();     ///< casing.cpp: housing, cover
-std::vector<Family> gear_families();       ///< gear.cpp
-std::vector<Family> thread_families();     ///< thread.cpp: bolt, nut
-
 /// Parameters that many kinds have.
 inline GeneratorInfo::Parameter length(const std::string& name, const std::string& what,
                                        double fallback_mm, double least_mm = 0.01) {

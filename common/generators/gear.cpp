@@ -1,7 +1,8 @@
+#include "common/generators/gear.h"
+
 #include <cmath>
 #include <numbers>
 
-#include "common/generators/family.h"
 #include "common/generators/shape.h"
 
 /// Spur gears with involute teeth, a bore and a keyway, z in [0, width].

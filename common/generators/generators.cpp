@@ -4,7 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/generators/family.h"
+#include "common/generators/casing.h"
+#include "common/generators/gear.h"
+#include "common/generators/prismatic.h"
+#include "common/generators/revolve.h"
+#include "common/generators/thread.h"
 
 namespace mortise {
 namespace {

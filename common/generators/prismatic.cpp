@@ -1,7 +1,8 @@
+#include "common/generators/prismatic.h"
+
 #include <algorithm>
 #include <numbers>
 
-#include "common/generators/family.h"
 #include "common/generators/shape.h"
 
 /// Parts with flat sides: block, key, slotted block, plates with round holes.

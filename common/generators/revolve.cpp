@@ -1,9 +1,10 @@
+#include "common/generators/revolve.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "common/generators/family.h"
 #include "common/generators/shape.h"
 
 /// Turned parts: shafts with steps, keyseat and chamfers; dowels and screws, which are shafts with

@@ -1,9 +1,10 @@
+#include "common/generators/thread.h"
+
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
 
-#include "common/generators/family.h"
 #include "common/generators/shape.h"
 
 /// Bolt and nut with a real helical thread of the ISO 68 profile (60 degrees, crest P/8, root P/4),

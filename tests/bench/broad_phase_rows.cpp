@@ -10,6 +10,8 @@
 #include <memory>
 
 #include "common/broadphase/broad_phase.h"
+#include "common/broadphase/brute_force.h"
+#include "common/broadphase/dynamic_tree.h"
 #include "common/broadphase/pair_filter.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/statistics.h"

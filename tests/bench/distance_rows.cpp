@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/sections.h"

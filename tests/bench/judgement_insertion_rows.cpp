@@ -6,6 +6,7 @@
 #include "common/evaluation/iso286.h"
 #include "common/evaluation/tolerance.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/decisions.h"
 #include "tests/bench/judgement_methods.h"
 #include "tests/bench/judgement_sections.h"
 #include "tests/bench/statistics.h"

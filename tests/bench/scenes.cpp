@@ -1,9 +1,11 @@
 #include "tests/bench/scenes.h"
+#include "common/ccd/start_state.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "common/base/check.h"
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/generators/generators.h"
 #include "tests/unit/ccd/shapes.h"

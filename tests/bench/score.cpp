@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/base/constants.h"
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "tests/bench/statistics.h"
 

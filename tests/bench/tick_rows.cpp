@@ -5,6 +5,7 @@
 #include "common/math/rotation.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/decisions.h"
 #include "tests/bench/broad_phase_rows.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/sections.h"

@@ -12,6 +12,7 @@
 #include "common/io/log/mcap_format.h"
 #include "common/io/log/mcap_reader.h"
 #include "common/io/log/mcap_writer.h"
+#include "common/io/log/session_log_read.h"
 #include "tests/fuzz/mutated.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/effort.h"

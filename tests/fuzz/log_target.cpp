@@ -5,6 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "tests/fuzz/targets.h"
 
 namespace mortise::test {

@@ -7,6 +7,8 @@
 #include <random>
 
 #include "common/session/tick/step.h"
+#include "common/session/world/commands.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "tests/network/program.h"
 
 /// A session as it is demonstrated: a server, four designers, an observer and one who comes late,

@@ -18,6 +18,7 @@
 #include "client/bot/behaviour.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/io/scenario/play_file.h"
 #include "server/drain.h"
 #include "server/held_channel.h"

@@ -1,6 +1,7 @@
 // A session with keys across network namespaces that stand for hosts: server, standby, two of two
 // designers each, one that looks on; between any two 20 ms and 1 % loss. And the net cut in two.
 #include "tests/network/hosts.h"
+#include "common/io/log/log_chain.h"
 
 #include "tests/support/effort.h"
 

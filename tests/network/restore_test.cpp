@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/io/log/log_chain.h"
 #include "common/io/log/session_log.h"
 #include "tests/network/program.h"
 #include "tests/network/same_everywhere.h"

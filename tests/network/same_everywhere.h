@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 #include "tests/network/guest.h"
 #include "tests/network/knowledge.h"

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log.h"
 #include "server/restore.h"

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "client/client.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "idl/dds_channel.h"
 #include "tests/network/program.h"
 #include "tests/network/same_everywhere.h"

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "common/ccd/distance.h"
 #include "tests/oracle/fcl_model.h"
 #include "tests/support/effort.h"
 #include "tests/unit/ccd/shapes.h"

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "common/ccd/distance.h"
 #include "common/geometry/mesh.h"
 #include "common/math/pose.h"
 

@@ -10,6 +10,7 @@
 #include "common/math/rotation.h"
 #include "common/session/guide/guidance.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/decisions.h"
 #include "tests/support/effort.h"
 
 namespace mortise {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/ccd/distance.h"
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/ccd/distance.h"
 #include "tests/stress/meshes.h"
 #include "tests/stress/record.h"
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/ccd/start_state.h"
 #include "common/geometry/feature.h"
 #include "common/geometry/signed_distance.h"
 #include "common/geometry/triangle_distance.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/ccd/distance.h"
 #include "tests/oracle/fcl_model.h"
 
 namespace mortise::stress {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "client/tools/first_contact/motions_file.h"
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/mesh/obj_exact.h"

@@ -16,8 +16,8 @@ struct BoxTurn {
 };
 
 /// Two bodies at one time. The instruction sets must agree bit for bit: every expression is
-/// evaluated as written, never contracted. In axes of the boxes of B, relative to their origin, mm and
-/// mm per tick.
+/// evaluated as written, never contracted. In axes of the boxes of B, relative to their origin, mm
+/// and mm per tick.
 struct BoxFrame {
   float r[3][3], abs_r[3][3];  ///< axes of A's boxes, by row
   float p[3];                  ///< origin of A's boxes
@@ -56,13 +56,5 @@ struct BoxKernels {
   LowerA lower_a;
   LowerB lower_b;
 };
-
-/// Baseline instructions, on every machine.
-const BoxKernels& portable_box_kernels();
-/// The same operations in the same order on wider registers; null where they were not compiled or
-/// the machine has none.
-const BoxKernels* wide_box_kernels();
-/// What this machine runs best. The answers are the same.
-const BoxKernels& box_kernels();
 
 }  // namespace mortise::ccd

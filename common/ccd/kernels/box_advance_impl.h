@@ -1,24 +1,12 @@
-// Included once by every box_advance_<instructions>.cpp, inside an unnamed namespace.
-// Eight floats a vector (GCC vector extension); the compiler splits them where registers are
-// narrower. Comparisons give masks, `mask ? a : b` selects.
+// Eight pairs of boxes, a pair a lane. Included by kernels_impl.h.
+#include "common/ccd/kernels/lanes.h"
 
-typedef float Lanes __attribute__((vector_size(32)));
-typedef int Mask __attribute__((vector_size(32)));
+namespace boxes {
 
-inline Lanes all(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
-inline Lanes load(const float* x) {
-  Lanes lanes;
-  __builtin_memcpy(&lanes, x, sizeof lanes);
-  return lanes;
-}
+using Lanes = Floats;
+using Mask = FloatMask;
+
 inline Lanes magnitude(Lanes x) { return (Lanes)((Mask)x & 0x7fffffff); }
-inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
-inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
-inline Lanes root(Lanes x) {
-  Lanes y;
-  for (int k = 0; k < 8; ++k) y[k] = __builtin_sqrtf(x[k]);
-  return y;
-}
 
 struct Boxes {
   Lanes center[3], half[3];
@@ -64,19 +52,10 @@ constexpr float kNever = __builtin_inff();
 // 6e-8).
 constexpr float kShorter = 1.0F - 4e-6F;
 
-// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0; 0 where the gap is not positive, the horizon
-// where the parabola turns before. Of the two forms of the root each is used where nothing cancels.
+// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0. A discriminant that is lost in rounding proves
+// nothing.
 inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
-  const Lanes zero = all(0.0F);
-  const Lanes square = s * s + all(2.0F) * bend * larger(gap, zero);
-  const Lanes disc = root(larger(square, zero));
-  const Mask closing = s >= zero;
-  const Lanes numerator = closing ? all(2.0F) * larger(gap, zero) : disc - s;
-  const Lanes denominator = closing ? s + disc : bend;
-  // Beyond 2^20 ticks is never. A root that cancelled away in the square is nobody's proof.
-  const Mask ever = (denominator > numerator * all(0x1p-20F)) & (square >= all(-8e-6F) * s * s);
-  const Lanes dt = ever ? numerator / (ever ? denominator : all(1.0F)) : horizon;
-  return gap > zero ? smaller(dt, horizon) : zero;
+  return first_root(gap, s, bend, horizon, all(-8e-6F) * s * s);
 }
 
 // Upper bounds of the speed and the acceleration of any point of a box along a direction (see
@@ -137,36 +116,55 @@ inline Lanes bend_reach(float n_w, const float* w, float speed2, const float* n,
                        n_w * w[2] - speed2 * n[2], half);
 }
 
+constexpr float kUnit[3][3] = {{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
+
+// For how long eight pairs of boxes stay apart: the longest time that one of seven directions
+// proves.
 template <bool kTurnsA, bool kTurnsB>
-inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
-  constexpr float kUnit[3][3] = {{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
-  const Lanes zero = all(0.0F);
-  Lanes u[3], d[3], extent_a[3];
-  for (int i = 0; i < 3; ++i) {
-    u[i] = dot(f.r[i], a.center);
-    d[i] = b.center[i] - (u[i] + all(f.p[i]));
-    extent_a[i] = dot(f.abs_r[i], a.half);
+class Advance {
+ public:
+  Advance(const BoxFrame& frame, const Boxes& boxes_a, const Boxes& boxes_b)
+      : f(frame),
+        a(boxes_a),
+        b(boxes_b),
+        u{dot(f.r[0], a.center), dot(f.r[1], a.center), dot(f.r[2], a.center)},
+        turned_a(u, f.a, kTurnsA),
+        turned_b(b.center, f.b, kTurnsB) {
+    for (int k = 0; k < 3; ++k) {
+      d[k] = b.center[k] - (u[k] + all(f.p[k]));
+      gap[k] = magnitude(d[k]) - b.half[k] - dot(f.abs_r[k], a.half) - all(f.gap_allowance);
+    }
   }
-  Lanes best = zero;
-  Lanes gap[3];
-  for (int k = 0; k < 3; ++k)
-    gap[k] = magnitude(d[k]) - b.half[k] - extent_a[k] - all(f.gap_allowance);
-  const Turned turned_a(u, f.a, kTurnsA), turned_b(b.center, f.b, kTurnsB);
+
+  void run(float* out) {
+    between_boxes();
+    for (int k = 0; k < 3 && !done(); ++k) along_axis_of_b(k);
+    for (int k = 0; k < 3 && !done(); ++k) along_axis_of_a(k);
+    store(best * all(kShorter), out);
+  }
+
+ private:
   // Nothing is gained beyond the end of the tick.
-  const auto done = [&] {
+  bool done() const {
     const Mask still = best * all(kShorter) < all(f.rest);
     return (still[0] | still[1] | still[2] | still[3] | still[4] | still[5] | still[6] |
             still[7]) == 0;
-  };
-  // The direction from box to box, each lane its own. Each gap above has paid the whole allowance.
-  {
+  }
+
+  void take(Lanes along_gap, const Going& going) {
+    best = larger(best, time_to_close(along_gap, going.s, going.bend, all(f.horizon)));
+  }
+
+  // The direction from box to box, each lane its own. Each gap has paid the whole allowance.
+  void between_boxes() {
+    const Lanes zero = all(0.0F);
     const Lanes apart[3] = {larger(gap[0], zero), larger(gap[1], zero), larger(gap[2], zero)};
     const Lanes length = root(dot(apart, apart));
     const Lanes inverse = all(1.0F) / larger(length, all(1e-30F));
     Lanes n[3];
     for (int k = 0; k < 3; ++k) n[k] = (d[k] > zero ? apart[k] : -apart[k]) * inverse;
     Going going{dot(f.v, n) + all(f.speed_allowance), all(f.bend_allowance)};
-    // Whichever way a body will have turned: |n x w| |w x e| (ccd/README.md, section 2).
+    // Whichever way a body will have turned: |n x w| |w x e| (README, section 2).
     Lanes largest_bend = all(f.bend_allowance);
     if constexpr (kTurnsA) {
       Lanes m[3], g[3], m_A[3], g_A[3];
@@ -192,12 +190,12 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
     // Far from each other, beyond the horizon of what bends away.
     if ((kTurnsA || kTurnsB) && f.horizon < 1.0F)
       best = larger(best, time_to_close(length, going.s, largest_bend, all(kNever)));
-    best = larger(best, time_to_close(length, going.s, going.bend, all(f.horizon)));
+    take(length, going);
   }
-  for (int k = 0; k < 3 && !done(); ++k) {
-    const Mask forward = d[k] > zero;
-    Going going{(forward ? all(f.v[k]) : all(-f.v[k])) + all(f.speed_allowance),
-                all(f.bend_allowance)};
+
+  void along_axis_of_b(int k) {
+    const Mask forward = d[k] > all(0.0F);
+    Going going = along(forward, f.v[k]);
     if constexpr (kTurnsA)
       add(going, forward ? turned_a.speed[k] : -turned_a.speed[k],
           reach_b_axis(f.a, k, true, a.half), forward ? turned_a.bend[k] : -turned_a.bend[k],
@@ -206,16 +204,16 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
       add(going, forward ? -turned_b.speed[k] : turned_b.speed[k],
           reach_b_axis(f.b, k, false, b.half), forward ? -turned_b.bend[k] : turned_b.bend[k],
           bend_reach(f.b.w[k], f.b.w, f.b.speed2, kUnit[k], b.half), f.b);
-    best = larger(best, time_to_close(gap[k], going.s, going.bend, all(f.horizon)));
+    take(gap[k], going);
   }
-  for (int k = 0; k < 3 && !done(); ++k) {
+
+  void along_axis_of_a(int k) {
     const float n[3] = {f.r[0][k], f.r[1][k], f.r[2][k]};
-    const Lanes along = dot(n, d);
+    const Lanes apart = dot(n, d);
     const Lanes extent_b = all(f.abs_r[0][k]) * b.half[0] + all(f.abs_r[1][k]) * b.half[1] +
                            all(f.abs_r[2][k]) * b.half[2];
-    const Mask forward = along > zero;
-    Going going{(forward ? all(f.v_A[k]) : all(-f.v_A[k])) + all(f.speed_allowance),
-                all(f.bend_allowance)};
+    const Mask forward = apart > all(0.0F);
+    Going going = along(forward, f.v_A[k]);
     if constexpr (kTurnsA) {
       const Lanes s = dot(n, turned_a.speed), bend = dot(n, turned_a.bend);
       add(going, forward ? s : -s, reach_a_axis(f.a, k, true, a.half), forward ? bend : -bend,
@@ -226,24 +224,33 @@ inline void advance(const BoxFrame& f, const Boxes& a, const Boxes& b, float* ou
       add(going, forward ? -s : s, reach_a_axis(f.b, k, false, b.half), forward ? -bend : bend,
           bend_reach(f.b.w_A[k], f.b.w, f.b.speed2, n, b.half), f.b);
     }
-    const Lanes free_gap = magnitude(along) - a.half[k] - extent_b - all(f.gap_allowance);
-    best = larger(best, time_to_close(free_gap, going.s, going.bend, all(f.horizon)));
+    take(magnitude(apart) - a.half[k] - extent_b - all(f.gap_allowance), going);
   }
-  best *= all(kShorter);
-  __builtin_memcpy(out, &best, sizeof best);
-}
+
+  // An axis along which the bodies close by v, or by -v where it points the other way.
+  Going along(Mask forward, float v) const {
+    return {(forward ? all(v) : all(-v)) + all(f.speed_allowance), all(f.bend_allowance)};
+  }
+
+  const BoxFrame& f;
+  const Boxes &a, &b;
+  const Lanes u[3];  // centres of A's boxes, from the origin of A's boxes
+  const Turned turned_a, turned_b;
+  Lanes d[3], gap[3];  // from A to B; along the axes of B, less the allowance
+  Lanes best = all(0.0F);
+};
 
 inline void advance_any(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
   if (f.b.turns) {
     if (f.a.turns)
-      advance<true, true>(f, a, b, out);
+      Advance<true, true>(f, a, b).run(out);
     else
-      advance<false, true>(f, a, b, out);
+      Advance<false, true>(f, a, b).run(out);
   } else {
     if (f.a.turns)
-      advance<true, false>(f, a, b, out);
+      Advance<true, false>(f, a, b).run(out);
     else
-      advance<false, false>(f, a, b, out);
+      Advance<false, false>(f, a, b).run(out);
   }
 }
 
@@ -263,8 +270,7 @@ inline void lower_bound(const BoxFrame& f, const Boxes& a, const Boxes& b, float
     const Lanes gap = larger(magnitude(along) - a.half[k] - extent_b, zero);
     square_a += gap * gap;
   }
-  const Lanes lower = root(larger(square_a, square_b)) * all(kShorter) - all(f.gap_allowance);
-  __builtin_memcpy(out, &lower, sizeof lower);
+  store(root(larger(square_a, square_b)) * all(kShorter) - all(f.gap_allowance), out);
 }
 
 void advance_a(const BoxFrame& f, const EightBoxes& a, const OneBox& b, float* out) {
@@ -281,3 +287,5 @@ void lower_b(const BoxFrame& f, const OneBox& a, const EightBoxes& b, float* out
 }
 
 constexpr BoxKernels kKernels{advance_a, advance_b, lower_a, lower_b};
+
+}  // namespace boxes

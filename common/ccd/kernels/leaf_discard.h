@@ -41,12 +41,4 @@ struct DiscardKernels {
   NearAlong near_along;
 };
 
-/// Baseline instructions, on every machine.
-const DiscardKernels& portable_discard_kernels();
-/// The same operations in the same order on wider registers; null where they were not compiled or
-/// the machine lacks them.
-const DiscardKernels* wide_discard_kernels();
-/// What this machine runs best. The answers are the same.
-const DiscardKernels& discard_kernels();
-
 }  // namespace mortise::ccd

@@ -1,18 +1,11 @@
-// Included once by every leaf_discard_<instructions>.cpp, inside an unnamed namespace.
-// Four doubles a vector (GCC vector extension), a triangle a lane; comparisons give masks.
+// Sixteen pairs of triangles, a triangle a lane. Included by kernels_impl.h.
+#include "common/ccd/kernels/lanes.h"
 
-typedef double Lanes __attribute__((vector_size(32)));
-typedef long long Mask __attribute__((vector_size(32)));
+namespace discards {
 
-inline Lanes all(double x) { return Lanes{x, x, x, x}; }
-inline Lanes load(const double* x) {
-  Lanes lanes;
-  __builtin_memcpy(&lanes, x, sizeof lanes);
-  return lanes;
-}
-inline void store(Lanes lanes, double* x) { __builtin_memcpy(x, &lanes, sizeof lanes); }
-inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
-inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
+using Lanes = Doubles;
+using Mask = DoubleMask;
+
 inline unsigned bits(Mask m) {
   return static_cast<unsigned>((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
 }
@@ -167,3 +160,5 @@ unsigned near_pairs(const FourTriangles& a, const FourTriangles& b, const Reach&
 }
 
 constexpr DiscardKernels kKernels{place, move, near_pairs, near_along};
+
+}  // namespace discards

@@ -57,12 +57,4 @@ struct LeafAnswer {
 using LeafKernel = LeafAnswer (*)(const LeafFrame& frame, const LeafCorners& a,
                                   const LeafCorners& b, double enough);
 
-/// Baseline instructions, on every machine.
-LeafKernel portable_leaf_kernel();
-/// The same operations in the same order on wider registers; null where they were not compiled or
-/// the machine has none.
-LeafKernel wide_leaf_kernel();
-/// What this machine runs best. The answers are the same.
-LeafKernel leaf_kernel();
-
 }  // namespace mortise::ccd

@@ -1,27 +1,15 @@
-// Included once by every leaf_kernel_<instructions>.cpp, inside an unnamed namespace.
-// Four doubles a vector (GCC vector extension); the compiler splits them where registers are
-// narrower. Comparisons give masks, `mask ? a : b` selects. No operation here may raise invalid,
-// overflow or division by zero: divisors are chosen before dividing.
+// Four triangles against four, a triangle a lane. Included by kernels_impl.h. No operation here may
+// raise invalid, overflow or division by zero: divisors are chosen before dividing.
+#include "common/ccd/kernels/lanes.h"
 
-typedef double Lanes __attribute__((vector_size(32)));
-typedef long long Mask __attribute__((vector_size(32)));
+namespace leaves {
+
+using Lanes = Doubles;
+using Mask = DoubleMask;
 
 constexpr double kNever = __builtin_inf();
 
-inline Lanes all(double x) { return Lanes{x, x, x, x}; }
-inline Lanes load(const double* x) {
-  Lanes lanes;
-  __builtin_memcpy(&lanes, x, sizeof lanes);
-  return lanes;
-}
-inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
-inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes clamp01(Lanes x) { return smaller(larger(x, all(0.0)), all(1.0)); }
-inline Lanes root(Lanes x) {
-  Lanes y;
-  for (int k = 0; k < 4; ++k) y[k] = __builtin_sqrt(x[k]);
-  return y;
-}
 inline double least(Lanes x) {
   const double a = x[0] < x[1] ? x[0] : x[1], b = x[2] < x[3] ? x[2] : x[3];
   return a < b ? a : b;
@@ -34,7 +22,7 @@ struct Vec {
   const Lanes& operator[](int c) const { return x[c]; }
 };
 
-inline Vec all(const double* v) { return {{all(v[0]), all(v[1]), all(v[2])}}; }
+inline Vec every(const double* v) { return {{all(v[0]), all(v[1]), all(v[2])}}; }
 inline Vec operator+(const Vec& a, const Vec& b) {
   return {{a[0] + b[0], a[1] + b[1], a[2] + b[2]}};
 }
@@ -48,19 +36,10 @@ inline Vec cross(const Vec& a, const Vec& b) {
 }
 inline Vec one_lane(const Vec& v, int i) { return {{all(v[0][i]), all(v[1][i]), all(v[2][i])}}; }
 
-// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0: 0 where the gap is not positive, never where
-// the parabola turns before. Of the two forms of the root each is used where nothing cancels.
+// Least dt > 0 with gap - s dt - bend dt^2 / 2 = 0: 0 where the gap is not positive, the horizon
+// where the parabola turns before.
 inline Lanes time_to_close(Lanes gap, Lanes s, Lanes bend, Lanes horizon) {
-  const Lanes zero = all(0.0);
-  const Lanes square = s * s + all(2.0) * bend * larger(gap, zero);
-  const Lanes disc = root(larger(square, zero));
-  const Mask closing = s >= zero;
-  const Lanes numerator = closing ? all(2.0) * larger(gap, zero) : disc - s;
-  const Lanes denominator = closing ? s + disc : bend;
-  // Beyond 2^20 ticks is never; so is a parabola without a root.
-  const Mask ever = (denominator > numerator * all(0x1p-20)) & (square >= zero);
-  const Lanes dt = ever ? numerator / (ever ? denominator : all(1.0)) : horizon;
-  return gap > zero ? smaller(dt, horizon) : zero;
+  return first_root(gap, s, bend, horizon, all(0.0));
 }
 
 // Where the corners of four triangles are and how they go: speed and acceleration by turning.
@@ -72,7 +51,7 @@ struct Side {
 
 inline void set_turning(Side& side, const double* x_to_axis, const TurnTerms& terms,
                         bool backwards) {
-  const Vec w = all(terms.w), to_axis = all(x_to_axis);
+  const Vec w = every(terms.w), to_axis = every(x_to_axis);
   side.goes = true;
   side.bow = all(terms.bow);
   side.lift = all(terms.lift);
@@ -249,14 +228,17 @@ inline Vec normal_of_leaf(const Vec* x, int count) {
 // Triangles that share the corner or the edge that decides are not looked at for the last bits.
 constexpr double kGoodEnough = 0.999;
 
-struct Pairs {
-  Lanes dt[4];  // row i: triangle i of A against the four of B
-  bool exact[4] = {false, false, false, false};
+// The sides of a pair of leaves, one of which goes where the other is seen from.
+struct Sides {
+  Side a, b;
+  Vec normal_a, normal_b;  // of each leaf, towards the other
+  Common common;
 };
 
-LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafCorners& corners_b,
-                   double enough) {
-  Side a, b;
+inline Sides sides_of(const LeafFrame& f, const LeafCorners& corners_a,
+                      const LeafCorners& corners_b) {
+  Sides sides;
+  Side &a = sides.a, &b = sides.b;
   for (int k = 0; k < 3; ++k) {
     const Vec u{{load(corners_a.at[k][0]), load(corners_a.at[k][1]), load(corners_a.at[k][2])}};
     for (int c = 0; c < 3; ++c) {
@@ -265,86 +247,133 @@ LeafAnswer advance(const LeafFrame& f, const LeafCorners& corners_a, const LeafC
       b.x[k][c] = load(corners_b.at[k][c]);
     }
   }
-  const Vec normal_a = normal_of_leaf(a.x, corners_a.count);
-  const Vec normal_b = all(-1.0) * normal_of_leaf(b.x, corners_b.count);
-  Common common{all(f.v), all(f.taken_mm), all(f.speed_slack), all(f.bend_slack), all(f.horizon)};
+  sides.normal_a = normal_of_leaf(a.x, corners_a.count);
+  sides.normal_b = all(-1.0) * normal_of_leaf(b.x, corners_b.count);
+  sides.common = {every(f.v), all(f.taken_mm), all(f.speed_slack), all(f.bend_slack),
+                  all(f.horizon)};
   if (f.a.turns) {
     double a_to_axis[3];
     for (int c = 0; c < 3; ++c) a_to_axis[c] = f.a.arm[c] - f.p[c];
     // n . acceleration of the first corner: does A turn away from what lies before it?
-    const Vec w = all(f.a.w);
-    const bool towards = dot(normal_a, cross(w, cross(w, a.x[0] + all(a_to_axis))))[0] > 0.0;
+    const Vec w = every(f.a.w);
+    const bool towards =
+        dot(sides.normal_a, cross(w, cross(w, a.x[0] + every(a_to_axis))))[0] > 0.0;
     if (towards && !f.b.turns) {
       set_turning(b, a_to_axis, f.a, true);
-      common.bend_slack += all(f.sweep);
+      sides.common.bend_slack += all(f.sweep);
     } else {
       set_turning(a, a_to_axis, f.a, false);
     }
   }
   if (f.b.turns) set_turning(b, f.b.arm, f.b, false);
+  return sides;
+}
 
-  Pairs pairs;
-  for (Lanes& dt : pairs.dt) dt = all(0.0);
-  LeafAnswer answer;
+// 1. Along one direction for all, the normals of the leaves.
+// 2. As long as that is not enough: the row that is free for the shortest time, each pair along the
+//    shortest way between its triangles, and the way that decides for all.
+class PairTimes {
+ public:
+  PairTimes(const Sides& sides, const LeafFrame& frame, int count_a, int count_b)
+      : s_(sides), suspect_mm_(all(frame.suspect_mm)), count_a_(count_a), count_b_(count_b) {
+    for (Lanes& dt : dt_) dt = all(0.0);
+  }
+
   // Along one direction for all: each triangle of the side that goes against all of the other,
   // which then is one corner. Least of all pairs.
-  const auto free_along = [&](const Vec& n) {
-    const Along of_a = along(a, n, true), of_b = along(b, n, false);
-    if (b.goes && !a.goes) {
-      const Lanes dt = free_time(common, n, together(of_a, true), of_b);
-      for (Lanes& row : pairs.dt) row = larger(row, dt);
+  double free_along(const Vec& n) {
+    const Along of_a = along(s_.a, n, true), of_b = along(s_.b, n, false);
+    if (s_.b.goes && !s_.a.goes) {
+      const Lanes dt = free_time(s_.common, n, together(of_a, true), of_b);
+      for (Lanes& row : dt_) row = larger(row, dt);
       return least(dt);
     }
-    const Lanes dt = free_time(common, n, of_a, together(of_b, false));
+    const Lanes dt = free_time(s_.common, n, of_a, together(of_b, false));
     for (int i = 0; i < 4; ++i)
-      if (!pairs.exact[i]) pairs.dt[i] = larger(pairs.dt[i], all(dt[i]));
+      if (!exact_[i]) dt_[i] = larger(dt_[i], all(dt[i]));
     return least(dt);
-  };
-  const Vec* normals[2] = {&normal_a, &normal_b};
-  for (const Vec* n : normals) {
-    const double whole = free_along(*n);
-    if (whole > 0.0 && whole >= enough) {
-      answer.dt = whole;
-      return answer;
-    }
   }
-  const Faces faces_a = faces_of(a.x), faces_b = faces_of(b.x);
-  double best = enough;
-  while (true) {
+
+  unsigned refine(double enough) {
+    const Faces faces_a = faces_of(s_.a.x), faces_b = faces_of(s_.b.x);
+    unsigned suspects = 0;
+    double best = enough;
+    for (int row = earliest_row(best); row >= 0; row = earliest_row(best))
+      suspects |= look_at(row, faces_a, faces_b, best);
+    return suspects;
+  }
+
+  double least_of_all() const {
+    double dt = kNever;
+    for (int i = 0; i < count_a_; ++i) {
+      const double dt_row = least(dt_[i]);
+      if (dt_row < dt) dt = dt_row;
+    }
+    return dt;
+  }
+
+ private:
+  // -1: none is worth a look.
+  int earliest_row(double best) const {
     int row = -1;
     double earliest = kGoodEnough * best;
-    for (int i = 0; i < corners_a.count; ++i) {
-      if (pairs.exact[i]) continue;
-      const double dt = least(pairs.dt[i]);
+    for (int i = 0; i < count_a_; ++i) {
+      if (exact_[i]) continue;
+      const double dt = least(dt_[i]);
       if (dt < earliest || (dt <= 0.0 && row < 0)) {
         earliest = dt;
         row = i;
       }
     }
-    if (row < 0) break;
-    const Side one = one_triangle(a, row);
+    return row;
+  }
+
+  // The suspects of the row. `best`: the shortest time of any row that was looked at.
+  unsigned look_at(int row, const Faces& faces_a, const Faces& faces_b, double& best) {
+    const Side one = one_triangle(s_.a, row);
     const Faces faces_one = one_triangle(faces_a, row);
-    const Vec n = unit(shortest_way(one.x, faces_one, b.x, faces_b));
-    const Along of_a = along(one, n, true), of_b = along(b, n, false);
+    const Vec n = unit(shortest_way(one.x, faces_one, s_.b.x, faces_b));
+    const Along of_a = along(one, n, true), of_b = along(s_.b, n, false);
     const Lanes gap = least_of(of_b.place, of_b.count) - most_of(of_a.place, of_a.count);
-    Lanes dt = larger(pairs.dt[row], free_time(common, n, of_a, of_b));
-    const Mask suspect = (gap <= all(f.suspect_mm)) | (dt <= all(0.0));
+    const Lanes dt = larger(dt_[row], free_time(s_.common, n, of_a, of_b));
+    const Mask suspect = (gap <= suspect_mm_) | (dt <= all(0.0));
+    unsigned suspects = 0;
     int decides = 0;
-    for (int j = 0; j < corners_b.count; ++j) {
-      if (suspect[j]) answer.suspects |= 1U << (4 * row + j);
+    for (int j = 0; j < count_b_; ++j) {
+      if (suspect[j]) suspects |= 1U << (4 * row + j);
       if (dt[j] < dt[decides]) decides = j;
     }
-    dt = suspect ? all(kNever) : dt;
-    pairs.dt[row] = dt;
-    pairs.exact[row] = true;
-    const double dt_row = least(dt);
+    dt_[row] = suspect ? all(kNever) : dt;
+    exact_[row] = true;
+    const double dt_row = least(dt_[row]);
     if (dt_row < best) best = dt_row;
     if (suspect[decides] == 0) free_along(one_lane(n, decides));
+    return suspects;
   }
-  answer.dt = kNever;
-  for (int i = 0; i < corners_a.count; ++i) {
-    const double dt_row = least(pairs.dt[i]);
-    if (dt_row < answer.dt) answer.dt = dt_row;
+
+  const Sides& s_;
+  const Lanes suspect_mm_;
+  const int count_a_, count_b_;
+  Lanes dt_[4];  // row i: triangle i of A against the four of B
+  bool exact_[4] = {false, false, false, false};
+};
+
+LeafAnswer advance(const LeafFrame& frame, const LeafCorners& a, const LeafCorners& b,
+                   double enough) {
+  const Sides sides = sides_of(frame, a, b);
+  PairTimes pairs(sides, frame, a.count, b.count);
+  LeafAnswer answer;
+  const Vec* normals[2] = {&sides.normal_a, &sides.normal_b};
+  for (const Vec* n : normals) {
+    const double whole = pairs.free_along(*n);
+    if (whole > 0.0 && whole >= enough) {
+      answer.dt = whole;
+      return answer;
+    }
   }
+  answer.suspects = pairs.refine(enough);
+  answer.dt = pairs.least_of_all();
   return answer;
 }
+
+}  // namespace leaves

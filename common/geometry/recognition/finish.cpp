@@ -7,6 +7,7 @@
 
 #include "common/base/constants.h"
 #include "common/geometry/recognition/names.h"
+#include "common/geometry/recognition/surface_fit.h"
 
 namespace mortise {
 namespace {
@@ -35,6 +36,46 @@ double hidden_mm(double width_mm, double angle_rad) {
   return 0.5 * width_mm * std::tan(0.25 * angle_rad);
 }
 
+bool alike(const Surface& a, const Surface& b, double share) {
+  if (a.kind != b.kind || a.inward != b.inward) return false;
+  const double size = std::max(a.radius_mm, b.radius_mm);
+  return a.kind == SurfaceKind::kCone
+             ? std::fabs(a.half_angle_rad - b.half_angle_rad) < 1e-3
+             : std::fabs(a.radius_mm - b.radius_mm) <= 4.0 * share * size + 1e-6 * size &&
+                   std::fabs(a.tube_radius_mm - b.tube_radius_mm) <=
+                       1e-3 * (a.tube_radius_mm + b.tube_radius_mm);
+}
+
+// Cheap: could both be one surface?
+bool near_axis(const Surface& a, const Surface& b) {
+  if (a.kind != b.kind) return false;
+  const double size = std::max(a.radius_mm, 1e-6 * (a.point - b.point).norm());
+  const Vec3 d = b.point - a.point;
+  if (a.kind == SurfaceKind::kSphere) return d.norm() <= 0.01 * size;
+  if (a.axis.cross(b.axis).norm() > 0.02) return false;
+  if (a.kind == SurfaceKind::kCone) return true;
+  return (d - d.dot(a.axis) * a.axis).norm() <= 0.05 * size;
+}
+
+// The point in the middle of the extent and an axis whose largest component is positive: the same
+// for every tessellation of a part.
+void make_canonical(Surface& s, Interval& along) {
+  if (s.kind == SurfaceKind::kCylinder) {
+    const double middle = along.middle();
+    s.point += middle * s.axis;
+    along = {along.lo - middle, along.hi - middle};
+  }
+  if (s.kind == SurfaceKind::kCone || s.kind == SurfaceKind::kPlane) return;
+  Eigen::Index largest = 0;
+  s.axis.cwiseAbs().maxCoeff(&largest);
+  if (s.kind == SurfaceKind::kSphere) {
+    s.axis = Vec3::UnitZ();
+  } else if (s.axis[largest] < 0.0) {
+    s.axis = -s.axis;
+    along = -along;
+  }
+}
+
 class Finisher {
  public:
   Finisher(const Solid& solid, const Facets& facets, RegionGrower& grower,
@@ -60,16 +101,6 @@ class Finisher {
 
  private:
   // 1. one surface in pieces
-  static bool alike(const Surface& a, const Surface& b, double share) {
-    if (a.kind != b.kind || a.inward != b.inward) return false;
-    const double size = std::max(a.radius_mm, b.radius_mm);
-    return a.kind == SurfaceKind::kCone
-               ? std::fabs(a.half_angle_rad - b.half_angle_rad) < 1e-3
-               : std::fabs(a.radius_mm - b.radius_mm) <= 4.0 * share * size + 1e-6 * size &&
-                     std::fabs(a.tube_radius_mm - b.tube_radius_mm) <=
-                         1e-3 * (a.tube_radius_mm + b.tube_radius_mm);
-  }
-
   bool joined(Region& into, const Region& piece) {
     // Noise may have split what one looser fit holds together.
     const double share = std::max({into.share, piece.share, kLoosestShare});
@@ -112,17 +143,6 @@ class Finisher {
       }
     }
     std::erase_if(regions_, [](const Region& r) { return r.triangles.empty(); });
-  }
-
-  // Cheap: could both be one surface?
-  static bool near_axis(const Surface& a, const Surface& b) {
-    if (a.kind != b.kind) return false;
-    const double size = std::max(a.radius_mm, 1e-6 * (a.point - b.point).norm());
-    const Vec3 d = b.point - a.point;
-    if (a.kind == SurfaceKind::kSphere) return d.norm() <= 0.01 * size;
-    if (a.axis.cross(b.axis).norm() > 0.02) return false;
-    if (a.kind == SurfaceKind::kCone) return true;
-    return (d - d.dot(a.axis) * a.axis).norm() <= 0.05 * size;
   }
 
   // 2. what they show
@@ -244,25 +264,6 @@ class Finisher {
     for (const std::uint32_t t : triangles) ids.push_back(facets_.of_triangle[t]);
     std::sort(ids.begin(), ids.end());
     return static_cast<std::uint32_t>(std::unique(ids.begin(), ids.end()) - ids.begin());
-  }
-
-  // The point in the middle of the extent and an axis whose largest component is positive: the same
-  // for every tessellation of a part.
-  static void make_canonical(Surface& s, Interval& along) {
-    if (s.kind == SurfaceKind::kCylinder) {
-      const double middle = along.middle();
-      s.point += middle * s.axis;
-      along = {along.lo - middle, along.hi - middle};
-    }
-    if (s.kind == SurfaceKind::kCone || s.kind == SurfaceKind::kPlane) return;
-    Eigen::Index largest = 0;
-    s.axis.cwiseAbs().maxCoeff(&largest);
-    if (s.kind == SurfaceKind::kSphere) {
-      s.axis = Vec3::UnitZ();
-    } else if (s.axis[largest] < 0.0) {
-      s.axis = -s.axis;
-      along = -along;
-    }
   }
 
   void emit_curved() {

@@ -8,6 +8,7 @@
 #include "common/base/constants.h"
 #include "common/geometry/recognition/finish.h"
 #include "common/geometry/recognition/seeds.h"
+#include "common/geometry/recognition/surface_fit.h"
 
 namespace mortise {
 namespace {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/base/constants.h"
+#include "common/geometry/recognition/surface_fit.h"
 
 namespace mortise {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "common/geometry/recognition/facets.h"
 #include "common/geometry/recognition/measure.h"
-#include "common/geometry/recognition/surface_fit.h"
+#include "common/geometry/recognition/surface_guess.h"
 
 /// Private to recognition: triangles that stand for one surface.
 namespace mortise {

@@ -1,9 +1,10 @@
+#include "common/geometry/recognition/surface_guess.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
 
-#include "common/geometry/recognition/surface_fit.h"
 
 namespace mortise {
 namespace {

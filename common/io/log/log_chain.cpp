@@ -1,3 +1,5 @@
+#include "common/io/log/log_chain.h"
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -5,7 +7,6 @@
 
 #include "common/io/log/log_layout.h"
 #include "common/io/log/mcap_reader.h"
-#include "common/io/log/session_log.h"
 
 namespace mortise {
 namespace {

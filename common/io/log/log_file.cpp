@@ -8,6 +8,7 @@
 #include "common/io/log/log_checkpoint.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/log_records.h"
+#include "common/io/log/output_file.h"
 
 namespace mortise {
 namespace {
@@ -46,7 +47,7 @@ Result<std::unique_ptr<LogFile>> LogFile::create(const fs::path& file, const Log
     return fail(Code::kRuntime, file.string() +
                                     ": cannot create the log: it exists already, choose another "
                                     "name");
-  if (is_begun(file) && !McapWriter::is_being_written(unfinished(file)))
+  if (is_begun(file) && !OutputFile::is_being_written(unfinished(file)))
     fs::remove(unfinished(file), error);  // of a start that was cut short
   auto mcap = McapWriter::create(unfinished(file), {.profile = log_layout::kProfile,
                                                     .library = "mortise " + engine_version(),

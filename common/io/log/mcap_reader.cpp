@@ -29,6 +29,34 @@ std::map<std::string, std::string> read_map(ByteReader& in) {
   return values;
 }
 
+// The next place at or after `from` that is a chunk by all its lengths; the size of the file when
+// there is none. Linear: each byte is looked at once.
+std::uint64_t find_chunk(const InputFile& file, std::uint64_t from,
+                         std::vector<std::byte>& buffer) {
+  constexpr std::uint64_t kWindow = 1 << 16;
+  constexpr std::size_t kHeadBytes = mcap::kRecordHeaderBytes + mcap::kChunkFixedBytes + 4;
+  for (std::uint64_t start = from; start < file.size(); start += kWindow) {
+    const auto window = file.read(start, kWindow + kHeadBytes, buffer);
+    for (std::size_t i = 0; i < window.size() && i < kWindow; ++i) {
+      if (window[i] != std::byte{mcap::kChunk}) continue;
+      const std::uint64_t here = start + i;
+      ByteReader reader(window.subspan(i, std::min(kHeadBytes, window.size() - i)));
+      reader.u8();
+      const std::uint64_t length = reader.u64();
+      const std::uint64_t content_at = here + mcap::kRecordHeaderBytes;
+      if (!reader.ok() || content_at > file.size() || length > file.size() - content_at) continue;
+      reader.raw(8 + 8 + 8 + 4);
+      const std::string compression = reader.string();
+      const std::uint64_t stored = reader.u64();
+      const std::uint64_t fixed = mcap::kChunkFixedBytes + compression.size();
+      if (reader.ok() && (compression.empty() || compression == "zstd") && length >= fixed &&
+          stored == length - fixed)
+        return here;
+    }
+  }
+  return file.size();
+}
+
 class Scanner {
  public:
   Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits)
@@ -51,7 +79,6 @@ class Scanner {
   void channel(std::span<const std::byte> content);
   void message(std::span<const std::byte> content);
   void attachment(std::span<const std::byte> content);
-  std::uint64_t find_chunk(std::uint64_t from);
   void note(const std::string& what);
   void loss(const std::string& what);
 
@@ -113,7 +140,7 @@ McapScan Scanner::run() {
       continue;
     }
     crc_known_ = false;
-    const std::uint64_t found = find_chunk(at_ + 1);
+    const std::uint64_t found = find_chunk(file_, at_ + 1, search_buffer_);
     if (found == file_.size()) {
       loss("the tail is cut off or damaged: " + std::to_string(file_.size() - at_) +
            " bytes are no whole record");
@@ -191,7 +218,8 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
       (summary_start == next_offset || (summary_start == 0 && footer_at == next_offset));
   if (!closed) {
     // Either the file lost its tail inside the summary, or this is no end of data at all.
-    if (reader.ok() && content.size() == 4 && find_chunk(next_offset) == file_.size()) {
+    if (reader.ok() && content.size() == 4 &&
+        find_chunk(file_, next_offset, search_buffer_) == file_.size()) {
       note("the index at the end is cut off or damaged; the data before it are whole");
       return Next::kEnd;
     }
@@ -333,33 +361,6 @@ void Scanner::attachment(std::span<const std::byte> content) {
     return;
   }
   if (handler_.on_attachment) handler_.on_attachment(attachment);
-}
-
-// The next place at or after `from` that is a chunk by all its lengths; the size of the file when
-// there is none. Linear: each byte is looked at once.
-std::uint64_t Scanner::find_chunk(std::uint64_t from) {
-  constexpr std::uint64_t kWindow = 1 << 16;
-  constexpr std::size_t kHeadBytes = mcap::kRecordHeaderBytes + mcap::kChunkFixedBytes + 4;
-  for (std::uint64_t start = from; start < file_.size(); start += kWindow) {
-    const auto window = file_.read(start, kWindow + kHeadBytes, search_buffer_);
-    for (std::size_t i = 0; i < window.size() && i < kWindow; ++i) {
-      if (window[i] != std::byte{mcap::kChunk}) continue;
-      const std::uint64_t here = start + i;
-      ByteReader reader(window.subspan(i, std::min(kHeadBytes, window.size() - i)));
-      reader.u8();
-      const std::uint64_t length = reader.u64();
-      const std::uint64_t content_at = here + mcap::kRecordHeaderBytes;
-      if (!reader.ok() || content_at > file_.size() || length > file_.size() - content_at) continue;
-      reader.raw(8 + 8 + 8 + 4);
-      const std::string compression = reader.string();
-      const std::uint64_t stored = reader.u64();
-      const std::uint64_t fixed = mcap::kChunkFixedBytes + compression.size();
-      if (reader.ok() && (compression.empty() || compression == "zstd") && length >= fixed &&
-          stored == length - fixed)
-        return here;
-    }
-  }
-  return file_.size();
 }
 
 }  // namespace

@@ -1,15 +1,9 @@
 #include "common/io/log/mcap_writer.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/uio.h>
-#include <unistd.h>
 #define ZSTD_STATIC_LINKING_ONLY  // for a compressor in memory of ours
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 
 #include "common/io/log/crc32.h"
 #include "common/io/log/mcap_format.h"
@@ -53,37 +47,24 @@ void McapWriter::Counted::add(std::uint64_t time_ns) {
   ++messages;
 }
 
-bool McapWriter::is_being_written(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  ::close(descriptor);
-  return is_locked;
-}
-
 Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::path& file,
                                                        McapWriterOptions options) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (descriptor < 0)
-    return fail(Code::kRuntime, file.string() + ": cannot create the log: " +
-                                    (errno == EEXIST ? "it exists already, choose another name"
-                                                     : std::strerror(errno)));
-  (void)::flock(descriptor, LOCK_EX | LOCK_NB);  // for is_being_written(); nobody else has it yet
-  std::unique_ptr<McapWriter> writer(new McapWriter(descriptor, file.string(), std::move(options)));
-  writer->write(std::as_bytes(std::span(mcap::kMagic)));
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  std::unique_ptr<McapWriter> writer(
+      new McapWriter(std::move(out).value(), file.parent_path(), std::move(options)));
+  writer->out_->write(std::as_bytes(std::span(mcap::kMagic)));
   ByteWriter header;
   header.string(writer->options_.profile);
   header.string(writer->options_.library);
   writer->write_record(mcap::kHeader, header);
-  if (writer->error_) return *writer->error_;
+  if (writer->error()) return *writer->error();
   return writer;
 }
 
-McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions options)
-    : descriptor_(descriptor),
-      file_(std::move(file)),
-      options_(std::move(options)),
-      chunk_indexes_(std::filesystem::path(file_).parent_path()) {
+McapWriter::McapWriter(std::unique_ptr<OutputFile> out, const std::filesystem::path& folder,
+                       McapWriterOptions options)
+    : out_(std::move(out)), options_(std::move(options)), chunk_indexes_(folder) {
   // So that it does not grow when a busy hour brings the first full chunk, nor shrink in a quiet
   // one.
   if (options_.compress) {
@@ -95,39 +76,7 @@ McapWriter::McapWriter(int descriptor, std::string file, McapWriterOptions optio
   chunk_.reserve(2 * options_.chunk_bytes);
 }
 
-McapWriter::~McapWriter() {
-  static_cast<void>(close());
-  ::close(descriptor_);
-}
-
-void McapWriter::set_error(const char* doing) {
-  if (!error_)
-    error_ =
-        fail(Code::kRuntime, file_ + ": cannot " + doing + " the log: " + std::strerror(errno) +
-                                 "; what was written stays readable");
-}
-
-void McapWriter::write(std::span<const std::byte> bytes, std::span<const std::byte> more) {
-  if (error_) return;
-  for (auto rest = bytes, then = more; !rest.empty() || !then.empty();) {
-    const iovec parts[] = {{const_cast<std::byte*>(rest.data()), rest.size()},
-                           {const_cast<std::byte*>(then.data()), then.size()}};
-    const ssize_t count = ::writev(descriptor_, parts, 2);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) {
-      set_error("write");
-      // Best effort: a torn record would be found and left out by the reader as well.
-      if (::ftruncate(descriptor_, static_cast<off_t>(offset_.load())) != 0) return;
-      return;
-    }
-    const std::size_t of_rest = std::min(static_cast<std::size_t>(count), rest.size());
-    rest = rest.subspan(of_rest);
-    then = then.subspan(static_cast<std::size_t>(count) - of_rest);
-  }
-  for (const auto& part : {bytes, more})
-    if (!part.empty()) crc_ = crc32(part, crc_);  // that of nothing would begin a new one
-  offset_.fetch_add(bytes.size() + more.size(), std::memory_order_relaxed);
-}
+McapWriter::~McapWriter() { static_cast<void>(close()); }
 
 void McapWriter::write_record(std::uint8_t opcode, const ByteWriter& content,
                               std::span<const std::byte> more) {
@@ -135,7 +84,7 @@ void McapWriter::write_record(std::uint8_t opcode, const ByteWriter& content,
   record.u8(opcode);
   record.u64(content.size() + more.size());
   record.raw(content.bytes());
-  write(record.bytes(), more);
+  out_->write(record.bytes(), more);
 }
 
 std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view encoding,
@@ -250,7 +199,7 @@ void McapWriter::end_chunk() {
   index.u64(bytes_written());
   index.u64(mcap::kRecordHeaderBytes + content.size() + records.size());
   write_record(mcap::kChunk, content, records);
-  if (!error_) ++chunks_;
+  if (!error()) ++chunks_;
 
   const std::uint64_t index_start = bytes_written();
   std::map<std::uint16_t, std::uint64_t> index_offsets;
@@ -280,14 +229,12 @@ void McapWriter::end_chunk() {
 
 Status McapWriter::sync() {
   end_chunk();
-  if (!error_ && ::fdatasync(descriptor_) != 0) set_error("flush");
-  if (error_) return *error_;
-  return ok();
+  return out_->sync();
 }
 
 void McapWriter::write_summary() {
   ByteWriter data_end;
-  data_end.u32(crc_);
+  data_end.u32(out_->crc());
   write_record(mcap::kDataEnd, data_end);
 
   ByteWriter statistics;
@@ -303,14 +250,15 @@ void McapWriter::write_summary() {
   put_record(summary_[mcap::kStatistics], mcap::kStatistics, statistics);
 
   const std::uint64_t summary_start = bytes_written();
-  crc_ = 0;  // from here on: of the summary section
+  out_->begin_crc();  // from here on: of the summary section
   ByteWriter offsets;
   if (chunk_indexes_.size() > 0) summary_[mcap::kChunkIndex].clear();  // has its place among them
   for (const auto& [opcode, records] : summary_) {
     const std::uint64_t group_start = bytes_written();
-    write(records.bytes());
-    if (opcode == mcap::kChunkIndex && !chunk_indexes_.read([&](auto bytes) { write(bytes); })) {
-      set_error("read back the index of");
+    out_->write(records.bytes());
+    if (opcode == mcap::kChunkIndex &&
+        !chunk_indexes_.read([&](auto bytes) { out_->write(bytes); })) {
+      out_->set_error("read back the index of");
       return;
     }
     offsets.u8(mcap::kSummaryOffset);
@@ -320,16 +268,16 @@ void McapWriter::write_summary() {
     offsets.u64(bytes_written() - group_start);
   }
   const std::uint64_t offsets_start = bytes_written();
-  write(offsets.bytes());
+  out_->write(offsets.bytes());
 
   ByteWriter footer;
   footer.u8(mcap::kFooter);
   footer.u64(mcap::kFooterBytes);
   footer.u64(summary_start);
   footer.u64(offsets_start);
-  footer.u32(crc32(footer.bytes(), crc_));
+  footer.u32(crc32(footer.bytes(), out_->crc()));
   footer.raw(std::as_bytes(std::span(mcap::kMagic)));
-  write(footer.bytes());
+  out_->write(footer.bytes());
 }
 
 Status McapWriter::close() {
@@ -339,7 +287,7 @@ Status McapWriter::close() {
     write_summary();
     return sync();
   }
-  if (error_) return *error_;
+  if (error()) return *error();
   return ok();
 }
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/io/log/output_file.h"
 #include "common/io/log/spool.h"
 #include "common/io/state/bytes.h"
 
@@ -26,13 +26,10 @@ struct McapWriterOptions {
 };
 
 /// Writes one MCAP file from front to back: after a crash the file ends in the middle of at most
-/// one record. After an error of the disk the file is cut back to its last whole record, later
-/// calls do nothing, and sync() and close() return the error. Not thread safe.
+/// one record. After an error of the disk later calls do nothing, see OutputFile; sync() and
+/// close() return the error. Not thread safe.
 class McapWriter {
  public:
-  /// Is the file being written by a living process of this host, or of another one where the disk
-  /// between them supports flock()?
-  static bool is_being_written(const std::filesystem::path& file);
   /// Fails when the file exists: a record of a session is never overwritten.
   static Result<std::unique_ptr<McapWriter>> create(const std::filesystem::path& file,
                                                     McapWriterOptions options = {});
@@ -61,31 +58,25 @@ class McapWriter {
 
   /// Chunks that are whole in the file, also when what follows them could not be written.
   std::uint32_t chunks_written() const { return chunks_; }
-  std::uint64_t bytes_written() const { return offset_.load(std::memory_order_relaxed); }
-  const std::optional<Error>& error() const { return error_; }
+  std::uint64_t bytes_written() const { return out_->bytes_written(); }
+  const std::optional<Error>& error() const { return out_->error(); }
 
  private:
   struct Counted {
     std::uint64_t start_time = 0, end_time = 0, messages = 0;
     void add(std::uint64_t time_ns);
   };
-  McapWriter(int descriptor, std::string file, McapWriterOptions options);
-  /// All of both or nothing.
-  void write(std::span<const std::byte> bytes, std::span<const std::byte> more = {});
+  McapWriter(std::unique_ptr<OutputFile> out, const std::filesystem::path& folder,
+             McapWriterOptions options);
   void write_record(std::uint8_t opcode, const ByteWriter& content,
                     std::span<const std::byte> more = {});
   /// What a chunk is stored as; empty: as it is.
   std::span<const std::byte> compressed(std::span<const std::byte> records);
   void write_summary();
-  void set_error(const char* doing);
 
-  int descriptor_;
-  std::string file_;
+  std::unique_ptr<OutputFile> out_;
   McapWriterOptions options_;
-  std::optional<Error> error_;
   bool closed_ = false;
-  std::atomic<std::uint64_t> offset_ = 0;
-  std::uint32_t crc_ = 0;  ///< of the data section so far
 
   ByteWriter chunk_;
   Counted chunk_counted_, file_counted_;

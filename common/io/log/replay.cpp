@@ -10,6 +10,7 @@
 #include "common/io/state/checkpoint.h"
 #include "common/messages/names.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise {
 namespace {

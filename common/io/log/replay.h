@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 #include "common/io/scenario/scene_load.h"
 
 namespace mortise {

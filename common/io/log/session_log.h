@@ -1,11 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -116,65 +113,5 @@ class SessionLogWriter {
   virtual std::size_t queued_ticks() const { return 0; }  ///< recorded, but not yet written
   virtual Status status() const = 0;  ///< fails after an error of the disk: later ticks are dropped
 };
-
-/// Ticks that happened and are missing in the log.
-struct LogGap {
-  std::uint64_t after_tick = 0;  ///< last tick before it (0: none)
-  std::uint64_t until_tick = 0;  ///< first tick after it (0: none)
-  std::string reason;
-};
-
-/// A log that was read. It is readable without its tail; `complete` says whether the end was found.
-/// Poses of ticks are rounded, for viewing; a replay computes the exact ones.
-struct SessionLog {
-  std::string session, scenario_name, scenario_yaml, engine_version, build_fingerprint;
-  std::vector<std::pair<std::string, TriangleMesh>> meshes;
-  std::vector<std::string> mesh_of_part;
-  std::vector<ImportReport> imports;  ///< by part index; may be empty
-  std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
-  std::optional<LogBegin> begin;      ///< set: the file continues another one
-  LogChain chain;
-  /// By tick; with those at the front of later files, but without that of `begin`.
-  std::vector<Checkpoint> checkpoints;
-  bool complete = false;
-  std::vector<LogGap> gaps;  ///< in the order of the log
-  /// Sums of /statistics by name: what was examined and skipped, without lost parts of the log.
-  std::map<std::string, std::uint64_t> counted;
-  std::vector<std::string> notes;  ///< what was lost or skipped, in words
-};
-
-/// Server clock of the last tick of a log, or of the tick that it begins with; 0: it has neither.
-std::int64_t last_time_ns(const SessionLog& log);
-
-struct LogReading {
-  /// Keep the bytes of so many last checkpoints; of all others only the hash.
-  std::size_t keep_checkpoints = 0;
-  /// Called with the number of files read so far, the current one in part.
-  std::function<void(double files)> on_progress = {};
-};
-Result<SessionLog> read_session_log(const std::filesystem::path& file,
-                                    const LogReading& reading = {});
-
-/// The files of a session in their order: `file` and those that continue it in the same folder. Of
-/// two files that continue the same one, the one whose name is later. Reads only the heads of
-/// files.
-std::vector<std::filesystem::path> chain_from(const std::filesystem::path& file);
-
-/// Several files of one session as one log, each continuing the previous one. Ticks of a file
-/// beyond the beginning of the next are left out; ticks in no file are a gap. A single file brings
-/// its chain with it. Fails when the files are not of one session, in order.
-Result<SessionLog> read_session(std::span<const std::filesystem::path> files,
-                                const LogReading& reading = {});
-Result<SessionLog> read_session(const std::filesystem::path& file, const LogReading& reading = {});
-
-/// The outcome of recover_session_log().
-struct Recovery {
-  std::uint64_t ticks = 0, messages = 0, lost_chunks = 0;
-  bool was_complete = false;
-  std::vector<std::string> notes;  ///< what was lost, in words
-};
-/// Copies all that is whole into a new, closed log; holes are marked as gaps.
-Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
-                                     const std::filesystem::path& new_file);
 
 }  // namespace mortise

@@ -1,3 +1,5 @@
+#include "common/io/log/session_log_read.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,7 +10,6 @@
 #include "common/io/log/log_layout.h"
 #include "common/io/log/log_records.h"
 #include "common/io/log/mcap_reader.h"
-#include "common/io/log/session_log.h"
 
 namespace mortise {
 namespace {

@@ -1,13 +1,72 @@
+#include "common/io/log/session_log_recover.h"
+
 #include "common/io/build_info.h"
 #include "common/io/log/log_json.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/mcap_reader.h"
 #include "common/io/log/mcap_writer.h"
-#include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
 
 namespace mortise {
+namespace {
 
 // A copy record by record: what this program does not know (topics of a later version) survives.
+class Copy {
+ public:
+  explicit Copy(McapWriter& out) : out_(out) {}
+
+  McapHandler handler() {
+    return {.on_schema = [this](const McapSchema& schema) { add(schema); },
+            .on_channel = [this](const McapChannel& channel) { add(channel); },
+            .on_message = [this](const McapChannel& channel,
+                                 const McapMessage& message) { add(channel, message); },
+            .on_attachment =
+                [this](const McapAttachment& attachment) {
+                  out_.add_attachment(attachment.name, attachment.media_type, attachment.data,
+                                      attachment.log_time_ns);
+                },
+            .on_metadata = [this](const std::string& name,
+                                  const auto& values) { out_.add_metadata(name, values); },
+            .on_loss = [this](const std::string& reason) { mark_gap(reason); }};
+  }
+
+ private:
+  void add(const McapSchema& schema) {
+    if (!schemas_.contains(schema.id))
+      schemas_[schema.id] =
+          out_.add_schema(schema.name, schema.encoding,
+                          {reinterpret_cast<const char*>(schema.data.data()), schema.data.size()});
+  }
+
+  void add(const McapChannel& channel) {
+    const auto schema = schemas_.find(channel.schema);
+    const std::uint16_t number =
+        out_.add_channel(channel.topic, channel.message_encoding,
+                         schema == schemas_.end() ? 0 : schema->second, channel.metadata);
+    channels_[channel.id] = number;
+    if (channel.topic == log_layout::kGaps) gaps_channel_ = number;
+  }
+
+  void add(const McapChannel& channel, const McapMessage& message) {
+    time_ns_ = message.log_time_ns;
+    out_.add_message(channels_[channel.id], time_ns_, message.data);
+    if (channel.topic == log_layout::kTicks && out_.chunk_is_full()) out_.end_chunk();
+  }
+
+  void mark_gap(const std::string& reason) {
+    if (gaps_channel_ == 0) return;  // lost before anything was recorded: said in the metadata
+    const std::string gap = log_json::encode(log_json::Gap{.reason = reason});
+    out_.add_message(gaps_channel_, time_ns_, std::as_bytes(std::span(gap)));
+  }
+
+  McapWriter& out_;
+  std::map<std::uint16_t, std::uint16_t> schemas_, channels_;  // number there -> number here
+  std::uint16_t gaps_channel_ = 0;
+  std::uint64_t time_ns_ = 0;
+};
+
+}  // namespace
+
 Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
                                      const std::filesystem::path& new_file) {
   Result<SessionLog> readable = read_session_log(damaged);
@@ -16,47 +75,8 @@ Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
       new_file, {.profile = log_layout::kProfile, .library = "mortise " + engine_version()});
   if (!created) return created.error();
   McapWriter& out = **created;
-
-  std::map<std::uint16_t, std::uint16_t> schemas, channels;  // number there -> number here
-  std::uint16_t gaps_channel = 0;
-  std::uint64_t time_ns = 0;
-  const auto mark_gap = [&](const std::string& reason) {
-    if (gaps_channel == 0) return;  // lost before anything was recorded: said in the metadata
-    const std::string gap = log_json::encode(log_json::Gap{.reason = reason});
-    out.add_message(gaps_channel, time_ns, std::as_bytes(std::span(gap)));
-  };
-  const McapHandler handler{
-      .on_schema =
-          [&](const McapSchema& schema) {
-            if (!schemas.contains(schema.id))
-              schemas[schema.id] = out.add_schema(
-                  schema.name, schema.encoding,
-                  {reinterpret_cast<const char*>(schema.data.data()), schema.data.size()});
-          },
-      .on_channel =
-          [&](const McapChannel& channel) {
-            const auto schema = schemas.find(channel.schema);
-            const std::uint16_t number =
-                out.add_channel(channel.topic, channel.message_encoding,
-                                schema == schemas.end() ? 0 : schema->second, channel.metadata);
-            channels[channel.id] = number;
-            if (channel.topic == log_layout::kGaps) gaps_channel = number;
-          },
-      .on_message =
-          [&](const McapChannel& channel, const McapMessage& message) {
-            time_ns = message.log_time_ns;
-            out.add_message(channels[channel.id], time_ns, message.data);
-            if (channel.topic == log_layout::kTicks && out.chunk_is_full()) out.end_chunk();
-          },
-      .on_attachment =
-          [&](const McapAttachment& attachment) {
-            out.add_attachment(attachment.name, attachment.media_type, attachment.data,
-                               attachment.log_time_ns);
-          },
-      .on_metadata = [&](const std::string& name,
-                         const auto& values) { out.add_metadata(name, values); },
-      .on_loss = mark_gap};
-  const Result<McapScan> scan = scan_mcap(damaged, handler);
+  Copy copy(out);
+  const Result<McapScan> scan = scan_mcap(damaged, copy.handler());
   if (!scan) return scan.error();
 
   std::map<std::string, std::string> account = {{"was_complete", scan->complete ? "yes" : "no"},

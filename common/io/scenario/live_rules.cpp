@@ -6,6 +6,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/io/scenario/scenario_parts.h"
+#include "common/io/scenario/scenario_tolerance.h"
 #include "common/io/scenario/scenario_yaml.h"
 
 namespace mortise {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/io/scenario/scenario_parts.h"
+#include "common/io/scenario/scenario_tolerance.h"
 #include "common/io/scenario/scenario_yaml.h"
 
 namespace mortise {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "common/generators/generators.h"
+#include "common/io/scenario/scenario_tolerance.h"
 #include "common/math/rotation.h"
 
 namespace mortise {

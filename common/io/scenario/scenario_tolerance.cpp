@@ -1,10 +1,11 @@
+#include "common/io/scenario/scenario_tolerance.h"
+
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <tuple>
 
 #include "common/evaluation/tolerance.h"
-#include "common/io/scenario/scenario_parts.h"
 
 namespace mortise {
 namespace {

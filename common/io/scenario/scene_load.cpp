@@ -75,6 +75,68 @@ struct PartKind {
   StatedPart stated;
 };
 
+void add_undeclared(const Recognition& recognized, PartKind& kind) {
+  for (Feature& feature :
+       undeclared_features(recognized, kind.features, kind.solid->mesh().triangles.size())) {
+    kind.features.push_back(std::move(feature));
+    kind.stated.of_feature.push_back(kind.stated.rest);
+  }
+}
+
+// Does the file give this feature a surface of its own?
+bool declared_in_file(const Scenario::PartSpec& spec, const std::string& name) {
+  return std::any_of(spec.features.begin(), spec.features.end(), [&](auto& f) {
+    return f.name == name && f.surface.kind != SurfaceKind::kUnknown;
+  });
+}
+
+Result<FeatureMatch> match_of(const Scenario::PartSpec& spec, const Scenario::FeatureSpec& declared,
+                              const LoadedMesh& mesh) {
+  const FeatureDeclaration declaration{declared.name, declared.surface, declared.along_mm,
+                                       spec.chord_error_mm.value_or(0.0)};
+  const auto own = std::find_if(mesh.generated.begin(), mesh.generated.end(), [&](auto& f) {
+    return f.name == declared.name && f.surface.kind == declared.surface.kind;
+  });
+  if (own == mesh.generated.end() || own->triangles.empty() || declared.along_mm ||
+      declared_in_file(spec, declared.name))
+    return match_feature(mesh.solid->mesh(), declaration);
+  return check_feature(mesh.solid->mesh(), declaration, own->triangles);
+}
+
+// The file's features, those without a surface taking the generator's; then the generator's other
+// ones, whose exact surface is known even where nobody speaks of them.
+std::vector<Scenario::FeatureSpec> with_generated(const Scenario::PartSpec& spec,
+                                                  const LoadedMesh& mesh) {
+  std::vector<Scenario::FeatureSpec> specs = spec.features;
+  for (const Feature& generated : mesh.generated) {
+    const auto same =
+        std::find_if(specs.begin(), specs.end(), [&](auto& s) { return s.name == generated.name; });
+    if (same == specs.end()) {
+      Scenario::FeatureSpec extra;
+      extra.name = generated.name;
+      extra.surface = generated.surface;
+      extra.at = spec.at;
+      specs.push_back(std::move(extra));
+    } else if (same->surface.kind == SurfaceKind::kUnknown) {
+      same->surface = generated.surface;
+    }
+  }
+  return specs;
+}
+
+std::string known_names(const LoadedMesh& mesh) {
+  std::string names;
+  for (const Feature& f : mesh.generated) names += (names.empty() ? "" : ", ") + f.name;
+  return names.empty() ? "it has none; add kind: and the surface" : "known: " + names;
+}
+
+std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                      const Recognition* recognized) {
+  if (spec.mesh.generator.empty() && recognized != nullptr)
+    return "no feature of this name was recognized; " + recognized_names(*recognized);
+  return "generator " + spec.mesh.generator + " has no feature of this name; " + known_names(mesh);
+}
+
 class SceneLoader {
  public:
   SceneLoader(const Scenario& scenario, const MeshProvider& meshes)
@@ -212,14 +274,6 @@ class SceneLoader {
 
   // 3. features
 
-  static void add_undeclared(const Recognition& recognized, PartKind& kind) {
-    for (Feature& feature :
-         undeclared_features(recognized, kind.features, kind.solid->mesh().triangles.size())) {
-      kind.features.push_back(std::move(feature));
-      kind.stated.of_feature.push_back(kind.stated.rest);
-    }
-  }
-
   bool match_features(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
                       const Recognition* recognized, PartKind& kind) {
     std::vector<Scenario::FeatureSpec> specs = with_generated(spec, mesh);
@@ -257,62 +311,6 @@ class SceneLoader {
     }
     kind.stated.declared = std::move(specs);
     return good && share_out_triangles(spec, kind);
-  }
-
-  static Result<FeatureMatch> match_of(const Scenario::PartSpec& spec,
-                                       const Scenario::FeatureSpec& declared,
-                                       const LoadedMesh& mesh) {
-    const FeatureDeclaration declaration{declared.name, declared.surface, declared.along_mm,
-                                         spec.chord_error_mm.value_or(0.0)};
-    const auto own = std::find_if(mesh.generated.begin(), mesh.generated.end(), [&](auto& f) {
-      return f.name == declared.name && f.surface.kind == declared.surface.kind;
-    });
-    if (own == mesh.generated.end() || own->triangles.empty() || declared.along_mm ||
-        declared_in_file(spec, declared.name))
-      return match_feature(mesh.solid->mesh(), declaration);
-    return check_feature(mesh.solid->mesh(), declaration, own->triangles);
-  }
-
-  // Does the file give this feature a surface of its own?
-  static bool declared_in_file(const Scenario::PartSpec& spec, const std::string& name) {
-    return std::any_of(spec.features.begin(), spec.features.end(), [&](auto& f) {
-      return f.name == name && f.surface.kind != SurfaceKind::kUnknown;
-    });
-  }
-
-  // The file's features, those without a surface taking the generator's; then the generator's other
-  // ones, whose exact surface is known even where nobody speaks of them.
-  static std::vector<Scenario::FeatureSpec> with_generated(const Scenario::PartSpec& spec,
-                                                           const LoadedMesh& mesh) {
-    std::vector<Scenario::FeatureSpec> specs = spec.features;
-    for (const Feature& generated : mesh.generated) {
-      const auto same = std::find_if(specs.begin(), specs.end(),
-                                     [&](auto& s) { return s.name == generated.name; });
-      if (same == specs.end()) {
-        Scenario::FeatureSpec extra;
-        extra.name = generated.name;
-        extra.surface = generated.surface;
-        extra.at = spec.at;
-        specs.push_back(std::move(extra));
-      } else if (same->surface.kind == SurfaceKind::kUnknown) {
-        same->surface = generated.surface;
-      }
-    }
-    return specs;
-  }
-
-  static std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
-                               const Recognition* recognized) {
-    if (spec.mesh.generator.empty() && recognized != nullptr)
-      return "no feature of this name was recognized; " + recognized_names(*recognized);
-    return "generator " + spec.mesh.generator + " has no feature of this name; " +
-           known_names(mesh);
-  }
-
-  static std::string known_names(const LoadedMesh& mesh) {
-    std::string names;
-    for (const Feature& f : mesh.generated) names += (names.empty() ? "" : ", ") + f.name;
-    return names.empty() ? "it has none; add kind: and the surface" : "known: " + names;
   }
 
   // A triangle that lies on two declared surfaces (a thin rim, or one round declared twice) belongs

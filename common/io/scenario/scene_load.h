@@ -1,20 +1,13 @@
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/io/mesh/mesh_import.h"
 #include "common/io/scenario/scenario_file.h"
+#include "common/io/scenario/scene_meshes.h"
 #include "common/session/world/world.h"
 
 namespace mortise {
-
-/// Gives the mesh of a part; the default reads files and runs generators, a replay takes them from
-/// its log.
-using MeshProvider =
-    std::function<Result<ImportedMesh>(const Scenario& scenario, const Scenario::PartSpec& part)>;
-MeshProvider default_meshes();
 
 /// A scenario made ready: meshes loaded once per distinct content, features matched to triangles
 /// and checked, tolerances and fits resolved to offsets.

@@ -1,5 +1,7 @@
+#include "common/io/scenario/scene_meshes.h"
+
 #include "common/generators/generators.h"
-#include "common/io/scenario/scene_load.h"
+#include "common/geometry/topology.h"
 
 namespace mortise {
 namespace {

@@ -17,10 +17,61 @@ namespace {
 /// large scene is rarely meant.
 constexpr std::size_t kMaxRulePairs = 2'000'000;
 
+bool has_wildcard(const std::string& text) { return text.find('*') != std::string::npos; }
+
+// The parts of the scene and their features by the names and patterns of a scenario.
+class Names {
+ public:
+  explicit Names(const std::vector<Part>& parts) : parts_(parts) {}
+
+  const Part& part(PartId id) const { return parts_[id.value - 1]; }
+
+  std::vector<PartId> parts_matching(const std::string& pattern) const {
+    std::vector<PartId> ids;
+    for (const Part& candidate : parts_)
+      if (matches_name(pattern, candidate.name)) ids.push_back(candidate.id);
+    return ids;
+  }
+
+  std::string no_such_part(const std::string& pattern) const {
+    std::vector<std::string> names;
+    for (const Part& candidate : parts_) names.push_back(candidate.name);
+    return "no part is called '" + pattern + "'; did you mean '" + nearest_word(pattern, names) +
+           "'?";
+  }
+
+  std::vector<std::size_t> features_matching(PartId id, const std::string& pattern) const {
+    if (pattern.empty()) return {kWholePart};
+    std::vector<std::size_t> found;
+    const auto& features = part(id).features;
+    for (std::size_t i = 0; i < features.size(); ++i)
+      if (matches_name(pattern, features[i].name)) found.push_back(i);
+    return found;
+  }
+
+  std::string no_such_feature(const std::vector<PartId>& ids, const std::string& pattern) const {
+    std::vector<std::string> names;
+    for (const PartId id : ids)
+      for (const Feature& feature : part(id).features) names.push_back(feature.name);
+    if (names.empty())
+      return "part '" + part(ids.front()).name + "' has no features; declare '" + pattern + "'";
+    return "no feature of it is called '" + pattern + "'; did you mean '" +
+           nearest_word(pattern, names) + "'?";
+  }
+
+  std::string of_end(PartId id, std::size_t feature) const {
+    return feature == kWholePart ? part(id).name
+                                 : part(id).name + "." + part(id).features[feature].name;
+  }
+
+ private:
+  const std::vector<Part>& parts_;
+};
+
 class RuleBook {
  public:
   explicit RuleBook(const RuleInput& input)
-      : input_(input), scenario_(input.scenario), stated_(input.stated) {}
+      : input_(input), scenario_(input.scenario), stated_(input.stated), names_(input.parts) {}
 
   RuleOutcome run() {
     for (const auto& fit : scenario_.fits) apply_fit(fit);
@@ -50,62 +101,23 @@ class RuleBook {
     out_.findings.push_back({true, place_of(scenario_, at) + text});
   }
 
-  const Part& part(PartId id) { return input_.parts[id.value - 1]; }
+  const Part& part(PartId id) const { return names_.part(id); }
 
-  // 1. names
-
-  std::vector<PartId> parts_matching(const std::string& pattern) {
-    std::vector<PartId> ids;
-    for (const Part& candidate : input_.parts)
-      if (matches_name(pattern, candidate.name)) ids.push_back(candidate.id);
-    return ids;
-  }
-
-  std::string no_such_part(const std::string& pattern) {
-    std::vector<std::string> names;
-    for (const Part& candidate : input_.parts) names.push_back(candidate.name);
-    return "no part is called '" + pattern + "'; did you mean '" + nearest_word(pattern, names) +
-           "'?";
-  }
-
-  std::vector<std::size_t> features_matching(PartId id, const std::string& pattern) {
-    if (pattern.empty()) return {kWholePart};
-    std::vector<std::size_t> found;
-    const auto& features = part(id).features;
-    for (std::size_t i = 0; i < features.size(); ++i)
-      if (matches_name(pattern, features[i].name)) found.push_back(i);
-    return found;
-  }
-
-  std::string no_such_feature(const std::vector<PartId>& ids, const std::string& pattern) {
-    std::vector<std::string> names;
-    for (const PartId id : ids)
-      for (const Feature& feature : part(id).features) names.push_back(feature.name);
-    if (names.empty())
-      return "part '" + part(ids.front()).name + "' has no features; declare '" + pattern + "'";
-    return "no feature of it is called '" + pattern + "'; did you mean '" +
-           nearest_word(pattern, names) + "'?";
-  }
-
-  // 2. fits
-
-  struct Ends {
-    std::vector<std::pair<PartId, std::size_t>> a, b;
-  };
+  // 1. fits
 
   std::optional<std::vector<std::pair<PartId, std::size_t>>> ends_of(
       SourceLine at, const std::string& part_pattern, const std::string& feature_pattern) {
-    const std::vector<PartId> ids = parts_matching(part_pattern);
+    const std::vector<PartId> ids = names_.parts_matching(part_pattern);
     if (ids.empty()) {
-      error(at, "fit: " + no_such_part(part_pattern));
+      error(at, "fit: " + names_.no_such_part(part_pattern));
       return std::nullopt;
     }
     std::vector<std::pair<PartId, std::size_t>> ends;
     for (const PartId id : ids)
-      for (const std::size_t feature : features_matching(id, feature_pattern))
+      for (const std::size_t feature : names_.features_matching(id, feature_pattern))
         ends.emplace_back(id, feature);
     if (ends.empty()) {
-      error(at, "fit: " + part_pattern + ": " + no_such_feature(ids, feature_pattern));
+      error(at, "fit: " + part_pattern + ": " + names_.no_such_feature(ids, feature_pattern));
       return std::nullopt;
     }
     return ends;
@@ -160,8 +172,6 @@ class RuleBook {
     return {&f.surface, f.residual_mm, part(id).name + "." + f.name};
   }
 
-  static bool has_wildcard(const std::string& text) { return text.find('*') != std::string::npos; }
-
   // Returns whether the fit speaks of this pair of features.
   bool state_pair(const Scenario::FitSpec& fit, PartId a, std::size_t fa, PartId b,
                   std::size_t fb) {
@@ -190,7 +200,7 @@ class RuleBook {
     }
     const auto [earlier, fresh] = fit_of_.insert({FeaturePair{a, fa, b, fb}, fit.at.line});
     if (!fresh) {
-      error(fit.at, "fit: " + name_of_end(a, fa) + " and " + name_of_end(b, fb) +
+      error(fit.at, "fit: " + names_.of_end(a, fa) + " and " + names_.of_end(b, fb) +
                         " already have a fit in line " + std::to_string(earlier->second) +
                         "; keep one");
       return false;
@@ -208,11 +218,6 @@ class RuleBook {
     return true;
   }
 
-  std::string name_of_end(PartId id, std::size_t feature) {
-    return feature == kWholePart ? part(id).name
-                                 : part(id).name + "." + part(id).features[feature].name;
-  }
-
   PairStatements& statements_of(PartId a, PartId b) {
     PairStatements& pair = pairs_[{a, b}];
     pair.a.resize(part(a).features.size() + 1);
@@ -225,14 +230,14 @@ class RuleBook {
     std::optional<PlacedStatement>& slot = feature == kWholePart ? side.back() : side[feature];
     Result<PlacedStatement> both = slot ? both_hold(*slot, statement) : statement;
     if (!both) {
-      error(statement.at, "fit: " + name_of_end(id, feature) + ": " + both.error().text);
+      error(statement.at, "fit: " + names_.of_end(id, feature) + ": " + both.error().text);
       return false;
     }
     slot = std::move(both).value();
     return true;
   }
 
-  // 3. bands of pairs, shared by pairs that say the same of parts that are alike
+  // 2. bands of pairs, shared by pairs that say the same of parts that are alike
 
   // What holds of one face of a part in a pair: the part's and the feature's own statement, the
   // pair's of the whole part, the pair's of the feature. `at` is the last line that was asked.
@@ -263,7 +268,7 @@ class RuleBook {
       const std::size_t feature = i < own.of_feature.size() ? i : kWholePart;
       const auto [all, at] = statement_in_pair(id, side, feature);
       if (!all) {
-        error(at, "fit: " + name_of_end(id, feature) + ": " + all.error().text);
+        error(at, "fit: " + names_.of_end(id, feature) + ": " + all.error().text);
         return nullptr;
       }
       statements.push_back(for_band(*all));
@@ -291,9 +296,9 @@ class RuleBook {
       LoadedScene::ResolvedFit& resolved = out_.fits[i];
       const FaceStatement all_a = for_band(*of_a), all_b = for_band(*of_b);
       if (all_a.source != fit.a.source)
-        resolved.tighter.push_back(name_of_end(a, fa) + ": " + all_a.source);
+        resolved.tighter.push_back(names_.of_end(a, fa) + ": " + all_a.source);
       if (all_b.source != fit.b.source)
-        resolved.tighter.push_back(name_of_end(b, fb) + ": " + all_b.source);
+        resolved.tighter.push_back(names_.of_end(b, fb) + ": " + all_b.source);
       if (resolved.tighter.empty()) continue;
       const Interval said = fit.a.offset_mm + fit.b.offset_mm;
       const Interval holds = all_a.offset_mm + all_b.offset_mm;
@@ -312,12 +317,13 @@ class RuleBook {
     }
   }
 
-  // 4. exclusions and users
+  // 3. exclusions and users
 
   void apply_exclusion(const Scenario::Exclusion& exclusion) {
-    const auto ids_a = parts_matching(exclusion.part_a), ids_b = parts_matching(exclusion.part_b);
-    if (ids_a.empty()) error(exclusion.at, "exclusion: " + no_such_part(exclusion.part_a));
-    if (ids_b.empty()) error(exclusion.at, "exclusion: " + no_such_part(exclusion.part_b));
+    const auto ids_a = names_.parts_matching(exclusion.part_a),
+               ids_b = names_.parts_matching(exclusion.part_b);
+    if (ids_a.empty()) error(exclusion.at, "exclusion: " + names_.no_such_part(exclusion.part_a));
+    if (ids_b.empty()) error(exclusion.at, "exclusion: " + names_.no_such_part(exclusion.part_b));
     if (ids_a.empty() || ids_b.empty()) return;
     if (ids_a.size() * ids_b.size() > kMaxRulePairs) {
       error(exclusion.at, "exclusion: matches more than " + std::to_string(kMaxRulePairs) +
@@ -341,9 +347,9 @@ class RuleBook {
 
   void check_user(const Scenario::UserSpec& user) {
     for (const std::string& pattern : user.may_hold) {
-      const auto ids = parts_matching(pattern);
+      const auto ids = names_.parts_matching(pattern);
       if (ids.empty())
-        error(user.at, "user " + user.name + ": may_hold: " + no_such_part(pattern));
+        error(user.at, "user " + user.name + ": may_hold: " + names_.no_such_part(pattern));
       else if (std::none_of(ids.begin(), ids.end(), [&](PartId id) { return part(id).moving; }))
         error(user.at, "user " + user.name + ": may_hold: no part called '" + pattern +
                            "' has moving: true");
@@ -353,6 +359,7 @@ class RuleBook {
   RuleInput input_;
   const Scenario& scenario_;
   const std::vector<StatedPart>& stated_;
+  const Names names_;
   RuleOutcome out_;
   std::map<std::pair<PartId, PartId>, PairStatements> pairs_;
   std::map<FeaturePair, int> fit_of_;

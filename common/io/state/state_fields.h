@@ -1,4 +1,5 @@
 #pragma once
+#include "common/ccd/distance.h"
 #include "common/io/state/state_bytes.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/tick/statistics.h"

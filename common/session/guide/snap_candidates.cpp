@@ -1,3 +1,5 @@
+#include "common/session/guide/snap_candidates.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

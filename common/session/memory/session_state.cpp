@@ -7,6 +7,8 @@
 #include "common/base/check.h"
 #include "common/base/constants.h"
 #include "common/base/hash.h"
+#include "common/broadphase/brute_force.h"
+#include "common/broadphase/dynamic_tree.h"
 #include "common/broadphase/swept_box.h"
 
 namespace mortise {

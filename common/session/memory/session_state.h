@@ -10,6 +10,7 @@
 
 #include "common/base/rare.h"
 #include "common/broadphase/broad_phase.h"
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/depth/overlap.h"
 #include "common/session/world/world.h"

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "common/broadphase/pair_filter.h"
+#include "common/ccd/distance.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
 

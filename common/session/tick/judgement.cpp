@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/evaluation/explain.h"
 #include "common/session/tick/merge_regions.h"
 
 namespace mortise {

@@ -5,6 +5,7 @@
 
 #include "common/broadphase/swept_box.h"
 #include "common/ccd/contact_places.h"
+#include "common/ccd/distance.h"
 #include "common/math/rotation.h"
 #include "common/session/tick/hold_places.h"
 

@@ -1,6 +1,10 @@
+#include "common/session/world/commands.h"
+
 #include <algorithm>
 
 #include "common/session/guide/guidance.h"
+#include "common/session/guide/snap_candidates.h"
+#include "common/session/world/decisions.h"
 #include "common/session/world/placing.h"
 #include "common/session/world/review.h"
 #include "common/session/world/rights.h"

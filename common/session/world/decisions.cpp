@@ -1,3 +1,5 @@
+#include "common/session/world/decisions.h"
+
 #include <algorithm>
 
 #include "common/session/guide/guidance.h"

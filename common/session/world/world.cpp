@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "common/session/guide/guidance.h"
+#include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
-#include "common/session/world/placing.h"
 
 namespace mortise {
+
 const Part* World::find_part(const std::string& part_name) const {
   for (const Part& part : parts)
     if (part.name == part_name) return &part;
@@ -55,29 +55,6 @@ Snapshot snapshot_of(const World& world) {
   std::sort(snapshot.open_clashes.begin(), snapshot.open_clashes.end(),
             [](const ClashEvent& x, const ClashEvent& y) { return x.clash < y.clash; });
   return snapshot;
-}
-
-void put(World& world, Part& part, const Pose& X_WP, const Decision& by) {
-  part.X_WP = X_WP;
-  rest_guides_of(world, part.id);
-  note_placed(world, part.id.value - 1, by);
-}
-
-void give(World& world, Part& part, UserId holder) {
-  part.holder = holder;
-  part.asked_by = UserId{};
-  part.group = {};
-  part.history.end_move();
-  drop_constraints_of(world, part.id);
-  note_holder(world, part.id.value - 1);
-}
-
-PartPose pose_of(const Part& part) { return {part.id, part.holder, part.X_WP}; }
-
-std::string quoted_name(const World& world, UserId id) {
-  if (!id) return "a user who left long ago";
-  const User* user = world.find(id);
-  return user ? "'" + user->name + "'" : "user " + std::to_string(id.value);
 }
 
 }  // namespace mortise

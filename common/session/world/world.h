@@ -109,16 +109,4 @@ struct World {
 /// The world as participants are told of it.
 Snapshot snapshot_of(const World& world);
 
-/// Checks and applies one request of a user. On success `decision` is what to log. A refused
-/// request changes nothing, and the reply gives the reason in a sentence.
-Reply apply_command(World& world, const Command& command, Decision& decision);
-
-/// Applies a decision without checking rights: join, leave (frees the user's parts), lease end, and
-/// in a replay all others. A join without a user id takes the next one, which is then
-/// users.back().id. With the id of an absent user it brings that user back, or, where
-/// takes_over_id(), gives the id to another user, who inherits nothing. Returns the parts whose
-/// holder or pose changed, by id. A decision that cannot apply (unknown user or part) changes
-/// nothing.
-std::vector<PartPose> apply_decision(World& world, const Decision& decision);
-
 }  // namespace mortise

@@ -1,4 +1,6 @@
 #include "common/broadphase/broad_phase.h"
+#include "common/broadphase/brute_force.h"
+#include "common/broadphase/dynamic_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,9 @@
 #include <cstring>
 #include <numbers>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/hull_gap.h"
-#include "common/ccd/kernels/leaf_discard.h"
+#include "common/ccd/kernels/kernels.h"
 #include "common/geometry/triangle_distance.h"
 #include "tests/support/effort.h"
 #include "tests/unit/ccd/shapes.h"
@@ -200,8 +201,8 @@ int wrongly_discarded(double shrink, int& discarded, int& kept) {
     const Vec3 direction = at.p.normalized();
     if (n % 3 != 0)
       for (int c = 0; c < 3; ++c) reach.n[c] = direction[c];
-    const unsigned near = ccd::discard_kernels().near_pairs(a, b, reach);
-    const unsigned along = ccd::discard_kernels().near_along(a, b, reach);
+    const unsigned near = ccd::best_kernels().discard.near_pairs(a, b, reach);
+    const unsigned along = ccd::best_kernels().discard.near_along(a, b, reach);
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
         const unsigned bit = 1U << (4 * i + j);
@@ -222,9 +223,10 @@ TEST(DiscardKernels, NeverDiscardWhatIsWithinReach) {
 }
 
 TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
-  const ccd::DiscardKernels* wide = ccd::wide_discard_kernels();
-  if (wide == nullptr) GTEST_SKIP() << "no AVX2 here: the portable kernels are the only ones";
-  const ccd::DiscardKernels& portable = ccd::portable_discard_kernels();
+  if (ccd::wide_kernels() == nullptr)
+    GTEST_SKIP() << "no AVX2 here: the portable kernels are the only ones";
+  const ccd::DiscardKernels& wide = ccd::wide_kernels()->discard;
+  const ccd::DiscardKernels& portable = ccd::portable_kernels().discard;
   std::mt19937_64 random(64);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (int n = 0; n < 2000; ++n) {
@@ -238,15 +240,15 @@ TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
       placement.origin[i] = unit(random);
     }
     ccd::FourTriangles a, b, twin;
-    wide->place(corners, 1 + n % 4, placement, a);
+    wide.place(corners, 1 + n % 4, placement, a);
     portable.place(corners, 1 + n % 4, placement, twin);
     EXPECT_EQ(std::memcmp(&a, &twin, sizeof a), 0);
-    wide->move(corners, 1 + n % 4, placement.origin, b);
+    wide.move(corners, 1 + n % 4, placement.origin, b);
     portable.move(corners, 1 + n % 4, placement.origin, twin);
     EXPECT_EQ(std::memcmp(&b, &twin, sizeof b), 0);
     const ccd::Reach reach{3.0 * std::abs(unit(random)), {at.p.x() / 9, at.p.y() / 9, 0.1}};
-    EXPECT_EQ(wide->near_pairs(a, b, reach), portable.near_pairs(a, b, reach));
-    EXPECT_EQ(wide->near_along(a, b, reach), portable.near_along(a, b, reach));
+    EXPECT_EQ(wide.near_pairs(a, b, reach), portable.near_pairs(a, b, reach));
+    EXPECT_EQ(wide.near_along(a, b, reach), portable.near_along(a, b, reach));
   }
 }
 

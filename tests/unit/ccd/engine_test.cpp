@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "common/ccd/kernels/box_advance.h"
+#include "common/ccd/distance.h"
 #include "common/ccd/pair_motion.h"
 #include "common/geometry/triangle_distance.h"
 #include "tests/unit/ccd/shapes.h"
@@ -31,10 +31,10 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 TEST(BoxKernels, WideAndPortableAgreeToTheLastBit) {
-  const ccd::BoxKernels* wide = ccd::wide_box_kernels();
-  if (wide == nullptr)
+  if (ccd::wide_kernels() == nullptr)
     GTEST_SKIP() << "this machine has no AVX2: the portable kernel is the only one";
-  const ccd::BoxKernels& portable = ccd::portable_box_kernels();
+  const ccd::BoxKernels& wide = ccd::wide_kernels()->box;
+  const ccd::BoxKernels& portable = ccd::portable_kernels().box;
   std::mt19937_64 random(41);
   const SolidPtr a = solid(sphere_mesh(3, 40, 20)), b = solid(sphere_mesh(5, 30, 20));
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -58,13 +58,13 @@ TEST(BoxKernels, WideAndPortableAgreeToTheLastBit) {
     const ccd::EightBoxes eight_b{node_b.local_center, node_b.half};
     alignas(32) float x[8], y[8];
     const auto same = [&] { return std::memcmp(x, y, sizeof x) == 0; };
-    wide->advance_a(frame, eight_a, one_b, x), portable.advance_a(frame, eight_a, one_b, y);
+    wide.advance_a(frame, eight_a, one_b, x), portable.advance_a(frame, eight_a, one_b, y);
     EXPECT_TRUE(same());
-    wide->advance_b(frame, one_a, eight_b, x), portable.advance_b(frame, one_a, eight_b, y);
+    wide.advance_b(frame, one_a, eight_b, x), portable.advance_b(frame, one_a, eight_b, y);
     EXPECT_TRUE(same());
-    wide->lower_a(frame, eight_a, one_b, x), portable.lower_a(frame, eight_a, one_b, y);
+    wide.lower_a(frame, eight_a, one_b, x), portable.lower_a(frame, eight_a, one_b, y);
     EXPECT_TRUE(same());
-    wide->lower_b(frame, one_a, eight_b, x), portable.lower_b(frame, one_a, eight_b, y);
+    wide.lower_b(frame, one_a, eight_b, x), portable.lower_b(frame, one_a, eight_b, y);
     EXPECT_TRUE(same());
   }
 }
@@ -92,7 +92,7 @@ TEST(BoxKernels, GrantNoTimeThatIsNotFree) {
       one.half[c] = tree_b.nodes[0].half[c][slot];
     }
     alignas(32) float dt[8];
-    ccd::box_kernels().advance_a(motion.frame(0.0), {node.local_center, node.half}, one, dt);
+    ccd::best_kernels().box.advance_a(motion.frame(0.0), {node.local_center, node.half}, one, dt);
     for (int k = 0; k < node.count; ++k) {
       const Box box_a = tree_a.child_box(node, k), box_b = tree_b.child_box(tree_b.nodes[0], slot);
       const auto meet = [&](double until_dt) {

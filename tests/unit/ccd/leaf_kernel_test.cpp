@@ -97,7 +97,7 @@ TEST(LeafKernel, GrantsNoTimeThatIsNotFree) {
     ccd::PairMotion motion(*c.a.solid, c.motion_a, *c.b.solid, c.motion_b);
     const double t0 = 0.7 * unit(random);
     motion.at(t0);
-    const ccd::LeafAnswer answer = ccd::portable_leaf_kernel()(
+    const ccd::LeafAnswer answer = ccd::portable_kernels().leaf(
         motion.leaf_frame(kTarget_mm, kSuspect_mm), c.a.corners(), c.b.corners(), 1.0);
     suspects += answer.suspects != 0;
     if (!(answer.dt > 0.0)) continue;
@@ -118,7 +118,7 @@ TEST(LeafKernel, GrantsNoTimeThatIsNotFree) {
 }
 
 TEST(LeafKernel, WideAndPortableAgreeToTheLastBit) {
-  if (ccd::wide_leaf_kernel() == nullptr)
+  if (ccd::wide_kernels() == nullptr)
     GTEST_SKIP() << "this machine has no AVX2: the portable kernel is the only one";
   std::mt19937_64 random(72);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -129,8 +129,9 @@ TEST(LeafKernel, WideAndPortableAgreeToTheLastBit) {
     const ccd::LeafFrame& frame = motion.leaf_frame(kTarget_mm, kSuspect_mm);
     const double enough = unit(random);
     const ccd::LeafAnswer x =
-        ccd::portable_leaf_kernel()(frame, c.a.corners(), c.b.corners(), enough);
-    const ccd::LeafAnswer y = ccd::wide_leaf_kernel()(frame, c.a.corners(), c.b.corners(), enough);
+        ccd::portable_kernels().leaf(frame, c.a.corners(), c.b.corners(), enough);
+    const ccd::LeafAnswer y =
+        ccd::wide_kernels()->leaf(frame, c.a.corners(), c.b.corners(), enough);
     ASSERT_EQ(std::memcmp(&x.dt, &y.dt, sizeof x.dt), 0) << i;
     ASSERT_EQ(x.suspects, y.suspects) << i;
   }
@@ -143,8 +144,8 @@ TEST(LeafKernel, NamesWhatCrossesOrTouchesAsSuspect) {
     const Case c = random_case(random, i);
     ccd::PairMotion motion(*c.a.solid, c.motion_a, *c.b.solid, c.motion_b);
     motion.at(0.0);
-    const ccd::LeafAnswer answer = ccd::leaf_kernel()(motion.leaf_frame(kSuspect_mm, kSuspect_mm),
-                                                      c.a.corners(), c.b.corners(), 1.0);
+    const ccd::LeafAnswer answer = ccd::best_kernels().leaf(
+        motion.leaf_frame(kSuspect_mm, kSuspect_mm), c.a.corners(), c.b.corners(), 1.0);
     if (distance_at(c, 0.0, 0) > 0.0) continue;
     ++crossing;
     ASSERT_NE(answer.suspects, 0U) << i;
@@ -171,7 +172,8 @@ TEST(LeafKernel, WhatTurnsAwayIsFreeUntilTheHorizon) {
   const auto ask = [&](const Leaf& moving, const Leaf& still) {
     ccd::PairMotion motion(*moving.solid, move({}, turned), *still.solid, still_motion({}));
     motion.at(0.0);
-    return ccd::leaf_kernel()(motion.leaf_frame(0.0, 0.0), moving.corners(), still.corners(), 1.0)
+    return ccd::best_kernels()
+        .leaf(motion.leaf_frame(0.0, 0.0), moving.corners(), still.corners(), 1.0)
         .dt;
   };
   EXPECT_GE(ask(a, b), 1.0) << "the shaft turns in the bore";

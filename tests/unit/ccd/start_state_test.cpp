@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/ccd/start_state.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {

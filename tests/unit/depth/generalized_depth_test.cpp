@@ -1,4 +1,5 @@
 #include "common/depth/generalized_depth.h"
+#include "common/ccd/distance.h"
 
 #include <gtest/gtest.h>
 

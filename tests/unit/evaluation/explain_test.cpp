@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "common/evaluation/explain.h"
 #include "common/evaluation/verdict.h"
 
 namespace mortise {

@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/io/scenario/play_file.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/io/scenario/scene_load.h"
 #include "common/math/rotation.h"
+#include "common/session/world/commands.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise {
 namespace {

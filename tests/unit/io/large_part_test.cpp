@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/scenario/scene_load.h"

@@ -4,6 +4,8 @@
 
 #include "common/io/log/replay.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/commands.h"
+#include "common/session/world/decisions.h"
 #include "tests/support/small_scenarios.h"
 #include "tests/unit/io/log_samples.h"
 

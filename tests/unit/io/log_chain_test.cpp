@@ -9,6 +9,7 @@
 #include <fstream>
 #include <future>
 
+#include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 #include "common/session/memory/session_state.h"
 #include "tests/network/program.h"

@@ -10,6 +10,8 @@
 #include "common/io/scenario/open_scene.h"
 #include "common/math/rotation.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/commands.h"
+#include "common/session/world/decisions.h"
 
 /// Sessions in which several users do everything that a session lets them do, at random: pushes,
 /// groups, undo, redo, reset, hand-over, constraints, reviews, and changes of policy, tolerances,

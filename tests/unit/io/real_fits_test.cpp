@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/io/scenario/open_scene.h"
 #include "common/session/tick/step.h"

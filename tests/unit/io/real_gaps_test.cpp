@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/scenario/scene_load.h"

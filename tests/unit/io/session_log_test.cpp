@@ -1,4 +1,6 @@
 #include "common/io/log/session_log.h"
+#include "common/io/log/session_log_read.h"
+#include "common/io/log/session_log_recover.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "client/client.h"
+#include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log.h"
 #include "common/io/scenario/scenario_file.h"

@@ -1,4 +1,6 @@
 #include "server/restore.h"
+#include "common/io/log/log_chain.h"
+#include "common/session/world/decisions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "server/standby.h"
+#include "common/session/world/decisions.h"
 
 #include <gtest/gtest.h>
 

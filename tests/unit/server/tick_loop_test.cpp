@@ -1,4 +1,5 @@
 #include "server/tick_loop.h"
+#include "common/session/world/decisions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // What a tick may spend on first contact: who has none is told as not examined and goes no farther
 // than it is proven clear, and gets there later.
 #include "common/session/tick/contact_budget.h"
+#include "common/ccd/distance.h"
 
 #include <gtest/gtest.h>
 

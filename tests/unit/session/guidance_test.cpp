@@ -1,5 +1,6 @@
 // Guided assembly: constraints take freedom away, nothing else.
 #include "common/session/guide/guidance.h"
+#include "common/session/guide/snap_candidates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "common/session/memory/motion_budget.h"
+#include "common/ccd/distance.h"
 
 #include <gtest/gtest.h>
 

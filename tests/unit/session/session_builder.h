@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "common/session/tick/step.h"
+#include "common/session/world/commands.h"
+#include "common/session/world/decisions.h"
 #include "common/session/world/world.h"
 
 namespace mortise {

@@ -8,6 +8,7 @@
 
 #include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise {
 namespace {

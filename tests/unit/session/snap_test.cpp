@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/geometry/recognition/recognition.h"
+#include "common/session/guide/snap_candidates.h"
 #include "tests/unit/session/guided_pair.h"
 #include "tests/unit/session/report_digest.h"
 

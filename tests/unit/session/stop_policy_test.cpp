@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "tests/unit/session/session_builder.h"
 

@@ -8,6 +8,8 @@
 #include "common/io/scenario/open_scene.h"
 #include "common/session/tick/judgement.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/commands.h"
+#include "common/session/world/decisions.h"
 
 namespace mortise {
 namespace {

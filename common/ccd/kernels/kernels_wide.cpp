@@ -1,20 +1,21 @@
 // Compiled for AVX2 where the compiler knows it (see CMakeLists.txt); entered only where the
 // machine has it.
-#include "common/ccd/kernels/leaf_kernel.h"
+#include "common/ccd/kernels/kernels.h"
 
 namespace mortise::ccd {
 
 #ifdef __AVX2__
 namespace {
-#include "common/ccd/kernels/leaf_kernel_impl.h"
+#include "common/ccd/kernels/kernels_impl.h"
 }  // namespace
 
-LeafKernel wide_leaf_kernel() {
+const Kernels* wide_kernels() {
+  static constexpr Kernels kernels = kKernels;
   static const bool supported = __builtin_cpu_supports("avx2") != 0;
-  return supported ? advance : nullptr;
+  return supported ? &kernels : nullptr;
 }
 #else
-LeafKernel wide_leaf_kernel() { return nullptr; }
+const Kernels* wide_kernels() { return nullptr; }
 #endif
 
 }  // namespace mortise::ccd

@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+
+#include "common/evaluation/verdict.h"
+#include "common/geometry/surface_band.h"
+
+namespace mortise {
+
+/// One sentence that explains the class: overlap, thresholds, what determined each, margin.
+/// Micrometres.
+struct ExplainInput {
+  CollisionClass collision_class = CollisionClass::kNone;
+  Interval delta_mm;
+  Thresholds thresholds;
+  double margin_mm = 0.0;
+  const SurfaceBand::Face* face_a = nullptr;
+  const SurfaceBand::Face* face_b = nullptr;
+  Interval tolerance_mm;  ///< sum of both
+  DeviationGrade grade = DeviationGrade::kUnknown;
+  double probability = 0.0;
+  bool no_inside = false;
+  bool capped = false;
+  std::string fit;  ///< "Ø20 H7/g6" when the pair has one
+};
+std::string explain(const ExplainInput& input);
+
+}  // namespace mortise

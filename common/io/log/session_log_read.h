@@ -1,0 +1,47 @@
+#pragma once
+#include <functional>
+#include <map>
+
+#include "common/io/log/session_log.h"
+
+namespace mortise {
+
+/// Ticks that happened and are missing in the log.
+struct LogGap {
+  std::uint64_t after_tick = 0;  ///< last tick before it (0: none)
+  std::uint64_t until_tick = 0;  ///< first tick after it (0: none)
+  std::string reason;
+};
+
+/// A log that was read. It is readable without its tail; `complete` says whether the end was found.
+/// Poses of ticks are rounded, for viewing; a replay computes the exact ones.
+struct SessionLog {
+  std::string session, scenario_name, scenario_yaml, engine_version, build_fingerprint;
+  std::vector<std::pair<std::string, TriangleMesh>> meshes;
+  std::vector<std::string> mesh_of_part;
+  std::vector<ImportReport> imports;  ///< by part index; may be empty
+  std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
+  std::optional<LogBegin> begin;      ///< set: the file continues another one
+  LogChain chain;
+  /// By tick; with those at the front of later files, but without that of `begin`.
+  std::vector<Checkpoint> checkpoints;
+  bool complete = false;
+  std::vector<LogGap> gaps;  ///< in the order of the log
+  /// Sums of /statistics by name: what was examined and skipped, without lost parts of the log.
+  std::map<std::string, std::uint64_t> counted;
+  std::vector<std::string> notes;  ///< what was lost or skipped, in words
+};
+
+/// Server clock of the last tick of a log, or of the tick that it begins with; 0: it has neither.
+std::int64_t last_time_ns(const SessionLog& log);
+
+struct LogReading {
+  /// Keep the bytes of so many last checkpoints; of all others only the hash.
+  std::size_t keep_checkpoints = 0;
+  /// Called with the number of files read so far, the current one in part.
+  std::function<void(double files)> on_progress = {};
+};
+Result<SessionLog> read_session_log(const std::filesystem::path& file,
+                                    const LogReading& reading = {});
+
+}  // namespace mortise
