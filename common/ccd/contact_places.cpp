@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/check.h"
 #include "common/ccd/pair_tree.h"
 
 namespace mortise {
@@ -149,6 +150,8 @@ class Places {
 }  // namespace
 
 std::vector<ContactPlace> contact_places(const ContactPlacesQuery& query, CcdScratch& scratch) {
+  MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
+  MORTISE_CHECK(query.reach_mm >= 0.0 && query.most_pairs > 0, "a reach must be a length");
   const Solid &a = *query.a, &b = *query.b;
   PairMotion motion(a, still_motion(query.X_WA), b, still_motion(query.X_WB));
   CcdWork work;

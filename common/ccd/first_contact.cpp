@@ -219,7 +219,11 @@ void check(const ContactQuery& query) {
 
 FirstContact first_contact(const ContactQuery& query, CcdScratch& scratch) {
   check(query);
-  return Query(query, scratch).answer();
+  const FirstContact found = Query(query, scratch).answer();
+  MORTISE_CHECK(found.state != ContactState::kUnknown && 0.0 <= found.t_clear &&
+                    found.t_clear <= found.t_contact && found.t_contact <= 1.0,
+                "a query has an answer, its times are ordered");
+  return found;
 }
 
 // Slow, simple, and no proof of freedom: what first_contact is compared with.

@@ -16,8 +16,6 @@ constexpr double kGoodPlane = 1e-13;
 // How far a plane may be off, as a share of the gap; where boxes cannot tell more, to spare time.
 constexpr double kSlack = 1e-3;
 
-constexpr int kStack = 1024;
-
 struct Heights {
   float value[Bvh::kWidth];
 };
@@ -132,7 +130,7 @@ Support support(const Bvh& bvh, const Vec3& n, const Support& hint, double slack
     std::int32_t child;
     float height;
   };
-  Waiting stack[kStack];
+  Waiting stack[Bvh::kMostWaiting];
   int top = 0;
   stack[top++] = {bvh.root, std::numeric_limits<float>::infinity()};
   while (top > 0) {
@@ -165,7 +163,7 @@ Support support(const Bvh& bvh, const Vec3& n, const Support& hint, double slack
 bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list, int most) {
   const Walk walk(bvh, n);
   list.count = 0;
-  std::int32_t stack[kStack];
+  std::int32_t stack[Bvh::kMostWaiting];
   int top = 0;
   stack[top++] = bvh.root;
   while (top > 0) {

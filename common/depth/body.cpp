@@ -9,9 +9,6 @@
 namespace mortise {
 namespace {
 
-// Sharp neighbours kept of one triangle; a corner of a machine part has two or three.
-constexpr std::size_t kMostSharp = 8;
-
 // Deeper than this many times the largest offset the nearest face less that offset is good enough.
 constexpr double kDeepReaches = 20.0;
 
@@ -136,11 +133,19 @@ bool Body::stands_for(std::uint16_t face, const Vec3& x) const {
 }
 
 std::span<const std::uint32_t> Body::sharp_neighbours(std::uint32_t triangle) const {
+  const BodyIndex::Range& range = sharp_range(triangle);
+  return {index_->sharp.data() + range.first, range.count};
+}
+
+std::uint32_t Body::sharp_left_out(std::uint32_t triangle) const {
+  return sharp_range(triangle).left_out;
+}
+
+const BodyIndex::Range& Body::sharp_range(std::uint32_t triangle) const {
   std::vector<BodyIndex::Range>& ranges = index_->sharp_range;
   if (ranges.empty()) ranges.resize(mesh->triangles.size());
   if (ranges[triangle].first == Topology::kNone) find_sharp_neighbours(triangle);
-  const BodyIndex::Range& range = ranges[triangle];
-  return {index_->sharp.data() + range.first, range.count};
+  return ranges[triangle];
 }
 
 void Body::find_sharp_neighbours(std::uint32_t triangle) const {
@@ -149,6 +154,7 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
   const Vec3 n = normal(triangle);
   const double size = (mesh->corner(triangle, 1) - mesh->corner(triangle, 0)).norm();
   const auto first = static_cast<std::uint32_t>(sharp.size());
+  std::uint32_t left_out = 0;
   const auto bounds = [&](std::uint32_t t, const Vec3& normal_t) {
     // A declared surface itself: corners of a face around a bore may lie above the planes of its
     // triangles.
@@ -174,8 +180,7 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
     }
     return false;
   };
-  for (int corner = 0; corner < 3; ++corner) {
-    const std::uint32_t point = mesh->triangles[triangle][corner];
+  for (const std::uint32_t point : mesh->triangles[triangle]) {
     std::uint32_t t = triangle;
     for (std::size_t guard = 0; guard < mesh->triangles.size(); ++guard) {
       int k = 0;
@@ -193,11 +198,15 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       if (own != nullptr && other != nullptr &&
           own->outward_normal(x).dot(other->outward_normal(x)) > std::cos(kSharpEdge_rad))
         continue;
-      if (sharp.size() - first < kMostSharp && bounds(t, normal_t) && !known(t, normal_t))
+      if (!bounds(t, normal_t) || known(t, normal_t)) continue;
+      if (sharp.size() - first < kMostSharp)
         sharp.push_back(t);
+      else
+        ++left_out;
     }
   }
-  index_->sharp_range[triangle] = {first, static_cast<std::uint32_t>(sharp.size() - first)};
+  index_->sharp_range[triangle] = {first, static_cast<std::uint32_t>(sharp.size() - first),
+                                   left_out};
 }
 
 const std::vector<std::array<std::int32_t, Bvh::kWidth>>& Body::face_of_child() const {

@@ -49,7 +49,12 @@ struct Body {
   /// Triangles around the corners of one that meet its plane at a sharp convex angle and have all
   /// of it on their material side: where they move inward they cut it, where outward they extend
   /// it. One of each declared surface or plane.
+  /// At most kMostSharp of them; see sharp_left_out().
   std::span<const std::uint32_t> sharp_neighbours(std::uint32_t triangle) const;
+  /// Upper bound of how many more there are. Those that cut the triangle may be left out, as more
+  /// of it is kept; those that extend it may not.
+  std::uint32_t sharp_left_out(std::uint32_t triangle) const;
+  static constexpr std::size_t kMostSharp = 8;  ///< a corner of a machine part has two or three
 
   /// The declared surface that stands for a face in a layer; null: its triangles do.
   static const Surface* surface_of(const SurfaceBand::Face& face, Layer layer);
@@ -68,6 +73,7 @@ struct Body {
  private:
   double depth_by_triangle(const Vec3& x, std::uint32_t triangle,
                            const std::array<Vec3, 3>& corners, bool in_mesh, Layer layer) const;
+  const BodyIndex::Range& sharp_range(std::uint32_t triangle) const;
   void find_sharp_neighbours(std::uint32_t triangle) const;
   std::int32_t find_faces_of_children(std::int32_t child) const;
   std::shared_ptr<BodyIndex> index_;
@@ -77,7 +83,7 @@ struct Body {
 /// frame).
 template <class Visit>
 void for_each_triangle_in(const Bvh& bvh, const Box& box, Visit&& visit) {
-  std::array<std::int32_t, 512> stack;
+  std::array<std::int32_t, Bvh::kMostWaiting> stack;
   int top = 0;
   stack[top++] = bvh.root;
   const Vec3 center = box.center() - bvh.origin, half = box.half();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
@@ -56,6 +58,8 @@ std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& ban
       held.asked = shelf.asked;
       return held.index;
     }
+  MORTISE_CHECK(valid(band, solid.mesh().triangles.size()),
+                "a band has a face for every triangle of its part");
   if (shelf.held.size() >= kMostHeld)
     shelf.held.erase(std::min_element(
         shelf.held.begin(), shelf.held.end(),

@@ -24,6 +24,7 @@ struct FaceEnds {
 struct BodyIndex {
   struct Range {
     std::uint32_t first = Topology::kNone, count = 0;
+    std::uint32_t left_out = 0;  ///< more neighbours that meet the triangle sharply, at most
   };
   std::vector<Range> sharp_range;                                    ///< by triangle, into `sharp`
   std::vector<std::uint32_t> sharp;                                  ///< see Body::sharp_neighbours

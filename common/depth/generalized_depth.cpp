@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/depth/region_report.h"
 #include "common/math/rotation.h"
 
@@ -353,7 +354,13 @@ class Separation {
 
 GeneralizedDepth generalized_depth(const GpdQuery& query, CcdScratch& scratch) {
   if (query.region == nullptr) return {};
-  return Separation(query, scratch).run();
+  MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b) && query.t_contact >= 0.0 &&
+                    query.t_contact <= 1.0,
+                "a separation is sought along valid motions from a time of the tick");
+  const GeneralizedDepth depth = Separation(query, scratch).run();
+  MORTISE_CHECK(depth.gpd_mm.lo >= 0.0 && depth.gpd_mm.ordered(),
+                "a depth has its lower end first");
+  return depth;
 }
 
 }  // namespace mortise

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/check.h"
 #include "common/depth/candidates.h"
 #include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
@@ -376,15 +377,50 @@ class Overlap {
   OverlapResult result_;
 };
 
+void check(const OverlapQuery& query) {
+  MORTISE_CHECK(query.a != nullptr && query.b != nullptr && query.band_a != nullptr &&
+                    query.band_b != nullptr,
+                "a query needs two solids and their bands");
+  MORTISE_CHECK(valid(query.X_WA) && valid(query.X_WB),
+                "poses must be finite and their quaternions unit");
+  MORTISE_CHECK(query.accuracy_mm >= 0.0 && query.accuracy_mm <= kLargestCoordinate_mm,
+                "an accuracy must be a length");
+}
+
+// What OverlapRegion promises.
+void check(const OverlapQuery& query, const OverlapResult& result) {
+  const std::size_t triangles_a = query.a->mesh().triangles.size();
+  const std::size_t triangles_b = query.b->mesh().triangles.size();
+  double deepest_mm = std::numeric_limits<double>::infinity();
+  for (const OverlapRegion& region : result.regions) {
+    MORTISE_CHECK(
+        region.delta_mm.ordered() && region.certain_mm.ordered() && region.possible_mm.ordered(),
+        "a bracket has its lower end first");
+    MORTISE_CHECK(region.delta_mm.lo <= deepest_mm, "the deepest region comes first");
+    MORTISE_CHECK(
+        region.point_W.allFinite() && region.normal_W.allFinite() && region.witness_W.allFinite(),
+        "places of a region are finite");
+    MORTISE_CHECK(region.triangle_a < triangles_a && region.deciding_triangle_a < triangles_a &&
+                      region.triangle_b < triangles_b && region.deciding_triangle_b < triangles_b,
+                  "triangles of a region are those of the parts");
+    deepest_mm = region.delta_mm.lo;
+  }
+}
+
 }  // namespace
 
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
-  if (b_comes_first(query)) return mirrored(Overlap(mirrored(query)).run());
-  return Overlap(query).run();
+  check(query);
+  const OverlapResult result =
+      b_comes_first(query) ? mirrored(Overlap(mirrored(query)).run()) : Overlap(query).run();
+  check(query, result);
+  return result;
 }
 
 bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,
                    std::uint64_t& evaluations) {
+  check(query);
+  MORTISE_CHECK(place.role == 0 || place.role == 1, "a place is of one of the parts");
   const PairFrame pair(query);
   Sample sample;
   sample.role = place.role;

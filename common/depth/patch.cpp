@@ -6,12 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
 // Weight of a length around a cylinder against one along it when a piece is halved: only the former
 // makes it bulge.
 constexpr double kAroundWeight = 8.0;
+
+// Corners of a polygon that a patch holds at both ends of an interval.
+constexpr std::size_t kMostCorners = Patch::kMost / 2;
 
 double clamp01(double x) { return std::clamp(x, 0.0, 1.0); }
 
@@ -126,6 +131,35 @@ Polygon cut_by(const Cut& cut, const Polygon& polygon) {
   return left;
 }
 
+// True: something is cut off. The hull of the result contains what the cuts leave; a cut that would
+// leave more corners than a patch holds is left undone.
+bool cut_polygon(std::span<const Cut> cuts, Polygon& polygon) {
+  bool was_cut = false;
+  for (const Cut& cut : cuts) {
+    bool any = false;
+    for (const Vec3& x : polygon) any |= cut.outside(x) > 0.0;
+    if (!any) continue;
+    Polygon left = cut_by(cut, polygon);
+    if (left.size() > kMostCorners) continue;
+    was_cut = true;
+    polygon = std::move(left);
+    if (polygon.empty()) break;
+  }
+  return was_cut;
+}
+
+// The hull over a hollow rim is wider than the face: the middle is moved back behind the cuts.
+Vec3 middle_of(const Polygon& polygon, std::span<const Cut> cuts) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : polygon) middle += x;
+  middle /= static_cast<double>(polygon.size());
+  for (const Cut& cut : cuts) {
+    const double outside = cut.outside(middle);
+    if (outside > 0.0) middle -= outside * cut.outward(middle);
+  }
+  return middle;
+}
+
 // A cone about a shaft's own axis, moved inward, ends the shaft at one height all around.
 void shorten(const Surface& shaft, double radius_mm, const Cut& cut, double& lo, double& hi) {
   constexpr double kSame = 1e-9;
@@ -141,6 +175,18 @@ void shorten(const Surface& shaft, double radius_mm, const Cut& cut, double& lo,
   const double z = from.dot(shaft.axis) + (along > 0.0 ? height : -height);
   (along > 0.0 ? lo : hi) = along > 0.0 ? std::max(lo, z) : std::min(hi, z);
   if (lo > hi) lo = hi = z;
+}
+
+void set_curvature(const Surface& surface, const Piece& piece, const Vec3& middle,
+                   PieceShape& shape) {
+  const double width = width_around(surface, piece);
+  const double bend = surface.curvature_bound(middle);
+  shape.turn_rad = width * bend;
+  // Interpolation error of the map to the surface over the piece: h^2/8 over a line, r^2/2 with
+  // r = h/sqrt(3) over a triangle; the margins cover the pieces' own distance from the surface.
+  const bool line = surface.kind == SurfaceKind::kCylinder;
+  shape.bulge_mm = (line ? 1.05 / 8.0 : 1.1 / 6.0) * bend * width * width;
+  shape.bulges_outward = !surface.inward;
 }
 
 // The surface over the piece, moved by its offset, between two circles. Its foot
@@ -183,11 +229,17 @@ void add_circles(const PieceShape& shape, const Pose& X_KS, Patch& patch) {
   }
 }
 
+// A hull without some of its corners would prove what is not so.
+void check_corners(const PieceShape& shape) {
+  MORTISE_CHECK(shape.polygon.size() <= kMostCorners, "a patch holds all corners of its piece");
+}
+
 // All of a patch but its points and circles, at a pose.
 Patch placed(const PieceShape& shape, const Pose& X_KS) {
   Patch patch;
   patch.turn_rad = shape.turn_rad;
   patch.bulge_mm = shape.bulge_mm;
+  patch.spread_mm = shape.spread_mm;
   patch.bulges_outward = shape.bulges_outward;
   patch.center = X_KS * shape.center;
   patch.normal = X_KS.q * shape.normal;
@@ -214,36 +266,11 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
   shape.polygon.reserve(2 * piece.corners.size());
   for (const Vec3& corner : piece.corners) shape.polygon.push_back(lifted(corner));
   const std::vector<Cut> cuts = cuts_of(s, layer, piece.triangle);
-  bool was_cut = false;
-  for (const Cut& cut : cuts) {
-    bool any = false;
-    for (const Vec3& x : shape.polygon) any |= cut.outside(x) > 0.0;
-    if (!any) continue;
-    was_cut = true;
-    shape.polygon = cut_by(cut, shape.polygon);
-    if (shape.polygon.empty()) return shape;
-  }
-  if (was_cut) {
-    middle = Vec3::Zero();
-    for (const Vec3& x : shape.polygon) middle += x;
-    middle /= static_cast<double>(shape.polygon.size());
-    // The hull over a hollow rim is wider than the face.
-    for (const Cut& cut : cuts) {
-      const double outside = cut.outside(middle);
-      if (outside > 0.0) middle -= outside * cut.outward(middle);
-    }
-  }
+  const bool was_cut = cut_polygon(cuts, shape.polygon);
+  if (shape.polygon.empty()) return shape;
+  if (was_cut) middle = middle_of(shape.polygon, cuts);
   shape.normal = surface != nullptr ? surface->outward_normal(middle) : lifted.triangle_normal();
-  if (surface != nullptr) {
-    const double width = width_around(*surface, piece);
-    const double bend = surface->curvature_bound(middle);
-    shape.turn_rad = width * bend;
-    // Interpolation error of the map to the surface over the piece: h^2/8 over a line, r^2/2 with
-    // r = h/sqrt(3) over a triangle; the margins cover the pieces' own distance from the surface.
-    const bool line = surface->kind == SurfaceKind::kCylinder;
-    shape.bulge_mm = (line ? 1.05 / 8.0 : 1.1 / 6.0) * bend * width * width;
-    shape.bulges_outward = !surface->inward;
-  }
+  if (surface != nullptr) set_curvature(*surface, piece, middle, shape);
   shape.center = (was_cut && surface == nullptr ? middle : lifted(middle)) +
                  std::max(0.0, offset) * shape.normal;
   const auto add_plus = [&](const Vec3& normal, double offset_mm, bool flat) {
@@ -255,10 +282,14 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
     shape.on_cylinder = true;
     shape.axis = surface->axis;
   }
-  if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0)
+  if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0) {
     for (const std::uint32_t t : s.sharp_neighbours(piece.triangle))
       add_plus(s.normal(t), Body::offset_of(s.face(t), layer),
                Body::surface_of(s.face(t), layer) == nullptr);
+    // Of those that are left out neither offset nor direction is known.
+    shape.spread_mm =
+        s.sharp_left_out(piece.triangle) * s.largest_offset_mm[static_cast<int>(layer)];
+  }
   if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, cuts, shape);
   shape.rim_count = rims_of(s, layer, piece.triangle, shape.rims);
   return shape;
@@ -343,8 +374,8 @@ Vec3 on_layer(const Body& s, Layer layer, std::uint32_t triangle, const Vec3& x)
 
 Patch make_patch(const PieceShape& shape, const Pose& X_KS) {
   Patch patch = placed(shape, X_KS);
-  for (const Vec3& x : shape.polygon)
-    if (patch.count < Patch::kMost) patch.points[patch.count++] = X_KS * x;
+  check_corners(shape);
+  for (const Vec3& x : shape.polygon) patch.points[patch.count++] = X_KS * x;
   add_circles(shape, X_KS, patch);
   finish(patch);
   return patch;
@@ -357,15 +388,15 @@ Patch make_patch(const Body& s, Layer layer, const Piece& piece, const Pose& X_K
 Patch make_swept_patch(const PieceShape& shape, const Pose& X_KS0, const Pose& X_KS1,
                        double spread_mm, double turn_rad) {
   Patch patch = placed(shape, X_KS0);
+  check_corners(shape);
   for (const Vec3& x : shape.polygon) {
-    if (patch.count + 2 > Patch::kMost) break;
     patch.points[patch.count++] = X_KS0 * x;
     patch.points[patch.count++] = X_KS1 * x;
   }
   add_circles(shape, X_KS0, patch);
   add_circles(shape, X_KS1, patch);
   for (int i = 0; i < shape.rim_count; ++i) patch.rims_to[i] = shape.rims[i].seen_from(X_KS1);
-  patch.spread_mm = spread_mm;
+  patch.spread_mm += spread_mm;
   patch.turn_rad += turn_rad;
   patch.motion_turn_rad = turn_rad;
   finish(patch);

@@ -22,8 +22,9 @@ struct Patch {
   double turn_rad = 0.0;       ///< the normal turns by no more than this over the patch
   double bulge_mm = 0.0;       ///< the surface leaves the hull by no more than this ...
   bool bulges_outward = true;  ///< ... outward (convex face) or inward (concave)
-  double spread_mm = 0.0;      ///< and in any direction (paths of rotation)
-  std::array<Plus, 9> plus;    ///< outward offsets: of the face, and of sharp neighbours
+  double spread_mm = 0.0;      ///< and in any direction (paths of rotation, neighbours left out)
+  static constexpr int kMostPlus = 1 + static_cast<int>(Body::kMostSharp);
+  std::array<Plus, kMostPlus> plus;  ///< outward offsets: of the face, and of sharp neighbours
   int plus_count = 0;
   bool plus_is_own = false;      ///< plus[0] is of the face itself
   double motion_turn_rad = 0.0;  ///< part of turn_rad that is owed to a motion
@@ -73,9 +74,9 @@ struct Piece {
 struct PieceShape {
   std::vector<Vec3> polygon;
   Vec3 center = Vec3::Zero(), normal = Vec3::Zero(), axis = Vec3::Zero();
-  double turn_rad = 0.0, bulge_mm = 0.0;
+  double turn_rad = 0.0, bulge_mm = 0.0, spread_mm = 0.0;
   bool bulges_outward = true, plus_is_own = false, on_cylinder = false;
-  std::array<Patch::Plus, 9> plus;
+  std::array<Patch::Plus, Patch::kMostPlus> plus;
   int plus_count = 0;
   std::array<Patch::Circle, 2> circles;
   int circle_count = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/base/check.h"
 #include "common/depth/facing_tangent.h"
 #include "common/depth/known_depth.h"
 #include "common/depth/wall_mean.h"
@@ -378,6 +379,9 @@ class Neighbourhood {
 }  // namespace
 
 bool depth_at_most(const DepthProof& proof, const Patch& patch, ProofScratch& scratch) {
+  MORTISE_CHECK(proof.s != nullptr && proof.k != nullptr && patch.count > 0 &&
+                    !std::isnan(proof.limit_mm) && std::isfinite(patch.radius_mm),
+                "a proof is of a patch of one part and a depth in the other");
   const double most = proof.limit_mm + proof.rounding_mm;
   // depth_in may say too little; this deep inside the mesh no offset reaches.
   if (proof.at_center.depth_mm - proof.k->largest_offset_mm[static_cast<int>(proof.layer)] > most)

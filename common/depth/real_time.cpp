@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/check.h"
 #include "common/depth/candidates.h"
 #include "common/depth/exclusion.h"
 #include "common/depth/interference_search.h"
@@ -461,7 +462,13 @@ class InterferenceSearch {
 }  // namespace
 
 RealTime first_interference(const SweptQuery& query, Layer layer) {
-  return InterferenceSearch(query, layer).run();
+  MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
+                "poses must be finite and unit, rotations at most half a turn");
+  MORTISE_CHECK(query.accuracy_mm > 0.0, "how closely a time is known must be a length");
+  const RealTime answer = InterferenceSearch(query, layer).run();
+  MORTISE_CHECK(0.0 <= answer.t_free && answer.t_free <= answer.t_real && answer.t_real <= 1.0,
+                "times of a tick are ordered");
+  return answer;
 }
 
 RealTime find_real_time(const SweptQuery& query, CcdScratch&) {

@@ -5,14 +5,13 @@
 #include <deque>
 #include <numeric>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
 // More separate spots than this between two parts are one contact of two rough surfaces.
 constexpr std::size_t kMostRegions = 16;
-
-// Shells of one part that are asked whether they lie inside the other.
-constexpr std::size_t kMostShells = 256;
 
 // Points asked in a brief look at the meshes.
 constexpr std::uint64_t kBriefWork = 3000;
@@ -292,7 +291,10 @@ class Grouping {
 
 Regions find_regions(const RegionsQuery& query, SearchScratch& scratch,
                      std::uint64_t& evaluations) {
-  return Grouping(query, scratch, evaluations).run();
+  Regions regions = Grouping(query, scratch, evaluations).run();
+  for (const Root& root : regions.roots)
+    MORTISE_CHECK(root.region < regions.count, "every root belongs to a region");
+  return regions;
 }
 
 std::vector<ContainedShell> contained_shells(const PairFrame& pair, std::uint64_t& evaluations) {
@@ -301,16 +303,14 @@ std::vector<ContainedShell> contained_shells(const PairFrame& pair, std::uint64_
     const Body& k = pair.k(role);
     if (!k.has_inside) continue;
     const Body& s = pair.s(role);
-    const std::vector<std::uint32_t>& shells = s.solid->shells();
-    for (std::size_t i = 0; i < std::min(shells.size(), kMostShells); ++i) {
+    for (const std::uint32_t shell : s.solid->shells()) {
       const Vec3 x =
-          pair.X_KS[role] * ((s.mesh->corner(shells[i], 0) + s.mesh->corner(shells[i], 1) +
-                              s.mesh->corner(shells[i], 2)) /
-                             3.0);
+          pair.X_KS[role] *
+          ((s.mesh->corner(shell, 0) + s.mesh->corner(shell, 1) + s.mesh->corner(shell, 2)) / 3.0);
       const Box& box = k.solid->bounds();
       if ((x.array() < box.lo.array()).any() || (x.array() > box.hi.array()).any()) continue;
       ++evaluations;
-      if (nearest_surface(*k.solid, x).depth_mm > pair.touch_mm) found.push_back({role, shells[i]});
+      if (nearest_surface(*k.solid, x).depth_mm > pair.touch_mm) found.push_back({role, shell});
     }
   }
   return found;

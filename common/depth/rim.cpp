@@ -54,7 +54,8 @@ Seen seen(const Rim& rim, const Surface& round) {
 }  // namespace
 
 int rims_of(const Body& s, Layer layer, std::uint32_t triangle, std::span<Rim> rims) {
-  if (layer == Layer::kMesh) return 0;
+  // A face that is left out may move outward.
+  if (layer == Layer::kMesh || s.sharp_left_out(triangle) > 0) return 0;
   std::size_t count = 0;
   const auto is_widened = [&](std::uint32_t but) {
     // By a third face that moves outward the triangle goes on past the rim.

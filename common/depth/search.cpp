@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
@@ -332,7 +334,10 @@ Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t tri
 
 std::vector<Bracket> search_depth(const SearchQuery& query, SearchScratch& scratch,
                                   std::uint64_t& evaluations) {
-  return Search(query, scratch, evaluations).run();
+  std::vector<Bracket> brackets = Search(query, scratch, evaluations).run();
+  for (const Bracket& bracket : brackets)
+    MORTISE_CHECK(bracket.best.depth_mm <= bracket.hi_mm, "a bracket has its lower end first");
+  return brackets;
 }
 
 RootAnswer ask_root(const RootQuery& query, SearchScratch& scratch, std::uint64_t& evaluations) {

@@ -85,7 +85,7 @@ Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
     double distance2;
     std::int32_t child;
   };
-  std::array<Item, 512> stack;
+  std::array<Item, Bvh::kMostWaiting> stack;
   int top = 0;
   stack[top++] = {0.0, bvh.root};
   const Vec3 local = x - bvh.origin;
@@ -199,7 +199,7 @@ void cross_triangle(const Vec3& x, const Vec3& d, const Vec3& a, const Vec3& b, 
 }
 
 Crossings cross_all(const Bvh& bvh, const Vec3& x, const Vec3& d) {
-  std::array<std::int32_t, 512> stack;
+  std::array<std::int32_t, Bvh::kMostWaiting> stack;
   int top = 0;
   stack[top++] = bvh.root;
   const Vec3 local = x - bvh.origin;

@@ -1,5 +1,7 @@
 #include "common/geometry/surface_band.h"
 
+#include <algorithm>
+
 namespace mortise {
 
 Interval SurfaceBand::offset_mm(std::uint32_t triangle, const Vec3& x) const {
@@ -10,10 +12,15 @@ Interval SurfaceBand::offset_mm(std::uint32_t triangle, const Vec3& x) const {
   return Interval{outward - face.doubt_mm(), outward + face.doubt_mm()} + face.tolerance_mm;
 }
 
-SurfaceBand nominal_band() {
-  SurfaceBand band;
-  band.faces.emplace_back();
-  return band;
+bool valid(const SurfaceBand& band, std::size_t triangles) {
+  const std::vector<std::uint16_t>& face_of = band.face_of_triangle;
+  return !band.faces.empty() && (face_of.empty() || face_of.size() == triangles) &&
+         std::all_of(face_of.begin(), face_of.end(),
+                     [&](std::uint16_t face) { return face < band.faces.size(); }) &&
+         std::all_of(band.faces.begin(), band.faces.end(), [](const SurfaceBand::Face& face) {
+           return face.deviation_mm.lo <= face.deviation_mm.hi &&
+                  face.tolerance_mm.lo <= face.tolerance_mm.hi;
+         });
 }
 
 }  // namespace mortise

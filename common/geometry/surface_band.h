@@ -29,7 +29,8 @@ struct SurfaceBand {
     }
     std::string tolerance_source;  ///< "Ø20 H7", "profile 0.1", "" when nothing is declared
   };
-  std::vector<Face> faces;  ///< faces[0] is the rest of the part
+  /// faces[0] is the rest of the part. A band that nothing was said of: one face without offsets.
+  std::vector<Face> faces = std::vector<Face>(1);
   std::vector<std::uint16_t>
       face_of_triangle;  ///< index into faces; empty: all triangles are faces[0]
 
@@ -47,6 +48,10 @@ struct SurfaceBand {
 };
 
 /// A band without offsets: the mesh is taken for the surface.
-SurfaceBand nominal_band();
+inline SurfaceBand nominal_band() { return {}; }
+
+/// faces is not empty, face_of_triangle names one of them for each triangle or is empty, every
+/// offset is an interval: lo <= hi.
+bool valid(const SurfaceBand& band, std::size_t triangles);
 
 }  // namespace mortise

@@ -11,6 +11,8 @@ struct Interval {
   double width() const { return hi - lo; }
   double middle() const { return 0.5 * (lo + hi); }
   bool contains(double x) const { return lo <= x && x <= hi; }
+  /// lo <= hi; no number is neither.
+  bool ordered() const { return lo <= hi; }
   friend Interval operator+(Interval a, Interval b) { return {a.lo + b.lo, a.hi + b.hi}; }
   friend Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
   friend bool operator==(const Interval&, const Interval&) = default;

@@ -18,8 +18,7 @@ using bvh::BoxedTriangle;
 using bvh::for_each;
 using bvh::Range;
 
-// From this depth on sets are halved, whatever their boxes: no tree becomes deeper than about
-// twelve more, which bounds the stacks of those who walk it.
+// From this depth on sets are halved, whatever their boxes: see Bvh::kMostLevels.
 constexpr int kDeepestByArea = 32;
 
 // A set of this size is built by one thread. The same at any number of threads: it decides the
@@ -234,6 +233,7 @@ class Builder {
   std::int32_t subtree(const Range& range, int depth, std::vector<Bvh::Node>& nodes,
                        std::vector<Bvh::Leaf>& leaves) {
     if (range.size() <= Bvh::kLeafSize) return leaf(range, leaves);
+    MORTISE_CHECK(depth < Bvh::kMostLevels, "a tree is no deeper than those who walk it expect");
     const Opened children = opened(range, depth);
     const auto me = static_cast<std::int32_t>(nodes.size());
     nodes.push_back(node_of(range, children));

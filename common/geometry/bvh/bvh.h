@@ -13,6 +13,11 @@ namespace mortise {
 struct Bvh {
   static constexpr int kWidth = 8;
   static constexpr int kLeafSize = 4;
+  /// No leaf is below more nodes than this: after 32 levels sets are halved, three times a level,
+  /// which leaves eleven levels of 2^32 triangles.
+  static constexpr int kMostLevels = 32 + 11;
+  /// Children that wait at most while a tree is walked depth first: each level leaves all but one.
+  static constexpr int kMostWaiting = kMostLevels * (kWidth - 1) + 1;
 
   struct alignas(32) Node {
     /// Box centres *relative to Bvh::origin* (axes of the part), mm; unused lanes repeat lane 0.

@@ -23,6 +23,8 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
     const Part& part = world.parts[i];
     MORTISE_CHECK(part.id.value == i + 1 && part.solid,
                   "parts are numbered from 1 and have a mesh");
+    MORTISE_CHECK(valid(part.band, part.solid->mesh().triangles.size()),
+                  "a band has a face for every triangle of its part");
     state->parts[i].growth_mm = std::max(0.0, part.band.largest_offset_mm);
     state->rehash.push_back(i);
     if (!part.moving) continue;
@@ -33,6 +35,8 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
   for (const auto& [pair, rule] : world.pair_rules) {
     const auto grow = [&](PartId part, const std::shared_ptr<const SurfaceBand>& band) {
       if (!band || !world.find(part)) return;
+      MORTISE_CHECK(valid(*band, world.find(part)->solid->mesh().triangles.size()),
+                    "a band has a face for every triangle of its part");
       double& growth = state->parts[part.value - 1].growth_mm;
       growth = std::max(growth, band->largest_offset_mm);
     };

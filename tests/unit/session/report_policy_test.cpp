@@ -35,6 +35,28 @@ void expect_balanced(const StepCounters& c) {
   EXPECT_EQ(c.contacts.in, c.pairs.out);
 }
 
+// Nothing is said of its surface: the mesh is taken for it.
+TEST_F(ReportPolicy, APartThatNobodyGaveABandIsItsMesh) {
+  session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
+  const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
+  for (Part& part : session.world.parts) part.band = SurfaceBand{};
+  session.grab(ada, peg);
+  const StepReport report = tick({session.push(ada, peg, Vec3(5, 0, 0))});
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].verdict.collision_class, CollisionClass::kReal);
+  EXPECT_NEAR(report.events[0].verdict.delta_mm.lo, 1.0, 1e-3);
+}
+
+TEST_F(ReportPolicy, ABandOfAnotherPartIsRefusedWithASentence) {
+  session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
+  const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
+  session.world.find(peg)->band.face_of_triangle = {0, 0, 1};
+  EXPECT_DEATH(tick({}), "a band has a face for every triangle");
+  session.world.find(peg)->band.face_of_triangle.clear();
+  session.world.find(peg)->band.faces.clear();
+  EXPECT_DEATH(tick({}), "a band has a face for every triangle");
+}
+
 TEST_F(ReportPolicy, PegIntoWallBeginsChangesEnds) {
   session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
   const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
