@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Every numerical constant of the library: value, unit, reason, reader. Nothing else holds a bare
-/// number.
+/// Numerical constants that several rooms share: value, unit, reason, reader. A constant of one
+/// file stands in that file, with its reason.
 namespace mortise {
 
 /// Unit round-off of double, 2^-53.

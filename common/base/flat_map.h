@@ -30,7 +30,7 @@ class FlatMap {
 
  private:
   static constexpr std::uint32_t kFree = 0xffffffffU;
-  static constexpr std::size_t kFirstSize = 64;
+  static constexpr std::size_t kFirstSize = 64;  // a power of two
   struct Slot {
     std::uint32_t index = kFree;
     Value value{};

@@ -16,6 +16,7 @@ using namespace ccd;
 constexpr double kFacing = 1e-3;
 // Directions that differ by less are one (chord of unit normals).
 constexpr double kSameDirection = 1e-9;
+// Ways around a normal along which the outermost place is kept.
 constexpr int kOutermost = 8;
 
 Vec3 face_normal(const Triangle& t) { return (t[1] - t[0]).cross(t[2] - t[0]).stableNormalized(); }

@@ -19,7 +19,9 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr int kOpenedBeforePlane = 64;
 // Where the nearest pair of an earlier answer is known, the plane across it costs little.
 constexpr int kOpenedBeforeSeedPlane = 24;
+// Steps to the plane between the hulls: mostly a few; nearly parallel faces would take many.
 constexpr int kPlaneSteps = 32;
+// Leaves over the plane across a seed, on either side: more of them are not cheap any more.
 constexpr int kMostSeedLeaves = 64;
 
 // The nearest pair of triangles below a limit. Boxes, planes and the leaf kernels only discard:
@@ -178,7 +180,7 @@ class Search {
     return true;
   }
 
-  static constexpr int kMostPlanePairs = 1 << 14;
+  static constexpr int kMostPlanePairs = 1 << 14;  // more are left to the trees, which prune
 
   PairMotion& motion_;
   const Bvh& a_;

@@ -19,6 +19,7 @@ using namespace ccd;
 // end costs a step or none. Rounding still lies below the difference.
 constexpr double kContactAt = 0.25;
 constexpr double kAim = 0.03125;
+// The finest accuracy, in roundings of the pair: contact and aim are then 14 of them apart.
 constexpr double kRoundingsPerAccuracy = 64.0;
 // Ticks: for less than this a pair is not put back, but looked at by its exact distance.
 constexpr double kWorthWhile = 0.03;

@@ -25,7 +25,7 @@ struct LeafHeight {
   std::int32_t leaf;
   double along_mm;  ///< of its farthest corner
 };
-inline constexpr int kMostLeaves = 512;
+inline constexpr int kMostLeaves = 512;  ///< 8 KiB on the stack; more are left to the trees
 struct LeafList {
   std::array<LeafHeight, kMostLeaves> leaf;
   int count = 0;

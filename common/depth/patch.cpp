@@ -97,7 +97,7 @@ using Polygon = std::vector<Vec3>;
 
 // Where the segment from a kept point to a cut one leaves the cut's inside, no earlier.
 Vec3 crossing(const Cut& cut, Vec3 kept, Vec3 gone) {
-  constexpr int kHalvings = 30;
+  constexpr int kHalvings = 30;  // to 1e-9 of the segment
   for (int i = 0; i < kHalvings; ++i) {
     const Vec3 middle = 0.5 * (kept + gone);
     (cut.outside(middle) <= 0.0 ? kept : gone) = middle;
@@ -162,7 +162,7 @@ Vec3 middle_of(const Polygon& polygon, std::span<const Cut> cuts) {
 
 // A cone about a shaft's own axis, moved inward, ends the shaft at one height all around.
 void shorten(const Surface& shaft, double radius_mm, const Cut& cut, double& lo, double& hi) {
-  constexpr double kSame = 1e-9;
+  constexpr double kSame = 1e-9;  // rad, and share of the radius: one axis but for rounding
   const Surface* cone = cut.surface;
   if (cone == nullptr || cone->kind != SurfaceKind::kCone || cone->inward) return;
   const double along = cone->axis.dot(shaft.axis);

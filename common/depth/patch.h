@@ -15,7 +15,7 @@ struct Patch {
     double offset_mm = 0.0;
     bool flat = false;  ///< of a plane: its normal does not turn over the patch
   };
-  static constexpr int kMost = 32;
+  static constexpr int kMost = 32;  ///< eight planes leave a triangle 11 corners, at two ends
   std::array<Vec3, kMost> points;
   int count = 0;
   Vec3 normal = Vec3::Zero();  ///< outward normal of the surface

@@ -14,8 +14,7 @@ namespace {
 
 // Walls kept for covering others, and facets left open: more means that the patch is too large for
 // this neighbourhood and is better halved.
-constexpr std::size_t kMostWalls = 24;
-constexpr std::size_t kMostOpen = 96;
+constexpr std::size_t kMostWalls = 24, kMostOpen = 96;
 
 // Facets of one hollow corner: normals within 60 degrees of each other.
 constexpr double kSameSide = 0.5;

@@ -13,8 +13,8 @@ constexpr int kRootEvaluations = 24;
 
 // A decided search goes on for this many evaluations per root, so that the numbers in its report
 // are good; the class is known by then.
-// Few roots are large ones, whose deepest points are far from their corners.
 constexpr std::uint64_t kPolishPerRoot = 2, kPolishLeast = 60, kPolishMost = 600;
+// Few roots are large ones, whose deepest points are far from their corners.
 constexpr std::uint64_t kFewRoots = 16, kPolishFew = 200;
 
 // How often the best triangle is cut in four around its best quarter.

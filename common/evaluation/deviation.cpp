@@ -17,6 +17,7 @@ constexpr double kNearOfPlane = 2e-5;
 // A facet turns by less than 120 degrees, so its normal stays within 60 of the true one; a cap
 // whose rim lies on the cylinder stands at 90.
 constexpr double kNormalAgrees = 0.5;
+// Facets of a plane have its normal but for the rounding of the file: 2.6 degrees.
 constexpr double kPlaneNormalAgrees = 0.999;
 // Facets of a round are inclined to its axis as the round is, within a few degrees however coarse
 // they are; the cap at the end of a chamfer, whose rim lies on the cone, is not. 12 degrees.
@@ -182,7 +183,7 @@ class Matcher {
   // Triangles that look like the feature but stand a little too far off: said, since they fall to
   // the rest of the part.
   std::string just_missed() const {
-    constexpr double kALittle = 10.0;
+    constexpr double kALittle = 10.0;  // times what counts as near; beyond, nobody meant them
     std::size_t count = 0;
     double most_mm = 0.0;
     for (const Candidate& c : same_way_) {

@@ -12,6 +12,7 @@
 namespace mortise {
 namespace {
 
+// Steps of a shaft: each has parameters of its own.
 constexpr int kSections = 6;
 
 struct Section {

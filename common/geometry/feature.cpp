@@ -242,7 +242,7 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
 }
 
 bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double limit_mm) const {
-  constexpr int kHalvings = 24;
+  constexpr int kHalvings = 24;  // pieces of 6e-8 of the triangle: what is open then counts as no
   if (std::max({signed_distance_mm(a), signed_distance_mm(b), signed_distance_mm(c)}) > limit_mm)
     return false;
   if (kind == SurfaceKind::kTorus) return signed_distance_range_mm(a, b, c).hi <= limit_mm;

@@ -56,7 +56,7 @@ std::string build_fingerprint() {
 }
 
 std::string version_line(const std::string& program) {
-  constexpr std::size_t kDigits = 12;
+  constexpr std::size_t kDigits = 12;  // enough to tell builds apart, short enough to read out
   return program + ' ' + engine_version() + ", build " + build_fingerprint().substr(0, kDigits);
 }
 

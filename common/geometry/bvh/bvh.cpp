@@ -100,7 +100,7 @@ class Builder {
 
   template <class Body>
   void each_block(const Body& body) {
-    constexpr std::size_t kBlock = 4096;
+    constexpr std::size_t kBlock = 4096;  // triangles: a job of a thread worth handing out
     const std::size_t n = triangles_.size();
     for_each((n + kBlock - 1) / kBlock, threads_, [&](std::size_t block) {
       for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) body(i);

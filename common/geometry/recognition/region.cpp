@@ -27,9 +27,9 @@ constexpr double kShareOfArcHeight = 2e-3;
 // Corners that a region needs: those that fix its surface, and as many more to bear it out.
 constexpr std::size_t kCornersOfCylinder = 8, kCornersOfCone = 10, kCornersOfSphere = 9,
                       kCornersOfTorus = 15;
-// With four circles of corners a torus is told from unlike chamfers only by equal steps.
-constexpr double kEqualSteps = 0.02;
+// With fewer circles of corners than this a torus is told from unlike chamfers only by equal steps.
 constexpr std::size_t kLeastMeridianCircles = 5;
+constexpr double kEqualSteps = 0.02;
 // While a region grows, so many of its corners are enough for a fit.
 constexpr std::size_t kCornersOnTheWay = 1000;
 // A guess this many times as far off as corners may be from all that an earlier one reached would
@@ -228,7 +228,7 @@ bool RegionGrower::starts(Region& region, std::span<const std::uint32_t> seeds) 
 
 // What does not belong to the settled surface goes, until it is settled.
 std::optional<Region> RegionGrower::settled(Region region, std::size_t least) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 4;  // what goes on losing facets is no surface
   for (int round = 0; round < kRounds; ++round) {
     drop_deep_facets(region);
     std::erase_if(region.triangles,

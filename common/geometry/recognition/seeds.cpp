@@ -82,7 +82,7 @@ void SeedFinder::add_triangles(std::uint32_t facet, std::vector<std::uint32_t>& 
 }
 
 void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
-  constexpr std::size_t kMostDirections = 3;
+  constexpr std::size_t kMostDirections = 3;  // across the three edges of a triangle
   std::vector<std::uint32_t> started;
   for (const Crossing& first : crossings(seed)) {
     if (started.size() >= 2 * kMostDirections) break;

@@ -9,10 +9,11 @@
 namespace mortise {
 namespace {
 
-constexpr int kMaxParameters = 7;
+constexpr int kMaxParameters = 7;  // of a torus: point, axis, two radii
 using Vec7 = Eigen::Matrix<double, kMaxParameters, 1>;
 using Mat7 = Eigen::Matrix<double, kMaxParameters, kMaxParameters>;
 
+// From a fair guess a few are enough, as each wins decades; what still goes on then has no minimum.
 constexpr int kIterations = 25;
 // Iterations after which a fit must be near: it wins decades a step.
 constexpr int kPatience = 3;

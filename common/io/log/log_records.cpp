@@ -169,6 +169,8 @@ bool get_decision(ByteReader& in, Decision& decision) {
   return (byte & kHasDetails) == 0 ? in.ok() : get_details(in, decision);
 }
 
+// Bytes that one record takes at least: no count in a damaged file may ask for more memory than its
+// bytes can fill.
 constexpr std::uint64_t kLeastDecision = 4, kLeastIncrement = 4, kLeastPose = 22, kLeastRefused = 4;
 
 }  // namespace

@@ -33,7 +33,7 @@ std::map<std::string, std::string> read_map(ByteReader& in) {
 // there is none. Linear: each byte is looked at once.
 std::uint64_t find_chunk(const InputFile& file, std::uint64_t from,
                          std::vector<std::byte>& buffer) {
-  constexpr std::uint64_t kWindow = 1 << 16;
+  constexpr std::uint64_t kWindow = 1 << 16;  // bytes read at once
   constexpr std::size_t kHeadBytes = mcap::kRecordHeaderBytes + mcap::kChunkFixedBytes + 4;
   for (std::uint64_t start = from; start < file.size(); start += kWindow) {
     const auto window = file.read(start, kWindow + kHeadBytes, buffer);

@@ -23,6 +23,7 @@ constexpr std::size_t kWakeTicks = 64;
 constexpr std::size_t kMostKeptBack = 16;
 // Records that are kept for their memory: more than come between two looks.
 constexpr std::size_t kMostSpare = 16;
+// Ticks that the queue has room for from the beginning, two minutes of a stuck disk.
 constexpr std::size_t kMostReserved = 8192;
 
 void empty(TickRecord& record) {

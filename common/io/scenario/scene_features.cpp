@@ -18,7 +18,7 @@ const Feature* find_recognized(const Recognition& recognition, const std::string
 }
 
 std::string recognized_names(const Recognition& recognition) {
-  constexpr std::size_t kShown = 8;
+  constexpr std::size_t kShown = 8;  // names that a sentence bears
   const auto& features = recognition.features;
   if (features.empty()) return "nothing was recognized in its mesh; add kind: and the surface";
   std::string names = "recognized: ";

@@ -316,7 +316,7 @@ class SceneLoader {
   // A triangle that lies on two declared surfaces (a thin rim, or one round declared twice) belongs
   // to the one it lies closer to, the earlier one on a tie.
   bool share_out_triangles(const Scenario::PartSpec& spec, PartKind& kind) {
-    constexpr double kTie_mm = 1e-9;
+    constexpr double kTie_mm = 1e-9;  // above the rounding of a distance, below any other
     const TriangleMesh& mesh = kind.solid->mesh();
     std::vector<std::int32_t> owner(mesh.triangles.size(), -1);
     const auto off = [&](std::int32_t f, std::uint32_t t) {

@@ -316,7 +316,7 @@ void CheckpointMaker::copy_settled(SessionState& state) {
 }
 
 void CheckpointMaker::copy(std::span<const SessionState::Touched> some) {
-  constexpr std::size_t kAhead = 8;
+  constexpr std::size_t kAhead = 8;  // memos: the time that memory takes to come
   Copies::Block& block = copies_->open;
   for (std::size_t i = 0; i < some.size(); ++i) {
     if (i + kAhead < some.size()) prefetch(*some[i + kAhead].memo);

@@ -147,8 +147,8 @@ class Writer {
     return bytes_.data() + at;
   }
 
-  static constexpr std::size_t kLeastRoom = 256;
-  std::vector<std::byte> bytes_;  ///< with room behind what is written
+  static constexpr std::size_t kLeastRoom = 256;  // bytes; then it doubles
+  std::vector<std::byte> bytes_;                  ///< with room behind what is written
   std::size_t size_ = 0;
 };
 

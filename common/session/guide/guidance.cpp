@@ -16,7 +16,7 @@ GuidanceReply refuse(Refusal refusal, std::string text) {
 }
 
 std::string names_of(const Part& part) {
-  constexpr std::size_t kShown = 8;
+  constexpr std::size_t kShown = 8;  // names that a sentence bears
   if (part.features.empty()) return "it has none";
   std::string names = "it has ";
   for (std::size_t i = 0; i < std::min(kShown, part.features.size()); ++i)

@@ -15,6 +15,7 @@ namespace {
 
 // A direction relation or a point in a plane gives at most four rows.
 constexpr int kMostRows = 4 * static_cast<int>(kMostRelations);
+// Newton's steps from a near start are few; after so many the best of them counts.
 constexpr int kMostSteps = 40;
 
 const char* name_of_kind(SurfaceKind kind) {

@@ -74,7 +74,7 @@ struct GuidedDisplacement {
 /// relations end at the least-squares solution, with residual_mm > 0. At most kMostRelations
 /// relations.
 GuidedDisplacement guided(const GuideQuery& query);
-inline constexpr std::size_t kMostRelations = 8;
+inline constexpr std::size_t kMostRelations = 8;  ///< six leave no freedom
 
 /// The rows over (shift, lever * turn) that must stay zero to first order, at the wanted
 /// displacement.
