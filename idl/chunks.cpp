@@ -23,8 +23,6 @@ std::size_t size_of(const Entry& entry) {
   return Entry::getCdrSerializedSize(entry) + kAlignment_bytes;
 }
 
-std::size_t size_of(std::uint8_t) { return 1 + kAlignment_bytes; }
-
 /// Adds entries to chunks, opening a new one when the last is full.
 template <class Chunk>
 class Cutter {
@@ -38,15 +36,6 @@ class Cutter {
     left_ -= std::min(left_, size);
     used_ = true;
     (chunks_.back().*member)().push_back(std::move(entry));
-  }
-  /// An entry and what belongs to it: both in one chunk.
-  template <class Entry, class Member, class Note, class NoteMember>
-  void add(Entry entry, Member member, Note note, NoteMember note_member) {
-    const std::size_t note_size = size_of(note);
-    if (size_of(entry) + note_size > left_ && used_) open();
-    left_ -= std::min(left_, note_size);
-    (chunks_.back().*note_member)().push_back(std::move(note));
-    add(std::move(entry), member);
   }
   std::vector<Chunk> take() && { return std::move(chunks_); }
 
@@ -100,12 +89,10 @@ std::vector<wire::Snapshot> cut(const Snapshot& snapshot, std::uint64_t serial) 
     cutter.add(to_wire(part), member<wire::PartInfo>(&wire::Snapshot::parts));
   }
   for (const UserInfo& user : snapshot.users) {
-    cutter.add(to_wire(user), member<wire::UserInfo>(&wire::Snapshot::users),
-               static_cast<std::uint8_t>(user.role), member<std::uint8_t>(&wire::Snapshot::roles));
+    cutter.add(to_wire(user), member<wire::UserInfo>(&wire::Snapshot::users));
   }
   for (const ClashEvent& event : snapshot.open_clashes) {
-    cutter.add(to_wire(event), member<wire::ClashEvent>(&wire::Snapshot::open_clashes),
-               note_to_wire(event), member<wire::EventNote>(&wire::Snapshot::clash_notes));
+    cutter.add(to_wire(event), member<wire::ClashEvent>(&wire::Snapshot::open_clashes));
   }
   for (const Decision& decision : snapshot.standing) {
     cutter.add(to_wire(decision), member<wire::Decision>(&wire::Snapshot::standing));
@@ -139,8 +126,7 @@ std::vector<wire::PoseBatch> cut(const PoseBatch& batch, std::uint64_t serial) {
 std::vector<wire::EventBatch> cut(std::span<const ClashEvent> events) {
   Cutter<wire::EventBatch> cutter{wire::EventBatch()};
   for (const ClashEvent& event : events) {
-    cutter.add(to_wire(event), member<wire::ClashEvent>(&wire::EventBatch::events),
-               note_to_wire(event), member<wire::EventNote>(&wire::EventBatch::notes));
+    cutter.add(to_wire(event), member<wire::ClashEvent>(&wire::EventBatch::events));
   }
   return std::move(cutter).take();
 }

@@ -32,10 +32,6 @@ wire::IncrementBatch to_wire(const IncrementBatch& batch);
 /// too long, or not in rising sequence.
 Result<std::vector<ReceivedIncrement>> from_wire(const wire::IncrementBatch& batch);
 
-/// What a command says beside its part, as a request carries it.
-void details_to_wire(const Details& details, wire::Request& out);
-Result<Details> details_from_wire(const wire::Request& request);
-
 struct Request {
   enum class Kind : std::uint8_t {
     kUnknown = 0,
@@ -81,13 +77,8 @@ Result<Decision> from_wire(const wire::Decision& decision);
 wire::Verdict to_wire(const Verdict& verdict);
 Result<Verdict> from_wire(const wire::Verdict& verdict);
 wire::ClashEvent to_wire(const ClashEvent& event);
-wire::EventNote note_to_wire(const ClashEvent& event);
-/// Without cause and review, which come apart.
 Result<ClashEvent> from_wire(const wire::ClashEvent& event);
-/// Adds what the note says.
-Status add_note(const wire::EventNote& note, ClashEvent& event);
-/// All events of a batch that are right; malformed counts the others. A batch whose notes are not
-/// one for each event is malformed as a whole.
+/// All events of a batch that are right; malformed counts the others.
 std::vector<ClashEvent> events_from_wire(const wire::EventBatch& batch, std::uint64_t& malformed);
 
 wire::PartInfo to_wire(const PartInfo& part);

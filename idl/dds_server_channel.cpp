@@ -299,9 +299,9 @@ class DdsServerChannel final : public StandbyChannel {
   /// Who asks to come in is told. Of anything else nobody can be: whose user it names, is not
   /// known.
   void refuse_revoked(const wire::Request& sample, const ClientKey& key) {
-    if (sample.kind() != static_cast<std::uint8_t>(Request::Kind::kJoin)) return;
+    if (sample.join().size() != 1) return;
     publish_join_reply(
-        {key, sample.nonce(), UserId{}, Refusal::kNotAllowed,
+        {key, sample.join()[0].nonce(), UserId{}, Refusal::kNotAllowed,
          identities_->whose(key) + " has been revoked; ask for a new one (mortise keys issue)"});
   }
   void take_requests(ServerInput& input) {
@@ -309,10 +309,9 @@ class DdsServerChannel final : public StandbyChannel {
       Result<Request> request = from_wire(sample);
       if (!request) {
         ++counters_.malformed;
-        if (sample.kind() == static_cast<std::uint8_t>(Request::Kind::kJoin)) {
-          publish_join_reply(
-              {key, sample.nonce(), UserId{}, Refusal::kNotAllowed, request.error().text});
-        }
+        if (sample.join().size() == 1)
+          publish_join_reply({key, sample.join()[0].nonce(), UserId{}, Refusal::kNotAllowed,
+                              request.error().text});
         return;
       }
       switch (request->kind) {

@@ -6,15 +6,28 @@
 
 #include "idl/convert.h"
 
-/// What the halves of the door share; private to convert*.cpp.
+/// What the conversions of convert.cpp are made of; private to it.
 namespace mortise {
 
 inline wire::Triple triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 inline Vec3 vec3(const wire::Triple& t) { return {t[0], t[1], t[2]}; }
-inline wire::Quadruple quadruple(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
-inline Pose pose_of(const wire::Quadruple& q, const wire::Triple& p_mm) {
-  return {Quat(q[3], q[0], q[1], q[2]), vec3(p_mm)};
+inline wire::Pose wire_pose(const Pose& X) {
+  wire::Pose out;
+  out.q({X.q.x(), X.q.y(), X.q.z(), X.q.w()});
+  out.p_mm(triple(X.p));
+  return out;
 }
+inline Pose pose_of(const wire::Pose& in) {
+  const wire::Quadruple& q = in.q();
+  return {Quat(q[3], q[0], q[1], q[2]), vec3(in.p_mm())};
+}
+inline wire::Interval wire_interval(const Interval& interval) {
+  wire::Interval out;
+  out.lo(interval.lo);
+  out.hi(interval.hi);
+  return out;
+}
+inline Interval interval_of(const wire::Interval& in) { return {in.lo(), in.hi()}; }
 
 /// Remembers the first thing that was wrong.
 class Door {
@@ -34,12 +47,13 @@ class Door {
     need(std::all_of(t.begin(), t.end(), [](double x) { return std::abs(x) <= kMaxCoordinate_mm; }),
          field);
   }
-  void pose(const wire::Quadruple& q, const wire::Triple& p_mm, const char* field) {
+  void pose(const wire::Pose& in, const char* field) {
+    const wire::Quadruple& q = in.q();
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     need(std::abs(norm - 1.0) <= kUnitNormAllowance, field);  // false when not finite
-    position(p_mm, field);
+    position(in.p_mm(), field);
   }
-  void interval(double lo, double hi, const char* field) { need(lo <= hi, field); }
+  void interval(const wire::Interval& in, const char* field) { need(in.lo() <= in.hi(), field); }
   void name(const std::string& text, const char* field) {
     need(text_ok(text, kMaxName_bytes), field);
   }
@@ -49,6 +63,11 @@ class Door {
   template <class T>
   void sequence(const std::vector<T>& values, const char* field) {
     need(values.size() <= kMaxSequence, field);
+  }
+
+  template <class T>
+  void at_most_one(const std::vector<T>& values, const char* field) {
+    need(values.size() <= 1, field);
   }
 
   bool open() const { return fault_ == nullptr; }

@@ -50,7 +50,7 @@ endfunction()
 
 set(root ${CMAKE_SOURCE_DIR})
 fuzz_driver(wire RUNS 400000 SOURCES wire_target.cpp ${root}/tests/unit/idl/samples.cpp ${root}/idl/datagram_guard.cpp ${root}/idl/convert.cpp
-  ${root}/idl/convert_scene.cpp ${root}/idl/convert_decision.cpp ${root}/idl/convert_features.cpp ${root}/idl/chunks.cpp
+  ${root}/idl/chunks.cpp
   ${root}/server/tick_bytes.cpp ${root}/common/io/log/log_records.cpp)
 fuzz_driver(inbox RUNS 200000 SOURCES inbox_target.cpp ${root}/server/inbox.cpp ${root}/server/inbox_commands.cpp
   ${root}/server/inbox_increments.cpp ${root}/server/increment_order.cpp ${root}/server/sequence_window.cpp

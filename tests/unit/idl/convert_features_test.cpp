@@ -49,9 +49,9 @@ TEST(Features, AreRefused) {
   EXPECT_FALSE(passes([](F& f) { f.radius_mm(-1.0); }));
   EXPECT_FALSE(passes([](F& f) { f.tube_radius_mm(kNan); }));
   EXPECT_FALSE(passes([](F& f) { f.half_angle_rad(1.6); }));
-  EXPECT_FALSE(passes([](F& f) { f.along_lo_mm(kNan); }));
-  EXPECT_FALSE(passes([](F& f) { f.along_hi_mm(kInf); }));
-  EXPECT_FALSE(passes([](F& f) { f.along_lo_mm(f.along_hi_mm() + 1.0); }));
+  EXPECT_FALSE(passes([](F& f) { f.along_mm().lo(kNan); }));
+  EXPECT_FALSE(passes([](F& f) { f.along_mm().hi(kInf); }));
+  EXPECT_FALSE(passes([](F& f) { f.along_mm().lo(f.along_mm().hi() + 1.0); }));
   EXPECT_FALSE(passes([](F& f) { f.middle_mm()[2] = -kInf; }));
   EXPECT_FALSE(passes([](F& f) { f.name(""); }));
   EXPECT_FALSE(passes([](F& f) { f.name("a\tb"); }));

@@ -110,33 +110,58 @@ TEST(Convert, RequestsGoRound) {
   command.command = {UserId{3}, PartId{4}, 5, CommandKind::kUndo};
   const Result<Request> back = from_wire(to_wire(command));
   ASSERT_TRUE(back);
+  EXPECT_EQ(back->kind, Request::Kind::kCommand);
   EXPECT_EQ(back->command.user, UserId{3});
   EXPECT_EQ(back->command.part, PartId{4});
   EXPECT_EQ(back->command.seq, 5u);
   EXPECT_EQ(back->command.kind, CommandKind::kUndo);
+  Request leave;
+  leave.kind = Request::Kind::kLeave;
+  leave.command.user = UserId{3};
+  const Result<Request> gone = from_wire(to_wire(leave));
+  ASSERT_TRUE(gone);
+  EXPECT_EQ(gone->kind, Request::Kind::kLeave);
+  EXPECT_EQ(gone->command.user, UserId{3});
+  Request snapshot;
+  snapshot.kind = Request::Kind::kSnapshot;
+  const Result<Request> wanted = from_wire(to_wire(snapshot));
+  ASSERT_TRUE(wanted);
+  EXPECT_EQ(wanted->kind, Request::Kind::kSnapshot);
 }
 
 TEST(Convert, RequestsAreRefused) {
   const auto passes = [](auto change) {
     wire::Request request;
-    request.kind(3);
-    request.user(1);
-    request.command(1);
+    wire::Command command;
+    command.user(1);
+    command.kind(1);
+    request.command().push_back(command);
     change(request);
     return static_cast<bool>(from_wire(request));
   };
   EXPECT_TRUE(passes([](wire::Request&) {}));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.user(0); }));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.command(0); }));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.command(kCommandKindCount); }));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.kind(0); }));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.kind(5); }));
-  EXPECT_FALSE(passes([](wire::Request& r) { r.kind(255); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command()[0].user(0); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command()[0].kind(0); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command()[0].kind(kCommandKindCount); }));
+  // Exactly one thing is asked for.
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command().clear(); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.command().push_back(r.command()[0]); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.snapshot(true); }));
+  EXPECT_FALSE(passes([](wire::Request& r) { r.leave().emplace_back().user(1); }));
+  const auto leaves = [&](std::uint32_t user) {
+    return passes([&](wire::Request& r) {
+      r.command().clear();
+      r.leave().emplace_back().user(user);
+    });
+  };
+  EXPECT_TRUE(leaves(1));
+  EXPECT_FALSE(leaves(0));
   const auto joins = [&](const std::string& name, const std::string& role) {
     return passes([&](wire::Request& r) {
-      r.kind(1);
-      r.name(name);
-      r.role(role);
+      r.command().clear();
+      r.join().emplace_back();
+      r.join()[0].name(name);
+      r.join()[0].role(role);
     });
   };
   EXPECT_TRUE(joins("anna", "designer"));
@@ -213,13 +238,13 @@ TEST(Convert, PosesAreRefused) {
     return static_cast<bool>(from_wire(batch));
   };
   EXPECT_TRUE(passes([](wire::PartPose&) {}));
-  EXPECT_TRUE(passes([](wire::PartPose& p) { p.q({0, 0, 0, 1.0 + 0.9e-6}); }));
-  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({0, 0, 0, 1.0 + 1.1e-6}); }));
-  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({0, 0, 0, 0}); }));
-  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({kNan, 0, 0, 1}); }));
-  EXPECT_FALSE(passes([](wire::PartPose& p) { p.q({kInf, 0, 0, 1}); }));
-  EXPECT_FALSE(passes([](wire::PartPose& p) { p.p_mm({0, kNan, 0}); }));
-  EXPECT_FALSE(passes([](wire::PartPose& p) { p.p_mm({0, 0, -1.1e9}); }));
+  EXPECT_TRUE(passes([](wire::PartPose& p) { p.pose().q({0, 0, 0, 1.0 + 0.9e-6}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.pose().q({0, 0, 0, 1.0 + 1.1e-6}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.pose().q({0, 0, 0, 0}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.pose().q({kNan, 0, 0, 1}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.pose().q({kInf, 0, 0, 1}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.pose().p_mm({0, kNan, 0}); }));
+  EXPECT_FALSE(passes([](wire::PartPose& p) { p.pose().p_mm({0, 0, -1.1e9}); }));
   EXPECT_FALSE(passes([](wire::PartPose& p) { p.part(0); }));
 }
 
@@ -228,6 +253,13 @@ TEST(Convert, EventsGoRound) {
   const Result<ClashEvent> got = from_wire(to_wire(sent));
   ASSERT_TRUE(got) << got.error().text;
   test::expect_same(*got, sent);
+}
+
+wire::Interval interval(double lo, double hi) {
+  wire::Interval made;
+  made.lo(lo);
+  made.hi(hi);
+  return made;
 }
 
 TEST(Convert, EventsAreRefused) {
@@ -253,11 +285,14 @@ TEST(Convert, EventsAreRefused) {
   EXPECT_TRUE(passes([](E& e) { e.t_real(kInf); }));
   EXPECT_FALSE(passes([](E& e) { e.begin_tick(e.tick() + 1); }));
   EXPECT_FALSE(passes([](E& e) { e.worst_class(4); }));
-  EXPECT_FALSE(passes([](E& e) { e.worst_delta_lo_mm(kNan); }));
+  EXPECT_FALSE(passes([](E& e) { e.worst_delta_mm().lo(kNan); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().collision_class(4); }));
-  EXPECT_FALSE(passes([](E& e) { e.verdict().delta_and_gpd_mm({2, 1, 0, 0}); }));
-  EXPECT_FALSE(passes([](E& e) { e.verdict().delta_and_gpd_mm({0, 0, kNan, 0}); }));
-  EXPECT_TRUE(passes([](E& e) { e.verdict().delta_and_gpd_mm({-kInf, kInf, 0, kInf}); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().delta_mm(interval(2, 1)); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().gpd_mm(interval(kNan, 0)); }));
+  EXPECT_TRUE(passes([](E& e) { e.verdict().delta_mm(interval(-kInf, kInf)); }));
+  EXPECT_FALSE(passes([](E& e) { e.cause(kDecisionKindCount); }));
+  EXPECT_FALSE(passes([](E& e) { e.review().status(kReviewStatusCount); }));
+  EXPECT_FALSE(passes([](E& e) { e.review().comment("a\nb"); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().probability(-0.1); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().probability(kNan); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().fake_below_mm(kNan); }));
