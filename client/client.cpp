@@ -102,6 +102,7 @@ ClientUpdate Client::poll() {
   for (const RefusedIncrement& refused : input.refused) apply_refusal(refused, update);
   // Snapshots after them: what they say is of the same tick or later.
   for (const Decision& decision : input.decisions) apply_decision(decision, update);
+  for (const StandingChange& change : input.standing) update.standing |= standing_.take(change);
   // Events before snapshots: a snapshot that only repeats them must not hide them.
   collect_events(input.events);
   apply_events(update);
@@ -144,6 +145,7 @@ void Client::forget_server() {
   }
   for (auto& [id, part] : parts_) part.tick = 0;  // another server counts anew
   features_.clear();
+  standing_.expect_another_server();
   pending_.clear();
   held_snapshot_.reset();
   event_seq_ = known_event_seq_ = stale_tick_ = 0;
@@ -204,12 +206,12 @@ void Client::apply_refusal(const RefusedIncrement& refused, ClientUpdate& update
   if (refused.reason == Refusal::kUnknownUser) user->in_doubt = true;
 }
 
-void Client::apply_scene(const Snapshot& snapshot) {
+void Client::apply_scene(const Snapshot& snapshot, ClientUpdate& update) {
   session_ = snapshot.session;
   policy_ = snapshot.policy;
   tick_rate_hz_ = snapshot.tick_rate_hz;
   session_users_ = snapshot.users;
-  standing_ = snapshot.standing;
+  update.standing |= standing_.take(snapshot);
   for (const UserInfo& info : snapshot.users) doubt(info);
   std::map<PartId, KnownPart> parts;
   for (const PartInfo& info : snapshot.parts) {
@@ -253,10 +255,10 @@ void Client::offer_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
   requested_at_ns_.reset();  // answered
   if (have_snapshot_ && snapshot.event_seq < event_seq_) {
     ++statistics_.snapshots_stale;  // of its clashes; its poses are compared by tick
-    apply_scene(snapshot);
+    apply_scene(snapshot, update);
     return;
   }
-  apply_scene(snapshot);
+  apply_scene(snapshot, update);
   if (!have_snapshot_) {
     apply_snapshot(snapshot, update);
   } else if (snapshot.event_seq > event_seq_) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "client/known_features.h"
+#include "client/known_standing.h"
 #include "client/unacknowledged.h"
 #include "common/messages/channel.h"
 
@@ -48,6 +49,7 @@ struct ClientUpdate {
   std::vector<ClashEvent> events;         ///< in order of seq, without gap and repeat
   std::vector<Reply> replies;             ///< to our users
   std::vector<Decision> decisions;        ///< of the server about all users, in order
+  bool standing = false;                  ///< standing() may be another list
   std::vector<RefusedIncrement> refused;  ///< of our users
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here
@@ -146,8 +148,9 @@ class Client {
   const std::map<PartId, KnownPart>& parts() const { return parts_; }
   /// All users that the session knows, present or not, with their last role.
   const std::vector<UserInfo>& users() const { return session_users_; }
-  /// Changes of policy, tolerances and exclusions that hold, constraints, and unanswered asks.
-  const std::vector<Decision>& standing() const { return standing_; }
+  /// The decisions in force, as the session tells them: policy, tolerances, exclusions, constraints
+  /// and hand-over requests without an answer.
+  const std::vector<Decision>& standing() const { return standing_.decisions(); }
   const std::map<ClashId, ClashEvent>& open_clashes() const { return open_clashes_; }
   /// The features that constraints can name. Arrives soon after the first snapshot, and once or
   /// twice more while the server still searches meshes.
@@ -175,7 +178,6 @@ class Client {
   void forget_user(UserId id);
   /// If one of our users is absent, or its id belongs to another user now, it has to join again.
   void doubt(const UserInfo& who);
-  void let_go(UserId user, PartId part);
   LocalUserState* own_user(UserId id);
   void forget_server();
   void apply_join(const JoinReply& reply, ClientUpdate& update);
@@ -183,7 +185,7 @@ class Client {
   void apply_refusal(const RefusedIncrement& refused, ClientUpdate& update);
   void apply_snapshot(const Snapshot& snapshot, ClientUpdate& update);
   void offer_snapshot(const Snapshot& snapshot, ClientUpdate& update);
-  void apply_scene(const Snapshot& snapshot);
+  void apply_scene(const Snapshot& snapshot, ClientUpdate& update);
   void apply_poses(const PoseBatch& batch, ClientUpdate& update);
   void collect_events(const std::vector<ClashEvent>& events);
   void apply_events(ClientUpdate& update);
@@ -201,7 +203,7 @@ class Client {
   std::map<PartId, KnownPart> parts_;
   KnownFeatures features_;
   std::vector<UserInfo> session_users_;
-  std::vector<Decision> standing_;
+  KnownStanding standing_;
   std::map<ClashId, ClashEvent> open_clashes_;
   std::map<std::uint64_t, ClashEvent> pending_;  ///< events beyond a gap, by seq
   std::optional<Snapshot> held_snapshot_;        ///< ahead of the events, which may still come

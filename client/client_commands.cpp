@@ -26,20 +26,6 @@ Details of_text(const std::string& text) {
   return details;
 }
 
-bool is_exclusion(Decision::Kind kind) {
-  return kind == Decision::Kind::kSetExclusion || kind == Decision::Kind::kDropExclusion;
-}
-
-// Do both speak of the same rule, so that the later one holds?
-bool same_rule(const Decision& x, const Decision& y) {
-  const Details &a = x.details, &b = y.details;
-  if (is_exclusion(x.kind) && is_exclusion(y.kind))
-    return std::minmax(x.part, a.other_part) == std::minmax(y.part, b.other_part);
-  return x.kind == y.kind && x.part == y.part && a.other_part == b.other_part &&
-         a.feature == b.feature && a.other_feature == b.other_feature &&
-         a.constraint_id == b.constraint_id;
-}
-
 }  // namespace
 
 std::uint64_t Client::command(LocalUser index, CommandKind kind, PartId part, Details details) {
@@ -139,16 +125,7 @@ UserInfo& Client::known_user(UserId id) {
   return session_users_.back();
 }
 
-// What was asked for a part that changes hands, and what guided it, is over.
-void Client::let_go(UserId user, PartId part) {
-  std::erase_if(standing_, [&](const Decision& decision) {
-    const bool of_part = part ? decision.part == part : decision.user == user;
-    return of_part && (decision.kind == Decision::Kind::kAskHandOver ||
-                       decision.kind == Decision::Kind::kAddConstraint);
-  });
-}
-
-// Somebody else has the id now: what it stands for in clashes and rules is nobody's.
+// Somebody else has the id now: what it stands for in clashes is nobody's.
 void Client::forget_user(UserId id) {
   const auto forget = [id](UserId& by) {
     if (by == id) by = UserId{};
@@ -157,7 +134,6 @@ void Client::forget_user(UserId id) {
     forget(event.user);
     forget(event.review.user);
   }
-  for (Decision& rule : standing_) forget(rule.user);
 }
 
 void Client::doubt(const UserInfo& who) {
@@ -166,7 +142,6 @@ void Client::doubt(const UserInfo& who) {
 }
 
 void Client::apply_decision(const Decision& decision, ClientUpdate& update) {
-  const Details& details = decision.details;
   switch (decision.kind) {
     case Decision::Kind::kJoin: {
       if (takes_over_id(decision)) forget_user(decision.user);
@@ -180,36 +155,9 @@ void Client::apply_decision(const Decision& decision, ClientUpdate& update) {
     case Decision::Kind::kLeave:
     case Decision::Kind::kLivelinessLost:
       known_user(decision.user).present = false;
-      let_go(decision.user, PartId{});
-      break;
-    case Decision::Kind::kRelease:
-    case Decision::Kind::kLeaseEnd:
-    case Decision::Kind::kHandOver:
-      let_go(decision.user, decision.part);
-      for (const PartId part : details.parts) let_go(decision.user, part);
-      break;
-    case Decision::Kind::kDecline:
-    case Decision::Kind::kAskEnd:
-      std::erase_if(standing_, [&](const Decision& ask) {
-        return ask.kind == Decision::Kind::kAskHandOver && ask.part == decision.part;
-      });
-      break;
-    case Decision::Kind::kDropConstraint:
-      std::erase_if(standing_, [&](const Decision& added) {
-        return added.kind == Decision::Kind::kAddConstraint &&
-               added.details.constraint_id == details.constraint_id;
-      });
       break;
     case Decision::Kind::kSetPolicy:
-      policy_ = details.text;
-      [[fallthrough]];
-    case Decision::Kind::kSetTolerance:
-    case Decision::Kind::kSetExclusion:
-    case Decision::Kind::kDropExclusion:
-    case Decision::Kind::kAskHandOver:
-    case Decision::Kind::kAddConstraint:
-      std::erase_if(standing_, [&](const Decision& old) { return same_rule(old, decision); });
-      standing_.push_back(decision);
+      policy_ = decision.details.text;
       break;
     default:
       break;

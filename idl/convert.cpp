@@ -230,6 +230,20 @@ Result<Decision> from_wire(const wire::Decision& in) {
       static_cast<Role>(in.role()),           std::move(*details)};
 }
 
+wire::StandingChange to_wire(const StandingChange& change) {
+  wire::StandingChange out;
+  out.tick(change.tick);
+  out.holds(change.holds);
+  out.decision(to_wire(change.decision));
+  return out;
+}
+
+Result<StandingChange> from_wire(const wire::StandingChange& in) {
+  Result<Decision> decision = from_wire(in.decision());
+  if (!decision) return decision.error();
+  return StandingChange{in.tick(), in.holds(), std::move(*decision)};
+}
+
 // ---- requests and answers
 
 wire::Request to_wire(const Request& request) {
@@ -323,9 +337,11 @@ Result<RefusedIncrement> from_wire(const wire::RefusedIncrement& in) {
 
 wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
                       std::span<const RefusedIncrement> refused,
-                      std::span<const Decision> decisions) {
+                      std::span<const Decision> decisions,
+                      std::span<const StandingChange> standing) {
   wire::Answers out;
   for (const Decision& decision : decisions) out.decisions().push_back(to_wire(decision));
+  for (const StandingChange& change : standing) out.standing().push_back(to_wire(change));
   for (const JoinReply& reply : joins) {
     wire::JoinReply& entry = out.joins().emplace_back();
     entry.client(clip(reply.client, kMaxName_bytes));
@@ -359,6 +375,7 @@ Result<Answers> from_wire(const wire::Answers& in) {
   if (Status read = read_all(in.replies(), answers.replies); !read) return read.error();
   if (Status read = read_all(in.refused(), answers.refused); !read) return read.error();
   if (Status read = read_all(in.decisions(), answers.decisions); !read) return read.error();
+  if (Status read = read_all(in.standing(), answers.standing); !read) return read.error();
   return answers;
 }
 

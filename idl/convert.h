@@ -52,12 +52,14 @@ Result<Request> from_wire(const wire::Request& request);
 
 wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
                       std::span<const RefusedIncrement> refused,
-                      std::span<const Decision> decisions = {});
+                      std::span<const Decision> decisions = {},
+                      std::span<const StandingChange> standing = {});
 struct Answers {
   std::vector<JoinReply> joins;
   std::vector<Reply> replies;
   std::vector<RefusedIncrement> refused;
   std::vector<Decision> decisions;
+  std::vector<StandingChange> standing;
 };
 Result<Answers> from_wire(const wire::Answers& answers);
 Result<JoinReply> from_wire(const wire::JoinReply& reply);
@@ -73,6 +75,8 @@ Result<PoseBatch> from_wire(const wire::PoseBatch& batch);
 
 wire::Decision to_wire(const Decision& decision);
 Result<Decision> from_wire(const wire::Decision& decision);
+wire::StandingChange to_wire(const StandingChange& change);
+Result<StandingChange> from_wire(const wire::StandingChange& change);
 
 wire::Verdict to_wire(const Verdict& verdict);
 Result<Verdict> from_wire(const wire::Verdict& verdict);

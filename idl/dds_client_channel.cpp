@@ -183,6 +183,7 @@ class DdsClientChannel final : public ClientChannel {
       append(answers->replies, input.replies);
       append(answers->refused, input.refused);
       append(answers->decisions, input.decisions);
+      append(answers->standing, input.standing);
     });
   }
 

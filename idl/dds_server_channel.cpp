@@ -156,6 +156,10 @@ class DdsServerChannel final : public StandbyChannel {
     in_slices<kDecisionSlice>(decisions,
                               [this](auto slice) { write(answers_, to_wire({}, {}, {}, slice)); });
   }
+  void publish_standing(std::span<const StandingChange> changes) override {
+    in_slices<kDecisionSlice>(
+        changes, [this](auto slice) { write(answers_, to_wire({}, {}, {}, {}, slice)); });
+  }
   void publish_refusals(std::span<const RefusedIncrement> refused) override {
     in_slices(refused, [this](auto slice) { write(answers_, to_wire({}, {}, slice)); });
   }

@@ -178,6 +178,9 @@ void HeldChannel::publish_replies(std::span<const Reply> replies) {
 void HeldChannel::publish_decisions(std::span<const Decision> decisions) {
   say([this, all = copy_of(decisions)] { inner_.publish_decisions(all); });
 }
+void HeldChannel::publish_standing(std::span<const StandingChange> changes) {
+  say([this, all = copy_of(changes)] { inner_.publish_standing(all); });
+}
 void HeldChannel::publish_refusals(std::span<const RefusedIncrement> refused) {
   say([this, all = copy_of(refused)] { inner_.publish_refusals(all); });
 }

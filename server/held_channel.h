@@ -55,6 +55,7 @@ class HeldChannel final : public ServerChannel {
   void publish_join_reply(const JoinReply& reply) override;
   void publish_replies(std::span<const Reply> replies) override;
   void publish_decisions(std::span<const Decision> decisions) override;
+  void publish_standing(std::span<const StandingChange> changes) override;
   void publish_refusals(std::span<const RefusedIncrement> refused) override;
   void publish_poses(const PoseBatch& batch) override;
   void publish_events(std::span<const ClashEvent> events) override;

@@ -6,6 +6,7 @@
 
 #include "common/messages/mesh_bytes.h"
 #include "common/session/guide/feature_table.h"
+#include "common/session/world/standing.h"
 
 namespace mortise {
 namespace {
@@ -64,6 +65,7 @@ void TickLoop::open() {
     const TriangleMesh& mesh = part.solid->mesh();
     channel_.publish_mesh(part.solid->hash(), mesh_to_bytes(mesh.points_mm, mesh.triangles));
   }
+  standing_ = standing_decisions(world_);
   publish_snapshot();
   channel_.publish_features(feature_table(world_));
   features_ns_ = now_ns_;
@@ -151,7 +153,7 @@ void TickLoop::measure_delay() {
 void TickLoop::publish() {
   for (const JoinReply& reply : intake_.join_replies) channel_.publish_join_reply(reply);
   if (!intake_.replies.empty()) channel_.publish_replies(intake_.replies);
-  if (!intake_.decisions.empty()) channel_.publish_decisions(intake_.decisions);
+  if (!intake_.decisions.empty()) publish_decisions();
   if (!intake_.refused.empty()) channel_.publish_refusals(intake_.refused);
   if (!report_.refused.empty()) channel_.publish_refusals(report_.refused);
   if (!report_.events.empty()) channel_.publish_events(report_.events);
@@ -186,6 +188,14 @@ void TickLoop::publish() {
     pulse_ns_ = now_ns_;
     if (has_readers) channel_.publish_pulse(pulse());
   }
+}
+
+void TickLoop::publish_decisions() {
+  channel_.publish_decisions(intake_.decisions);
+  std::vector<Decision> standing = standing_decisions(world_);
+  const auto changes = standing_changes(standing_, standing, report_.tick);
+  if (!changes.empty()) channel_.publish_standing(changes);
+  standing_ = std::move(standing);
 }
 
 void TickLoop::publish_snapshot_when_due() {

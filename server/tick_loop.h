@@ -88,6 +88,7 @@ class TickLoop {
   void tell_follower();
   void measure_delay();
   void publish();
+  void publish_decisions();
   void publish_snapshot_when_due();
   void publish_snapshot();
   void tell_features();
@@ -107,6 +108,7 @@ class TickLoop {
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::vector<PartPose> published_;            ///< what the pose stream said last, by part index
+  std::vector<Decision> standing_;             ///< decisions that hold, as they were told last
   std::vector<std::uint32_t> moving_;          ///< parts that can ever move, by index
   std::unique_ptr<Recognizer> recognizer_;     ///< null: no mesh is to be looked at any more
   std::uint64_t event_seq_ = 0;

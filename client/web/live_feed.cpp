@@ -133,6 +133,8 @@ void LiveFeed::turn(double now_s) {
   tell_replies(update);
   if (has_scene_) {
     tell_decisions(update);
+    if (update.standing && !update.resynced)
+      tell_all(message_of_list("standing", "standing", client_.standing()));
     if (!update.events.empty()) tell_all(message_of_list("events", "events", update.events));
     if (!update.resynced) tell_changes(update);
   }

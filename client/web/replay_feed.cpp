@@ -124,6 +124,7 @@ void ReplayFeed::tell_decisions(Viewer& viewer, std::uint64_t from, std::uint64_
     if (agreement.tick <= from || agreement.tick > to || agreement.decisions.empty()) continue;
     viewer.say(text_of(message_of_list("decisions", "decisions", agreement.decisions)));
     viewer.say(text_of(message_of_list("users", "users", agreement.users)));
+    viewer.say(text_of(message_of_list("standing", "standing", agreement.standing)));
   }
 }
 

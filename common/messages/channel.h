@@ -145,6 +145,7 @@ class ServerChannel {
   virtual void publish_join_reply(const JoinReply& reply) = 0;
   virtual void publish_replies(std::span<const Reply> replies) = 0;
   virtual void publish_decisions(std::span<const Decision> decisions) = 0;  ///< to everybody
+  virtual void publish_standing(std::span<const StandingChange> changes) = 0;
   virtual void publish_refusals(std::span<const RefusedIncrement> refused) = 0;
   virtual void publish_poses(const PoseBatch& batch) = 0;
   virtual void publish_events(std::span<const ClashEvent> events) = 0;
@@ -201,7 +202,8 @@ struct MeshBytes {
 struct ClientInput {
   std::vector<JoinReply> join_replies;  ///< only those for this client
   std::vector<Reply> replies;
-  std::vector<Decision> decisions;  ///< in the order in which they were made
+  std::vector<Decision> decisions;       ///< in the order in which they were made
+  std::vector<StandingChange> standing;  ///< likewise
   std::vector<RefusedIncrement> refused;
   std::vector<Snapshot> snapshots;
   std::vector<PoseBatch> poses;

@@ -81,6 +81,7 @@ struct Details {
   std::string text;
   Constraint constraint;
   ConstraintId constraint_id;  ///< of a decision also with kAddConstraint
+  friend bool operator==(const Details&, const Details&) = default;
 };
 
 /// Most parts of one group: bounds the work of a tick and the length of a refusal.
@@ -138,8 +139,16 @@ struct Decision {
   std::string user_name;       ///< with kJoin
   Role role = Role::kUnknown;  ///< with kJoin
   Details details = {};        ///< with kJoin: text is the former owner of the user id, see below
+  friend bool operator==(const Decision&, const Decision&) = default;
 };
 inline constexpr std::uint8_t kDecisionKindCount = 21;
+
+/// From this tick on an earlier decision is in force, or no longer is. See Snapshot::standing.
+struct StandingChange {
+  std::uint64_t tick = 0;
+  bool holds = false;
+  Decision decision;
+};
 
 /// Does a user join with the id of another one who left long ago? Nothing of that user passes on.
 inline bool takes_over_id(const Decision& decision) {

@@ -24,6 +24,7 @@ inline constexpr std::uint8_t kConstraintKindCount = 5;
 struct FeatureOf {
   PartId part;
   std::string feature;
+  friend bool operator==(const FeatureOf&, const FeatureOf&) = default;
 };
 
 /// A relation between a feature of a part that the user holds and one of another part. While it is
@@ -38,6 +39,7 @@ struct Constraint {
   /// True: the part moves at once to the nearest pose that satisfies the constraint, as by an
   /// increment; a contact on the way stops it. False: with the user's next increment.
   bool snap = false;
+  friend bool operator==(const Constraint&, const Constraint&) = default;
 };
 
 }  // namespace mortise

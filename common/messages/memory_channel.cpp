@@ -174,6 +174,11 @@ class MemoryServer final : public ServerChannel {
                                     decisions.end());
     });
   }
+  void publish_standing(std::span<const StandingChange> changes) override {
+    each([&](ClientBox& box) {
+      box.reliable.standing.insert(box.reliable.standing.end(), changes.begin(), changes.end());
+    });
+  }
   void publish_refusals(std::span<const RefusedIncrement> refused) override {
     each([&](ClientBox& box) {
       box.reliable.refused.insert(box.reliable.refused.end(), refused.begin(), refused.end());

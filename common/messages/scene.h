@@ -37,8 +37,9 @@ struct Snapshot {
   std::vector<PartInfo> parts;
   std::vector<UserInfo> users;
   std::vector<ClashEvent> open_clashes;
-  /// Earlier decisions that are in force: policy, tolerances, exclusions, and hand-over requests
-  /// that are not answered yet, in the order in which they were made.
+  /// Earlier decisions that are in force: policy, tolerances, exclusions, constraints, and hand-over
+  /// requests that are not answered yet. Only the session knows which decision ends or replaces
+  /// which; it tells changes to this list as StandingChange.
   std::vector<Decision> standing;
 };
 

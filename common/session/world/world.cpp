@@ -4,6 +4,7 @@
 
 #include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
+#include "common/session/world/standing.h"
 
 namespace mortise {
 
@@ -25,27 +26,11 @@ Snapshot snapshot_of(const World& world) {
   snapshot.tick = world.tick;
   snapshot.tick_rate_hz = world.tick_rate_hz;
   snapshot.policy = name_of(world.policy);
-  snapshot.standing = world.standing;
+  snapshot.standing = standing_decisions(world);
   for (const Part& part : world.parts)
     snapshot.parts.push_back({part.id, part.name, part.solid->hash(), part.moving, part.holder,
                               part.X_WP, part.solid->sphere().center_mm,
                               part.solid->sphere().radius_mm});
-  for (const Part& part : world.parts) {
-    if (!part.asked_by) continue;
-    Decision& ask = snapshot.standing.emplace_back();
-    ask.kind = Decision::Kind::kAskHandOver;
-    ask.user = part.asked_by;
-    ask.part = part.id;
-    ask.details.other_user = part.holder;
-  }
-  for (const Guide& guide : world.guides) {
-    Decision& added = snapshot.standing.emplace_back();
-    added.kind = Decision::Kind::kAddConstraint;
-    added.user = guide.user;
-    added.part = guide.constraint.held.part;
-    added.details.constraint = guide.constraint;
-    added.details.constraint_id = guide.id;
-  }
   for (const User& user : world.users)
     snapshot.users.push_back({user.id, user.name, user.present, user.role});
   if (!world.state) return snapshot;

@@ -36,25 +36,69 @@ TEST(Client, FollowsWhatTheServerDecides) {
   Decision policy{Kind::kSetPolicy, UserId{1}, PartId{}, ""};
   policy.details.text = "stop";
   decide(policy);
-  decide(policy);
   EXPECT_EQ(client.policy(), "stop");
-  EXPECT_EQ(client.standing().size(), 1U);  // the last word counts
-  Decision exclude{Kind::kSetExclusion, UserId{1}, PartId{1}, ""};
-  exclude.details.other_part = PartId{2};
-  decide(exclude);
-  Decision include{Kind::kDropExclusion, UserId{1}, PartId{2}, ""};
-  include.details.other_part = PartId{1};
-  decide(include);
-  ASSERT_EQ(client.standing().size(), 2U);
-  EXPECT_EQ(client.standing()[1].kind, Kind::kDropExclusion);
-  decide({Kind::kAskHandOver, UserId{2}, PartId{3}, ""});
-  EXPECT_EQ(client.standing().size(), 3U);
-  decide({Kind::kDecline, UserId{1}, PartId{3}, ""});
-  EXPECT_EQ(client.standing().size(), 2U);
-  decide({Kind::kAddConstraint, UserId{1}, PartId{3}, ""});
+  EXPECT_TRUE(client.standing().empty());  // what holds is what the session says that holds
   decide({Kind::kLeave, UserId{1}, PartId{}, ""});
-  EXPECT_EQ(client.standing().size(), 2U);  // what guided the user's parts is over
   EXPECT_FALSE(client.users()[0].present);
+}
+
+Decision rule(std::uint32_t part) {
+  return {Decision::Kind::kSetExclusion, UserId{1}, PartId{part}};
+}
+
+TEST(Client, ShowsWhatTheSessionSaysThatHolds) {
+  MemoryHub hub;
+  const auto server = hub.open_server();
+  const auto channel = hub.open_client();
+  Client client(*channel);
+  Snapshot snapshot;
+  snapshot.session = "bench";
+  snapshot.tick = 5;
+  snapshot.standing = {rule(1)};
+  server->publish_snapshot(snapshot);
+  EXPECT_TRUE(client.poll().standing);
+  EXPECT_EQ(client.standing(), std::vector<Decision>{rule(1)});
+  const StandingChange changes[] = {{6, false, rule(1)}, {6, true, rule(2)}};
+  server->publish_standing(changes);
+  EXPECT_TRUE(client.poll().standing);
+  EXPECT_EQ(client.standing(), std::vector<Decision>{rule(2)});
+  EXPECT_FALSE(client.poll().standing);
+}
+
+TEST(KnownStanding, IsTheSameWhicheverComesFirst) {
+  Snapshot five, six;
+  five.tick = 5;
+  five.standing = {rule(1)};
+  six.tick = 6;
+  six.standing = {rule(2)};
+  const StandingChange off{6, false, rule(1)}, on{6, true, rule(2)}, later{7, true, rule(3)};
+  const std::vector<Decision> expected = {rule(2), rule(3)};
+  {
+    KnownStanding known;  // changes before the snapshot that they change
+    for (const StandingChange& change : {off, on, later}) known.take(change);
+    known.take(five);
+    EXPECT_EQ(known.decisions(), expected);
+  }
+  {
+    KnownStanding known;  // changes that the snapshot has
+    known.take(six);
+    EXPECT_FALSE(known.take(off));
+    EXPECT_FALSE(known.take(on));
+    known.take(later);
+    EXPECT_EQ(known.decisions(), expected);
+    EXPECT_FALSE(known.take(six)) << "again";
+    EXPECT_FALSE(known.take(five)) << "an older one";
+    EXPECT_EQ(known.decisions(), expected);
+  }
+  KnownStanding known;
+  known.take(six);
+  known.take(later);
+  known.expect_another_server();
+  EXPECT_EQ(known.decisions(), expected) << "until that one says something else";
+  Snapshot anew;
+  anew.tick = 1;
+  known.take(anew);
+  EXPECT_TRUE(known.decisions().empty());
 }
 
 }  // namespace

@@ -74,6 +74,22 @@ TEST(Convert, DecisionsGoRoundAndAreRefused) {
   EXPECT_FALSE(passes([](wire::Decision& d) { d.details().text("a\tb"); }));
 }
 
+TEST(Convert, WhatHoldsGoesRoundAndIsRefused) {
+  const StandingChange sent[] = {{9, true, {Decision::Kind::kAddConstraint, UserId{2}, PartId{3}}},
+                                 {9, false, {Decision::Kind::kSetPolicy, UserId{2}}}};
+  wire::Answers answers = to_wire({}, {}, {}, {}, sent);
+  const Result<Answers> got = from_wire(answers);
+  ASSERT_TRUE(got) << got.error().text;
+  ASSERT_EQ(got->standing.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(got->standing[i].tick, sent[i].tick);
+    EXPECT_EQ(got->standing[i].holds, sent[i].holds);
+    EXPECT_EQ(got->standing[i].decision, sent[i].decision);
+  }
+  answers.standing()[1].decision().kind(0);
+  EXPECT_FALSE(from_wire(answers));
+}
+
 TEST(Convert, ReviewsGoRoundInEventsAndSnapshots) {
   ClashEvent sent = test::some_clash();
   sent.kind = ClashEvent::Kind::kReview;

@@ -29,6 +29,7 @@ struct Line final : StandbyChannel {
   void publish_join_reply(const JoinReply&) override {}
   void publish_replies(std::span<const Reply>) override {}
   void publish_decisions(std::span<const Decision>) override {}
+  void publish_standing(std::span<const StandingChange>) override {}
   void publish_refusals(std::span<const RefusedIncrement>) override {}
   void publish_poses(const PoseBatch&) override {}
   void publish_events(std::span<const ClashEvent>) override {}

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
@@ -324,6 +325,60 @@ TEST_F(PagesOnASession, AreToldWhatCanBeAlignedAndAlignIt) {
   EXPECT_EQ(ann.last("decisions")["decisions"][0]["constraint"]["other_feature"], "bore");
   EXPECT_NEAR(ann.seen[kPeg].X_WP.p.x(), 0.0, 1e-6);
   EXPECT_NEAR(ann.seen[kPeg].X_WP.p.y(), 0.0, 1e-6);
+}
+
+/// What a page shows as holding: the last list that it was told.
+Json standing_of(const Page& page) {
+  Json standing = Json::array();
+  for (const Json& told : page.told)
+    if (told.contains("standing")) standing = told["standing"];
+  return standing;
+}
+
+TEST_F(PagesOnASession, AreToldThatNoConstraintHoldsOfAPartThatWasLetGo) {
+  come(bob, "bob");
+  const auto channel_of_ben = hub.open_client();
+  const ClientKey key_of_ben = hub.last_client();
+  Client ben(*channel_of_ben);
+  ben.add_user("ben", "designer");
+  const Constraint coaxial{ConstraintKind::kCoaxial, {kPeg, "journal"}, {PartId{1}, "bore"}};
+  const auto turns = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      ben.poll();
+      turn();
+    }
+  };
+  const auto hold = [&](const std::function<void()>& constrain) {
+    constrain();
+    turns(4);
+    ASSERT_EQ(standing_of(bob).size(), 1u);
+    EXPECT_EQ(standing_of(bob)[0]["kind"], "add constraint");
+  };
+  const auto ann_holds = [&] {
+    grab(ann, kPeg);
+    say(ann, R"({"type":"command","id":9,"do":"constrain","kind":"coaxial","part":2,)"
+             R"("feature":"journal","other":1,"other_feature":"bore"})");
+  };
+  turns(4);
+
+  come(ann, "ann");
+  hold(ann_holds);
+  say(ann, R"({"type":"command","id":10,"do":"release","part":2})");
+  turns(2);
+  EXPECT_EQ(standing_of(bob), Json::array()) << "released";
+
+  hold(ann_holds);
+  feed->leave(ann);
+  turns(2);
+  EXPECT_EQ(standing_of(bob), Json::array()) << "left";
+
+  hold([&] {
+    ben.grab(0, kPeg);
+    ben.add_constraint(0, coaxial);
+  });
+  hub.kill(key_of_ben);
+  turns(2);
+  EXPECT_EQ(standing_of(bob), Json::array()) << "liveliness lost";
 }
 
 TEST_F(PagesOnASession, ManyComingsAndGoingsLeaveNothingBehind) {

@@ -45,18 +45,22 @@ test('ended clashes do not pile up', () => {
   assert.equal(session.openClashes().length, 1);
 });
 
-test('rules in force come and go with the decisions', () => {
+test('what holds is what the session says that holds', () => {
   const session = begun();
+  let told = 0;
+  session.on('standing', () => ++told);
   const decide = (decision) => session.apply({ type: 'decisions', decisions: [decision] });
-  decide({ kind: 'add constraint', user: 9, part: 1, constraint_id: 6, constraint: { part: 1 } });
-  decide({ kind: 'ask for hand-over', user: 8, part: 1, other_user: 9 });
-  decide({ kind: 'set exclusion', user: 9, part: 1, other: 2, text: 'why' });
-  assert.equal(session.standing.length, 3);
-  decide({ kind: 'drop constraint', user: 9, part: 1, constraint_id: 6 });
+  const constraint = { kind: 'add constraint', user: 9, part: 1, constraint_id: 6, constraint: { part: 1 } };
+  session.apply({ type: 'standing', standing: [constraint] });
+  assert.deepEqual(session.standing, [constraint]);
+  assert.equal(told, 1);
   decide({ kind: 'hand-over', user: 9, part: 1, other_user: 8 });
-  decide({ kind: 'drop exclusion', user: 9, part: 2, other: 1 });
-  assert.deepEqual(session.standing, []);
   assert.equal(session.parts.get(1).holder, 8);
+  decide({ kind: 'release', user: 8, part: 1 });
+  assert.equal(session.parts.get(1).holder, 0);
+  session.apply({ type: 'standing', standing: [] });
+  assert.deepEqual(session.standing, []);
+  assert.equal(told, 2);
 });
 
 test('messages that the page does not know are skipped; a lost line leaves nobody joined', () => {

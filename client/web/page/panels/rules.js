@@ -49,16 +49,10 @@ export function makeRules({ session, commands, say }) {
     set.disabled = !session.mayAct || !part.value || (kind.value !== 'tolerance' && !other.value);
   }
 
-  /** The latest of each, by what it is about. */
+  /** Each with a key of what it is about. */
   function inForce() {
-    const known = new Map();
-    for (const d of session.standing) {
-      if (d.kind !== 'set tolerance' && d.kind !== 'set exclusion') continue;
-      const key = [d.kind, d.part, d.feature, d.other, d.other_feature].join(' ');
-      known.delete(key);
-      known.set(key, d);
-    }
-    return [...known].filter(([, d]) => d.kind === 'set exclusion' || d.text);
+    return session.standing.filter((d) => d.kind === 'set exclusion' || (d.kind === 'set tolerance' && d.text))
+      .map((d) => /** @type {[string, any]} */ ([[d.kind, d.part, d.feature, d.other, d.other_feature].join(' '), d]));
   }
 
   /** @param {number} id @param {string} name */

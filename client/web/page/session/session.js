@@ -157,6 +157,10 @@ export class Session extends Signals {
     },
     events: (m) => m.events.forEach((/** @type {Clash} */ event) => this.#event(event)),
     decisions: (m) => m.decisions.forEach((/** @type {any} */ decision) => this.#decision(decision)),
+    standing: (m) => {
+      this.standing = m.standing;
+      this.emit('standing', undefined);
+    },
     users: (m) => {
       for (const user of m.users) this.users.set(user.id, user);
       this.emit('users', undefined);
@@ -225,7 +229,6 @@ export class Session extends Signals {
     const parts = decision.parts?.length ? decision.parts : [decision.part];
     for (const id of parts) this.#holders(decision, id);
     if (decision.kind === 'join' && decision.text) this.#forgetUser(decision.user);
-    this.#keepStanding(decision);
     this.emit('decision', decision);
   }
 
@@ -235,8 +238,7 @@ export class Session extends Signals {
       if (clash.user === id) clash.user = 0;
       if (clash.review?.user === id) clash.review.user = 0;
     }
-    this.standing = this.standing.map((rule) => (rule.user === id ? { ...rule, user: 0 } : rule));
-    for (const what of /** @type {const} */ (['clashes', 'standing'])) this.emit(what, undefined);
+    this.emit('clashes', undefined);
   }
 
   /** @param {any} decision @param {number} id */
@@ -246,24 +248,5 @@ export class Session extends Signals {
     if (decision.kind === 'grab') this.#hold(part, decision.user);
     if (decision.kind === 'hand-over') this.#hold(part, decision.other_user);
     if (['release', 'lease end'].includes(decision.kind)) this.#hold(part, 0);
-  }
-
-  /** Rules and asks in force. @param {any} decision */
-  #keepStanding(decision) {
-    const { kind, part } = decision;
-    const same = (/** @type {any} */ other) => other.part === part && (!decision.user || other.user === decision.user);
-    if (kind === 'drop constraint') {
-      this.standing = this.standing.filter((d) => d.constraint_id !== decision.constraint_id);
-    } else if (kind === 'drop exclusion') {
-      const pair = [part, decision.other].sort().join();
-      this.standing = this.standing.filter((d) => d.kind !== 'set exclusion' || [d.part, d.other].sort().join() !== pair);
-    } else if (['hand-over', 'decline', 'ask unanswered', 'release', 'lease end'].includes(kind)) {
-      this.standing = this.standing.filter((d) => d.kind !== 'ask for hand-over' || (kind === 'ask unanswered' ? !same(d) : d.part !== part));
-    } else if (['set policy', 'set tolerance', 'set exclusion', 'ask for hand-over', 'add constraint'].includes(kind)) {
-      this.standing = [...this.standing, decision];
-    } else {
-      return;
-    }
-    this.emit('standing', undefined);
   }
 }

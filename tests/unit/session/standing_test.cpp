@@ -1,0 +1,84 @@
+// Which decisions hold, and what a session tells of that as it changes.
+#include "common/session/world/standing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/session/three_people.h"
+
+namespace mortise {
+namespace {
+
+using Kind = Decision::Kind;
+
+struct StandingTest : PeopleTest {
+  /// Ada holds the peg on a constraint, and bob asks for it.
+  void SetUp() override {
+    ask(ada, CommandKind::kGrab, peg);
+    session.world.guides.push_back(
+        {ConstraintId{1}, ada, {ConstraintKind::kCoplanar, {peg, "a"}, {wall, "b"}}, {}});
+    ask(bob, CommandKind::kAskHandOver, peg);
+    before = standing_decisions(session.world);
+    ASSERT_EQ(before.size(), 2u);
+    EXPECT_EQ(before[0].kind, Kind::kAskHandOver);
+    EXPECT_EQ(before[1].kind, Kind::kAddConstraint);
+    EXPECT_EQ(before[1].details.constraint_id, ConstraintId{1});
+  }
+  std::vector<StandingChange> changes() const {
+    return standing_changes(before, standing_decisions(session.world), 7);
+  }
+
+  std::vector<Decision> before;
+};
+
+TEST_F(StandingTest, NothingHoldsOfAPartThatWasLetGo) {
+  Decision release{Kind::kRelease, ada, peg}, group_release{Kind::kRelease, ada, {}};
+  group_release.details.parts = {peg};
+  Decision hand_over{Kind::kHandOver, ada, peg};
+  hand_over.details.other_user = bob;
+  const World world = session.world;
+  for (const Decision& end :
+       {release, group_release, Decision{Kind::kLeave, ada}, Decision{Kind::kLivelinessLost, ada},
+        Decision{Kind::kLeaseEnd, ada, peg}, hand_over}) {
+    session.world = world;
+    apply_decision(session.world, end);
+    EXPECT_TRUE(standing_decisions(session.world).empty()) << static_cast<int>(end.kind);
+    const std::vector<StandingChange> told = changes();
+    ASSERT_EQ(told.size(), 2u) << static_cast<int>(end.kind);
+    for (const StandingChange& change : told) {
+      EXPECT_FALSE(change.holds);
+      EXPECT_EQ(change.tick, 7u);
+      EXPECT_NE(std::ranges::find(before, change.decision), before.end());
+    }
+  }
+}
+
+TEST_F(StandingTest, WhatStaysIsNotToldAgain) {
+  EXPECT_TRUE(changes().empty());
+  EXPECT_EQ(refusal(ada, CommandKind::kSetExclusion, peg, with_other(wall, "glued")),
+            Refusal::kNone);
+  std::vector<StandingChange> told = changes();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(told[0].holds);
+  EXPECT_EQ(told[0].decision.details.text, "glued");
+
+  // The later word about a pair takes the place of the earlier, also the other way round.
+  before = standing_decisions(session.world);
+  EXPECT_EQ(refusal(bob, CommandKind::kSetExclusion, wall, with_other(peg, "welded")),
+            Refusal::kNone);
+  told = changes();
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_FALSE(told[0].holds);
+  EXPECT_EQ(told[0].decision.details.text, "glued");
+  EXPECT_TRUE(told[1].holds);
+  EXPECT_EQ(told[1].decision.details.text, "welded");
+
+  // The same once more changes nothing.
+  before = standing_decisions(session.world);
+  ask(bob, CommandKind::kSetExclusion, wall, with_other(peg, "welded"));
+  EXPECT_TRUE(changes().empty());
+}
+
+}  // namespace
+}  // namespace mortise
