@@ -121,17 +121,15 @@ class DdsDirectory final : public Directory {
   };
 
   template <class Sample, class Action>
-  void take_all(dds::DataReader* reader, Action action) {
-    Sample sample;
-    dds::SampleInfo info;
-    while (reader->take_next_sample(&sample, &info) ==
-           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK)
-      if (info.valid_data) action(sample, heard_[info.sample_identity.writer_guid().guidPrefix]);
+  void take_each(dds::DataReader* reader, Action action) {
+    take_all<Sample>(*reader, [&](const Sample& sample, const rtps::GUID_t& writer) {
+      action(sample, heard_[writer.guidPrefix]);
+    });
   }
 
   /// What is malformed is left out: then it is not known.
   void listen() {
-    take_all<wire::Snapshot>(snapshots_, [](const wire::Snapshot& sample, Heard& heard) {
+    take_each<wire::Snapshot>(snapshots_, [](const wire::Snapshot& sample, Heard& heard) {
       const auto chunks = heard.collector.add(sample);
       if (!chunks) return;
       std::size_t parts = 0;
@@ -143,7 +141,7 @@ class DdsDirectory final : public Directory {
       }
       heard.parts = parts;
     });
-    take_all<wire::Pulse>(pulses_, [](const wire::Pulse& sample, Heard& heard) {
+    take_each<wire::Pulse>(pulses_, [](const wire::Pulse& sample, Heard& heard) {
       if (const Result<SessionPulse> pulse = from_wire(sample)) heard.pulse = *pulse;
     });
   }

@@ -1,15 +1,70 @@
 #pragma once
 #include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/messages/channel.h"
 #include "idl/chunks.h"
-#include "idl/doorman.h"
-#include "idl/identity.h"
-#include "mortisePubSubTypes.h"
+#include "idl/participant.h"
 
+/// What the servers of a session tell each other, and which of them counts.
 namespace mortise {
+
+/// Rung by a thread of Fast DDS.
+class Bell {
+ public:
+  void ring();
+  /// Returns when it has rung since the last call, or after so long.
+  void await(std::int64_t at_most_ns);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable rings_;
+  bool rung_ = false;
+};
+
+/// Rings when a sample comes.
+class SampleBell final : public dds::DataReaderListener {
+ public:
+  void on_data_available(dds::DataReader*) override { bell_.ring(); }
+  void await(std::int64_t at_most_ns) { bell_.await(at_most_ns); }
+
+ private:
+  Bell bell_;
+};
+
+/// Hears which other servers of the session tell ticks and are alive, and which listen to ours.
+class PeerServers final : public dds::DataReaderListener, public dds::DataWriterListener {
+ public:
+  /// Before any thread of Fast DDS calls.
+  void know_own(const ClientKey& own) { own_ = own; }
+  bool is_alive(const ClientKey& server) const;
+  bool has_follower() const;
+  bool follows(const ClientKey& server) const;
+  /// One listens that did not at the last call.
+  bool take_came();
+  /// Returns when a tick was told since the last call, or after so long.
+  void await_told(std::int64_t at_most_ns) { told_.await(at_most_ns); }
+
+  void on_data_available(dds::DataReader*) override { told_.ring(); }
+  void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override;
+  void on_subscription_matched(dds::DataReader*,
+                               const dds::SubscriptionMatchedStatus& status) override;
+  void on_publication_matched(dds::DataWriter*,
+                              const dds::PublicationMatchedStatus& status) override;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<ClientKey> alive_, followers_;
+  ClientKey own_;
+  bool came_ = false;
+  Bell told_;
+};
 
 /// What the server that leads tells of its ticks: of all that are heard the one with the highest
 /// term, of equal ones the highest key.
@@ -18,26 +73,10 @@ class LeaderTold {
   /// Says whether that one leads instead of `own`, a term (0: it does not lead) and a key. Pieces
   /// come in order. `ticks` may be null.
   bool hear(const wire::ServerTick& sample, const ClientKey& key,
-            const std::pair<std::uint64_t, ClientKey>& own, std::vector<ToldTick>* ticks) {
-    const std::pair rank(sample.term(), key);
-    if (key == own.second || rank < std::pair(term_, leader_)) return false;
-    term_ = sample.term();
-    leader_ = key;
-    counts_on_ = sample.follower();
-    const bool superseded = own.first != 0 && rank > own;
-    if (ticks == nullptr) return superseded;
-    if (auto tick = collector_.add(sample)) ticks->push_back(std::move(*tick));
-    return superseded;
-  }
+            const std::pair<std::uint64_t, ClientKey>& own, std::vector<ToldTick>* ticks);
   /// A leader that is revoked ends once it has the list, too. What it tells until then is heard,
   /// for some seconds since it was first asked for: who works with it holds that for safe.
-  bool may_be_ending(const ClientKey& revoked) {
-    // Lists are looked at each second, and come one after the other.
-    constexpr std::chrono::seconds kMayTake(5);
-    const auto now = std::chrono::steady_clock::now();
-    if (std::exchange(revoked_, revoked) != revoked) revoked_at_ = now;
-    return revoked == leader_ && now - revoked_at_ < kMayTake;
-  }
+  bool may_be_ending(const ClientKey& revoked);
   std::uint64_t term() const { return term_; }
   const ClientKey& leader() const { return leader_; }        ///< empty: none was heard
   const ClientKey& counts_on() const { return counts_on_; }  ///< the one that stands by, for it
@@ -55,32 +94,23 @@ class LeaderTold {
 class FollowerTold {
  public:
   /// What was said since the last call. `identities` may be null: no security.
-  TakenTicks take(dds::DataReader& reader, std::uint64_t term, const PeerIdentities* identities) {
-    TakenTicks taken;
-    wire::ServerTaken sample;
-    dds::SampleInfo info;
-    while (reader.take_next_sample(&sample, &info) ==
-           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data || sample.term() != term) continue;
-      const ClientKey key = client_key(info.sample_identity.writer_guid());
-      if (identities != nullptr && identities->is_revoked(key)) {
-        if (key == follower_) follower_.clear();
-        continue;
-      }
-      if (follower_.empty()) follower_ = key;
-      if (key != follower_ || sample.tick() < taken.received) continue;
-      taken = {sample.tick(), sample.computed()};
-    }
-    return taken;
-  }
+  TakenTicks take(dds::DataReader& reader, std::uint64_t term, const PeerIdentities* identities);
   /// Empty: none.
-  const ClientKey& follower(const ServersWatch& servers) {
-    if (!servers.follows(follower_)) follower_.clear();
-    return follower_;
-  }
+  const ClientKey& follower(const PeerServers& servers);
 
  private:
   ClientKey follower_;
+};
+
+/// Says that the one that leads lives, however long its tick takes.
+class Heartbeat {
+ public:
+  explicit Heartbeat(dds::DataWriter& writer);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any stopped_;
+  std::jthread thread_;  ///< last: it uses the others
 };
 
 }  // namespace mortise

@@ -43,6 +43,16 @@ bool matched(dds::DataWriter* writer);
 std::string announced(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& participant,
                       const char* property);
 
+/// Takes all valid samples that have come, and hands each with its writer's GUID to the action.
+template <class Sample, class Action>
+void take_all(dds::DataReader& reader, Action action) {
+  Sample sample;
+  dds::SampleInfo info;
+  while (reader.take_next_sample(&sample, &info) ==
+         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK)
+    if (info.valid_data) action(sample, info.sample_identity.writer_guid());
+}
+
 /// One DDS participant in one session: transport, discovery and endpoints after the topic table.
 /// Every creation is checked; each failure is one line.
 class Participant {

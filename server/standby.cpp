@@ -4,7 +4,6 @@
 #include <chrono>
 #include <ctime>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "common/session/world/decisions.h"
@@ -16,11 +15,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kTurn = std::chrono::milliseconds(1);
+constexpr std::int64_t kTurn_ns = 1'000'000;
 // One that was killed is known to be gone within 2 s.
 constexpr auto kAnotherMayBeGone = std::chrono::seconds(5);
-// A log is flushed each second; the disk may take its time.
-constexpr auto kLogIsWritten = std::chrono::milliseconds(2500);
 
 void hear(StandbyChannel& channel, std::deque<ToldTick>& told) {
   for (ToldTick& tick : channel.follow()) told.push_back(std::move(tick));
@@ -125,12 +122,12 @@ void Follower::step_once(FollowedTick& tick) {
 
 bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
                   const std::function<bool()>& stop) {
-  std::optional<Clock::time_point> heard;
-  while (!stop()) {
+  for (FollowedTick newest; !stop(); channel.await_told(kTurn_ns)) {
     hear(channel, told);
-    if (!heard && !told.empty()) heard = Clock::now();
-    if (heard && Clock::now() - *heard > kLogIsWritten) return true;
-    std::this_thread::sleep_for(kTurn);
+    // What this build does not know is said by who takes it.
+    if (!told.empty() &&
+        (!decode(told.back().bytes, newest) || told.front().tick - 1 <= newest.logged_tick))
+      return true;
   }
   return false;
 }
@@ -173,7 +170,7 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
                   "another server stands by for this session, and one is enough: this one ends");
     if (takes_over) return true;
     turns.end(silence);
-    if (told.empty()) std::this_thread::sleep_for(kTurn);
+    if (told.empty()) channel.await_told(kTurn_ns);
   }
   if (!channel.another_stands_by()) channel.confirm({kTakenAll, follower.last_tick()});
   return false;

@@ -45,8 +45,8 @@ class Follower {
   bool handed_over_ = false;
 };
 
-/// Waits until the leader tells its first tick, and a moment longer, so that all before it is in
-/// the leader's log; what is told meanwhile is kept. False when `stop` said so.
+/// Waits until the leader has told a tick, and then that all ticks before that one are in its log;
+/// what is told meanwhile is kept. False when `stop` said so.
 bool await_leader(StandbyChannel& channel, std::deque<ToldTick>& told,
                   const std::function<bool()>& stop);
 

@@ -23,6 +23,7 @@ std::vector<std::byte> encode(const FollowedTick& tick) {
   put(out, log_records::encode(tick.tick, std::span<const Decision>(tick.decisions)));
   put(out, log_records::encode(tick.tick, std::span<const Increment>(tick.increments)));
   out.u8(tick.hands_over);
+  out.varint(tick.logged_tick);
   out.u8(tick.has_seats);
   if (!tick.has_seats) return out.take();
   out.varint(tick.seats.size());
@@ -51,6 +52,7 @@ bool decode(std::span<const std::byte> bytes, FollowedTick& tick) {
   tick.decisions = std::move(decisions.decisions);
   tick.increments = std::move(increments.increments);
   tick.hands_over = in.u8() != 0;
+  tick.logged_tick = in.varint();
   tick.has_seats = in.u8() != 0;
   if (tick.has_seats) {
     const std::uint64_t count = in.varint();

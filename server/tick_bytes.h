@@ -24,6 +24,8 @@ struct FollowedTick {
   bool has_seats = false;
   std::vector<SeatRecord> seats;  ///< of all users present; only with has_seats
   bool hands_over = false;        ///< the last of the one that leads: go on from here
+  /// All ticks up to here are in the log of the one that leads, as far as they ever will be.
+  std::uint64_t logged_tick = 0;
 };
 
 std::vector<std::byte> encode(const FollowedTick& tick);

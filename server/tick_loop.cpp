@@ -127,6 +127,7 @@ void TickLoop::tell_follower() {
   followed.decisions = intake_.decisions;
   followed.increments = intake_.increments;
   followed.hands_over = hands_over_;
+  followed.logged_tick = log_ != nullptr ? log_->flushed_tick() : report_.tick;
   followed.has_seats =
       hands_over_ || intake_.follower_came || report_.tick % kSeatsEvery_ticks == 0 ||
       std::any_of(intake_.decisions.begin(), intake_.decisions.end(), changes_seats);

@@ -183,6 +183,8 @@ class ServerChannel {
 class StandbyChannel : public ServerChannel {
  public:
   virtual std::vector<ToldTick> follow() = 0;
+  /// Returns when the leader has told something since the last call, or after so long.
+  virtual void await_told(std::int64_t at_most_ns) = 0;
   /// Tells the leader which ticks are here. The leader publishes a tick to clients only after its
   /// standby has received it.
   virtual void confirm(const TakenTicks& taken) = 0;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -48,6 +49,7 @@ class FileWriter final : public SessionLogWriter {
   std::uint64_t dropped_ticks() const override { return dropped_.load(); }
   std::uint64_t bytes_written() const override { return bytes_.load(); }
   std::size_t queued_ticks() const override;
+  std::uint64_t flushed_tick() const override { return flushed_tick_.load(); }
   Status status() const override;
 
  private:
@@ -71,6 +73,7 @@ class FileWriter final : public SessionLogWriter {
   LogOptions options_;
   SessionStatistics statistics_;  ///< of all ticks so far; only where files are rotated
   StepCounters counters_;
+  std::uint64_t written_tick_ = 0;    ///< the last
   std::uint64_t ticks_in_chunk_ = 0;  ///< written, but not yet in the file
   std::uint32_t chunks_settled_ = 0;
   std::uint64_t bytes_before_ = 0;  ///< of the files before this one
@@ -80,6 +83,7 @@ class FileWriter final : public SessionLogWriter {
 
   std::atomic<std::uint64_t> bytes_ = 0;
   std::atomic<bool> wants_state_ = false;
+  std::atomic<std::uint64_t> flushed_tick_ = 0;
   std::vector<TickRecord> kept_back_, own_spare_;  ///< of the thread that records
 
   mutable std::mutex mutex_;
@@ -178,6 +182,7 @@ void FileWriter::run() {
     if (unflushed && (Clock::now() >= next_flush || flushes > flushes_done_)) {
       static_cast<void>(file_->mcap().sync());  // an error sticks and is taken below
       settle_chunk();
+      flushed_tick_.store(written_tick_);
       unflushed = false;
       next_flush = Clock::now() + period;
     }
@@ -203,9 +208,11 @@ void FileWriter::remember_error() {
   if (!error_) return;
   dropped_.fetch_add(queue_.size());
   queue_.clear();
+  flushed_tick_.store(std::numeric_limits<std::uint64_t>::max());
 }
 
 void FileWriter::write(const Item& item) {
+  written_tick_ = item.tick.tick;
   if (file_->mcap().error() || rotate_error_) {
     dropped_.fetch_add(1);
     return;

@@ -111,6 +111,8 @@ class SessionLogWriter {
   virtual std::uint64_t dropped_ticks() const = 0;
   virtual std::uint64_t bytes_written() const = 0;
   virtual std::size_t queued_ticks() const { return 0; }  ///< recorded, but not yet written
+  /// Every recorded tick up to here is on disk, or is lost. Never waits.
+  virtual std::uint64_t flushed_tick() const { return 0; }
   virtual Status status() const = 0;  ///< fails after an error of the disk: later ticks are dropped
 };
 

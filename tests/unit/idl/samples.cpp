@@ -130,25 +130,6 @@ Details some_details() {
   return details;
 }
 
-void expect_same(const Details& a, const Details& b) {
-  EXPECT_EQ(a.parts, b.parts);
-  EXPECT_EQ(a.other_part, b.other_part);
-  EXPECT_EQ(a.feature, b.feature);
-  EXPECT_EQ(a.other_feature, b.other_feature);
-  EXPECT_EQ(a.other_user, b.other_user);
-  EXPECT_EQ(a.clash, b.clash);
-  EXPECT_EQ(a.status, b.status);
-  EXPECT_EQ(a.text, b.text);
-  EXPECT_EQ(a.constraint_id, b.constraint_id);
-  EXPECT_EQ(a.constraint.kind, b.constraint.kind);
-  EXPECT_EQ(a.constraint.held.part, b.constraint.held.part);
-  EXPECT_EQ(a.constraint.held.feature, b.constraint.held.feature);
-  EXPECT_EQ(a.constraint.other.part, b.constraint.other.part);
-  EXPECT_EQ(a.constraint.other.feature, b.constraint.other.feature);
-  EXPECT_EQ(a.constraint.distance_mm, b.constraint.distance_mm);
-  EXPECT_EQ(a.constraint.snap, b.constraint.snap);
-}
-
 void expect_same(const ClashEvent& a, const ClashEvent& b) {
   EXPECT_EQ(a.cause, b.cause);
   EXPECT_EQ(a.review.status, b.review.status);

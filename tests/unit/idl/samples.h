@@ -19,7 +19,6 @@ wire::EventBatch some_event_batch();
 wire::Snapshot some_snapshot_chunk();
 Details some_details();
 FeatureInfo some_feature();
-void expect_same(const Details& a, const Details& b);
 void expect_same(const ClashEvent& a, const ClashEvent& b);
 
 struct Fuzzed {

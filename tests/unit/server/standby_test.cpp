@@ -21,6 +21,7 @@ struct Line final : StandbyChannel {
   bool leads = true, another = false;
 
   std::vector<ToldTick> follow() override { return turn(); }
+  void await_told(std::int64_t) override {}
   void confirm(const TakenTicks& taken) override { confirmed.push_back(taken); }
   bool leader_present() const override { return leads; }
   bool another_stands_by() const override { return another; }
@@ -83,6 +84,29 @@ class StandbyTest : public ::testing::Test {
   Line line_;
   std::vector<std::string> notes_;
 };
+
+TEST_F(StandbyTest, ItWaitsUntilWhatItWasNotToldIsInTheLog) {
+  ticks(9);
+  std::uint64_t logged = 0;
+  line_.turn = [&] {
+    std::vector<ToldTick> told = ticks(1);
+    FollowedTick tick;
+    EXPECT_TRUE(decode(told[0].bytes, tick));
+    logged += 3;  // 9 with the third
+    tick.logged_tick = logged;
+    return std::vector<ToldTick>{{tick.tick, encode(tick)}};
+  };
+  std::deque<ToldTick> told;
+  EXPECT_TRUE(await_leader(line_, told, [] { return false; }));
+  EXPECT_EQ(told.size(), 3u);
+  EXPECT_EQ(told.front().tick, 10u);
+
+  // As long as nothing is told, nothing is known to be in the log.
+  int turns = 0;
+  told.clear();
+  line_.turn = [] { return std::vector<ToldTick>{}; };
+  EXPECT_FALSE(await_leader(line_, told, [&] { return ++turns > 20; }));
+}
 
 TEST_F(StandbyTest, WhatIsReceivedIsConfirmedAtOnceWithHowFarItIsComputed) {
   line_.turn = [&] { return ticks(line_.confirmed.size() < 5 ? 2 : 0); };

@@ -1,0 +1,92 @@
+#include "idl/doorman.h"
+
+#include <utility>
+
+namespace mortise {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+void Doorman::on_participant_discovery(dds::DomainParticipant*,
+                                       rtps::ParticipantDiscoveryInfo&& info) {
+  using Info = rtps::ParticipantDiscoveryInfo;
+  const ClientKey client = client_key(info.info.m_guid);
+  if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
+    add(info.info.m_guid);
+    if (!identities_) return;
+    identities_->parted(client);
+    const std::lock_guard lock(mutex_);
+    unproven_.erase(client);
+  } else if (identities_) {
+    const std::string subject = announced(info, "dds.cert.sn");
+    if (!subject.empty()) identities_->met(client, subject);
+    const std::lock_guard lock(mutex_);
+    unproven_.emplace(
+        client,
+        Unproven{Time::clock::now(), identities_->why_not(subject, announced(info, "dds.ca.sn"))});
+  }
+}
+
+void Doorman::onParticipantAuthentication(dds::DomainParticipant*,
+                                          rtps::ParticipantAuthenticationInfo&& info) {
+  const std::lock_guard lock(mutex_);
+  const ClientKey client = client_key(info.guid);
+  Unproven& unproven = unproven_[client];
+  unproven.since = Time::max();  // answered, either way
+  if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
+    turn_away(client, unproven);
+}
+
+void Doorman::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+  if (!identities_ || info.status != rtps::WriterDiscoveryInfo::DISCOVERED_WRITER ||
+      info.info.topicName().to_string() != row_of(Topic::kIncrement).topic)
+    return;
+  const ClientKey client = client_key(info.info.guid());
+  const std::optional<Identity> identity = identities_->identity_of(client);
+  if (!identity || identity->role != "observer") return;
+  const std::lock_guard lock(mutex_);
+  turned_away_.push_back(identities_->whose(client) +
+                         " does not let its owner send increments: none is heard");
+}
+
+void Doorman::on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) {
+  if (status.alive_count_change < 0 || status.not_alive_count_change > 0)
+    add(rtps::iHandle2GUID(status.last_publication_handle));
+}
+
+std::vector<ClientKey> Doorman::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(gone_, {});
+}
+
+std::vector<std::string> Doorman::take_turned_away() {
+  constexpr auto kTimeToProve = std::chrono::seconds(2);
+  const std::lock_guard lock(mutex_);
+  for (auto& [client, unproven] : unproven_) {
+    if (unproven.since == Time::max() || Time::clock::now() - unproven.since < kTimeToProve)
+      continue;
+    unproven.since = Time::max();  // said once
+    turn_away(client, unproven);
+  }
+  return std::exchange(turned_away_, {});
+}
+
+void Doorman::tell_repeats(std::uint64_t in_all, std::vector<std::string>& texts) {
+  const Time now = Time::clock::now();
+  if (in_all == repeats_told_ || now - repeats_told_at_ < std::chrono::seconds(1)) return;
+  repeats_told_at_ = now;
+  texts.push_back(std::to_string(in_all - std::exchange(repeats_told_, in_all)) +
+                  " encrypted datagrams came a second time and were dropped: a recording, or a "
+                  "net that doubles");
+}
+
+void Doorman::add(const rtps::GUID_t& guid) {
+  const std::lock_guard lock(mutex_);
+  gone_.push_back(client_key(guid));
+}
+
+void Doorman::turn_away(const ClientKey& client, const Unproven& unproven) {
+  if (identities_->is_revoked(client)) return;
+  turned_away_.push_back(identities_->whose(client) + " was not let in: " + unproven.why);
+}
+
+}  // namespace mortise
