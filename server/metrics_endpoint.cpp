@@ -11,7 +11,7 @@
 #include <optional>
 #include <thread>
 
-#include "server/real_time.h"
+#include "server/scheduling.h"
 
 namespace mortise {
 namespace {

@@ -3,22 +3,17 @@
 #include <string>
 
 #include "common/base/result.h"
+#include "idl/dds_channel.h"
 #include "server/inbox.h"
 
 namespace mortise {
 
 struct ServerOptions {
   std::string scenario;
-  std::string session = "default";
-  int domain = 0;
-  std::string interface = "127.0.0.1";
-  int port = 0;                  ///< 0: the domain's own
-  std::string keys;              ///< folder of the server's identity; empty: no security
-  std::string standby_of;        ///< session to follow, and to go on with when its server is gone
-  std::string peers;             ///< IPv4 of the hosts of the other servers, comma between
-  std::string discovery_server;  ///< HOST[:PORT] that are told of this server, comma between
-  std::string restore;           ///< log to go on from, or folder of logs; empty: begin anew
-  std::string log;               ///< file or existing folder; empty: sessions/<session>-<UTC>.mcap
+  DdsOptions network;
+  std::string standby_of;  ///< session to follow, and to go on with when its server is gone
+  std::string restore;     ///< log to go on from, or folder of logs; empty: begin anew
+  std::string log;         ///< file or existing folder; empty: sessions/<session>-<UTC>.mcap
   bool no_log = false;
   double log_rotate_mb = 0.0;  ///< size at which the next file is begun; 0: never
   int threads = 1;

@@ -1,4 +1,4 @@
-#include "server/real_time.h"
+#include "server/scheduling.h"
 
 #include <pthread.h>
 #include <sched.h>

@@ -18,8 +18,8 @@
 #include "server/held_channel.h"
 #include "server/memory.h"
 #include "server/metrics_endpoint.h"
-#include "server/real_time.h"
 #include "server/restore.h"
+#include "server/scheduling.h"
 #include "server/standby.h"
 #include "server/start.h"
 
@@ -37,18 +37,6 @@ void ask_to_drain(int) { drain_asked = true; }
 int say(const Error& error) {
   spdlog::error("{}", error.text);
   return exit_code_of(error.code);
-}
-
-DdsOptions dds_of(const ServerOptions& options) {
-  DdsOptions dds;
-  dds.session = options.session;
-  dds.domain = options.domain;
-  dds.interface = options.interface;
-  dds.discovery_port = options.port;
-  dds.discovery_server = options.discovery_server;
-  dds.keys = options.keys;
-  if (!options.peers.empty()) dds.server = options.interface + "," + options.peers;
-  return dds;
 }
 
 /// Plays the log of before again, when there is one.
@@ -102,170 +90,262 @@ int close_session(const ServerOptions& options, Closing closing, SessionLogWrite
   return exit_code;
 }
 
+/// A server from its start to its end, in steps.
+class Service {
+ public:
+  explicit Service(const ServerOptions& options) : options_(options) {}
+  /// 1 to 5. False: it was to end before it led a session.
+  Result<bool> begin();
+  /// 6. Ticks until it is to end.
+  void play();
+  /// 7. Returns the exit code.
+  int end();
+
+ private:
+  bool stands_by() const { return !options_.standby_of.empty(); }
+  // One that stands by has nothing to hand over.
+  static bool is_to_stop() { return stop_asked || drain_asked; }
+  std::int64_t term_ns() const {
+    return static_cast<std::int64_t>(channel_->term_ms() * 1'000'000);
+  }
+  bool barred() const { return !channel_->barred().empty(); }
+
+  Result<bool> find_leader();
+  Status open_channel();
+  Status open_log();
+  Result<bool> follow_leader();
+  void open_loop();
+  Status open_metrics();
+  void say_session() const;
+  void after_tick(Announcer& announcer);
+  void say_goodbye();
+
+  const ServerOptions& options_;
+  std::optional<SessionStart> start_;
+  std::unique_ptr<StandbyChannel> standby_;  ///< until it is the channel
+  std::deque<ToldTick> told_;                ///< by the leader, while the log was not read yet
+  std::unique_ptr<ServerChannel> channel_;
+  std::optional<Resumed> resumed_;
+  NewLog log_;
+  Closing closing_;
+  std::vector<SeatRecord> seats_;  ///< of the server that was followed
+  std::int64_t followed_ns_ = 0;   ///< wall clock of its last tick
+  std::optional<SystemClock> clock_;
+  std::optional<HeldChannel> held_;
+  std::optional<TickLoop> loop_;
+  std::optional<Drain> drain_;
+  std::unique_ptr<MetricsEndpoint> metrics_;
+  double shown_at_s_ = -kShowFiguresEvery_s;
+};
+
+Result<bool> Service::begin() {
+  if (stands_by()) {
+    const Result<bool> found = find_leader();
+    if (!found || !*found) return found;
+  }
+  auto start = read_start(options_);
+  if (!start) return start.error();
+  start_ = std::move(*start);
+  if (Status opened = open_channel(); !opened) return opened.error();
+  if (Status opened = open_log(); !opened) return opened.error();
+  if (stands_by()) {
+    const Result<bool> leads = follow_leader();
+    if (!leads || !*leads) return leads;
+  }
+  open_loop();
+  if (Status opened = open_metrics(); !opened) return opened.error();
+  return true;
+}
+
+// 1. of one that stands by: a leader, and all of its ticks of before in its log
+Result<bool> Service::find_leader() {
+  auto opened = open_standby_channel(options_.network);
+  if (!opened) return opened.error();
+  standby_ = std::move(*opened);
+  spdlog::info("standing by: waiting for the server of session '{}'", options_.network.session);
+  return await_leader(*standby_, told_, is_to_stop);
+}
+
+// 2. the channel
+Status Service::open_channel() {
+  if (stands_by()) {
+    channel_ = std::move(standby_);
+    return ok();
+  }
+  DdsOptions network = options_.network;
+  network.led_until_ms = static_cast<std::uint64_t>(start_->led_until_ns / 1'000'000);
+  auto opened = open_server_channel(network);
+  if (!opened) return opened.error();
+  channel_ = std::move(*opened);
+  return ok();
+}
+
+// 3. the log of before, played again, and the new one
+Status Service::open_log() {
+  // A disk that is full, or a file that may not grow, is an error of the log, not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
+  auto resumed = resume(*start_, options_);
+  if (!resumed) return resumed.error();
+  resumed_ = std::move(*resumed);
+  std::optional<LogBegin> begin;
+  if (resumed_) begin = std::move(resumed_->begin);
+  // No log begins before the term under which it is written: the next one finds that term in it.
+  if (begin) begin->time_ns = std::max(begin->time_ns, term_ns());
+  auto log = create_log(options_, *start_, std::move(begin));
+  if (!log) return log.error();
+  log_ = std::move(*log);
+
+  const LoadedScene& scene = start_->scene;
+  closing_.session = options_.network.session;
+  closing_.scenario = start_->source;
+  closing_.policy = name_of(scene.world.policy);
+  closing_.log_file = log_.file;
+  for (std::size_t i = 0; i < scene.imports.size() && i < scene.world.parts.size(); ++i)
+    if (!scene.imports[i].closed)
+      closing_.parts_without_inside.push_back(scene.world.parts[i].name);
+  if (!resumed_) return ok();
+  closing_.restored_from = start_->source;
+  closing_.restored_ticks = resumed_->ticks;
+  closing_.restore_left_out_ticks = resumed_->ticks_left_out;
+  return ok();
+}
+
+// 4. of one that stands by: in step with the leader until it is to lead
+Result<bool> Service::follow_leader() {
+  (void)run_before_others();          // said in open_loop()
+  if (!resumed_) resumed_.emplace();  // the leader's session has no log
+  World& world = start_->scene.world;
+  Follower follower(world, resumed_->statistics, log_.writer.get(), options_.threads);
+  auto& line = static_cast<StandbyChannel&>(*channel_);
+  auto ended = follow(line, std::move(told_), follower, is_to_stop,
+                      [](const std::string& note) { spdlog::info("standing by: {}", note); });
+  if (!ended || !*ended) return ended;
+  seats_ = follower.seats();
+  followed_ns_ = follower.time_ns();
+  run_as_others();  // and the threads of the endpoints
+  if (Status taken = line.take_over(); !taken) return taken.error();
+  if (log_.writer)
+    if (Status named = log_.writer->take_name(); !named) spdlog::error("{}", named.error().text);
+  spdlog::warn("the server of session '{}' {}: taken over at tick {}, {} users",
+               options_.network.session, follower.handed_over() ? "hands over" : "is gone",
+               world.tick, seats_.size());
+  return true;
+}
+
+// 5. the tick loop and what looks at it
+void Service::open_loop() {
+  if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
+  // No tick is logged before the term of its server: so the next one finds a later term in the log.
+  clock_.emplace(std::max(term_ns(), followed_ns_));
+  if (const double ahead_s = clock_->ahead_s(); ahead_s > kSayAhead_s)
+    spdlog::warn(
+        "the clock of this machine is {:.0f} s behind the last tick of {}: the log's "
+        "times go on from there",
+        ahead_s, start_->source);
+  TickLoopOptions options;
+  options.session = options_.network.session;
+  options.threads = options_.threads;
+  options.inbox = options_.limits;
+  held_.emplace(*channel_, *clock_, [this] { return loop_->inbox().users_present(); });
+  loop_.emplace(start_->scene.world, *held_, *clock_, log_.writer.get(), options);
+  drain_.emplace(*loop_, *held_, *clock_);
+  if (resumed_ && stands_by()) {
+    held_->await(seats_);
+    loop_->adopt(std::move(resumed_->statistics), seats_);
+  } else if (resumed_) {
+    loop_->resume(std::move(resumed_->statistics), std::move(resumed_->departures));
+  }
+  loop_->open();
+  say_session();
+}
+
+void Service::say_session() const {
+  const World& world = start_->scene.world;
+  spdlog::info("session '{}' of {} on domain {}, {}: {} parts, {:g} Hz, policy {}{}",
+               options_.network.session, start_->source, options_.network.domain,
+               options_.network.interface, world.parts.size(), world.tick_rate_hz, closing_.policy,
+               closing_.log_file.empty() ? std::string() : ", log " + closing_.log_file);
+  for (const std::string& part : closing_.parts_without_inside)
+    spdlog::warn("'{}' has no inside (open or non-manifold): crossing is found, depth is not",
+                 part);
+}
+
+Status Service::open_metrics() {
+  if (!options_.metrics_port) return ok();
+  auto opened = MetricsEndpoint::open(options_.metrics_address, *options_.metrics_port);
+  if (!opened) return opened.error();
+  metrics_ = std::move(*opened);
+  spdlog::info("metrics at http://{}:{}/metrics", options_.metrics_address, metrics_->port());
+  return ok();
+}
+
+void Service::play() {
+  Announcer announcer(options_.live, options_.quiet);
+  loop_->run(
+      [&] {
+        return stop_asked || loop_->superseded() || barred() ||
+               (drain_asked && drain_->is_ready()) ||
+               (options_.duration_s > 0.0 && loop_->seconds() >= options_.duration_s);
+      },
+      [&] { after_tick(announcer); });
+  announcer.finish();
+}
+
+void Service::after_tick(Announcer& announcer) {
+  announcer.after_tick(*loop_);
+  for (const std::string& note : held_->take_notes()) spdlog::warn("{}", note);
+  if (!metrics_) return;
+  metrics_->beat();
+  if (loop_->seconds() - shown_at_s_ < kShowFiguresEvery_s) return;
+  shown_at_s_ = loop_->seconds();
+  metrics_->show(figures_of(*loop_, channel_->counters(), options_.network.session,
+                            held_->follower_backlog()));
+}
+
+int Service::end() {
+  const bool was_barred = barred();
+  if (drain_->begun() && !stop_asked && !loop_->superseded() && !was_barred) {
+    drain_->finish([&] {
+      if (metrics_) metrics_->beat();
+      return !stop_asked;
+    });
+  }
+  if (loop_->superseded()) {
+    spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
+                  options_.network.session, options_.network.session);
+  } else if (was_barred) {
+    spdlog::error("{}", channel_->barred());
+    // One that stands by goes on with the session, and takes nothing more from this one.
+    if (!held_->follower_in_step()) say_goodbye();
+  } else if (drain_->end() != Drain::End::kNone) {
+    spdlog::info("{}", drain_->text(options_.network.session, closing_.log_file));
+  } else {
+    say_goodbye();
+  }
+  closing_.channel = channel_->counters();
+  closing_.follower = held_->follower_backlog();
+  const int exit_code = close_session(options_, std::move(closing_), log_.writer.get(), *loop_);
+  return loop_->superseded() || was_barred ? kExitRuntime : exit_code;
+}
+
+void Service::say_goodbye() {
+  loop_->close();
+  held_->finish();
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options) {
   give_back_large_memory();
-  const bool stands_by = !options.standby_of.empty();
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
   std::signal(SIGUSR1, ask_to_drain);
-  // One that stands by has nothing to hand over.
-  const auto stop = [] { return stop_asked || drain_asked; };
-  std::unique_ptr<StandbyChannel> standby;
-  std::deque<ToldTick> told;
-  if (stands_by) {
-    auto opened = open_standby_channel(dds_of(options));
-    if (!opened) return say(opened.error());
-    standby = std::move(*opened);
-    spdlog::info("standing by: waiting for the server of session '{}'", options.session);
-    if (!await_leader(*standby, told, stop)) return kExitOk;
-  }
-  auto start = read_start(options);
-  if (!start) return say(start.error());
-  World& world = start->scene.world;
-  DdsOptions dds = dds_of(options);
-  dds.led_until_ms = static_cast<std::uint64_t>(start->led_until_ns / 1'000'000);
-  auto channel = stands_by ? Result<std::unique_ptr<ServerChannel>>(std::move(standby))
-                           : open_server_channel(dds);
-  if (!channel) return say(channel.error());
-
-  // A disk that is full, or a file that may not grow, is an error of the log, not the end.
-  std::signal(SIGXFSZ, SIG_IGN);
-  auto resumed = resume(*start, options);
-  if (!resumed) return say(resumed.error());
-  // No log begins before the term under which it is written: the next one finds that term in it.
-  const auto term_ns = [&] { return static_cast<std::int64_t>((*channel)->term_ms() * 1'000'000); };
-  if (*resumed && (*resumed)->begin)
-    (*resumed)->begin->time_ns = std::max((*resumed)->begin->time_ns, term_ns());
-  auto log = create_log(options, *start,
-                        *resumed ? std::move((*resumed)->begin) : std::optional<LogBegin>());
-  if (!log) return say(log.error());
-
-  Closing closing;
-  closing.session = options.session;
-  closing.scenario = start->source;
-  closing.policy = name_of(world.policy);
-  closing.log_file = log->file;
-  for (std::size_t i = 0; i < start->scene.imports.size() && i < world.parts.size(); ++i) {
-    if (!start->scene.imports[i].closed)
-      closing.parts_without_inside.push_back(world.parts[i].name);
-  }
-
-  std::vector<SeatRecord> seats;
-  std::int64_t followed_ns = 0;
-  if (stands_by) {
-    (void)run_before_others();  // said below
-    Follower follower(world, (*resumed)->statistics, log->writer.get(), options.threads);
-    auto& line = static_cast<StandbyChannel&>(**channel);
-    auto ended = follow(line, std::move(told), follower, stop,
-                        [](const std::string& note) { spdlog::info("standing by: {}", note); });
-    if (!ended) return say(ended.error());
-    if (!*ended) return kExitOk;
-    seats = follower.seats();
-    followed_ns = follower.time_ns();
-    run_as_others();  // and the threads of the endpoints
-    if (Status taken = line.take_over(); !taken) return say(taken.error());
-    if (log->writer)
-      if (Status named = log->writer->take_name(); !named) spdlog::error("{}", named.error().text);
-    spdlog::warn("the server of session '{}' {}: taken over at tick {}, {} users", options.session,
-                 follower.handed_over() ? "hands over" : "is gone", world.tick, seats.size());
-  }
-
-  if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
-  // No tick is logged before the term of its server: so the next one finds a later term in the log.
-  SystemClock clock(std::max(term_ns(), followed_ns));
-  if (const double ahead_s = clock.ahead_s(); ahead_s > kSayAhead_s)
-    spdlog::warn(
-        "the clock of this machine is {:.0f} s behind the last tick of {}: the log's "
-        "times go on from there",
-        ahead_s, start->source);
-  TickLoopOptions loop_options;
-  loop_options.session = options.session;
-  loop_options.threads = options.threads;
-  loop_options.inbox = options.limits;
-  const TickLoop* running = nullptr;
-  HeldChannel held(**channel, clock, [&] { return running->inbox().users_present(); });
-  TickLoop loop(world, held, clock, log->writer.get(), loop_options);
-  running = &loop;
-  if (Resumed* before = resumed->has_value() ? &**resumed : nullptr; before != nullptr) {
-    closing.restored_from = start->source;
-    closing.restored_ticks = before->ticks;
-    closing.restore_left_out_ticks = before->ticks_left_out;
-    if (stands_by) {
-      held.await(seats);
-      loop.adopt(std::move(before->statistics), seats);
-    } else {
-      loop.resume(std::move(before->statistics), std::move(before->departures));
-    }
-  }
-  loop.open();
-  spdlog::info("session '{}' of {} on domain {}, {}: {} parts, {:g} Hz, policy {}{}",
-               options.session, start->source, options.domain, options.interface,
-               world.parts.size(), world.tick_rate_hz, closing.policy,
-               closing.log_file.empty() ? std::string() : ", log " + closing.log_file);
-  for (const std::string& part : closing.parts_without_inside) {
-    spdlog::warn("'{}' has no inside (open or non-manifold): crossing is found, depth is not",
-                 part);
-  }
-
-  std::unique_ptr<MetricsEndpoint> metrics;
-  if (options.metrics_port) {
-    auto opened = MetricsEndpoint::open(options.metrics_address, *options.metrics_port);
-    if (!opened) return say(opened.error());
-    metrics = std::move(*opened);
-    spdlog::info("metrics at http://{}:{}/metrics", options.metrics_address, metrics->port());
-  }
-  double shown_at_s = -kShowFiguresEvery_s;
-  const auto show_figures = [&] {
-    if (!metrics) return;
-    metrics->beat();
-    if (loop.seconds() - shown_at_s < kShowFiguresEvery_s) return;
-    shown_at_s = loop.seconds();
-    metrics->show(
-        figures_of(loop, (*channel)->counters(), options.session, held.follower_backlog()));
-  };
-  Announcer announcer(options.live, options.quiet);
-  Drain drain(loop, held, clock);
-  loop.run(
-      [&] {
-        return stop_asked || loop.superseded() || !(*channel)->barred().empty() ||
-               (drain_asked && drain.is_ready()) ||
-               (options.duration_s > 0.0 && loop.seconds() >= options.duration_s);
-      },
-      [&] {
-        announcer.after_tick(loop);
-        for (const std::string& note : held.take_notes()) spdlog::warn("{}", note);
-        show_figures();
-      });
-  announcer.finish();
-  const bool barred = !(*channel)->barred().empty();
-  const auto say_goodbye = [&] {
-    loop.close();
-    held.finish();
-  };
-  if (drain.begun() && !stop_asked && !loop.superseded() && !barred) {
-    drain.finish([&] {
-      if (metrics) metrics->beat();
-      return !stop_asked;
-    });
-  }
-  if (loop.superseded()) {
-    spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
-                  options.session, options.session);
-  } else if (barred) {
-    spdlog::error("{}", (*channel)->barred());
-    // One that stands by goes on with the session, and takes nothing more from this one.
-    if (!held.follower_in_step()) say_goodbye();
-  } else if (drain.end() != Drain::End::kNone) {
-    spdlog::info("{}", drain.text(options.session, closing.log_file));
-  } else {
-    say_goodbye();
-  }
-  closing.channel = (*channel)->counters();
-  closing.follower = held.follower_backlog();
-  const int exit_code = close_session(options, std::move(closing), log->writer.get(), loop);
-  return loop.superseded() || barred ? kExitRuntime : exit_code;
+  Service service(options);
+  const Result<bool> begun = service.begin();
+  if (!begun) return say(begun.error());
+  if (!*begun) return kExitOk;
+  service.play();
+  return service.end();
 }
 
 }  // namespace mortise

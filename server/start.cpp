@@ -110,8 +110,9 @@ std::string default_log_file(const fs::path& folder, const std::string& session,
 }
 
 std::string log_file(const ServerOptions& options, const std::optional<LogBegin>& begin) {
-  if (options.log.empty()) return default_log_file("sessions", options.session, begin);
-  if (fs::is_directory(options.log)) return default_log_file(options.log, options.session, begin);
+  if (options.log.empty()) return default_log_file("sessions", options.network.session, begin);
+  if (fs::is_directory(options.log))
+    return default_log_file(options.log, options.network.session, begin);
   return options.log;
 }
 
@@ -119,7 +120,7 @@ std::string log_file(const ServerOptions& options, const std::optional<LogBegin>
 
 Result<SessionStart> read_start(const ServerOptions& options) {
   if (options.restore.empty()) return read_from_scenario(options);
-  const auto file = log_to_restore(options.restore, options.session,
+  const auto file = log_to_restore(options.restore, options.network.session,
                                    // One that stood by before leaves a log that was begun later and
                                    // is not of the one that leads.
                                    options.standby_of.empty() ? Newest::kBegun : Newest::kWritten);
@@ -128,10 +129,10 @@ Result<SessionStart> read_start(const ServerOptions& options) {
     return fail(Code::kInvalidInput,
                 fmt::format("{}: no log of session '{}' in this folder; name a log file, or give a "
                             "scenario to begin with",
-                            options.restore, options.session));
+                            options.restore, options.network.session));
   }
-  spdlog::info("{} holds no log of session '{}': {} begins anew", options.restore, options.session,
-               options.scenario);
+  spdlog::info("{} holds no log of session '{}': {} begins anew", options.restore,
+               options.network.session, options.scenario);
   return read_from_scenario(options);
 }
 
@@ -151,7 +152,7 @@ Result<NewLog> create_log(const ServerOptions& options, const SessionStart& star
     return fail(Code::kRuntime, log.file + ": exists already; a log is never overwritten");
   }
   LogHeader header =
-      log_header(start.scene, options.session, start.scenario_name, start.scenario_yaml);
+      log_header(start.scene, options.network.session, start.scenario_name, start.scenario_yaml);
   if (begin) header.chain = {start.log_name, start.log_chain.part + 1};
   header.begin = std::move(begin);
   LogOptions log_options;

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 /// Joins, acts and leaves, in this process.
 int run_crew(const BotOptions& options, std::optional<Play> play, ProcessReport& report) {
-  auto channel = open_client_channel(dds_of(options));
+  auto channel = open_client_channel(options.network);
   if (!channel) {
     spdlog::error("{}", channel.error().text);
     return exit_code_of(channel.error().code);

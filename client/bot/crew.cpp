@@ -112,7 +112,8 @@ void Crew::say_why_not_joined() const {
   spdlog::error(
       "no server of session '{}' answered on domain {} at {} within {:g} s; start mortise-server "
       "first, or wait longer with --wait",
-      options_.session, options_.domain, looked_at(dds_of(options_)), options_.wait_s);
+      options_.network.session, options_.network.domain, looked_at(options_.network),
+      options_.wait_s);
 }
 
 Status Crew::find_parts() {

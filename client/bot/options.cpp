@@ -8,7 +8,7 @@
 #include "client/bot/load_report.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
-#include "idl/dds_channel.h"
+#include "idl/network_options.h"
 
 namespace mortise {
 namespace {
@@ -33,76 +33,49 @@ Limit read_limit(const std::string& text) {
   return limit;
 }
 
-}  // namespace
-
-DdsOptions dds_of(const BotOptions& options) {
-  DdsOptions dds;
-  dds.session = options.session;
-  dds.domain = options.domain;
-  dds.interface = options.interface;
-  dds.server = options.server;
-  dds.discovery_server = options.discovery_server;
-  dds.discovery_port = options.port;
-  dds.keys = options.keys;
-  dds.meshes = false;  // a bot does not look at parts
-  dds.features = options.behaviour == "guided" && !options.observer;
-  return dds;
-}
-
-BotCommandLine read_bot_command_line(int argc, char** argv) {
-  BotCommandLine line;
-  BotOptions& o = line.options;
-  CLI::App app{"mortise-bot: designers without hands, for load, tests and demos"};
-  app.set_version_flag("--version", version_line("mortise-bot"));
-  app.add_option("--session", o.session, "Name of the session")->capture_default_str();
-  app.add_option("--domain", o.domain, "DDS domain")
-      ->check(CLI::Range(0, 232))
-      ->capture_default_str();
-  app.add_option("--interface", o.interface, "IPv4 address of the own interface")
-      ->capture_default_str();
-  app.add_option("--server", o.server,
-                 "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
-                 "the own interface, unless a discovery server is asked");
-  app.add_option(
-      "--discovery-server", o.discovery_server,
-      "Ask these for the server of the session: HOST[:PORT] of mortise-discovery, comma between");
-  app.add_option("--port", o.port, "Discovery port of the server; 0: the domain's own")
-      ->check(CLI::Range(0, 65535));
-  app.add_option("--keys", o.keys,
-                 "Folder of the own keys (mortise keys), when the server requires keys");
+void add_users(CLI::App& app, BotOptions& o) {
   app.add_option("--users", o.users, "So many users in this process")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app.add_option("--names", o.names, "Their names, comma separated")->delimiter(',');
-  app.add_option("--behaviour", o.behaviour, "What they do")
-      ->check(CLI::IsMember(behaviour_names()))
-      ->capture_default_str();
-  app.add_option("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)");
-  app.add_option("--part", o.part, "Part to begin with (fight: the part that all want)");
-  app.add_option("--first-part", o.first_part,
-                 "Number of the moving part that the first user begins with, from 0");
-  app.add_option("--target", o.target,
-                 "guided: the part with the bore; default: the nearest that fits");
-  app.add_option("--tries", o.guided.tries, "guided: insertions tried by each user")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--tremor", o.guided.tremor_mm, "guided: how far the hand trembles, mm, each way")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  double tremor_deg = o.guided.tremor_rad * 180.0 / std::numbers::pi;
-  app.add_option("--tremor-deg", tremor_deg, "guided: how far it turns, degrees, each way")
-      ->check(CLI::Range(0.0, 45.0))
-      ->capture_default_str();
-  app.add_flag("--free-hand", o.guided.free_hand, "guided: without a constraint, by eye");
-  app.add_option("--seed", o.seed, "Seed of what is random")->capture_default_str();
-  app.add_option("--rate", o.rate_hz, "Increments a second and user")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
+  app.add_flag("--observer", o.observer, "Only look and count");
   app.add_option("--processes", o.processes, "So many processes, each with --users of its own")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app.add_option("--ramp", o.ramp_s, "Users come in evenly over so many seconds")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--seed", o.seed, "Seed of what is random")->capture_default_str();
+}
+
+void add_behaviour(CLI::App& app, BotOptions& o, double& tremor_deg) {
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return app.add_option(name, value, text)->group("Behaviour");
+  };
+  add("--behaviour", o.behaviour, "What they do")
+      ->check(CLI::IsMember(behaviour_names()))
+      ->capture_default_str();
+  add("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)");
+  add("--part", o.part, "Part to begin with (fight: the part that all want)");
+  add("--first-part", o.first_part,
+      "Number of the moving part that the first user begins with, from 0");
+  add("--target", o.target, "guided: the part with the bore; default: the nearest that fits");
+  add("--tries", o.guided.tries, "guided: insertions tried by each user")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  add("--tremor", o.guided.tremor_mm, "guided: how far the hand trembles, mm, each way")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  add("--tremor-deg", tremor_deg, "guided: how far it turns, degrees, each way")
+      ->check(CLI::Range(0.0, 45.0))
+      ->capture_default_str();
+  app.add_flag("--free-hand", o.guided.free_hand, "guided: without a constraint, by eye")
+      ->group("Behaviour");
+  add("--rate", o.rate_hz, "Increments a second and user")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+}
+
+void add_times(CLI::App& app, BotOptions& o) {
   app.add_option("--duration,--seconds", o.duration_s,
                  "Act for so many seconds; 0: until the script ends")
       ->check(CLI::NonNegativeNumber);
@@ -114,21 +87,49 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
   app.add_option("--linger", o.linger_s, "Listen on for so long after the last act")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_flag("--observer", o.observer, "Only look and count");
+}
+
+void add_report(CLI::App& app, BotOptions& o, std::vector<std::string>& limits) {
   app.add_flag("--json", o.json, "Report as one JSON document");
   app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
-  std::vector<std::string> limits;
   app.add_option(
-      "--limit", limits,
-      "NAME=VALUE, again for more: exit with 5 when the figure is above. " + known_limits());
+         "--limit", limits,
+         "NAME=VALUE, again for more: exit with 5 when the figure is above. " + known_limits())
+      ->group(kLimitsGroup);
   app.add_option_function<double>(
          "--max-p99-ms",
          [&](double ms) {
            o.limits.push_back({"p99_ms", ms});
          },
          "The same as --limit p99_ms=VALUE")
+      ->group(kLimitsGroup)
       ->check(CLI::PositiveNumber);
-  app.add_option("--junit", o.junit, "Write the limits to this file as a JUnit document");
+  app.add_option("--junit", o.junit, "Write the limits to this file as a JUnit document")
+      ->group(kLimitsGroup);
+}
+
+/// What options ask of each other.
+void check_together(const BotOptions& o) {
+  if (o.processes > 1 && (!o.names.empty() || o.behaviour == "script"))
+    throw CLI::ValidationError("--processes makes up its users: without --names and script");
+  if (o.behaviour == "script" && o.play.empty() && !o.observer)
+    throw CLI::ValidationError("--behaviour script needs --play FILE");
+}
+
+}  // namespace
+
+BotCommandLine read_bot_command_line(int argc, char** argv) {
+  BotCommandLine line;
+  BotOptions& o = line.options;
+  CLI::App app{"mortise-bot: designers without hands, for load, tests and demos"};
+  app.set_version_flag("--version", version_line("mortise-bot"));
+  double tremor_deg = o.guided.tremor_rad * 180.0 / std::numbers::pi;
+  std::vector<std::string> limits;
+  add_client_network_options(app, o.network);
+  add_users(app, o);
+  add_behaviour(app, o, tremor_deg);
+  add_times(app, o);
+  add_report(app, o, limits);
   app.footer(
       "Exit codes: 0 ok, 1 no server or refused, 2 usage, 3 bad play file, 5 a figure is "
       "above its limit.");
@@ -136,12 +137,9 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
     app.parse(argc, argv);
     o.guided.tremor_rad = tremor_deg * std::numbers::pi / 180.0;
     for (const std::string& text : limits) o.limits.push_back(read_limit(text));
-    if (o.processes > 1 && (!o.names.empty() || o.behaviour == "script")) {
-      throw CLI::ValidationError("--processes makes up its users: without --names and script");
-    }
-    if (o.behaviour == "script" && o.play.empty() && !o.observer) {
-      throw CLI::ValidationError("--behaviour script needs --play FILE");
-    }
+    check_together(o);
+    o.network.meshes = false;  // a bot does not look at parts
+    o.network.features = o.behaviour == "guided" && !o.observer;
   } catch (const CLI::ParseError& error) {
     line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

@@ -5,6 +5,7 @@
 
 #include "client/bot/behaviour.h"
 #include "common/math/types.h"
+#include "idl/dds_channel.h"
 
 namespace mortise {
 
@@ -15,13 +16,7 @@ struct Limit {
 };
 
 struct BotOptions {
-  std::string session = "default";
-  int domain = 0;
-  std::string interface = "127.0.0.1";
-  std::string server;            ///< empty: on the same machine, or told by those:
-  std::string discovery_server;  ///< HOST[:PORT] that know it, comma between; empty: none is asked
-  int port = 0;
-  std::string keys;  ///< folder; empty: no security
+  DdsOptions network;
   std::vector<std::string> names;
   int users = 1;
   std::string behaviour = "wander";
@@ -42,10 +37,6 @@ struct BotOptions {
   std::string junit;    ///< file for the limits as a JUnit document; empty: none
   std::vector<Limit> limits;
 };
-
-struct DdsOptions;
-/// How a process of it meets the session.
-DdsOptions dds_of(const BotOptions& options);
 
 struct BotCommandLine {
   BotOptions options;

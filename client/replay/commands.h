@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "idl/dds_channel.h"
+
 namespace mortise {
 
 /// Each command prints its result on stdout (people's text, or one JSON document), everything else
@@ -43,9 +45,7 @@ int run_explain(const ExplainOptions& options);
 /// Plays a log to a live session (client/replay/play.h).
 struct PlayCommand {
   std::filesystem::path log;
-  std::string session = "default", interface = "127.0.0.1", server, discovery_server;
-  int domain = 0, server_port = 0;
-  std::string keys;                                             ///< folder; empty: no security
+  DdsOptions network;
   double speed = 1.0, from_s = 0.0, to_s = 0.0, wait_s = 10.0;  ///< to_s 0: to the end
   bool json = false;
 };

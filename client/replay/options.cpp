@@ -6,6 +6,7 @@
 #include "client/replay/commands.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
+#include "idl/network_options.h"
 
 namespace mortise {
 namespace {
@@ -102,20 +103,7 @@ void add_play([[maybe_unused]] CLI::App& app, [[maybe_unused]] int& code) {
   auto* command = app.add_subcommand(
       "play", "send what the users of a log did to a live session with the same parts, again");
   command->add_option("log", o.log, "session log (.mcap)")->required();
-  command->add_option("--session", o.session, "name of the session")->capture_default_str();
-  command->add_option("--domain", o.domain, "DDS domain")->check(CLI::Range(0, 232));
-  command->add_option("--interface", o.interface, "IPv4 address of the own interface")
-      ->capture_default_str();
-  command->add_option("--server", o.server,
-                      "hosts where the server may be, comma between: IPv4, or a name of them; "
-                      "default: the own interface, unless a discovery server is asked");
-  command->add_option(
-      "--discovery-server", o.discovery_server,
-      "ask these for the server of the session: HOST[:PORT] of mortise-discovery, comma between");
-  command->add_option("--keys", o.keys,
-                      "folder of the own keys (mortise keys), when the server requires keys");
-  command->add_option("--server-port", o.server_port, "discovery port of the server")
-      ->check(CLI::Range(0, 65535));
+  add_client_network_options(*command, o.network);
   command->add_option("--speed", o.speed, "times the recorded pace")
       ->check(CLI::Range(0.1, 100.0))
       ->capture_default_str();

@@ -11,16 +11,9 @@ int run_play(const PlayCommand& command) {
   const auto log = read_session(command.log);
   if (!log) return say(log.error(), kExitBadInput);
   print_notes(*log);
-  DdsOptions dds;
-  dds.session = command.session;
-  dds.domain = command.domain;
-  dds.interface = command.interface;
-  dds.server = command.server;
-  dds.discovery_server = command.discovery_server;
-  dds.discovery_port = command.server_port;
-  dds.keys = command.keys;
-  dds.meshes = dds.features = false;
-  const auto channel = open_client_channel(dds);
+  DdsOptions network = command.network;
+  network.meshes = network.features = false;
+  const auto channel = open_client_channel(network);
   if (!channel) return say(channel.error(), exit_code_of(channel.error().code));
   Client client(**channel);
   PlayOptions options;
@@ -33,7 +26,7 @@ int run_play(const PlayCommand& command) {
   progress.end();
   if (!outcome) return say(outcome.error(), exit_code_of(outcome.error().code));
   const Json document = {{"log", command.log.string()},
-                         {"session", command.session},
+                         {"session", command.network.session},
                          {"speed", command.speed},
                          {"took_s", outcome->took_s},
                          {"waited_s", outcome->waited_s},

@@ -157,7 +157,7 @@ std::optional<Answer> refusal_of_report(GatewayState& state, const Request& requ
   if (!is_own(state, request, from)) return wrong_host();
   if (auto refused = without_token(state, request, from)) return refused;
   if (!state.options.report)
-    return sentence(status::not_found, "there is no log to report on; see --session-log");
+    return sentence(status::not_found, "there is no log to report on; see --log");
   if (!state.reports.is_busy() && !state.ending) return std::nullopt;
   Answer answer = sentence(status::service_unavailable, "a report is being made; ask again");
   answer.fields.emplace_back("Retry-After", "2");

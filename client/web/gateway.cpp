@@ -42,9 +42,10 @@ class AsioGateway final : public Gateway {
     boost::system::error_code error;
     const auto ip = asio::ip::make_address_v4(state_.options.address, error);
     const auto failed = [&](const char* doing) {
-      return fail(Code::kRuntime,
-                  state_.options.address + ":" + std::to_string(state_.options.port) + ": cannot " +
-                      doing + ": " + error.message() + "; choose another with --port, --address");
+      return fail(Code::kRuntime, state_.options.address + ":" +
+                                      std::to_string(state_.options.port) + ": cannot " + doing +
+                                      ": " + error.message() +
+                                      "; choose another with --http-port, --http-address");
     };
     if (error) return failed("read the address");
     acceptor_.open(tcp::v4(), error);

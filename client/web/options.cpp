@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "common/io/build_info.h"
+#include "idl/network_options.h"
 
 namespace mortise::web {
 namespace {
@@ -22,26 +23,71 @@ std::string default_page() {
   return installed.lexically_normal().string();
 }
 
-void add_web(CLI::App& app, GatewayOptions& o) {
-  app.add_option("--address", o.address, "IPv4 address to listen on; 0.0.0.0: every interface")
+void add_what_is_shown(CLI::App& app, WebOptions& o) {
+  app.add_option("--replay", o.replay,
+                 "Show this session log (MCAP) with a timeline, without a server")
+      ->group(kLogGroup)
+      ->excludes("--session");
+  app.add_option("--log", o.log,
+                 "Log that the server of the session writes, where this machine can read it: pages "
+                 "can download a report of the session so far")
+      ->group(kLogGroup)
+      ->excludes("--replay");
+}
+
+void add_http(CLI::App& app, GatewayOptions& o) {
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return app.add_option(name, value, text)->group("Browsers");
+  };
+  add("--http-address", o.address, "IPv4 address to listen on; 0.0.0.0: every interface")
       ->capture_default_str();
-  app.add_option("--port", o.port, "Port to listen on; 0: a free one")->check(CLI::Range(0, 65535));
-  app.add_option(
-      "--name", o.names,
+  add("--http-port", o.port, "Port to listen on; 0: a free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  add("--name", o.names,
       "Host name that browsers may ask for, beside numbers and localhost; again for more");
-  app.add_option("--origin", o.origins,
-                 "Origin (https://host:port) of another page that may connect; again for more");
+  add("--origin", o.origins,
+      "Origin (https://host:port) of another page that may connect; again for more");
   auto* certificate =
-      app.add_option("--certificate", o.certificate, "Speak TLS with this certificate chain (PEM)");
-  auto* key = app.add_option("--key", o.key, "Its private key (PEM)");
+      add("--certificate", o.certificate, "Speak TLS with this certificate chain (PEM)");
+  auto* key = add("--key", o.key, "Its private key (PEM)");
   certificate->needs(key);
   key->needs(certificate);
   app.add_option("--browsers", o.limits.browsers, "Browsers at one time")
+      ->group(kLimitsGroup)
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   app.add_option("--max-messages", o.limits.messages_per_s, "Messages a second of one browser")
+      ->group(kLimitsGroup)
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
+}
+
+void add_page(CLI::App& app, WebOptions& o) {
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return app.add_option(name, value, text)->group("Browsers");
+  };
+  add("--page", o.page, "Folder of the page")->capture_default_str();
+  add("--tokens", o.tokens,
+      "File of two lines, the tokens of designers and of observers (made when it is not there), "
+      "or a line ROLE NAME TOKEN for each person (mortise keys token). Default: two new "
+      "ones for this run");
+  add("--addresses", o.addresses,
+      "File for the addresses with their tokens, which only its owner reads; -: stdout. "
+      "Default: stdout where that is a terminal, else none are said");
+}
+
+/// What options ask of each other.
+void check_together(const WebOptions& o) {
+  if (o.gateway.certificate.empty() && !o.gateway.address.starts_with("127."))
+    throw CLI::ValidationError(
+        "--http-address " + o.gateway.address +
+        " opens the gateway to other hosts: give --certificate and --key, or "
+        "stay on 127.0.0.1 behind a proxy that speaks TLS");
+  if (o.addresses.empty() && o.tokens.empty() && ::isatty(STDOUT_FILENO) == 0)
+    throw CLI::ValidationError(
+        "stdout is no terminal, so that nobody would learn the tokens of this run: give "
+        "--addresses FILE (or - for stdout all the same), or --tokens FILE");
 }
 
 }  // namespace
@@ -52,40 +98,10 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
   o.page = default_page();
   CLI::App app{"mortise-web: lets browsers take part in a session, or look at a log of one"};
   app.set_version_flag("--version", mortise::version_line("mortise-web"));
-  auto* session =
-      app.add_option("--session", o.session, "Name of the session")->capture_default_str();
-  app.add_option("--log", o.log, "Show this session log (MCAP) with a timeline, without a server")
-      ->excludes(session);
-  app.add_option("--session-log", o.session_log,
-                 "Log that the server writes, where this machine can read it: pages can download a "
-                 "report of the session so far")
-      ->excludes("--log");
-  app.add_option("--domain", o.domain, "DDS domain")
-      ->check(CLI::Range(0, 232))
-      ->capture_default_str();
-  app.add_option("--interface", o.interface, "IPv4 address of the own interface towards the server")
-      ->capture_default_str();
-  app.add_option("--server", o.server,
-                 "Hosts where the server may be, comma between: IPv4, or a name of them; default: "
-                 "the own interface, unless a discovery server is asked");
-  app.add_option(
-      "--discovery-server", o.discovery_server,
-      "Ask these for the server of the session: HOST[:PORT] of mortise-discovery, comma between");
-  app.add_option("--server-port", o.discovery_port,
-                 "Discovery port of the server; 0: the domain's own")
-      ->check(CLI::Range(0, 65535));
-  app.add_option("--keys", o.keys,
-                 "Folder of the gateway's keys (mortise keys), when the server requires keys");
-  app.add_option("--page", o.page, "Folder of the page")->capture_default_str();
-  app.add_option(
-      "--tokens", o.tokens,
-      "File of two lines, the tokens of designers and of observers (made when it is not there), "
-      "or a line ROLE NAME TOKEN for each person (mortise keys token). Default: two new "
-      "ones for this run");
-  app.add_option("--addresses", o.addresses,
-                 "File for the addresses with their tokens, which only its owner reads; -: stdout. "
-                 "Default: stdout where that is a terminal, else none are said");
-  add_web(app, o.gateway);
+  add_client_network_options(app, o.network);
+  add_what_is_shown(app, o);
+  add_http(app, o.gateway);
+  add_page(app, o);
   app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
   app.footer(
       "Prints two addresses, one for designers and one for who only looks on, or one for each "
@@ -94,17 +110,7 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
       "tokens, certificate, log).");
   try {
     app.parse(argc, argv);
-    if (o.gateway.certificate.empty() && !o.gateway.address.starts_with("127.")) {
-      throw CLI::ValidationError(
-          "--address " + o.gateway.address +
-          " opens the gateway to other hosts: give --certificate and --key, or "
-          "stay on 127.0.0.1 behind a proxy that speaks TLS");
-    }
-    if (o.addresses.empty() && o.tokens.empty() && ::isatty(STDOUT_FILENO) == 0) {
-      throw CLI::ValidationError(
-          "stdout is no terminal, so that nobody would learn the tokens of this run: give "
-          "--addresses FILE (or - for stdout all the same), or --tokens FILE");
-    }
+    check_together(o);
   } catch (const CLI::ParseError& error) {
     line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

@@ -62,8 +62,7 @@ void warn_without_three(const PageFiles& page) {
 // Serves a feed until a signal comes.
 int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   GatewayOptions gateway_options = options.gateway;
-  if (const std::string& log = options.log.empty() ? options.session_log : options.log;
-      !log.empty())
+  if (const std::string& log = options.replay.empty() ? options.log : options.replay; !log.empty())
     gateway_options.report = [log] { return report_page(log); };
   auto page = PageFiles::open(options.page);
   if (!page) return fail_with(page.error());
@@ -82,28 +81,20 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
 }
 
 int serve_session(const WebOptions& options, StopSignal& stop_signal) {
-  DdsOptions dds;
-  dds.session = options.session;
-  dds.domain = options.domain;
-  dds.interface = options.interface;
-  dds.server = options.server;
-  dds.discovery_server = options.discovery_server;
-  dds.discovery_port = options.discovery_port;
-  dds.keys = options.keys;
-  auto channel = open_client_channel(dds);
+  auto channel = open_client_channel(options.network);
   if (!channel) return fail_with(channel.error());
   Client client(**channel);
   LiveFeed feed(client, options.gateway.limits);
-  spdlog::info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.session,
-               options.domain);
+  spdlog::info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.network.session,
+               options.network.domain);
   return serve(options, feed, stop_signal);
 }
 
 int serve_log(const WebOptions& options, StopSignal& stop_signal) {
-  spdlog::info("computing {} again", options.log);
-  auto recording = read_recording(options.log);
+  spdlog::info("computing {} again", options.replay);
+  auto recording = read_recording(options.replay);
   if (!recording) return fail_with(recording.error());
-  for (const std::string& note : recording->notes) spdlog::warn("{}: {}", options.log, note);
+  for (const std::string& note : recording->notes) spdlog::warn("{}: {}", options.replay, note);
   spdlog::info(
       "{:.1f} s of session '{}' for browsers; Ctrl-C ends it",
       static_cast<double>(recording->last_tick - recording->first_tick) / recording->tick_rate_hz,
@@ -116,8 +107,8 @@ int serve_log(const WebOptions& options, StopSignal& stop_signal) {
 
 int run_web(const WebOptions& options) {
   StopSignal stop_signal;  // before any thread
-  return options.log.empty() ? serve_session(options, stop_signal)
-                             : serve_log(options, stop_signal);
+  return options.replay.empty() ? serve_session(options, stop_signal)
+                                : serve_log(options, stop_signal);
 }
 
 }  // namespace mortise::web

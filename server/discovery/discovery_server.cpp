@@ -47,7 +47,8 @@ class UdpDiscoveryServer final : public DiscoveryServer {
     if (!error) socket_.bind(own_, error);
     if (error)
       return fail(Code::kRuntime, "UDP port " + std::to_string(port) + " of " + options.interface +
-                                      ": " + error.message() + "; choose another with --port");
+                                      ": " + error.message() +
+                                      "; choose another with --discovery-port");
     // Whatever the system grants.
     socket_.set_option(asio::socket_base::receive_buffer_size(kSocketBuffer_bytes), error);
     socket_.set_option(asio::socket_base::send_buffer_size(kSocketBuffer_bytes), error);

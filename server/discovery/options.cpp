@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/io/build_info.h"
+#include "idl/network_options.h"
 
 namespace mortise {
 
@@ -11,9 +12,12 @@ DiscoveryCommand read_discovery_command(int argc, char** argv) {
   CLI::App app("mortise-discovery: where servers and clients of a site's sessions find each other");
   app.set_version_flag("--version", version_line("mortise-discovery"));
   app.add_option("--interface", command.where.interface, "IPv4 address of the own interface")
+      ->group(kNetworkGroup)
       ->capture_default_str();
-  app.add_option("--port", command.where.port, "UDP port to hear at; 0: 7398")
-      ->check(CLI::Range(0, 65535));
+  app.add_option("--discovery-port", command.where.port, "UDP port to hear at; 0: 7398")
+      ->group(kNetworkGroup)
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   app.add_option("--duration", command.duration_s, "End after so many seconds; 0: at a signal")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--json", command.json, "Closing counts as one JSON document instead of a table");

@@ -29,7 +29,7 @@ struct Addresses : testing::Test {
   Addresses() { folder.write("index.html", "<!doctype html>"); }
 
   std::vector<std::string> words(const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"--domain", "97", "--port", "0", "--page", folder.path()};
+    std::vector<std::string> all = {"--domain", "97", "--http-port", "0", "--page", folder.path()};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }

@@ -32,7 +32,7 @@ class DiscoveryServers : public ::testing::Test {
   std::unique_ptr<Program> discover() const {
     auto program = std::make_unique<Program>(
         folder_.path(), "mortise-discovery",
-        std::vector<std::string>{"--port", std::to_string(kPort), "--json"});
+        std::vector<std::string>{"--discovery-port", std::to_string(kPort), "--json"});
     EXPECT_TRUE(says(*program, "hears at " + kPlace)) << program->errors();
     return program;
   }
@@ -42,8 +42,9 @@ class DiscoveryServers : public ::testing::Test {
                                       session};
     if (!more.empty() && more.front() == "--standby-of") words.clear();
     words.insert(words.end(), more.begin(), more.end());
-    words.insert(words.end(), {"--port", std::to_string(port), "--domain", std::to_string(kDomain),
-                               "--discovery-server", kPlace, "--log", logs()});
+    words.insert(words.end(),
+                 {"--server-port", std::to_string(port), "--domain", std::to_string(kDomain),
+                  "--discovery-server", kPlace, "--log", logs()});
     return std::make_unique<Program>(folder_.path(), "mortise-server", words);
   }
   std::unique_ptr<Program> stand_by(int port) const {
@@ -176,10 +177,11 @@ TEST_F(DiscoveryServers, MayBeGoneWhileAServerLooksForAnother) {
 
 TEST_F(DiscoveryServers, OfWhichOneIsEnough) {
   const std::string second = "127.0.0.1:" + std::to_string(kPort + 1);
-  Program other(folder_.path(), "mortise-discovery", {"--port", std::to_string(kPort + 1)});
+  Program other(folder_.path(), "mortise-discovery",
+                {"--discovery-port", std::to_string(kPort + 1)});
   ASSERT_TRUE(says(other, "hears at " + second)) << other.errors();
   Program hall(folder_.path(), "mortise-server",
-               {folder_.write("blocks.yaml", blocks_yaml()), "--session", "hall", "--port",
+               {folder_.write("blocks.yaml", blocks_yaml()), "--session", "hall", "--server-port",
                 std::to_string(kHall), "--domain", std::to_string(kDomain), "--discovery-server",
                 kPlace + "," + second, "--no-log"});
   ASSERT_TRUE(says(other, "is here"));
@@ -343,11 +345,12 @@ TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
         << said.errors() << said.out();
   };
   const std::string port = std::to_string(kPort);
-  fails("mortise-discovery", {"--port", port}, 1,
-        "UDP port 17398 of 127.0.0.1: Address already in use; choose another with --port");
+  fails(
+      "mortise-discovery", {"--discovery-port", port}, 1,
+      "UDP port 17398 of 127.0.0.1: Address already in use; choose another with --discovery-port");
   fails("mortise-discovery", {"--interface", "10.255.255.1"}, 3,
         "'10.255.255.1' is not an IPv4 address of this machine");
-  fails("mortise-discovery", {"--port", "70000"}, 2, "--port");
+  fails("mortise-discovery", {"--discovery-port", "70000"}, 2, "--discovery-port");
   const std::vector<std::string> bot = {"--domain", "229", "--wait", "1", "--discovery-server"};
   const auto with = [&bot](const std::string& place) {
     std::vector<std::string> words = bot;
@@ -357,7 +360,7 @@ TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
   fails("mortise-bot", with("127.0.0.1:x"), 3,
         "discovery server '127.0.0.1:x': the port behind the colon is not in 1..65535");
   auto by_port = with(kPlace);
-  by_port.insert(by_port.end(), {"--port", "9000"});
+  by_port.insert(by_port.end(), {"--server-port", "9000"});
   fails("mortise-bot", by_port, 3,
         "port 9000 of no host: the discovery server knows hosts and ports");
   fails("mortise-bot", with("nobody.invalid"), 3,

@@ -155,7 +155,7 @@ class Hosts : public ::testing::Test {
     ServerOptions o;
     o.scenario = scenario_.empty() ? folder_.write("wall.yaml", wall_yaml()) : scenario_;
     o.log = logs_;
-    o.domain = kDomain;
+    o.network.domain = kDomain;
     auto start = read_start(o);
     auto channel = open_server_channel(options(kServerSide, "hall"));
     if (!start || !channel) return note(start ? channel.error().text : start.error().text);

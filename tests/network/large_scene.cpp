@@ -9,7 +9,7 @@
 
 #include "client/client.h"
 #include "common/messages/mesh_bytes.h"
-#include "server/real_time.h"
+#include "server/scheduling.h"
 
 namespace mortise::test {
 namespace {

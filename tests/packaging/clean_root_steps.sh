@@ -135,7 +135,7 @@ session() {  # what the packages are for, with keys and without
         { example/build/watch no 7 >said.txt && grep -qx input_shaft said.txt; } || { cat said.txt; fail "the example does not see the parts"; }
         echo "the example sees $(wc -l <said.txt) parts"
       fi
-      mortise-web --session no --domain 7 --port 0 --addresses web.txt --quiet >web.log 2>&1 &
+      mortise-web --session no --domain 7 --http-port 0 --addresses web.txt --quiet >web.log 2>&1 &
       web=$!
       wait_for '[ -s web.txt ]' || { cat web.log; fail "mortise-web says no addresses"; }
       port=$(sed -nE 's|^designer http://127.0.0.1:([0-9]+)/.*|\1|p' web.txt)

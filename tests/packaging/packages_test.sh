@@ -71,7 +71,7 @@ mortise-inspect /tmp/dowel.stl | grep -q cylinder || { echo "mortise-import read
 domain=$((180 + $$ % 40))
 mortise-server /usr/share/mortise/scenarios/gearbox.yaml --session packed --domain $domain --log /tmp/packed.mcap --quiet >/tmp/server.txt 2>&1 &
 server=$!
-mortise-web --session packed --domain $domain --port 0 --addresses /tmp/web.txt --quiet >/dev/null 2>&1 &
+mortise-web --session packed --domain $domain --http-port 0 --addresses /tmp/web.txt --quiet >/dev/null 2>&1 &
 web=$!
 # Small roots leave documents out: the example is taken from the package itself.
 dpkg-deb -x "$inside"/libmortise-dev_*.deb /tmp/unpacked

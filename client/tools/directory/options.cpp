@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/io/build_info.h"
+#include "idl/network_options.h"
 
 namespace mortise {
 namespace {
@@ -42,21 +43,17 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
   std::string domains = "0", ports = "0";
   CLI::App app("mortise-directory: which sessions there are, and which servers lead or stand by");
   app.set_version_flag("--version", version_line("mortise-directory"));
+  app.add_option("--session", where.session, "This session only; *: all")
+      ->group(kSessionGroup)
+      ->capture_default_str();
   app.add_option("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
+      ->group(kNetworkGroup)
       ->capture_default_str();
-  app.add_option("--server", where.server,
-                 "Hosts to ask, comma between: IPv4, or a name of them; default: the own "
-                 "interface, unless a discovery server is asked");
-  app.add_option("--discovery-server", where.discovery_server,
-                 "Ask these: HOST[:PORT] of mortise-discovery, comma between; they know all "
-                 "servers of a domain that tell them, on whatever host and port");
-  app.add_option("--port", ports, "Discovery ports of servers, likewise; 0: the domain's own")
+  app.add_option("--server-port", ports,
+                 "First UDP ports of servers, likewise; 0: 7402 + 250 * domain")
+      ->group(kNetworkGroup)
       ->capture_default_str();
-  app.add_option("--interface", where.interface, "IPv4 address of the own interface")
-      ->capture_default_str();
-  app.add_option("--session", where.session, "This session only; *: all")->capture_default_str();
-  app.add_option("--keys", where.keys,
-                 "Folder of the own keys (mortise keys), where servers ask for some");
+  add_search_network_options(app, where);
   app.add_option("--wait", command.wait_s, "Listen for so many seconds")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
@@ -76,7 +73,8 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
           throw CLI::ValidationError("more than " + std::to_string(kMostPlaces) +
                                      " domains times ports at one time; ask for fewer");
       }
-    if (command.places.empty()) throw CLI::ValidationError("--domain and --port need a number");
+    if (command.places.empty())
+      throw CLI::ValidationError("--domain and --server-port need a number");
   } catch (const CLI::ParseError& error) {
     command.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

@@ -51,8 +51,8 @@ export class LiveSession {
    * @param {string} [port] @returns the two addresses; their tokens stay the same
    */
   async open(log, port = '0') {
-    const from = log ? ['--log', join(root, log)] : ['--session', this.name, '--domain', `${this.domain}`];
-    const args = [...from, '--port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens'), '--addresses', '-'];
+    const from = log ? ['--replay', join(root, log)] : ['--session', this.name, '--domain', `${this.domain}`];
+    const args = [...from, '--http-port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens'), '--addresses', '-'];
     this.gateway = await this.start('web', args, (text) => {
       const designer = /^designer (http\S+)$/m.exec(text);
       const observer = /^observer (http\S+)$/m.exec(text);

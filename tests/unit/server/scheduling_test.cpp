@@ -1,4 +1,4 @@
-#include "server/real_time.h"
+#include "server/scheduling.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -22,7 +22,7 @@ int policy_of_a_new_thread() {
 }
 
 // In a thread of its own: the priority ends with it.
-TEST(RealTime, IsInheritedAndGivenBack) {
+TEST(Scheduling, IsInheritedAndGivenBack) {
   std::thread([] {
     const Status first = run_before_others();
     if (!first) {
