@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/replay/explain.h"
+#include "client/replay/explain_text.h"
 #include "client/replay/output.h"
 #include "client/replay/progress.h"
 #include "common/io/build_info.h"
@@ -104,6 +105,64 @@ void print_text(const Verification& verification) {
     std::cout << ", within accuracy; poses to " << report.largest_pose_off_mm << " mm\n";
 }
 
+ordered_json files_of(const InfoOptions& options) {
+  std::vector<std::filesystem::path> paths = options.more;
+  paths.insert(paths.begin(), options.log);
+  if (options.more.empty()) paths = chain_from(options.log);
+  ordered_json files = ordered_json::array();
+  std::uint64_t bytes = 0;
+  std::error_code ignored;
+  for (const std::filesystem::path& path : paths) {
+    files.push_back(path.filename().string());
+    bytes += std::filesystem::file_size(path, ignored);
+  }
+  return {{"files", files}, {"bytes", bytes}};
+}
+
+ordered_json contents_of(const SessionLog& log) {
+  std::uint64_t increments = 0, refused = 0, decisions = 0, events = 0, triangles = 0;
+  std::map<std::string, std::uint64_t> begun;  // by worst class of ended or open clashes
+  std::map<std::uint32_t, CollisionClass> worst;
+  ordered_json users = ordered_json::array();
+  for (const TickRecord& tick : log.ticks) {
+    increments += tick.increments.size();
+    refused += tick.report.refused.size();
+    decisions += tick.decisions.size();
+    events += tick.report.events.size();
+    for (const ClashEvent& event : tick.report.events) worst[event.clash.value] = event.worst_class;
+    for (const Decision& decision : tick.decisions)
+      if (decision.kind == Decision::Kind::kJoin) users.push_back(decision.user_name);
+  }
+  for (const auto& [clash, worst_class] : worst) ++begun[std::string(name_of(worst_class))];
+  for (const auto& [hash, mesh] : log.meshes) triangles += mesh.triangles.size();
+  const TickRecord* first = log.ticks.empty() ? nullptr : &log.ticks.front();
+  const TickRecord* last = log.ticks.empty() ? nullptr : &log.ticks.back();
+  return {{"complete", log.complete},
+          {"session", log.session},
+          {"scenario", log.scenario_name},
+          {"engine_version", log.engine_version},
+          {"build_fingerprint", log.build_fingerprint},
+          {"same_build", log.build_fingerprint == build_fingerprint()},
+          {"parts", log.mesh_of_part.size()},
+          {"meshes", log.meshes.size()},
+          {"triangles", triangles},
+          {"users", users},
+          {"ticks", log.ticks.size()},
+          {"first_tick", first != nullptr ? first->tick : 0},
+          {"last_tick", last != nullptr ? last->tick : 0},
+          {"duration_s",
+           first != nullptr ? static_cast<double>(last->time_ns - first->time_ns) * 1e-9 : 0.0},
+          {"decisions", decisions},
+          {"increments", increments},
+          {"refused", refused},
+          {"clash_events", events},
+          {"clashes_by_worst_class", begun},
+          {"checkpoints", log.checkpoints.size()},
+          {"goes_on_from", log.chain.previous},
+          {"gaps", gaps_of(log)},
+          {"notes", log.notes}};
+}
+
 }  // namespace
 
 int run_verify(const VerifyOptions& options) {
@@ -168,61 +227,9 @@ int run_explain(const ExplainOptions& options) {
 int run_info(const InfoOptions& options) {
   const auto log = read_files(options.log, options.more);
   if (!log) return say_bad_log(log.error());
-  std::uint64_t increments = 0, refused = 0, decisions = 0, events = 0, triangles = 0;
-  std::map<std::string, std::uint64_t> begun;  // by worst class of ended or open clashes
-  std::map<std::uint32_t, CollisionClass> worst;
-  ordered_json users = ordered_json::array();
-  for (const TickRecord& tick : log->ticks) {
-    increments += tick.increments.size();
-    refused += tick.report.refused.size();
-    decisions += tick.decisions.size();
-    events += tick.report.events.size();
-    for (const ClashEvent& event : tick.report.events) worst[event.clash.value] = event.worst_class;
-    for (const Decision& decision : tick.decisions)
-      if (decision.kind == Decision::Kind::kJoin) users.push_back(decision.user_name);
-  }
-  for (const auto& [clash, worst_class] : worst) ++begun[std::string(name_of(worst_class))];
-  for (const auto& [hash, mesh] : log->meshes) triangles += mesh.triangles.size();
-  const TickRecord* first = log->ticks.empty() ? nullptr : &log->ticks.front();
-  const TickRecord* last = log->ticks.empty() ? nullptr : &log->ticks.back();
-  std::vector<std::filesystem::path> paths = options.more;
-  paths.insert(paths.begin(), options.log);
-  if (options.more.empty()) paths = chain_from(options.log);
-  ordered_json files = ordered_json::array();
-  std::uint64_t bytes = 0;
-  std::error_code ignored;
-  for (const std::filesystem::path& path : paths) {
-    files.push_back(path.filename().string());
-    bytes += std::filesystem::file_size(path, ignored);
-  }
-  const ordered_json document = {
-      {"log", options.log.string()},
-      {"files", files},
-      {"bytes", bytes},
-      {"complete", log->complete},
-      {"session", log->session},
-      {"scenario", log->scenario_name},
-      {"engine_version", log->engine_version},
-      {"build_fingerprint", log->build_fingerprint},
-      {"same_build", log->build_fingerprint == build_fingerprint()},
-      {"parts", log->mesh_of_part.size()},
-      {"meshes", log->meshes.size()},
-      {"triangles", triangles},
-      {"users", users},
-      {"ticks", log->ticks.size()},
-      {"first_tick", first != nullptr ? first->tick : 0},
-      {"last_tick", last != nullptr ? last->tick : 0},
-      {"duration_s",
-       first != nullptr ? static_cast<double>(last->time_ns - first->time_ns) * 1e-9 : 0.0},
-      {"decisions", decisions},
-      {"increments", increments},
-      {"refused", refused},
-      {"clash_events", events},
-      {"clashes_by_worst_class", begun},
-      {"checkpoints", log->checkpoints.size()},
-      {"goes_on_from", log->chain.previous},
-      {"gaps", gaps_of(*log)},
-      {"notes", log->notes}};
+  ordered_json document = {{"log", options.log.string()}};
+  document.update(files_of(options));
+  document.update(contents_of(*log));
   if (options.json) {
     print(document);
     return kExitOk;

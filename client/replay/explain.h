@@ -16,7 +16,4 @@ namespace mortise {
 Result<Json> explain_clash(SessionLog log, ClashId clash, std::uint64_t tick = 0,
                            const std::function<void(std::uint64_t)>& on_tick = {});
 
-/// The same for people, in numbered steps.
-std::string explain_text(const Json& chain);
-
 }  // namespace mortise

@@ -1,8 +1,8 @@
+#include "client/replay/explain_text.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
-
-#include "client/replay/explain.h"
 
 namespace mortise {
 namespace {

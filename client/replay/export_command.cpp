@@ -1,13 +1,16 @@
+#include "client/replay/export_command.h"
+
 #include <fstream>
 #include <iostream>
 #include <thread>
 
-#include "client/replay/commands.h"
 #include "client/replay/output.h"
 #include "client/replay/progress.h"
 #include "client/replay/sweep.h"
 #include "client/report/bcf.h"
-#include "client/report/export.h"
+#include "client/report/export_files.h"
+#include "client/report/export_html.h"
+#include "client/report/export_sqlite.h"
 #include "client/report/report.h"
 #include "common/io/log/replay.h"
 #include "common/session/tick/statistics.h"

@@ -4,6 +4,9 @@
 #include <thread>
 
 #include "client/replay/commands.h"
+#include "client/replay/export_command.h"
+#include "client/replay/play_command.h"
+#include "client/replay/what_if_command.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
 #include "idl/network_options.h"

@@ -1,4 +1,5 @@
-#include "client/replay/commands.h"
+#include "client/replay/play_command.h"
+
 #include "client/replay/output.h"
 #include "client/replay/play.h"
 #include "client/replay/progress.h"

@@ -1,8 +1,9 @@
+#include "client/replay/what_if_command.h"
+
 #include <algorithm>
 #include <fstream>
 #include <iostream>
 
-#include "client/replay/commands.h"
 #include "client/replay/output.h"
 #include "client/replay/progress.h"
 #include "client/replay/sweep.h"

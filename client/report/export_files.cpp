@@ -1,6 +1,6 @@
 #include <fstream>
 
-#include "client/report/export.h"
+#include "client/report/export_files.h"
 
 namespace mortise {
 namespace {

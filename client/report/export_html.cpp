@@ -1,3 +1,5 @@
+#include "client/report/export_html.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include "client/report/cells.h"
 #include "client/report/html_page.h"
 #include "client/report/html_sections.h"
-#include "client/report/report.h"
 
 namespace mortise {
 namespace {

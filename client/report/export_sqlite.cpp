@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "client/report/export.h"
+#include "client/report/export_sqlite.h"
 
 namespace mortise {
 namespace {

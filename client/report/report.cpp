@@ -1,5 +1,6 @@
 #include "client/report/report.h"
 
+#include "client/report/export_html.h"
 #include "client/report/summary_tables.h"
 #include "common/io/log/log_chain.h"
 

@@ -26,11 +26,6 @@ struct SessionReport {
 /// Cost: that of tables_of and pictures_of.
 Result<SessionReport> report_of(const SessionLog& log, const ReportWishes& wishes = {});
 
-/// One page that needs no other file and no network: summary, timeline, clashes with filters, a
-/// picture of each of the worst, parts with where they were touched, tolerances, coverage and
-/// limits. Reads without colour and without script, and prints.
-std::string html_of(const SessionReport& report);
-
 /// The page of the log in a file; it may still be written.
 Result<std::string> report_page(const std::filesystem::path& log);
 

@@ -30,6 +30,16 @@ Columns columns(Type type, std::initializer_list<const char*> names) {
 
 void append(Columns& to, Columns more) { to.insert(to.end(), more.begin(), more.end()); }
 
+using Faces = std::tuple<PartId, std::string, PartId, std::string>;
+Faces faces_of(const SessionStatistics::ClashRow& clash) {
+  return {clash.a, clash.worst.face_a, clash.b, clash.worst.face_b};
+}
+
+// Clashes of the same two faces.
+struct Group {
+  std::size_t id = 0, occurrences = 0;
+};
+
 // Everything of a log that is asked again and again.
 class Session {
  public:
@@ -106,6 +116,8 @@ class Session {
   }
 
   Table clashes() const;
+  std::vector<Json> clash_row(ClashId id, const SessionStatistics::ClashRow& clash,
+                              const Group& group) const;
   Table events() const;
   Table decisions() const;
 
@@ -190,112 +202,111 @@ void add_vector(std::vector<Json>& row, const Vec3& v) {
 }
 
 // The faces of two parts that met.
-using Faces = std::tuple<PartId, std::string, PartId, std::string>;
-Faces faces_of(const SessionStatistics::ClashRow& clash) {
-  return {clash.a, clash.worst.face_a, clash.b, clash.worst.face_b};
-}
-
 // How far from another class, in widths of what is undecided between fake and real; NaN: none is.
 double severity_of(const Verdict& v) {
   const double undecided_mm = v.real_above_mm - v.fake_below_mm;
   return undecided_mm > 0.0 ? v.margin_mm / undecided_mm : std::nan("");
 }
 
+Columns clash_columns() {
+  Columns all;
+  append(all, columns(Type::kInteger, {"clash"}));
+  append(all, columns(Type::kText, {"class", "status", "status_by", "comment", "part_a", "face_a",
+                                    "part_b", "face_b", "user"}));
+  append(all, columns(Type::kInteger,
+                      {"begin_tick", "end_tick", "worst_tick", "real_ticks", "potential_ticks",
+                       "fake_ticks", "approval_lost", "status_tick", "occurrences", "group_id"}));
+  append(all, columns(Type::kNumber, {"begin_s",
+                                      "duration_s",
+                                      "contact_in_tick",
+                                      "overlap_lo_mm",
+                                      "overlap_hi_mm",
+                                      "gpd_lo_mm",
+                                      "gpd_hi_mm",
+                                      "fake_below_mm",
+                                      "real_above_mm",
+                                      "margin_mm",
+                                      "severity",
+                                      "real_until_widened_mm",
+                                      "fake_until_widened_mm",
+                                      "probability",
+                                      "travel_mm",
+                                      "normal_travel_mm",
+                                      "area_mm2",
+                                      "x_mm",
+                                      "y_mm",
+                                      "z_mm",
+                                      "normal_x",
+                                      "normal_y",
+                                      "normal_z",
+                                      "way_out_x_mm",
+                                      "way_out_y_mm",
+                                      "way_out_z_mm",
+                                      "way_out_turn_x_rad",
+                                      "way_out_turn_y_rad",
+                                      "way_out_turn_z_rad"}));
+  append(all, columns(Type::kText, {"way_out", "shape_a", "shape_b", "mesh_error", "mesh_a",
+                                    "mesh_b", "explanation"}));
+  return all;
+}
+
 Table Session::clashes() const {
-  Table table{"clashes", "every clash, by its worst moment", {}, {}};
-  append(table.columns, columns(Type::kInteger, {"clash"}));
-  append(table.columns, columns(Type::kText, {"class", "status", "status_by", "comment", "part_a",
-                                              "face_a", "part_b", "face_b", "user"}));
-  append(table.columns,
-         columns(Type::kInteger,
-                 {"begin_tick", "end_tick", "worst_tick", "real_ticks", "potential_ticks",
-                  "fake_ticks", "approval_lost", "status_tick", "occurrences", "group_id"}));
-  append(table.columns, columns(Type::kNumber, {"begin_s",
-                                                "duration_s",
-                                                "contact_in_tick",
-                                                "overlap_lo_mm",
-                                                "overlap_hi_mm",
-                                                "gpd_lo_mm",
-                                                "gpd_hi_mm",
-                                                "fake_below_mm",
-                                                "real_above_mm",
-                                                "margin_mm",
-                                                "severity",
-                                                "real_until_widened_mm",
-                                                "fake_until_widened_mm",
-                                                "probability",
-                                                "travel_mm",
-                                                "normal_travel_mm",
-                                                "area_mm2",
-                                                "x_mm",
-                                                "y_mm",
-                                                "z_mm",
-                                                "normal_x",
-                                                "normal_y",
-                                                "normal_z",
-                                                "way_out_x_mm",
-                                                "way_out_y_mm",
-                                                "way_out_z_mm",
-                                                "way_out_turn_x_rad",
-                                                "way_out_turn_y_rad",
-                                                "way_out_turn_z_rad"}));
-  append(table.columns, columns(Type::kText, {"way_out", "shape_a", "shape_b", "mesh_error",
-                                              "mesh_a", "mesh_b", "explanation"}));
-  const double rate = scenario_.tick_rate_hz;
-  const std::uint64_t last_tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
-  struct Group {
-    std::size_t id = 0, occurrences = 0;
-  };
+  Table table{"clashes", "every clash, by its worst moment", clash_columns(), {}};
   std::map<Faces, Group> groups;
   for (const auto& [id, clash] : statistics_.clashes()) {
     Group& group = groups[faces_of(clash)];
     if (group.occurrences++ == 0) group.id = groups.size();
   }
-  for (const auto& [id, clash] : statistics_.clashes()) {
-    const OfClash& of = of_clash_.at(id);
-    const Verdict& v = clash.worst;
-    const Review& review = of.last.review;
-    const std::uint64_t end = clash.end_tick != 0 ? clash.end_tick : last_tick;
-    std::vector<Json> row{id.value,
-                          word(clash.worst_class),
-                          word(review.status),
-                          review.user ? names_.user(review.user) : "",
-                          review.comment,
-                          names_.part(clash.a),
-                          v.face_a,
-                          names_.part(clash.b),
-                          v.face_b,
-                          clash.user ? names_.user(clash.user) : "",
-                          clash.begin_tick,
-                          clash.end_tick == 0 ? Json(nullptr) : Json(clash.end_tick),
-                          of.worst.tick,
-                          clash.ticks[3],
-                          clash.ticks[2],
-                          clash.ticks[1],
-                          of.approval_lost ? 1 : 0,
-                          review.tick == 0 ? Json(nullptr) : Json(review.tick),
-                          groups.at(faces_of(clash)).occurrences,
-                          groups.at(faces_of(clash)).id,
-                          static_cast<double>(clash.begin_tick) / rate,
-                          static_cast<double>(end - clash.begin_tick) / rate,
-                          number(of.worst.t_contact)};
-    for (const double x :
-         {v.delta_mm.lo, v.delta_mm.hi, v.gpd_mm.lo, v.gpd_mm.hi, v.fake_below_mm, v.real_above_mm,
-          v.margin_mm, severity_of(v), 0.5 * (v.delta_mm.lo - v.real_above_mm),
-          0.5 * (v.fake_below_mm - v.delta_mm.hi), v.probability, v.travel_mm, v.normal_travel_mm,
-          v.area_mm2})
-      row.push_back(number(x));
-    add_vector(row, v.point_W);
-    add_vector(row, v.normal_W);
-    add_vector(row, v.separation_translation_mm);
-    add_vector(row, v.separation_rotation_rad);
-    for (const Json& text :
-         {word(v.separation_way), word(v.shape_a), word(v.shape_b), word(v.grade),
-          Json(mesh_of(clash.a)), Json(mesh_of(clash.b)), Json(v.explanation)})
-      row.push_back(text);
-    table.rows.push_back(std::move(row));
-  }
+  for (const auto& [id, clash] : statistics_.clashes())
+    table.rows.push_back(clash_row(id, clash, groups.at(faces_of(clash))));
   return table;
+}
+
+std::vector<Json> Session::clash_row(ClashId id, const SessionStatistics::ClashRow& clash,
+                                     const Group& group) const {
+  const double rate = scenario_.tick_rate_hz;
+  const std::uint64_t last_tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
+  const OfClash& of = of_clash_.at(id);
+  const Verdict& v = clash.worst;
+  const Review& review = of.last.review;
+  const std::uint64_t end = clash.end_tick != 0 ? clash.end_tick : last_tick;
+  std::vector<Json> row{id.value,
+                        word(clash.worst_class),
+                        word(review.status),
+                        review.user ? names_.user(review.user) : "",
+                        review.comment,
+                        names_.part(clash.a),
+                        v.face_a,
+                        names_.part(clash.b),
+                        v.face_b,
+                        clash.user ? names_.user(clash.user) : "",
+                        clash.begin_tick,
+                        clash.end_tick == 0 ? Json(nullptr) : Json(clash.end_tick),
+                        of.worst.tick,
+                        clash.ticks[3],
+                        clash.ticks[2],
+                        clash.ticks[1],
+                        of.approval_lost ? 1 : 0,
+                        review.tick == 0 ? Json(nullptr) : Json(review.tick),
+                        group.occurrences,
+                        group.id,
+                        static_cast<double>(clash.begin_tick) / rate,
+                        static_cast<double>(end - clash.begin_tick) / rate,
+                        number(of.worst.t_contact)};
+  for (const double x :
+       {v.delta_mm.lo, v.delta_mm.hi, v.gpd_mm.lo, v.gpd_mm.hi, v.fake_below_mm, v.real_above_mm,
+        v.margin_mm, severity_of(v), 0.5 * (v.delta_mm.lo - v.real_above_mm),
+        0.5 * (v.fake_below_mm - v.delta_mm.hi), v.probability, v.travel_mm, v.normal_travel_mm,
+        v.area_mm2})
+    row.push_back(number(x));
+  add_vector(row, v.point_W);
+  add_vector(row, v.normal_W);
+  add_vector(row, v.separation_translation_mm);
+  add_vector(row, v.separation_rotation_rad);
+  for (const Json& text : {word(v.separation_way), word(v.shape_a), word(v.shape_b), word(v.grade),
+                           Json(mesh_of(clash.a)), Json(mesh_of(clash.b)), Json(v.explanation)})
+    row.push_back(text);
+  return row;
 }
 
 Table Session::events() const {

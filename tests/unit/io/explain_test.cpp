@@ -1,5 +1,6 @@
 // The chain of one clash: every step is there, and says what the engine computed.
 #include "client/replay/explain.h"
+#include "client/replay/explain_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,7 @@
 // The session as tables: CSV, JSON, SQLite and HTML say the same, and say it safely.
-#include "client/report/export.h"
+#include "client/report/export_files.h"
+#include "client/report/export_html.h"
+#include "client/report/export_sqlite.h"
 #include "client/report/circumstances.h"
 #include "client/report/report.h"
 #include "client/report/summary_tables.h"

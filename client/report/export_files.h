@@ -18,8 +18,4 @@ std::string csv_of(const Table& table);
 /// One file a table in a folder, which is made.
 Status write_csv(std::span<const Table> tables, const std::filesystem::path& folder);
 
-/// A new SQLite database with the tables and the views that client/replay/README.md lists. The file
-/// must not exist.
-Status write_sqlite(std::span<const Table> tables, const std::filesystem::path& file);
-
 }  // namespace mortise

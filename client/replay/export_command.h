@@ -1,0 +1,19 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mortise {
+
+/// The session as tables (client/report/session_tables.h); what is empty is not written.
+struct ExportOptions {
+  std::filesystem::path log;
+  std::vector<std::filesystem::path> more;
+  std::filesystem::path csv;  ///< a folder
+  std::filesystem::path sqlite, html, json, bcf;
+  std::vector<std::string> sweep;  ///< what-if of the page; see WhatIfOptions
+  bool recompute = false;          ///< for coverage
+};
+int run_export(const ExportOptions& options);
+
+}  // namespace mortise
