@@ -1,12 +1,7 @@
 #include "server/tick_loop.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
-
-#include "common/messages/mesh_bytes.h"
-#include "common/session/guide/feature_table.h"
-#include "common/session/world/standing.h"
 
 namespace mortise {
 namespace {
@@ -35,20 +30,15 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
       options_(options),
       inbox_(options.inbox),
       scratch_(options.threads),
-      recorder_(world, log, options.checkpoints) {
+      recorder_(world, log, options.checkpoints),
+      publisher_(world, channel, clock, options) {
   statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
-  for (std::uint32_t i = 0; i < world_.parts.size(); ++i) {
-    const Part& part = world_.parts[i];
-    published_.push_back({part.id, part.holder, part.X_WP});
-    if (part.moving) moving_.push_back(i);
-  }
 }
 
 void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> departures) {
   statistics_ = std::move(statistics);
   statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   departures_ = std::move(departures);
-  event_seq_ = snapshot_of(world_).event_seq;
 }
 
 void TickLoop::adopt(SessionStatistics statistics, const std::vector<SeatRecord>& seats) {
@@ -59,18 +49,7 @@ void TickLoop::adopt(SessionStatistics statistics, const std::vector<SeatRecord>
 void TickLoop::open() {
   now_ns_ = opened_ns_ = pulse_ns_ = clock_.now_ns();
   recorder_.open(now_ns_);
-  std::set<std::string> sent;
-  for (const Part& part : world_.parts) {
-    if (!sent.insert(part.solid->hash()).second) continue;
-    const TriangleMesh& mesh = part.solid->mesh();
-    channel_.publish_mesh(part.solid->hash(), mesh_to_bytes(mesh.points_mm, mesh.triangles));
-  }
-  standing_ = standing_decisions(world_);
-  publish_snapshot();
-  channel_.publish_features(feature_table(world_));
-  features_ns_ = now_ns_;
-  std::vector<SolidPtr> meshes = unrecognized_meshes(world_);
-  if (!meshes.empty()) recognizer_ = std::make_unique<Recognizer>(std::move(meshes));
+  publisher_.open(now_ns_);
 }
 
 void TickLoop::tick() {
@@ -79,7 +58,7 @@ void TickLoop::tick() {
 
   // 0. drain and decide
   ServerInput input = channel_.take();
-  snapshot_wanted_ |= !input.snapshot_requests.empty();
+  if (!input.snapshot_requests.empty()) publisher_.want_snapshot();
   inbox_.admit(std::move(input), world_, now_ns_, intake_);
   if (!departures_.empty()) {
     intake_.decisions.insert(intake_.decisions.begin(), departures_.begin(), departures_.end());
@@ -94,13 +73,16 @@ void TickLoop::tick() {
   metrics_.step.add(step_ns);
   statistics_.forget_users(intake_.decisions);
   statistics_.add(report_);
-  if (!report_.events.empty()) event_seq_ = report_.events.back().seq;
 
   // 7. out
   begin_record(step_ns);
   superseded_ = superseded_ || intake_.superseded;
   if (channel_.has_follower()) tell_follower();
-  publish();
+  publisher_.publish(intake_, report_, now_ns_);
+  if (last_ || now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
+    pulse_ns_ = now_ns_;
+    if (publisher_.has_readers()) channel_.publish_pulse(pulse());
+  }
   ++metrics_.ticks;
   metrics_.tick.add(clock_.now_ns() - now_ns_);
 }
@@ -151,84 +133,6 @@ void TickLoop::measure_delay() {
   }
 }
 
-void TickLoop::publish() {
-  for (const JoinReply& reply : intake_.join_replies) channel_.publish_join_reply(reply);
-  if (!intake_.replies.empty()) channel_.publish_replies(intake_.replies);
-  if (!intake_.decisions.empty()) publish_decisions();
-  if (!intake_.refused.empty()) channel_.publish_refusals(intake_.refused);
-  if (!report_.refused.empty()) channel_.publish_refusals(report_.refused);
-  if (!report_.events.empty()) channel_.publish_events(report_.events);
-
-  PoseBatch batch;
-  if (!intake_.decisions.empty() || !report_.moved.empty()) {
-    changed_since_snapshot_ = true;
-    for (const std::uint32_t i : moving_) {
-      const Part& part = world_.parts[i];
-      PartPose& last = published_[i];
-      if (last.holder == part.holder && identical(last.X_WP, part.X_WP)) continue;
-      last = {part.id, part.holder, part.X_WP};
-      batch.parts.push_back(last);
-    }
-  }
-  changed_since_snapshot_ |= !report_.events.empty();
-  batch.acks = intake_.acks;
-  const bool has_readers = channel_.has_readers();
-  if (has_readers && (!batch.parts.empty() || !batch.acks.empty() || !report_.events.empty())) {
-    batch.tick = report_.tick;
-    batch.event_seq = event_seq_;
-    batch.sent_ns = clock_.now_ns();
-    channel_.publish_poses(batch);
-  }
-  // What was said to nobody is in the snapshot that the first reader finds.
-  snapshot_wanted_ |= has_readers && !had_readers_ && changed_since_snapshot_;
-  had_readers_ = has_readers;
-  publish_snapshot_when_due();
-  if (recognizer_) tell_features();
-
-  if (last_ || now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
-    pulse_ns_ = now_ns_;
-    if (has_readers) channel_.publish_pulse(pulse());
-  }
-}
-
-void TickLoop::publish_decisions() {
-  channel_.publish_decisions(intake_.decisions);
-  std::vector<Decision> standing = standing_decisions(world_);
-  const auto changes = standing_changes(standing_, standing, report_.tick);
-  if (!changes.empty()) channel_.publish_standing(changes);
-  standing_ = std::move(standing);
-}
-
-void TickLoop::publish_snapshot_when_due() {
-  const std::int64_t age_ns = now_ns_ - snapshot_ns_;
-  const bool keyframe = changed_since_snapshot_ && age_ns >= in_ns(options_.keyframe_s);
-  const bool asked = snapshot_wanted_ && age_ns >= in_ns(options_.snapshot_gap_s);
-  if (intake_.joined || keyframe || asked) publish_snapshot();
-}
-
-void TickLoop::publish_snapshot() {
-  Snapshot snapshot = snapshot_of(world_);
-  snapshot.session = options_.session;
-  snapshot.event_seq = event_seq_;
-  channel_.publish_snapshot(snapshot);
-  snapshot_ns_ = now_ns_;
-  changed_since_snapshot_ = false;
-  snapshot_wanted_ = false;
-}
-
-void TickLoop::tell_features() {
-  const bool done = recognizer_->done();
-  for (auto& [mesh, features] : recognizer_->take()) {
-    world_.recognized[mesh] = std::move(features);
-    features_are_new_ = true;
-  }
-  if (!done && now_ns_ - features_ns_ < in_ns(options_.features_gap_s)) return;
-  if (features_are_new_) channel_.publish_features(feature_table(world_));
-  features_are_new_ = false;
-  features_ns_ = now_ns_;
-  if (done) recognizer_.reset();
-}
-
 void TickLoop::run(const std::function<bool()>& stop, const std::function<void()>& after_tick) {
   const std::int64_t period_ns = in_ns(1.0 / world_.tick_rate_hz);
   std::int64_t deadline_ns = clock_.now_ns();
@@ -269,7 +173,7 @@ void TickLoop::last_tick(bool hands_over) {
 void TickLoop::close() {
   hand_over_record();
   now_ns_ = clock_.now_ns();
-  publish_snapshot();
+  publisher_.publish_snapshot(now_ns_);
 }
 
 SessionPulse TickLoop::pulse() const {

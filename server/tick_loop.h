@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,20 +13,15 @@
 #include "server/clock.h"
 #include "server/inbox.h"
 #include "server/metrics.h"
-#include "server/recognizer.h"
+#include "server/tick_publisher.h"
 #include "server/tick_recorder.h"
 
 namespace mortise {
 
-struct TickLoopOptions {
-  std::string session = "default";
+struct TickLoopOptions : PublishOptions {
   int threads = 1;
   InboxLimits inbox;
-  double keyframe_s = 1.0;  ///< a snapshot so often while something changes
   double pulse_s = 1.0;
-  /// Requested snapshots come no closer than this: a client that asks in a loop costs little.
-  double snapshot_gap_s = 0.1;
-  double features_gap_s = 1.0;  ///< likewise tables of features, while meshes are looked at
   CheckpointTimes checkpoints;
 };
 
@@ -87,11 +81,6 @@ class TickLoop {
   void hand_over_record() { recorder_.hand_over(intake_.decisions, intake_.increments, report_); }
   void tell_follower();
   void measure_delay();
-  void publish();
-  void publish_decisions();
-  void publish_snapshot_when_due();
-  void publish_snapshot();
-  void tell_features();
 
   World& world_;
   ServerChannel& channel_;
@@ -105,20 +94,12 @@ class TickLoop {
   SessionStatistics statistics_;
   TickMetrics metrics_;
   TickRecorder recorder_;
+  TickPublisher publisher_;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
-  std::vector<PartPose> published_;            ///< what the pose stream said last, by part index
-  std::vector<Decision> standing_;             ///< decisions that hold, as they were told last
-  std::vector<std::uint32_t> moving_;          ///< parts that can ever move, by index
-  std::unique_ptr<Recognizer> recognizer_;     ///< null: no mesh is to be looked at any more
-  std::uint64_t event_seq_ = 0;
-  std::int64_t opened_ns_ = 0, now_ns_ = 0, snapshot_ns_ = 0, pulse_ns_ = 0, features_ns_ = 0;
-  bool features_are_new_ = false;
-  bool changed_since_snapshot_ = false;
-  bool snapshot_wanted_ = false;
+  std::int64_t opened_ns_ = 0, now_ns_ = 0, pulse_ns_ = 0;
   bool superseded_ = false;
   bool draining_ = false, last_ = false, hands_over_ = false;
-  bool had_readers_ = false;
 };
 
 }  // namespace mortise

@@ -1,42 +1,13 @@
 #include "client/web/live_feed.h"
 
 #include <algorithm>
-#include <chrono>
-#include <set>
 
 #include "client/web/features_json.h"
-#include "common/messages/names.h"
 
 namespace mortise::web {
-namespace {
-
-// The server takes a name for free one tick after its user left; a page that is loaded anew may be
-// back by then.
-constexpr double kNameIsFreeAfter_s = 2.0;
-constexpr double kRejoinEvery_s = 0.1;
-constexpr double kRefusalsEvery_s = 0.1;
-constexpr std::size_t kMostOpenCommands = 1024;
-
-Json reply_json(std::uint64_t id, Refusal refusal, const std::string& text, PartId part,
-                UserId holder) {
-  return {{"type", "reply"},
-          {"id", id},
-          {"done", refusal == Refusal::kNone},
-          {"refusal", name_of(refusal)},
-          {"text", text},
-          {"part", part.value},
-          {"holder", holder.value}};
-}
-
-double unix_ms() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double, std::milli>(now).count();
-}
-
-}  // namespace
 
 void LiveFeed::enter(Viewer& viewer) {
-  seats_[&viewer];
+  seats_.enter(viewer);
   viewer.say(text_of(
       {{"type", "server"}, {"present", client_.server_present()}, {"session", client_.session()}}));
   if (!has_scene_) return;
@@ -44,198 +15,52 @@ void LiveFeed::enter(Viewer& viewer) {
   if (client_.features().told()) viewer.say(text_of(features_message(client_)));
 }
 
-void LiveFeed::leave(Viewer& viewer) {
-  const auto found = seats_.find(&viewer);
-  if (found == seats_.end()) return;
-  if (found->second.user) {
-    client_.leave(*found->second.user);
-    left_s_[found->second.name] = now_s_;
-  }
-  seats_.erase(found);
-}
-
-Status LiveFeed::take(Viewer& viewer, const PageMessage& message) {
-  Seat& seat = seats_.at(&viewer);
-  if (const auto* wish = std::get_if<JoinWish>(&message)) {
-    if (seat.user || seat.rejoin_s > 0.0)
-      return fail(Code::kInvalidInput, "you have joined as " + seat.name);
-    join(viewer, seat, *wish);
-  } else if (const auto* increment = std::get_if<MoveWish>(&message)) {
-    if (!seat.user) return fail(Code::kInvalidInput, "join before you move parts");
-    move(viewer, seat, *increment);
-  } else if (const auto* asked = std::get_if<CommandWish>(&message)) {
-    command(viewer, seat, *asked);
-  } else if (const auto* view = std::get_if<ViewWish>(&message)) {
-    seat.view =
-        Json{{"p", json_of(view->p)}, {"target", json_of(view->target)}, {"up", json_of(view->up)}};
-  } else if (const auto* ping = std::get_if<PingWish>(&message)) {
-    viewer.say(text_of({{"type", "pong"}, {"at", ping->at}}));
-  } else {
-    return fail(Code::kInvalidInput, "this is a live session: there is nothing to replay");
-  }
-  return ok();
-}
-
-void LiveFeed::join(Viewer& viewer, Seat& seat, const JoinWish& wish) {
-  if (const std::string& bound = viewer.bound_name(); !bound.empty() && bound != wish.name) {
-    ++foreign_names_;
-    const std::string text = "this link is " + bound + "'s: join as " + bound;
-    return viewer.say(text_of({{"type", "join_refused"}, {"text", text}}));
-  }
-  seat.name = wish.name;
-  seat.user = client_.add_user(wish.name, std::string(name_of(viewer.role())));
-  const auto left = left_s_.find(wish.name);
-  if (left != left_s_.end()) seat.give_up_s = left->second + kNameIsFreeAfter_s;
-}
-
-void LiveFeed::move(Viewer& viewer, Seat& seat, const MoveWish& wish) {
-  if (viewer.role() == Role::kObserver) {
-    ++seat.refused[{wish.part, Refusal::kObserver}];
-  } else if (client_.send(*seat.user, wish.part, wish.translation_mm, wish.rotation_rad) == 0) {
-    ++seat.refused[{wish.part, Refusal::kUnknownUser}];
-  }
-}
-
-void LiveFeed::refuse(Viewer& viewer, const CommandWish& wish, Refusal refusal,
-                      const std::string& text) {
-  viewer.say(text_of(reply_json(wish.id, refusal, text, wish.part, UserId{})));
-}
-
-void LiveFeed::command(Viewer& viewer, Seat& seat, const CommandWish& wish) {
-  if (viewer.role() == Role::kObserver)
-    return refuse(viewer, wish, Refusal::kObserver, "this link is for looking on");
-  if (!seat.user) return refuse(viewer, wish, Refusal::kUnknownUser, "join first");
-  if (seat.asked.size() >= kMostOpenCommands)
-    return refuse(viewer, wish, Refusal::kRateTooHigh, "too many commands wait for an answer");
-  const std::uint64_t seq = client_.command(*seat.user, wish.kind, wish.part, wish.details);
-  if (seq == 0)
-    return refuse(viewer, wish, Refusal::kUnknownUser, "not in the session yet, or not any more");
-  seat.asked[seq] = wish.id;
-}
-
 void LiveFeed::turn(double now_s) {
-  now_s_ = now_s;
-  std::erase_if(left_s_, [&](const auto& row) { return now_s - row.second > kNameIsFreeAfter_s; });
+  seats_.begin_turn(now_s);
   const ClientUpdate update = client_.poll();
-  if (update.server_lost) forget_answers();
+  if (update.server_lost) {
+    has_scene_ = false;
+    seats_.forget_answers();
+  }
   take_meshes(update);
   tell_server();
-  tell_joins(update);
+  seats_.tell_joins(update);
   if (update.resynced) {
     has_scene_ = true;
     with_changed_classes(update);
     const SharedBytes text = scene();
-    for (auto& [viewer, seat] : seats_) viewer->show_scene(text);
+    seats_.each([&](Viewer& viewer) { viewer.show_scene(text); });
   }
   // After a scene pages want all that belongs to it.
   if (has_scene_ && client_.features().told() && (update.features || update.resynced))
-    tell_all(features_message(client_));
-  tell_replies(update);
+    seats_.tell_all(features_message(client_));
+  seats_.tell_replies(update);
   if (has_scene_) {
     tell_decisions(update);
     if (update.standing && !update.resynced)
-      tell_all(message_of_list("standing", "standing", client_.standing()));
-    if (!update.events.empty()) tell_all(message_of_list("events", "events", update.events));
+      seats_.tell_all(message_of_list("standing", "standing", client_.standing()));
+    if (!update.events.empty()) seats_.tell_all(message_of_list("events", "events", update.events));
     if (!update.resynced) tell_changes(update);
   }
-  tell_refusals();
-  tell_pulse(update);
-  tell_views();
-}
-
-void LiveFeed::tell_all(const Json& json) {
-  if (seats_.empty()) return;
-  const SharedBytes text = text_of(json);
-  for (auto& [viewer, seat] : seats_) viewer->say(text);
+  seats_.end_turn(update);
 }
 
 void LiveFeed::tell_server() {
   if (present_ == client_.server_present()) return;
   present_ = client_.server_present();
-  tell_all({{"type", "server"}, {"present", present_}, {"session", client_.session()}});
-}
-
-void LiveFeed::forget_answers() {
-  has_scene_ = false;
-  for (auto& [viewer, seat] : seats_) {
-    for (const auto& [seq, id] : seat.asked) {
-      viewer->say(
-          text_of(reply_json(id, Refusal::kUnknownUser, "the server went away before it answered",
-                             PartId{}, UserId{})));
-    }
-    seat.asked.clear();
-  }
-}
-
-std::pair<Viewer* const, LiveFeed::Seat>* LiveFeed::seat_of(LocalUser user) {
-  const auto found = std::find_if(seats_.begin(), seats_.end(),
-                                  [&](const auto& row) { return row.second.user == user; });
-  return found == seats_.end() ? nullptr : &*found;
-}
-
-std::pair<Viewer* const, LiveFeed::Seat>* LiveFeed::seat_of(UserId user) {
-  const auto found = std::find_if(seats_.begin(), seats_.end(), [&](const auto& row) {
-    return row.second.user && client_.user_id(*row.second.user) == user;
-  });
-  return found == seats_.end() ? nullptr : &*found;
-}
-
-void LiveFeed::tell_joins(const ClientUpdate& update) {
-  for (const LocalUser user : update.joined) {
-    auto* row = seat_of(user);
-    if (row == nullptr) continue;
-    row->first->say(text_of({{"type", "joined"},
-                             {"user", client_.user_id(user).value},
-                             {"name", row->second.name},
-                             {"role", name_of(row->first->role())}}));
-  }
-  for (auto& [viewer, seat] : seats_) {
-    if (seat.rejoin_s > 0.0 && now_s_ >= seat.rejoin_s) {
-      seat.rejoin_s = 0.0;
-      seat.user = client_.add_user(seat.name, std::string(name_of(viewer->role())));
-    }
-    if (!seat.user || client_.join_state(*seat.user) != JoinState::kRefused) continue;
-    const std::string text = client_.refusal_text(*seat.user);
-    client_.leave(*seat.user);
-    seat.user.reset();
-    if (now_s_ < seat.give_up_s) {
-      seat.rejoin_s = now_s_ + kRejoinEvery_s;
-      continue;
-    }
-    viewer->say(text_of({{"type", "join_refused"}, {"text", text}}));
-  }
-}
-
-void LiveFeed::tell_replies(const ClientUpdate& update) {
-  for (const Reply& reply : update.replies) {
-    auto* row = seat_of(reply.user);
-    if (row == nullptr) continue;
-    const auto asked = row->second.asked.find(reply.seq);
-    if (asked == row->second.asked.end()) continue;
-    row->first->say(
-        text_of(reply_json(asked->second, reply.refusal, reply.text, reply.part, reply.holder)));
-    row->second.asked.erase(asked);
-  }
-  for (const RefusedIncrement& refused : update.refused) {
-    if (auto* row = seat_of(refused.user)) ++row->second.refused[{refused.part, refused.reason}];
-  }
-  for (const SeenAck& ack : update.acks) {
-    auto* row = seat_of(ack.user);
-    if (row == nullptr || ack.sent_ns == 0) continue;
-    row->second.latency_ms.push_back(static_cast<double>(update.at_ns - ack.sent_ns) * 1e-6);
-  }
+  seats_.tell_all({{"type", "server"}, {"present", present_}, {"session", client_.session()}});
 }
 
 void LiveFeed::tell_decisions(const ClientUpdate& update) {
   if (update.decisions.empty()) return;
-  tell_all(message_of_list("decisions", "decisions", update.decisions));
+  seats_.tell_all(message_of_list("decisions", "decisions", update.decisions));
   using Kind = Decision::Kind;
   const auto is_presence = [](const Decision& decision) {
     return decision.kind == Kind::kJoin || decision.kind == Kind::kLeave ||
            decision.kind == Kind::kLivelinessLost;
   };
   if (std::any_of(update.decisions.begin(), update.decisions.end(), is_presence))
-    tell_all(message_of_list("users", "users", client_.users()));
+    seats_.tell_all(message_of_list("users", "users", client_.users()));
 }
 
 void LiveFeed::tell_changes(const ClientUpdate& update) {
@@ -245,7 +70,7 @@ void LiveFeed::tell_changes(const ClientUpdate& update) {
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   if (changed.empty() || seats_.empty()) return;
   const SharedBytes bytes = frame_of(changed);
-  for (auto& [viewer, seat] : seats_) viewer->changed(changed, bytes);
+  seats_.each([&](Viewer& viewer) { viewer.changed(changed, bytes); });
 }
 
 std::vector<PartId> LiveFeed::with_changed_classes(const ClientUpdate& update) {
@@ -261,60 +86,12 @@ std::vector<PartId> LiveFeed::with_changed_classes(const ClientUpdate& update) {
   return changed;
 }
 
-void LiveFeed::tell_refusals() {
-  for (auto& [viewer, seat] : seats_) {
-    if (seat.refused.empty() || now_s_ - seat.refused_said_s < kRefusalsEvery_s) continue;
-    seat.refused_said_s = now_s_;
-    Json json{{"type", "refused"}, {"increments", Json::array()}};
-    for (const auto& [what, count] : seat.refused) {
-      json["increments"].push_back(
-          {{"part", what.first.value}, {"reason", name_of(what.second)}, {"count", count}});
-    }
-    seat.refused.clear();
-    viewer->say(text_of(json));
-  }
-}
-
-void LiveFeed::tell_pulse(const ClientUpdate& update) {
-  if (!update.pulse) return;
-  Json json = json_of(*update.pulse);
-  for (auto& [viewer, seat] : seats_) {
-    json["latency_ms"] = percentiles_of(std::move(seat.latency_ms));
-    seat.latency_ms.clear();
-    json["gateway"] = {{"browsers", seats_.size()},
-                       {"poses_folded", viewer->folded_frames()},
-                       {"clock_ms", unix_ms()}};
-    viewer->say(text_of(json));
-  }
-}
-
-void LiveFeed::tell_views() {
-  if (now_s_ - views_said_s_ < 1.0 / limits_.views_per_s) return;
-  views_said_s_ = now_s_;
-  Json all = Json::array();
-  std::vector<const Viewer*> whose;
-  for (auto& [viewer, seat] : seats_) {
-    if (!seat.view || !seat.user || !client_.user_id(*seat.user)) continue;
-    Json view{{"user", client_.user_id(*seat.user).value}};
-    view.update(*seat.view);
-    seat.view.reset();
-    all.push_back(std::move(view));
-    whose.push_back(viewer);
-  }
-  if (all.empty()) return;
-  const SharedBytes text = text_of({{"type", "views"}, {"views", all}});
-  for (auto& [viewer, seat] : seats_) {
-    if (whose.size() == 1 && whose.front() == viewer) continue;
-    viewer->say_views(text);
-  }
-}
-
 void LiveFeed::take_meshes(const ClientUpdate& update) {
   for (const MeshBytes& mesh : update.meshes) {
     const auto read = mesh_from_bytes(mesh.bytes);
     if (!read) continue;  // the page goes on waiting; the channel checks hashes
     meshes_.put(mesh.hash, *read);
-    tell_all({{"type", "mesh"}, {"hash", mesh.hash}});
+    seats_.tell_all({{"type", "mesh"}, {"hash", mesh.hash}});
   }
 }
 
@@ -370,7 +147,7 @@ Json LiveFeed::statistics() const {
           {"increments_sent", s.increments_sent},
           {"increments_repeated", s.increments_repeated},
           {"server_losses", s.server_losses},
-          {"joins_under_another_name", foreign_names_},
+          {"joins_under_another_name", seats_.foreign_names()},
           {"highest_tick", s.highest_tick}};
 }
 

@@ -1,0 +1,149 @@
+#include "server/command_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+// What ends a drag, or looks at where it led.
+bool waits_for_increments(CommandKind kind) {
+  switch (kind) {
+    case CommandKind::kRelease:
+    case CommandKind::kUndo:
+    case CommandKind::kRedo:
+    case CommandKind::kReset:
+    case CommandKind::kConsent:
+    case CommandKind::kAddConstraint:
+    case CommandKind::kDropConstraint:
+    case CommandKind::kSnap:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Do both touch a part in common? A group, and what names no part, may touch any.
+bool touch_alike(const Command& x, const Command& y) {
+  return x.user == y.user && (x.part == y.part || !x.part || !y.part);
+}
+
+}  // namespace
+
+void CommandQueue::begin(UserId user) {
+  if (user.value > sequences_.size()) sequences_.resize(user.value);
+  sequences_[user.value - 1] = {};
+}
+
+void CommandQueue::receive(const Command& command, World& world, std::int64_t now_ns,
+                           Intake& intake) {
+  const UserId user = command.user;
+  const Refusal order = sequences_[user.value - 1].admit(command.seq);
+  if (order != Refusal::kNone)
+    return refuse(command, user, order, std::string(name_of(order)), world, intake);
+  if (!rates_.take(user, now_ns))
+    return refuse(command, user, Refusal::kRateTooHigh,
+                  "more messages a second than the session accepts from one user, or from all", world,
+                  intake);
+  ++tally_.all().commands;
+  ++tally_.of(user).commands;
+  const bool ends_drag = waits_for_increments(command.kind);
+  Waiting waiting{command, increments_.newest(user), now_ns};
+  if (ends_drag) {
+    waiting.after = std::max(waiting.after, command.after);
+    waiting.until_ns = now_ns + static_cast<std::int64_t>(limits_.after_wait_s * 1e9);
+  }
+  if (is_behind(waiting_, command) || (ends_drag && must_wait(waiting, now_ns))) {
+    ++tally_.all().commands_deferred;
+    waiting_.push_back(std::move(waiting));
+  } else {
+    carry_out(command, world, now_ns, intake);
+  }
+}
+
+void CommandQueue::refuse(const Command& command, UserId tell, Refusal reason, std::string text,
+                          const World& world, Intake& intake) {
+  ++tally_.all().commands;
+  ++tally_.of(tell).commands;
+  tally_.count_refused_command(tell);
+  Reply reply{tell, command.part, command.seq, reason, {}, std::move(text)};
+  if (const Part* part = world.find(command.part)) reply.holder = part->holder;
+  intake.replies.push_back(std::move(reply));
+}
+
+void CommandQueue::carry_out_waiting(World& world, std::int64_t now_ns, Intake& intake) {
+  std::vector<Waiting> still_waiting;
+  for (Waiting& waiting : std::exchange(waiting_, {})) {
+    if (is_behind(still_waiting, waiting.command) || must_wait(waiting, now_ns))
+      still_waiting.push_back(std::move(waiting));
+    else
+      carry_out(waiting.command, world, now_ns, intake);
+  }
+  waiting_ = std::move(still_waiting);
+}
+
+void CommandQueue::drop(UserId user) {
+  const std::size_t undone =
+      std::erase_if(waiting_, [&](const Waiting& w) { return w.command.user == user; });
+  for (std::size_t i = 0; i < undone; ++i) tally_.count_refused_command(user);
+}
+
+bool CommandQueue::must_wait(const Waiting& waiting, std::int64_t now_ns) {
+  const Command& command = waiting.command;
+  if (increments_.waits(command.user, command.part, waiting.after)) return true;
+  if (increments_.newest(command.user) >= waiting.after) return false;
+  if (now_ns < waiting.until_ns) return true;
+  tally_.all().commands_overdue += waits_for_increments(command.kind);
+  return false;
+}
+
+void CommandQueue::carry_out(const Command& command, World& world, std::int64_t now_ns,
+                             Intake& intake) {
+  Decision decision;
+  Reply reply;
+  // Here, not where it arrived: what was carried out since may have filled the hand.
+  if (hand_is_full(world, command)) {
+    reply = {command.user, command.part, command.seq, Refusal::kNotAllowed, {}, {}};
+    if (const Part* part = world.find(command.part)) reply.holder = part->holder;
+    reply.text = "a user of this session holds at most " + std::to_string(limits_.parts_per_user) +
+                 " parts; release one first";
+  } else {
+    reply = apply_command(world, command, decision);
+  }
+  if (reply.refusal != Refusal::kNone) {
+    tally_.count_refused_command(command.user);
+  } else {
+    leases_.note(decision, now_ns);
+    intake.decisions.push_back(std::move(decision));
+  }
+  intake.replies.push_back(std::move(reply));
+}
+
+bool CommandQueue::hand_is_full(const World& world, const Command& command) const {
+  UserId taker;
+  if (command.kind == CommandKind::kGrab || command.kind == CommandKind::kAskHandOver)
+    taker = command.user;
+  else if (const Part* part = world.find(command.part);
+           part != nullptr && command.kind == CommandKind::kConsent)
+    taker = part->asked_by;
+  if (!taker) return false;
+  std::vector<PartId> wanted = command.details.parts;
+  if (wanted.empty()) wanted.push_back(command.part);
+  std::size_t held = 0;
+  for (const std::uint32_t i : leases_.moving()) {
+    const Part& part = world.parts[i];
+    if (part.holder != taker) continue;
+    ++held;
+    std::erase(wanted, part.id);  // held already
+  }
+  return !wanted.empty() && held + wanted.size() > limits_.parts_per_user;
+}
+
+bool CommandQueue::is_behind(const std::vector<Waiting>& waiting, const Command& command) {
+  return std::any_of(waiting.begin(), waiting.end(),
+                     [&](const Waiting& other) { return touch_alike(other.command, command); });
+}
+
+}  // namespace mortise

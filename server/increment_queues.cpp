@@ -1,0 +1,163 @@
+#include "server/increment_queues.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/constants.h"
+
+namespace mortise {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+Refusal judge(const Increment& increment, const World& world) {
+  if (!increment.translation_mm.allFinite() || !increment.rotation_rad.allFinite()) {
+    return Refusal::kNotFinite;
+  }
+  // stableNorm: the square of a huge finite number must not become infinity unnoticed.
+  if (!(increment.rotation_rad.stableNorm() <= kMaxRotationPerTick_rad)) {
+    return Refusal::kRotationTooLarge;
+  }
+  if (!(increment.translation_mm.stableNorm() <= world.max_jump_mm)) return Refusal::kJumpTooLarge;
+  const Part* part = increment.part ? world.find(increment.part) : nullptr;
+  if (part == nullptr) return Refusal::kUnknownPart;
+  if (!part->moving) return Refusal::kPartIsStatic;
+  const User* user = world.find(increment.user);
+  if (user != nullptr && user->role == Role::kObserver) return Refusal::kObserver;
+  if (part->holder != increment.user) return Refusal::kNotHolder;
+  return Refusal::kNone;
+}
+
+}  // namespace
+
+void IncrementQueues::begin(UserId user) {
+  if (user.value > queues_.size()) queues_.resize(user.value);
+  queues_[user.value - 1] = Queue{};
+}
+
+void IncrementQueues::receive(const ReceivedIncrement& received, std::int64_t now_ns,
+                              Intake& intake) {
+  const Increment& increment = received.increment;
+  Queue& of_user = queues_[increment.user.value - 1];
+  IncrementOrder& order = of_user.order;
+  const std::uint64_t lost = order.lost(), repaired = order.repaired();
+  ready_.clear();
+  const IncrementOrder::Arrival arrival = order.receive(received, ready_);
+  UserCounters& user = tally_.of(increment.user);
+  tally_.all().lost += order.lost() - lost;
+  tally_.all().repaired += order.repaired() - repaired;
+  user.lost += order.lost() - lost;
+  user.repaired += order.repaired() - repaired;
+  for (const ReceivedIncrement& next : ready_) queue(next, now_ns, intake);
+  const bool seen = arrival == IncrementOrder::Arrival::kSeen;
+  if (seen && received.kept_from != 0) {
+    ++tally_.all().repeats;
+    // The acknowledgement may have been lost.
+    if (increment.seq <= of_user.acknowledged)
+      acknowledge(increment.user, of_user.acknowledged, 0, intake);
+    return;
+  }
+  ++tally_.all().increments;
+  ++user.received;
+  if (arrival == IncrementOrder::Arrival::kNew) return;
+  tally_.refuse(increment, increment.user, seen ? Refusal::kDuplicate : Refusal::kStale, intake);
+}
+
+void IncrementQueues::queue(const ReceivedIncrement& received, std::int64_t now_ns,
+                            Intake& intake) {
+  const Increment& increment = received.increment;
+  Queue& of_user = queues_[increment.user.value - 1];
+  Refusal reason = received.at_door;
+  if (reason == Refusal::kNone && (!rates_.take(increment.user, now_ns) ||
+                                   of_user.backlog.size() >= limits_.increments_waiting))
+    reason = Refusal::kRateTooHigh;
+  if (reason != Refusal::kNone) {
+    // An acknowledgement speaks of all before it, also of what waits.
+    if (of_user.backlog.empty())
+      acknowledge(increment.user, increment.seq, received.sent_ns, intake);
+    else
+      of_user.refused_up_to = increment.seq;
+    tally_.refuse(increment, increment.user, reason, intake);
+    return;
+  }
+  if (now_ns - of_user.second_ns >= kSecond_ns) {
+    of_user.queued_before = now_ns - of_user.second_ns < 2 * kSecond_ns ? of_user.queued : 0;
+    of_user.queued = 0;
+    of_user.second_ns = now_ns;
+  }
+  ++of_user.queued;
+  of_user.backlog.push_back(received);
+  ++waiting_;
+}
+
+std::size_t IncrementQueues::share_of(const Queue& queue, const World& world) const {
+  const double sent_per_s = std::max(queue.queued, queue.queued_before);
+  return std::max<std::size_t>(
+      limits_.increments_per_tick,
+      static_cast<std::size_t>(std::ceil(2.0 * sent_per_s / world.tick_rate_hz)));
+}
+
+void IncrementQueues::take(const World& world, std::int64_t now_ns, Intake& intake) {
+  for (std::uint32_t i = 0; i < queues_.size(); ++i) {
+    const Queue& of_user = queues_[i];
+    const std::size_t before = intake.increments.size(), share = share_of(of_user, world);
+    // Also what would be refused waits its turn: the sequence of a user never goes back.
+    while (!of_user.backlog.empty() && intake.increments.size() - before < share)
+      take_first(UserId{i + 1}, world, now_ns, intake);
+  }
+  tally_.all().longest_backlog = std::max<std::uint64_t>(tally_.all().longest_backlog, waiting_);
+}
+
+void IncrementQueues::take_first(UserId user, const World& world, std::int64_t now_ns,
+                                 Intake& intake) {
+  const Increment increment = next(user, intake);
+  if (const Refusal reason = judge(increment, world); reason != Refusal::kNone)
+    return tally_.refuse(increment, user, reason, intake);
+  leases_.renew(increment.part, now_ns);
+  ++tally_.all().accepted;
+  ++tally_.of(user).accepted;
+  intake.increments.push_back(increment);
+}
+
+Increment IncrementQueues::next(UserId user, Intake& intake) {
+  Queue& of_user = queues_[user.value - 1];
+  const ReceivedIncrement first = std::move(of_user.backlog.front());
+  of_user.backlog.pop_front();
+  --waiting_;
+  acknowledge(user, first.increment.seq, first.sent_ns, intake);
+  if (of_user.backlog.empty() && of_user.refused_up_to > first.increment.seq)
+    acknowledge(user, of_user.refused_up_to, 0, intake);
+  return first.increment;
+}
+
+void IncrementQueues::drop(UserId user) {
+  Intake nobody;
+  while (!queues_[user.value - 1].backlog.empty())
+    tally_.refuse(next(user, nobody), user, Refusal::kUnknownUser, nobody);
+}
+
+bool IncrementQueues::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
+  if (!user || user.value > queues_.size()) return false;
+  const std::deque<ReceivedIncrement>& backlog = queues_[user.value - 1].backlog;
+  return std::any_of(backlog.begin(), backlog.end(), [&](const ReceivedIncrement& r) {
+    return (!part || r.increment.part == part) && r.increment.seq <= up_to_seq;
+  });
+}
+
+void IncrementQueues::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns,
+                                  Intake& intake) {
+  std::uint64_t& acknowledged = queues_[user.value - 1].acknowledged;
+  acknowledged = std::max(acknowledged, seq);
+  const auto at = std::lower_bound(intake.acks.begin(), intake.acks.end(), user,
+                                   [](const Ack& ack, UserId id) { return ack.user < id; });
+  if (at == intake.acks.end() || at->user != user) {
+    intake.acks.insert(at, Ack{user, seq, sent_ns});
+    return;
+  }
+  if (seq > at->seq && sent_ns != 0) at->sent_ns = sent_ns;
+  if (at->sent_ns == 0) at->sent_ns = sent_ns;
+  at->seq = std::max(at->seq, seq);
+}
+
+}  // namespace mortise

@@ -1,0 +1,27 @@
+#include "server/message_rates.h"
+
+#include <algorithm>
+
+namespace mortise {
+
+void MessageRates::begin(UserId user, std::int64_t now_ns) {
+  if (user.value > of_user_.size()) of_user_.resize(user.value);
+  of_user_[user.value - 1] = {limits_.messages_per_s, now_ns};
+}
+
+bool MessageRates::take(UserId user, std::int64_t now_ns) {
+  const auto refill = [now_ns](Bucket& bucket, double per_s) {
+    const double since_s = static_cast<double>(now_ns - bucket.at_ns) * 1e-9;
+    bucket = {std::min(per_s, bucket.tokens + since_s * per_s), now_ns};
+  };
+  if (!of_all_) of_all_ = {limits_.session_messages_per_s, now_ns};
+  Bucket& own = of_user_[user.value - 1];
+  refill(*of_all_, limits_.session_messages_per_s);
+  refill(own, limits_.messages_per_s);
+  if (own.tokens < 1.0 || of_all_->tokens < 1.0) return false;
+  own.tokens -= 1.0;
+  of_all_->tokens -= 1.0;
+  return true;
+}
+
+}  // namespace mortise
