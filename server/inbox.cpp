@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common/messages/names.h"
-#include "common/session/world/commands.h"
 #include "common/session/world/decisions.h"
 #include "common/session/world/rights.h"
 
