@@ -11,6 +11,7 @@
 #include <iterator>
 #include <thread>
 
+#include "tests/network/domain.h"
 #include "tests/network/program.h"
 
 namespace mortise::test {
@@ -29,7 +30,8 @@ struct Addresses : testing::Test {
   Addresses() { folder.write("index.html", "<!doctype html>"); }
 
   std::vector<std::string> words(const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"--domain", "97", "--http-port", "0", "--page", folder.path()};
+    std::vector<std::string> all = {
+        "--domain", std::to_string(own_domain()), "--http-port", "0", "--page", folder.path()};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/network/domain.h"
 #include "tests/network/program.h"
 #include "tests/network/same_everywhere.h"
 #include "tests/support/small_scenarios.h"
@@ -24,11 +25,12 @@ std::string text_of(const std::string& file) {
 
 TEST(BotProgram, ALimitThatDoesNotHoldIsExitCode5AndAFailureForJUnit) {
   TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
   Program server(folder.path(), "mortise-server",
-                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", "225", "--no-log"});
+                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", domain, "--no-log"});
   const std::string junit = (folder.path() / "bots.xml").string();
   Program bots(folder.path(), "mortise-bot",
-               {"--domain",        "225",     "--wait",       "20",      "--users",    "2",
+               {"--domain",        domain,    "--wait",       "20",      "--users",    "2",
                 "--processes",     "2",       "--ramp",       "1",       "--duration", "4",
                 "--behaviour",     "wander",  "--json",       "--junit", junit,        "--limit",
                 "p99_ms=0.000001", "--limit", "lost_events=0"});
@@ -55,15 +57,16 @@ TEST(BotProgram, ALimitThatDoesNotHoldIsExitCode5AndAFailureForJUnit) {
 // Its report against what others know of the same session, and the server's own counts.
 TEST(BotProgram, WhatItReportsIsWhatHappened) {
   TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
   const std::string log = (folder.path() / "bots.mcap").string();
   Program server(
       folder.path(), "mortise-server",
-      {folder.write("blocks.yaml", blocks_yaml()), "--domain", "229", "--log", log, "--json"});
-  Guest anna(229, "anna", "observer"), ben(229, "ben", "observer");
+      {folder.write("blocks.yaml", blocks_yaml()), "--domain", domain, "--log", log, "--json"});
+  Guest anna(own_domain(), "anna", "observer"), ben(own_domain(), "ben", "observer");
   ASSERT_TRUE(anna.joined()) << server.errors();
   ASSERT_TRUE(ben.joined());
   Program bots(folder.path(), "mortise-bot",
-               {"--domain", "229", "--wait", "20", "--users", "3", "--behaviour", "mixed",
+               {"--domain", domain, "--wait", "20", "--users", "3", "--behaviour", "mixed",
                 "--duration", "5", "--linger", "3", "--json"});
   ASSERT_TRUE(anna.until(60, [&] {
     ben.listen();
@@ -115,10 +118,11 @@ TEST(BotProgram, WhatItReportsIsWhatHappened) {
 
 TEST(BotProgram, AReportThatCannotBeWrittenIsNoSuccess) {
   TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
   Program server(folder.path(), "mortise-server",
-                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", "226", "--no-log"});
+                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", domain, "--no-log"});
   Program bots(folder.path(), "mortise-bot",
-               {"--domain", "226", "--wait", "20", "--duration", "1", "--behaviour", "wander",
+               {"--domain", domain, "--wait", "20", "--duration", "1", "--behaviour", "wander",
                 "--junit", "/proc/none/bots.xml", "--limit", "lost_events=0"});
   EXPECT_EQ(bots.wait(40), 1);
   EXPECT_NE(bots.errors().find("/proc/none/bots.xml"), std::string::npos) << bots.errors();
@@ -126,12 +130,13 @@ TEST(BotProgram, AReportThatCannotBeWrittenIsNoSuccess) {
 
 TEST(ServerMessages, EachLineIsAnObject) {
   TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
   Program server(folder.path(), "mortise-server",
-                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", "227", "--no-log",
+                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", domain, "--no-log",
                   "--messages", "json"});
   const std::string name = "an\"na \\ \xc3\xa4";
   {
-    Guest anna(227, name);
+    Guest anna(own_domain(), name);
     ASSERT_TRUE(anna.joined()) << server.errors();
     anna.client->leave(anna.user);
     anna.until(0.5, [] { return false; });

@@ -7,7 +7,6 @@
 namespace mortise::test {
 namespace {
 
-constexpr int kDomain = 232;
 constexpr std::int64_t kHour_s = 3600;
 
 class ClockJump : public SecondServer {
@@ -46,7 +45,7 @@ class ClockJump : public SecondServer {
     const int losses = losses_;
     server->signal(SIGKILL);
     ASSERT_EQ(server->wait(5), 128 + SIGKILL);
-    server = start(kDomain, {"--restore", logs(), "--log", logs()});
+    server = start({"--restore", logs(), "--log", logs()});
     const auto is_in = [](const Guest& guest) {
       return guest.client->user_id(guest.user) && guest.client->synced();
     };
@@ -69,8 +68,8 @@ class ClockJump : public SecondServer {
 };
 
 TEST_F(ClockJump, AnHourOnAndAnHourBack) {
-  std::unique_ptr<Program> server = lead(kDomain);
-  come_in(kDomain);
+  std::unique_ptr<Program> server = lead();
+  come_in();
   drag(0.5);
   step(kHour_s);
   kill_and_restore(server);
@@ -80,7 +79,7 @@ TEST_F(ClockJump, AnHourOnAndAnHourBack) {
   kill_and_restore(server);  // and again: the last log is that of the server before
   step(-kHour_s);
   kill_and_restore(server);
-  Guest late(kDomain, "late");
+  Guest late(domain_, "late");
   ASSERT_TRUE(late.joined());
   turn(0.3);
   const Knowledge known = agreed({anna_.get(), ben_.get(), otto_.get(), &late});
@@ -91,7 +90,7 @@ TEST_F(ClockJump, AnHourOnAndAnHourBack) {
 
 /// Its own clock shows an hour less than the ticks that it followed.
 TEST_F(ClockJump, OneThatTakesOverGoesOnLaterThanTheOneThatLed) {
-  auto [first, second] = both(kDomain - 1);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   step(kHour_s);
   step(-kHour_s);

@@ -10,6 +10,7 @@
 
 #include "client/client.h"
 #include "idl/dds_channel.h"
+#include "tests/network/domain.h"
 #include "tests/network/program.h"
 #include "tests/support/small_scenarios.h"
 
@@ -26,16 +27,15 @@ double said(const std::string& text, const std::string& what, const std::string&
 
 TEST(Cyclone, JoinsGrabsMovesAndSeesPosesAndClashes) {
 #ifndef MORTISE_HAS_CYCLONE
-  GTEST_SKIP() << "Cyclone DDS is not installed: apt-get install cyclonedds-dev cyclonedds-tools";
+  GTEST_SKIP() << "program absent: Cyclone DDS (cyclonedds-dev, cyclonedds-tools)";
 #endif
   TestFolder folder;
-  constexpr int kDomain = 218;
-  const std::string domain = std::to_string(kDomain);
+  const std::string domain = std::to_string(own_domain());
   Program server(folder.path(), "mortise-server",
                  {folder.write("blocks.yaml", blocks_yaml({.blue = ""})), "--domain", domain,
                   "--no-log", "--json", "--duration", "40"});
   DdsOptions options;
-  options.domain = kDomain;
+  options.domain = own_domain();
   auto channel = open_client_channel(options);
   ASSERT_TRUE(channel) << channel.error().text;
   Client witness(**channel);

@@ -8,7 +8,9 @@
 #include <thread>
 
 #include "common/io/log/session_log_read.h"
+#include "tests/network/domain.h"
 #include "tests/network/program.h"
+#include "tests/support/effort.h"
 
 /// A session as it is demonstrated: a server, four designers, an observer and one who comes late,
 /// each in a process of its own, over DDS on loopback.
@@ -58,7 +60,7 @@ Json json_of(const std::string& text) {
 
 TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
   TestFolder folder;
-  const std::string domain = "206";
+  const std::string domain = std::to_string(own_domain());
   const std::string scenario = folder.write("blocks.yaml", kScenario);
   const std::string play = folder.write("blocks.play.yaml", kPlay);
   const std::string log = (folder.path() / "blocks.mcap").string();
@@ -105,7 +107,9 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
     EXPECT_GT(4 * own["latency_ms"]["count"].get<std::uint64_t>(),
               own["sent"].get<std::uint64_t>());
     EXPECT_GT(own["sent"].get<int>(), 50);
-    EXPECT_LT(own["latency_ms"]["p50"].get<double>(), 100.0);
+    if (timed()) {
+      EXPECT_LT(own["latency_ms"]["p50"].get<double>(), 100.0);
+    }
     sent += own["sent"].get<std::uint64_t>();
   }
   EXPECT_EQ(json_of(late->out())["state"], seen["state"]);
@@ -142,7 +146,7 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
 // The demo itself, with a process a designer: 18 parts, three kinds of fits, policy stop.
 TEST(DemoSession, TheGearboxIsTheSameForAll) {
   TestFolder folder;
-  const std::string domain = "207";
+  const std::string domain = std::to_string(own_domain());
   const std::filesystem::path scenarios = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
   const std::string log = (folder.path() / "gearbox.mcap").string();
   Program server(folder.path(), "mortise-server",

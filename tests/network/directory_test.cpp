@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "idl/directory.h"
+#include "tests/network/domain.h"
 #include "tests/network/guest.h"
 #include "tests/network/key_ring.h"
 #include "tests/network/program.h"
@@ -14,8 +15,6 @@
 
 namespace mortise::test {
 namespace {
-
-constexpr int kDomain = 227, kOther = 228;
 
 class DirectoryOfSessions : public ::testing::Test {
  protected:
@@ -63,23 +62,24 @@ class DirectoryOfSessions : public ::testing::Test {
   std::string logs() const { return folder_.path().string() + "/logs"; }
   void SetUp() override { std::filesystem::create_directories(logs()); }
 
+  const int domain_ = take_domains(2), other_ = domain_ + 1;
   TestFolder folder_;
   Guest* guest_ = nullptr;
   std::string errors_;
 };
 
 TEST_F(DirectoryOfSessions, ListsWhoLeadsAndWhoStandsBy) {
-  const auto hall = lead(kDomain, "default"), yard = lead(kOther, "yard");
-  Guest anna(kDomain, "anna");
+  const auto hall = lead(domain_, "default"), yard = lead(other_, "yard");
+  Guest anna(domain_, "anna");
   ASSERT_TRUE(anna.joined());
   guest_ = &anna;
-  const auto second = start(kDomain, "default", {"--standby-of", "default", "--restore", logs()});
-  const auto servers = ask({"--domain", "226-228"});
+  const auto second = start(domain_, "default", {"--standby-of", "default", "--restore", logs()});
+  const auto servers = ask({"--domain", std::to_string(domain_) + "-" + std::to_string(other_)});
   ASSERT_EQ(servers.size(), 3u) << servers.dump();
   const auto of_hall = row(servers, "default", "leads");
-  EXPECT_EQ(of_hall["domain"], kDomain);
+  EXPECT_EQ(of_hall["domain"], domain_);
   EXPECT_EQ(of_hall["address"], "127.0.0.1");
-  EXPECT_EQ(of_hall["port"], 7402 + 250 * kDomain);
+  EXPECT_EQ(of_hall["port"], 7402 + 250 * domain_);
   EXPECT_EQ(of_hall["users"], 1);
   EXPECT_EQ(of_hall["parts"], anna.client->parts().size());
   EXPECT_EQ(of_hall["tick_rate_hz"], 60.0);
@@ -87,29 +87,29 @@ TEST_F(DirectoryOfSessions, ListsWhoLeadsAndWhoStandsBy) {
   EXPECT_GT(of_hall["term_ms"], 1'600'000'000'000u);
   EXPECT_FALSE(of_hall["version"].get<std::string>().empty());
   const auto waits = row(servers, "default", "stands by");
-  EXPECT_EQ(waits["port"], 7404 + 250 * kDomain);
+  EXPECT_EQ(waits["port"], 7404 + 250 * domain_);
   EXPECT_EQ(waits["term_ms"], 0);
   EXPECT_EQ(waits["version"], of_hall["version"]);
   EXPECT_TRUE(waits["users"].is_null());
   const auto of_yard = row(servers, "yard", "leads");
-  EXPECT_EQ(of_yard["domain"], kOther);
+  EXPECT_EQ(of_yard["domain"], other_);
   EXPECT_EQ(of_yard["users"], 0) << "a server tells its load with nobody there";
 
   hall->signal(SIGKILL);
   EXPECT_EQ(hall->wait(5), 128 + SIGKILL);
   ASSERT_TRUE(says(*second, "taken over at tick"));
-  const auto after = ask({"--domain", std::to_string(kDomain)});
+  const auto after = ask({"--domain", std::to_string(domain_)});
   ASSERT_EQ(after.size(), 1u) << after.dump();
-  EXPECT_EQ(row(after, "default", "leads")["port"], 7404 + 250 * kDomain);
+  EXPECT_EQ(row(after, "default", "leads")["port"], 7404 + 250 * domain_);
   EXPECT_GT(row(after, "default", "leads")["term_ms"], of_hall["term_ms"]);
 }
 
 /// One that is frozen and overtaken is told apart from the one that leads, until it is known to be
 /// gone; asked in this process, which listens all the while.
 TEST_F(DirectoryOfSessions, TellsTheOvertakenFromTheOneThatLeads) {
-  const auto first = lead(kDomain, "default");
+  const auto first = lead(domain_, "default");
   DdsOptions options;
-  options.domain = kDomain;
+  options.domain = domain_;
   options.session = kEverySession;
   const auto directory = open_directory(options);
   ASSERT_TRUE(directory) << directory.error().text;
@@ -128,47 +128,47 @@ TEST_F(DirectoryOfSessions, TellsTheOvertakenFromTheOneThatLeads) {
     return false;
   };
   using Place = KnownServer::Place;
-  constexpr int kFirst = 7402 + 250 * kDomain, kSecond = kFirst + 2;
-  ASSERT_TRUE(becomes(Place::kLeads, kFirst));
-  const auto second = start(kDomain, "default", {"--standby-of", "default", "--restore", logs()});
-  ASSERT_TRUE(becomes(Place::kStandsBy, kSecond));
+  const int first_port = 7402 + 250 * domain_, second_port = first_port + 2;
+  ASSERT_TRUE(becomes(Place::kLeads, first_port));
+  const auto second = start(domain_, "default", {"--standby-of", "default", "--restore", logs()});
+  ASSERT_TRUE(becomes(Place::kStandsBy, second_port));
   first->signal(SIGSTOP);
-  EXPECT_TRUE(becomes(Place::kLeads, kSecond));
-  EXPECT_EQ(port_that(Place::kOvertaken), kFirst);
+  EXPECT_TRUE(becomes(Place::kLeads, second_port));
+  EXPECT_EQ(port_that(Place::kOvertaken), first_port);
   EXPECT_TRUE(becomes(Place::kOvertaken, 0)) << "known to be gone after its lease";
   first->signal(SIGKILL);
 
   // And in order: a third stands by, and the second is drained.
-  const auto third = start(kDomain, "default", {"--standby-of", "default", "--restore", logs()});
-  ASSERT_TRUE(becomes(Place::kStandsBy, kFirst)) << "the place of the one that is gone";
+  const auto third = start(domain_, "default", {"--standby-of", "default", "--restore", logs()});
+  ASSERT_TRUE(becomes(Place::kStandsBy, first_port)) << "the place of the one that is gone";
   second->signal(SIGUSR1);
-  EXPECT_TRUE(becomes(Place::kLeads, kFirst));
+  EXPECT_TRUE(becomes(Place::kLeads, first_port));
   EXPECT_EQ(second->wait(5), 0) << second->errors();
   EXPECT_EQ((*directory)->known().size(), 1u);
 }
 
 TEST_F(DirectoryOfSessions, SaysInOneLineThatThereIsNobody) {
-  EXPECT_TRUE(ask({"--domain", "229", "--wait", "0.5"}, 1).empty());
-  EXPECT_EQ(
-      errors_,
-      "mortise-directory: no server answered at 127.0.0.1 (domain 229) within 0.5 s: none runs "
-      "there, or it asks for keys (--keys)\n");
-  const auto yard = lead(229, "yard");
-  EXPECT_EQ(ask({"--domain", "229", "--session", "yard"}).size(), 1u);
-  EXPECT_TRUE(ask({"--domain", "229", "--session", "hall"}, 1).empty());
+  const std::string domain = std::to_string(domain_);
+  EXPECT_TRUE(ask({"--domain", domain, "--wait", "0.5"}, 1).empty());
+  EXPECT_EQ(errors_, "mortise-directory: no server answered at 127.0.0.1 (domain " + domain +
+                         ") within 0.5 s: none runs there, or it asks for keys (--keys)\n");
+  const auto yard = lead(domain_, "yard");
+  EXPECT_EQ(ask({"--domain", domain, "--session", "yard"}).size(), 1u);
+  EXPECT_TRUE(ask({"--domain", domain, "--session", "hall"}, 1).empty());
 }
 
 TEST_F(DirectoryOfSessions, WantsKeysWhereTheServerDoes) {
+  const std::string domain = std::to_string(domain_);
   KeyRing keys("site");
   keys.issue("hall", "server");
   keys.issue("olga", "observer");
   keys.issue("paul", "observer", {"--session", "default"});
   ASSERT_EQ(keys.trouble(), "");
-  const auto hall = lead(230, "default", {"--keys", keys["hall"]});
-  const auto seen = ask({"--domain", "230", "--keys", keys["olga"]});
+  const auto hall = lead(domain_, "default", {"--keys", keys["hall"]});
+  const auto seen = ask({"--domain", domain, "--keys", keys["olga"]});
   EXPECT_EQ(row(seen, "default", "leads")["users"], 0);
-  EXPECT_TRUE(ask({"--domain", "230"}, 1).empty()) << "not without";
-  const auto of_paul = ask({"--domain", "230", "--keys", keys["paul"], "--session", "default"});
+  EXPECT_TRUE(ask({"--domain", domain}, 1).empty()) << "not without";
+  const auto of_paul = ask({"--domain", domain, "--keys", keys["paul"], "--session", "default"});
   EXPECT_EQ(row(of_paul, "default", "leads")["users"], 0);
 }
 

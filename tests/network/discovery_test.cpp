@@ -11,6 +11,7 @@
 
 #include "idl/announcement.h"
 #include "idl/datagram_guard.h"
+#include "tests/network/domain.h"
 #include "tests/network/guest.h"
 #include "tests/network/key_ring.h"
 #include "tests/network/program.h"
@@ -19,9 +20,6 @@
 
 namespace mortise::test {
 namespace {
-
-constexpr int kDomain = 229, kPort = 17398, kHall = 18100, kSpare = 18200, kYard = 18300;
-const std::string kPlace = "127.0.0.1:" + std::to_string(kPort);
 
 class DiscoveryServers : public ::testing::Test {
  protected:
@@ -32,8 +30,8 @@ class DiscoveryServers : public ::testing::Test {
   std::unique_ptr<Program> discover() const {
     auto program = std::make_unique<Program>(
         folder_.path(), "mortise-discovery",
-        std::vector<std::string>{"--discovery-port", std::to_string(kPort), "--json"});
-    EXPECT_TRUE(says(*program, "hears at " + kPlace)) << program->errors();
+        std::vector<std::string>{"--discovery-port", std::to_string(port_), "--json"});
+    EXPECT_TRUE(says(*program, "hears at " + place_)) << program->errors();
     return program;
   }
   std::unique_ptr<Program> serve(const std::string& session, int port,
@@ -42,9 +40,8 @@ class DiscoveryServers : public ::testing::Test {
                                       session};
     if (!more.empty() && more.front() == "--standby-of") words.clear();
     words.insert(words.end(), more.begin(), more.end());
-    words.insert(words.end(),
-                 {"--server-port", std::to_string(port), "--domain", std::to_string(kDomain),
-                  "--discovery-server", kPlace, "--log", logs()});
+    words.insert(words.end(), {"--server-port", std::to_string(port), "--domain", std::to_string(domain_),
+                               "--discovery-server", place_, "--log", logs()});
     return std::make_unique<Program>(folder_.path(), "mortise-server", words);
   }
   std::unique_ptr<Program> stand_by(int port) const {
@@ -54,9 +51,9 @@ class DiscoveryServers : public ::testing::Test {
   std::unique_ptr<Guest> guest(const std::string& session, const std::string& name,
                                const std::string& keys = "") const {
     DdsOptions options;
-    options.domain = kDomain;
+    options.domain = domain_;
     options.session = session;
-    options.discovery_server = kPlace;
+    options.discovery_server = place_;
     options.keys = keys;
     return std::make_unique<Guest>(options, name);
   }
@@ -74,13 +71,17 @@ class DiscoveryServers : public ::testing::Test {
   }
   std::string logs() const { return folder_.path().string() + "/logs"; }
 
+  const int domain_ = own_domain(), port_ = spare_port(domain_, 0),
+            hall_port_ = spare_port(domain_, 2), spare_port_ = spare_port(domain_, 4),
+            yard_port_ = spare_port(domain_, 6);
+  const std::string place_ = "127.0.0.1:" + std::to_string(port_);
   TestFolder folder_;
   std::unique_ptr<Program> discovery_;
 };
 
 TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
   const auto early = guest("hall", "early");  // before its server
-  const auto hall = serve("hall", kHall), yard = serve("yard", kYard);
+  const auto hall = serve("hall", hall_port_), yard = serve("yard", yard_port_);
   ASSERT_TRUE(early->joined());
   const auto ben = guest("hall", "ben"), cleo = guest("yard", "cleo");
   EXPECT_TRUE(ben->joined());
@@ -90,19 +91,19 @@ TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
   EXPECT_FALSE(cleo->holder("red")) << "a session of its own";
 
   Program directory(folder_.path(), "mortise-directory",
-                    {"--domain", std::to_string(kDomain), "--discovery-server", kPlace, "--json"});
+                    {"--domain", std::to_string(domain_), "--discovery-server", place_, "--json"});
   while (directory.running())
     for (Guest* one : {early.get(), ben.get(), cleo.get()}) one->until(0.01, [] { return false; });
   ASSERT_EQ(directory.wait(10), 0) << directory.errors();
   const auto servers = nlohmann::json::parse(directory.out())["servers"];
   ASSERT_EQ(servers.size(), 2u) << servers.dump();
   EXPECT_EQ(servers[0]["session"], "hall");
-  EXPECT_EQ(servers[0]["port"], kHall);
+  EXPECT_EQ(servers[0]["port"], hall_port_);
   EXPECT_EQ(servers[0]["users"], 2);
   EXPECT_EQ(servers[1]["session"], "yard");
-  EXPECT_EQ(servers[1]["port"], kYard);
+  EXPECT_EQ(servers[1]["port"], yard_port_);
 
-  const auto rival = serve("hall", kSpare);
+  const auto rival = serve("hall", spare_port_);
   EXPECT_EQ(rival->wait(10), 1) << "a session has one that leads, whatever its port";
   EXPECT_NE(rival->errors().find("another server leads session 'hall'"), std::string::npos);
 
@@ -115,10 +116,10 @@ TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
 }
 
 TEST_F(DiscoveryServers, TellClientsOfOneThatStandsByAndTakesOver) {
-  const auto hall = serve("hall", kHall);
+  const auto hall = serve("hall", hall_port_);
   const auto anna = guest("hall", "anna");
   ASSERT_TRUE(anna->joined());
-  const auto spare = stand_by(kSpare);  // later than she, on a port that nobody named
+  const auto spare = stand_by(spare_port_);  // later than she, on a port that nobody named
   ASSERT_TRUE(says(*spare, "in step")) << spare->errors();
   ASSERT_TRUE(anna->grab("red"));
   anna->client->send(anna->user, anna->client->find_part("red"), Vec3(0, 1, 0), Vec3::Zero());
@@ -141,7 +142,7 @@ TEST_F(DiscoveryServers, TellClientsOfOneThatStandsByAndTakesOver) {
 }
 
 TEST_F(DiscoveryServers, MayBeGoneAndComeBack) {
-  const auto hall = serve("hall", kHall);
+  const auto hall = serve("hall", hall_port_);
   const auto anna = guest("hall", "anna");
   ASSERT_TRUE(anna->joined());
   discovery_->signal(SIGKILL);
@@ -157,7 +158,9 @@ TEST_F(DiscoveryServers, MayBeGoneAndComeBack) {
     anna->listen();
     return ben->client->user_id(ben->user) && ben->client->synced();
   })) << "until it is back";
-  EXPECT_TRUE(says(*discovery_, "session 'hall', domain 229: server at 127.0.0.1:18100 is here"));
+  EXPECT_TRUE(says(*discovery_, "session 'hall', domain " + std::to_string(domain_) +
+                                    ": server at 127.0.0.1:" + std::to_string(hall_port_) +
+                                    " is here"));
 }
 
 /// A server that is started again while the other one leads, and nobody is there to tell.
@@ -176,23 +179,22 @@ TEST_F(DiscoveryServers, MayBeGoneWhileAServerLooksForAnother) {
 }
 
 TEST_F(DiscoveryServers, OfWhichOneIsEnough) {
-  const std::string second = "127.0.0.1:" + std::to_string(kPort + 1);
-  Program other(folder_.path(), "mortise-discovery",
-                {"--discovery-port", std::to_string(kPort + 1)});
+  const std::string second = "127.0.0.1:" + std::to_string(port_ + 1);
+  Program other(folder_.path(), "mortise-discovery", {"--discovery-port", std::to_string(port_ + 1)});
   ASSERT_TRUE(says(other, "hears at " + second)) << other.errors();
   Program hall(folder_.path(), "mortise-server",
                {folder_.write("blocks.yaml", blocks_yaml()), "--session", "hall", "--server-port",
-                std::to_string(kHall), "--domain", std::to_string(kDomain), "--discovery-server",
-                kPlace + "," + second, "--no-log"});
+                std::to_string(hall_port_), "--domain", std::to_string(domain_),
+                "--discovery-server", place_ + "," + second, "--no-log"});
   ASSERT_TRUE(says(other, "is here"));
   discovery_->signal(SIGKILL);
   const auto bots = [&](std::vector<std::string> more) {
     std::vector<std::string> words = {"--session",
                                       "hall",
                                       "--domain",
-                                      std::to_string(kDomain),
+                                      std::to_string(domain_),
                                       "--discovery-server",
-                                      kPlace + "," + second,
+                                      place_ + "," + second,
                                       "--wait",
                                       "10",
                                       "--duration",
@@ -211,7 +213,7 @@ TEST_F(DiscoveryServers, NeedNoKeysWhereSessionsDo) {
   keys.issue("anna", "designer");
   others.issue("mallory", "designer");
   ASSERT_EQ(keys.trouble() + others.trouble(), "");
-  const auto hall = serve("hall", kHall, {"--keys", keys["hall"]});
+  const auto hall = serve("hall", hall_port_, {"--keys", keys["hall"]});
   const auto anna = guest("hall", "anna", keys["anna"]);
   EXPECT_TRUE(anna->joined());
   EXPECT_TRUE(anna->grab("red"));
@@ -268,10 +270,10 @@ class CrowdedDiscovery : public DiscoveryServers {
  protected:
   Crowd announced(bool serves) const {
     DdsOptions options;
-    options.domain = kDomain;
+    options.domain = domain_;
     options.session = "0 of a crowd";
     options.discovery_server = ear_.place();
-    if (serves) options.discovery_port = kYard;
+    if (serves) options.discovery_port = yard_port_;
     const auto client = serves ? nullptr : open_client_channel(options).value();
     const auto server = serves ? open_server_channel(options).value() : nullptr;
     for (auto told = ear_.next(); !told.empty(); told = ear_.next()) {
@@ -295,7 +297,7 @@ TEST_F(CrowdedDiscovery, IntroducesAThousand) {
       for (int i = 0; i < kEach; ++i) {
         const int participant = session * kEach + i + 1;
         ear_.send((i == 0 ? servers : clients).of(participant, static_cast<char>('A' + session)),
-                  kPort);
+                  port_);
         if (i % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -326,10 +328,10 @@ TEST_F(CrowdedDiscovery, LivesThroughNoise) {
     for (std::size_t n = 1 + random() % 8; n > 0; --n)
       bytes[random() % bytes.size()] = static_cast<std::byte>(random() & 0xff);
     if (random() % 4 == 0) bytes.resize(random() % bytes.size());
-    ear_.send(bytes, kPort);
+    ear_.send(bytes, port_);
     if (i % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const auto hall = serve("hall", kHall);
+  const auto hall = serve("hall", hall_port_);
   EXPECT_TRUE(guest("hall", "anna")->joined()) << "after all this";
   const auto counts = end(*discovery_);
   EXPECT_GT(counts["malformed"], kNoise / 10);
@@ -344,14 +346,14 @@ TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
     EXPECT_NE((said.errors() + said.out()).find(line), std::string::npos)
         << said.errors() << said.out();
   };
-  const std::string port = std::to_string(kPort);
-  fails(
-      "mortise-discovery", {"--discovery-port", port}, 1,
-      "UDP port 17398 of 127.0.0.1: Address already in use; choose another with --discovery-port");
+  const std::string port = std::to_string(port_);
+  fails("mortise-discovery", {"--discovery-port", port}, 1,
+        "UDP port " + port + " of 127.0.0.1: Address already in use; choose another with --discovery-port");
   fails("mortise-discovery", {"--interface", "10.255.255.1"}, 3,
         "'10.255.255.1' is not an IPv4 address of this machine");
   fails("mortise-discovery", {"--discovery-port", "70000"}, 2, "--discovery-port");
-  const std::vector<std::string> bot = {"--domain", "229", "--wait", "1", "--discovery-server"};
+  const std::vector<std::string> bot = {"--domain", std::to_string(domain_), "--wait", "1",
+                                        "--discovery-server"};
   const auto with = [&bot](const std::string& place) {
     std::vector<std::string> words = bot;
     words.push_back(place);
@@ -359,15 +361,15 @@ TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
   };
   fails("mortise-bot", with("127.0.0.1:x"), 3,
         "discovery server '127.0.0.1:x': the port behind the colon is not in 1..65535");
-  auto by_port = with(kPlace);
+  auto by_port = with(place_);
   by_port.insert(by_port.end(), {"--server-port", "9000"});
   fails("mortise-bot", by_port, 3,
         "port 9000 of no host: the discovery server knows hosts and ports");
   fails("mortise-bot", with("nobody.invalid"), 3,
         "discovery server 'nobody.invalid' is neither an IPv4 address nor a name");
-  fails("mortise-bot", with(kPlace), 1,
-        "no server of session 'default' answered on domain 229 at wherever the discovery server " +
-            kPlace + " knows within 1 s");
+  fails("mortise-bot", with(place_), 1,
+        "no server of session 'default' answered on domain " + std::to_string(domain_) +
+            " at wherever the discovery server " + place_ + " knows within 1 s");
 }
 
 }  // namespace

@@ -9,12 +9,6 @@ constexpr double kHandOver_s = 0.5;  // as a client sees it; a tenth of that whe
 
 class Drain : public SecondServer {
  protected:
-  bool says(const Program& server, const std::string& text) {
-    for (const double end_s = steady_s() + 5.0; steady_s() < end_s; turn(0.01))
-      if (server.errors().find(text) != std::string::npos) return true;
-    ADD_FAILURE() << "'" << text << "' is not in: " << server.errors();
-    return false;
-  }
   int drained(Program& server) {
     server.signal(SIGUSR1);
     for (const double end_s = steady_s() + 15.0; steady_s() < end_s && server.running();)
@@ -24,15 +18,15 @@ class Drain : public SecondServer {
 };
 
 TEST_F(Drain, HandsTheSessionToTheOneThatStandsBy) {
-  const int times = std::min(effort(3), 20);
-  std::unique_ptr<Program> leader = lead(216);
-  come_in(216);
+  const int times = timed() ? 20 : 1;
+  std::unique_ptr<Program> leader = lead();
+  come_in();
   const UserId anna = anna_->client->user_id(0), ben = ben_->client->user_id(0);
   const auto before = clashes(*anna_);
   ASSERT_EQ(before.size(), 1u);
   std::vector<double> gaps_s;
-  for (int time = 0; time < times; ++time) {
-    std::unique_ptr<Program> second = stand_by(216);
+  for (int tries = 0; static_cast<int>(gaps_s.size()) < times && tries < times + 4; ++tries) {
+    std::unique_ptr<Program> second = stand_by();
     ASSERT_FALSE(HasFailure());
     const int losses = losses_;
     const double gap_s = longest_gap_after([&] { leader->signal(SIGUSR1); });
@@ -46,8 +40,8 @@ TEST_F(Drain, HandsTheSessionToTheOneThatStandsBy) {
     EXPECT_EQ(code, 0) << leader->errors();
     EXPECT_NE(leader->errors().find("drained: the server that stood by leads"), std::string::npos)
         << leader->errors();
-    EXPECT_NE(second->errors().find("hands over: taken over at tick"), std::string::npos)
-        << second->errors();
+    EXPECT_TRUE(says(*second, "hands over: taken over at tick")) << second->errors();
+    EXPECT_TRUE(all_in());
     EXPECT_EQ(losses_, losses + kClients) << "each client changes servers once";
     EXPECT_EQ(anna_->client->user_id(0), anna);
     EXPECT_EQ(ben_->client->user_id(0), ben);
@@ -63,19 +57,21 @@ TEST_F(Drain, HandsTheSessionToTheOneThatStandsBy) {
   std::sort(gaps_s.begin(), gaps_s.end());
   std::printf("drained as a client sees it, %d times: %.0f ms at least, %.0f median, %.0f most\n",
               times, gaps_s.front() * 1e3, gaps_s[gaps_s.size() / 2] * 1e3, gaps_s.back() * 1e3);
-  EXPECT_LE(gaps_s.back(), kHandOver_s);
+  if (timed()) {
+    EXPECT_LE(gaps_s.back(), kHandOver_s);
+  }
 }
 
 TEST_F(Drain, AloneItEndsWithACheckpointFromWhichAnotherGoesOn) {
-  std::unique_ptr<Program> first = lead(217);
-  come_in(217);
+  std::unique_ptr<Program> first = lead();
+  come_in();
   moves_ = true;
   turn(1.0);
   const UserId ben = ben_->client->user_id(0);
   EXPECT_FALSE(told_of_drain_);
   EXPECT_EQ(drained(*first), 0) << first->errors();
   EXPECT_TRUE(told_of_drain_);
-  EXPECT_TRUE(says(*first, "; go on with --restore "));
+  EXPECT_TRUE(says(*first, "; go on with --restore ")) << first->errors();
   moves_ = false;
   // Another host has the log and nothing else.
   const std::string there = folder_.path().string() + "/there";
@@ -83,8 +79,9 @@ TEST_F(Drain, AloneItEndsWithACheckpointFromWhichAnotherGoesOn) {
   for (const auto& entry : std::filesystem::directory_iterator(logs()))
     std::filesystem::copy_file(entry.path(),
                                std::filesystem::path(there) / entry.path().filename());
-  auto second = start(217, {"--restore", there, "--log", logs()});
-  EXPECT_TRUE(says(*second, "; 0 played again")) << "the checkpoint is that of the last tick";
+  auto second = start({"--restore", there, "--log", logs()});
+  EXPECT_TRUE(says(*second, "; 0 played again"))
+      << "the checkpoint is that of the last tick: " << second->errors();
   for (const double end_s = steady_s() + 10.0;
        steady_s() < end_s && ben_->client->user_id(0) != ben;)
     turn(0.01);
@@ -98,30 +95,32 @@ TEST_F(Drain, AloneItEndsWithACheckpointFromWhichAnotherGoesOn) {
 
 /// The one that stands by is asked to go on, and hears nothing.
 TEST_F(Drain, DoesNotWaitForEverForOneThatIsFrozen) {
-  auto [first, second] = both(218);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   moves_ = true;
   turn(0.3);
   second->signal(SIGSTOP);
   const double begun_s = steady_s();
   EXPECT_EQ(drained(*first), 0) << first->errors();
-  EXPECT_LT(steady_s() - begun_s, 4.0);
-  EXPECT_TRUE(says(*first, "the server that stands by was not seen to go on"));
+  if (timed()) {
+    EXPECT_LT(steady_s() - begun_s, 4.0);
+  }
+  EXPECT_TRUE(says(*first, "the server that stands by was not seen to go on")) << first->errors();
   moves_ = false;
   second->signal(SIGKILL);
   second->wait(5);
   // Only the log of the one that led counts: the other's may end earlier.
-  auto third = start(218, {"--restore", logs(), "--log", logs()});
-  EXPECT_TRUE(says(*third, "restored from"));
+  auto third = start({"--restore", logs(), "--log", logs()});
+  EXPECT_TRUE(says(*third, "restored from")) << third->errors();
   EXPECT_TRUE(ben_->until(10, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
   third->signal(SIGTERM);
   EXPECT_EQ(third->wait(10), 0);
 }
 
 TEST_F(Drain, WhoComesMeanwhileComesInWhereTheSessionGoesOn) {
-  auto [first, second] = both(219);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
-  Guest carl(219, "carl");
+  Guest carl(domain_, "carl");
   // Met, not joined: it asks while the first is on its way out.
   first->signal(SIGUSR1);
   const bool joined = carl.until(10, [&] {
@@ -136,7 +135,7 @@ TEST_F(Drain, WhoComesMeanwhileComesInWhereTheSessionGoesOn) {
 }
 
 TEST_F(Drain, OneThatStandsByJustGoes) {
-  auto [first, second] = both(220);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   EXPECT_EQ(drained(*second), 0);
   EXPECT_TRUE(first->running());
@@ -145,13 +144,13 @@ TEST_F(Drain, OneThatStandsByJustGoes) {
   turn(1.5);
   EXPECT_EQ(losses_, losses);
   EXPECT_EQ(drained(*first), 0);
-  EXPECT_TRUE(says(*first, "; go on with --restore "));
+  EXPECT_TRUE(says(*first, "; go on with --restore ")) << first->errors();
   // What it wrote while it stood by is no part of the session: that goes on from the other's log.
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(logs()))
     files += entry.is_regular_file();
   EXPECT_EQ(files, 1u);
-  auto third = start(220, {"--restore", logs(), "--log", logs()});
+  auto third = start({"--restore", logs(), "--log", logs()});
   EXPECT_TRUE(ben_->until(10, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
   EXPECT_GT(acknowledged_.size(), 60u);
   EXPECT_EQ(lost_of_acknowledged(*third), 0u);

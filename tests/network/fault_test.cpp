@@ -8,18 +8,16 @@
 #include <set>
 
 #include "client/client.h"
+#include "tests/network/domain.h"
 #include "tests/network/frozen_reader.h"
 #include "tests/network/small_server.h"
+#include "tests/support/effort.h"
 
 namespace mortise::test {
 namespace {
 
-DdsOptions options_for_this_test() {
-  return options_for_test(testing::UnitTest::GetInstance()->current_test_info()->name());
-}
-
 TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
-  const DdsOptions options = options_for_this_test();
+  const DdsOptions options = own_options();
   Child victim("client", options, "victim", 30.0);
   Child leaver("client", options, "leaver", 4.0);
   Child other("client", options, "other", 30.0);
@@ -48,8 +46,9 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
   const double noticed_s = now_s() - killed_s;
   const double ratio = noticed_s / options.liveliness_lease_s;
   std::printf("killed client of three noticed after %.3f s = %.2f leases\n", noticed_s, ratio);
-  RecordProperty("noticed_ms", static_cast<int>(noticed_s * 1e3));
-  EXPECT_LT(noticed_s, options.liveliness_lease_s + 0.5);
+  if (timed()) {
+    EXPECT_LT(noticed_s, options.liveliness_lease_s + 0.5);
+  }
   // Once only, though its participant's lease ends later; and the leaver says goodbye.
   ASSERT_TRUE(until(
       8.0, [&] { return of(leaver_key, true) == 1; }, [&] { server.turn(); }));
@@ -61,7 +60,7 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
 }
 
 TEST(NetworkFault, FrozenReaderDoesNotHoldUpTheServer) {
-  const DdsOptions options = options_for_this_test();
+  const DdsOptions options = own_options();
   FrozenReader reader(options);
   ASSERT_TRUE(reader.both_joined());
   SmallServer& server = *reader.server;
@@ -85,18 +84,19 @@ TEST(NetworkFault, FrozenReaderDoesNotHoldUpTheServer) {
       static_cast<unsigned long long>(turns), longest_ms,
       static_cast<unsigned long long>(server.slow_publishes),
       static_cast<unsigned long long>(reader.channel->counters().send_failed));
-  RecordProperty("longest_publish_us", static_cast<int>(longest_ms * 1e3));
   // A writer that waits for its reader waits at every publish once its history is full, and then
   // fails. A busy machine may take the processor away now and then, which is not that.
-  EXPECT_LT(server.slow_publishes, turns / 10);
-  EXPECT_GE(turns, 300u);
+  if (timed()) {
+    EXPECT_LT(server.slow_publishes, turns / 10);
+    EXPECT_GE(turns, 300u);
+  }
   EXPECT_EQ(reader.channel->counters().send_failed, 0u);
   ASSERT_TRUE(reader.all_heard());
   reader.go_on();
 }
 
 TEST(NetworkFault, KilledServerComesBackAndClientsJoinAgain) {
-  const DdsOptions options = options_for_this_test();
+  const DdsOptions options = own_options();
   auto server = std::make_unique<Child>("server", options, "first", 30.0);
   auto channel = open_client_channel(options);
   ASSERT_TRUE(channel) << channel.error().text;
@@ -123,14 +123,13 @@ TEST(NetworkFault, KilledServerComesBackAndClientsJoinAgain) {
       10.0, [&] { return joined == 2 && first_seq_after > 0; }, turn));
   const double gap_s = now_s() - restart_s;
   std::printf("server restarted: joined again, with data, after %.3f s\n", gap_s);
-  RecordProperty("rejoin_ms", static_cast<int>((now_s() - restart_s) * 1e3));
   EXPECT_EQ(lost, 1u);
   EXPECT_TRUE(client.synced());
   EXPECT_EQ(client.join_state(0), JoinState::kJoined);
 }
 
 TEST(NetworkFault, SixteenProcessesFindTheServer) {
-  const DdsOptions options = options_for_this_test();
+  const DdsOptions options = own_options();
   std::vector<std::unique_ptr<Child>> children;
   for (int i = 0; i < 16; ++i) {
     children.push_back(std::make_unique<Child>("client", options, "bot" + std::to_string(i), 20.0));

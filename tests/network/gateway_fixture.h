@@ -45,7 +45,7 @@ struct GatewayFixture : testing::Test {
     std::filesystem::create_directories(folder / "page");
     std::ofstream(folder / "page/index.html") << "<script type=\"importmap\">{}</script>page";
     std::ofstream(folder / "secret.txt") << "secret";
-    auto reading = read_scenario_text(peg_yaml(), "gateway.yaml");
+    auto reading = read_scenario_text("lease_s: 60\n" + peg_yaml(), "gateway.yaml");
     ASSERT_TRUE(reading) << reading.error().text;
     auto loaded = load_scene(reading->scenario, default_meshes());
     ASSERT_TRUE(loaded) << loaded.error().text;

@@ -72,7 +72,7 @@ class Hosts : public ::testing::Test {
  protected:
   void SetUp() override {
     auto opened = LossyLink::open({.loss = 0.01, .delay_s = 0.02, .seed = 7}, kSides);
-    if (!opened) GTEST_SKIP() << "no network namespaces here: " << opened.error().text;
+    if (!opened) GTEST_SKIP() << "not root: no network namespaces: " << opened.error().text;
     link_ = std::move(*opened);
     keys_ = std::make_unique<KeyRing>("site");
     for (const char* name : {"hall", "spare", "third"}) keys_->issue(name, "server");

@@ -1,6 +1,7 @@
 // Sessions side by side on one host, with the same names of users and parts: no word crosses.
 #include <gtest/gtest.h>
 
+#include "tests/network/domain.h"
 #include "tests/network/site.h"
 #include "tests/network/small_server.h"
 #include "tests/support/small_scenarios.h"
@@ -15,9 +16,6 @@ struct Isolation : testing::Test {
   std::unique_ptr<Site> here, there;
   Person anna_here, ben_here, anna_there, ben_there;
 
-  static DdsOptions own() {
-    return options_for_test(testing::UnitTest::GetInstance()->current_test_info()->name());
-  }
   void open(const DdsOptions& first, const DdsOptions& second) {
     here = std::make_unique<Site>(first, blocks_yaml());
     there = std::make_unique<Site>(second, blocks_yaml());
@@ -105,31 +103,31 @@ struct Isolation : testing::Test {
 };
 
 TEST_F(Isolation, TwoDomains) {
-  DdsOptions other = own();
-  other.domain = 1 + other.domain % 200;
-  open(own(), other);
+  DdsOptions other = own_options();
+  other.domain = take_domains(1);
+  open(own_options(), other);
   play();
   expect_nothing_crossed();
 }
 
 TEST_F(Isolation, TwoPortsOfOneDomain) {
-  DdsOptions other = own();
+  DdsOptions other = own_options();
   other.discovery_port = 7400 + 250 * other.domain + 6;
-  open(own(), other);
+  open(own_options(), other);
   play();
   expect_nothing_crossed();
 }
 
 TEST_F(Isolation, TwoSessionsByPartition) {
-  DdsOptions other = own();
+  DdsOptions other = own_options();
   other.session = "other";
   other.discovery_port = 7400 + 250 * other.domain + 6;
-  open(own(), other);
+  open(own_options(), other);
   EXPECT_EQ(ben_there.client->session(), "other");
   play();
   expect_nothing_crossed();
   // Who asks the server of one for the session of the other hears nobody.
-  DdsOptions lost = own();
+  DdsOptions lost = own_options();
   lost.session = "other";
   Person eve;
   eve.enter(lost, "anna");
@@ -148,20 +146,20 @@ TEST_F(Isolation, TwoSessionsByPartition) {
 // Clients look for a server that takes over where another session's is: that one began later, and
 // its term is the higher one.
 TEST_F(Isolation, AnotherSessionAtTheSecondPlace) {
-  DdsOptions other = own();
+  DdsOptions other = own_options();
   other.session = "other";
   other.discovery_port = 7400 + 250 * other.domain + 4;
-  open(own(), other);
+  open(own_options(), other);
   play();
   expect_nothing_crossed();
 }
 
 // The end of one is not the end of the other.
 TEST_F(Isolation, OneEndsAndTheOtherGoesOn) {
-  DdsOptions other = own();
+  DdsOptions other = own_options();
   other.session = "other";
   other.discovery_port = 7400 + 250 * other.domain + 6;
-  open(own(), other);
+  open(own_options(), other);
   there->loop.reset();
   there->channel.reset();
   const auto turn = [&] {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "client/client.h"
+#include "tests/network/domain.h"
 #include "tests/network/noise.h"
 #include "tests/network/small_server.h"
 #include "tests/support/effort.h"
@@ -24,7 +25,7 @@ Datagram data_datagram(std::mt19937_64& random) {
 }
 
 TEST(NetworkNoise, ServerAndClientsOutliveMutatedDatagrams) {
-  const DdsOptions options = options_for_test("ServerAndClientsOutliveMutatedDatagrams");
+  const DdsOptions options = own_options();
   const int port = 7402 + 250 * options.domain;
   std::mt19937_64 random(31337);
   std::vector<Datagram> seeds;
@@ -84,7 +85,7 @@ TEST(NetworkNoise, ServerAndClientsOutliveMutatedDatagrams) {
 }
 
 TEST(NetworkNoise, DroppedDatagramsAreCounted) {
-  const DdsOptions options = options_for_test("DroppedDatagramsAreCounted");
+  const DdsOptions options = own_options();
   auto channel = open_server_channel(options);
   ASSERT_TRUE(channel) << channel.error().text;
   Socket mouth(0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tests/network/domain.h"
 #include "tests/network/site.h"
 #include "tests/network/small_server.h"
 #include "tests/support/small_scenarios.h"
@@ -16,8 +17,7 @@ struct People : testing::Test {
   Person anna, ben, eve;
 
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    site = std::make_unique<Site>(options_for_test(info->name()), peg_yaml());
+    site = std::make_unique<Site>(own_options(), peg_yaml());
     anna.enter(site->options, "anna");
     ben.enter(site->options, "ben");
     eve.enter(site->options, "eve", "observer");

@@ -16,6 +16,7 @@
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log.h"
 #include "server/restore.h"
+#include "tests/network/domain.h"
 #include "tests/network/guest.h"
 #include "tests/network/program.h"
 #include "tests/support/small_scenarios.h"
@@ -48,21 +49,16 @@ class SecondServer : public ::testing::Test {
   static constexpr double kStep_mm = 0.01, kEvery_s = 1.0 / 60.0;
   static constexpr int kClients = 3;
 
-  std::unique_ptr<Program> lead(int domain) {
-    return start(domain, {folder_.write("blocks.yaml", blocks_yaml()), "--log", logs()});
+  std::unique_ptr<Program> lead() {
+    return start({folder_.write("blocks.yaml", blocks_yaml()), "--log", logs()});
   }
-  std::unique_ptr<Program> stand_by(int domain) {
-    auto server = start(domain, {"--standby-of", "default", "--restore", logs(), "--log", logs()});
-    const double end_s = steady_s() + 20.0;
-    while (steady_s() < end_s && server->errors().find("in step") == std::string::npos &&
-           server->running()) {
-      turn(0.01);
-    }
-    EXPECT_NE(server->errors().find("in step"), std::string::npos) << server->errors();
+  std::unique_ptr<Program> stand_by() {
+    auto server = start({"--standby-of", "default", "--restore", logs(), "--log", logs()});
+    EXPECT_TRUE(says(*server, "in step")) << server->errors();
     return server;
   }
-  std::unique_ptr<Program> start(int domain, std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--domain", std::to_string(domain), "--json"});
+  std::unique_ptr<Program> start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(domain_), "--json"});
     return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
   }
   std::string logs() const { return folder_.path().string() + "/logs"; }
@@ -70,18 +66,18 @@ class SecondServer : public ::testing::Test {
 
   /// anna presses red into the base and holds it there; ben's hand moves blue at 60 Hz; otto looks
   /// on.
-  void come_in(int domain) {
-    join(domain, "blue");
+  void come_in() {
+    join("blue");
     if (HasFatalFailure()) return;
     ASSERT_TRUE(anna_->grab("red"));
     anna_->client->send(anna_->user, anna_->client->find_part("red"), {1, 0, -12});
     ASSERT_TRUE(anna_->until(3, [&] { return !anna_->client->open_clashes().empty(); }));
   }
   /// All three; ben takes this part, which is called blue.
-  void join(int domain, const char* bens_part) {
-    anna_ = std::make_unique<Guest>(domain, "anna");
-    ben_ = std::make_unique<Guest>(domain, "ben");
-    otto_ = std::make_unique<Guest>(domain, "otto", "observer");
+  void join(const char* bens_part) {
+    anna_ = std::make_unique<Guest>(domain_, "anna");
+    ben_ = std::make_unique<Guest>(domain_, "ben");
+    otto_ = std::make_unique<Guest>(domain_, "otto", "observer");
     ASSERT_TRUE(anna_->joined());
     ASSERT_TRUE(ben_->joined());
     ASSERT_TRUE(otto_->joined());
@@ -89,10 +85,10 @@ class SecondServer : public ::testing::Test {
     blue_ = ben_->client->find_part(bens_part);
   }
   /// One that leads, its users, and one that stands by.
-  std::pair<std::unique_ptr<Program>, std::unique_ptr<Program>> both(int domain) {
-    std::unique_ptr<Program> first = lead(domain);
-    come_in(domain);
-    std::unique_ptr<Program> second = stand_by(domain);
+  std::pair<std::unique_ptr<Program>, std::unique_ptr<Program>> both() {
+    std::unique_ptr<Program> first = lead();
+    come_in();
+    std::unique_ptr<Program> second = stand_by();
     return {std::move(first), std::move(second)};
   }
   /// Lets all act for a while; notes what came when.
@@ -103,20 +99,34 @@ class SecondServer : public ::testing::Test {
       listen(*otto_, gaps_[2]);
       if (of_ben.server_lost) in_doubt();
       told_of_drain_ |= of_anna.pulse && of_anna.pulse->draining;
-      for (const SeenAck& ack : of_ben.acks) {
-        acknowledge(ack.seq);
-        if (const auto at = sent_at_s_.find(ack.seq); at != sent_at_s_.end())
-          took_s_.push_back(steady_s() - at->second);
-      }
+      for (const SeenAck& ack : of_ben.acks) acknowledge(ack.seq);
       if (moves_ && steady_s() - sent_s_ >= kEvery_s) {
         sent_s_ = steady_s();
-        if (const std::uint64_t seq = ben_->client->send(ben_->user, blue_, {0, kStep_mm, 0})) {
+        if (const std::uint64_t seq = ben_->client->send(ben_->user, blue_, {0, kStep_mm, 0}))
           sent_.insert(seq);
-          sent_at_s_[seq] = sent_s_;
-        }
       }
       sleep_a_moment();
     }
+  }
+  /// Lets all act until it is so, for as long as a busy machine may take.
+  bool wait_until(const std::function<bool()>& done) {
+    for (const double end_s = steady_s() + 20.0; !done(); turn(0.01))
+      if (steady_s() > end_s) return false;
+    return true;
+  }
+  bool says(Program& server, const std::string& words) {
+    return wait_until([&] {
+             return server.errors().find(words) != std::string::npos || !server.running();
+           }) &&
+           server.errors().find(words) != std::string::npos;
+  }
+  /// All three are in, wherever the session goes on.
+  bool all_in() {
+    return wait_until([&] {
+      for (const Guest* guest : {anna_.get(), ben_.get(), otto_.get()})
+        if (!guest->client->user_id(guest->user) || !guest->client->synced()) return false;
+      return true;
+    });
   }
   ClientUpdate listen(Guest& guest, PoseGap& gap) {
     ClientUpdate update = guest.listen();
@@ -177,6 +187,7 @@ class SecondServer : public ::testing::Test {
     return lost.size();
   }
 
+  const int domain_ = own_domain();
   TestFolder folder_;
   std::unique_ptr<Guest> anna_, ben_, otto_;
   PartId blue_;
@@ -185,8 +196,6 @@ class SecondServer : public ::testing::Test {
   double sent_s_ = 0.0;
   std::array<PoseGap, kClients> gaps_;
   std::set<std::uint64_t> sent_, acknowledged_;
-  std::map<std::uint64_t, double> sent_at_s_;
-  std::vector<double> took_s_;  ///< from sending to the acknowledgement
 };
 
 }  // namespace mortise::test

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "idl/identity.h"
+#include "tests/network/domain.h"
 #include "tests/network/key_ring.h"
 #include "tests/network/site.h"
 #include "tests/network/small_server.h"
@@ -34,8 +35,7 @@ class Security : public ::testing::Test {
   }
 
   DdsOptions options(const std::string& keys) const {
-    DdsOptions o = options_for_test(std::string("Security.") +
-                                    testing::UnitTest::GetInstance()->current_test_info()->name());
+    DdsOptions o = own_options();
     o.keys = keys;
     return o;
   }

@@ -147,7 +147,7 @@ std::ptrdiff_t naming_the_session(const std::vector<Wiretap::Heard>& heard) {
 
 TEST_F(Security, ARecordingSentAgainMovesNothing) {
   Wiretap tap(7402 + 250 * options("").domain);
-  if (!tap.works()) GTEST_SKIP() << "listening on lo needs root";
+  if (!tap.works()) GTEST_SKIP() << "not root: nobody else may listen on lo";
   open_site();
   auto anna = std::make_unique<Person>();
   anna->enter(options((*site_keys)["anna"]), "anna");
@@ -201,7 +201,7 @@ TEST_F(Security, ARecordingSentAgainMovesNothing) {
 
 TEST_F(Security, WithoutKeysAllIsThereToRead) {
   Wiretap tap(7402 + 250 * options("").domain);
-  if (!tap.works()) GTEST_SKIP() << "listening on lo needs root";
+  if (!tap.works()) GTEST_SKIP() << "not root: nobody else may listen on lo";
   site = std::make_unique<Site>(options(""), blocks_yaml(kBlocks));
   Person anna;
   anna.enter(options(""), "anna");

@@ -16,17 +16,17 @@ class SecurityStandby : public ::testing::Test {
     ASSERT_EQ(keys_.trouble(), "");
     std::filesystem::create_directories(logs());
   }
-  void begin(int domain) {
+  void begin() {
     const auto start = [&](std::vector<std::string> words, const std::string& keys) {
       words.insert(words.end(),
-                   {"--log", logs(), "--domain", std::to_string(domain), "--keys", keys});
+                   {"--log", logs(), "--domain", std::to_string(own_domain()), "--keys", keys});
       return std::make_unique<Program>(folder_.path(), "mortise-server", words);
     };
     first_ = start({folder_.write("blocks.yaml", blocks_yaml(kBlocks))}, hall_);
     second_ = start({"--standby-of", "default", "--restore", logs()}, spare_);
     ASSERT_TRUE(says(*second_, "in step")) << second_->errors();
     DdsOptions options;
-    options.domain = domain;
+    options.domain = own_domain();
     options.keys = annas_;
     anna_.enter(options, "anna");
     ASSERT_TRUE(is_served());
@@ -73,7 +73,7 @@ class SecurityStandby : public ::testing::Test {
 /// What it says to have is no reason to tell clients of it. It does not know, and leads as the
 /// first is gone; nobody who knows is led by it.
 TEST_F(SecurityStandby, OneThatIsRevokedIsNotCountedOnNorFollowed) {
-  begin(221);
+  begin();
   ASSERT_FALSE(HasFailure());
   revoke("spare", {hall_, annas_});
   EXPECT_TRUE(says(*first_, "'spare' (server) was not let in: it has been revoked"))
@@ -91,7 +91,7 @@ TEST_F(SecurityStandby, OneThatIsRevokedIsNotCountedOnNorFollowed) {
 
 /// One that learns of it ends, and does not take over.
 TEST_F(SecurityStandby, OneThatIsRevokedEnds) {
-  begin(215);
+  begin();
   ASSERT_FALSE(HasFailure());
   revoke("spare", {spare_});
   EXPECT_EQ(second_->wait(10), 1);
@@ -107,7 +107,7 @@ TEST_F(SecurityStandby, OneThatIsRevokedEnds) {
 /// It looks at the list while it follows: what a leader says that is revoked is not taken, and who
 /// works with that one does not any more.
 TEST_F(SecurityStandby, OneWhoseLeaderIsRevokedFollowsItNoMore) {
-  begin(222);
+  begin();
   ASSERT_FALSE(HasFailure());
   revoke("hall", {spare_, annas_});
   EXPECT_TRUE(loses_its_server());
@@ -122,7 +122,7 @@ TEST_F(SecurityStandby, OneWhoseLeaderIsRevokedFollowsItNoMore) {
 /// One that leads and learns of it leaves the session to the one that stands by. That one had the
 /// list first, and has been with it to the end: nothing was told that is not with both.
 TEST_F(SecurityStandby, OneThatLeadsAndIsRevokedEndsAndTheOtherGoesOn) {
-  begin(216);
+  begin();
   ASSERT_FALSE(HasFailure());
   revoke("hall", {spare_});
   sleep_and_turn(2.5);

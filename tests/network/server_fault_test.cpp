@@ -11,8 +11,10 @@
 #include "client/client.h"
 #include "common/io/log/session_log_read.h"
 #include "idl/dds_channel.h"
+#include "tests/network/domain.h"
 #include "tests/network/program.h"
 #include "tests/network/same_everywhere.h"
+#include "tests/support/effort.h"
 #include "tests/support/small_scenarios.h"
 
 /// The real server under bad luck and bad company, over DDS on loopback.
@@ -25,23 +27,25 @@ const Blocks kBlocks{"lease_s: 1\n", "[0, 0, 60]", "[500, 0, 20]"};
 
 class ServerFault : public ::testing::Test {
  protected:
-  std::unique_ptr<Program> serve(int domain, std::vector<std::string> arguments = {"--no-log"}) {
+  std::unique_ptr<Program> serve(std::vector<std::string> arguments = {"--no-log"}) {
     const std::string scenario = folder_.write("blocks.yaml", blocks_yaml(kBlocks));
-    arguments.insert(arguments.begin(), {scenario, "--domain", std::to_string(domain), "--json"});
+    arguments.insert(arguments.begin(), {scenario, "--domain", std::to_string(domain_), "--json"});
     return std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
   }
   static std::size_t lines(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
+  const int domain_ = own_domain();
   TestFolder folder_;
 };
 
 TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   const std::string log = (folder_.path() / "killed.mcap").string();
-  auto server = serve(210, {"--log", log, "--policy", "report"});
+  auto server = serve({"--log", log, "--policy", "report"});
   Program bot(folder_.path(), "mortise-bot",
-              {"--domain", "210", "--wait", "10", "--part", "red", "--behaviour", "wander"});
-  Guest ben(210, "ben"), cid(210, "cid");  // who joins late
+              {"--domain", std::to_string(domain_), "--wait", "10", "--part", "red", "--behaviour",
+               "wander"});
+  Guest ben(domain_, "ben"), cid(domain_, "cid");  // who joins late
   ASSERT_TRUE(ben.joined()) << server->errors();
   ASSERT_TRUE(ben.until(5, [&] { return bool(ben.holder("red")) && ben.x("red") != 0.0; }));
   EXPECT_FALSE(ben.grab("red")) << "it is in other hands";
@@ -52,8 +56,9 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   bot.signal(SIGKILL);
   const double killed_s = steady_s();
   ASSERT_TRUE(ben.until(4, [&] { return !ben.holder("red"); }));
-  // Liveliness lease 0.8 s; its check, a tick and the way back on a busy machine.
-  EXPECT_LT(steady_s() - killed_s, 2.0);
+  if (timed()) {  // liveliness lease 0.8 s; its check, a tick and the way back
+    EXPECT_LT(steady_s() - killed_s, 2.0);
+  }
   EXPECT_TRUE(ben.grab("red"));
   const PartId red = ben.client->find_part("red");
   std::uint64_t last = 0;
@@ -78,8 +83,8 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
 
 TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
   const std::string log = (folder_.path() / "nonsense.mcap").string();
-  auto server = serve(211, {"--log", log});
-  Guest anna(211, "anna"), ben(211, "ben");
+  auto server = serve({"--log", log});
+  Guest anna(domain_, "anna"), ben(domain_, "ben");
   ASSERT_TRUE(anna.joined()) << server->errors();
   ASSERT_TRUE(ben.joined());
   ASSERT_TRUE(anna.grab("red"));
@@ -126,8 +131,8 @@ TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
 }
 
 TEST_F(ServerFault, ASilentHandLosesTheLease) {
-  auto server = serve(212);
-  Guest anna(212, "anna"), ben(212, "ben");
+  auto server = serve();
+  Guest anna(domain_, "anna"), ben(domain_, "ben");
   ASSERT_TRUE(anna.joined()) << server->errors();
   ASSERT_TRUE(ben.joined());
   ASSERT_TRUE(anna.grab("red"));
@@ -143,8 +148,8 @@ TEST_F(ServerFault, ASilentHandLosesTheLease) {
 
 TEST_F(ServerFault, ATermSignalEndsInOrder) {
   const std::string log = (folder_.path() / "term.mcap").string();
-  auto server = serve(213, {"--log", log, "--policy", "report"});
-  Guest anna(213, "anna");
+  auto server = serve({"--log", log, "--policy", "report"});
+  Guest anna(domain_, "anna");
   ASSERT_TRUE(anna.joined()) << server->errors();
   ASSERT_TRUE(anna.grab("red"));
   anna.client->send(anna.user, anna.client->find_part("red"), {1, 0, 0});
@@ -162,20 +167,21 @@ TEST_F(ServerFault, ATermSignalEndsInOrder) {
 
 TEST_F(ServerFault, WhatCannotStartSaysSoInOneLine) {
   const std::string scenario = folder_.write("blocks.yaml", blocks_yaml(kBlocks));
-  auto first = serve(214);
-  Guest anna(214, "anna");
+  const std::string elsewhere = std::to_string(take_domains(1));
+  auto first = serve();
+  Guest anna(domain_, "anna");
   ASSERT_TRUE(anna.joined()) << first->errors();
   const struct {
     std::vector<std::string> arguments;
     int code;
     const char* says;
   } cases[] = {
-      {{scenario, "--domain", "214", "--no-log"}, 1, "in use"},
-      {{scenario, "--domain", "215", "--log", "/proc/none/x.mcap"}, 1, "/proc/none"},
-      {{folder_.write("bad.yaml", "name: x\nunits: mm\nparts: 3\n"), "--domain", "215"},
+      {{scenario, "--domain", std::to_string(domain_), "--no-log"}, 1, "in use"},
+      {{scenario, "--domain", elsewhere, "--log", "/proc/none/x.mcap"}, 1, "/proc/none"},
+      {{folder_.write("bad.yaml", "name: x\nunits: mm\nparts: 3\n"), "--domain", elsewhere},
        3,
        "parts"},
-      {{(folder_.path() / "missing.yaml").string(), "--domain", "215"}, 3, "missing.yaml"},
+      {{(folder_.path() / "missing.yaml").string(), "--domain", elsewhere}, 3, "missing.yaml"},
   };
   for (const auto& [arguments, code, says] : cases) {
     Program server(folder_.path(), "mortise-server", arguments);
@@ -183,7 +189,7 @@ TEST_F(ServerFault, WhatCannotStartSaysSoInOneLine) {
     EXPECT_NE(server.errors().find(says), std::string::npos) << server.errors();
     EXPECT_LE(lines(server.errors()), code == 3 ? 3U : 1U) << server.errors();
   }
-  Program bot(folder_.path(), "mortise-bot", {"--domain", "216", "--wait", "0.5"});
+  Program bot(folder_.path(), "mortise-bot", {"--domain", elsewhere, "--wait", "0.5"});
   EXPECT_EQ(bot.wait(10), 1);
   EXPECT_EQ(lines(bot.errors()), 1U) << bot.errors();
   Program script(folder_.path(), "mortise-bot",
@@ -192,16 +198,17 @@ TEST_F(ServerFault, WhatCannotStartSaysSoInOneLine) {
 }
 
 TEST_F(ServerFault, AnIdleSessionCostsNextToNothing) {
-  auto server = serve(217);
-  Guest anna(217, "anna");
+  auto server = serve();
+  Guest anna(domain_, "anna");
   ASSERT_TRUE(anna.joined()) << server->errors();
   anna.until(0.5, [] { return false; });
   const double start_s = steady_s(), cpu_start_s = server->cpu_s();
-  anna.until(4.0, [] { return false; });
+  anna.until(timed() ? 4.0 : 1.0, [] { return false; });
   const double share = (server->cpu_s() - cpu_start_s) / (steady_s() - start_s);
-  RecordProperty("idle_cpu_percent", std::to_string(share * 100));
   std::printf("idle server at 60 Hz with one participant: %.2f %% of one core\n", share * 100);
-  EXPECT_LE(share, 0.03);
+  if (timed()) {
+    EXPECT_LE(share, 0.03);
+  }
   server->signal(SIGTERM);
   ASSERT_EQ(server->wait(5), 0);
   const Json stages = Json::parse(server->out())["statistics"]["stages"];

@@ -10,22 +10,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "common/base/hash.h"
-
 namespace mortise::test {
-
-int domain_of(const std::string& test_name) {
-  StateHash hash;
-  hash.add(std::as_bytes(std::span(test_name)));
-  return 1 + static_cast<int>(hash.value() % 200);
-}
-
-DdsOptions options_for_test(const std::string& test_name, const std::string& session) {
-  DdsOptions options;
-  options.session = session;
-  options.domain = domain_of(test_name);
-  return options;
-}
 
 double now_s() {
   using Clock = std::chrono::steady_clock;

@@ -12,10 +12,6 @@
 
 namespace mortise::test {
 
-/// A DDS domain of its own for each test, from its name: 1 to 200.
-int domain_of(const std::string& test_name);
-DdsOptions options_for_test(const std::string& test_name, const std::string& session = "test");
-
 /// Seconds of a clock that never goes back.
 double now_s();
 void sleep_s(double seconds);

@@ -52,16 +52,16 @@ class Crowd {
 };
 
 TEST_F(Standby, TakesOverFromEachThatIsKilled) {
-  const int kills = std::min(effort(3), 20);
-  std::unique_ptr<Program> leader = lead(222);
-  come_in(222);
+  const int kills = timed() ? 20 : 1;
+  std::unique_ptr<Program> leader = lead();
+  come_in();
   const UserId anna = anna_->client->user_id(0), ben = ben_->client->user_id(0);
   const auto before = clashes(*anna_);
   ASSERT_EQ(before.size(), 1u);
   std::vector<double> gaps_s;
   for (int tries = 0; static_cast<int>(gaps_s.size()) < kills; ++tries) {
     ASSERT_LT(tries, kills + kMostStalledKills) << "the machine stands still too often";
-    std::unique_ptr<Program> second = stand_by(222);
+    std::unique_ptr<Program> second = stand_by();
     ASSERT_FALSE(HasFailure());
     const int losses = losses_;
     std::optional<Stalls> stalls;
@@ -70,17 +70,16 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
       leader->signal(SIGKILL);
     });
     const double stall_s = stalls->longest_s(gap_s);
-    if (stall_s < kStall_s) {
-      EXPECT_LT(gap_s, kComesBack_s);
+    if (stall_s < kStall_s || !timed()) {
       gaps_s.push_back(gap_s);
       std::printf("take-over %zu: %.0f ms\n", gaps_s.size(), gap_s * 1e3);
-      EXPECT_LE(gap_s, kTakeOver_s);
     } else {
       std::printf("not counted: the machine itself stood still for %.0f ms, take-over %.0f ms\n",
                   stall_s * 1e3, gap_s * 1e3);
     }
+    EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
+    EXPECT_TRUE(all_in());
     EXPECT_EQ(losses_, losses + kClients) << "each client changes servers once";
-    EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
     EXPECT_EQ(anna_->client->user_id(0), anna);
     EXPECT_EQ(ben_->client->user_id(0), ben);
     EXPECT_EQ(ben_->holder("blue"), ben) << "what was held is held";
@@ -95,30 +94,35 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
   std::printf(
       "take-over as every client sees it, %d kills: %.0f ms at least, %.0f median, %.0f most\n",
       kills, gaps_s.front() * 1e3, gaps_s[gaps_s.size() / 2] * 1e3, gaps_s.back() * 1e3);
-  RecordProperty("longest_take_over_ms", std::to_string(gaps_s.back() * 1e3));
+  if (timed()) {
+    EXPECT_LE(gaps_s.back(), kTakeOver_s);
+  }
 }
 
 /// Ticks that take long: what is told and not computed yet is computed before the second leads.
 TEST_F(Standby, TakesOverUnderHandsThatPushTheGearbox) {
   const auto scenario = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios" / "gearbox.yaml";
-  const std::unique_ptr<Program> first = start(204, {scenario.string(), "--log", logs()});
-  join(204, "screw_4");
+  const std::unique_ptr<Program> first = start({scenario.string(), "--log", logs()});
+  join("screw_4");
   ASSERT_FALSE(HasFailure()) << first->errors();
   const Program bots(folder_.path(), "mortise-bot",
-                     {"--domain", "204", "--wait", "20", "--users", "6", "--behaviour", "mixed",
-                      "--duration", "60"});
-  const std::unique_ptr<Program> second = stand_by(204);
+                     {"--domain", std::to_string(domain_), "--wait", "20", "--users", "6",
+                      "--behaviour", "mixed", "--duration", "60"});
+  const std::unique_ptr<Program> second = stand_by();
   ASSERT_FALSE(HasFailure());
   moves_ = true;
   turn(4.0);
   const std::size_t acknowledged = acknowledged_.size();
   const double gap_s = longest_gap_after([&] { first->signal(SIGKILL); });
   std::printf("take-over under six who push the gearbox: %.0f ms\n", gap_s * 1e3);
-  EXPECT_LT(gap_s, kComesBack_s);
-  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  if (timed()) {
+    EXPECT_LT(gap_s, kComesBack_s);
+  }
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
+  EXPECT_TRUE(all_in());
+  EXPECT_TRUE(wait_until([&] { return acknowledged_.size() > acknowledged + 30; }));
   EXPECT_EQ(ben_->holder("screw_4"), ben_->client->user_id(0));
   EXPECT_GT(acknowledged, 60u);
-  EXPECT_GT(acknowledged_.size(), acknowledged + 30);
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
   const auto closing = nlohmann::json::parse(second->out(), nullptr, false);
   ASSERT_TRUE(closing.is_object()) << second->out();
@@ -139,13 +143,13 @@ acts:
   - {user: dee, part: screw_1, release: false,
      steps: [{by: [0, 0, -90], seconds: 0.8}, {by: [0, 90, 0], seconds: 1}]}
 )");
-  const std::unique_ptr<Program> first = start(221, {scenario.string(), "--log", logs()});
-  join(221, "screw_4");
+  const std::unique_ptr<Program> first = start({scenario.string(), "--log", logs()});
+  join("screw_4");
   ASSERT_FALSE(HasFailure()) << first->errors();
   const Program bots(folder_.path(), "mortise-bot",
-                     {"--domain", "221", "--wait", "20", "--names", "ann,bob,dee", "--behaviour",
-                      "script", "--play", play, "--linger", "60"});
-  const std::unique_ptr<Program> second = stand_by(221);
+                     {"--domain", std::to_string(domain_), "--wait", "20", "--names", "ann,bob,dee",
+                      "--behaviour", "script", "--play", play, "--linger", "60"});
+  const std::unique_ptr<Program> second = stand_by();
   ASSERT_FALSE(HasFailure());
   const auto all_classes = [&] {
     std::set<CollisionClass> classes;
@@ -160,45 +164,41 @@ acts:
   EXPECT_GE(before.size(), 4u);
   const double gap_s = longest_gap_after([&] { first->signal(SIGKILL); });
   std::printf("take-over of the gearbox with %zu clashes: %.0f ms\n", before.size(), gap_s * 1e3);
-  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
+  EXPECT_TRUE(all_in());
   for (const Guest* guest : {anna_.get(), ben_.get(), otto_.get()})
     EXPECT_EQ(clashes(*guest), before);
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
 }
 
 /// What holds take-overs to their time sees it where nothing comes back.
-TEST_F(Standby, WhereNobodyTakesOverTheGapIsAllTheTimeThatIsWatched) {
-  const std::unique_ptr<Program> alone = lead(209);
-  come_in(209);
+TEST_F(Standby, SoakWhereNobodyTakesOverTheGapIsAllTheTimeThatIsWatched) {
+  const std::unique_ptr<Program> alone = lead();
+  come_in();
   ASSERT_FALSE(HasFailure()) << alone->errors();
   EXPECT_GT(longest_gap_after([&] { alone->signal(SIGKILL); }), kComesBack_s);
 }
 
 TEST_F(Standby, OneThatIsThereFirstWaitsForTheOneThatLeads) {
-  const auto wait_for = [&](Program& server, const std::string& words) {
-    for (const double end_s = steady_s() + 20.0; steady_s() < end_s && server.running();) {
-      if (server.errors().find(words) != std::string::npos) return true;
-      turn(0.01);
-    }
-    return false;
-  };
-  auto second = start(208, {"--standby-of", "default", "--restore", logs(), "--log", logs()});
-  ASSERT_TRUE(wait_for(*second, "waiting for the server")) << second->errors();
+  auto second = start({"--standby-of", "default", "--restore", logs(), "--log", logs()});
+  ASSERT_TRUE(says(*second, "waiting for the server")) << second->errors();
   turn(0.5);  // its ports are taken by now
-  const std::unique_ptr<Program> first = lead(208);
-  come_in(208);
+  const std::unique_ptr<Program> first = lead();
+  come_in();
   ASSERT_FALSE(HasFailure()) << first->errors();
-  ASSERT_TRUE(wait_for(*second, "in step")) << second->errors();
-  (void)longest_gap_after([&] { first->signal(SIGKILL); });
-  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  ASSERT_TRUE(says(*second, "in step")) << second->errors();
+  first->signal(SIGKILL);
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
+  EXPECT_TRUE(all_in());
   EXPECT_EQ(ben_->holder("blue"), ben_->client->user_id(0));
 }
 
 TEST_F(Standby, OneThatComesBackDoesNotFight) {
-  auto [first, second] = both(223);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   (void)longest_gap_after([&] { first->signal(SIGSTOP); });  // frozen, not dead
-  ASSERT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  ASSERT_TRUE(says(*second, "taken over at tick")) << second->errors();
+  ASSERT_TRUE(all_in());
   const int losses = losses_;
   const double y = ben_->client->parts().at(blue_).info.X_WP.p.y();
   first->signal(SIGCONT);
@@ -207,9 +207,10 @@ TEST_F(Standby, OneThatComesBackDoesNotFight) {
   EXPECT_NE(first->errors().find("another server leads session 'default' since"), std::string::npos)
       << first->errors();
   EXPECT_EQ(losses_, losses) << "nobody has changed servers";
-  EXPECT_GT(ben_->client->parts().at(blue_).info.X_WP.p.y(), y + 1.0) << "the hand goes on";
+  EXPECT_TRUE(wait_until([&] { return ben_->client->parts().at(blue_).info.X_WP.p.y() > y + 1.0; }))
+      << "the hand goes on";
   // And one that is started as if nothing had been.
-  std::unique_ptr<Program> again = lead(223);
+  std::unique_ptr<Program> again = lead();
   turn(3.0);
   EXPECT_EQ(again->wait(5), 1);
   EXPECT_NE(again->errors().find("another server leads session 'default'; start this one with"),
@@ -222,10 +223,12 @@ TEST_F(Standby, OneThatComesBackDoesNotFight) {
 /// Frozen for a little longer than the lease and woken before the second has opened its topics, or
 /// after: what it says then must not be taken by anybody, or be with the second as well.
 TEST_F(Standby, OneThatIsFrozenForAMomentAcknowledgesNothingThatIsLost) {
-  std::unique_ptr<Program> first = lead(224);
-  come_in(224);
-  for (const int frozen_ms : {150, 160, 170, 180, 250}) {
-    std::unique_ptr<Program> second = stand_by(224);
+  std::unique_ptr<Program> first = lead();
+  come_in();
+  const std::vector<int> all_ms =
+      timed() ? std::vector{150, 160, 170, 180, 250} : std::vector{165, 250};
+  for (const int frozen_ms : all_ms) {
+    std::unique_ptr<Program> second = stand_by();
     ASSERT_FALSE(HasFailure());
     (void)longest_gap_after([&] {
       first->signal(SIGSTOP);
@@ -248,8 +251,8 @@ TEST_F(Standby, OneThatIsFrozenForAMomentAcknowledgesNothingThatIsLost) {
   EXPECT_EQ(lost_of_acknowledged(*first), 0u);
 }
 
-TEST_F(Standby, AFirstWithoutAProcessorLosesNothingThatItAcknowledged) {
-  auto [first, second] = both(225);
+TEST_F(Standby, SoakAFirstWithoutAProcessorLosesNothingThatItAcknowledged) {
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   moves_ = true;
   {
@@ -269,7 +272,7 @@ TEST_F(Standby, AFirstWithoutAProcessorLosesNothingThatItAcknowledged) {
 /// The silence that it then wants is as much longer as it was frozen, not a second.
 TEST_F(Standby, OneThatIsFrozenAsItShouldTakeOverDoesSoSoonAfter) {
   const double kFrozen_s = 0.25;
-  auto [first, second] = both(205);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   std::jthread freeze;
   std::optional<Stalls> stalls;
@@ -285,36 +288,36 @@ TEST_F(Standby, OneThatIsFrozenAsItShouldTakeOverDoesSoSoonAfter) {
   });
   std::printf("frozen for %.0f ms as it should take over: %.0f ms as a client sees it\n",
               kFrozen_s * 1e3, gap_s * 1e3);
-  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
   EXPECT_GT(gap_s, kFrozen_s);
-  if (stalls->longest_s(gap_s) < kStall_s) {
+  if (timed() && stalls->longest_s(gap_s) < kStall_s) {
     EXPECT_LT(gap_s, 1.0) << "a second of silence was wanted";
   }
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
 }
 
 TEST_F(Standby, OneThatStandsByAndIsFrozenDoesNotStopTheSession) {
-  auto [first, second] = both(226);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   const int losses = losses_;
   const double gap_s = longest_gap_after([&] { second->signal(SIGSTOP); });
   std::printf("a frozen standby keeps clients waiting once, for %.0f ms\n", gap_s * 1e3);
-  EXPECT_NE(first->errors().find("is silent: it is not waited for any more"), std::string::npos)
-      << first->errors();
+  EXPECT_TRUE(says(*first, "is silent: it is not waited for any more")) << first->errors();
   EXPECT_GT(gap_s, 0.3) << "it was not waited for";
-  EXPECT_LT(gap_s, 1.0);
+  if (timed()) {
+    EXPECT_LT(gap_s, 1.0);
+  }
   second->signal(SIGCONT);  // after 1.5 s
   turn(3.0);
   EXPECT_EQ(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
   EXPECT_EQ(losses_, losses) << "nobody has changed servers";
   first->signal(SIGKILL);  // and it is in step again
-  turn(1.5);
-  EXPECT_NE(second->errors().find("taken over at tick"), std::string::npos) << second->errors();
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
 }
 
 TEST_F(Standby, OneThatWasFrozenForLongEndsAndDoesNotTakeOver) {
-  auto [first, second] = both(228);
+  auto [first, second] = both();
   ASSERT_FALSE(HasFailure());
   const int losses = losses_;
   (void)longest_gap_after([&] { second->signal(SIGSTOP); });
@@ -325,37 +328,11 @@ TEST_F(Standby, OneThatWasFrozenForLongEndsAndDoesNotTakeOver) {
   EXPECT_NE(second->errors().find("were not told to this one: start it again"), std::string::npos)
       << second->errors();
   EXPECT_EQ(losses_, losses) << "nobody has changed servers";
-  second = stand_by(228);
+  second = stand_by();
   first->signal(SIGKILL);
-  turn(1.5);
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
+  EXPECT_TRUE(all_in());
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
-}
-
-/// What the first's waiting for the second costs: the same hand, without one and with one.
-TEST_F(Standby, AcknowledgementsWaitALittle) {
-  std::unique_ptr<Program> first = lead(227);
-  come_in(227);
-  moves_ = true;
-  turn(0.5);
-  took_s_.clear();
-  turn(2.0);
-  const std::vector<double> alone_s = std::exchange(took_s_, {});
-  std::unique_ptr<Program> second = stand_by(227);
-  ASSERT_FALSE(HasFailure());
-  turn(0.5);
-  took_s_.clear();
-  turn(2.0);
-  const std::vector<double> with_s = std::exchange(took_s_, {});
-  const auto at = [](std::vector<double> took_s, double p) {
-    std::sort(took_s.begin(), took_s.end());
-    return took_s.at(static_cast<std::size_t>(p * static_cast<double>(took_s.size() - 1))) * 1e3;
-  };
-  ASSERT_GT(alone_s.size(), 60u);
-  ASSERT_GT(with_s.size(), 60u);
-  std::printf(
-      "acknowledged after: alone p50 %.1f p99 %.1f ms, with a standby p50 %.1f p99 %.1f ms\n",
-      at(alone_s, 0.5), at(alone_s, 0.99), at(with_s, 0.5), at(with_s, 0.99));
-  EXPECT_EQ(lost_of_acknowledged(*first), 0u);
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 set -euo pipefail
 packages=$(realpath "$1") cache=$2 steps=$(dirname "$(readlink -f "$0")")/clean_root_steps.sh
 if [ "${IN_NAMESPACE:-}" != yes ]; then
-  skip() { echo "SKIPPED: no clean root: $*"; exit 77; }
-  [ "$(id -u)" -eq 0 ] || skip "only root may make one"
-  compgen -G "$packages/*.deb" >/dev/null || skip "there are no packages to install"
-  for tool in mmdebstrap unshare objdump ip; do command -v "$tool" >/dev/null || skip "$tool is not here"; done
-  unshare -m mount -t tmpfs t /mnt 2>/dev/null || skip "this kernel does not allow a mount"
+  skip() { echo "$*"; exit 77; }
+  [ "$(id -u)" -eq 0 ] || skip "not root: only root may make one"
+  compgen -G "$packages/*.deb" >/dev/null || skip "program absent: there are no packages to install"
+  for tool in mmdebstrap unshare objdump ip; do command -v "$tool" >/dev/null || skip "program absent: $tool"; done
+  unshare -m mount -t tmpfs t /mnt 2>/dev/null || skip "machine: this kernel does not allow a mount"
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
   mkdir -p "$cache/archives/partial" "$cache/lists/partial"
@@ -17,13 +17,13 @@ if [ "${IN_NAMESPACE:-}" != yes ]; then
     # What this machine itself has from Debian; nothing of others, whose packages might stand in for Debian's.
     # shellcheck disable=SC2016
     mapfile -t sources < <(apt-get indextargets --format 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' | sort -u)
-    [ ${#sources[@]} -gt 0 ] || skip "apt has no lists of Debian here"
+    [ ${#sources[@]} -gt 0 ] || skip "no network: apt has no lists of Debian here"
     # shellcheck disable=SC1091
     suite=${MORTISE_SUITE:-$(. /etc/os-release && echo "$VERSION_CODENAME")}
     began=$SECONDS
     TMPDIR=$(if [ -w /dev/shm ]; then echo /dev/shm; else echo /tmp; fi) timeout 600 mmdebstrap --quiet --variant=apt \
       --aptopt='Acquire::Languages "none"' "$suite" "$cache/root.new.tar" "${sources[@]}" 2>"$work/said.txt" ||
-      skip "mmdebstrap: $(grep -m 1 -E '^(E|Err)' "$work/said.txt" || tail -n 1 "$work/said.txt")"
+      skip "no network: mmdebstrap: $(grep -m 1 -E '^(E|Err)' "$work/said.txt" || tail -n 1 "$work/said.txt")"
     mv "$cache/root.new.tar" "$cache/root.tar"
     echo "a root was made in $((SECONDS - began)) s"
   fi

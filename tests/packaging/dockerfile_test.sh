@@ -11,7 +11,7 @@ finish() {
 }
 trap finish EXIT
 fail() { echo "FAILED: $*"; exit 1; }
-skip() { echo "SKIPPED: no container: $*"; exit 77; }
+skip() { echo "$*"; exit 77; }
 
 # 1. what needs no container: sources are there, and what is installed is named in packages.txt alone
 mapfile -t sources < <(awk '$1 == "COPY" && $2 !~ /^--from=/ {for (i = 2; i < NF; ++i) print $i}' "$dockerfile")
@@ -27,13 +27,13 @@ grep -q '^RUN ./mortise setup' "$dockerfile" || fail "what mortise is built with
 echo "sources: ${#sources[@]} are there; packages: those of packages.txt"
 
 # 2. the last stage
-[ "$(id -u)" -eq 0 ] || skip "only root may build one here"
-command -v buildah >/dev/null || skip "buildah is not here"
-[ -e "$cache/root.tar" ] || skip "there is no root to begin with"
-compgen -G "$packages/*.deb" >/dev/null || skip "there are no packages to install"
+[ "$(id -u)" -eq 0 ] || skip "not root: only root may build one here"
+command -v buildah >/dev/null || skip "program absent: buildah"
+[ -e "$cache/root.tar" ] || skip "not root: there is no root to begin with"
+compgen -G "$packages/*.deb" >/dev/null || skip "program absent: there are no packages to install"
 base=$(store from scratch)
 store add -q "$base" "$cache/root.tar" / >/dev/null
-store commit -q "$base" docker.io/library/debian:bookworm >"$work/said.txt" 2>&1 || { cat "$work/said.txt"; skip "buildah cannot keep an image"; }
+store commit -q "$base" docker.io/library/debian:bookworm >"$work/said.txt" 2>&1 || { cat "$work/said.txt"; skip "machine: buildah cannot keep an image"; }
 store rm "$base" >/dev/null
 store tag docker.io/library/debian:bookworm docker.io/library/debian:bookworm-slim
 mkdir -p "$work/build/src/build/release/packages"
@@ -42,7 +42,7 @@ bud() {  # bud NAME [OPTIONS]: what has no network is skipped, all else that goe
   local image=$1
   shift
   store bud --isolation chroot --network host --pull-never "$@" -f "$dockerfile" -t "$image" "$source" >"$work/said.txt" 2>&1 && return 0
-  ! grep -qE 'Failed to fetch|Temporary failure|Could not connect' "$work/said.txt" || skip "Debian's packages cannot be fetched"
+  ! grep -qE 'Failed to fetch|Temporary failure|Could not connect' "$work/said.txt" || skip "no network: Debian's packages cannot be fetched"
   tail -n 30 "$work/said.txt"
   fail "the Dockerfile does not build: $image"
 }

@@ -2,9 +2,9 @@
 # Makes the packages of a build anew, for the tests that install them: make_packages.sh BUILD FOLDER
 set -euo pipefail
 build=$1 folder=$2
-skip() { echo "SKIPPED: packages are not made: $*"; exit 77; }
-for tool in dpkg-deb dpkg-shlibdeps cpack; do command -v "$tool" >/dev/null || skip "$tool is not here"; done
-[ -z "$(sed -n 's/^MORTISE_SANITIZE:[A-Z]*=//p' "$build/CMakeCache.txt")" ] || skip "a build with sanitizers is not packaged"
+skip() { echo "$*"; exit 77; }
+for tool in dpkg-deb dpkg-shlibdeps cpack; do command -v "$tool" >/dev/null || skip "program absent: $tool"; done
+[ -z "$(sed -n 's/^MORTISE_SANITIZE:[A-Z]*=//p' "$build/CMakeCache.txt")" ] || skip "sanitizer: a build with sanitizers is not packaged"
 rm -rf "$folder"
 mkdir -p "$folder"
 cmake --build "$build" --target package_documents

@@ -10,14 +10,14 @@ check() {  # check WHAT COMMAND…: says what failed, and goes on
   shift
   if "$@" >"$work/said.txt" 2>&1; then echo "ok    $what"; else echo "FAILED $what"; sed 's/^/       /' "$work/said.txt" | head -n 20; failures=$((failures + 1)); fi
 }
-skip() { echo "SKIPPED: packages are not installed: $*"; exit 77; }
+skip() { echo "$*"; exit 77; }
 
-for tool in dpkg-deb unshare; do command -v "$tool" >/dev/null || skip "$tool is not here"; done
-[ "$(id -u)" -eq 0 ] || skip "only root may mount a root of its own"
-compgen -G "$packages/*.deb" >/dev/null || skip "there are none"
+for tool in dpkg-deb unshare; do command -v "$tool" >/dev/null || skip "program absent: $tool"; done
+[ "$(id -u)" -eq 0 ] || skip "not root: only root may mount a root of its own"
+compgen -G "$packages/*.deb" >/dev/null || skip "program absent: there are no packages to install"
 mkdir "$work/mount"
 unshare -m sh -c "mount -t tmpfs t '$work/mount' && mkdir '$work/mount/u' '$work/mount/w' '$work/mount/m' && mount -t overlay o -o lowerdir=/,upperdir='$work/mount/u',workdir='$work/mount/w' '$work/mount/m'" 2>/dev/null ||
-  skip "this kernel does not allow an overlay here"
+  skip "machine: this kernel does not allow an overlay here"
 
 # 1. papers
 for deb in "$packages"/*.deb; do dpkg-deb -x "$deb" "$work/unpacked"; done

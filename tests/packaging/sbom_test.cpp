@@ -60,8 +60,7 @@ std::set<std::string> not_listed(const Json& sbom) {
 struct Sbom : testing::Test {
   Json sbom;
   void SetUp() override {
-    if (said_by("dpkg-query --version 2>/dev/null").empty())
-      GTEST_SKIP() << "dpkg is not here: nothing to hold the list against";
+    if (said_by("dpkg-query --version 2>/dev/null").empty()) GTEST_SKIP() << "program absent: dpkg";
     std::ifstream in(MORTISE_SBOM);
     sbom = Json::parse(in, nullptr, false);
     ASSERT_TRUE(sbom.is_object()) << MORTISE_SBOM;

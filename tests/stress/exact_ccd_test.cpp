@@ -10,6 +10,7 @@
 
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
+#include "tests/support/test_data.h"
 
 namespace mortise::stress {
 namespace {
@@ -92,10 +93,8 @@ Case case_of(const Query& q) {
 }
 
 TEST(ExactCcd, PublishedQueriesOfPureTranslation) {
-  const char* set = std::getenv("MORTISE_DATA");
-  const fs::path folder =
-      fs::path(set != nullptr ? set : MORTISE_SOURCE_DIR "/../shared/data") / "ccd";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no exact queries: " << folder << " is absent";
+  const fs::path folder = test::data_folder() / "ccd";
+  MORTISE_NEEDS_DATA(folder);
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.path().extension() == ".csv") files.push_back(entry.path());

@@ -17,4 +17,4 @@ inline std::filesystem::path data_folder() {
 /// Leaves the test with one line when a file or folder of the published meshes is absent.
 #define MORTISE_NEEDS_DATA(path)      \
   if (!std::filesystem::exists(path)) \
-  GTEST_SKIP() << "no published data at " << (path) << "; set MORTISE_DATA to its folder"
+  GTEST_SKIP() << "data absent: " << (path) << "; set MORTISE_DATA to its folder"

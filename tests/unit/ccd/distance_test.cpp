@@ -1,6 +1,5 @@
 // The distance query: against every pair of triangles, its kernels against each other, the plane
 // between hulls.
-#include <fenv.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,13 +11,11 @@
 #include "common/ccd/kernels/kernels.h"
 #include "common/geometry/triangle_distance.h"
 #include "tests/support/effort.h"
+#include "tests/support/float_traps.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {
 namespace {
-
-// No infinity and nothing that is no number may come out of an operation.
-[[maybe_unused]] const int g_traps = feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 
 constexpr double kPi = std::numbers::pi;
 
@@ -73,6 +70,7 @@ std::vector<Pair> pairs() {
 }
 
 TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
+  const test::FloatTraps traps;
   std::mt19937_64 random(62);
   CcdScratch scratch;
   int apart = 0, crossing = 0;
@@ -126,6 +124,7 @@ TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
 
 // Ticks of a slow motion, each seeded with the answer of the one before; then seeds that are wrong.
 TEST(DistanceSeed, ChangesNoDistance) {
+  const test::FloatTraps traps;
   std::mt19937_64 random(66);
   CcdScratch scratch;
   std::vector<Pair> all = pairs();
@@ -215,6 +214,7 @@ int wrongly_discarded(double shrink, int& discarded, int& kept) {
 }
 
 TEST(DiscardKernels, NeverDiscardWhatIsWithinReach) {
+  const test::FloatTraps traps;
   int discarded = 0, kept = 0;
   EXPECT_EQ(wrongly_discarded(1.0, discarded, kept), 0);
   EXPECT_GT(discarded, 5000);
@@ -223,8 +223,9 @@ TEST(DiscardKernels, NeverDiscardWhatIsWithinReach) {
 }
 
 TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
+  const test::FloatTraps traps;
   if (ccd::wide_kernels() == nullptr)
-    GTEST_SKIP() << "no AVX2 here: the portable kernels are the only ones";
+    GTEST_SKIP() << "machine: no AVX2, the portable kernels are the only ones";
   const ccd::DiscardKernels& wide = ccd::wide_kernels()->discard;
   const ccd::DiscardKernels& portable = ccd::portable_kernels().discard;
   std::mt19937_64 random(64);
@@ -254,6 +255,7 @@ TEST(DiscardKernels, WideAndPortableAgreeToTheLastBit) {
 
 // A needle so thin that the square of its normal is lost is still 5 mm away.
 TEST(DiscardKernels, ANormalWhoseSquareIsLostDiscardsNothing) {
+  const test::FloatTraps traps;
   const auto triangle = [](double e, double z) {
     TriangleMesh mesh;
     mesh.points_mm = {Vec3(-1, -e, z), Vec3(1, -e, z), Vec3(0, e, z)};
@@ -270,6 +272,7 @@ TEST(DiscardKernels, ANormalWhoseSquareIsLostDiscardsNothing) {
 }
 
 TEST(HullGap, IsTheDistanceOfConvexPartsAndItsPlaneHoldsForAllCorners) {
+  const test::FloatTraps traps;
   std::mt19937_64 random(65);
   int apart = 0, overlapping = 0;
   for (int n = 0; n < test::effort(100); ++n) {

@@ -32,7 +32,7 @@ constexpr double kPi = std::numbers::pi;
 
 TEST(BoxKernels, WideAndPortableAgreeToTheLastBit) {
   if (ccd::wide_kernels() == nullptr)
-    GTEST_SKIP() << "this machine has no AVX2: the portable kernel is the only one";
+    GTEST_SKIP() << "machine: no AVX2, the portable kernel is the only one";
   const ccd::BoxKernels& wide = ccd::wide_kernels()->box;
   const ccd::BoxKernels& portable = ccd::portable_kernels().box;
   std::mt19937_64 random(41);

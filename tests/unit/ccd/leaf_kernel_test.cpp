@@ -119,7 +119,7 @@ TEST(LeafKernel, GrantsNoTimeThatIsNotFree) {
 
 TEST(LeafKernel, WideAndPortableAgreeToTheLastBit) {
   if (ccd::wide_kernels() == nullptr)
-    GTEST_SKIP() << "this machine has no AVX2: the portable kernel is the only one";
+    GTEST_SKIP() << "machine: no AVX2, the portable kernel is the only one";
   std::mt19937_64 random(72);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int i = 0; i < 2000; ++i) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/ccd/first_contact.h"
+#include "tests/support/test_data.h"
 #include "tests/unit/ccd/workload.h"
 
 namespace mortise::testing {
@@ -49,8 +50,8 @@ class Workloads : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Workloads, NeitherMissedNorInventedNorLate) {
   Workload workload;
-  if (!load_workload(GetParam(), workload))
-    GTEST_SKIP() << "no " << data_folder() << "/ccd-motions/" << GetParam() << ": set MORTISE_DATA";
+  MORTISE_NEEDS_DATA(test::data_folder() / "ccd-motions" / GetParam());
+  ASSERT_TRUE(load_workload(GetParam(), workload));
   CcdScratch scratch;
   std::vector<FirstContact> answers;
   std::vector<double> time_us;

@@ -1,18 +1,15 @@
 #include "common/geometry/bvh/bvh.h"
 
-#include <fenv.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <limits>
 
+#include "tests/support/float_traps.h"
 #include "tests/support/shapes.h"
 
 namespace mortise {
 namespace {
-
-// No infinity and nothing that is no number may come out of an operation.
-[[maybe_unused]] const int g_traps = feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 
 // What is wrong with a tree, as counts.
 struct Faults {
@@ -148,6 +145,7 @@ std::vector<std::pair<const char*, TriangleMesh>> meshes() {
 }
 
 TEST(Bvh, HoldsEveryTriangleOnceInEveryBoxAbove) {
+  const test::FloatTraps traps;
   for (const auto& [name, mesh] : meshes()) {
     const Bvh bvh = build_bvh(mesh);
     const Faults faults = faults_of(mesh, bvh);
@@ -161,6 +159,7 @@ TEST(Bvh, HoldsEveryTriangleOnceInEveryBoxAbove) {
 }
 
 TEST(Bvh, TheCheckSeesPlantedFaults) {
+  const test::FloatTraps traps;
   const TriangleMesh mesh = shapes::sphere(10.0, {1, 2, 3}, 20);
   const Bvh good = build_bvh(mesh);
   ASSERT_EQ(faults_of(mesh, good).sum(), 0);
@@ -182,6 +181,7 @@ TEST(Bvh, TheCheckSeesPlantedFaults) {
 }
 
 TEST(Bvh, IsTheSameAtAnyNumberOfThreads) {
+  const test::FloatTraps traps;
   std::mt19937_64 random(52);
   std::vector<TriangleMesh> large;
   large.push_back(shapes::sphere(10.0, {1, 2, 3}, 120));
@@ -199,6 +199,7 @@ TEST(Bvh, IsTheSameAtAnyNumberOfThreads) {
 }
 
 TEST(Bvh, BytesStayWithinTheirLimit) {
+  const test::FloatTraps traps;
   const TriangleMesh mesh = shapes::sphere(50.0, Vec3::Zero(), 360);
   ASSERT_GT(mesh.triangles.size(), 250'000U);
   const Bvh bvh = build_bvh(mesh);
@@ -210,6 +211,7 @@ TEST(Bvh, BytesStayWithinTheirLimit) {
 }
 
 TEST(Bvh, RefusesWhatIsNoNumber) {
+  const test::FloatTraps traps;
   EXPECT_DEATH(build_bvh(TriangleMesh{}), "at least one triangle");
   for (const double x :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e13}) {

@@ -40,10 +40,9 @@ Answer ask_independent_reader(const std::filesystem::path& file) {
 class IndependentReader : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
-    if (std::system("node --version >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "node is not installed: apt-get install nodejs";
+    if (std::system("node --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "program absent: node";
     if (!std::filesystem::exists(kFolder + "/node_modules/@mcap/core"))
-      GTEST_SKIP() << "@mcap/core is not installed: run npm ci in tests/unit/io/mcap_check";
+      GTEST_SKIP() << "program absent: @mcap/core; run npm ci in tests/unit/io/mcap_check";
   }
 };
 

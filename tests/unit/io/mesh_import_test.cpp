@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -23,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::data_folder;
-
-#define NEEDS_DATA()                    \
-  if (!fs::is_directory(data_folder())) \
-  GTEST_SKIP() << "no test data in " << data_folder() << "; set MORTISE_DATA to its folder"
 
 /// Files that a test makes, in a folder of its own that goes with it.
 class MeshImport : public testing::Test {
@@ -254,16 +249,14 @@ TEST_F(MeshImport, ACrashingImporterGivesOneLine) {
   expect_says(importer("exit 0"), "no answer");
   expect_says(importer("echo nonsense"), "damaged");
   expect_says(importer("head -c 4096 /dev/urandom"), "damaged");
-  const auto start = std::chrono::steady_clock::now();
-  expect_says(importer("exec sleep 60"), "took longer than 1.0 s");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  expect_says(importer("exec sleep 600"), "took longer than 1.0 s");  // beyond the test's own limit
   setenv("MORTISE_IMPORTER", (folder_ / "nowhere").c_str(), 1);
   expect_says(one_line_error(write("cube.obj", kCubeObj)), "cannot start the mesh importer");
 }
 
 TEST_F(MeshImport, MemoryLimitIsSaid) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer needs more address space than any limit";
+  GTEST_SKIP() << "sanitizer: it needs more address space than any limit";
 #endif
   std::string big(84 + 50 * 1'200'000, '\0');  // a binary STL of 1,200,000 triangles, 60 MB
   const std::uint32_t count = 1'200'000;
@@ -333,7 +326,7 @@ TEST(Weld, DroppingATriangleOnALineOpensNothing) {
 }
 
 TEST(MeshImportData, StatedDefectsComeOut) {
-  NEEDS_DATA();
+  MORTISE_NEEDS_DATA(data_folder());
   const auto report = [](const std::string& name) {
     const auto mesh = import_mesh(data_folder() / "dirty" / name, 1.0);
     EXPECT_TRUE(mesh) << mesh.error().text;
@@ -353,7 +346,7 @@ TEST(MeshImportData, StatedDefectsComeOut) {
 }
 
 TEST(MeshImportData, EveryMeshImportsOrSaysWhyNot) {
-  NEEDS_DATA();
+  MORTISE_NEEDS_DATA(data_folder());
   int files = 0, closed = 0;
   for (const auto& entry : fs::recursive_directory_iterator(data_folder())) {
     const std::string extension = entry.path().extension().string();

@@ -1,6 +1,6 @@
 // A day of a session in the time that its work takes: people come, work, fall silent, are killed
 // and go, and nothing that the session holds grows with the hours. MORTISE_DAY_S says how much of
-// it: ten minutes unless told, 24 hours with --soak. No network: the channel is one of memory.
+// it: ten minutes unless told, 24 hours in a soak. No network: the channel is one of memory.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,6 +21,7 @@
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/network/program.h"
+#include "tests/support/effort.h"
 #include "tests/support/growth.h"
 #include "tests/support/small_scenarios.h"
 
@@ -173,7 +174,7 @@ void expect_log_verifies(const std::filesystem::path& folder) {
 
 double day_s() {
   const char* seconds = std::getenv("MORTISE_DAY_S");
-  return seconds != nullptr ? std::atof(seconds) : 600.0;
+  return seconds != nullptr ? std::atof(seconds) : test::timed() ? 86400.0 : 600.0;
 }
 
 TEST(Day, NothingThatASessionHoldsGrowsWithTheHours) {

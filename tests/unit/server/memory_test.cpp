@@ -26,7 +26,7 @@ bool lies_apart() {
 // Each in a process of its own: the settings stay.
 TEST(Memory, LargeBlocksGoBack) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "not the allocator of glibc";
+  GTEST_SKIP() << "sanitizer: not the allocator of glibc";
 #endif
   EXPECT_EXIT(std::exit(lies_apart() ? 1 : 0), testing::ExitedWithCode(0), "")
       << "glibc does so by itself: the settings are not needed any more";

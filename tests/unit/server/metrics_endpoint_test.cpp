@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/effort.h"
 #include "tests/unit/server/http_get.h"
 
 namespace mortise {
@@ -85,8 +86,10 @@ TEST_F(Endpoint, StuckClientsHoldNobodyUp) {
     endpoint_->beat();
     endpoint_->show(large);
   }
-  // A copy of 2000 users takes some 0.1 ms; a client would be waited for for seconds.
-  EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
+  if (test::timed()) {  // a copy of 2000 users takes some 0.1 ms; a client is waited for for
+                        // seconds
+    EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
+  }
   bool served = false;
   for (int i = 0; i < 100 && !served; ++i) {
     served = get("/healthz").rfind("HTTP/1.1 200", 0) == 0;

@@ -28,7 +28,7 @@ TEST(Scheduling, IsInheritedAndGivenBack) {
     if (!first) {
       EXPECT_EQ(own_policy(), SCHED_OTHER);
       EXPECT_NE(first.error().text.find("LimitRTPRIO"), std::string::npos) << first.error().text;
-      GTEST_SKIP() << "not permitted here: " << first.error().text;
+      GTEST_SKIP() << "not root: " << first.error().text;
     }
     EXPECT_EQ(own_policy(), SCHED_RR);
     EXPECT_EQ(policy_of_a_new_thread(), SCHED_RR);

@@ -62,7 +62,7 @@ TEST(IdleTick, DoesNoGeometryAndAllocatesNothing) {
 
 // Planted: the counter of allocations counts.
 TEST(IdleTick, AllocationsAreCounted) {
-  if (!kCounts) GTEST_SKIP() << "allocations are not counted under a sanitizer";
+  if (!kCounts) GTEST_SKIP() << "sanitizer: allocations are not counted";
   const std::uint64_t before = allocations;
   std::vector<int> v(1000);
   EXPECT_GT(allocations, before) << v.size();

@@ -11,8 +11,8 @@
 
 #include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
+#include "tests/scenes/first_error.h"
 #include "tests/support/test_data.h"
-#include "tests/unit/io/first_error.h"
 
 namespace mortise {
 namespace {
@@ -103,10 +103,7 @@ GearJudged gear_on_shaft(const std::string& code, Base base = Base::kShaftOnly) 
 
 class RealGear : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!fs::exists(data_folder() / "fits"))
-      GTEST_SKIP() << "no published fits at " << data_folder() << "; set MORTISE_DATA";
-  }
+  void SetUp() override { MORTISE_NEEDS_DATA(data_folder() / "fits"); }
 };
 
 TEST_F(RealGear, WithoutAToleranceItIsPotential) {

@@ -40,8 +40,7 @@ constexpr Gap kGaps[] = {
 class RealGaps : public testing::TestWithParam<Gap> {};
 
 TEST_P(RealGaps, TheGapIsThePublishedOneAndNothingIsReal) {
-  if (!fs::exists(fits_folder()))
-    GTEST_SKIP() << "no published fits at " << fits_folder() << "; set MORTISE_DATA";
+  MORTISE_NEEDS_DATA(fits_folder());
   Scenario scenario;
   scenario.name = GetParam().name;
   for (const char* file : {GetParam().fixed_file, GetParam().moved_file}) {

@@ -33,7 +33,7 @@ std::string complaints(const TestFolder& folder, const std::string& unit) {
 
 TEST(ServiceUnit, IsWhatSystemdUnderstands) {
   if (std::system("systemd-analyze --version >/dev/null 2>&1") != 0)
-    GTEST_SKIP() << "systemd-analyze is not installed: the unit file is not checked";
+    GTEST_SKIP() << "program absent: systemd-analyze";
   std::ifstream in(std::string(MORTISE_SOURCE_DIR) + "/server/mortise-server@.service");
   std::stringstream text;
   text << in.rdbuf();

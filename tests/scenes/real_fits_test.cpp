@@ -50,8 +50,7 @@ constexpr RealFit kFits[] = {
 class RealFits : public testing::TestWithParam<RealFit> {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(data_folder() / "fits"))
-      GTEST_SKIP() << "no published fits at " << data_folder() << "; set MORTISE_DATA";
+    MORTISE_NEEDS_DATA(data_folder() / "fits");
     folder_ = std::filesystem::temp_directory_path() /
               ("mortise_real_fits_" + std::to_string(getpid()) + "_" + GetParam().id);
     std::filesystem::create_directories(folder_);

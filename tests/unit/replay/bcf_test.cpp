@@ -49,7 +49,7 @@ bool is_valid(const std::string& name, const std::string& xml) {
   std::ofstream(file.path(), std::ios::binary) << xml;
   const std::string schema = schema_of(name);
   std::string command = "xmllint --noout --relaxng '" + std::string(MORTISE_SOURCE_DIR) +
-                        "/tests/unit/io/bcf/" + schema + ".rng' '" + file.path().string() + "'";
+                        "/tests/unit/replay/bcf/" + schema + ".rng' '" + file.path().string() + "'";
   if (const char* folder = std::getenv("MORTISE_BCF_XSD"))
     command += " && xmllint --noout --schema '" + std::string(folder) + "/" + schema + ".xsd' '" +
                file.path().string() + "'";
@@ -85,7 +85,7 @@ class Bcf : public testing::Test {
 };
 
 TEST_F(Bcf, EveryFileIsValid) {
-  if (!has_xmllint()) GTEST_SKIP() << "xmllint is missing (libxml2-utils)";
+  if (!has_xmllint()) GTEST_SKIP() << "program absent: xmllint (libxml2-utils)";
   const test::TemporaryFile file("issues.bcf");
   ASSERT_TRUE(write_bcf(*report_, *log_, file.path()));
   const auto entries = entries_of(file.path());
@@ -106,7 +106,7 @@ TEST_F(Bcf, EveryFileIsValid) {
 
 // The schemas do refuse.
 TEST_F(Bcf, WhatIsWrongIsNotValid) {
-  if (!has_xmllint()) GTEST_SKIP() << "xmllint is missing (libxml2-utils)";
+  if (!has_xmllint()) GTEST_SKIP() << "program absent: xmllint (libxml2-utils)";
   const test::TemporaryFile file("issues.bcf");
   ASSERT_TRUE(write_bcf(*report_, *log_, file.path()));
   const std::pair<const char*, std::pair<const char*, const char*>> faults[] = {

@@ -13,8 +13,8 @@
 
 #include "common/io/scenario/scene_load.h"
 #include "common/session/tick/step.h"
+#include "tests/scenes/first_error.h"
 #include "tests/support/test_data.h"
-#include "tests/unit/io/first_error.h"
 
 namespace mortise {
 namespace {
@@ -277,8 +277,7 @@ class RealHoles : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(RealHoles, PinsAtAndAboutTheLimitsAreJudgedAsIntervalsSay) {
-  if (!fs::exists(data_folder() / "multires"))
-    GTEST_SKIP() << "no NIST part at " << data_folder() << "; set MORTISE_DATA";
+  MORTISE_NEEDS_DATA(data_folder() / "multires");
   const StatedHoles stated = stated_holes();
   const NistPart part = nist_part(GetParam(), stated.lines);
   ASSERT_EQ(part.features.size(), part.holes.size());

@@ -37,8 +37,7 @@ constexpr StatedRound kRounds[] = {
 
 TEST(RealRecognition, PublishedPegsAndBoresHaveTheirStatedDiameter) {
   const auto folder = data_folder() / "fits";
-  if (!std::filesystem::exists(folder))
-    GTEST_SKIP() << "no published fits at " << data_folder() << "; set MORTISE_DATA";
+  MORTISE_NEEDS_DATA(folder);
   for (const StatedRound& stated : kRounds) {
     const auto mesh = read_obj_exact(folder / stated.file, 1000.0);
     ASSERT_TRUE(mesh) << mesh.error().text;
@@ -94,8 +93,8 @@ bool same(const StatedCylinder& stated, const Surface& s) {
 TEST(RealRecognition, OnePartAtThreeChordErrorsShowsTheSameCylinders) {
   const auto folder = data_folder();
   const auto statement = folder / "step/nist_ftc_10_tolerances_occt763.json";
-  if (!std::filesystem::exists(statement) || !std::filesystem::exists(folder / "multires"))
-    GTEST_SKIP() << "no part at three chord errors at " << folder << "; set MORTISE_DATA";
+  MORTISE_NEEDS_DATA(statement);
+  MORTISE_NEEDS_DATA(folder / "multires");
   const std::vector<StatedCylinder> stated = stated_cylinders(statement);
   ASSERT_GE(stated.size(), 20U);
   std::set<std::size_t> first;

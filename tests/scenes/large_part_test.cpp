@@ -19,8 +19,7 @@ fs::path large_part() { return test::data_folder() / "large" / "nist_ctc_02_defl
 // A real part of 263,730 triangles: what is built beside the mesh, and what an instance of it
 // costs.
 TEST(LargePart, LoadsWithinItsBytesAndAHundredInstancesCostOne) {
-  if (!fs::exists(large_part()))
-    GTEST_SKIP() << "no test data at " << large_part() << "; set MORTISE_DATA to its folder";
+  MORTISE_NEEDS_DATA(large_part());
   Scenario scenario;
   scenario.name = "large";
   for (int i = 0; i < 100; ++i) {
