@@ -111,29 +111,42 @@ class Bench {
   bool answer_joins = true;
 };
 
-ClientUpdate run(Bench& bench, Client& client, int turns) {
-  ClientUpdate all;
-  for (int i = 0; i < turns; ++i) {
-    bench.turn();
-    ClientUpdate update = client.poll();
-    all.events.insert(all.events.end(), update.events.begin(), update.events.end());
-    all.joined.insert(all.joined.end(), update.joined.begin(), update.joined.end());
-    all.latency_ms.insert(all.latency_ms.end(), update.latency_ms.begin(), update.latency_ms.end());
-    all.changed.insert(all.changed.end(), update.changed.begin(), update.changed.end());
-    all.resynced |= update.resynced;
-    all.server_lost |= update.server_lost;
-  }
-  return all;
-}
-
-TEST(Client, JoinsSeveralUsersOverOneChannel) {
+/// A client over one channel, with a user who has asked to join.
+struct OneClient : testing::Test {
   Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  const LocalUser a = client->add_user("a", "bot"), b = client->add_user("b", "bot");
+  std::unique_ptr<ClientChannel> channel = bench.hub.open_client();
+  std::unique_ptr<Client> client = bench.client(*channel);
+  const LocalUser a = client->add_user("a", "bot");
+
+  ClientUpdate run(int turns) {
+    ClientUpdate all;
+    const auto append = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    for (int i = 0; i < turns; ++i) {
+      bench.turn();
+      const ClientUpdate update = client->poll();
+      append(all.events, update.events);
+      append(all.joined, update.joined);
+      append(all.latency_ms, update.latency_ms);
+      append(all.changed, update.changed);
+      all.resynced |= update.resynced;
+      all.server_lost |= update.server_lost;
+    }
+    return all;
+  }
+};
+
+/// One who has joined.
+struct JoinedClient : OneClient {
+  void SetUp() override { run(4); }
+};
+
+TEST_F(OneClient, JoinsSeveralUsersOverOneChannel) {
+  const LocalUser b = client->add_user("b", "bot");
   EXPECT_EQ(client->send(a, PartId{1}, Vec3::Zero()), 0u);  // not yet
   EXPECT_EQ(client->statistics().not_joined, 1u);
-  const ClientUpdate update = run(bench, *client, 4);
+  const ClientUpdate update = run(4);
   EXPECT_EQ(update.joined, (std::vector<LocalUser>{a, b}));
   EXPECT_NE(client->user_id(a), client->user_id(b));
   EXPECT_TRUE(client->synced());
@@ -141,7 +154,7 @@ TEST(Client, JoinsSeveralUsersOverOneChannel) {
   EXPECT_EQ(client->send(a, PartId{1}, Vec3(1, 0, 0)), 1u);
   EXPECT_EQ(client->send(b, PartId{2}, Vec3(0, 2, 0)), 1u);  // own numbers for each
   EXPECT_EQ(client->send(a, PartId{1}, Vec3(1, 0, 0)), 2u);
-  const ClientUpdate moved = run(bench, *client, 2);
+  const ClientUpdate moved = run(2);
   EXPECT_EQ(client->parts().at(PartId{1}).info.X_WP.p, Vec3(2, 0, 0));
   EXPECT_EQ(client->parts().at(PartId{2}).info.holder, client->user_id(b));
   ASSERT_EQ(moved.latency_ms.size(), 3u);
@@ -149,52 +162,39 @@ TEST(Client, JoinsSeveralUsersOverOneChannel) {
   EXPECT_EQ(moved.changed, (std::vector<PartId>{PartId{1}, PartId{2}}));
 }
 
-TEST(Client, JoinIsAskedAgainWithTheSameNonce) {
-  Bench bench;
+TEST_F(OneClient, JoinIsAskedAgainWithTheSameNonce) {
   bench.answer_joins = false;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 150);
+  run(150);
   EXPECT_EQ(bench.joins, 2u);  // once a second
   EXPECT_EQ(bench.users.size(), 1u);
   bench.answer_joins = true;
-  run(bench, *client, 100);
+  run(100);
   EXPECT_EQ(client->join_state(0), JoinState::kJoined);
 }
 
-TEST(Client, RefusedJoinIsSaid) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
+TEST_F(OneClient, RefusedJoinIsSaid) {
   bench.answer_joins = false;
-  run(bench, *client, 2);
+  run(2);
   bench.server->publish_join_reply(
       {bench.hub.last_client(), 1, UserId{}, Refusal::kSessionFull, "session is full"});
-  run(bench, *client, 2);
+  run(2);
   EXPECT_EQ(client->join_state(0), JoinState::kRefused);
   EXPECT_EQ(client->refusal_text(0), "session is full");
 }
 
-TEST(Client, DuplicatesAreDroppedAndGapsAreRepaired) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 4);
+TEST_F(JoinedClient, DuplicatesAreDroppedAndGapsAreRepaired) {
   const ClashEvent e1 = bench.next_event(ClashEvent::Kind::kBegin, 1);
   bench.say(e1);
   bench.say(e1);
-  EXPECT_EQ(run(bench, *client, 2).events.size(), 1u);
+  EXPECT_EQ(run(2).events.size(), 1u);
   EXPECT_EQ(client->statistics().events_duplicate, 1u);
   // 3 before 2: applied in order, nothing asked for.
   const ClashEvent e2 = bench.next_event(ClashEvent::Kind::kBegin, 2);
   const ClashEvent e3 = bench.next_event(ClashEvent::Kind::kEnd, 1);
   bench.say(e3);
-  EXPECT_TRUE(run(bench, *client, 2).events.empty());
+  EXPECT_TRUE(run(2).events.empty());
   bench.say(e2);
-  const ClientUpdate update = run(bench, *client, 2);
+  const ClientUpdate update = run(2);
   ASSERT_EQ(update.events.size(), 2u);
   EXPECT_EQ(update.events[0].seq, 2u);
   EXPECT_EQ(client->open_clashes().size(), 1u);
@@ -203,7 +203,7 @@ TEST(Client, DuplicatesAreDroppedAndGapsAreRepaired) {
   // 4 is lost for good: after a while a snapshot is asked for, and takes its place.
   bench.next_event(ClashEvent::Kind::kBegin, 7);
   bench.say(bench.next_event(ClashEvent::Kind::kBegin, 8));
-  const ClientUpdate repaired = run(bench, *client, 60);
+  const ClientUpdate repaired = run(60);
   EXPECT_TRUE(repaired.resynced);
   EXPECT_EQ(bench.requests, 1u);
   EXPECT_EQ(client->statistics().gaps, 1u);
@@ -211,48 +211,33 @@ TEST(Client, DuplicatesAreDroppedAndGapsAreRepaired) {
   EXPECT_TRUE(client->synced());
   EXPECT_EQ(client->open_clashes().size(), 3u);
   bench.say(bench.next_event(ClashEvent::Kind::kEnd, 8));
-  EXPECT_EQ(run(bench, *client, 2).events.size(), 1u);  // and the stream goes on
+  EXPECT_EQ(run(2).events.size(), 1u);  // and the stream goes on
 }
 
-TEST(Client, SnapshotThatOvertakesItsEventsHidesNone) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 4);
+TEST_F(JoinedClient, SnapshotThatOvertakesItsEventsHidesNone) {
   const ClashEvent e1 = bench.next_event(ClashEvent::Kind::kBegin, 1);
   const ClashEvent e2 = bench.next_event(ClashEvent::Kind::kEnd, 1);
   bench.server->publish_snapshot(bench.snapshot());
-  ClientUpdate update = run(bench, *client, 3);
+  ClientUpdate update = run(3);
   EXPECT_FALSE(update.resynced);
   bench.say(e1);
   bench.say(e2);
-  update = run(bench, *client, 40);
+  update = run(40);
   EXPECT_EQ(update.events.size(), 2u);
   EXPECT_FALSE(update.resynced);
   EXPECT_EQ(client->statistics().events_skipped, 0u);
   EXPECT_EQ(bench.requests, 0u);
 }
 
-TEST(Client, LostTailIsNoticedByThePoses) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 4);
+TEST_F(JoinedClient, LostTailIsNoticedByThePoses) {
   bench.next_event(ClashEvent::Kind::kBegin, 1);  // never said
   client->send(0, PartId{1}, Vec3(1, 0, 0));      // but the pose batch knows of it
-  run(bench, *client, 60);
+  run(60);
   EXPECT_EQ(client->open_clashes().size(), 1u);
   EXPECT_EQ(client->statistics().gaps, 1u);
 }
 
-TEST(Client, OldPosesDoNotOverwriteNewOnes) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 4);
+TEST_F(JoinedClient, OldPosesDoNotOverwriteNewOnes) {
   PoseBatch batch;
   batch.tick = 100;
   batch.parts = {{PartId{1}, UserId{}, Pose::translation(Vec3(5, 0, 0))}};
@@ -269,65 +254,51 @@ TEST(Client, OldPosesDoNotOverwriteNewOnes) {
   EXPECT_EQ(client->parts().at(PartId{1}).info.X_WP.p, Vec3(5, 0, 0));
 }
 
-TEST(Client, RejoinsARestartedServer) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 4);
+TEST_F(JoinedClient, RejoinsARestartedServer) {
   bench.say(bench.next_event(ClashEvent::Kind::kBegin, 1));
-  run(bench, *client, 2);
+  run(2);
   EXPECT_EQ(client->open_clashes().size(), 1u);
   bench.restart();
-  const ClientUpdate update = run(bench, *client, 10);
+  const ClientUpdate update = run(10);
   EXPECT_TRUE(update.server_lost);
   EXPECT_EQ(update.joined.size(), 1u);
   EXPECT_EQ(client->join_state(0), JoinState::kJoined);
   EXPECT_TRUE(client->synced());
   EXPECT_TRUE(client->open_clashes().empty());
   bench.say(bench.next_event(ClashEvent::Kind::kBegin, 3));  // numbers start anew
-  EXPECT_EQ(run(bench, *client, 2).events.size(), 1u);
+  EXPECT_EQ(run(2).events.size(), 1u);
   EXPECT_EQ(client->statistics().server_losses, 1u);
 }
 
-TEST(Client, JoinsAgainWhenTakenForGone) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
-  run(bench, *client, 4);
+TEST_F(JoinedClient, JoinsAgainWhenTakenForGone) {
   const UserId id = client->user_id(0);
   // The server says so in a snapshot ...
   bench.gone.insert(id);
   bench.server->publish_snapshot(bench.snapshot());
-  run(bench, *client, 150);
+  run(150);
   EXPECT_FALSE(bench.gone.contains(id));
   EXPECT_EQ(bench.joins, 2u);
   // ... or in nothing but silence.
   bench.gone.insert(id);
   for (int i = 0; i < 350; ++i) {
     client->send(0, PartId{1}, Vec3(1, 0, 0));
-    run(bench, *client, 1);
+    run(1);
   }
   EXPECT_FALSE(bench.gone.contains(id));
   EXPECT_EQ(bench.joins, 3u);
 }
 
-TEST(Client, HeartbeatsGoWhileNothingElseDoes) {
-  Bench bench;
-  auto channel = bench.hub.open_client();
-  auto client = bench.client(*channel);
-  client->add_user("a", "bot");
+TEST_F(OneClient, HeartbeatsGoWhileNothingElseDoes) {
   client->add_user("b", "bot");
-  run(bench, *client, 4);
+  run(4);
   std::size_t beats = 0;
   for (int i = 0; i < 100; ++i) {
-    run(bench, *client, 1);
+    run(1);
     beats += bench.input.heartbeats.size();
   }
   EXPECT_EQ(beats, 10u);  // two users, five a second
   client->leave(0);
-  run(bench, *client, 1);
+  run(1);
   EXPECT_EQ(bench.input.lost.size(), 1u);
   EXPECT_TRUE(bench.input.lost[0].said_goodbye);
 }

@@ -217,21 +217,29 @@ TEST(RealTime, StartsRealOrTouching) {
   EXPECT_FALSE(real_time_of(s).becomes_real);
 }
 
-// The same for what is possible: never before t_clear, and in the order possible, then real.
+// A bar with a band that flies through a box at a random pose, turning.
+Sweep random_flight(std::mt19937_64& random, const SurfaceBand& band_a, const SurfaceBand& band_b) {
+  Sweep s{solid(box({1, .3, .2})), solid(box({.4, .6, .5}))};
+  s.band_a = band_a;
+  s.band_b = band_b;
+  s.accuracy_mm = 1e-3;
+  Pose from = random_pose(random, 1.0), to = random_pose(random, 1.0);
+  from.p.x() -= 2.5;
+  to.p.x() += 0.5;
+  to.q = (rotation_exp(0.5 * rotation_log((to.q * from.q.conjugate()).normalized())) * from.q)
+             .normalized();
+  s.motion_a = linear_motion(from, to, Vec3::Zero());
+  return s;
+}
+
+// Random motions: never possible before t_clear, by an independent query at many times; and in the
+// order possible, then real. The check itself sees a planted fault.
 TEST(PossibleTime, NeverPossibleBeforeClear) {
   std::mt19937_64 random(22);
   int became = 0, planted = 0;
   for (int i = 0; i < 12; ++i) {
-    Sweep s{solid(box({1, .3, .2})), solid(box({.4, .6, .5}))};
-    s.band_a = uniform_band({}, {-.01, .02});
-    s.band_b = uniform_band({-.005, .01}, {-.01, .01});
-    s.accuracy_mm = 1e-3;
-    Pose from = random_pose(random, 1.0), to = random_pose(random, 1.0);
-    from.p.x() -= 2.5;
-    to.p.x() += 0.5;
-    to.q = (rotation_exp(0.5 * rotation_log((to.q * from.q.conjugate()).normalized())) * from.q)
-               .normalized();
-    s.motion_a = linear_motion(from, to, Vec3::Zero());
+    const Sweep s = random_flight(random, uniform_band({}, {-.01, .02}),
+                                  uniform_band({-.005, .01}, {-.01, .01}));
     const PossibleTime possible = possible_time_of(s);
     EXPECT_FALSE(possible.capped);
     became += possible.becomes_possible;
@@ -247,22 +255,13 @@ TEST(PossibleTime, NeverPossibleBeforeClear) {
   EXPECT_GT(planted, 2);
 }
 
-// Random motions: never real before t_free, by an independent query at many times; and the check
-// itself sees a planted fault.
+// The same of what is real: never before t_free.
 TEST(RealTime, NeverRealBeforeFree) {
   std::mt19937_64 random(21);
   int became = 0, planted = 0;
   for (int i = 0; i < 12; ++i) {
-    Sweep s{solid(box({1, .3, .2})), solid(box({.4, .6, .5}))};
-    s.band_a = uniform_band({}, {-.01, .01});
-    s.band_b = uniform_band({}, {-.01, .01});
-    s.accuracy_mm = 1e-3;
-    Pose from = random_pose(random, 1.0), to = random_pose(random, 1.0);
-    from.p.x() -= 2.5;
-    to.p.x() += 0.5;
-    to.q = (rotation_exp(0.5 * rotation_log((to.q * from.q.conjugate()).normalized())) * from.q)
-               .normalized();
-    s.motion_a = linear_motion(from, to, Vec3::Zero());
+    const Sweep s =
+        random_flight(random, uniform_band({}, {-.01, .01}), uniform_band({}, {-.01, .01}));
     const RealTime real = real_time_of(s);
     EXPECT_FALSE(real.capped);
     became += real.becomes_real;
