@@ -8,5 +8,5 @@ build=${1:?usage: one_definition.sh BUILD_FOLDER}
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-Og \
   -DCMAKE_CXX_FLAGS="-flto -Wodr -Werror=odr" \
   -DCMAKE_AR="$(command -v gcc-ar)" -DCMAKE_RANLIB="$(command -v gcc-ranlib)" > "$build.log"
-cmake --build "$build" --target mortise-server session_test
-"$build/bin/session_test" --gtest_brief=1
+cmake --build "$build" --target mortise-server test_session
+"$build/bin/test_session" --gtest_brief=1

@@ -34,7 +34,7 @@ TEST(BotProgram, ALimitThatDoesNotHoldIsExitCode5AndAFailureForJUnit) {
                 "--processes",     "2",       "--ramp",       "1",       "--duration", "4",
                 "--behaviour",     "wander",  "--json",       "--junit", junit,        "--limit",
                 "p99_ms=0.000001", "--limit", "lost_events=0"});
-  ASSERT_EQ(bots.wait(60), 5) << bots.errors();
+  ASSERT_EQ(bots.wait(kPatience_s), 5) << bots.errors();
   EXPECT_NE(bots.errors().find("p99_ms"), std::string::npos) << bots.errors();
   EXPECT_EQ(bots.errors().find("lost_events:"), std::string::npos) << bots.errors();
 
@@ -68,7 +68,7 @@ TEST(BotProgram, WhatItReportsIsWhatHappened) {
   Program bots(folder.path(), "mortise-bot",
                {"--domain", domain, "--wait", "20", "--users", "3", "--behaviour", "mixed",
                 "--duration", "5", "--linger", "3", "--json"});
-  ASSERT_TRUE(anna.until(60, [&] {
+  ASSERT_TRUE(anna.until(kPatience_s, [&] {
     ben.listen();
     return !bots.running();
   }));
@@ -76,7 +76,7 @@ TEST(BotProgram, WhatItReportsIsWhatHappened) {
   const Json report = Json::parse(bots.out());
   const Knowledge known = agreed_by({&anna, &ben});
   server.signal(SIGTERM);
-  ASSERT_EQ(server.wait(10), 0) << server.errors();
+  ASSERT_EQ(server.wait(kPatience_s), 0) << server.errors();
   const Json closing = Json::parse(server.out());
   expect_in_log(known, log, {});
   expect_told_at_end(known, closing);
@@ -124,7 +124,7 @@ TEST(BotProgram, AReportThatCannotBeWrittenIsNoSuccess) {
   Program bots(folder.path(), "mortise-bot",
                {"--domain", domain, "--wait", "20", "--duration", "1", "--behaviour", "wander",
                 "--junit", "/proc/none/bots.xml", "--limit", "lost_events=0"});
-  EXPECT_EQ(bots.wait(40), 1);
+  EXPECT_EQ(bots.wait(kPatience_s), 1);
   EXPECT_NE(bots.errors().find("/proc/none/bots.xml"), std::string::npos) << bots.errors();
 }
 
@@ -142,7 +142,7 @@ TEST(ServerMessages, EachLineIsAnObject) {
     anna.until(0.5, [] { return false; });
   }
   server.signal(SIGTERM);
-  ASSERT_EQ(server.wait(10), 0) << server.errors();
+  ASSERT_EQ(server.wait(kPatience_s), 0) << server.errors();
   std::istringstream lines(server.errors());
   std::set<std::string> messages;
   for (std::string line; std::getline(lines, line);) {

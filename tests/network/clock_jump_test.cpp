@@ -44,7 +44,7 @@ class ClockJump : public SecondServer {
     const UserId anna_id = anna_->client->user_id(anna_->user);
     const int losses = losses_;
     server->signal(SIGKILL);
-    ASSERT_EQ(server->wait(5), 128 + SIGKILL);
+    ASSERT_EQ(server->wait(kPatience_s), 128 + SIGKILL);
     server = start({"--restore", logs(), "--log", logs()});
     const auto is_in = [](const Guest& guest) {
       return guest.client->user_id(guest.user) && guest.client->synced();

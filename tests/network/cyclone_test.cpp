@@ -69,7 +69,7 @@ TEST(Cyclone, JoinsGrabsMovesAndSeesPosesAndClashes) {
             static_cast<double>(events.back().verdict.collision_class));
   EXPECT_EQ(said(out, "events", "open"), 1.0);
   server.signal(SIGTERM);
-  ASSERT_EQ(server.wait(5), 0) << server.errors();
+  ASSERT_EQ(server.wait(kPatience_s), 0) << server.errors();
   EXPECT_NE(server.out().find("\"accepted\": 60"), std::string::npos) << server.out();
   EXPECT_NE(server.errors().find("cyclone left"), std::string::npos) << server.errors();
 }

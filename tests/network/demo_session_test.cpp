@@ -82,10 +82,10 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
   std::this_thread::sleep_for(std::chrono::milliseconds(3200));  // the blocks are on their way
   auto late = participant({"--observer", "--names", "eve", "--duration", "3"});
 
-  for (auto& designer : designers) ASSERT_EQ(designer->wait(15), 0) << designer->errors();
-  ASSERT_EQ(observer->wait(15), 0) << observer->errors();
-  ASSERT_EQ(late->wait(15), 0) << late->errors();
-  ASSERT_EQ(server.wait(15), 0) << server.errors();
+  for (auto& designer : designers) ASSERT_EQ(designer->wait(kPatience_s), 0) << designer->errors();
+  ASSERT_EQ(observer->wait(kPatience_s), 0) << observer->errors();
+  ASSERT_EQ(late->wait(kPatience_s), 0) << late->errors();
+  ASSERT_EQ(server.wait(kPatience_s), 0) << server.errors();
 
   // 1. All who were there from the start saw the same events; all know the same poses and clashes.
   const Json seen = json_of(observer->out());
@@ -139,7 +139,7 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
   EXPECT_NE(read->scenario_yaml.find("four blocks"), std::string::npos);
   if (std::filesystem::exists(program_path("mortise-replay"))) {
     Program replay(folder.path(), "mortise-replay", {"verify", log});
-    EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+    EXPECT_EQ(replay.wait(kPatience_s), 0) << replay.out() << replay.errors();
   }
 }
 
@@ -167,11 +167,11 @@ TEST(DemoSession, TheGearboxIsTheSameForAll) {
   std::this_thread::sleep_for(std::chrono::seconds(15));
   auto late = participant({"--observer", "--names", "eve", "--duration", "19"});
 
-  for (auto& designer : designers) ASSERT_EQ(designer->wait(60), 0) << designer->errors();
-  ASSERT_EQ(observer->wait(30), 0) << observer->errors();
-  ASSERT_EQ(late->wait(30), 0) << late->errors();
+  for (auto& designer : designers) ASSERT_EQ(designer->wait(kPatience_s), 0) << designer->errors();
+  ASSERT_EQ(observer->wait(kPatience_s), 0) << observer->errors();
+  ASSERT_EQ(late->wait(kPatience_s), 0) << late->errors();
   server.signal(SIGTERM);
-  ASSERT_EQ(server.wait(15), 0) << server.errors();
+  ASSERT_EQ(server.wait(kPatience_s), 0) << server.errors();
 
   const Json seen = json_of(observer->out());
   EXPECT_EQ(seen["events"]["first_seq"], 1);
@@ -186,7 +186,7 @@ TEST(DemoSession, TheGearboxIsTheSameForAll) {
             poses["bearing_in_upper"][2].get<double>() + 1.0);
   for (const char* threads : {"1", "2"}) {
     Program replay(folder.path(), "mortise-replay", {"verify", log, "--threads", threads});
-    EXPECT_EQ(replay.wait(90), 0) << threads << replay.out() << replay.errors();
+    EXPECT_EQ(replay.wait(kPatience_s), 0) << threads << replay.out() << replay.errors();
   }
 }
 

@@ -46,7 +46,7 @@ class DirectoryOfSessions : public ::testing::Test {
     Program directory(folder_.path(), "mortise-directory", arguments);
     // Who is silent meanwhile is gone.
     while (guest_ != nullptr && directory.running()) guest_->until(0.01, [] { return false; });
-    EXPECT_EQ(directory.wait(40), exit_code) << directory.errors();
+    EXPECT_EQ(directory.wait(kPatience_s), exit_code) << directory.errors();
     errors_ = directory.errors();
     const auto answer = nlohmann::json::parse(directory.out(), nullptr, false);
     EXPECT_TRUE(answer.contains("servers")) << directory.out();
@@ -96,7 +96,7 @@ TEST_F(DirectoryOfSessions, ListsWhoLeadsAndWhoStandsBy) {
   EXPECT_EQ(of_yard["users"], 0) << "a server tells its load with nobody there";
 
   hall->signal(SIGKILL);
-  EXPECT_EQ(hall->wait(5), 128 + SIGKILL);
+  EXPECT_EQ(hall->wait(kPatience_s), 128 + SIGKILL);
   ASSERT_TRUE(says(*second, "taken over at tick"));
   const auto after = ask({"--domain", std::to_string(domain_)});
   ASSERT_EQ(after.size(), 1u) << after.dump();
@@ -143,7 +143,7 @@ TEST_F(DirectoryOfSessions, TellsTheOvertakenFromTheOneThatLeads) {
   ASSERT_TRUE(becomes(Place::kStandsBy, first_port)) << "the place of the one that is gone";
   second->signal(SIGUSR1);
   EXPECT_TRUE(becomes(Place::kLeads, first_port));
-  EXPECT_EQ(second->wait(5), 0) << second->errors();
+  EXPECT_EQ(second->wait(kPatience_s), 0) << second->errors();
   EXPECT_EQ((*directory)->known().size(), 1u);
 }
 
@@ -175,7 +175,7 @@ TEST_F(DirectoryOfSessions, WantsKeysWhereTheServerDoes) {
 TEST_F(DirectoryOfSessions, RefusesWhatIsNoDomain) {
   for (const char* domains : {"233", "5-3", "x", "1-", "0-40", ""}) {
     Program directory(folder_.path(), "mortise-directory", {"--domain", domains});
-    EXPECT_EQ(directory.wait(10), 2) << domains;
+    EXPECT_EQ(directory.wait(kPatience_s), 2) << domains;
     EXPECT_FALSE(directory.errors().empty()) << domains;
   }
 }

@@ -66,7 +66,7 @@ class DiscoveryServers : public ::testing::Test {
   }
   static nlohmann::json end(Program& discovery) {
     discovery.signal(SIGINT);
-    EXPECT_EQ(discovery.wait(5), 0) << discovery.errors();
+    EXPECT_EQ(discovery.wait(kPatience_s), 0) << discovery.errors();
     return nlohmann::json::parse(discovery.out());
   }
   std::string logs() const { return folder_.path().string() + "/logs"; }
@@ -87,14 +87,14 @@ TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
   EXPECT_TRUE(ben->joined());
   EXPECT_TRUE(cleo->joined());
   EXPECT_TRUE(ben->grab("red"));
-  EXPECT_TRUE(early->until(3, [&] { return early->holder("red") == ben->id; }));
+  EXPECT_TRUE(early->until(kPatience_s, [&] { return early->holder("red") == ben->id; }));
   EXPECT_FALSE(cleo->holder("red")) << "a session of its own";
 
   Program directory(folder_.path(), "mortise-directory",
                     {"--domain", std::to_string(domain_), "--discovery-server", place_, "--json"});
   while (directory.running())
     for (Guest* one : {early.get(), ben.get(), cleo.get()}) one->until(0.01, [] { return false; });
-  ASSERT_EQ(directory.wait(10), 0) << directory.errors();
+  ASSERT_EQ(directory.wait(kPatience_s), 0) << directory.errors();
   const auto servers = nlohmann::json::parse(directory.out())["servers"];
   ASSERT_EQ(servers.size(), 2u) << servers.dump();
   EXPECT_EQ(servers[0]["session"], "hall");
@@ -104,7 +104,7 @@ TEST_F(DiscoveryServers, BringTogetherWhoIsOfOneSessionAndNobodyElse) {
   EXPECT_EQ(servers[1]["port"], yard_port_);
 
   const auto rival = serve("hall", spare_port_);
-  EXPECT_EQ(rival->wait(10), 1) << "a session has one that leads, whatever its port";
+  EXPECT_EQ(rival->wait(kPatience_s), 1) << "a session has one that leads, whatever its port";
   EXPECT_NE(rival->errors().find("another server leads session 'hall'"), std::string::npos);
 
   const auto counts = end(*discovery_);
@@ -123,12 +123,12 @@ TEST_F(DiscoveryServers, TellClientsOfOneThatStandsByAndTakesOver) {
   ASSERT_TRUE(says(*spare, "in step")) << spare->errors();
   ASSERT_TRUE(anna->grab("red"));
   anna->client->send(anna->user, anna->client->find_part("red"), Vec3(0, 1, 0), Vec3::Zero());
-  ASSERT_TRUE(anna->until(3, [&] { return anna->taken.size() == 1; }));
+  ASSERT_TRUE(anna->until(kPatience_s, [&] { return anna->taken.size() == 1; }));
   const double before = anna->x("red");
   hall->signal(SIGKILL);
   const double killed_s = steady_s();
   double lost_s = 0.0;
-  ASSERT_TRUE(anna->until(5, [&] {
+  ASSERT_TRUE(anna->until(kPatience_s, [&] {
     if (spare->errors().find("taken over") != std::string::npos && lost_s == 0.0)
       lost_s = steady_s();
     return lost_s > 0.0 && anna->client->user_id(anna->user) && anna->client->synced();
@@ -136,7 +136,8 @@ TEST_F(DiscoveryServers, TellClientsOfOneThatStandsByAndTakesOver) {
   std::printf("taken over %.0f ms after the kill, as a client met by a discovery server sees it\n",
               1e3 * (steady_s() - killed_s));
   EXPECT_EQ(anna->x("red"), before);
-  EXPECT_TRUE(anna->until(3, [&] { return anna->holder("red") == anna->client->user_id(0); }));
+  EXPECT_TRUE(
+      anna->until(kPatience_s, [&] { return anna->holder("red") == anna->client->user_id(0); }));
   const auto ben = guest("hall", "ben");
   EXPECT_TRUE(ben->joined()) << "and who comes now finds the one that leads";
 }
@@ -147,14 +148,14 @@ TEST_F(DiscoveryServers, MayBeGoneAndComeBack) {
   ASSERT_TRUE(anna->joined());
   discovery_->signal(SIGKILL);
   discovery_->wait(5);
-  EXPECT_TRUE(anna->until(4, [&] { return anna->client->statistics().server_losses > 0; }) == false)
+  EXPECT_FALSE(anna->until(4, [&] { return anna->client->statistics().server_losses > 0; }))
       << "who is in stays in, beyond every lease";
   EXPECT_TRUE(anna->grab("red"));
   const auto ben = guest("hall", "ben");
   EXPECT_FALSE(ben->until(2, [&] { return ben->client->user_id(ben->user).value != 0; }))
       << "nobody tells who comes";
   discovery_ = discover();
-  EXPECT_TRUE(ben->until(5, [&] {
+  EXPECT_TRUE(ben->until(kPatience_s, [&] {
     anna->listen();
     return ben->client->user_id(ben->user) && ben->client->synced();
   })) << "until it is back";
@@ -173,7 +174,7 @@ TEST_F(DiscoveryServers, MayBeGoneWhileAServerLooksForAnother) {
   discovery_->signal(SIGKILL);
   discovery_->wait(5);
   hall = serve("hall", 0);
-  EXPECT_EQ(hall->wait(15), 1) << "servers of one host look at its places all the same";
+  EXPECT_EQ(hall->wait(kPatience_s), 1) << "servers of one host look at its places all the same";
   EXPECT_NE(hall->errors().find("another server leads session 'hall'"), std::string::npos)
       << hall->errors();
 }
@@ -201,7 +202,7 @@ TEST_F(DiscoveryServers, OfWhichOneIsEnough) {
                                       "0.5"};
     words.insert(words.end(), more.begin(), more.end());
     Program program(folder_.path(), "mortise-bot", words);
-    EXPECT_EQ(program.wait(30), 0) << program.errors();
+    EXPECT_EQ(program.wait(kPatience_s), 0) << program.errors();
   };
   bots({});
   bots({"--processes", "2"});
@@ -342,7 +343,7 @@ TEST_F(DiscoveryServers, SayInOneLineWhatIsWrong) {
   const auto fails = [&](const std::string& program, const std::vector<std::string>& words,
                          int code, const std::string& line) {
     Program said(folder_.path(), program, words);
-    EXPECT_EQ(said.wait(20), code) << line;
+    EXPECT_EQ(said.wait(kPatience_s), code) << line;
     EXPECT_NE((said.errors() + said.out()).find(line), std::string::npos)
         << said.errors() << said.out();
   };

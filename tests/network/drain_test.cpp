@@ -112,9 +112,10 @@ TEST_F(Drain, DoesNotWaitForEverForOneThatIsFrozen) {
   // Only the log of the one that led counts: the other's may end earlier.
   auto third = start({"--restore", logs(), "--log", logs()});
   EXPECT_TRUE(says(*third, "restored from")) << third->errors();
-  EXPECT_TRUE(ben_->until(10, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
+  EXPECT_TRUE(
+      ben_->until(kPatience_s, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
   third->signal(SIGTERM);
-  EXPECT_EQ(third->wait(10), 0);
+  EXPECT_EQ(third->wait(kPatience_s), 0);
 }
 
 TEST_F(Drain, WhoComesMeanwhileComesInWhereTheSessionGoesOn) {
@@ -128,10 +129,10 @@ TEST_F(Drain, WhoComesMeanwhileComesInWhereTheSessionGoesOn) {
     return carl.client->user_id(carl.user) && carl.client->synced();
   });
   EXPECT_TRUE(joined) << second->errors();
-  EXPECT_EQ(first->wait(5), 0) << first->errors();
+  EXPECT_EQ(first->wait(kPatience_s), 0) << first->errors();
   EXPECT_EQ(anna_->client->users().size(), 4u);
   second->signal(SIGTERM);
-  EXPECT_EQ(second->wait(10), 0);
+  EXPECT_EQ(second->wait(kPatience_s), 0);
 }
 
 TEST_F(Drain, OneThatStandsByJustGoes) {
@@ -151,7 +152,8 @@ TEST_F(Drain, OneThatStandsByJustGoes) {
     files += entry.is_regular_file();
   EXPECT_EQ(files, 1u);
   auto third = start({"--restore", logs(), "--log", logs()});
-  EXPECT_TRUE(ben_->until(10, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
+  EXPECT_TRUE(
+      ben_->until(kPatience_s, [&] { return ben_->client->user_id(0) && ben_->client->synced(); }));
   EXPECT_GT(acknowledged_.size(), 60u);
   EXPECT_EQ(lost_of_acknowledged(*third), 0u);
 }

@@ -25,7 +25,7 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
   ASSERT_TRUE(channel) << channel.error().text;
   SmallServer server(**channel, options.session, 3);
   ASSERT_TRUE(until(
-      8.0, [&] { return server.users.size() == 3; }, [&] { server.turn(); }));
+      kPatience_s, [&] { return server.users.size() == 3; }, [&] { server.turn(); }));
   until(
       1.0, [] { return false; }, [&] { server.turn(); });  // heartbeats go
   ClientKey key, leaver_key;
@@ -42,7 +42,7 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
     });
   };
   ASSERT_TRUE(until(
-      5.0, [&] { return of(key, false) > 0; }, [&] { server.turn(); }));
+      kPatience_s, [&] { return of(key, false) > 0; }, [&] { server.turn(); }));
   const double noticed_s = now_s() - killed_s;
   const double ratio = noticed_s / options.liveliness_lease_s;
   std::printf("killed client of three noticed after %.3f s = %.2f leases\n", noticed_s, ratio);
@@ -51,8 +51,8 @@ TEST(NetworkFault, KilledClientIsNoticedWhileOthersLive) {
   }
   // Once only, though its participant's lease ends later; and the leaver says goodbye.
   ASSERT_TRUE(until(
-      8.0, [&] { return of(leaver_key, true) == 1; }, [&] { server.turn(); }));
-  EXPECT_EQ(leaver.wait(3.0), 0);
+      kPatience_s, [&] { return of(leaver_key, true) == 1; }, [&] { server.turn(); }));
+  EXPECT_EQ(leaver.wait(kPatience_s), 0);
   until(
       1.0, [] { return false; }, [&] { server.turn(); });
   EXPECT_EQ(of(key, false), 1);
@@ -114,13 +114,13 @@ TEST(NetworkFault, KilledServerComesBackAndClientsJoinAgain) {
     }
   };
   ASSERT_TRUE(until(
-      8.0, [&] { return joined == 1 && last_seq > 3; }, turn));
+      kPatience_s, [&] { return joined == 1 && last_seq > 3; }, turn));
   server->signal(SIGKILL);
-  EXPECT_EQ(server->wait(2.0), -1);  // its port is free again
+  EXPECT_EQ(server->wait(kPatience_s), -1);  // its port is free again
   server = std::make_unique<Child>("server", options, "second", 30.0);
   const double restart_s = now_s();
   ASSERT_TRUE(until(
-      10.0, [&] { return joined == 2 && first_seq_after > 0; }, turn));
+      kPatience_s, [&] { return joined == 2 && first_seq_after > 0; }, turn));
   const double gap_s = now_s() - restart_s;
   std::printf("server restarted: joined again, with data, after %.3f s\n", gap_s);
   EXPECT_EQ(lost, 1u);
@@ -139,13 +139,13 @@ TEST(NetworkFault, SixteenProcessesFindTheServer) {
   SmallServer server(**channel, options.session, 3);
   const double start_s = now_s();
   ASSERT_TRUE(until(
-      12.0, [&] { return server.users.size() == 16; }, [&] { server.turn(); }))
+      kPatience_s, [&] { return server.users.size() == 16; }, [&] { server.turn(); }))
       << server.users.size();
   std::printf("16 client processes joined after %.3f s\n", now_s() - start_s);
   // And all go on to be heard.
   std::set<UserId> heard;
   EXPECT_TRUE(until(
-      5.0, [&] { return heard.size() == 16; },
+      kPatience_s, [&] { return heard.size() == 16; },
       [&] {
         server.turn();
         heard.insert(server.last_input.heartbeats.begin(), server.last_input.heartbeats.end());

@@ -10,6 +10,7 @@
 
 #include "client/client.h"
 #include "idl/dds_channel.h"
+#include "tests/network/patience.h"
 
 namespace mortise::test {
 
@@ -51,7 +52,7 @@ struct Guest {
     return false;
   }
   bool joined() {
-    return until(10, [&] { return client->user_id(user) && client->synced(); });
+    return until(kPatience_s, [&] { return client->user_id(user) && client->synced(); });
   }
   UserId holder(const char* part) const {
     return client->parts().at(client->find_part(part)).info.holder;
@@ -60,8 +61,15 @@ struct Guest {
     return client->parts().at(client->find_part(part)).info.X_WP.p.x();
   }
   bool grab(const char* part) {
-    client->grab(user, client->find_part(part));
-    return until(3, [&] { return holder(part) == client->user_id(user); });
+    const std::uint64_t seq = client->grab(user, client->find_part(part));
+    const auto is_refused = [&] {
+      return std::any_of(replies.begin(), replies.end(), [&](const Reply& reply) {
+        return reply.seq == seq && reply.refusal != Refusal::kNone;
+      });
+    };
+    return until(kPatience_s,
+                 [&] { return holder(part) == client->user_id(user) || is_refused(); }) &&
+           !is_refused();
   }
 
   std::unique_ptr<ClientChannel> channel;

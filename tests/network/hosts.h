@@ -84,11 +84,11 @@ class Hosts : public ::testing::Test {
     link_->on_side(kLastSide, [this] { discovery_ = discover(); }).join();
     server_ = link_->on_side(kServerSide, [this] { serve(); });
     ASSERT_TRUE(until(
-        10, [&] { return serving_ || !fault().empty(); }, [] {}))
+        kPatience_s, [&] { return serving_ || !fault().empty(); }, [] {}))
         << fault();
     link_->on_side(kStandbySide, [this] { standby_ = stand_by(kStandbySide, "spare"); }).join();
     ASSERT_TRUE(until(
-        20, [&] { return said("in step") || !standby_->running(); }, [] {}))
+        kPatience_s, [&] { return said("in step") || !standby_->running(); }, [] {}))
         << standby_->errors();
   }
   void TearDown() override {
@@ -299,7 +299,7 @@ class Hosts : public ::testing::Test {
             2.0, [] { return false; }, [&] { otto_.listen(); });
       }));
     ASSERT_TRUE(until(
-        40, [&] { return ready_ == 3 || !fault().empty(); }, [] {}))
+        kPatience_s, [&] { return ready_ == 3 || !fault().empty(); }, [] {}))
         << fault();
     moves_ = true;
   }
@@ -318,7 +318,7 @@ class Hosts : public ::testing::Test {
           folder_.path(), "mortise-directory",
           {"--server", options(4, "otto").server, "--interface", LossyLink::address(4), "--domain",
            std::to_string(kDomain), "--keys", (*keys_)["otto"], "--wait", "4", "--json"});
-      EXPECT_EQ(program.wait(15), 0) << program.errors();
+      EXPECT_EQ(program.wait(kPatience_s), 0) << program.errors();
       const auto seen = nlohmann::json::parse(program.out(), nullptr, false);
       if (!seen.is_object()) return;
       for (const auto& row : seen["servers"]) places[row["address"]] = row["place"];

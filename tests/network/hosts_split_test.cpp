@@ -75,12 +75,12 @@ TEST_F(SplitHosts, OfTwoHalvesTheOneThatStoodByLeadsAndNobodySeesTwoTruths) {
   ASSERT_FALSE(HasFailure());
   cut_and_heal({kServerSide, 2});
   EXPECT_TRUE(until(
-      10, [&] { return superseded_.load(); }, [] {}))
+      kPatience_s, [&] { return superseded_.load(); }, [] {}))
       << "the first does not end";
   sleep_s(2.0);
   leave();
   standby_->signal(SIGTERM);
-  EXPECT_EQ(standby_->wait(10), 0) << standby_->errors();
+  EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
   expect_one_truth(log_to_restore(logs_, "default")->string(), far(), 1, near(), 1);
 }
 
@@ -88,7 +88,7 @@ TEST_F(SplitHosts, AFirstThatKeepsMostUsersLeadsAndNobodySeesTwoTruths) {
   come_in();
   ASSERT_FALSE(HasFailure());
   cut_and_heal({kServerSide, 2, 4});
-  EXPECT_EQ(standby_->wait(10), 1) << standby_->errors();
+  EXPECT_EQ(standby_->wait(kPatience_s), 1) << standby_->errors();
   sleep_s(2.0);
   leave();
   end_server();

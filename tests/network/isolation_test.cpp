@@ -167,11 +167,11 @@ TEST_F(Isolation, OneEndsAndTheOtherGoesOn) {
     for (Person* person : everybody()) person->listen();
   };
   ASSERT_TRUE(until(
-      5.0, [&] { return ben_there.client->statistics().server_losses == 1; }, turn));
+      kPatience_s, [&] { return ben_there.client->statistics().server_losses == 1; }, turn));
   anna_here.client->grab(0, kBlue);
   anna_here.client->send(0, kBlue, Vec3(1, 0, 0));
   ASSERT_TRUE(until(
-      5.0, [&] { return at(ben_here, kBlue).x() == 31.0; }, turn));
+      kPatience_s, [&] { return at(ben_here, kBlue).x() == 31.0; }, turn));
   EXPECT_EQ(ben_here.client->statistics().server_losses, 0U);
 }
 

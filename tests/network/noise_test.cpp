@@ -52,10 +52,10 @@ TEST(NetworkNoise, ServerAndClientsOutliveMutatedDatagrams) {
   std::uint64_t events = 0;
   const auto turn = [&] { events += client.poll().events.size(); };
   ASSERT_TRUE(until(
-      8.0, [&] { return client.join_state(0) == JoinState::kJoined; }, turn));
+      kPatience_s, [&] { return client.join_state(0) == JoinState::kJoined; }, turn));
   const auto users = [&] { return client.users().size(); };
   ASSERT_TRUE(until(
-      8.0, [&] { return users() == 2; }, turn))
+      kPatience_s, [&] { return users() == 2; }, turn))
       << "the victim has not joined";
   Socket mouth(0);
   // Half to the server's two ports, half to those that the first participants of a domain take: the
@@ -75,13 +75,13 @@ TEST(NetworkNoise, ServerAndClientsOutliveMutatedDatagrams) {
   EXPECT_GT((*channel)->counters().guard_dropped, 0u) << "the noise does not reach the clients";
   const std::uint64_t before = events;
   ASSERT_TRUE(until(
-      5.0, [&] { return events > before + 3; }, turn))
+      kPatience_s, [&] { return events > before + 3; }, turn))
       << "the server is gone";
   EXPECT_EQ(server.wait(0.1), -1);  // still running
   EXPECT_EQ(victim.wait(0.1), -1);
   client.add_user("bert", "designer");
   EXPECT_TRUE(until(
-      5.0, [&] { return client.join_state(1) == JoinState::kJoined; }, turn));
+      kPatience_s, [&] { return client.join_state(1) == JoinState::kJoined; }, turn));
 }
 
 TEST(NetworkNoise, DroppedDatagramsAreCounted) {
@@ -93,7 +93,7 @@ TEST(NetworkNoise, DroppedDatagramsAreCounted) {
     mouth.send(Datagram(64, static_cast<std::uint8_t>(i)), 7402 + 250 * options.domain);
   }
   EXPECT_TRUE(until(
-      3.0, [&] { return (*channel)->counters().guard_dropped >= 100; },
+      kPatience_s, [&] { return (*channel)->counters().guard_dropped >= 100; },
       [&] { (*channel)->take(); }))
       << (*channel)->counters().guard_dropped;
   // A server hears its own ticks; that the statistics which Fast DDS hangs on them are cut off is

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/network/patience.h"
+
 namespace mortise::test {
 
 /// A program of the house in a process of its own; ended with the object, by its id.

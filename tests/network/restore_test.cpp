@@ -43,7 +43,7 @@ class RestoreAfterCrash : public ::testing::Test {
   }
   static void kill_and_wait(Program& server) {
     server.signal(SIGKILL);
-    ASSERT_EQ(server.wait(5), 128 + SIGKILL);
+    ASSERT_EQ(server.wait(kPatience_s), 128 + SIGKILL);
   }
 
   const int domain_ = own_domain();
@@ -61,7 +61,7 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   ASSERT_TRUE(step_by(anna, "red", {1, 0, -12}));   // 2 mm into the base
   ASSERT_TRUE(step_by(ben, "blue", {0, 1, -11}));   // 1 mm
   ASSERT_TRUE(step_by(ben, "blue", {0, 0.25, 4}));  // and out again: that clash has ended
-  ASSERT_TRUE(anna.until(3, [&] { return anna.client->open_clashes().size() == 1; }));
+  ASSERT_TRUE(anna.until(kPatience_s, [&] { return anna.client->open_clashes().size() == 1; }));
   anna.until(2.2, [&] {  // two flushes later all of it is on disk
     ben.listen();
     return false;
@@ -78,7 +78,7 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
 
   const double restarted_s = steady_s();
   server = serve({"--restore", file("first.mcap"), "--log", file("second.mcap")});
-  ASSERT_TRUE(anna.until(15, [&] {
+  ASSERT_TRUE(anna.until(kPatience_s, [&] {
     ben.listen();
     return anna.client->statistics().server_losses > 0 && anna.client->user_id(anna.user) &&
            anna.client->synced();
@@ -100,17 +100,17 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   EXPECT_FALSE(anna.holder("blue"));
 
   // Numbers go on; what was moved before the crash can be undone after it.
-  ASSERT_TRUE(anna.until(3, [&] { return anna.client->find_part("red") != PartId{}; }));
+  ASSERT_TRUE(anna.until(kPatience_s, [&] { return anna.client->find_part("red") != PartId{}; }));
   anna.client->undo(anna.user, anna.client->find_part("red"));
   // Poses and events travel apart: either may be first.
-  ASSERT_TRUE(anna.until(3, [&] {
+  ASSERT_TRUE(anna.until(kPatience_s, [&] {
     return anna.client->open_clashes().empty() && anna.x("red") == 0.0;
   })) << anna.x("red");
   EXPECT_EQ(anna.client->statistics().highest_event_seq, events_before + 1);
   anna.until(0.3, [] { return false; });
   const Knowledge known = agreed_by({&anna, &ben});
   server->signal(SIGTERM);
-  ASSERT_EQ(server->wait(5), 0) << server->errors();
+  ASSERT_EQ(server->wait(kPatience_s), 0) << server->errors();
   const Json closing = Json::parse(server->out());
   expect_told_at_end(known, closing);
   expect_in_log(known, file("first.mcap"), {&anna, &ben});  // and what goes on from it
@@ -128,7 +128,7 @@ TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   EXPECT_EQ(second->ticks.front().tick, log->ticks.back().tick + 1);
   for (const char* from : {"first.mcap", "second.mcap"}) {
     Program replay(folder_.path(), "mortise-replay", {"verify", file(from)});
-    EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+    EXPECT_EQ(replay.wait(kPatience_s), 0) << replay.out() << replay.errors();
   }
 }
 
@@ -160,12 +160,13 @@ TEST_F(RestoreAfterCrash, InMidMotionTheLastFlushedSecondCounts) {
     auto server = serve(arguments);
     Guest anna(domain_, "anna" + std::to_string(crash));
     ASSERT_TRUE(anna.joined()) << server->errors();
-    ASSERT_TRUE(anna.until(15, [&] { return bots_in(anna) == 3; }))
+    ASSERT_TRUE(anna.until(kPatience_s, [&] { return bots_in(anna) == 3; }))
         << "the bots do not come back: " << bots.errors();
     const std::uint64_t seen = anna.client->statistics().highest_tick;
     EXPECT_GE(seen, ticks) << "the session began anew";
-    ASSERT_TRUE(anna.until(6, [&] { return anna.client->statistics().highest_tick > seen + 150; }))
-        << server->errors();
+    ASSERT_TRUE(anna.until(kPatience_s, [&] {
+      return anna.client->statistics().highest_tick > seen + 150;
+    })) << server->errors();
     const std::uint64_t killed_at = anna.client->statistics().highest_tick;
     kill_and_wait(*server);
     const std::filesystem::path file = newest();
@@ -182,25 +183,25 @@ TEST_F(RestoreAfterCrash, InMidMotionTheLastFlushedSecondCounts) {
     before = file;
   }
   Program replay(folder_.path(), "mortise-replay", {"verify", first.string()});
-  EXPECT_EQ(replay.wait(60), 0) << replay.out() << replay.errors();
+  EXPECT_EQ(replay.wait(kPatience_s), 0) << replay.out() << replay.errors();
 
   // And once more, to the end: the bots finish in order, and all know the same.
   auto server = serve(arguments);
   Guest anna(domain_, "anna"), ben(domain_, "ben");
   ASSERT_TRUE(anna.joined()) << server->errors();
   ASSERT_TRUE(ben.joined());
-  ASSERT_TRUE(anna.until(15, [&] { return bots_in(anna) == 3; })) << bots.errors();
+  ASSERT_TRUE(anna.until(kPatience_s, [&] { return bots_in(anna) == 3; })) << bots.errors();
   anna.until(2.5, [&] {  // what was done here is on disk
     ben.listen();
     return false;
   });
   bots.signal(SIGTERM);
-  ASSERT_EQ(bots.wait(20), 0) << bots.errors();
+  ASSERT_EQ(bots.wait(kPatience_s), 0) << bots.errors();
   const Json told = Json::parse(bots.out());
   EXPECT_EQ(told["server_losses"], 3);
   const Knowledge known = agreed_by({&anna, &ben});
   server->signal(SIGTERM);
-  ASSERT_EQ(server->wait(10), 0) << server->errors();
+  ASSERT_EQ(server->wait(kPatience_s), 0) << server->errors();
   const Json closing = Json::parse(server->out());
   expect_told_at_end(known, closing);
   expect_in_log(known, first, {&anna, &ben});
@@ -227,7 +228,7 @@ TEST_F(RestoreAfterCrash, WhatCannotBeRestoredSaysSoInOneLine) {
   };
   for (const auto& [arguments, code, says] : cases) {
     auto server = serve(arguments);
-    EXPECT_EQ(server->wait(10), code);
+    EXPECT_EQ(server->wait(kPatience_s), code);
     EXPECT_NE((server->errors() + server->out()).find(says), std::string::npos)
         << server->errors() << server->out();
   }
@@ -262,7 +263,7 @@ TEST_F(RestoreAfterCrash, AFullDiskIsSaidOnceAndTheSessionGoesOn) {
   const Knowledge known = agreed_by({&anna, &ben, &late});
   EXPECT_EQ(known.open.size(), 1u) << "red in the base";
   server->signal(SIGTERM);
-  EXPECT_EQ(server->wait(5), 1) << "the log is not whole, and the exit code says so";
+  EXPECT_EQ(server->wait(kPatience_s), 1) << "the log is not whole, and the exit code says so";
   expect_told_at_end(known, Json::parse(server->out()));
   expect_nothing_lost(anna, "anna", Json::parse(server->out()));
   const std::string errors = server->errors();

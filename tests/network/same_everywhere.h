@@ -15,11 +15,11 @@
 /// After a fault: do all know the same clashes and poses, and is all there that was accepted?
 namespace mortise::test {
 
-/// What all of them know, who are given two seconds to hear the last of it.
+/// What all of them know, once they have heard the last of it.
 inline Knowledge agreed_by(const std::vector<Guest*>& guests) {
   EXPECT_GE(guests.size(), 2u) << "one alone is always right";
   std::string off;
-  guests.front()->until(2.0, [&] {
+  guests.front()->until(kPatience_s, [&] {
     off.clear();
     for (Guest* guest : guests) guest->listen();
     const Knowledge first = knowledge_of(*guests.front()->client);

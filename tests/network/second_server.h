@@ -71,7 +71,7 @@ class SecondServer : public ::testing::Test {
     if (HasFatalFailure()) return;
     ASSERT_TRUE(anna_->grab("red"));
     anna_->client->send(anna_->user, anna_->client->find_part("red"), {1, 0, -12});
-    ASSERT_TRUE(anna_->until(3, [&] { return !anna_->client->open_clashes().empty(); }));
+    ASSERT_TRUE(anna_->until(kPatience_s, [&] { return !anna_->client->open_clashes().empty(); }));
   }
   /// All three; ben takes this part, which is called blue.
   void join(const char* bens_part) {
@@ -108,9 +108,9 @@ class SecondServer : public ::testing::Test {
       sleep_a_moment();
     }
   }
-  /// Lets all act until it is so, for as long as a busy machine may take.
+  /// Lets all act until it is so.
   bool wait_until(const std::function<bool()>& done) {
-    for (const double end_s = steady_s() + 20.0; !done(); turn(0.01))
+    for (const double end_s = steady_s() + kPatience_s; !done(); turn(0.01))
       if (steady_s() > end_s) return false;
     return true;
   }
@@ -172,7 +172,7 @@ class SecondServer : public ::testing::Test {
     moves_ = false;
     turn(0.3);
     server.signal(SIGTERM);
-    EXPECT_EQ(server.wait(10), 0) << server.errors();
+    EXPECT_EQ(server.wait(kPatience_s), 0) << server.errors();
     const std::filesystem::path first = first_log();
     if (first.empty()) return acknowledged_.size();
     const auto log = read_session(first);

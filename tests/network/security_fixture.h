@@ -15,8 +15,7 @@
 
 namespace mortise::test {
 
-inline constexpr double kPatience_s = 10.0;  // for what must happen
-inline constexpr double kRefused_s = 3.0;    // for what must not: ten times what a join takes
+inline constexpr double kRefused_s = 3.0;  // for what must not happen: ten times what a join takes
 inline const Blocks kBlocks{"lease_s: 5\n", "[0, 0, 60]", "[500, 0, 20]"};
 
 /// A session with keys, turned by the test; what the server says of who is not let in.

@@ -86,7 +86,7 @@ TEST_F(SecurityStandby, OneThatIsRevokedIsNotCountedOnNorFollowed) {
   sleep_and_turn(kRefused_s);
   EXPECT_FALSE(anna_.is_in()) << "led by one that is revoked";
   tell(spare_);
-  EXPECT_EQ(second_->wait(5), 1) << second_->errors();
+  EXPECT_EQ(second_->wait(kPatience_s), 1) << second_->errors();
 }
 
 /// One that learns of it ends, and does not take over.
@@ -94,7 +94,7 @@ TEST_F(SecurityStandby, OneThatIsRevokedEnds) {
   begin();
   ASSERT_FALSE(HasFailure());
   revoke("spare", {spare_});
-  EXPECT_EQ(second_->wait(10), 1);
+  EXPECT_EQ(second_->wait(kPatience_s), 1);
   EXPECT_NE(second_->errors().find("the certificate of 'spare' (server) has been revoked: this "
                                    "server ends"),
             std::string::npos)
@@ -127,7 +127,7 @@ TEST_F(SecurityStandby, OneThatLeadsAndIsRevokedEndsAndTheOtherGoesOn) {
   revoke("hall", {spare_});
   sleep_and_turn(2.5);
   tell(hall_);
-  EXPECT_EQ(first_->wait(10), 1);
+  EXPECT_EQ(first_->wait(kPatience_s), 1);
   EXPECT_EQ(first_->errors().find("it is not waited for"), std::string::npos) << first_->errors();
   EXPECT_NE(first_->errors().find("the certificate of 'hall' (server) has been revoked"),
             std::string::npos)

@@ -101,7 +101,8 @@ TEST_F(Security, WhoIsRevokedWhileThereHasToGo) {
   works(dora);
   site_keys->revoke("dora");
   EXPECT_TRUE(until(
-      5.0, [&] { return was_said("'dora' (designer) has been revoked"); }, [&] { turn(dora); }));
+      kPatience_s, [&] { return was_said("'dora' (designer) has been revoked"); },
+      [&] { turn(dora); }));
   EXPECT_EQ(site->loop->inbox().users_present(), 0u);
   EXPECT_FALSE(site->scene.world.parts[1].holder || site->scene.world.parts[0].holder);
   const std::uint64_t accepted = site->loop->inbox().counters().accepted;
@@ -199,7 +200,7 @@ TEST(OpenToOthers, NeedsKeys) {
   TestFolder folder;
   const std::string scenario = folder.write("blocks.yaml", blocks_yaml(kBlocks));
   Program server(folder.path(), "mortise-server", {scenario, "--interface", "10.1.2.3"});
-  EXPECT_EQ(server.wait(10), 2);
+  EXPECT_EQ(server.wait(kPatience_s), 2);
   EXPECT_NE(server.errors().find("--interface 10.1.2.3 opens the session to other hosts"),
             std::string::npos)
       << server.errors();

@@ -47,7 +47,8 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
                "wander"});
   Guest ben(domain_, "ben"), cid(domain_, "cid");  // who joins late
   ASSERT_TRUE(ben.joined()) << server->errors();
-  ASSERT_TRUE(ben.until(5, [&] { return bool(ben.holder("red")) && ben.x("red") != 0.0; }));
+  ASSERT_TRUE(
+      ben.until(kPatience_s, [&] { return bool(ben.holder("red")) && ben.x("red") != 0.0; }));
   EXPECT_FALSE(ben.grab("red")) << "it is in other hands";
   ASSERT_FALSE(ben.replies.empty());
   EXPECT_EQ(ben.replies.back().refusal, Refusal::kHeldByOther);
@@ -55,7 +56,7 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
 
   bot.signal(SIGKILL);
   const double killed_s = steady_s();
-  ASSERT_TRUE(ben.until(4, [&] { return !ben.holder("red"); }));
+  ASSERT_TRUE(ben.until(kPatience_s, [&] { return !ben.holder("red"); }));
   if (timed()) {  // liveliness lease 0.8 s; its check, a tick and the way back
     EXPECT_LT(steady_s() - killed_s, 2.0);
   }
@@ -65,15 +66,15 @@ TEST_F(ServerFault, AKilledDesignerLosesItsPartSoonAndTheSessionGoesOn) {
   // To where it clashes with the base, wherever the bot had it.
   const Vec3 there = Vec3(0, 0, 9) - ben.client->parts().at(red).info.X_WP.p;
   for (int i = 0; i < 20; ++i) last = ben.client->send(ben.user, red, there / 20.0);
-  EXPECT_TRUE(ben.until(3, [&] { return ben.taken.contains(last); }));
-  ASSERT_TRUE(cid.until(10, [&] {
+  EXPECT_TRUE(ben.until(kPatience_s, [&] { return ben.taken.contains(last); }));
+  ASSERT_TRUE(cid.until(kPatience_s, [&] {
     ben.listen();
     return cid.client->user_id(cid.user) && cid.client->synced();
   }));
   const Knowledge known = agreed_by({&ben, &cid});
   EXPECT_GE(known.open.size(), 1u) << "nothing to agree on";
   server->signal(SIGTERM);
-  EXPECT_EQ(server->wait(5), 0);
+  EXPECT_EQ(server->wait(kPatience_s), 0);
   const Json closing = Json::parse(server->out());
   EXPECT_EQ(closing["inbox"]["liveliness_lost"], 1);
   expect_told_at_end(known, closing);
@@ -105,9 +106,11 @@ TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
   anna.channel->send(batch_of(Increment{id, red, 15, {9, 0, 0}, Vec3::Zero()}, 0));  // out of order
   ben.channel->send(
       batch_of(Increment{id, red, 1000, {9, 0, 0}, Vec3::Zero()}, 0));  // foreign user
-  EXPECT_TRUE(anna.until(5, [&] { return anna.refused.size() >= 7 && anna.x("red") == 3.0; }));
+  EXPECT_TRUE(
+      anna.until(kPatience_s, [&] { return anna.refused.size() >= 7 && anna.x("red") == 3.0; }));
   anna.channel->send(batch_of(Increment{id, red, 21, {1, 0, 0}, Vec3::Zero()}, 0));
-  EXPECT_TRUE(anna.until(3, [&] { return anna.x("red") == 4.0; })) << "the session goes on";
+  EXPECT_TRUE(anna.until(kPatience_s, [&] { return anna.x("red") == 4.0; }))
+      << "the session goes on";
 
   std::map<Refusal, int> reasons;
   for (const RefusedIncrement& r : anna.refused) ++reasons[r.reason];
@@ -116,10 +119,11 @@ TEST_F(ServerFault, NonsenseIsRefusedWithAReasonCountedAndTheSessionGoesOn) {
       {Refusal::kNotHolder, 1}, {Refusal::kUnknownPart, 1},  {Refusal::kDuplicate, 1},
       {Refusal::kStale, 1}};
   EXPECT_EQ(reasons, expected);
-  EXPECT_TRUE(ben.until(3, [&] { return ben.refused.size() == 1; })) << "told to who sent it";
+  EXPECT_TRUE(ben.until(kPatience_s, [&] { return ben.refused.size() == 1; }))
+      << "told to who sent it";
   const Knowledge known = agreed_by({&anna, &ben});
   server->signal(SIGINT);
-  EXPECT_EQ(server->wait(5), 0);
+  EXPECT_EQ(server->wait(kPatience_s), 0);
   expect_told_at_end(known, Json::parse(server->out()));
   expect_in_log(known, log, {&anna, &ben});
   const Json inbox = Json::parse(server->out())["inbox"];
@@ -142,7 +146,7 @@ TEST_F(ServerFault, ASilentHandLosesTheLease) {
     return !anna.holder("red");
   }));
   // Without them it is free after the lease of 1 s (or liveliness, 0.8 s), and anna is told later.
-  ASSERT_TRUE(ben.until(4, [&] { return !ben.holder("red"); }));
+  ASSERT_TRUE(ben.until(kPatience_s, [&] { return !ben.holder("red"); }));
   EXPECT_TRUE(ben.grab("red"));
 }
 
@@ -153,10 +157,10 @@ TEST_F(ServerFault, ATermSignalEndsInOrder) {
   ASSERT_TRUE(anna.joined()) << server->errors();
   ASSERT_TRUE(anna.grab("red"));
   anna.client->send(anna.user, anna.client->find_part("red"), {1, 0, 0});
-  ASSERT_TRUE(anna.until(3, [&] { return anna.x("red") == 1.0; }));
+  ASSERT_TRUE(anna.until(kPatience_s, [&] { return anna.x("red") == 1.0; }));
   EXPECT_EQ(anna.client->policy(), "report");
   server->signal(SIGTERM);
-  ASSERT_EQ(server->wait(5), 0);
+  ASSERT_EQ(server->wait(kPatience_s), 0);
   const auto read = read_session_log(log);
   ASSERT_TRUE(read) << read.error().text;
   EXPECT_TRUE(read->complete);
@@ -185,16 +189,16 @@ TEST_F(ServerFault, WhatCannotStartSaysSoInOneLine) {
   };
   for (const auto& [arguments, code, says] : cases) {
     Program server(folder_.path(), "mortise-server", arguments);
-    EXPECT_EQ(server.wait(10), code) << arguments.back();
+    EXPECT_EQ(server.wait(kPatience_s), code) << arguments.back();
     EXPECT_NE(server.errors().find(says), std::string::npos) << server.errors();
     EXPECT_LE(lines(server.errors()), code == 3 ? 3U : 1U) << server.errors();
   }
   Program bot(folder_.path(), "mortise-bot", {"--domain", elsewhere, "--wait", "0.5"});
-  EXPECT_EQ(bot.wait(10), 1);
+  EXPECT_EQ(bot.wait(kPatience_s), 1);
   EXPECT_EQ(lines(bot.errors()), 1U) << bot.errors();
   Program script(folder_.path(), "mortise-bot",
                  {"--behaviour", "script", "--play", folder_.write("p.yaml", "acts: 3\n")});
-  EXPECT_EQ(script.wait(10), 3);
+  EXPECT_EQ(script.wait(kPatience_s), 3);
 }
 
 TEST_F(ServerFault, AnIdleSessionCostsNextToNothing) {
@@ -210,7 +214,7 @@ TEST_F(ServerFault, AnIdleSessionCostsNextToNothing) {
     EXPECT_LE(share, 0.03);
   }
   server->signal(SIGTERM);
-  ASSERT_EQ(server->wait(5), 0);
+  ASSERT_EQ(server->wait(kPatience_s), 0);
   const Json stages = Json::parse(server->out())["statistics"]["stages"];
   EXPECT_EQ(stages["queries"]["first_contact"], 0);
   EXPECT_EQ(stages["queries"]["depth"], 0);

@@ -70,7 +70,7 @@ TEST(Network, JoinsMovesAndSeesPoses) {
   Session session;
   Client& a = session.add_client("anna");
   Client& b = session.add_client("bert");
-  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
   EXPECT_NE(a.user_id(0), b.user_id(0));
   EXPECT_EQ(a.session(), "test");
   EXPECT_EQ(a.find_part("part2"), PartId{2});
@@ -79,7 +79,7 @@ TEST(Network, JoinsMovesAndSeesPoses) {
     a.send(0, PartId{1}, Vec3(0, 0.5, 0));
     session.turn();
   }
-  ASSERT_TRUE(session.wait(5.0, [&] {
+  ASSERT_TRUE(session.wait(kPatience_s, [&] {
     for (const Client* client : {&a, &b}) {
       const PartInfo& part = client->parts().at(PartId{1}).info;
       if (part.X_WP.p.y() != 10.0 || !part.holder) return false;
@@ -97,20 +97,20 @@ TEST(Network, AServerIsFoundByTheNameOfItsHost) {
   Session session;
   session.options.server = "localhost,127.0.0.1";
   session.add_client("anna");
-  EXPECT_TRUE(session.wait(5, [&] { return session.all_joined(); }));
+  EXPECT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
 }
 
 TEST(Network, FourClientsSeeTheSameEventsInTheSameOrder) {
   Session session;
   for (const char* name : {"a", "b", "c", "d"}) session.add_client(name);
-  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
   for (int i = 0; i < 100; ++i) {
     session.server->publish_events(1 + static_cast<std::uint32_t>(i) % 5);
     session.turn();
   }
   session.server->publish_events(500);  // several samples at once
   const std::uint64_t last = session.server->event_seq;
-  ASSERT_TRUE(session.wait(8.0, [&] {
+  ASSERT_TRUE(session.wait(kPatience_s, [&] {
     for (const auto& client : session.clients) {
       if (client->statistics().highest_event_seq < last) return false;
     }
@@ -129,7 +129,7 @@ TEST(Network, FourClientsSeeTheSameEventsInTheSameOrder) {
 TEST(Network, LateJoinerGetsTheSnapshotAndGoesOnWithoutAGap) {
   Session session(200);
   session.add_client("first");
-  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
   for (int i = 0; i < 50; ++i) {
     session.server->publish_events(2);
     session.turn();
@@ -137,7 +137,7 @@ TEST(Network, LateJoinerGetsTheSnapshotAndGoesOnWithoutAGap) {
   Client& late = session.add_client("late");
   // Events go on while it joins.
   double next_s = now_s();
-  ASSERT_TRUE(session.wait(8.0, [&] {
+  ASSERT_TRUE(session.wait(kPatience_s, [&] {
     if (now_s() > next_s) {
       session.server->publish_events(1);
       next_s += 0.02;
@@ -150,7 +150,8 @@ TEST(Network, LateJoinerGetsTheSnapshotAndGoesOnWithoutAGap) {
     session.turn();
   }
   const std::uint64_t last = session.server->event_seq;
-  ASSERT_TRUE(session.wait(5.0, [&] { return late.statistics().highest_event_seq == last; }));
+  ASSERT_TRUE(
+      session.wait(kPatience_s, [&] { return late.statistics().highest_event_seq == last; }));
   ASSERT_GE(session.events[1].size(), 20u);
   EXPECT_LT(session.events[1].size(), last);  // what the snapshot covers is not repeated
   for (std::size_t k = 1; k < session.events[1].size(); ++k) {
@@ -169,11 +170,11 @@ TEST(Network, ManyKeysAreNotLost) {
     }
     return bots.synced();
   };
-  ASSERT_TRUE(session.wait(10.0, joined));
+  ASSERT_TRUE(session.wait(kPatience_s, joined));
   for (std::uint32_t i = 0; i < kUsers; ++i) bots.send(i, PartId{i + 1}, Vec3(0, 0, 1));
-  ASSERT_TRUE(session.wait(5.0, [&] { return session.server->increments == kUsers; }))
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.server->increments == kUsers; }))
       << session.server->increments;
-  ASSERT_TRUE(session.wait(5.0, [&] {
+  ASSERT_TRUE(session.wait(kPatience_s, [&] {
     for (const auto& [id, part] : bots.parts()) {
       if (part.info.X_WP.p.z() != 1.0) return false;
     }
@@ -203,7 +204,7 @@ TEST(Network, LargeSnapshotsAndMeshesArriveWhole) {
   ASSERT_TRUE(opened) << opened.error().text;
   Client client(**opened);
   std::vector<MeshBytes> meshes;
-  ASSERT_TRUE(session.wait(8.0, [&] {
+  ASSERT_TRUE(session.wait(kPatience_s, [&] {
     ClientUpdate update = client.poll();
     for (MeshBytes& one : update.meshes) meshes.push_back(std::move(one));
     return client.parts().size() == 2000 && !meshes.empty() && client.features().told();
@@ -220,10 +221,10 @@ TEST(Network, RefusesAtTheDoorAndForForeignUsers) {
   Session session;
   Client& a = session.add_client("anna");
   Client& b = session.add_client("bert");
-  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
   a.send(0, PartId{1}, Vec3(std::nan(""), 0, 0));
   a.send(0, PartId{1}, Vec3::Zero(), Vec3(0, 4, 0));
-  ASSERT_TRUE(session.wait(5.0, [&] { return session.refused == 2; }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.refused == 2; }));
   EXPECT_EQ(session.server->increments, 0u);
   EXPECT_EQ(session.channel->counters().malformed, 2u);
   // Bert says that he is Anna.
@@ -236,7 +237,7 @@ TEST(Network, RefusesAtTheDoorAndForForeignUsers) {
   stolen.translation_mm = Vec3(1, 0, 0);
   session.channels[1]->send(batch_of(stolen, 0));
   ClientKey key;
-  ASSERT_TRUE(session.wait(5.0, [&] {
+  ASSERT_TRUE(session.wait(kPatience_s, [&] {
     for (const auto& received : session.server->last_input.increments) key = received.client;
     return !key.empty() && session.channel->counters().foreign >= 2;
   }));
@@ -262,18 +263,18 @@ TEST(Network, WhoClosesIsGoneBeforeALeaseRunsOut) {
   Session session(3, "test", 60.0);
   session.add_client("anna");
   session.add_client("bert");
-  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
   const ClientKey key = session.server->users.at(session.clients[1]->user_id(0)).first;
   session.clients.pop_back();
   session.channels.pop_back();  // without a goodbye
-  ASSERT_TRUE(session.wait(20.0, [&] { return !session.server->lost.empty(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return !session.server->lost.empty(); }));
   EXPECT_EQ(session.server->lost[0].client, key);
 }
 
 TEST(Network, NothingThatAServerSaidLastComesAfterItsLoss) {
   Session session;
   Client& client = session.add_client("anna");
-  ASSERT_TRUE(session.wait(8.0, [&] { return session.all_joined(); }));
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
   for (int round = 0; round < 5; ++round) {
     int resynced_after = 0;
     bool lost = false;
@@ -302,7 +303,8 @@ TEST(Network, NothingThatAServerSaidLastComesAfterItsLoss) {
     ASSERT_TRUE(again) << again.error().text;
     session.channel = std::move(*again);
     session.server = std::make_unique<SmallServer>(*session.channel, "test", 3);
-    ASSERT_TRUE(session.wait(8.0, [&] { return client.server_present() && session.all_joined(); }));
+    ASSERT_TRUE(
+        session.wait(kPatience_s, [&] { return client.server_present() && session.all_joined(); }));
   }
 }
 
@@ -311,7 +313,7 @@ TEST(Network, WhoIsGoneBeforeItsJoinIsReadDoesNotGetIn) {
   auto channel = open_client_channel(session.options);
   ASSERT_TRUE(channel) << channel.error().text;
   ASSERT_TRUE(until(
-      5.0, [&] { return (*channel)->take().server_present; }, [] {}));
+      kPatience_s, [&] { return (*channel)->take().server_present; }, [] {}));
   (*channel)->join(1, "hasty", "bot");
   sleep_s(0.3);
   channel->reset();

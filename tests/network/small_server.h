@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "idl/dds_channel.h"
+#include "tests/network/patience.h"
 
 namespace mortise::test {
 

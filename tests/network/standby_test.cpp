@@ -203,7 +203,7 @@ TEST_F(Standby, OneThatComesBackDoesNotFight) {
   const double y = ben_->client->parts().at(blue_).info.X_WP.p.y();
   first->signal(SIGCONT);
   turn(3.0);
-  EXPECT_EQ(first->wait(5), 1);
+  EXPECT_EQ(first->wait(kPatience_s), 1);
   EXPECT_NE(first->errors().find("another server leads session 'default' since"), std::string::npos)
       << first->errors();
   EXPECT_EQ(losses_, losses) << "nobody has changed servers";
@@ -212,7 +212,7 @@ TEST_F(Standby, OneThatComesBackDoesNotFight) {
   // And one that is started as if nothing had been.
   std::unique_ptr<Program> again = lead();
   turn(3.0);
-  EXPECT_EQ(again->wait(5), 1);
+  EXPECT_EQ(again->wait(kPatience_s), 1);
   EXPECT_NE(again->errors().find("another server leads session 'default'; start this one with"),
             std::string::npos)
       << again->errors();
@@ -239,11 +239,11 @@ TEST_F(Standby, OneThatIsFrozenForAMomentAcknowledgesNothingThatIsLost) {
     const bool taken_over = second->errors().find("taken over at tick") != std::string::npos;
     std::printf("frozen for %d ms: %s\n", frozen_ms, taken_over ? "taken over" : "went on");
     if (taken_over) {
-      EXPECT_EQ(first->wait(5), 1) << first->errors();
+      EXPECT_EQ(first->wait(kPatience_s), 1) << first->errors();
       first = std::move(second);
     } else {
       second->signal(SIGTERM);
-      EXPECT_EQ(second->wait(5), 0);
+      EXPECT_EQ(second->wait(kPatience_s), 0);
     }
     ASSERT_EQ(ben_->holder("blue"), ben_->client->user_id(0));
   }
@@ -324,7 +324,7 @@ TEST_F(Standby, OneThatWasFrozenForLongEndsAndDoesNotTakeOver) {
   turn(3.0);
   second->signal(SIGCONT);
   turn(1.0);
-  EXPECT_EQ(second->wait(5), 1);
+  EXPECT_EQ(second->wait(kPatience_s), 1);
   EXPECT_NE(second->errors().find("were not told to this one: start it again"), std::string::npos)
       << second->errors();
   EXPECT_EQ(losses_, losses) << "nobody has changed servers";

@@ -11,7 +11,7 @@ version() { dpkg-deb -f "$here/$1"_*.deb Version; }
 
 update() {
   ! dpkg-query -W 'mortise*' 'libmortise*' >/dev/null 2>&1 || fail "mortise is in this root already"
-  apt-get update -q >/tmp/said.txt 2>&1 || { tail -n 3 /tmp/said.txt; echo "no network: apt cannot read Debian's lists"; exit 77; }
+  apt-get update -q >/tmp/said.txt 2>&1 || { tail -n 3 /tmp/said.txt; echo "SKIPPED: no network: apt cannot read Debian's lists"; exit 77; }
   files >$here/before.txt
   dpkg-query -W -f '${Package} ${Status}\n' | sort >$here/packages-before.txt
 }
@@ -22,7 +22,7 @@ apt() {  # apt WHAT NAMES…: without a network there is nothing to be said; all
   apt-get install -y --no-install-recommends "$@" >/tmp/said.txt 2>&1 && return 0
   if grep -qE '^(E|Err).*(Failed to fetch|Temporary failure|Could not connect|Unable to fetch)' /tmp/said.txt; then
     grep -m 1 '^E' /tmp/said.txt
-    echo "no network: Debian's packages cannot be fetched"
+    echo "SKIPPED: no network: Debian's packages cannot be fetched"
     exit 77
   fi
   tail -n 20 /tmp/said.txt

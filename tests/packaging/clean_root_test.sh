@@ -5,7 +5,7 @@
 set -euo pipefail
 packages=$(realpath "$1") cache=$2 steps=$(dirname "$(readlink -f "$0")")/clean_root_steps.sh
 if [ "${IN_NAMESPACE:-}" != yes ]; then
-  skip() { echo "$*"; exit 77; }
+  skip() { echo "SKIPPED: $*"; exit 77; }
   [ "$(id -u)" -eq 0 ] || skip "not root: only root may make one"
   compgen -G "$packages/*.deb" >/dev/null || skip "program absent: there are no packages to install"
   for tool in mmdebstrap unshare objdump ip; do command -v "$tool" >/dev/null || skip "program absent: $tool"; done

@@ -11,7 +11,7 @@ finish() {
 }
 trap finish EXIT
 fail() { echo "FAILED: $*"; exit 1; }
-skip() { echo "$*"; exit 77; }
+skip() { echo "SKIPPED: $*"; exit 77; }
 
 # 1. what needs no container: sources are there, and what is installed is named in packages.txt alone
 mapfile -t sources < <(awk '$1 == "COPY" && $2 !~ /^--from=/ {for (i = 2; i < NF; ++i) print $i}' "$dockerfile")

@@ -2,7 +2,7 @@
 # Makes the packages of a build anew, for the tests that install them: make_packages.sh BUILD FOLDER
 set -euo pipefail
 build=$1 folder=$2
-skip() { echo "$*"; exit 77; }
+skip() { echo "SKIPPED: $*"; exit 77; }
 for tool in dpkg-deb dpkg-shlibdeps cpack; do command -v "$tool" >/dev/null || skip "program absent: $tool"; done
 [ -z "$(sed -n 's/^MORTISE_SANITIZE:[A-Z]*=//p' "$build/CMakeCache.txt")" ] || skip "sanitizer: a build with sanitizers is not packaged"
 rm -rf "$folder"

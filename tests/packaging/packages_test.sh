@@ -10,7 +10,7 @@ check() {  # check WHAT COMMAND…: says what failed, and goes on
   shift
   if "$@" >"$work/said.txt" 2>&1; then echo "ok    $what"; else echo "FAILED $what"; sed 's/^/       /' "$work/said.txt" | head -n 20; failures=$((failures + 1)); fi
 }
-skip() { echo "$*"; exit 77; }
+skip() { echo "SKIPPED: $*"; exit 77; }
 
 for tool in dpkg-deb unshare; do command -v "$tool" >/dev/null || skip "program absent: $tool"; done
 [ "$(id -u)" -eq 0 ] || skip "not root: only root may mount a root of its own"

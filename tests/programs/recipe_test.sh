@@ -3,7 +3,7 @@
 set -euo pipefail
 source=$1 bin=$2
 export PATH=$bin:$PATH
-command -v parallel >/dev/null || { echo "program absent: GNU parallel"; exit 77; }
+command -v parallel >/dev/null || { echo "SKIPPED: program absent: GNU parallel"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"

@@ -31,6 +31,7 @@ constexpr Insertion kInsertions[] = {{"input_shaft", "bearing_in_lower", 0.0},
 
 struct Tally {
   int tries = 0, inserted = 0;
+  int forced = 0;  ///< pairs of the shaft that overlap for real where it was left
   double farthest_off_mm = 0.0, deepest_mm = 1e300;
   std::uint64_t real = 0, legs = 0, not_examined = 0;
 };
@@ -94,6 +95,9 @@ void try_once(const World& scene, const Insertion& insertion, Policy policy, boo
           std::max(tally.farthest_off_mm, guided_state(world, shaft.id).residual_mm);
     tally.deepest_mm = std::min(tally.deepest_mm, shaft.X_WP.p.z());
   }
+  for (const PairVerdicts& pair : judge(world, scratch, false).pairs)
+    tally.forced += (pair.a == shaft.id || pair.b == shaft.id) && !pair.verdicts.empty() &&
+                    pair.verdicts.front().collision_class == CollisionClass::kReal;
   ++tally.tries;
   tally.inserted += shaft.X_WP.p.z() < kInserted_mm;
 }
@@ -124,24 +128,25 @@ struct GuidedInsertion : ::testing::Test {
 
 TEST_F(GuidedInsertion, UnderACoaxialConstraintEveryTime) {
   const Tally tally = play(Policy::kStop, true, 100);
-  EXPECT_EQ(tally.tries, 100);
   EXPECT_EQ(tally.inserted, 100);
+  EXPECT_EQ(tally.forced, 0);
   EXPECT_LT(tally.farthest_off_mm, 1e-9);
 }
 
 TEST_F(GuidedInsertion, WithSlideTheConstraintServesAsWell) {
   const Tally tally = play(Policy::kSlide, true, test::effort(4));
   EXPECT_EQ(tally.inserted, tally.tries);
+  EXPECT_EQ(tally.forced, 0);
   EXPECT_LT(tally.farthest_off_mm, 1e-9);
 }
 
-// Without a constraint: how often is told; no promise is made but that it is never forced in.
-TEST_F(GuidedInsertion, ByHandItIsTold) {
+// Without a constraint: how often is told; the promise is that it is never forced in.
+TEST_F(GuidedInsertion, ByHandItIsNeverForcedIn) {
   const char* asked = std::getenv("MORTISE_TRIES");
   const int tries = asked != nullptr ? std::atoi(asked) : test::effort(1);
   for (const Policy policy : {Policy::kSlide, Policy::kStop}) {
     const Tally tally = play(policy, false, tries);
-    EXPECT_EQ(tally.tries, tries);
+    EXPECT_EQ(tally.forced, 0) << name_of(policy);
   }
 }
 

@@ -6,13 +6,13 @@ shift
 cd "$(dirname "$0")" || exit 1
 node=$(node -p 'process.versions.node.split(".")[0]' 2>/dev/null) || node=0
 if [ "$node" -lt "$oldest" ]; then
-  echo "program absent: node >= $oldest for the tests of the page, here is ${node:-none}"
+  echo "SKIPPED: program absent: node >= $oldest for the tests of the page, here is ${node:-none}"
   exit 77
 fi
 if [ "$oldest" -ge 20 ]; then
   why=$(node --input-type=module -e 'import { whyNoBrowser } from "./support/browser.mjs"; console.log(await whyNoBrowser());') || why="the tests' own modules are missing"
   if [ -n "$why" ]; then
-    echo "program absent: a browser for the tests of the page: $why"
+    echo "SKIPPED: program absent: a browser for the tests of the page: $why"
     exit 77
   fi
 fi
