@@ -6,6 +6,7 @@
 #include "client/picture/canvas.h"
 #include "client/picture/detail_view.h"
 #include "common/base/result.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "common/session/world/world.h"
 

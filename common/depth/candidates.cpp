@@ -305,7 +305,7 @@ InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint
   return in_bore_bound(query, pair.X_KS[0]);
 }
 
-Candidates find_candidates(const CandidateQuery& query) { return Finder(query).run(); }
+Candidates find_candidate_triangles(const CandidateQuery& query) { return Finder(query).run(); }
 
 namespace {
 

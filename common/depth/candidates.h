@@ -51,7 +51,7 @@ InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint
 /// Triangles of either part that are within the margin of the other part's boxes and planes: a
 /// superset of those within the margin. Pairs of declared faces with a closed form that is tight,
 /// or that shows that they cannot interfere, are not descended into.
-Candidates find_candidates(const CandidateQuery& query);
+Candidates find_candidate_triangles(const CandidateQuery& query);
 
 /// What the closed forms of the candidates say, for proofs, and what is known of round faces in
 /// bores that cannot interfere in the upper layer.

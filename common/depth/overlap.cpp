@@ -97,7 +97,7 @@ class Overlap {
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
-    Candidates candidates = find_candidates(near);
+    Candidates candidates = find_candidate_triangles(near);
     known_ = known_overlaps(pair_, candidates);
     for (const KnownFacePair& known : candidates.known)
       if (!told_by_another(known, candidates) && !add_known(known))

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/messages/channel.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/step.h"
 #include "common/session/world/world.h"

@@ -9,6 +9,7 @@
 #include "common/io/scenario/scene_load.h"
 #include "common/math/rotation.h"
 #include "common/session/guide/guidance.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "common/session/world/decisions.h"
 #include "tests/support/effort.h"
@@ -95,7 +96,7 @@ void try_once(const World& scene, const Insertion& insertion, Policy policy, boo
           std::max(tally.farthest_off_mm, guided_state(world, shaft.id).residual_mm);
     tally.deepest_mm = std::min(tally.deepest_mm, shaft.X_WP.p.z());
   }
-  for (const PairVerdicts& pair : judge(world, scratch, false).pairs)
+  for (const PairVerdicts& pair : judge_world(world, scratch, false).pairs)
     tally.forced += (pair.a == shaft.id || pair.b == shaft.id) && !pair.verdicts.empty() &&
                     pair.verdicts.front().collision_class == CollisionClass::kReal;
   ++tally.tries;

@@ -12,6 +12,7 @@
 #include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/io/scenario/open_scene.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 
@@ -94,7 +95,7 @@ class RealFits : public testing::TestWithParam<RealFit> {
 
 std::vector<Verdict> judged(World& world, bool full_brackets = false) {
   Scratch scratch;
-  const JudgeReport report = judge(world, scratch, full_brackets);
+  const JudgeReport report = judge_world(world, scratch, full_brackets);
   return report.pairs.empty() ? std::vector<Verdict>{} : report.pairs.front().verdicts;
 }
 

@@ -10,6 +10,7 @@
 #include "common/ccd/first_contact.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/scenario/scene_load.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "tests/support/test_data.h"
 
@@ -67,7 +68,7 @@ TEST_P(RealGaps, TheGapIsThePublishedOneAndNothingIsReal) {
     world.parts[1].X_WP = Pose::translation(Vec3(0, 0, GetParam().z_mm + lift));
     if (threaded)
       world.parts[1].X_WP.q = Quat(Eigen::AngleAxisd(std::numbers::pi * lift, Vec3::UnitZ()));
-    for (const PairVerdicts& pair : judge(world, work, false).pairs)
+    for (const PairVerdicts& pair : judge_world(world, work, false).pairs)
       for (const Verdict& verdict : pair.verdicts)
         EXPECT_NE(verdict.collision_class, CollisionClass::kReal) << lift << verdict.explanation;
   }

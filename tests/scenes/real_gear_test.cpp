@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/io/scenario/scene_load.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "tests/scenes/first_error.h"
 #include "tests/support/test_data.h"
@@ -90,7 +91,7 @@ GearJudged gear_on_shaft(const std::string& code, Base base = Base::kShaftOnly) 
   });
   EXPECT_TRUE(scene && scene->usable()) << first_error(*scene);
   Scratch scratch;
-  const JudgeReport report = judge(scene->world, scratch, false);
+  const JudgeReport report = judge_world(scene->world, scratch, false);
   GearJudged judged;
   for (const Part& part : scene->world.parts) judged.residual_mm += part.features[0].residual_mm;
   for (const PairVerdicts& pair : report.pairs)

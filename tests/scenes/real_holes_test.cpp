@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/io/scenario/scene_load.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "tests/scenes/first_error.h"
 #include "tests/support/test_data.h"
@@ -244,7 +245,7 @@ class RealHoles : public testing::TestWithParam<const char*> {
     LoadedScene scene = scene_with(part, pins);
     ASSERT_TRUE(scene.usable()) << first_error(scene);
     Scratch scratch;
-    const JudgeReport report = judge(scene.world, scratch, full_brackets);
+    const JudgeReport report = judge_world(scene.world, scratch, full_brackets);
     for (std::size_t i = 0; i < pins.size(); ++i, ++judged_) {
       const PartId id = scene.world.parts[i + 1].id;
       const auto pair = std::find_if(report.pairs.begin(), report.pairs.end(),

@@ -8,6 +8,7 @@
 
 #include "common/generators/generators.h"
 #include "common/io/scenario/open_scene.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {
@@ -57,7 +58,7 @@ class SceneFeatures : public testing::Test {
 
   static std::vector<Verdict> judged(OpenedScene& opened) {
     Scratch scratch;
-    const JudgeReport report = judge(opened.scene.world, scratch, true);
+    const JudgeReport report = judge_world(opened.scene.world, scratch, true);
     return report.pairs.empty() ? std::vector<Verdict>{} : report.pairs.front().verdicts;
   }
 

@@ -3,6 +3,7 @@
 
 #include "common/io/report_json.h"
 #include "common/io/scenario/open_scene.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {

@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
 
   mortise::Scratch scratch(threads);
   const mortise::JudgeReport report =
-      mortise::judge(opened->scene.world, scratch, full || !picture.empty());
+      judge_world(opened->scene.world, scratch, full || !picture.empty());
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const std::string text = json ? mortise::judge_json(*opened, report).dump(2) + "\n"
                                 : mortise::judge_text(*opened, report, color);

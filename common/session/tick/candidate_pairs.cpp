@@ -1,9 +1,10 @@
+#include "common/session/tick/candidate_pairs.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/broadphase/pair_filter.h"
 #include "common/broadphase/swept_box.h"
-#include "common/session/tick/tick_work.h"
 
 namespace mortise {
 namespace {
@@ -93,8 +94,8 @@ bool changed(const Scratch::Impl& work, std::uint32_t part) {
 
 }  // namespace
 
-void find_candidates(const World& world, SessionState& state, Scratch::Impl& work,
-                     StepReport& report) {
+void find_candidate_pairs(const World& world, SessionState& state, Scratch::Impl& work,
+                          StepReport& report) {
   StepCounters& counters = report.counters;
   work.pair_count = 0;
   const PairCensus census = count_pairs(world.parts.size(), state.moving_parts, work.moves.size());

@@ -1,9 +1,10 @@
+#include "common/session/tick/clash_identity.h"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "common/base/constants.h"
-#include "common/session/tick/tick_work.h"
 #include "common/session/world/review.h"
 
 namespace mortise {

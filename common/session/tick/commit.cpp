@@ -1,6 +1,7 @@
+#include "common/session/tick/commit.h"
+
 #include "common/session/guide/guidance.h"
 #include "common/session/memory/kept_push.h"
-#include "common/session/tick/tick_work.h"
 
 namespace mortise {
 

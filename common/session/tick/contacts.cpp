@@ -1,3 +1,5 @@
+#include "common/session/tick/contacts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -5,11 +7,11 @@
 #include <utility>
 
 #include "common/base/constants.h"
-#include "common/session/memory/motion_budget.h"
+#include "common/session/memory/known_distance.h"
 #include "common/session/tick/contact_budget.h"
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/stop_time.h"
-#include "common/session/tick/tick_work.h"
+#include "common/session/tick/verdicts.h"
 
 namespace mortise {
 namespace {
@@ -104,7 +106,7 @@ double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_
 // Is the pair known to stay clear of everything that has to be looked at? From an earlier distance,
 // or else from the distance now where that is likely to save more than it costs.
 bool stays_clear(PairWork& pair, CcdScratch& ccd) {
-  const BudgetQuery budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
+  const MovingPair budget{pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b};
   if (apart_lower_bound_mm(*pair.memo, budget) > needed_mm(pair)) return true;
   if (pair.contact_cap == 0) return false;
   // Only surfaces are apart: who may start inside the other is asked, and so is who has to end a
@@ -121,7 +123,7 @@ bool stays_clear(PairWork& pair, CcdScratch& ccd) {
       2.0 * needed_mm(pair) + 16.0 * spent_mm +
       0.01 * std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
   const Pose &X_WA = pair.motion_a.X_W0, &X_WB = pair.motion_b.X_W0;
-  const double apart_mm = distance_of(pair, X_WA, X_WB, limit_mm, ccd).distance_mm;
+  const double apart_mm = pair_distance(pair, X_WA, X_WB, limit_mm, ccd).distance_mm;
   remember_apart(memo, X_WA, X_WB, apart_mm);
   if (apart_mm - needed_mm(pair) < 4.0 * spent_mm) {
     memo.pause = memo.next_pause;
@@ -134,8 +136,8 @@ bool stays_clear(PairWork& pair, CcdScratch& ccd) {
 
 }  // namespace
 
-DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
-                           CcdScratch& ccd) {
+DistanceResult pair_distance(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
+                             CcdScratch& ccd) {
   ++pair.counts.distance_queries;
   const DistanceResult result =
       distance(*pair.solid_a, X_WA, *pair.solid_b, X_WB, ccd, limit_mm, &pair.memo->nearest);
@@ -191,7 +193,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     pair.near = true;
     return;
   }
-  if (switches.motion_budget && !cut_short && stays_clear(pair, ccd)) {
+  if (switches.known_distances && !cut_short && stays_clear(pair, ccd)) {
     pair.asked = false;
     return;
   }
@@ -292,9 +294,9 @@ void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uin
 }
 
 void find_contacts(const World& world, Scratch::Impl& work) {
-  work.again.resize(work.pair_count);
-  std::iota(work.again.begin(), work.again.end(), 0U);
-  ask_pairs(world, work, work.again);
+  work.to_ask.resize(work.pair_count);
+  std::iota(work.to_ask.begin(), work.to_ask.end(), 0U);
+  ask_pairs(world, work, work.to_ask);
 }
 
 }  // namespace mortise

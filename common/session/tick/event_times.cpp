@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/depth/interference_time.h"
 #include "common/depth/overlap.h"
 
 namespace mortise {
@@ -93,7 +94,7 @@ void search(PairWork& pair, CcdScratch& ccd) {
     // The response knows it already.
     pair.t_real = pair.t_stop;
   } else if (!pair.no_inside() && !pair.never_real) {
-    const RealTime real = find_real_time(query, ccd);
+    const InterferenceTime real = find_interference_time(query, ccd);
     count(pair, real.evaluations, real.capped);
     if (real.becomes_real) pair.t_real = in_tick(real.t_real);
     if (real.capped && !real.becomes_real)

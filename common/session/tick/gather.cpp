@@ -1,10 +1,12 @@
+#include "common/session/tick/gather.h"
+
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
 #include "common/base/constants.h"
 #include "common/math/rotation.h"
 #include "common/session/guide/guidance.h"
-#include "common/session/tick/tick_work.h"
 
 namespace mortise {
 namespace {
@@ -170,20 +172,12 @@ void go_on(const World& world, Scratch::Impl& work) {
   world.state->kept.clear();
 }
 
-}  // namespace
-
-void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
-            StepReport& report) {
+// Checks and composes, in order of arrival, on top of what is left of the last tick: motion.X_W1 is
+// the target so far.
+void compose(World& world, std::span<const Increment> increments, Scratch::Impl& work,
+             StepReport& report) {
   StepCounters& counters = report.counters;
   counters.increments.in = increments.size();
-  if (work.move_of_part.size() != world.parts.size())
-    work.move_of_part.assign(world.parts.size(), -1);
-  for (const Move& move : work.moves) work.move_of_part[move.part] = -1;
-  work.moves.clear();
-
-  // 1. Check and compose, in order of arrival, on top of what is left of the last tick.
-  //    motion.X_W1 is the target so far.
-  go_on(world, work);
   for (const Increment& increment : increments) {
     Refusal refusal = check(world, increment);
     if (refusal == Refusal::kNone) {
@@ -206,12 +200,13 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
     ++counters.refused[static_cast<std::size_t>(refusal)];
     report.refused.push_back({increment.user, increment.part, increment.seq, refusal});
   }
+}
 
-  // 2. One motion a part; what nobody could feel is no motion.
-  follow(world, work);
+// One motion a part; what nobody could feel is no motion.
+void make_motions(const World& world, Scratch::Impl& work, StepCounters& counters) {
   counters.moves.in = work.moves.size();
-  const std::size_t bodies = work.moves.size();
-  for (std::size_t i = 0; i < bodies; ++i) {
+  const std::size_t groups = work.moves.size();
+  for (std::size_t i = 0; i < groups; ++i) {
     Move& move = work.moves[i];
     if (world.parts[move.part].group || is_guided(world, move)) {
       spread(world, i, work);
@@ -226,10 +221,12 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
     }
     ++(work.moves[i].motion.moves() ? counters.moves.out : counters.moves_below_rounding);
   }
-  for (std::size_t i = bodies; i < work.moves.size(); ++i)
+  for (std::size_t i = groups; i < work.moves.size(); ++i)
     work.move_of_part[work.moves[i].part] = static_cast<std::int32_t>(i);
+}
 
-  // 3. Parts that were put somewhere have to be looked at as well, and those of a pair that waits.
+// Parts that were put somewhere have to be looked at as well, and those of a pair that waits.
+void add_standing(const World& world, Scratch::Impl& work) {
   for (const std::uint32_t part : world.state->placed) {
     const Part& placed = world.parts[part];
     move_of(work, {part, placed.X_WP, placed.solid->sphere().center_mm}).placed = true;
@@ -238,6 +235,10 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
     const Part& part = world.parts[owed.a];
     move_of(work, {owed.a, part.X_WP, part.solid->sphere().center_mm}).owed = true;
   }
+}
+
+// Leaves out what neither moves nor has to be looked at; by part.
+void put_in_order(Scratch::Impl& work) {
   for (const Move& move : work.moves) work.move_of_part[move.part] = -1;
   std::erase_if(work.moves, [](const Move& move) {
     return !move.motion.moves() && !move.placed && !move.owed;
@@ -247,11 +248,29 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
   work.moved_parts.clear();
   for (std::size_t i = 0; i < work.moves.size(); ++i) {
     Move& move = work.moves[i];
+    MORTISE_CHECK(valid(move.motion) && (i == 0 || work.moves[i - 1].part < move.part),
+                  "each part has one valid motion, in the order of the parts");
     move.X_WP_end = move.motion.X_W1;
     move.leg = move.motion;
     work.move_of_part[move.part] = static_cast<std::int32_t>(i);
     work.moved_parts.push_back(move.part);
   }
+}
+
+}  // namespace
+
+void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
+            StepReport& report) {
+  if (work.move_of_part.size() != world.parts.size())
+    work.move_of_part.assign(world.parts.size(), -1);
+  for (const Move& move : work.moves) work.move_of_part[move.part] = -1;
+  work.moves.clear();
+  go_on(world, work);
+  compose(world, increments, work, report);
+  follow(world, work);
+  make_motions(world, work, report.counters);
+  add_standing(world, work);
+  put_in_order(work);
 }
 
 }  // namespace mortise

@@ -1,10 +1,12 @@
+#include "common/session/tick/response.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/base/constants.h"
+#include "common/session/tick/contacts.h"
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/slide.h"
-#include "common/session/tick/tick_work.h"
 
 namespace mortise {
 namespace {
@@ -98,7 +100,7 @@ class Response {
       if (pair.t_stop < t && (active(work_, pair.move_a) || active(work_, pair.move_b)))
         t = pair.t_stop;
     }
-    for (SlidingBody& sliding : work_.sliding) {
+    for (SlidingGroup& sliding : work_.sliding) {
       if (move_at(sliding.moves.front()).stopped) continue;
       if (sliding.look_due) look_for_release(world_, work_, sliding, blocked_at(sliding));
       t = std::min(t, sliding.look);
@@ -106,7 +108,7 @@ class Response {
     return t;
   }
 
-  double blocked_at(const SlidingBody& sliding) {
+  double blocked_at(const SlidingGroup& sliding) {
     const std::int32_t number = move_at(sliding.moves.front()).sliding;
     double t = 1.0;
     for (std::size_t i = 0; i < work_.pair_count; ++i)
@@ -143,7 +145,7 @@ class Response {
       for (const std::int32_t move : {pair.move_a, pair.move_b})
         if (active(work_, move)) add_responding(move);
     }
-    for (const SlidingBody& sliding : work_.sliding)
+    for (const SlidingGroup& sliding : work_.sliding)
       if (sliding.look == t && !move_at(sliding.moves.front()).stopped)
         add_responding(sliding.moves.front());
     std::sort(responding_.begin(), responding_.end());
@@ -179,7 +181,7 @@ class Response {
 
   // Whoever still moves meets the others where they are now.
   void ask_again(double t) {
-    work_.again.clear();
+    work_.to_ask.clear();
     const auto changed = [&](std::int32_t index) {
       if (index < 0) return false;
       const Move& move = move_at(index);
@@ -189,16 +191,16 @@ class Response {
       const PairWork& pair = work_.pairs[i];
       if (pair.together || pair.placed) continue;
       if (!changed(pair.move_a) && !changed(pair.move_b)) continue;
-      if (active(work_, pair.move_a) || active(work_, pair.move_b)) work_.again.push_back(i);
+      if (active(work_, pair.move_a) || active(work_, pair.move_b)) work_.to_ask.push_back(i);
     }
-    for (const std::uint32_t i : work_.again) {
+    for (const std::uint32_t i : work_.to_ask) {
       PairWork& pair = work_.pairs[i];
       remember(pair, t);
       pair.tau = t;
       if (pair.move_a >= 0) pair.motion_a = rest_of(move_at(pair.move_a), t);
       if (pair.move_b >= 0) pair.motion_b = rest_of(move_at(pair.move_b), t);
     }
-    ask_pairs(world_, work_, work_.again);
+    ask_pairs(world_, work_, work_.to_ask);
   }
 
   void remember(PairWork& pair, double t) {

@@ -56,14 +56,14 @@ Pose pose_at(const Scratch::Impl& work, const World& world, std::int32_t index, 
   return move.leg.pose_at(tick_to_leg(move, t));
 }
 
-SlidingBody& sliding_of(const World& world, Scratch::Impl& work, std::int32_t index) {
+SlidingGroup& sliding_of(const World& world, Scratch::Impl& work, std::int32_t index) {
   Move& move = work.moves[static_cast<std::size_t>(index)];
   if (move.sliding < 0) {
     const auto number = static_cast<std::int32_t>(work.sliding.size());
-    SlidingBody& sliding = work.sliding.emplace_back();
-    sliding.body = moving_group_of(world, move.part);
-    sliding.relations = relations_of(world, sliding.body);
-    for (const std::uint32_t part : sliding.body.parts)
+    SlidingGroup& sliding = work.sliding.emplace_back();
+    sliding.group = moving_group_of(world, move.part);
+    sliding.relations = relations_of(world, sliding.group);
+    for (const std::uint32_t part : sliding.group.parts)
       if (const std::int32_t m = work.move_of_part[part]; m >= 0) {
         sliding.moves.push_back(m);
         work.moves[static_cast<std::size_t>(m)].sliding = number;
@@ -74,7 +74,7 @@ SlidingBody& sliding_of(const World& world, Scratch::Impl& work, std::int32_t in
 
 struct Side {
   bool a = false;  ///< the body is part A of the pair
-  bool of_body = false;
+  bool of_group = false;
 };
 
 Side side_of(const PairWork& pair, const Scratch::Impl& work, std::int32_t sliding) {
@@ -146,7 +146,7 @@ void add_plain_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool is
 }
 
 // Where the holds of earlier legs stand after the leg so far.
-void carry_on(SlidingBody& sliding, double share, const Vec3& center_W) {
+void carry_on(SlidingGroup& sliding, double share, const Vec3& center_W) {
   for (Hold& hold : sliding.holds) {
     const Vec3 by =
         sliding.given.shift_mm + sliding.given.turn_rad.cross(Vec3(hold.point_W - center_W));
@@ -166,7 +166,8 @@ Displacement displacement_of(const Twist& twist) {
 }
 
 // The relations of the body as it stands after a displacement from X_W0 to X_W1 of its first part.
-std::vector<Relation> relations_at(const SlidingBody& sliding, const Pose& X_W0, const Pose& X_W1) {
+std::vector<Relation> relations_at(const SlidingGroup& sliding, const Pose& X_W0,
+                                   const Pose& X_W1) {
   const Pose by = X_W1 * X_W0.inverse();
   std::vector<Relation> relations = sliding.relations;
   for (Relation& relation : relations) relation.a = moved(relation.a, by);
@@ -190,11 +191,11 @@ TangentMove on_arc(TangentQuery query, double& lift_mm) {
 }
 
 // Puts the body on its next leg, kept exactly on what guides it.
-bool set_out(const World& world, Scratch::Impl& work, SlidingBody& sliding, const Vec3& center_W,
+bool set_out(const World& world, Scratch::Impl& work, SlidingGroup& sliding, const Vec3& center_W,
              const std::vector<Relation>& relations, double t) {
   Displacement by = displacement_of(sliding.given);
   if (!relations.empty())
-    by = guided({relations, center_W, std::max(sliding.body.radius_mm, 1e-3), by}).displacement;
+    by = guided({relations, center_W, std::max(sliding.group.radius_mm, 1e-3), by}).displacement;
   std::vector<Motion> legs;
   for (const std::int32_t index : sliding.moves) {
     const Move& move = move_at(work, index);
@@ -219,12 +220,62 @@ bool set_out(const World& world, Scratch::Impl& work, SlidingBody& sliding, cons
   return true;
 }
 
+// What holds a group at time t of the tick: contacts of plain pairs, and, in sliding.holds, those
+// of pairs with bands.
+struct Holding {
+  bool known = true;    ///< false: nothing is known of what lies beyond t
+  bool banded = false;  ///< a pair with bands is in the way
+  std::vector<Hold> plain;
+};
+
+Holding what_holds(const World& world, Scratch::Impl& work, SlidingGroup& sliding,
+                   std::int32_t number, double t) {
+  Holding holding;
+  CcdScratch& ccd = work.ccd.front();
+  for (std::size_t i = 0; i < work.pair_count; ++i) {
+    PairWork& pair = work.pairs[i];
+    const Side side = side_of(pair, work, number);
+    if (!side.of_group || pair.placed || pair.no_inside()) continue;
+    // A leg that only leans on a part is free of it: what held the group before is looked at again.
+    if (!pair.asked && !pair.blocked) continue;
+    if (pair.blocks && pair.undecided) {
+      holding.known = false;
+      return holding;
+    }
+    const Pose X_WA = pose_at(work, world, pair.move_a, pair.a, t);
+    const Pose X_WB = pose_at(work, world, pair.move_b, pair.b, t);
+    if (pair.plain() && !pair.overlaps_at_start) {
+      add_plain_holds(pair, X_WA, X_WB, side.a, ccd, holding.plain);
+    } else {
+      holding.banded = true;
+      if (pair.blocks) add_banded_holds(pair, X_WA, X_WB, side.a, ccd, sliding.holds);
+    }
+  }
+  return holding;
+}
+
+// What is wanted of the rest of the tick, and what holds the group and guides it.
+TangentQuery tangent_query(const SlidingGroup& sliding, const Motion& wanted, const Vec3& center_W,
+                           std::vector<Hold> plain, const std::vector<Relation>& relations,
+                           double t) {
+  TangentQuery query;
+  query.wanted = {(1.0 - t) * wanted.v_W, (1.0 - t) * wanted.w_W};
+  query.center_W = center_W;
+  query.lever_mm = std::max(sliding.group.radius_mm, 1e-3);
+  // A hand that does not turn the part keeps it from turning.
+  query.may_turn = !wanted.w_W.isZero(0.0);
+  query.holds = std::move(plain);
+  query.holds.insert(query.holds.end(), sliding.holds.begin(), sliding.holds.end());
+  if (!relations.empty()) query.guides = guide_rows({relations, center_W, query.lever_mm, {}});
+  return query;
+}
+
 }  // namespace
 
 bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, double t,
                StepCounters& counters) {
   const bool first = move_at(work, index).sliding < 0;
-  SlidingBody& sliding = sliding_of(world, work, index);
+  SlidingGroup& sliding = sliding_of(world, work, index);
   const std::int32_t number = move_at(work, index).sliding;
   const Move& lead = move_at(work, sliding.moves.front());
   if (!first) sliding.stalls = t - lead.leg_start < kStalled ? sliding.stalls + 1 : 0;
@@ -237,47 +288,21 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
 
   // 1. what holds it
   if (!first) carry_on(sliding, tick_to_leg(lead, t), lead.leg.X_W0 * lead.leg.reference_P);
-  std::vector<Hold> plain;
-  bool banded = false;
-  CcdScratch& ccd = work.ccd.front();
-  for (std::size_t i = 0; i < work.pair_count; ++i) {
-    PairWork& pair = work.pairs[i];
-    const Side side = side_of(pair, work, number);
-    if (!side.of_body || pair.placed || pair.no_inside()) continue;
-    // A leg that only leans on a part is free of it: what held the body before is looked at again.
-    if (!pair.asked && !pair.blocked) continue;
-    if (pair.blocks && pair.undecided) return false;  // nothing is known beyond
-    const Pose X_WA = pose_at(work, world, pair.move_a, pair.a, t);
-    const Pose X_WB = pose_at(work, world, pair.move_b, pair.b, t);
-    if (pair.plain() && !pair.overlaps_at_start) {
-      add_plain_holds(pair, X_WA, X_WB, side.a, ccd, plain);
-    } else {
-      banded = true;
-      if (pair.blocks) add_banded_holds(pair, X_WA, X_WB, side.a, ccd, sliding.holds);
-    }
-  }
-
-  if (banded && sliding.legs >= kMostBandLegs) {
+  Holding holding = what_holds(world, work, sliding, number, t);
+  if (!holding.known) return false;
+  if (holding.banded && sliding.legs >= kMostBandLegs) {
     ++counters.slides_cut_short;
     return false;
   }
 
-  // 2. what they leave of the rest of the increments
-  TangentQuery query;
-  query.wanted = {(1.0 - t) * lead.motion.v_W, (1.0 - t) * lead.motion.w_W};
-  query.center_W = center_W;
-  query.lever_mm = std::max(sliding.body.radius_mm, 1e-3);
-  // A hand that does not turn the part keeps it from turning.
-  query.may_turn = !lead.motion.w_W.isZero(0.0);
-  query.holds = plain;
-  query.holds.insert(query.holds.end(), sliding.holds.begin(), sliding.holds.end());
+  // 2. what that leaves of the rest of the increments
   const std::vector<Relation> relations = relations_at(sliding, lead.motion.X_W0, X_Wt);
-  if (!relations.empty()) query.guides = guide_rows({relations, center_W, query.lever_mm, {}});
+  const TangentQuery query =
+      tangent_query(sliding, lead.motion, center_W, std::move(holding.plain), relations, t);
   const TangentMove move = on_arc(query, sliding.lift_mm);
   counters.slide_holds += query.holds.size();
-  if (!move.possible ||
-      travel_mm(move.twist, sliding.body.radius_mm) < (banded ? kLeastBandLeg_mm : kLeastLeg_mm))
-    return false;
+  const double least_mm = holding.banded ? kLeastBandLeg_mm : kLeastLeg_mm;
+  if (!move.possible || travel_mm(move.twist, sliding.group.radius_mm) < least_mm) return false;
 
   // 3. on its way
   sliding.wanted = query.wanted;
@@ -292,7 +317,8 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
   return true;
 }
 
-void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& sliding, double t_end) {
+void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sliding,
+                      double t_end) {
   sliding.look_due = false;
   sliding.look = 2.0;
   const std::int32_t number = move_at(work, sliding.moves.front()).sliding;
@@ -301,20 +327,20 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& slid
   bool banded = false;
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    if (!side_of(pair, work, number).of_body || pair.placed || pair.no_inside()) continue;
+    if (!side_of(pair, work, number).of_group || pair.placed || pair.no_inside()) continue;
     if (!pair.asked && !pair.blocked) continue;
     holding.push_back(&pair);
     banded |= !pair.plain();
   }
   Twist away{sliding.wanted.shift_mm - sliding.given.shift_mm,
              sliding.wanted.turn_rad - sliding.given.turn_rad};
-  const double length_mm = travel_mm(away, sliding.body.radius_mm);
+  const double length_mm = travel_mm(away, sliding.group.radius_mm);
   const double try_mm = (banded ? kBandTry_mm : kTry_mm) + 2.0 * sliding.lift_mm;
   if (length_mm < try_mm) return;
   away.shift_mm *= try_mm / length_mm;
   away.turn_rad *= try_mm / length_mm;
   const Displacement tried = displacement_of(away);
-  const double leg_mm = travel_mm(sliding.given, sliding.body.radius_mm);
+  const double leg_mm = travel_mm(sliding.given, sliding.group.radius_mm);
   const int looks = std::min(banded ? kMostBandLooks : kMostLooks,
                              static_cast<int>(std::ceil(leg_mm / kLookEvery_mm)));
   CcdScratch& ccd = work.ccd.front();

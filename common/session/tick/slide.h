@@ -20,6 +20,6 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t move, doubl
 
 /// When what holds the body lets go of it on its present leg, sought at no more than
 /// kMostLooks places of the leg before time t_end; 2: it does not.
-void look_for_release(const World& world, Scratch::Impl& work, SlidingBody& sliding, double t_end);
+void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sliding, double t_end);
 
 }  // namespace mortise

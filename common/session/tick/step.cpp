@@ -2,10 +2,17 @@
 
 #include <algorithm>
 
+#include "common/session/tick/candidate_pairs.h"
+#include "common/session/tick/clash_identity.h"
+#include "common/session/tick/commit.h"
 #include "common/session/tick/contact_budget.h"
+#include "common/session/tick/contacts.h"
 #include "common/session/tick/depth_budget.h"
+#include "common/session/tick/gather.h"
+#include "common/session/tick/response.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
+#include "common/session/tick/verdicts.h"
 #include "common/session/world/review.h"
 
 namespace mortise {
@@ -59,14 +66,15 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   StepReport report;
   report.tick = world.tick;
   tell_reviews(world, state, report);
+  // The stages. Each reads what the ones before have written.
   gather(world, increments, work, report);
-  find_candidates(world, state, work, report);
+  find_candidate_pairs(world, state, work, report);
   open_depth_budget(world, state, work);
   open_contact_budget(world, state, work);
   if (!work.moves.empty()) {
     find_contacts(world, work);
     respond(world, work, report);
-    judge_pairs(world, work);
+    find_verdicts(world, work);
     commit(world, state, work, report);
     note_held(world, work);
     report_clashes(world, state, work, report);

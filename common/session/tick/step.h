@@ -28,18 +28,4 @@ class Scratch {
 /// number of threads. No clock, no I/O, no logging.
 StepReport step(World& world, std::span<const Increment> increments, Scratch& scratch);
 
-/// Judges every pair at the present poses without moving anything (what `mortise judge` shows).
-struct PairVerdicts {
-  PartId a, b;
-  std::vector<Verdict> verdicts;  ///< a region each, worst first
-  double distance_mm = 0.0;       ///< of the meshes when they do not cross
-  bool excluded = false;
-  bool no_inside = false;
-};
-struct JudgeReport {
-  std::vector<PairVerdicts> pairs;  ///< pairs with at least one verdict, and excluded ones
-  StepCounters counters;
-};
-JudgeReport judge(World& world, Scratch& scratch, bool full_brackets);
-
 }  // namespace mortise

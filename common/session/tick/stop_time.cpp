@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "common/base/constants.h"
-#include "common/session/memory/motion_budget.h"
+#include "common/depth/interference_time.h"
+#include "common/session/memory/known_distance.h"
 
 namespace mortise {
 namespace {
@@ -243,7 +244,7 @@ double free_time(PairWork& pair, CcdScratch& ccd) {
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
   query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
-  const RealTime real = find_real_time(query, ccd);
+  const InterferenceTime real = find_interference_time(query, ccd);
   ++pair.counts.depth_queries;
   pair.counts.depth_evaluations += real.evaluations;
   pair.place = real.certain_place;

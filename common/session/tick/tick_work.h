@@ -30,12 +30,12 @@ struct Move {
   Motion leg;
   double leg_start = 0.0;
   Box reach;                  ///< no pair is asked for what the part does outside of it
-  std::int32_t sliding = -1;  ///< index among the sliding bodies; -1: it does not slide
+  std::int32_t sliding = -1;  ///< index among the sliding groups; -1: it does not slide
 };
 
-/// A body on its way along what it met (policy slide).
-struct SlidingBody {
-  MovingGroup body;                 ///< at the start of the tick
+/// A group on its way along what it met (policy slide).
+struct SlidingGroup {
+  MovingGroup group;                ///< at the start of the tick
   std::vector<std::int32_t> moves;  ///< of its parts
   std::vector<Relation> relations;  ///< that guide it, at the start of the tick
   std::vector<Hold> holds;          ///< of pairs with bands, as they are at the start of the leg
@@ -156,7 +156,7 @@ struct PairWork {
 /// Ways to do the same with less cleverness, for tests; the report must not change but for
 /// counters.
 struct StepSwitches {
-  bool motion_budget = true;
+  bool known_distances = true;
   bool brute_force_pairs = false;  ///< at the first step of a world
   bool work_budget = true;         ///< false: every pair has the most that one may have
 };
@@ -173,53 +173,12 @@ struct Scratch::Impl {
   std::vector<IndexPair> candidates;
   std::vector<PairWork> pairs;  ///< sorted; pair_count of them are in use
   std::size_t pair_count = 0;
-  WorkBudget contact_budget;         ///< tests of first contact
-  WorkBudget depth_budget;           ///< evaluations of depth
-  std::vector<std::uint32_t> asked;  ///< pairs that want work of the stage
-  std::vector<std::uint32_t> again;  ///< pairs to ask again in a round of the response
-  std::vector<SlidingBody> sliding;
+  WorkBudget contact_budget;           ///< tests of first contact
+  WorkBudget depth_budget;             ///< evaluations of depth
+  std::vector<std::uint32_t> asked;    ///< pairs that want work of the stage
+  std::vector<std::uint32_t> unasked;  ///< pairs of stage 4 that want none
+  std::vector<std::uint32_t> to_ask;   ///< pairs to ask about contact: all, or those of a round
+  std::vector<SlidingGroup> sliding;
 };
-
-// The stages, in the order of the tick. Each reads what the ones before have written.
-
-/// 1. Increments to moves: checks, composition in order of arrival.
-void gather(World& world, std::span<const Increment> increments, Scratch::Impl& work,
-            StepReport& report);
-/// 2. Candidate pairs: broad phase, filter.
-void find_candidates(const World& world, SessionState& state, Scratch::Impl& work,
-                     StepReport& report);
-/// 3. First contact of every pair; for policy stop, when it becomes real.
-void find_contacts(const World& world, Scratch::Impl& work);
-/// 3b. Policy: who stops when.
-void respond(const World& world, Scratch::Impl& work, StepReport& report);
-/// 4. Depth, thresholds and verdict of what is near; which clash each region continues.
-void judge_pairs(const World& world, Scratch::Impl& work);
-/// 5. New poses, written once.
-void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& report);
-/// 6. Begin, change and end of clashes.
-void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
-                    StepReport& report);
-
-/// Is the pair told to be real, by a verdict that holds?
-bool is_told_real(const PairWork& pair);
-
-/// Notes for the next tick by which place each pair held its parts back.
-void note_held(const World& world, Scratch::Impl& work);
-
-/// Asks pairs over the segments set in them; used by 3 and by the rounds of 3b.
-void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs);
-
-/// Counts what a question of first contact took.
-void note_contact_work(PairWork& pair, const CcdWork& work);
-
-/// Distance of the meshes of a pair at these poses, mm, up to limit_mm; counted, and begun where
-/// the last one was found.
-DistanceResult distance_of(PairWork& pair, const Pose& X_WA, const Pose& X_WB, double limit_mm,
-                           CcdScratch& ccd);
-
-/// The open clash that each region of pair.seen continues, whether its event is due, and which open
-/// clashes stay although nothing was seen of them. Reads pair.judgement; distance_mm: of the meshes
-/// at the end, infinite when not asked.
-void match_clashes(const World& world, PairWork& pair, double distance_mm);
 
 }  // namespace mortise

@@ -1,12 +1,15 @@
+#include "common/session/tick/verdicts.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "common/base/constants.h"
+#include "common/session/tick/clash_identity.h"
+#include "common/session/tick/contacts.h"
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/event_times.h"
-#include "common/session/tick/tick_work.h"
 
 namespace mortise {
 namespace {
@@ -22,17 +25,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The two motions of a pair over some part of the tick; t_contact and t_enter (see PairWork) count
 // in them, 1: not within them.
-struct PairMotion {
+struct SegmentMotion {
   Motion a, b;
   double t_contact = 1.0, t_enter = 0.0;
 };
 
-PairMotion as_asked(const PairWork& pair) {
+SegmentMotion as_asked(const PairWork& pair) {
   return {pair.motion_a, pair.motion_b, pair.t_contact, pair.t_enter};
 }
 
-Judgement judge_along(const World& world, PairWork& pair, const PairMotion& motion, bool want_gpd,
-                      CcdScratch& ccd) {
+Judgement judgement_at_end(const World& world, PairWork& pair, const SegmentMotion& motion,
+                           bool want_gpd, CcdScratch& ccd) {
   JudgementQuery query;
   query.a = &world.parts[pair.a];
   query.b = &world.parts[pair.b];
@@ -53,7 +56,7 @@ Judgement judge_along(const World& world, PairWork& pair, const PairMotion& moti
 double share_of(double t, double end) { return end > 0.0 ? std::min(1.0, t / end) : 1.0; }
 
 // Both motions up to time t of their own.
-PairMotion up_to(const PairMotion& motion, double t) {
+SegmentMotion up_to(const SegmentMotion& motion, double t) {
   return {until(motion.a, t), until(motion.b, t), share_of(motion.t_contact, t),
           share_of(motion.t_enter, t)};
 }
@@ -77,9 +80,9 @@ double end_of(const Scratch::Impl& work, const PairWork& pair) {
   return end;
 }
 
-PairMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
+SegmentMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
   if (pair.t_left < 1.0) return up_to(as_asked(pair), (pair.t_left - pair.tau) / (1.0 - pair.tau));
-  PairMotion motion = as_asked(pair);
+  SegmentMotion motion = as_asked(pair);
   motion.a = as_moved(work, pair.move_a, pair.motion_a, pair.tau);
   motion.b = as_moved(work, pair.move_b, pair.motion_b, pair.tau);
   const double local_end = (end_of(work, pair) - pair.tau) / (1.0 - pair.tau);
@@ -110,7 +113,7 @@ void prefix(Verdict& verdict, const char* what, double t) {
 // The parts meet within the segment but nothing is seen at its end: they passed each other, through
 // or by. Looks inside the interval between the first and the last contact, whose ends are known to
 // the accuracy of first contact however thin the wall; middle first.
-std::optional<SeenRegion> passing(const World& world, PairWork& pair, const PairMotion& whole,
+std::optional<SeenRegion> passing(const World& world, PairWork& pair, const SegmentMotion& whole,
                                   bool want_gpd, CcdScratch& ccd) {
   ContactQuery back;
   back.a = pair.solid_a;
@@ -131,8 +134,8 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Pair
       break;
     }
     const double t = whole.t_enter + share * (t_out - whole.t_enter);
-    const PairMotion there = up_to(whole, t);
-    const Judgement judgement = judge_along(world, pair, there, want_gpd, ccd);
+    const SegmentMotion there = up_to(whole, t);
+    const Judgement judgement = judgement_at_end(world, pair, there, want_gpd, ccd);
     if (judgement.verdicts.empty()) continue;
     SeenRegion region = seen_at(judgement.verdicts.front(), there.a.X_W1, there.b.X_W1);
     prefix(region.verdict, "worst found", pair.tau + (1.0 - pair.tau) * t);
@@ -144,9 +147,9 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Pair
 // The collision that made the response stop this pair, judged where the increments would have led.
 // Where the part was stopped it stands at the very brink of being real: nothing is to be learned
 // there.
-void judge_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch& ccd) {
-  const PairMotion asked = as_asked(pair);
-  pair.judgement = judge_along(world, pair, asked, want_gpd, ccd);
+void look_at_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch& ccd) {
+  const SegmentMotion asked = as_asked(pair);
+  pair.judgement = judgement_at_end(world, pair, asked, want_gpd, ccd);
   for (const Verdict& verdict : pair.judgement.verdicts)
     pair.seen.push_back(seen_at(verdict, asked.a.X_W1, asked.b.X_W1));
   for (const OverlapRegion& region : pair.judgement.overlap.regions)
@@ -174,15 +177,15 @@ void keep_told(PairWork& pair) {
   if (pair.open) pair.keeps.assign(pair.open->size(), 1);
 }
 
-void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
-                CcdScratch& ccd) {
-  const PairMotion motion = as_moved(work, pair);
+void look_at_pair(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
+                  CcdScratch& ccd) {
+  const SegmentMotion motion = as_moved(work, pair);
   pair.seen.clear();
   pair.unsettled = false;
   if (pair.blocks) {
-    judge_attempt(world, pair, want_gpd, ccd);
+    look_at_attempt(world, pair, want_gpd, ccd);
   } else {
-    pair.judgement = judge_along(world, pair, motion, want_gpd, ccd);
+    pair.judgement = judgement_at_end(world, pair, motion, want_gpd, ccd);
     for (const Verdict& verdict : pair.judgement.verdicts)
       pair.seen.push_back(seen_at(verdict, motion.a.X_W1, motion.b.X_W1));
     if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start)))
@@ -195,8 +198,8 @@ void judge_near(const World& world, const Scratch::Impl& work, PairWork& pair, b
     for (SeenRegion& seen : pair.seen) seen.passing = true;
   double distance_mm = kInfinity;
   if (pair.open && pair.judgement.overlap.regions.empty()) {
-    const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
-                                              2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
+    const DistanceResult result = pair_distance(
+        pair, motion.a.X_W1, motion.b.X_W1, 2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
     if (result.within_limit) distance_mm = result.distance_mm;
   }
   match_clashes(world, pair, distance_mm);
@@ -209,12 +212,13 @@ void note_seen(PairWork& pair) {
 }
 
 // Clear of the band, but an open clash ends only at some distance.
-void judge_clear(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+void look_at_clear_pair(const World& world, const Scratch::Impl& work, PairWork& pair,
+                        CcdScratch& ccd) {
   pair.seen.clear();
   pair.judgement = {};
-  const PairMotion motion = as_moved(work, pair);
-  const DistanceResult result = distance_of(pair, motion.a.X_W1, motion.b.X_W1,
-                                            2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
+  const SegmentMotion motion = as_moved(work, pair);
+  const DistanceResult result = pair_distance(pair, motion.a.X_W1, motion.b.X_W1,
+                                              2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
   note_seen(pair);
 }
@@ -247,24 +251,24 @@ void settle(const World& world, const Scratch::Impl& work, PairWork& pair, CcdSc
     return;
   }
   pair.in_full = true;
-  judge_near(world, work, pair, false, ccd);
+  look_at_pair(world, work, pair, false, ccd);
 }
 
-void judge_asked(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   if (pair.cap == 0) {
     put_off(pair);
     return;
   }
   const bool was_undecided = std::exchange(pair.undecided, false);
   // The separating motion is needed only where somebody is told of it.
-  judge_near(world, work, pair, pair.open == nullptr, ccd);
+  look_at_pair(world, work, pair, pair.open == nullptr, ccd);
   settle(world, work, pair, ccd);
   const bool capped = pair.undecided;
   if (capped && pair.may_have_more()) {
     put_off(pair);
   } else {
     if (anything_to_tell(pair)) {
-      if (pair.open && pair.left() > 0) judge_near(world, work, pair, true, ccd);
+      if (pair.open && pair.left() > 0) look_at_pair(world, work, pair, true, ccd);
       find_event_times(pair, end_of(work, pair), ccd);
     }
     note_judged(pair);
@@ -283,9 +287,9 @@ bool is_told_real(const PairWork& pair) {
          });
 }
 
-void judge_pairs(const World& world, Scratch::Impl& work) {
+void find_verdicts(const World& world, Scratch::Impl& work) {
   work.asked.clear();
-  work.again.clear();
+  work.unasked.clear();
   for (std::uint32_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
     if (!pair.asked) continue;
@@ -296,20 +300,20 @@ void judge_pairs(const World& world, Scratch::Impl& work) {
     if (looked_at && pair.blocks && pair.short_of_work)
       put_off(pair);
     else if (looked_at)
-      (stays_told(pair) ? work.again : work.asked).push_back(i);
+      (stays_told(pair) ? work.unasked : work.asked).push_back(i);
     else if (pair.open)
-      work.again.push_back(i);
+      work.unasked.push_back(i);
   }
   share_depth_work(world, work, work.asked, WorkStage::kVerdict);
-  work.pool.for_each(work.again.size(), [&](std::size_t i, int thread) {
-    PairWork& pair = work.pairs[work.again[i]];
+  work.pool.for_each(work.unasked.size(), [&](std::size_t i, int thread) {
+    PairWork& pair = work.pairs[work.unasked[i]];
     if (stays_told(pair))
       keep_told(pair);
     else
-      judge_clear(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);
+      look_at_clear_pair(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);
   });
   work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
-    judge_asked(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
+    examine(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
   });
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/io/scenario/scene_load.h"
+#include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 
 // Statements of part, feature and pair about the same face: all of them hold.
@@ -289,7 +290,7 @@ TEST(Width, AKeyInItsSlotIsJudgedAsItsLimitsSay) {
                                          std::string("iso: ") + row.key + ", width_to: back"));
     ASSERT_TRUE(scene.usable()) << scene.findings[0].text;
     Scratch scratch;
-    const JudgeReport report = judge(scene.world, scratch, true);
+    const JudgeReport report = judge_world(scene.world, scratch, true);
     CollisionClass worst = CollisionClass::kNone;
     std::string sentence;
     for (const PairVerdicts& pair : report.pairs)

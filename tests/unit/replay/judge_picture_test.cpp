@@ -91,7 +91,7 @@ class FitsPicture : public testing::Test {
     ASSERT_TRUE(opened && opened->usable());
     scene_ = new OpenedScene(std::move(*opened));
     Scratch scratch;
-    report_ = new JudgeReport(judge(scene_->scene.world, scratch, true));
+    report_ = new JudgeReport(judge_world(scene_->scene.world, scratch, true));
   }
   static void TearDownTestSuite() {
     delete report_;

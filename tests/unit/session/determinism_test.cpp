@@ -8,7 +8,7 @@ namespace {
 
 struct Way {
   int threads = 1;
-  bool motion_budget = true;
+  bool known_distances = true;
   bool brute_force_pairs = false;
 };
 
@@ -21,7 +21,7 @@ struct Record {
 Record record(Policy policy, std::uint64_t seed, bool bands, const Way& way) {
   RandomPlay play(policy, seed, 8, bands);
   Scratch scratch(way.threads);
-  scratch.impl().switches.motion_budget = way.motion_budget;
+  scratch.impl().switches.known_distances = way.known_distances;
   scratch.impl().switches.brute_force_pairs = way.brute_force_pairs;
   Record result;
   for (int i = 0; i < 30; ++i) {
@@ -51,7 +51,7 @@ TEST_P(Determinism, ThreadsTreeAndBudgetChangeNothing) {
     EXPECT_EQ(record(policy, seed, bands, {.threads = 2}).digests, one.digests);
     EXPECT_EQ(record(policy, seed, bands, {.threads = 4}).digests, one.digests);
     EXPECT_EQ(record(policy, seed, bands, {.brute_force_pairs = true}).digests, one.digests);
-    const Record plain = record(policy, seed, bands, {.motion_budget = false});
+    const Record plain = record(policy, seed, bands, {.known_distances = false});
     EXPECT_EQ(plain.digests, one.digests) << "motion budget";
     EXPECT_EQ(plain.sum.pairs_budget, 0U);
     EXPECT_GT(one.sum.pairs_budget, 0U);

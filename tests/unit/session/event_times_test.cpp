@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/evaluation/band.h"
+#include "common/session/tick/judge_world.h"
 #include "tests/unit/depth/depth_bands.h"
 #include "tests/unit/session/session_builder.h"
 
@@ -196,8 +197,8 @@ TEST(Skipping, WithoutTolerancesNoBandIsLookedAt) {
 // all are refined, or named as not examined to the end.
 TEST(Skipping, DecidedEarlyAndRefinedAreCounted) {
   BlocksAt s(3.0, 0.05);
-  const StepCounters lazy = judge(s.session.world, s.scratch, false).counters;
-  const StepCounters full = judge(s.session.world, s.scratch, true).counters;
+  const StepCounters lazy = judge_world(s.session.world, s.scratch, false).counters;
+  const StepCounters full = judge_world(s.session.world, s.scratch, true).counters;
   EXPECT_EQ(lazy.regions_decided_early + lazy.regions_refined, lazy.verdicts.in);
   EXPECT_GT(lazy.regions_decided_early, 0U);
   EXPECT_EQ(full.regions_decided_early, 0U);

@@ -1,6 +1,7 @@
 // Policy report: parts go where they are asked to go; every collision is told.
 #include <gtest/gtest.h>
 
+#include "common/session/tick/judge_world.h"
 #include "tests/unit/session/session_builder.h"
 
 namespace mortise {
@@ -151,7 +152,7 @@ TEST_F(ReportPolicy, ThinWallPassedWithinOneTickIsTold) {
     EXPECT_NEAR(report.events[0].t_contact, 0.239975, 1e-6);
     EXPECT_TRUE(snapshot_of(s.world).open_clashes.empty());
     // The disease: looking at the target alone sees nothing.
-    EXPECT_TRUE(judge(s.world, own, false).pairs.empty());
+    EXPECT_TRUE(judge_world(s.world, own, false).pairs.empty());
   }
 }
 
@@ -209,7 +210,7 @@ TEST_F(ReportPolicy, ExcludedPairsAreNeverAsked) {
   EXPECT_EQ(report.counters.pairs_excluded, 1U);
   EXPECT_TRUE(no_geometry(report.counters));
   expect_balanced(report.counters);
-  const JudgeReport judged = judge(session.world, scratch, false);
+  const JudgeReport judged = judge_world(session.world, scratch, false);
   ASSERT_EQ(judged.pairs.size(), 1U);
   EXPECT_TRUE(judged.pairs[0].excluded);
 }

@@ -1,4 +1,4 @@
-#include "common/session/memory/motion_budget.h"
+#include "common/session/memory/known_distance.h"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ double shift_upper_bound_mm(const Pose& X0, const Pose& X1, const BoundingSphere
 
 }  // namespace
 
-double relative_travel_upper_bound_mm(const BudgetQuery& query) {
+double relative_travel_upper_bound_mm(const MovingPair& query) {
   const Motion& a = query.motion_a;
   const Motion& b = query.motion_b;
   if (a.w_W.isZero(0.0) && b.w_W.isZero(0.0)) return (a.v_W - b.v_W).norm();
@@ -27,7 +27,7 @@ double relative_travel_upper_bound_mm(const BudgetQuery& query) {
   return travel_mm(a, query.a->sphere()) + travel_mm(b, query.b->sphere());
 }
 
-double apart_lower_bound_mm(const PairMemo& memo, const BudgetQuery& query) {
+double apart_lower_bound_mm(const PairMemo& memo, const MovingPair& query) {
   if (memo.apart_mm < 0.0) return -1.0;
   const Pose X_BA = query.motion_b.X_W0.inverse() * query.motion_a.X_W0;
   // Chord of the turn between the two relative poses: a point at radius r shifts by at most

@@ -1,4 +1,4 @@
-#include "common/session/memory/motion_budget.h"
+#include "common/session/memory/known_distance.h"
 #include "common/ccd/distance.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace mortise {
 namespace {
 
-struct MotionBudget : ::testing::Test {
+struct KnownDistance : ::testing::Test {
   std::mt19937_64 rng{21};
   CcdScratch ccd;
   const Solid a{box_mesh(Vec3(-3, -0.5, -0.5), Vec3(5, 0.5, 0.5))};
@@ -35,7 +35,7 @@ struct MotionBudget : ::testing::Test {
   }
 };
 
-TEST_F(MotionBudget, IsNeverAboveTheDistanceAtAnyTime) {
+TEST_F(KnownDistance, IsNeverAboveTheDistanceAtAnyTime) {
   int useful = 0;
   for (int i = 0; i < 2000; ++i) {
     const Pose X_WA = pose(20), X_WB = pose(20);
@@ -44,8 +44,8 @@ TEST_F(MotionBudget, IsNeverAboveTheDistanceAtAnyTime) {
     // Both are carried far away together, then moved a little on their own.
     const Pose carry = i % 2 ? pose(1000) : Pose{};
     const double size = i % 3 == 0 ? 0.02 : 1.0;
-    const BudgetQuery query{&a, &b, near(carry * X_WA, a.sphere().center_mm, 2 * size, 0.5 * size),
-                            near(carry * X_WB, b.sphere().center_mm, 2 * size, 0.5 * size)};
+    const MovingPair query{&a, &b, near(carry * X_WA, a.sphere().center_mm, 2 * size, 0.5 * size),
+                           near(carry * X_WB, b.sphere().center_mm, 2 * size, 0.5 * size)};
     const double bound = apart_lower_bound_mm(memo, query);
     useful += bound > 0.0;
     for (int t = 0; t <= 8; ++t) {
@@ -58,26 +58,26 @@ TEST_F(MotionBudget, IsNeverAboveTheDistanceAtAnyTime) {
   EXPECT_GT(useful, 500);
 }
 
-TEST_F(MotionBudget, PartsCarriedTogetherSpendNothing) {
+TEST_F(KnownDistance, PartsCarriedTogetherSpendNothing) {
   PairMemo memo;
   const Pose X_WA = at(0, 0, 0), X_WB = at(0, 5, 0);
   remember_apart(memo, X_WA, X_WB, 2.0);
   const Vec3 far(100, 200, 300);
-  const BudgetQuery query{
+  const MovingPair query{
       &a, &b, linear_motion(X_WA, Pose::translation(far), a.sphere().center_mm),
       linear_motion(X_WB, Pose::translation(X_WB.p + far), b.sphere().center_mm)};
   EXPECT_NEAR(apart_lower_bound_mm(memo, query), 2.0, 1e-9);
 }
 
-TEST_F(MotionBudget, KnowsNothingBeforeTheFirstMeasurement) {
+TEST_F(KnownDistance, KnowsNothingBeforeTheFirstMeasurement) {
   const PairMemo memo;
-  const BudgetQuery query{&a, &b, still_motion(at(0, 0, 0)), still_motion(at(50, 0, 0))};
+  const MovingPair query{&a, &b, still_motion(at(0, 0, 0)), still_motion(at(50, 0, 0))};
   EXPECT_LT(apart_lower_bound_mm(memo, query), 0.0);
 }
 
 // A ball passes a tilted bar: their boxes meet all the way, they never come nearer than 3 mm. One
 // question of first contact, then a distance now and then.
-TEST(MotionBudgetInTicks, WhoPassesByIsMeasuredAndNotAsked) {
+TEST(KnownDistanceInTicks, WhoPassesByIsMeasuredAndNotAsked) {
   SessionBuilder session(Policy::kStop);
   const UserId ada = session.join("ada");
   const Pose tilted{rotation_exp(Vec3(0, 0, 0.785)), Vec3(0, 0, 0)};
@@ -100,7 +100,7 @@ TEST(MotionBudgetInTicks, WhoPassesByIsMeasuredAndNotAsked) {
 }
 
 // Far from every surface and yet inside: put there and moved in the same tick, it is seen.
-TEST(MotionBudgetInTicks, WhoIsInsideIsNotTakenForFarApart) {
+TEST(KnownDistanceInTicks, WhoIsInsideIsNotTakenForFarApart) {
   SessionBuilder session(Policy::kReport);
   const UserId ada = session.join("ada");
   session.add("block", cube_mesh(40), at(0, 0, 0), false);

@@ -1,3 +1,5 @@
+#include "common/depth/interference_time.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,8 +8,6 @@
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
 #include "common/depth/exclusion.h"
-#include "common/depth/interference_search.h"
-#include "common/depth/overlap.h"
 #include "common/depth/pair_path.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
@@ -171,7 +171,7 @@ class InterferenceSearch {
     at_.X_WB = path_.motions[1].pose_at(0.0);
   }
 
-  RealTime run() {
+  InterferenceTime run() {
     if (!bodies_[0].has_inside && !bodies_[1].has_inside) return answer_;
     const PairFrame start(at_);
     rounding_mm_ = start.rounding_mm;
@@ -317,7 +317,7 @@ class InterferenceSearch {
     for (const Body& body : bodies_)
       query.margin_mm += body.largest_offset_mm[static_cast<int>(layer_)];
     query.skip = &never;
-    const Candidates candidates = find_candidates(query);
+    const Candidates candidates = find_candidate_triangles(query);
     for (int role = 0; role < 2; ++role)
       if (bodies_[1 - role].has_inside)
         for (const std::uint32_t t : candidates.triangles[role]) add_root(role, t);
@@ -426,7 +426,7 @@ class InterferenceSearch {
     std::push_heap(heap_.begin(), heap_.end(), later);
   }
 
-  RealTime finish() {
+  InterferenceTime finish() {
     answer_.becomes_real = t_real_ <= 1.0;
     answer_.t_real = answer_.becomes_real ? t_real_ : 1.0;
     answer_.t_free = std::min({1.0, free_until_, answer_.t_real});
@@ -456,23 +456,114 @@ class InterferenceSearch {
   std::uint64_t order_ = 0;
   double t_real_ = std::numeric_limits<double>::infinity();
   double free_until_ = std::numeric_limits<double>::infinity();
-  RealTime answer_;
+  InterferenceTime answer_;
 };
 
-}  // namespace
+// Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
+constexpr int kLooks = 3;
 
-RealTime first_interference(const SweptQuery& query, Layer layer) {
+// Work of one look; at the brink of interfering it is not worth more.
+constexpr std::uint64_t kPossibleLookWorkCap = 600;
+
+// What first contact may do before the search, for each evaluation of that: a test is the cheaper.
+constexpr std::uint64_t kTestsPerEvaluation = 8;
+
+// A path cut anywhere is a path of its kind.
+Motion rest_of(const Motion& motion, double t) {
+  if (!motion.moves()) return motion;
+  const Pose X_Wt = motion.pose_at(t);
+  return motion.kind == PathKind::kScrew ? screw_motion(X_Wt, motion.X_W1, motion.reference_P)
+                                         : linear_motion(X_Wt, motion.X_W1, motion.reference_P);
+}
+
+// Upper bound of how far the largest surface lies outside of a triangle.
+double reach_mm(const SurfaceBand& band, std::uint32_t triangle) {
+  return Body::offset_range_of(band.face_of(triangle), Layer::kUpper).hi;
+}
+
+bool is_possible_at(const SweptQuery& query, double t, std::uint64_t& evaluations,
+                    CcdScratch& scratch) {
+  OverlapQuery at = query.at_target;
+  at.X_WA = query.motion_a.pose_at(t);
+  at.X_WB = query.motion_b.pose_at(t);
+  at.refinement = Refinement::kDecided;
+  at.work_cap = std::min(at.work_cap, kPossibleLookWorkCap);
+  const OverlapResult result = find_overlap(at, scratch);
+  evaluations += result.evaluations;
+  return std::any_of(result.regions.begin(), result.regions.end(),
+                     [](const OverlapRegion& region) { return region.possible_mm.lo > 0.0; });
+}
+
+// First time at which the least (kLower) or the largest (kUpper) surfaces interfere. "Real" reads
+// "interferes in that layer".
+InterferenceTime first_interference(const SweptQuery& query, Layer layer) {
   MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
                 "poses must be finite and unit, rotations at most half a turn");
   MORTISE_CHECK(query.accuracy_mm > 0.0, "how closely a time is known must be a length");
-  const RealTime answer = InterferenceSearch(query, layer).run();
+  const InterferenceTime answer = InterferenceSearch(query, layer).run();
   MORTISE_CHECK(0.0 <= answer.t_free && answer.t_free <= answer.t_real && answer.t_real <= 1.0,
                 "times of a tick are ordered");
   return answer;
 }
 
-RealTime find_real_time(const SweptQuery& query, CcdScratch&) {
+}  // namespace
+
+InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
   return first_interference(query, Layer::kLower);
+}
+
+// 1. Nothing is possible before the meshes are as near as the largest offsets of both reach: first
+//    contact says when that is.
+// 2. Where all faces have the same zone that is the time itself: looked at shortly behind it.
+// 3. Else the surfaces that do meet there have narrower zones: the rest of the path is searched.
+PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
+  PossibleTime answer;
+  const OverlapQuery& at = query.at_target;
+  ContactQuery near;
+  near.a = at.a;
+  near.b = at.b;
+  near.motion_a = query.motion_a;
+  near.motion_b = query.motion_b;
+  near.separation_mm =
+      std::max(0.0, at.band_a->largest_offset_mm) + std::max(0.0, at.band_b->largest_offset_mm);
+  near.work_cap = std::min(kCcdWorkCap, kTestsPerEvaluation * std::min(kCcdWorkCap, at.work_cap));
+  const FirstContact first = first_contact(near, scratch);
+  if (first.state == ContactState::kFree) return answer;
+  if (first.state == ContactState::kUndecided) {
+    answer.t_clear = first.t_clear;
+    answer.capped = true;
+    return answer;
+  }
+  const bool begins = first.state == ContactState::kContact;
+  const double t0 = begins ? first.t_clear : 0.0;
+  const PairPath path(query.motion_a, *at.a, query.motion_b, *at.b);
+  double step = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
+  const bool widest_meet =
+      reach_mm(*at.band_a, first.triangle_a) + reach_mm(*at.band_b, first.triangle_b) >=
+      near.separation_mm - query.accuracy_mm;
+  for (int i = 0; i < kLooks && (widest_meet || !begins); ++i, step *= 2.0) {
+    const double t = begins ? t0 + step : 0.0;
+    if (t > 1.0) break;
+    if (is_possible_at(query, t, answer.evaluations, scratch)) {
+      answer.becomes_possible = true;
+      answer.t_clear = t0;
+      answer.t_possible = t;
+      return answer;
+    }
+    if (!begins) break;
+  }
+
+  SweptQuery rest = query;
+  rest.motion_a = rest_of(query.motion_a, t0);
+  rest.motion_b = rest_of(query.motion_b, t0);
+  const InterferenceTime found = first_interference(rest, Layer::kUpper);
+  const auto in_tick = [&](double t) { return t >= 1.0 ? 1.0 : t0 + (1.0 - t0) * t; };
+  answer.becomes_possible = found.becomes_real;
+  answer.t_clear = in_tick(found.t_free);
+  answer.t_possible = in_tick(found.t_real);
+  answer.capped = found.capped;
+  answer.evaluations += found.evaluations;
+  return answer;
 }
 
 }  // namespace mortise

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/depth/interference_time.h"
 #include "common/depth/overlap.h"
 #include "common/evaluation/verdict.h"
 #include "tests/unit/depth/depth_bands.h"
@@ -35,9 +36,9 @@ SweptQuery swept_query(const Sweep& s) {
   return query;
 }
 
-RealTime real_time_of(const Sweep& s) {
+InterferenceTime real_time_of(const Sweep& s) {
   CcdScratch scratch;
-  return find_real_time(swept_query(s), scratch);
+  return find_interference_time(swept_query(s), scratch);
 }
 
 PossibleTime possible_time_of(const Sweep& s) {
@@ -66,10 +67,10 @@ Interval depths_at(const Sweep& s, double t) {
 
 double certain_at(const Sweep& s, double t) { return depths_at(s, t).lo; }
 
-TEST(RealTime, CubeMeetsCube) {
+TEST(InterferenceTime, CubeMeetsCube) {
   Sweep s{solid(box({.5, .5, .5}, Vec3::Zero(), 2)), solid(box({.5, .5, .5}, {5, .2, .1}, 2))};
   s.motion_a = slide(Vec3::Zero(), {10, 0, 0});
-  const RealTime real = real_time_of(s);
+  const InterferenceTime real = real_time_of(s);
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_real, 0.4, 2e-5);
   EXPECT_LE(real.t_free, real.t_real);
@@ -77,11 +78,11 @@ TEST(RealTime, CubeMeetsCube) {
   EXPECT_FALSE(real.real_at_start);
 }
 
-TEST(RealTime, ToleranceDelaysIt) {
+TEST(InterferenceTime, ToleranceDelaysIt) {
   Sweep s{solid(box({.5, .5, .5}, Vec3::Zero(), 2)), solid(box({.5, .5, .5}, {5, .2, .1}, 2))};
   s.band_a = s.band_b = uniform_band({}, {-.05, .05});
   s.motion_a = slide(Vec3::Zero(), {10, 0, 0});
-  const RealTime real = real_time_of(s);
+  const InterferenceTime real = real_time_of(s);
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_free, 0.41, 2e-5);
   EXPECT_NEAR(real.t_real, 0.41, 2e-5);
@@ -136,12 +137,12 @@ TEST(PossibleTime, WithoutBandsItIsTheTimeOfTheMeshes) {
 }
 
 // The disease and the cure: both ends of the tick are free, the wall is in between.
-TEST(RealTime, ThinWallIsNotPassed) {
+TEST(InterferenceTime, ThinWallIsNotPassed) {
   Sweep s{solid(box({.5, .5, .5})), solid(box({.0005, 5, 5}, {10, 0, 0}))};
   s.motion_a = slide(Vec3::Zero(), {20, 0, 0});
   EXPECT_LT(certain_at(s, 0.0), 0.0);
   EXPECT_LT(certain_at(s, 1.0), 0.0);
-  const RealTime real = real_time_of(s);
+  const InterferenceTime real = real_time_of(s);
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_free, 9.4995 / 20.0, 2e-5);
   EXPECT_LE(real.t_free, real.t_real);
@@ -149,7 +150,7 @@ TEST(RealTime, ThinWallIsNotPassed) {
 
 // Meshes that overlap before: a peg with a fake overlap slides, and runs into the end of a blind
 // hole.
-TEST(RealTime, BlindHoleBehindAFakeOverlap) {
+TEST(InterferenceTime, BlindHoleBehindAFakeOverlap) {
   const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
   Sweep s;
   s.a = solid(peg({10, 0, 15, 32, 1, std::numbers::pi / 32}));
@@ -157,7 +158,7 @@ TEST(RealTime, BlindHoleBehindAFakeOverlap) {
   s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
   s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
   s.motion_a = slide({0, 0, 2}, {0, 0, -3});
-  const RealTime real = real_time_of(s);
+  const InterferenceTime real = real_time_of(s);
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_free, 0.6, 1e-4);
   s.motion_a = slide({0, 0, 2}, {0, 0, -0.9});
@@ -165,7 +166,7 @@ TEST(RealTime, BlindHoleBehindAFakeOverlap) {
   EXPECT_EQ(real_time_of(s).t_free, 1.0);
 }
 
-TEST(RealTime, SlidingPegIsFreeAndCheap) {
+TEST(InterferenceTime, SlidingPegIsFreeAndCheap) {
   const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
   Sweep s;
   s.a = solid(peg({10, 0, 30, 32, 8, std::numbers::pi / 32}));
@@ -173,33 +174,33 @@ TEST(RealTime, SlidingPegIsFreeAndCheap) {
   s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
   s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
   s.motion_a = slide({0, 0, 5}, {0, 0, 4});
-  const RealTime slid = real_time_of(s);
+  const InterferenceTime slid = real_time_of(s);
   EXPECT_FALSE(slid.becomes_real);
   EXPECT_EQ(slid.t_free, 1.0);
   EXPECT_LT(slid.evaluations, 5000U);
   // Pushed aside by 30 um it bites: 20.5 um of certain clearance at most.
   s.motion_a = slide({0, 0, 5}, {0.03, 0, 5});
-  const RealTime pushed = real_time_of(s);
+  const InterferenceTime pushed = real_time_of(s);
   EXPECT_TRUE(pushed.becomes_real);
   EXPECT_NEAR(pushed.t_free * 0.03, 0.0205, 2e-4);
 }
 
-TEST(RealTime, TurningBarMeetsCube) {
+TEST(InterferenceTime, TurningBarMeetsCube) {
   // ccd/README.md, section 7: bar 4 x 0.2 x 0.2 turning 90 degrees against a 0.2 cube at (0, 1.5).
   Sweep s{solid(box({2, .1, .1})), solid(box({.1, .1, .1}, {0, 1.5, 0}))};
   s.motion_a = linear_motion(Pose(), Pose{rotation_exp({0, 0, std::numbers::pi / 2}), Vec3::Zero()},
                              Vec3::Zero());
-  const RealTime real = real_time_of(s);
+  const InterferenceTime real = real_time_of(s);
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_free, 0.9092085160, 1e-4);
   EXPECT_NEAR(real.t_real, 0.9092085160, 1e-3);
 }
 
-TEST(RealTime, TwoMovers) {
+TEST(InterferenceTime, TwoMovers) {
   Sweep s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}))};
   s.motion_a = slide(Vec3::Zero(), {2, 0, 0});
   s.motion_b = slide({4, .1, .2}, {2, .1, .2});
-  const RealTime real = real_time_of(s);
+  const InterferenceTime real = real_time_of(s);
   EXPECT_TRUE(real.becomes_real);
   EXPECT_NEAR(real.t_free, 0.75, 1e-4);
   // Both with the same velocity: nothing happens.
@@ -207,7 +208,7 @@ TEST(RealTime, TwoMovers) {
   EXPECT_FALSE(real_time_of(s).becomes_real);
 }
 
-TEST(RealTime, StartsRealOrTouching) {
+TEST(InterferenceTime, StartsRealOrTouching) {
   Sweep s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}, {.9, .1, .2}))};
   s.motion_a = slide(Vec3::Zero(), {-1, 0, 0});
   EXPECT_TRUE(real_time_of(s).real_at_start);
@@ -256,13 +257,13 @@ TEST(PossibleTime, NeverPossibleBeforeClear) {
 }
 
 // The same of what is real: never before t_free.
-TEST(RealTime, NeverRealBeforeFree) {
+TEST(InterferenceTime, NeverRealBeforeFree) {
   std::mt19937_64 random(21);
   int became = 0, planted = 0;
   for (int i = 0; i < 12; ++i) {
     const Sweep s =
         random_flight(random, uniform_band({}, {-.01, .01}), uniform_band({}, {-.01, .01}));
-    const RealTime real = real_time_of(s);
+    const InterferenceTime real = real_time_of(s);
     EXPECT_FALSE(real.capped);
     became += real.becomes_real;
     for (int k = 0; k < 20; ++k)

@@ -1,3 +1,5 @@
+#include "common/session/tick/judge_world.h"
+
 #include <algorithm>
 
 #include "common/broadphase/pair_filter.h"
@@ -48,7 +50,7 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, bool full_b
 
 // Unlike a tick, static pairs are judged as well: this is a question about the scene, not about a
 // change.
-JudgeReport judge(World& world, Scratch& scratch, bool full_brackets) {
+JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
   Scratch::Impl& work = scratch.impl();
   SessionState& state = session_state(world, work.switches.brute_force_pairs);
   JudgeReport report;

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+
+#include "common/depth/overlap.h"
+
+namespace mortise {
+
+struct SweptQuery {
+  OverlapQuery at_target;  ///< poses of the query are ignored
+  Motion motion_a, motion_b;
+  double accuracy_mm = 1e-4;  ///< how closely the answer is known, along the path of any point
+};
+
+/// When the overlap becomes certain (real) in the tick.
+struct InterferenceTime {
+  bool becomes_real = false;
+  double t_free = 1.0;  ///< at no t <= t_free is anything certain deeper than accuracy_mm, proven;
+                        ///< the pose at which `stop` leaves the part
+  double t_real = 1.0;  ///< real at t_real, when becomes_real
+  bool capped = false;  ///< work cap: t_free is still proven, nothing is known beyond it
+  bool real_at_start = false;
+  CertainPlace certain_place;  ///< at t_real, where one was found
+  std::uint64_t evaluations = 0;
+};
+
+/// First time at which certain_mm > 0 somewhere (README, section 6), found by branch and bound
+/// over the swept surface, so that a thin wall cannot be passed between ticks even when the meshes
+/// overlapped before.
+InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch& scratch);
+
+/// When an overlap becomes possible in the tick.
+struct PossibleTime {
+  bool becomes_possible = false;
+  double t_clear = 1.0;     ///< at no t <= t_clear do any admissible surfaces interfere deeper than
+                            ///< accuracy_mm, proven
+  double t_possible = 1.0;  ///< some admissible pair interferes there, when becomes_possible
+  bool capped = false;      ///< work cap: t_clear is still proven, nothing is known beyond it
+  std::uint64_t evaluations = 0;
+};
+
+/// The same for possible_mm > 0, over the largest surfaces that the bands admit. With trivial bands
+/// both times are those at which the meshes interfere.
+PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch);
+
+}  // namespace mortise

@@ -1,0 +1,15 @@
+#pragma once
+#include "common/session/tick/tick_work.h"
+
+namespace mortise {
+
+/// The open clash that each region of pair.seen continues, whether its event is due, and which open
+/// clashes stay although nothing was seen of them. Reads pair.judgement; distance_mm: of the meshes
+/// at the end, infinite when not asked.
+void match_clashes(const World& world, PairWork& pair, double distance_mm);
+
+/// Stage 6. Begin, change and end of clashes.
+void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
+                    StepReport& report);
+
+}  // namespace mortise
