@@ -14,7 +14,8 @@ inline std::filesystem::path data_folder() {
 
 }  // namespace mortise::test
 
-/// Leaves the test with one line when a file or folder of the published meshes is absent.
-#define MORTISE_NEEDS_DATA(path)      \
-  if (!std::filesystem::exists(path)) \
-  GTEST_SKIP() << "data absent: " << (path) << "; set MORTISE_DATA to its folder"
+/// Leaves the test as skipped when a file or folder of the published meshes is absent.
+#define MORTISE_NEEDS_DATA(path)                                                     \
+  if (!std::filesystem::exists(path))                                                \
+  GTEST_SKIP() << "data absent: published parts; set MORTISE_DATA to their folder\n" \
+               << (path) << " is not there"
