@@ -119,15 +119,15 @@ struct Headline {
   const char* unit;
 };
 constexpr Headline kHeadlines[] = {
-    {"First contact beside FCL's conservative advancement, repaired (geometric mean)",
-     "first-contact", "times as fast as FCL advancement repaired, OBBRSS", " times as fast"},
-    {"A tick in which nothing moves, 10,000 static parts, p99", "first-contact",
+    {"First contact beside FCL's repaired advancement", "first-contact",
+     "times as fast as FCL advancement repaired, OBBRSS", " times as fast"},
+    {"A tick in which nothing moves, p99", "first-contact",
      "tick in which nothing moves, 10,000 static parts, p99 us", " µs"},
-    {"Verdicts of random fits that contradict the exact truth", "judgement",
+    {"Verdicts that contradict the exact truth", "judgement",
      "contradictions of the truth, all grades but estimated", ""},
-    {"64 users at 60 Hz who push parts into each other: deadlines missed", "session",
-     "64 users at 60 Hz: deadlines missed, %", " %"},
-    {"A recorded session computed again, bit for bit", "records", "verify, times real time (CPU)",
+    {"Deadlines missed with 64 users at 60 Hz", "session", "64 users at 60 Hz: deadlines missed, %",
+     " %"},
+    {"Computing a recorded session again", "records", "verify, times real time (CPU)",
      " times as fast as it was played"},
 };
 
