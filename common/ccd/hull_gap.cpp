@@ -9,7 +9,7 @@ namespace {
 // Float arithmetic of one height of a box: ten operations of 6e-8 each, on sums of three products.
 constexpr double kFloatRounding = 2e-6;
 
-// Overlapping hulls never get a plane: by then there is one, or there is none.
+// Overlapping hulls never get a plane; after this many steps there is one, or none exists.
 constexpr int kStepsWithoutPlane = 12;
 // The plane is as good as it gets when nothing of the gap but this share is left.
 constexpr double kGoodPlane = 1e-13;

@@ -10,7 +10,7 @@ namespace {
 using Index = std::uint32_t;
 using Triangles = std::vector<std::array<Index, 3>>;
 
-/// An ear must be higher than this part of its longest side: three corners on a line are none.
+/// An ear must be higher than this part of its longest side: three corners on a line are no ear.
 constexpr double kFlatEar = 1e-10;
 /// The triangles must have the polygon's area to this part.
 constexpr double kAreaAgrees = 1e-9;

@@ -23,7 +23,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Adds the whole numbers of one record of /statistics. What is none is passed over: these are sums
+// Adds the whole numbers of one record of /statistics. Other values are skipped: these are sums
 // for people, nothing is decided by them.
 void add_counts(const nlohmann::json& record, std::map<std::string, std::uint64_t>& sums) {
   if (!record.is_object()) return;

@@ -60,7 +60,7 @@ void put_memos(Writer& out, const Memos& memos) {
   for (const auto& [key, memo] : memos) out(key, memo);
 }
 
-// 2. back, held against the scene
+// 2. back, checked against the scene
 
 bool is_user(const World& world, UserId user) { return user.value <= world.users.size(); }
 

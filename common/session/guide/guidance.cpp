@@ -33,7 +33,8 @@ GuidedDisplacement as_it_stands(const World& world, const MovingGroup& group,
   return guided({relations, group.reference_W, std::max(group.radius_mm, 1e-3), {}});
 }
 
-// The relation in the frames of the parts, in the sense that is nearer; or why there is none.
+// The relation in the frames of the parts, with the nearer of both directions; or why there is
+// none.
 struct Resolved {
   GuidanceReply reply;
   Relation relation;

@@ -3,9 +3,9 @@
 
 namespace mortise {
 
-/// The pushes of this tick that were held back for want of work and nothing else, by part. At most
-/// one jump and half of the most rotation of a tick each; what is cut off is counted. Not of parts
-/// that slide, are guided or grouped: what these are asked is computed anew in every tick.
+/// The pushes of this tick that were held back only for lack of work, by part. Each is at most one
+/// jump and half of the largest rotation of a tick; what is cut off is counted. Parts that slide,
+/// are guided or grouped have none, because their motion is computed anew in every tick.
 std::vector<KeptPush> kept_pushes(const World& world, const Scratch::Impl& work,
                                   StepCounters& counters);
 

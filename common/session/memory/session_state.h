@@ -17,14 +17,13 @@
 
 namespace mortise {
 
-/// What a pair of parts is known to be, so that it need not be asked again.
+/// What is known of a pair of parts, so that it need not be asked again.
 struct PairMemo {
-  /// Since a part of it was put somewhere, or what is stated of them changed, the clashes that were
-  /// open then have not been judged at all, or not as the parts stand.
+  /// Since a part was placed, or a statement about the pair changed, the clashes that were open
+  /// then have not been judged at all, or not at the present poses.
   bool not_judged = false, not_seen = false;
   /// The surfaces are at least apart_mm from each other when A stands at X_BA as seen from B
-  /// (negative: nothing is known). A statement about poses, true for ever: no teleport can spoil
-  /// it.
+  /// (negative: nothing is known). A statement about poses, which stays true when a part jumps.
   Pose X_BA;
   double apart_mm = -1.0;
   /// Sum of both parts' `placements` when the two entries below were made; another sum voids them.
@@ -47,14 +46,14 @@ struct PairMemo {
     bool gave_up = false;  ///< the search that left them there did, at its cap
   };
   Rare<Held> held;
-  /// Where a search for the stop has come to nothing: the poses, and the motion that was asked for,
-  /// of A against B, its rotation as way of the smaller part's rim.
+  /// A search for the stop that had no result: the poses, and the wanted motion of A against B, its
+  /// rotation as the path of the smaller part's rim.
   struct Stalled {
     Pose X_WA, X_WB;
     Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();
     bool in_full = false;  ///< it had all the work that it may have
     bool judged = false;   ///< and what it would have led to was judged
-    /// Searches in a row, whatever the push, that had all their work and came to nothing there.
+    /// Consecutive searches from there, for any push, that had full work and no result.
     std::uint8_t in_vain = 0;
   };
   Rare<Stalled> stalled;
@@ -69,8 +68,8 @@ struct PairMemo {
   std::uint64_t touched_tick = 0;  ///< when it last was
 };
 
-/// What is remembered of a pair, for everybody to read. Who changes it says so: copies of it are
-/// kept, see SessionState::touched.
+/// Read access to the memo of a pair. Changes go through change(), because copies are kept, see
+/// SessionState::touched.
 class MemoInUse {
  public:
   MemoInUse() = default;
@@ -95,15 +94,15 @@ struct OpenClash {
   CollisionClass worst_class = CollisionClass::kNone;
   Interval worst_delta_mm;
   Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< its place, as a point of either part, mm
-  /// As it was when people last said something of it.
+  /// Class and depth at the last review.
   CollisionClass approved_class = CollisionClass::kNone;
   Interval approved_delta_mm;
 };
 
-/// What the session knows of a part beside the world's own record.
+/// State of a part beside the record in World.
 struct PartState {
   double growth_mm = 0.0;        ///< of its box: largest outward offset it may have, and slack
-  std::uint64_t placements = 0;  ///< times it was put somewhere without a motion
+  std::uint64_t placements = 0;  ///< times it was placed without a motion
   std::uint64_t last_tick = 0;   ///< of its last motion
   UserId last_user;              ///< whose motion that was
   std::uint64_t hash = 0;        ///< of pose and holder
@@ -113,21 +112,21 @@ struct PartState {
   std::uint64_t cause_tick = 0;
 };
 
-/// What is left of a push whose part waits for work: it was accepted, so the part goes on with it
-/// in the next tick, together with what is pushed then. As an increment about the part's reference
-/// point, mm and rad, world axes.
+/// The rest of an accepted push whose part waits for work: the part continues it in the next tick,
+/// together with new increments. As an increment about the part's reference point, mm and rad,
+/// world axes.
 struct KeptPush {
   std::uint32_t part = 0;  ///< index
   UserId user;
-  Pose X_WP;  ///< where the part was left; put elsewhere, it is pushed no more
+  Pose X_WP;  ///< where the part was left; the push is dropped when the part was placed elsewhere
   Vec3 shift_mm = Vec3::Zero(), turn_rad = Vec3::Zero();
 };
 
 using PartPair = std::pair<PartId, PartId>;
 
-/// Caches and open clashes between ticks. Most of it only saves the asking; but what a pair was
-/// held by, what it needed of work and how long it has waited decide what later ticks find out, so
-/// that a session goes on the same only with all of it.
+/// Caches and open clashes between ticks. Most of it only saves work; but the place that held a
+/// pair, the work that it needed and how long it has waited influence later ticks, so that a
+/// session continues identically only with all of it.
 struct SessionState {
   std::uint64_t tick = 0;
   std::uint64_t event_seq = 0;
@@ -135,11 +134,11 @@ struct SessionState {
   std::uint64_t moving_parts = 0;
   std::unique_ptr<BroadPhase> broad_phase;
   std::vector<PartState> parts;
-  std::vector<std::uint32_t> placed;  ///< parts put somewhere since the last tick, no repeats
+  std::vector<std::uint32_t> placed;  ///< parts placed since the last tick, no repeats
   std::vector<IndexPair> owed;        ///< pairs that the last tick had no work to judge, sorted
   std::vector<KeptPush> kept;         ///< by part
   std::vector<std::uint32_t> rehash;  ///< parts whose pose or holder changed
-  /// By part indices; looked up, never walked. None is ever taken out.
+  /// By part indices; looked up, never iterated. Entries are never removed.
   std::unordered_map<std::uint64_t, PairMemo> memos;
   /// Memos that have changed since somebody last copied them, no repeats; see io/checkpoint.h.
   struct Touched {
@@ -175,21 +174,21 @@ struct SessionState {
 /// of the broad phase.
 SessionState& session_state(World& world, bool brute_force_pairs = false);
 
-/// Nobody is this user any more: what they caused and said of clashes stays, and is nobody's.
+/// The user id passes to another user: clashes and reviews of the former user stay without a user.
 void forget_user(SessionState& state, UserId user);
 
-/// Part `index` was put at a pose without a motion by this decision. No-op before the first step.
+/// Part `index` was placed at a pose by this decision. No effect before the first step.
 void note_placed(World& world, std::uint32_t index, const Decision& by);
 /// The holder of part `index` changed.
 void note_holder(World& world, std::uint32_t index);
-/// What is stated of the surface of `part` changed, or, with `other`, of this pair alone: what
-/// leans on it is forgotten, and the pairs are judged anew in the next tick.
+/// The statements about the surface of `part` changed, or, with `other`, those of this pair alone:
+/// drops what depends on them, and has the pairs judged again in the next tick.
 void note_surface(World& world, PartId part, PartId other, const Decision& by);
-/// The response policy changed: how deep a pair may go is found out anew.
+/// The response policy changed: drops how deep pairs may go.
 void note_policy(World& world);
 
-/// A state that holds nothing yet but the parts' number, to be filled from elsewhere; and the boxes
-/// of all parts, once growth and poses stand.
+/// An empty state for this number of parts, to be filled by a restore; and the boxes of all parts,
+/// once growth and poses are set.
 std::unique_ptr<SessionState> empty_state(const World& world);
 void set_resting_boxes(const World& world, SessionState& state);
 

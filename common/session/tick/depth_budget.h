@@ -5,13 +5,12 @@ namespace mortise {
 
 // What a tick may spend on depth, counted in evaluations (some 3 us each). Pairs are served in the
 // order of in_order(); each is given what it needed the last time and half as much again. A pair
-// that would not get that much waits rather than begin in vain: it is left at the time proven
-// without a search, or with a short one, keeps the clashes that it has as they are, and is counted
-// in pairs_waiting and not_examined. The pair that has waited longest is served after a few ticks,
-// whatever is left. What ticks do not need is saved, up to a limit.
+// that would not get that much waits, because a search that is cut short has no result: it is left
+// at the time proven without a search, or with a short one, keeps the clashes that it has as they
+// are, and is counted in pairs_waiting and not_examined. The pair that has waited longest is served
+// after a few ticks in any case. Work that ticks do not need is saved, up to a limit.
 
-/// Of all work a tick has so many times more under slide: a leg is searched like a push of its own,
-/// and there are several of them in a tick.
+/// Factor on the work of a tick under slide, because each of several legs is searched like a push.
 inline constexpr std::uint64_t kSlideTimes = 2;
 
 void open_depth_budget(const World& world, const SessionState& state, Scratch::Impl& work);

@@ -8,7 +8,7 @@
 
 namespace mortise {
 
-/// One pair at its target poses, depth, thresholds and verdict in one go (stage 4 of the tick).
+/// One pair at its target poses: depth, thresholds and verdict (stage 4 of the tick).
 struct JudgementQuery {
   const Part* a = nullptr;
   const Part* b = nullptr;
@@ -19,7 +19,7 @@ struct JudgementQuery {
   Refinement refinement = Refinement::kDecided;
   bool want_gpd = true;
   std::uint64_t work_cap = 200'000;  ///< of the overlap, see OverlapQuery
-  /// Of everything; beyond it the generalized depth keeps the bracket that costs nothing.
+  /// Of the whole judgement; beyond it the generalized depth keeps its first, wide bracket.
   std::uint64_t whole_cap = 1'000'000;
 };
 
@@ -28,13 +28,13 @@ struct Judgement {
   OverlapResult overlap;
 };
 
-/// Bands of the pair: the rule's where it has them, else the parts' own.
+/// Bands of the pair: those of the rule if it has them, else those of the parts.
 const SurfaceBand& band_a_of(const JudgementQuery& query);
 const SurfaceBand& band_b_of(const JudgementQuery& query);
 
 Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch);
 
-/// Adds what one judgement asked and found.
+/// Adds the counters of one judgement.
 void count(const JudgementQuery& query, const Judgement& judgement, StepCounters& counts);
 
 }  // namespace mortise

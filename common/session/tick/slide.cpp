@@ -25,7 +25,7 @@ constexpr double kReach_mm = 1e-3, kBandReach_mm = 0.03;
 // A leg leaves what it leans on by so much, mm, so that it does not end where it begins: twice the
 // accuracy of first contact; with bands see kBandLift_mm.
 constexpr double kLift_mm = 2.0 * kAccuracyDefault_mm;
-// A shorter leg is none, mm: more than the lifts.
+// A shorter leg is not started, mm: more than the lifts.
 constexpr double kLeastLeg_mm = 1e-5;
 constexpr double kLeastBandLeg_mm = 2.0 * kBandLift_mm;
 

@@ -3,23 +3,23 @@
 
 namespace mortise {
 
-// Policy slide. What is left of a body's increments when it meets something for real goes on along
-// the tangent cone of all its contacts (tangent_cone.h), as a leg of its own from that time of the
-// tick to its end; the leg is judged like any other motion, so that a part never goes where stop
-// would not let it. Time runs on as under stop: legs follow each other at the times at which
-// something more holds the body back, or lets it go. At most kMostLegs legs a body and tick.
+// Policy slide. The rest of a body's increments after a real contact runs along the tangent cone of
+// all its contacts (tangent_cone.h), as a leg from that time to the end of the tick. The leg is
+// judged like any other motion, so that a part never goes where `stop` would not allow it. A new
+// leg begins when a further contact holds the body back, or a contact releases it. At most
+// kMostLegs legs for a body and tick.
 
-/// With bands a slide sets out, and keeps off what it leans on, by so much, mm: nearer than that
-/// its way costs the search as much as a touch. Less than any clearance.
+/// With bands a slide starts, and stays, this far from what it leans on, mm. Nearer than that its
+/// path costs the search as much as a touch. Less than any clearance.
 inline constexpr double kBandLift_mm = 1.5e-3;
 
-/// The body that this move belongs to goes on from time t along what holds it. False: there is no
-/// way on, or it had its legs.
+/// Starts a leg of the body of this move at time t along what holds it. False: no motion is left,
+/// or the body has used up its legs.
 bool start_leg(const World& world, Scratch::Impl& work, std::int32_t move, double t,
                StepCounters& counters);
 
-/// When what holds the body lets go of it on its present leg, sought at no more than
-/// kMostLooks places of the leg before time t_end; 2: it does not.
+/// Searches at most kMostLooks places of the present leg before t_end for the time at which a
+/// contact releases the body; 2: it does not.
 void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sliding, double t_end);
 
 }  // namespace mortise

@@ -36,18 +36,18 @@ class SessionStatistics {
   };
 
   void add(const StepReport& report);
-  /// Where one of these takes over an id, what was told of its user before is nobody's.
+  /// When a decision gives an id to another user, removes the former user's rows.
   void forget_users(std::span<const Decision> decisions);
 
   /// Rows of clashes that have ended, as many as a server keeps.
   static constexpr std::size_t kMostEndedRows = 256;
-  /// From now on only so many of them are kept, those that ended last. The others stay in every
-  /// count and sum; a log still has them one by one. A session of days needs it.
+  /// From now on keeps only so many of them, those that ended last, so that a session of days does
+  /// not grow. The others stay in every count and sum, and in the log.
   void keep_ended_rows(std::size_t most);
 
-  /// Counts of all ticks, where they were added without them, as a log has them.
+  /// Sets the counters of all ticks, when reports were added without counters (from a log).
   void set_counters(const StepCounters& counters) { counters_ = counters; }
-  /// Do its lists point at each other as they must? For what was read back.
+  /// Are its lists consistent? For statistics that were read from a file.
   bool is_whole() const;
 
   std::uint64_t ticks() const { return ticks_; }

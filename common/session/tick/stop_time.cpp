@@ -98,7 +98,8 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   query.X_WB = pair.motion_b.pose_at(t);
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
-  // What is withdrawn is held against the least that is certain: half a look would let it deeper.
+  // A withdrawal is compared with the least certain depth: an unfinished search would let the part
+  // go deeper.
   query.only_certain = refinement == Refinement::kFull;
   query.ignore_below_mm = ignore_below_mm;
   query.work_cap = query.only_certain ? kWithdrawalLookWorkCap : pair.cap_of(kLookWorkCap);
@@ -194,9 +195,9 @@ double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   return t_most;
 }
 
-// Who has come out of the other until both just touch is neither real nor can any search say how
-// long it stays so. It goes on as it came, by so little that nothing is passed over between two
-// looks; from there it is searched like any other.
+// A part that has been drawn out until both just touch is not real, but no search can prove for how
+// long. It continues its motion by a step so small that nothing can be missed between two checks.
+// From there it is searched like any other.
 double leave_brink(PairWork& pair, CcdScratch& ccd) {
   const double speed_mm =
       relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});

@@ -3,37 +3,37 @@
 
 namespace mortise {
 
-/// Time of the pair's segment up to which it is proven not to be real; 1: for all of it. For pairs
-/// of which a part has a band.
+/// Time of the pair's segment up to which it is proven not to be real; 1: all of it. For pairs with
+/// a band.
 struct SearchedTime {
   double t = 0.0;
-  bool known = false;  ///< a search would say nothing else
+  bool known = false;  ///< a search would give the same
 };
 
 /// As far as first contact knows it (`touch`: of the meshes), or the place that held the pair
 /// before: a few evaluations.
 SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch);
 
-/// A part that is pushed on where its last push has left it: is it the same place that holds it?
-/// The poses at the start are proven already, so that nothing has to be searched. True: it is, and
-/// PairWork::place names it.
+/// Is a part that is pushed again where its last push left it held by the same place? The poses at
+/// the start are already proven, so that nothing has to be searched. True: PairWork::place is that
+/// place.
 bool is_held_again(PairWork& pair);
 
-/// By the search from there, at most PairWork::cap evaluations of it.
+/// The same by a search from that time on, with at most PairWork::cap evaluations.
 double stop_time_with_bands(PairWork& pair, CcdScratch& ccd);
 
-/// Remembers that the search came to nothing, or that it did not.
+/// Notes whether the search ended without a result.
 void note_stalled(PairWork& pair);
 
-/// Is it the push that came to nothing before, from the same place?
+/// Is it the same push from the same place whose search ended without a result before?
 bool is_stalled(const PairWork& pair);
 
-/// How many searches in a row, whatever the push, have come to nothing from where the parts stand,
-/// with all the work that they may have.
+/// Number of consecutive searches with full work, for any push, that ended without a result from
+/// the present poses.
 std::uint8_t times_in_vain(const PairWork& pair);
 
-/// How far a pair that is real at the start of its segment may go: as long as it gets no deeper.
-/// Looked at in quarters of the segment; between them it is not looked at.
+/// Time up to which a pair that is real at the start of its segment gets no deeper. Checked at the
+/// quarters of the segment only.
 double withdrawal_time(PairWork& pair, CcdScratch& ccd);
 
 }  // namespace mortise

@@ -5,7 +5,7 @@
 
 namespace mortise {
 
-/// One place at which a body touches what stands in its way.
+/// One place at which a body touches an obstacle.
 struct Hold {
   Vec3 point_W = Vec3::Zero();
   Vec3 normal_W = Vec3::UnitZ();  ///< unit; out of the obstacle
@@ -30,7 +30,7 @@ struct TangentQuery {
 struct TangentMove {
   bool possible = false;  ///< false: the holds leave no motion near the wanted one
   Twist twist;
-  int active = 0;  ///< holds that it leans on
+  int active = 0;  ///< holds in contact after the motion
 };
 
 /// The twist nearest to the wanted one, |shift|^2 + lever^2 |turn|^2, among those that keep

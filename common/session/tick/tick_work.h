@@ -13,23 +13,23 @@
 
 namespace mortise {
 
-/// One part that the tick moves, or that was put somewhere since the last tick (then still).
+/// One part that the tick moves, or that was placed since the last tick (then still).
 struct Move {
   std::uint32_t part = 0;  ///< index
   UserId user;
   Motion motion;            ///< as asked for
   double turned_rad = 0.0;  ///< sum of the rotations of its increments
-  bool placed = false;      ///< was put somewhere: nothing is known of its pairs
+  bool placed = false;      ///< was placed: nothing is known of its pairs
   bool owed = false;        ///< a pair of it waits for a verdict
   double stop = 1.0;        ///< time at which the response ends it
   bool stopped = false;
   Pose X_WP_end;  ///< after the response
   GroupId group;  ///< moves as one with the other parts of it
-  /// The piece of its path that it is on: `motion`, or, where it slides, what goes on from time
-  /// leg_start of the tick to its end.
+  /// The present piece of its path: `motion`, or, when it slides, the leg from time leg_start of
+  /// the tick to its end.
   Motion leg;
   double leg_start = 0.0;
-  Box reach;                  ///< no pair is asked for what the part does outside of it
+  Box reach;                  ///< the part stays in this box; pairs are chosen by it
   std::int32_t sliding = -1;  ///< index among the sliding groups; -1: it does not slide
 };
 
@@ -42,11 +42,11 @@ struct SlidingGroup {
   Twist wanted, given;              ///< of the present leg, whole; about its centre
   double lift_mm = 0.0;             ///< by which a turning leg gets away from what holds it
   int legs = 0, stalls = 0;
-  double look = 2.0;  ///< time at which what holds it lets go; 2: it does not
+  double look = 2.0;  ///< time at which a contact releases it; 2: none does
   bool look_due = false;
 };
 
-/// What a pair was asked over an earlier piece of the tick, to be judged in place of the last one.
+/// The state of a pair over an earlier piece of the tick, judged in place of the last piece.
 struct AskedEarlier {
   double tau = 0.0, t_contact = 1.0, t_enter = 0.0, t_stop = 1.0;
   Motion motion_a, motion_b;
@@ -81,7 +81,7 @@ struct PairWork {
   // times are of the segment, but for t_stop.
   double tau = 0.0;
   Motion motion_a, motion_b;
-  bool asked = false;      ///< false: an earlier or a new distance says that they stay apart
+  bool asked = false;      ///< false: an earlier or a new distance proves that they stay apart
   bool near = false;       ///< overlapping or within the band at some time: to be judged
   bool touching = false;   ///< touched at the start and got no deeper: nothing to judge
   bool entered = false;    ///< came within the band during the segment
@@ -95,9 +95,9 @@ struct PairWork {
   double apart_at_end_mm = 0.0;  ///< lower bound, when neither near nor touching
   bool blocks = false;           ///< the response stopped a part because of this pair
   bool held_again = false;       ///< at once, by the place that has held it back before
-  CertainPlace place;            ///< that makes it real, where one is known
+  CertainPlace place;            ///< a place that makes the pair real, where one is known
 
-  bool together = false;  ///< both move as one: what was said of them stays
+  bool together = false;  ///< both move as one: their clashes stay as they are
   double t_left = 2.0;    ///< of the tick: the parts went other ways from then on; 2: they did not
   std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
                                                 ///< back; near, and left again
@@ -115,23 +115,23 @@ struct PairWork {
   // Work on depth, in evaluations; see depth_budget.h.
   std::uint64_t cap = ~std::uint64_t{0}, stage_start = 0;
   std::uint64_t most_work = 0;     ///< that a pair may have in the stage
-  bool limited = false;            ///< by what the tick may spend
-  bool wants_stop_time = false;    ///< its t_stop is what needs no search
+  bool limited = false;            ///< by the budget of the tick
+  bool wants_stop_time = false;    ///< t_stop is only what is known without a search
   double t_stop_start = 0.0;       ///< of the segment: where that search begins
-  bool stop_gave_up = false;       ///< that search came to the end of its work
-  bool short_of_work = false;      ///< and was given less of it than it may have
-  bool stalled = false;            ///< or none, because the same push has come to nothing before
-  bool withdrawal_unsure = false;  ///< a look at what is withdrawn came to the end of its work
+  bool stop_gave_up = false;       ///< that search used up its work
+  bool short_of_work = false;      ///< and had been given less than a pair may have
+  bool stalled = false;            ///< or none, because the same push had no result before
+  bool withdrawal_unsure = false;  ///< the search along a withdrawal used up its work
   bool owed = false;               ///< near, but not judged to the end: again in the next tick
 
-  /// Was it given less than that?
+  /// Was it given less than most_work?
   bool may_have_more() const { return cap < most_work; }
-  /// What is left to it of the stage.
+  /// What is left of its work in the stage.
   std::uint64_t left() const {
     const std::uint64_t used = counts.depth_evaluations - stage_start;
     return used < cap ? cap - used : 0;
   }
-  /// The cap of one question: never nothing, so that an answer is at least a bracket.
+  /// The cap of one question: never 0, so that the answer is at least a bracket.
   std::uint64_t cap_of(std::uint64_t most) const {
     constexpr std::uint64_t kGlance = 100;
     return std::min(most, std::max(left(), kGlance));
@@ -140,21 +140,20 @@ struct PairWork {
   // Stage 4.
   Judgement judgement;
   std::vector<SeenRegion> seen;
-  bool unsettled = false;  ///< a better class than told, but not by enough to be told
-  bool in_full = false;    ///< then its depth is looked at as closely as may be
-  double t_potential = kNever, t_real = kNever;  ///< of the tick; where somebody is told
+  bool unsettled = false;  ///< a better class than told, but within the hysteresis
+  bool in_full = false;    ///< then its depth is refined completely
+  double t_potential = kNever, t_real = kNever;  ///< of the tick; for pairs with an event
   std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)
 
   StepCounters counts;  ///< of this pair alone, merged in pair order
 
-  /// The meshes are the parts: nothing is known of deviation or tolerance.
+  /// The meshes are the parts: no deviation or tolerance is known.
   bool plain() const { return band_a->trivial && band_b->trivial; }
-  /// A part without an inside is potential at best, so that it stops nobody.
+  /// A part without an inside is potential at best, so that it stops no part.
   bool no_inside() const { return !solid_a->topology().closed() || !solid_b->topology().closed(); }
 };
 
-/// Ways to do the same with less cleverness, for tests; the report must not change but for
-/// counters.
+/// Switches off optimizations, for tests; apart from counters the report must not change.
 struct StepSwitches {
   bool known_distances = true;
   bool brute_force_pairs = false;  ///< at the first step of a world

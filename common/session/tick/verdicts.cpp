@@ -228,8 +228,9 @@ bool anything_to_tell(const PairWork& pair) {
                      [](const SeenRegion& seen) { return seen.tell; });
 }
 
-// Half a verdict is none: the next ticks look again, at the parts as they stand if they rest. What
-// stopped a part is not to be seen there, but for that there is nothing else.
+// A verdict that was cut short is discarded. The next ticks judge the pair again, at its present
+// poses if the parts rest. There the contact that stopped a part cannot be seen, so the clashes
+// that are told stay.
 void put_off(PairWork& pair) {
   keep_told(pair);
   pair.undecided = true;

@@ -28,8 +28,8 @@ class WorkBudget {
   /// A quarter of what a tick does not need is saved.
   static constexpr std::int64_t kSavedShare = 4;
 
-  /// The first tick of a session has no limit: nobody waits for it yet. `times`: of the tick's own
-  /// work.
+  /// The first tick of a session has no limit, because nobody waits for it yet. `times`: factor on
+  /// the tick's own work.
   void open(const WorkRules& rules, const World& world, std::int64_t saved, bool limited,
             std::int64_t times = 1);
   bool is_limited() const { return limited_; }
@@ -65,9 +65,9 @@ struct UsedWork {
   bool capped = false;      ///< it was not enough
   std::uint64_t first = 0;  ///< estimate for a pair of which nothing is known yet
 };
-/// Remembers it: half as much again as it used is asked for the next time, twice the cap when that
-/// was not enough. An easy tick lowers the estimate by an eighth only, and a pair that was given
-/// less than it wanted has learned nothing of what it needs.
+/// Sets the estimate for the next tick: one and a half times what was used, or twice the cap when
+/// that was not enough. An easy tick lowers the estimate by an eighth only, and the estimate of a
+/// pair that was given less than it wanted stays.
 void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work);
 /// Counts for how many ticks in a row the pair was not served.
 void note_waiting(PairWork& pair, WorkStage stage, bool served);

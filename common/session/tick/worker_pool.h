@@ -9,9 +9,9 @@
 
 namespace mortise {
 
-/// A few threads that share the indices of one loop. Which thread takes which index is left to
-/// chance, so a loop body may write only to what belongs to its index; results are then merged in
-/// index order and cannot depend on the number of threads.
+/// A few threads that share the indices of one loop. Any thread may take any index, so a loop body
+/// may write only data of its index. Results are then merged in the order of indices and do not
+/// depend on the number of threads.
 class WorkerPool {
  public:
   /// `threads` >= 1 in all, the caller's own included.
