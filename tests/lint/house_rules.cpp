@@ -274,7 +274,8 @@ class HouseCheck {
   // A cited document (of the room, or of the room that is named before it) is there, and has the
   // section that is named behind it.
   void citations(const std::string& name, const std::string& comments) {
-    static const std::regex kCited("([A-Za-z0-9_./]*\\.md|README)(, sections? ([0-9]+))?");
+    static const std::regex kCited(
+        "([A-Za-z0-9_./]*[A-Za-z0-9_]\\.md|README)(, sections? ([0-9]+))?");
     for (auto cited = std::sregex_iterator(comments.begin(), comments.end(), kCited);
          cited != std::sregex_iterator(); ++cited) {
       const std::string document = (*cited)[1] == "README" ? "README.md" : (*cited)[1].str();
