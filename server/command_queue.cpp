@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/messages/names.h"
+#include "common/session/world/commands.h"
 
 namespace mortise {
 namespace {

@@ -192,7 +192,7 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
     return;
   }
 
-  Decision decision{Decision::Kind::kJoin, known};
+  Decision decision{Decision::Kind::kJoin, known, {}, {}};
   if (!known && world.users.size() >= std::max(limits_.names_kept, limits_.max_users)) {
     decision.user = longest_gone(world);
     if (const User* gone = world.find(decision.user)) decision.details.text = gone->name;
@@ -282,8 +282,8 @@ void Inbox::leave(UserId user, bool said_goodbye, World& world, Intake& intake) 
   increments_.drop(user);
   commands_.drop(user);
   ++(said_goodbye ? tally_.all().leaves : tally_.all().liveliness_lost);
-  decide({said_goodbye ? Decision::Kind::kLeave : Decision::Kind::kLivelinessLost, user}, world,
-         intake);
+  decide({said_goodbye ? Decision::Kind::kLeave : Decision::Kind::kLivelinessLost, user, {}, {}},
+         world, intake);
 }
 
 void Inbox::end_waiting(World& world, std::int64_t now_ns, Intake& intake) {

@@ -38,7 +38,7 @@ std::vector<Decision> Leases::ended(const World& world, std::int64_t now_ns,
     const Part& part = world.parts[i];
     if (!part.holder || now_ns - renewed_ns_[i] <= lease_ns(world)) continue;
     if (moved(part.holder, part.id)) continue;
-    decisions.push_back({Decision::Kind::kLeaseEnd, part.holder, part.id});
+    decisions.push_back({Decision::Kind::kLeaseEnd, part.holder, part.id, {}});
   }
   return decisions;
 }
@@ -48,7 +48,7 @@ std::vector<Decision> Leases::unanswered(const World& world, std::int64_t now_ns
   for (const std::uint32_t i : moving_) {
     const Part& part = world.parts[i];
     if (!part.asked_by || now_ns - asked_ns_[i] <= lease_ns(world)) continue;
-    decisions.push_back({Decision::Kind::kAskEnd, part.asked_by, part.id});
+    decisions.push_back({Decision::Kind::kAskEnd, part.asked_by, part.id, {}});
     decisions.back().details.other_user = part.holder;
   }
   return decisions;
