@@ -16,6 +16,8 @@ std::atomic<std::uint64_t> allocations = 0;
 constexpr bool kCounts = false;
 #else
 constexpr bool kCounts = true;
+// Inlined, the compiler takes free() for the wrong partner of the new above it.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;

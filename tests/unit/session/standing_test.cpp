@@ -29,18 +29,20 @@ struct StandingTest : PeopleTest {
     return standing_changes(before, standing_decisions(session.world), 7);
   }
 
+  Decision by_ada(Decision::Kind kind, PartId part = {}) const { return {kind, ada, part, {}}; }
+
   std::vector<Decision> before;
 };
 
 TEST_F(StandingTest, NothingHoldsOfAPartThatWasLetGo) {
-  Decision release{Kind::kRelease, ada, peg}, group_release{Kind::kRelease, ada, {}};
+  Decision release = by_ada(Kind::kRelease, peg), group_release = by_ada(Kind::kRelease);
   group_release.details.parts = {peg};
-  Decision hand_over{Kind::kHandOver, ada, peg};
+  Decision hand_over = by_ada(Kind::kHandOver, peg);
   hand_over.details.other_user = bob;
   const World world = session.world;
   for (const Decision& end :
-       {release, group_release, Decision{Kind::kLeave, ada}, Decision{Kind::kLivelinessLost, ada},
-        Decision{Kind::kLeaseEnd, ada, peg}, hand_over}) {
+       {release, group_release, by_ada(Kind::kLeave), by_ada(Kind::kLivelinessLost),
+        by_ada(Kind::kLeaseEnd, peg), hand_over}) {
     session.world = world;
     apply_decision(session.world, end);
     EXPECT_TRUE(standing_decisions(session.world).empty()) << static_cast<int>(end.kind);
