@@ -43,7 +43,7 @@ TEST(Client, FollowsWhatTheServerDecides) {
 }
 
 Decision rule(std::uint32_t part) {
-  return {Decision::Kind::kSetExclusion, UserId{1}, PartId{part}};
+  return {Decision::Kind::kSetExclusion, UserId{1}, PartId{part}, {}};
 }
 
 TEST(Client, ShowsWhatTheSessionSaysThatHolds) {

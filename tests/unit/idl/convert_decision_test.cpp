@@ -72,8 +72,9 @@ TEST(Convert, DecisionsGoRoundAndAreRefused) {
 }
 
 TEST(Convert, WhatHoldsGoesRoundAndIsRefused) {
-  const StandingChange sent[] = {{9, true, {Decision::Kind::kAddConstraint, UserId{2}, PartId{3}}},
-                                 {9, false, {Decision::Kind::kSetPolicy, UserId{2}}}};
+  const StandingChange sent[] = {
+      {9, true, {Decision::Kind::kAddConstraint, UserId{2}, PartId{3}, {}}},
+      {9, false, {Decision::Kind::kSetPolicy, UserId{2}, {}, {}}}};
   wire::Answers answers = to_wire({}, {}, {}, {}, sent);
   const Result<Answers> got = from_wire(answers);
   ASSERT_TRUE(got) << got.error().text;
