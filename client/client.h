@@ -27,6 +27,8 @@ class Client final : public ClientCommands {
 
   /// The channel must outlive the client. Without a clock: std::chrono::steady_clock.
   explicit Client(ClientChannel& channel, const ClientOptions& options = {}, Clock clock = {});
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
 
   /// Asks to join; the answer comes by poll(). role: designer | observer | bot.
   LocalUser add_user(const std::string& name, const std::string& role);
