@@ -78,7 +78,8 @@ called '^cmake --preset release -DMORTISE_SOAK=ON$'
 called '^ctest .* -C Soak$'
 exits 0 test --sanitize thread
 called '^cmake --preset tsan '
-called '^ctest --test-dir build/tsan '
+called '^ninja -C build/tsan sanitize-thread$'
+called '^ctest --test-dir build/tsan .* -L \^sanitize-thread\$$'
 
 # 5. the last line of what was tested
 cat >results.xml <<'TXT'
