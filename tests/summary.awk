@@ -1,5 +1,5 @@
-# awk -f summary.awk FILE: one line of what ctest wrote by --output-junit: how many tests passed, failed and were skipped, and why they
-# were. A skipped test of GoogleTest prints "...: Skipped" and its reason below, a script "SKIPPED: reason".
+# awk -f summary.awk FILE: one line of what ctest wrote by --output-junit: how many tests passed, failed and were skipped, and for which
+# categories of reasons. A skipped test of GoogleTest prints "...: Skipped" and "category: reason" below, a script "SKIPPED: category: reason".
 function plain(text) {
   gsub(/&lt;/, "<", text); gsub(/&gt;/, ">", text); gsub(/&quot;/, "\"", text); gsub(/&apos;/, "'", text); gsub(/&amp;/, "\\&", text)
   return text
@@ -14,12 +14,16 @@ status == "notrun" && reason == "" {
 /^\t<\/testcase>/ {
   if (status == "run") ++passed
   else if (status == "fail") ++failed
-  else { ++skipped; ++why[reason == "" ? "no reason given" : reason] }
+  else {
+    sub(/:.*/, "", reason)
+    ++skipped
+    ++why[reason == "" ? "no reason given" : plain(reason)]
+  }
 }
 END {
   printf "mortise: %d passed, %d failed, %d skipped", passed, failed, skipped
   for (reason in why) {
-    printf "%s%d %s", mentioned++ ? ", " : ": ", why[reason], plain(reason)
+    printf "%s%d %s", mentioned++ ? ", " : ": ", why[reason], reason
   }
   print ""
 }

@@ -89,11 +89,11 @@ cat >results.xml <<'TXT'
 		<skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
 		<system-out>[ RUN      ] B.B
 /b.cpp:12: Skipped
-data absent: &quot;it&apos;s far&quot;
+data &lt;absent&gt;: set MORTISE_DATA
 	</testcase>
 	<testcase name="c" classname="c" time="0.1" status="notrun">
 		<skipped message="SKIP_RETURN_CODE=77"/>
-		<system-out>SKIPPED: not root
+		<system-out>SKIPPED: not root: no network namespaces
 	</testcase>
 	<testcase name="d" classname="d" time="0.1" status="fail">
 	</testcase>
@@ -102,6 +102,8 @@ data absent: &quot;it&apos;s far&quot;
 	</testcase>
 TXT
 said=$(awk -f tests/summary.awk results.xml)
-[ "${said%%:*}" = mortise ] && [[ $said == *": 1 passed, 2 failed, 2 skipped: "* && $said == *'1 data absent: "it'"'"'s far"'* && $said == *'1 not root'* ]] ||
-  fail "summary: $said"
+case $said in
+  'mortise: 1 passed, 2 failed, 2 skipped: 1 data <absent>, 1 not root' | 'mortise: 1 passed, 2 failed, 2 skipped: 1 not root, 1 data <absent>') ;;
+  *) fail "summary: $said" ;;
+esac
 echo "the script calls what it should"
