@@ -38,6 +38,40 @@ std::string why_not(const Identity& identity, const std::string& name, Role role
   return {};
 }
 
+// `in_use`: a user of that name is present. `most_users`: as many as are present already; 0: there
+// is room.
+Refusal check_join(const JoinRequest& request, const World& world, bool in_use,
+                   std::uint64_t most_users, std::string& text) {
+  const std::optional<Role> role = role_named(request.role);
+  const Role wanted = role_wanted(world, request.name);
+  if (!printable(request.name)) {
+    text = "a name has 1 to 64 printable characters";
+    return Refusal::kNotAllowed;
+  }
+  if (!role) {
+    text = "'" + request.role + "' is no role; join as designer, observer or bot";
+    return Refusal::kNotAllowed;
+  }
+  if (request.identity) {
+    text = why_not(*request.identity, request.name, *role);
+    if (!text.empty()) return Refusal::kNotAllowed;
+  }
+  if (wanted != Role::kUnknown && wanted != *role) {
+    text = "the scenario has '" + request.name + "' as " + std::string(name_of(wanted)) +
+           ", not as " + request.role;
+    return Refusal::kNotAllowed;
+  }
+  if (in_use) {
+    text = "the name '" + request.name + "' is in use in this session; choose another";
+    return Refusal::kNotAllowed;
+  }
+  if (most_users > 0) {
+    text = "the session has its " + std::to_string(most_users) + " users already";
+    return Refusal::kSessionFull;
+  }
+  return Refusal::kNone;
+}
+
 }  // namespace
 
 void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& intake) {
@@ -136,38 +170,6 @@ std::vector<SeatRecord> Inbox::seats() const {
   return records;
 }
 
-Refusal Inbox::check_join(const JoinRequest& request, const World& world, UserId known,
-                          std::string& text) const {
-  const std::optional<Role> role = role_named(request.role);
-  const Role wanted = role_wanted(world, request.name);
-  if (!printable(request.name)) {
-    text = "a name has 1 to 64 printable characters";
-    return Refusal::kNotAllowed;
-  }
-  if (!role) {
-    text = "'" + request.role + "' is no role; join as designer, observer or bot";
-    return Refusal::kNotAllowed;
-  }
-  if (request.identity) {
-    text = why_not(*request.identity, request.name, *role);
-    if (!text.empty()) return Refusal::kNotAllowed;
-  }
-  if (wanted != Role::kUnknown && wanted != *role) {
-    text = "the scenario has '" + request.name + "' as " + std::string(name_of(wanted)) +
-           ", not as " + request.role;
-    return Refusal::kNotAllowed;
-  }
-  if (is_present(known)) {
-    text = "the name '" + request.name + "' is in use in this session; choose another";
-    return Refusal::kNotAllowed;
-  }
-  if (users_present() >= limits_.max_users) {
-    text = "the session has its " + std::to_string(limits_.max_users) + " users already";
-    return Refusal::kSessionFull;
-  }
-  return Refusal::kNone;
-}
-
 void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t now_ns,
                        Intake& intake) {
   JoinReply reply{request.client, request.nonce, {}, Refusal::kNone, {}};
@@ -185,7 +187,9 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
   UserId known;  // a user of that name who left: the same user again
   for (const User& user : world.users)
     if (user.name == request.name) known = user.id;
-  reply.refusal = check_join(request, world, known, reply.text);
+  const bool is_full = users_present() >= limits_.max_users;
+  reply.refusal =
+      check_join(request, world, is_present(known), is_full ? limits_.max_users : 0, reply.text);
   if (reply.refusal != Refusal::kNone) {
     ++tally_.all().joins_refused;
     intake.join_replies.push_back(std::move(reply));

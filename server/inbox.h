@@ -69,9 +69,6 @@ class Inbox {
   void sit_down(UserId user, const Seat& seat, bool with_taken_id, std::int64_t now_ns);
 
   void admit_join(const JoinRequest& request, World& world, std::int64_t now_ns, Intake& intake);
-  /// What is wrong with a request to join; kNone: nothing.
-  Refusal check_join(const JoinRequest& request, const World& world, UserId known,
-                     std::string& text) const;
   void admit_increment(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
   void admit_command(const ReceivedCommand& received, World& world, std::int64_t now_ns,
                      Intake& intake);

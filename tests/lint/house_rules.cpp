@@ -75,9 +75,9 @@ const std::vector<NamedHere>& named_here() {
        {"idl/", "tests/unit/idl/fast_dds_overrides_test."}},
       {"spdlog", std::regex("spdlog/.*"), {"server/", "client/"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/log/mcap_"}},
-      {"SQLite", std::regex("sqlite3\\.h"), {"client/report/", "tests/unit/io/export_test."}},
-      {"libzip", std::regex("zip\\.h"), {"client/report/bcf.", "tests/unit/io/"}},
-      {"pugixml", std::regex("pugixml\\.hpp"), {"client/report/bcf.", "tests/unit/io/"}},
+      {"SQLite", std::regex("sqlite3\\.h"), {"client/report/", "tests/unit/replay/export_test."}},
+      {"libzip", std::regex("zip\\.h"), {"client/report/bcf.", "tests/unit/replay/"}},
+      {"pugixml", std::regex("pugixml\\.hpp"), {"client/report/bcf.", "tests/unit/replay/"}},
       {"Boost.Beast",
        std::regex("boost/(beast|asio).*"),
        {"client/web/", "server/metrics_endpoint.", "server/discovery/",
@@ -86,7 +86,7 @@ const std::vector<NamedHere>& named_here() {
        std::regex("openssl/.*"),
        {"client/web/", "idl/identity.", "tests/network/page_client."}},
       {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
-      {"CLI11", std::regex("CLI/.*"), {"server/", "client/", "scenarios/", "tests/"}},
+      {"CLI11", std::regex("CLI/.*"), {"idl/network_options.", "server/", "client/", "tests/"}},
   };
   return rules;
 }
