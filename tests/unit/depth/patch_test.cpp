@@ -25,8 +25,8 @@ struct Crown {
       return Vec3(radius * std::cos(angle), radius * std::sin(angle), z);
     };
     for (int i = 0; i < 3; ++i) mesh.points_mm.push_back(at(120.0 * i, 1.0, 0.0));
-    for (int j = 0; j < kRing; ++j) mesh.points_mm.push_back(at(40.0 * j - 60.0, 3.0, -1.0));
-    mesh.points_mm.push_back(Vec3(0, 0, -1.0));
+    for (int j = 0; j < kRing; ++j) mesh.points_mm.push_back(at(40.0 * j - 60.0, 3.0, -4.0));
+    mesh.points_mm.push_back(Vec3(0, 0, -4.0));
     const auto ring = [](int j) { return static_cast<std::uint32_t>(3 + (j + kRing) % kRing); };
     mesh.triangles.push_back({0, 1, 2});
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -63,6 +63,7 @@ struct Crown {
 TEST(Patch, HoldsAllThatManyNeighboursLeaveOfAFace) {
   const Crown crown(true);
   const Body body(*crown.solid, crown.band);
+  ASSERT_GE(body.sharp_neighbours(0).size(), 8u) << "no edge is sharp: nothing is shown";
   const Piece top = crown.top();
   const PieceShape shape = shape_of(body, Layer::kLower, top);
   const Patch still = make_patch(shape, Pose());
@@ -96,6 +97,8 @@ TEST(Patch, IsThickenedByEveryNeighbourThatMovesOutward) {
   Crown crown(false);
   for (std::uint16_t t = 9; t < 13; ++t) crown.band.faces[t].tolerance_mm.hi = 0.3;
   const Body body(*crown.solid, crown.band);
+  ASSERT_EQ(body.sharp_neighbours(0).size() + body.sharp_left_out(0), 12u);
+  ASSERT_GT(body.sharp_left_out(0), 0) << "all are kept: nothing is shown";
   const Patch patch = make_patch(body, Layer::kUpper, crown.top(), Pose());
   for (std::uint32_t t = 1; t < 13; ++t) {
     const double offset_mm = Body::offset_of(body.face(t), Layer::kUpper);

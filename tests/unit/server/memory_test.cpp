@@ -10,11 +10,12 @@
 namespace mortise {
 namespace {
 
-constexpr std::size_t kLarge = 300'000;
+// More than lies free in the heap of this program, less than the 32 MB up to which glibc adapts.
+constexpr std::size_t kLarge = 8 << 20;
 
 /// Does a large block lie apart from the heap, where a larger one was freed before?
 bool lies_apart() {
-  void* volatile larger = std::malloc(1 << 20);
+  void* volatile larger = std::malloc(2 * kLarge);
   std::free(larger);  // by itself glibc counts what is no larger as small from now on
   const std::size_t before = mallinfo2().hblkhd;
   void* volatile block = std::malloc(kLarge);

@@ -2,6 +2,7 @@
 #include "client/web/page_files.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -11,7 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PageFolder : testing::Test {
-  fs::path folder = fs::path(testing::TempDir()) / "mortise_page_files_test";
+  fs::path folder =
+      fs::path(testing::TempDir()) / ("mortise_page_files_" + std::to_string(getpid()));
 
   void SetUp() override {
     fs::remove_all(folder);

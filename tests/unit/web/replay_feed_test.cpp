@@ -2,6 +2,7 @@
 #include "client/web/replay_feed.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -70,7 +71,8 @@ Truth play_session(const fs::path& file) {
 
 struct ReplayOfASession : testing::Test {
   void SetUp() override {
-    file = fs::path(testing::TempDir()) / "mortise_replay_feed_test.mcap";
+    // A process each: cases run side by side.
+    file = fs::path(testing::TempDir()) / ("replay_feed_" + std::to_string(getpid()) + ".mcap");
     fs::remove(file);
     truth = play_session(file);
     auto read = read_recording(file);
