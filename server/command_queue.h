@@ -5,7 +5,7 @@
 
 #include "common/session/world/world.h"
 #include "server/inbox_tally.h"
-#include "server/increment_queues.h"
+#include "server/increment_admission.h"
 #include "server/intake.h"
 #include "server/leases.h"
 #include "server/message_rates.h"
@@ -21,7 +21,7 @@ class CommandQueue {
  public:
   /// All must outlive this.
   CommandQueue(const InboxLimits& limits, InboxTally& tally, MessageRates& rates, Leases& leases,
-               const IncrementQueues& increments)
+               const IncrementAdmission& increments)
       : limits_(limits), tally_(tally), rates_(rates), leases_(leases), increments_(increments) {}
 
   /// A user has joined: its sequence numbers begin again.
@@ -55,7 +55,7 @@ class CommandQueue {
   InboxTally& tally_;
   MessageRates& rates_;
   Leases& leases_;
-  const IncrementQueues& increments_;
+  const IncrementAdmission& increments_;
   std::vector<SequenceWindow> sequences_;  ///< by user index
   std::vector<Waiting> waiting_;           ///< in order of arrival
 };

@@ -7,7 +7,7 @@
 #include "common/session/world/world.h"
 #include "server/command_queue.h"
 #include "server/inbox_tally.h"
-#include "server/increment_queues.h"
+#include "server/increment_admission.h"
 #include "server/intake.h"
 #include "server/leases.h"
 #include "server/message_rates.h"
@@ -84,7 +84,7 @@ class Inbox {
   InboxTally tally_{limits_};
   MessageRates rates_{limits_};
   Leases leases_;
-  IncrementQueues increments_{limits_, tally_, rates_, leases_};
+  IncrementAdmission increments_{limits_, tally_, rates_, leases_};
   CommandQueue commands_{limits_, tally_, rates_, leases_, increments_};
   std::vector<Seat> seats_;
   std::vector<DeferredGoodbye> goodbyes_;

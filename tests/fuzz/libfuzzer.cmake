@@ -52,7 +52,7 @@ set(root ${CMAKE_SOURCE_DIR})
 fuzz_driver(wire RUNS 400000 SOURCES wire_target.cpp ${root}/tests/unit/idl/samples.cpp ${root}/idl/datagram_guard.cpp ${root}/idl/convert.cpp
   ${root}/idl/chunks.cpp
   ${root}/server/tick_bytes.cpp ${root}/common/io/log/log_records.cpp)
-fuzz_driver(inbox RUNS 200000 SOURCES inbox_target.cpp ${root}/server/inbox.cpp ${root}/server/increment_queues.cpp ${root}/server/command_queue.cpp
+fuzz_driver(inbox RUNS 200000 SOURCES inbox_target.cpp ${root}/server/inbox.cpp ${root}/server/increment_admission.cpp ${root}/server/command_queue.cpp
   ${root}/server/increment_order.cpp ${root}/server/sequence_window.cpp
   ${root}/common/session/world/commands.cpp ${root}/common/session/world/decisions.cpp ${root}/common/session/world/move_history.cpp)
 fuzz_driver(log RUNS 200000 SOURCES log_target.cpp ${root}/common/io/log/mcap_reader.cpp ${root}/common/io/log/log_records.cpp

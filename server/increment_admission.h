@@ -14,10 +14,11 @@ namespace mortise {
 
 /// The increments of all users: restores the order in which they were sent, checks them, and gives
 /// each tick a share of every user. Acknowledges accepted and refused increments in order.
-class IncrementQueues {
+class IncrementAdmission {
  public:
   /// All must outlive this.
-  IncrementQueues(const InboxLimits& limits, InboxTally& tally, MessageRates& rates, Leases& leases)
+  IncrementAdmission(const InboxLimits& limits, InboxTally& tally, MessageRates& rates,
+                     Leases& leases)
       : limits_(limits), tally_(tally), rates_(rates), leases_(leases) {}
 
   /// A user has joined: its sequence numbers begin again.

@@ -1,4 +1,4 @@
-#include "server/increment_queues.h"
+#include "server/increment_admission.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,13 +31,13 @@ Refusal judge(const Increment& increment, const World& world) {
 
 }  // namespace
 
-void IncrementQueues::begin(UserId user) {
+void IncrementAdmission::begin(UserId user) {
   if (user.value > queues_.size()) queues_.resize(user.value);
   queues_[user.value - 1] = Queue{};
 }
 
-void IncrementQueues::receive(const ReceivedIncrement& received, std::int64_t now_ns,
-                              Intake& intake) {
+void IncrementAdmission::receive(const ReceivedIncrement& received, std::int64_t now_ns,
+                                 Intake& intake) {
   const Increment& increment = received.increment;
   Queue& of_user = queues_[increment.user.value - 1];
   IncrementOrder& order = of_user.order;
@@ -64,8 +64,8 @@ void IncrementQueues::receive(const ReceivedIncrement& received, std::int64_t no
   tally_.refuse(increment, increment.user, seen ? Refusal::kDuplicate : Refusal::kStale, intake);
 }
 
-void IncrementQueues::queue(const ReceivedIncrement& received, std::int64_t now_ns,
-                            Intake& intake) {
+void IncrementAdmission::queue(const ReceivedIncrement& received, std::int64_t now_ns,
+                               Intake& intake) {
   const Increment& increment = received.increment;
   Queue& of_user = queues_[increment.user.value - 1];
   Refusal reason = received.at_door;
@@ -91,14 +91,14 @@ void IncrementQueues::queue(const ReceivedIncrement& received, std::int64_t now_
   ++waiting_;
 }
 
-std::size_t IncrementQueues::share_of(const Queue& queue, const World& world) const {
+std::size_t IncrementAdmission::share_of(const Queue& queue, const World& world) const {
   const double sent_per_s = std::max(queue.queued, queue.queued_before);
   return std::max<std::size_t>(
       limits_.increments_per_tick,
       static_cast<std::size_t>(std::ceil(2.0 * sent_per_s / world.tick_rate_hz)));
 }
 
-void IncrementQueues::take(const World& world, std::int64_t now_ns, Intake& intake) {
+void IncrementAdmission::take(const World& world, std::int64_t now_ns, Intake& intake) {
   for (std::uint32_t i = 0; i < queues_.size(); ++i) {
     const Queue& of_user = queues_[i];
     const std::size_t before = intake.increments.size(), share = share_of(of_user, world);
@@ -109,8 +109,8 @@ void IncrementQueues::take(const World& world, std::int64_t now_ns, Intake& inta
   tally_.all().longest_backlog = std::max<std::uint64_t>(tally_.all().longest_backlog, waiting_);
 }
 
-void IncrementQueues::take_first(UserId user, const World& world, std::int64_t now_ns,
-                                 Intake& intake) {
+void IncrementAdmission::take_first(UserId user, const World& world, std::int64_t now_ns,
+                                    Intake& intake) {
   const Increment increment = next(user, intake);
   if (const Refusal reason = judge(increment, world); reason != Refusal::kNone)
     return tally_.refuse(increment, user, reason, intake);
@@ -120,7 +120,7 @@ void IncrementQueues::take_first(UserId user, const World& world, std::int64_t n
   intake.increments.push_back(increment);
 }
 
-Increment IncrementQueues::next(UserId user, Intake& intake) {
+Increment IncrementAdmission::next(UserId user, Intake& intake) {
   Queue& of_user = queues_[user.value - 1];
   const ReceivedIncrement first = std::move(of_user.backlog.front());
   of_user.backlog.pop_front();
@@ -131,13 +131,13 @@ Increment IncrementQueues::next(UserId user, Intake& intake) {
   return first.increment;
 }
 
-void IncrementQueues::drop(UserId user) {
+void IncrementAdmission::drop(UserId user) {
   Intake nobody;
   while (!queues_[user.value - 1].backlog.empty())
     tally_.refuse(next(user, nobody), user, Refusal::kUnknownUser, nobody);
 }
 
-bool IncrementQueues::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
+bool IncrementAdmission::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {
   if (!user || user.value > queues_.size()) return false;
   const std::deque<ReceivedIncrement>& backlog = queues_[user.value - 1].backlog;
   return std::any_of(backlog.begin(), backlog.end(), [&](const ReceivedIncrement& r) {
@@ -145,8 +145,8 @@ bool IncrementQueues::waits(UserId user, PartId part, std::uint64_t up_to_seq) c
   });
 }
 
-void IncrementQueues::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns,
-                                  Intake& intake) {
+void IncrementAdmission::acknowledge(UserId user, std::uint64_t seq, std::int64_t sent_ns,
+                                     Intake& intake) {
   std::uint64_t& acknowledged = queues_[user.value - 1].acknowledged;
   acknowledged = std::max(acknowledged, seq);
   const auto at = std::lower_bound(intake.acks.begin(), intake.acks.end(), user,
