@@ -10,6 +10,7 @@
 #include "common/messages/names.h"
 #include "tests/golden/played_session.h"
 #include "tests/support/effort.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise {
 namespace {
@@ -54,11 +55,10 @@ TEST(BudgetPlay, TheDemoTellsWhatItTellsWithout) {
     EXPECT_LT((a.X_WP.p - b.X_WP.p).norm(), 2.0) << a.name;
   }
 
-  const auto file = std::filesystem::path(testing::TempDir()) / "budget_play_test.mcap";
-  std::filesystem::remove(file);
+  const test::TestFolder folder;
+  const auto file = folder.path() / "budget_play.mcap";
   ASSERT_TRUE(test::write_log(*with, file));
   const auto log = read_session_log(file);
-  std::filesystem::remove(file);
   ASSERT_TRUE(log) << log.error().text;
   const auto report = verify(*log, 2);
   ASSERT_TRUE(report) << report.error().text;

@@ -59,7 +59,7 @@ class DiscoveryServers : public ::testing::Test {
     return std::make_unique<Guest>(options, name);
   }
   static bool says(const Program& program, const std::string& text) {
-    for (const double end_s = steady_s() + 20.0; steady_s() < end_s;) {
+    for (const double end_s = steady_s() + kPatience_s; steady_s() < end_s;) {
       if (program.errors().find(text) != std::string::npos) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

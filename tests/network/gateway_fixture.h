@@ -13,6 +13,7 @@
 #include "server/tick_loop.h"
 #include "tests/network/page_client.h"
 #include "tests/support/small_scenarios.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise::test {
 
@@ -31,17 +32,14 @@ struct GatewayFixture : testing::Test {
   std::unique_ptr<web::Gateway> gateway;
   web::GatewayOptions options;
   web::Tokens tokens = web::make_tokens();
-  std::filesystem::path folder;
+  const TestFolder own;
+  const std::filesystem::path folder = own.path();
   std::atomic<bool> stopping{false};
   std::atomic<int> lines{0};
   std::thread session, serving;
   int port = 0;
 
   void SetUp() override {
-    folder = std::filesystem::path(testing::TempDir()) /
-             (std::string("mortise_gateway_") +
-              testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder / "page");
     std::ofstream(folder / "page/index.html") << "<script type=\"importmap\">{}</script>page";
     std::ofstream(folder / "secret.txt") << "secret";
@@ -78,7 +76,6 @@ struct GatewayFixture : testing::Test {
     if (serving.joinable()) serving.join();
     stopping = true;
     session.join();
-    std::filesystem::remove_all(folder);
   }
   PageClientOptions designer() const {
     PageClientOptions page;

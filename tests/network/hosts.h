@@ -317,7 +317,7 @@ class Hosts : public ::testing::Test {
       Program program(
           folder_.path(), "mortise-directory",
           {"--server", options(4, "otto").server, "--interface", LossyLink::address(4), "--domain",
-           std::to_string(kDomain), "--keys", (*keys_)["otto"], "--wait", "4", "--json"});
+           std::to_string(kDomain), "--keys", (*keys_)["otto"], "--wait", "1.5", "--json"});
       EXPECT_EQ(program.wait(kPatience_s), 0) << program.errors();
       const auto seen = nlohmann::json::parse(program.out(), nullptr, false);
       if (!seen.is_object()) return;

@@ -10,17 +10,17 @@ namespace {
 
 /// Other work on the machine can spoil a round for all five hosts at once: three are played at
 /// most, until one holds the figure.
-TEST_F(Hosts, AFullSessionHoldsItsFigures) {
+TEST_F(Hosts, SoakAFullSessionHoldsItsFigures) {
   constexpr double kTarget_ms = 2.0 * 20.0 + 1e3 / 60.0;
   come_in();
   ASSERT_FALSE(HasFailure());
   double p99_ms = 1e9;
-  for (int round = 0; round < (timed() ? 3 : 1) && p99_ms > kTarget_ms; ++round) {
+  for (int round = 0; round < 3 && p99_ms > kTarget_ms; ++round) {
     const std::size_t before = applied().size();
     sleep_s(6.0 * effort(1));
     std::vector<double> applied_s = applied();
     applied_s.erase(applied_s.begin(), applied_s.begin() + static_cast<std::ptrdiff_t>(before));
-    ASSERT_GT(applied_s.size(), 300u);
+    ASSERT_GT(applied_s.size(), 600u);
     std::sort(applied_s.begin(), applied_s.end());
     const auto at_ms = [&](double p) {
       return 1e3 *
@@ -35,9 +35,7 @@ TEST_F(Hosts, AFullSessionHoldsItsFigures) {
         static_cast<unsigned long long>(link_->lost()));
     EXPECT_GE(at_ms(0.0), 20.0) << "the link does not delay";
   }
-  if (timed()) {
-    EXPECT_LE(p99_ms, kTarget_ms);
-  }
+  EXPECT_LE(p99_ms, kTarget_ms);
   leave();
   EXPECT_FALSE(said("taken over")) << standby_->errors();
   end_server();  // what then stands by takes over
@@ -87,7 +85,7 @@ class DemoAcrossHosts : public Hosts {
   double play_s_ = 0.0;
 };
 
-TEST_F(DemoAcrossHosts, AllSeeWhatTheLogSays) {
+TEST_F(DemoAcrossHosts, SoakAllSeeWhatTheLogSays) {
   come_in();
   ASSERT_FALSE(HasFailure());
   const auto done = [](const Hand& hand) { return hand.is_done.load(); };
@@ -203,13 +201,16 @@ TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
   using Places = std::map<std::string, std::string>;
   const std::string first = LossyLink::address(kServerSide);
   const std::string second = LossyLink::address(kStandbySide);
-  EXPECT_EQ(directory(), (Places{{first, "leads"}, {second, "stands by"}}));
+  const auto becomes = [&](const Places& places) {
+    return until(
+        kPatience_s, [&] { return directory() == places; }, [] {});
+  };
+  EXPECT_TRUE(becomes({{first, "leads"}, {second, "stands by"}}));
   drain_ = true;
   server_.join();
   EXPECT_TRUE(handed_over_) << drained_;
   std::printf("%s\n", drained_.c_str());
-  sleep_s(1.5);
-  EXPECT_EQ(directory(), (Places{{second, "leads"}}));
+  EXPECT_TRUE(becomes({{second, "leads"}}));
   leave();
   for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
   EXPECT_TRUE(otto_.is_in());  // who knows both hosts by one name

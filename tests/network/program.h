@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/network/patience.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise::test {
 
@@ -38,19 +39,5 @@ class Program {
 };
 
 std::filesystem::path program_path(const std::string& name);
-
-/// A folder of its own under the system's temporary one, removed with the object.
-class TestFolder {
- public:
-  TestFolder();
-  ~TestFolder();
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::string write(const std::string& name, const std::string& text) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace mortise::test

@@ -285,12 +285,15 @@ TEST_P(RealHoles, PinsAtAndAboutTheLimitsAreJudgedAsIntervalsSay) {
   // Full brackets cost more: thresholds are compared on one of the meshes, classes on all.
   const bool full_brackets = std::string(GetParam()).find("0.1mm") != std::string::npos;
   for (const Size& size : kSizes) expect_verdicts(part, size, full_brackets);
-  std::printf("%s: %d faces state holes with limits on %zu lines; %zu found, %zu bores, %d pins\n",
-              GetParam(), stated.faces, stated.lines.size(), part.holes.size(),
-              bores_of(part).size(), judged_);
-  for (const auto& [reason, count] : stated.left_out)
-    std::printf("  left out: %d x %s\n", count, reason.c_str());
-  for (const std::string& why : part.missed) std::printf("  not found: %s\n", why.c_str());
+  // None is left out in silence: each stated line is found in the mesh, and each of its bores
+  // judged.
+  EXPECT_EQ(stated.faces, 66);
+  EXPECT_EQ(stated.left_out, (std::map<std::string, int>{{"face of a hole without limits", 6},
+                                                         {"face of a shaft", 8}}));
+  EXPECT_EQ(stated.lines.size(), 29u);
+  EXPECT_EQ(part.missed, std::vector<std::string>{});
+  EXPECT_EQ(bores_of(part).size(), 33u);
+  EXPECT_EQ(judged_, static_cast<int>(std::size(kSizes) * bores_of(part).size()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Nist, RealHoles,

@@ -318,6 +318,7 @@ TEST(FirstContact, GoesOnFromWhereItWasCutShort) {
     for (; part.state == ContactState::kUndecided; part = first_contact(query, scratch)) {
       ++cut;
       ASSERT_GE(part.t_clear, query.t_from);
+      // Steps that begin elsewhere end elsewhere within the accuracy, 1e-6 mm of some mm a tick.
       ASSERT_LE(part.t_clear, whole.t_contact + 1e-6) << i << " " << part.t_clear - whole.t_contact;
       if (part.t_clear == query.t_from) query.work_cap *= 2;
       query.t_from = part.t_clear;

@@ -12,7 +12,8 @@
 #include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 #include "common/session/memory/session_state.h"
-#include "tests/network/program.h"
+#include "tests/support/effort.h"
+#include "tests/support/test_folder.h"
 #include "tests/unit/io/random_session.h"
 #include "tests/unit/io/slow_file.h"
 
@@ -274,7 +275,7 @@ TEST_F(LogChain, AMissingFileIsAGapAndForeignOnesAreRefused) {
 TEST_F(LogChain, AKillWhileFilesChangeLosesNothingThatWasFlushed) {
   std::mt19937_64 random(3);
   std::size_t most_files = 0;
-  for (int round = 0; round < 20; ++round) {
+  for (int round = 0; round < (test::timed() ? 40 : 6); ++round) {
     const fs::path folder = file("kill" + std::to_string(round));
     fs::create_directories(folder);
     int flushed_pipe[2];

@@ -20,10 +20,10 @@
 #include "common/io/state/checkpoint.h"
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
-#include "tests/network/program.h"
 #include "tests/support/effort.h"
 #include "tests/support/growth.h"
 #include "tests/support/small_scenarios.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise {
 namespace {

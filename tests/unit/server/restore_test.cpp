@@ -11,7 +11,7 @@
 #include "common/session/tick/step.h"
 #include "server/clock.h"
 #include "tests/golden/played_session.h"
-#include "tests/network/program.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise {
 namespace {

@@ -8,6 +8,7 @@
 #include "client/web/incidents.h"
 #include "client/web/limits.h"
 #include "client/web/tokens.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise::web {
 namespace {
@@ -31,8 +32,8 @@ TEST(Tokens, SayWhoTheBearerMayBe) {
 
 TEST(Tokens, AreKeptInAFileThatOnlyItsOwnerReads) {
   namespace fs = std::filesystem;
-  const fs::path file = fs::path(testing::TempDir()) / "mortise_tokens_test";
-  fs::remove(file);
+  const test::TestFolder folder;
+  const fs::path file = folder.path() / "tokens";
   const auto made = tokens_of_file(file);
   ASSERT_TRUE(made) << made.error().text;
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
@@ -48,12 +49,11 @@ TEST(Tokens, AreKeptInAFileThatOnlyItsOwnerReads) {
     EXPECT_EQ(tokens.error().code, Code::kInvalidInput);
     EXPECT_NE(tokens.error().text.find(file.string()), std::string::npos);
   }
-  fs::remove(file);
 }
 
 TEST(Tokens, AreBoundToAPersonAndARole) {
-  namespace fs = std::filesystem;
-  const fs::path file = fs::path(testing::TempDir()) / "mortise_people_tokens_test";
+  const test::TestFolder folder;
+  const std::filesystem::path file = folder.path() / "tokens";
   std::ofstream(file) << "# made by mortise keys\ndesigner anna 0123456789abcdef\n"
                          "observer ben  fedcba9876543210\n";
   const auto tokens = tokens_of_file(file);
@@ -75,7 +75,6 @@ TEST(Tokens, AreBoundToAPersonAndARole) {
     ASSERT_FALSE(none) << bad;
     EXPECT_NE(none.error().text.find("ROLE NAME TOKEN"), std::string::npos) << none.error().text;
   }
-  fs::remove(file);
 }
 
 TEST(Admission, KnowsItsOwnHost) {

@@ -2,9 +2,10 @@
 #include "client/web/page_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
+
+#include "tests/support/test_folder.h"
 
 namespace mortise::web {
 namespace {
@@ -12,11 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PageFolder : testing::Test {
-  fs::path folder =
-      fs::path(testing::TempDir()) / ("mortise_page_files_" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const fs::path folder = own.path();
 
   void SetUp() override {
-    fs::remove_all(folder);
     write("secret.html", "secret");
     write("page/index.html", "<script type=\"importmap\">{}</script>");
     write("page/view/scene.js", "let x;");
@@ -30,7 +30,6 @@ struct PageFolder : testing::Test {
     fs::create_symlink(folder / "secret.html", folder / "page/link.html");
     fs::create_symlink(folder, folder / "page/up");
   }
-  void TearDown() override { fs::remove_all(folder); }
   void write(const std::string& name, const std::string& text) const {
     fs::create_directories((folder / name).parent_path());
     std::ofstream(folder / name) << text;

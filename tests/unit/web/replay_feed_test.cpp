@@ -2,7 +2,6 @@
 #include "client/web/replay_feed.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -12,6 +11,7 @@
 #include "common/messages/memory_channel.h"
 #include "server/tick_loop.h"
 #include "tests/support/small_scenarios.h"
+#include "tests/support/test_folder.h"
 #include "tests/unit/web/page.h"
 
 namespace mortise::web {
@@ -71,18 +71,15 @@ Truth play_session(const fs::path& file) {
 
 struct ReplayOfASession : testing::Test {
   void SetUp() override {
-    // A process each: cases run side by side.
-    file = fs::path(testing::TempDir()) / ("replay_feed_" + std::to_string(getpid()) + ".mcap");
-    fs::remove(file);
     truth = play_session(file);
     auto read = read_recording(file);
     ASSERT_TRUE(read) << read.error().text;
     EXPECT_TRUE(read->notes.empty()) << testing::PrintToString(read->notes);
     recording = *read;
   }
-  void TearDown() override { fs::remove(file); }
 
-  fs::path file;
+  const test::TestFolder folder;
+  const fs::path file = folder.path() / "session.mcap";
   Truth truth;
   Recording recording;
 };
