@@ -135,6 +135,7 @@ TEST_F(Hosts, AStandbyThatWasCutOffDoesNotTakeTheUsersAway) {
   ASSERT_FALSE(HasFailure());
   sleep_s(1.5);
   link_->cut({kStandbySide});
+  sleep_s(1.5);  // long enough for the first one to see that it is gone
   EXPECT_TRUE(until(
       kPatience_s, [&] { return said("taken over"); }, [] {}))
       << standby_->errors();
