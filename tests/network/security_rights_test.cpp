@@ -21,18 +21,19 @@ std::uint64_t increments_of_unruly(Site& site, const DdsOptions& options, const 
   }
   std::uint64_t seq = 0;
   bool joined = false;
+  const auto turn = [&] {
+    (*channel)->join(1, name, role);
+    joined = joined || site.loop->inbox().users_present() == 1;
+    (*channel)->send(batch_of(Increment{UserId{1}, PartId{1}, ++seq, {1, 0, 0}, Vec3::Zero()}, 0));
+    (*channel)->take();
+    site.loop->tick();
+    for (const std::string& text : site.loop->last_intake().turned_away) said.push_back(text);
+    sleep_s(0.01);
+  };
   until(
-      kRefused_s, [&] { return site.loop->inbox().counters().increments > 20; },
-      [&] {
-        (*channel)->join(1, name, role);
-        joined = joined || site.loop->inbox().users_present() == 1;
-        (*channel)->send(
-            batch_of(Increment{UserId{1}, PartId{1}, ++seq, {1, 0, 0}, Vec3::Zero()}, 0));
-        (*channel)->take();
-        site.loop->tick();
-        for (const std::string& text : site.loop->last_intake().turned_away) said.push_back(text);
-        sleep_s(0.01);
-      });
+      kPatience_s, [&] { return joined; }, turn);
+  until(
+      kRefused_s, [&] { return site.loop->inbox().counters().increments > 20; }, turn);
   EXPECT_TRUE(joined) << "its requests must come through, or nothing is shown";
   return site.loop->inbox().counters().increments;
 }
