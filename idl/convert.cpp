@@ -50,14 +50,10 @@ wire::IncrementBatch to_wire(const IncrementBatch& batch) {
 
 namespace {
 
-Refusal refusal_of(const wire::Increment& in) {
-  const Vec3 translation_mm = vec3(in.translation_mm()), rotation_rad = vec3(in.rotation_rad());
-  if (in.part() == 0) return Refusal::kUnknownPart;
-  if (in.seq() == 0) return Refusal::kStale;
-  if (!translation_mm.allFinite() || !rotation_rad.allFinite()) return Refusal::kNotFinite;
-  if (!(rotation_rad.norm() <= kMaxRotationPerTick_rad)) return Refusal::kRotationTooLarge;
-  if (!(translation_mm.norm() <= kMaxCoordinate_mm)) return Refusal::kJumpTooLarge;
-  return Refusal::kNone;
+Refusal refusal_at_door(const Increment& increment) {
+  if (!increment.part) return Refusal::kUnknownPart;
+  if (increment.seq == 0) return Refusal::kStale;
+  return refusal_of(increment, kMaxCoordinate_mm);
 }
 
 }  // namespace
@@ -82,10 +78,13 @@ Result<std::vector<ReceivedIncrement>> from_wire(const wire::IncrementBatch& in)
     r.increment.seq = entry.seq();
     r.kept_from = in.kept_from();
     r.repeated = entry.seq() < in.fresh_from();
-    r.at_door = refusal_of(entry);
-    if (r.at_door != Refusal::kNone) continue;
     r.increment.translation_mm = vec3(entry.translation_mm());
     r.increment.rotation_rad = vec3(entry.rotation_rad());
+    r.at_door = refusal_at_door(r.increment);
+    if (r.at_door != Refusal::kNone) {
+      r.increment.translation_mm = r.increment.rotation_rad = Vec3::Zero();
+      continue;
+    }
     r.sent_ns = entry.sent_ns();
   }
   return out;

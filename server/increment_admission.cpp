@@ -4,30 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "common/base/constants.h"
+#include "common/session/world/rights.h"
 
 namespace mortise {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
-Refusal judge(const Increment& increment, const World& world) {
-  if (!increment.translation_mm.allFinite() || !increment.rotation_rad.allFinite()) {
-    return Refusal::kNotFinite;
-  }
-  // stableNorm: the square of a huge finite number must not become infinity unnoticed.
-  if (!(increment.rotation_rad.stableNorm() <= kMaxRotationPerTick_rad)) {
-    return Refusal::kRotationTooLarge;
-  }
-  if (!(increment.translation_mm.stableNorm() <= world.max_jump_mm)) return Refusal::kJumpTooLarge;
-  const Part* part = increment.part ? world.find(increment.part) : nullptr;
-  if (part == nullptr) return Refusal::kUnknownPart;
-  if (!part->moving) return Refusal::kPartIsStatic;
-  const User* user = world.find(increment.user);
-  if (user != nullptr && user->role == Role::kObserver) return Refusal::kObserver;
-  if (part->holder != increment.user) return Refusal::kNotHolder;
-  return Refusal::kNone;
-}
 
 }  // namespace
 
@@ -112,7 +94,7 @@ void IncrementAdmission::take(const World& world, std::int64_t now_ns, Intake& i
 void IncrementAdmission::take_first(UserId user, const World& world, std::int64_t now_ns,
                                     Intake& intake) {
   const Increment increment = next(user, intake);
-  if (const Refusal reason = judge(increment, world); reason != Refusal::kNone)
+  if (const Refusal reason = refusal_of(world, increment); reason != Refusal::kNone)
     return tally_.refuse(increment, user, reason, intake);
   leases_.renew(increment.part, now_ns);
   ++tally_.all().accepted;

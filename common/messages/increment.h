@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 
+#include "common/base/constants.h"
 #include "common/base/ids.h"
 #include "common/math/types.h"
+#include "common/messages/command.h"
 
 namespace mortise {
 
@@ -19,5 +21,15 @@ struct Increment {
   Vec3 translation_mm = Vec3::Zero();
   Vec3 rotation_rad = Vec3::Zero();  ///< rotation vector, |.| <= pi
 };
+
+/// What the numbers of an increment alone say: finite, at most half a turn, at most `longest_mm`
+/// far. A length whose square overflows is infinite and too long.
+inline Refusal refusal_of(const Increment& increment, double longest_mm) {
+  if (!increment.translation_mm.allFinite() || !increment.rotation_rad.allFinite())
+    return Refusal::kNotFinite;
+  if (increment.rotation_rad.norm() > kMaxRotationPerTick_rad) return Refusal::kRotationTooLarge;
+  if (increment.translation_mm.norm() > longest_mm) return Refusal::kJumpTooLarge;
+  return Refusal::kNone;
+}
 
 }  // namespace mortise

@@ -7,26 +7,19 @@
 #include "common/base/constants.h"
 #include "common/math/rotation.h"
 #include "common/session/guide/guidance.h"
+#include "common/session/world/rights.h"
 
 namespace mortise {
 namespace {
 
 // What may be said of an increment before its part is known to turn too far in all.
 Refusal check(const World& world, const Increment& increment) {
-  const User* user = world.find(increment.user);
-  if (!user || !user->present) return Refusal::kUnknownUser;
   // Asked before anything else: a repeated message is a repeat, whatever happened in between.
-  if (increment.seq == user->last_seq) return Refusal::kDuplicate;
-  if (increment.seq < user->last_seq) return Refusal::kStale;
-  const Part* part = world.find(increment.part);
-  if (!part) return Refusal::kUnknownPart;
-  if (!part->moving) return Refusal::kPartIsStatic;
-  if (part->holder != increment.user) return Refusal::kNotHolder;
-  if (!increment.translation_mm.allFinite() || !increment.rotation_rad.allFinite())
-    return Refusal::kNotFinite;
-  if (increment.rotation_rad.norm() > kMaxRotationPerTick_rad) return Refusal::kRotationTooLarge;
-  if (increment.translation_mm.norm() > world.max_jump_mm) return Refusal::kJumpTooLarge;
-  return Refusal::kNone;
+  if (const User* user = world.find(increment.user); user && user->present) {
+    if (increment.seq == user->last_seq) return Refusal::kDuplicate;
+    if (increment.seq < user->last_seq) return Refusal::kStale;
+  }
+  return refusal_of(world, increment);
 }
 
 // Eq. (1) of the paper: X_new = dT X_current. OURS: dT turns about the reference point.

@@ -35,6 +35,17 @@ bool may_hold(const World& world, const User& user, const Part& part) {
   return false;
 }
 
+Refusal refusal_of(const World& world, const Increment& increment) {
+  const User* user = world.find(increment.user);
+  if (!user || !user->present) return Refusal::kUnknownUser;
+  const Part* part = world.find(increment.part);
+  if (!part) return Refusal::kUnknownPart;
+  if (!part->moving) return Refusal::kPartIsStatic;
+  if (user->role == Role::kObserver) return Refusal::kObserver;
+  if (part->holder != increment.user) return Refusal::kNotHolder;
+  return refusal_of(increment, world.max_jump_mm);
+}
+
 bool may_change(const World& world, const User& user, Right right) {
   if (user.role == Role::kObserver) return false;
   if (world.may_hold.empty()) return user.role != Role::kBot || right == Right::kReview;
