@@ -197,7 +197,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     pair.asked = false;
     return;
   }
-  if (stays_held(world, pair)) return;
+  if (switches.held_places && stays_held(world, pair)) return;
   if (pair.contact_cap == 0) return leave_unasked(world, pair);
   if (pair.plain())
     ask_plain(world, pair, ccd);

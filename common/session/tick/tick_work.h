@@ -158,6 +158,7 @@ struct StepSwitches {
   bool known_distances = true;
   bool brute_force_pairs = false;  ///< at the first step of a world
   bool work_budget = true;         ///< false: every pair has the most that one may have
+  bool held_places = true;         ///< false: who is held is found held by a search each tick
 };
 
 struct Scratch::Impl {

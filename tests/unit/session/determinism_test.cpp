@@ -68,6 +68,39 @@ INSTANTIATE_TEST_SUITE_P(Policies, Determinism,
                                            Setting{Policy::kStop, false},
                                            Setting{Policy::kStop, true}));
 
+// Who is pushed on where it is held stays there by one look at the place that held it; a search
+// says the same.
+TEST(HeldPlaces, ASearchHoldsWhoIsHeldByItsPlace) {
+  struct Pushed {
+    std::vector<std::uint64_t> digests;
+    std::uint64_t held = 0, first_contacts = 0;
+  };
+  const auto push_down = [](std::uint64_t seed, bool held_places) {
+    RandomPlay play(Policy::kStop, seed, 4, true);
+    Scratch scratch;
+    scratch.impl().switches.work_budget = false;
+    scratch.impl().switches.held_places = held_places;
+    Pushed pushed;
+    for (int i = 0; i < 25; ++i) {
+      std::vector<Increment> increments;
+      for (const PartId part : play.movers)
+        increments.push_back(
+            play.session.push(play.user_of(part), part, Vec3(0, 0, -0.6) + 0.1 * play.any()));
+      const StepReport report = play_tick(play.session.world, increments, scratch);
+      pushed.digests.push_back(digest(report));
+      pushed.held += report.counters.pairs_held_again;
+      pushed.first_contacts += report.counters.first_contact_queries;
+    }
+    return pushed;
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Pushed with = push_down(seed, true), without = push_down(seed, false);
+    EXPECT_EQ(with.digests, without.digests) << seed;
+    EXPECT_GT(with.held, 5U) << seed;
+    EXPECT_LT(with.first_contacts, without.first_contacts) << seed;
+  }
+}
+
 // The comparison must be able to fail.
 TEST(DeterminismCheck, OneBitOfOneIncrementIsNoticed) {
   Scratch scratch;
