@@ -10,6 +10,7 @@
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/gather.h"
 #include "common/session/tick/response.h"
+#include "common/session/tick/stage_checks.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
 #include "common/session/tick/verdicts.h"
@@ -72,10 +73,14 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   open_depth_budget(world, state, work);
   open_contact_budget(world, state, work);
   if (!work.moves.empty()) {
+    check_pairs(world, work);
     find_contacts(world, work);
     respond(world, work, report);
+    check_contacts(work);
     find_verdicts(world, work);
+    check_verdicts(work);
     commit(world, state, work, report);
+    check_committed(world, state, report);
     note_held(world, work);
     report_clashes(world, state, work, report);
     count_pairs_of(world, work, report.counters);
