@@ -159,7 +159,7 @@ void add_stages(Text& out, const SessionFigures& f) {
   out.value(s.pairs_still, "reason=\"both still\"");
   out.value(s.pairs_excluded, "reason=\"excluded\"");
   out.value(s.pairs_boxes_apart, "reason=\"boxes apart\"");
-  out.value(s.pairs_budget, "reason=\"motion budget\"");
+  out.value(s.pairs_budget, "reason=\"known apart\"");
   out.one("mortise_pairs_waiting_total", "counter",
           "Pairs left waiting for a search or a verdict: the tick had no work left",
           s.pairs_waiting);

@@ -140,7 +140,7 @@ Json json_of(const StepCounters& c) {
                               {"still", c.pairs_still},
                               {"excluded", c.pairs_excluded},
                               {"boxes_apart", c.pairs_boxes_apart},
-                              {"motion_budget", c.pairs_budget}};
+                              {"known_apart", c.pairs_budget}};
   json["contacts"] = json_of_stage(c.contacts);
   json["contacts"]["clear"] = c.contacts_clear;
   json["contacts"]["undecided"] = c.contacts_undecided;
@@ -296,7 +296,7 @@ std::string stage_table(const StepCounters& c) {
                       {"both still", c.pairs_still},
                       {"excluded", c.pairs_excluded},
                       {"boxes apart", c.pairs_boxes_apart},
-                      {"within the motion budget", c.pairs_budget}});
+                      {"known to stay apart", c.pairs_budget}});
   text += stage_line("contacts", c.contacts,
                      {{"clear", c.contacts_clear}, {"undecided", c.contacts_undecided}});
   text += fmt::format("  {:<14}{:>12}{:>12}  {} real, {} potential, {} fake\n", "verdicts",

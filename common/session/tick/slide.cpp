@@ -12,6 +12,7 @@
 namespace mortise {
 namespace {
 
+// A tick ends on its way after so many turns of direction; along a round wall each is a facet.
 constexpr int kMostLegs = 16;
 // With bands every leg is a search for the time at which it becomes real.
 constexpr int kMostBandLegs = 4;

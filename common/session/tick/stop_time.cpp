@@ -177,6 +177,7 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
 
 // Up to the time t_most at the latest.
 double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
+  // Between two looks the depth may have grown and shrunk again; a quarter of a tick is short.
   constexpr int kLooks = 4;
   const auto depth_mm = [&](double t, double ignore_below_mm) {
     const Look look =

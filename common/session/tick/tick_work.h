@@ -131,7 +131,8 @@ struct PairWork {
     const std::uint64_t used = counts.depth_evaluations - stage_start;
     return used < cap ? cap - used : 0;
   }
-  /// The cap of one question: never 0, so that the answer is at least a bracket.
+  /// The cap of one question: never 0, so that the answer is at least a bracket. A hundred
+  /// evaluations look at the deepest pair of triangles and those beside it.
   std::uint64_t cap_of(std::uint64_t most) const {
     constexpr std::uint64_t kGlance = 100;
     return std::min(most, std::max(left(), kGlance));

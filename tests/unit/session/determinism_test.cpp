@@ -52,7 +52,7 @@ TEST_P(Determinism, ThreadsTreeAndBudgetChangeNothing) {
     EXPECT_EQ(record(policy, seed, bands, {.threads = 4}).digests, one.digests);
     EXPECT_EQ(record(policy, seed, bands, {.brute_force_pairs = true}).digests, one.digests);
     const Record plain = record(policy, seed, bands, {.known_distances = false});
-    EXPECT_EQ(plain.digests, one.digests) << "motion budget";
+    EXPECT_EQ(plain.digests, one.digests) << "known distances";
     EXPECT_EQ(plain.sum.pairs_budget, 0U);
     EXPECT_GT(one.sum.pairs_budget, 0U);
     EXPECT_LT(one.sum.first_contact_queries, plain.sum.first_contact_queries);
