@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
+#include "common/depth/inner_overlap.h"
 #include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
@@ -18,6 +19,9 @@ constexpr std::size_t kKnownQuestions = 24, kKnownQuestionsLazily = 24;
 
 // Where a witness of a closed form is looked for: shares of the way to the middle of the face.
 constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
+
+// The same of parts that lie deep in each other; where they end, the depth is told as "at least".
+constexpr std::uint64_t kInnerQuestions = 8'000, kInnerQuestionsLazily = 800;
 
 // Evaluations of a search that only has to find points, not to prove that there are none.
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
@@ -44,13 +48,9 @@ void set_shapes(const PairFrame& pair, OverlapRegion& region) {
 OverlapRegion region_of(const PairFrame& pair, const SharedInside& shared) {
   OverlapRegion region;
   region.delta_mm = {shared.depth_mm, 2.0 * smaller_radius(pair)};
-  const auto reach = [&](Layer layer) {
-    return pair.bodies[0].largest_offset_mm[static_cast<int>(layer)] +
-           pair.bodies[1].largest_offset_mm[static_cast<int>(layer)];
-  };
-  region.certain_mm = {shared.depth_mm - reach(Layer::kLower), region.delta_mm.hi};
-  region.possible_mm = {shared.depth_mm - reach(Layer::kUpper),
-                        region.delta_mm.hi + reach(Layer::kUpper)};
+  region.certain_mm = {shared.depth_mm - pair.reach_mm(Layer::kLower), region.delta_mm.hi};
+  region.possible_mm = {shared.depth_mm - pair.reach_mm(Layer::kUpper),
+                        region.delta_mm.hi + pair.reach_mm(Layer::kUpper)};
   region.point_W = region.witness_W = shared.point_W;
   region.has_witness = region.certain_mm.lo > 0.0;
   region.triangle_a = region.deciding_triangle_a = shared.triangle[0];
@@ -125,6 +125,7 @@ class Overlap {
                      [](const OverlapRegion& a, const OverlapRegion& b) {
                        return a.delta_mm.lo > b.delta_mm.lo;
                      });
+    measure_inside();
     return std::move(result_);
   }
 
@@ -228,6 +229,36 @@ class Overlap {
       describe(pair_, c.best, c.best, region);
       result_.regions.push_back(std::move(region));
     }
+  }
+
+  // Parts that lie deep in each other are deeper inside than at their surfaces: the deepest region
+  // tells the depth of the parts.
+  void measure_inside() {
+    if (result_.no_inside || !query_.want_delta || query_.only_certain || result_.regions.empty())
+      return;
+    OverlapRegion& region = result_.regions.front();
+    if (region.delta_mm.lo < -pair_.touch_mm) return;  // they are apart
+    const bool full = query_.refinement == Refinement::kFull;
+    const std::vector<Vec3> deepest = {region.point_W};
+    const auto inner = find_inner_overlap(
+        pair_, {full ? region.points_W : deepest, std::max(0.0, region.delta_mm.lo), full},
+        full ? kInnerQuestions : std::min(kInnerQuestionsLazily, work_left()), result_.evaluations);
+    if (!inner) return;
+    const Interval& delta = inner->depth_mm;
+    // The surfaces say the same, and closer.
+    if (delta.lo <= region.delta_mm.hi && region.delta_mm.width() <= delta.width()) return;
+    region.delta_mm = delta;
+    region.point_W = inner->point_W;
+    const auto widened = [&](const Interval& known, Layer layer) {
+      if (pair_.trivial) return delta;
+      const double reach_mm = pair_.reach_mm(layer);
+      return Interval{std::max(known.lo, delta.lo - reach_mm), delta.hi + reach_mm};
+    };
+    region.certain_mm = widened(region.certain_mm, Layer::kLower);
+    region.possible_mm = widened(region.possible_mm, Layer::kUpper);
+    if (region.has_witness || inner->in_either_mm <= pair_.reach_mm(Layer::kLower)) return;
+    region.has_witness = true;
+    region.witness_W = inner->point_W;
   }
 
   // No admissible surfaces of the region interfere; how far from it at the deepest point of the

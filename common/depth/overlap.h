@@ -50,12 +50,15 @@ struct CertainPlace {
 };
 
 /// One connected component of the overlap (or of the near band where only offsets can make the
-/// parts meet). World frame.
-///   delta_mm:     overlap of the meshes, -min(sd_A + sd_B) over the region; negative when apart (=
-///   -distance). certain_mm:   bracket of sup over pairs of faces of (overlap + lower offsets): > 0
-///   means that every admissible pair
-///                 of real surfaces interferes (README, section 3);
-///   possible_mm:  the same with upper offsets: <= 0 means that none does.
+/// parts meet). World frame. The brackets:
+/// - delta_mm: overlap of the meshes, -min(sd_A + sd_B) over the region; minus the distance of
+/// parts
+///   that are apart. In the deepest region over all points of the parts: with kFull everywhere,
+///   with kDecided where the surfaces show that they lie deep in each other.
+/// - certain_mm: sup over pairs of faces of (overlap + lower offsets). > 0 means that every
+///   admissible pair of real surfaces interferes (README, section 3).
+/// - possible_mm: the same with upper offsets. <= 0 means that none does.
+///
 /// Lower ends are reached at a point (true lower bounds); upper ends are proven over the continuous
 /// surface.
 struct OverlapRegion {

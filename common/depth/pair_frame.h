@@ -39,6 +39,11 @@ struct PairFrame {
     }
     return deepest;
   }
+  /// No surface of the layer is farther from its mesh, both parts together.
+  double reach_mm(Layer layer) const {
+    return bodies[0].largest_offset_mm[static_cast<int>(layer)] +
+           bodies[1].largest_offset_mm[static_cast<int>(layer)];
+  }
   /// A point of frame K of a role in the world.
   Vec3 in_world(int role, const Vec3& x_K) const { return X_W[1 - role] * x_K; }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/constants.h"
+#include "common/depth/inner_overlap.h"
 #include "common/depth/interference_time.h"
 #include "common/session/memory/known_distance.h"
 
@@ -22,6 +23,8 @@ constexpr std::uint64_t kLookWorkCap = 2'000;
 // The same of a look at what is withdrawn: the shafts of the demo need 1,100. Where it ends, the
 // depth is told too small; the pair is counted as not examined.
 constexpr std::uint64_t kWithdrawalLookWorkCap = 5'000;
+// The same of how deep parts lie in each other; where it ends, they may move a little deeper.
+constexpr std::uint64_t kInnerWorkCap = 600;
 
 // How closely the advance approaches the time at which the pair becomes real, mm of depth, and the
 // steps it may take: head-on it needs two or three; a part that slides along at constant depth
@@ -175,6 +178,23 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   return advance;
 }
 
+// How deep a withdrawn pair is for certain. Parts that lie deep in each other may become deeper at
+// their surfaces on the way out, so that there what they have inside counts.
+double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
+  const Look look = certain_depth(pair, 0.0, kDeepeningSlack_mm, Refinement::kFull, kAll, ccd);
+  pair.withdrawal_unsure |= look.capped;
+  // An unfinished look has found too little: what it takes for the depth would hold the part.
+  const double depth_mm = std::max(0.0, look.capped ? look.depth_mm.hi : look.depth_mm.lo);
+  if (!look.has_place || pair.no_inside()) return depth_mm;
+  OverlapQuery query = overlap_query(pair);
+  query.X_WA = pair.motion_a.X_W0;
+  query.X_WB = pair.motion_b.X_W0;
+  const PairFrame frame(query);
+  const auto inner = find_inner_overlap(frame, {std::span(&look.point_W, 1), depth_mm},
+                                        kInnerWorkCap, pair.counts.depth_evaluations);
+  return inner ? inner->depth_mm.hi + frame.reach_mm(Layer::kLower) : depth_mm;
+}
+
 // Up to the time t_most at the latest.
 double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   // Between two looks the depth may have grown and shrunk again; a quarter of a tick is short.
@@ -186,7 +206,7 @@ double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
     return std::max(0.0, look.depth_mm.lo);
   };
   double& allowed_mm = pair.memo.change().allowed_depth_mm;
-  allowed_mm = std::min(allowed_mm, depth_mm(0.0, kAll));
+  allowed_mm = std::min(allowed_mm, depth_at_start_mm(pair, ccd));
   // The less it interferes, the less it may gain: what one tick grants must not be the licence of
   // the next.
   const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);

@@ -136,6 +136,33 @@ TEST_F(StopPolicy, InterferingPartMayBeWithdrawnButNotPressedDeeper) {
   EXPECT_LE(session.pose(p).p.x(), -1.0 + kTouch_mm);
 }
 
+// Drawn with an overlap: a peg in a block without its hole, a part wholly inside, a copy on one
+// place. At their surfaces they become deeper on the way out, and yet they may leave.
+TEST_F(StopPolicy, APartThatLiesDeepInAnotherComesOut) {
+  const TriangleMesh block = cube_mesh(40);
+  const TriangleMesh peg_mesh = box_mesh(Vec3(-5, -5, -30), Vec3(5, 5, 30));
+  struct Pair {
+    const TriangleMesh& mesh;
+    double z;
+  };
+  const TriangleMesh core = cube_mesh(10);
+  double x = 0.0;
+  std::vector<PartId> parts;
+  for (const Pair& pair : {Pair{peg_mesh, 15.0}, Pair{core, 0.0}, Pair{block, 0.0}}) {
+    session.add("block", block, at(x, 0, 0), false);
+    parts.push_back(session.add("part", pair.mesh, at(x, 0, pair.z), true));
+    session.grab(ada, parts.back());
+    x += 100.0;
+  }
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Increment> pushes;
+    for (const PartId part : parts) pushes.push_back(session.push(ada, part, Vec3(0, 0, 2)));
+    tick(pushes);
+  }
+  for (const PartId part : parts) EXPECT_GT(session.pose(part).p.z(), 60.0);
+  EXPECT_TRUE(snapshot_of(session.world).open_clashes.empty());
+}
+
 TEST_F(StopPolicy, TwoMoversCannotSwapPlaces) {
   const PartId p = peg(-5);
   const PartId q = session.add("pin", cube_mesh(2), at(5, 0, 0), true);

@@ -1,0 +1,142 @@
+#include "common/depth/inner_overlap.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/math/rotation.h"
+#include "tests/support/effort.h"
+#include "tests/unit/depth/overlap_case.h"
+
+namespace mortise {
+namespace {
+
+using namespace shapes;
+using Case = OverlapCase;
+
+PairFrame frame_of(const Case& c) {
+  OverlapQuery query;
+  query.a = c.a.get();
+  query.b = c.b.get();
+  query.band_a = &c.band_a;
+  query.band_b = &c.band_b;
+  query.X_WA = c.X_WA;
+  query.X_WB = c.X_WB;
+  return PairFrame(query);
+}
+
+void expect_delta(const Case& c, double truth_mm) {
+  const OverlapResult result = overlap_of(c);
+  ASSERT_FALSE(result.regions.empty());
+  const Interval delta = result.regions.front().delta_mm;
+  EXPECT_LE(delta.lo, truth_mm + 1e-9);
+  EXPECT_GE(delta.hi, truth_mm - 1e-9);
+  EXPECT_LE(delta.width(), 0.006 * truth_mm) << delta.lo << " " << delta.hi;
+  EXPECT_EQ(worst_class(result), CollisionClass::kReal);
+}
+
+// The middle of the core is 5 deep in it and 20 deep in the block.
+TEST(InnerOverlap, OneWithinTheOther) {
+  for (const double z : {0.0, 3.0, 12.0})
+    expect_delta({solid(box({20, 20, 20})), solid(box({5, 5, 5}, {0, 0, z}))},
+                 z <= 15 ? 25.0 - z : 0.0);
+}
+
+TEST(InnerOverlap, APegInABlockWithoutAHole) {
+  expect_delta({solid(box({20, 20, 20})), solid(box({5, 5, 30}, {0, 0, 15}))}, 25.0);
+}
+
+// No surface of theirs lies inside the other, or hardly.
+TEST(InnerOverlap, PartsOnOnePlace) {
+  const SolidPtr block = solid(box({20, 15, 10}));
+  for (const double shift : {0.0, 1e-9, 1e-3, 0.5}) {
+    SCOPED_TRACE(shift);
+    expect_delta({block, solid(box({20, 15, 10}, {0, 0, shift}))}, 20.0 - shift);
+  }
+}
+
+// A bar straight through a slab as thick as it is.
+TEST(InnerOverlap, CrossingBars) {
+  expect_delta({solid(box({5, 5, 0.2})), solid(box({0.2, 0.2, 5}, {0.3, 0.1, 0.4}))}, 0.4);
+}
+
+// Two discs that slide over each other: 2 min(r - x/2, half their length), less for their facets.
+TEST(InnerOverlap, DiscsThatSlideOverEachOther) {
+  const SolidPtr disc = solid(peg({250.0, 0.0, 100.0, 96}));
+  for (const double x : {0.0, 100.0, 300.0, 450.0}) {
+    SCOPED_TRACE(x);
+    Case c{disc, disc};
+    c.X_WB = Pose::translation(Vec3(x, 0, 0));
+    const OverlapResult result = overlap_of(c);
+    ASSERT_FALSE(result.regions.empty());
+    const Interval delta = result.regions.front().delta_mm;
+    const double truth = 2.0 * std::min(250.0 - 0.5 * x, 50.0);
+    EXPECT_LE(delta.lo, truth + 1e-6);
+    EXPECT_GE(delta.hi, truth - 0.3);
+    EXPECT_LE(delta.hi, 1.07 * truth);  // the ends are cut into sectors
+  }
+}
+
+// What rests in each other by a hair is as deep as its surfaces say.
+TEST(InnerOverlap, ShallowOnesAreLeftToTheSurfaces) {
+  for (const double deep : {1e-3, 0.01, 0.5}) {
+    const Case c{solid(box({20, 20, 20})), solid(box({8, 8, 8}, {0, 0, 28 - deep}))};
+    std::uint64_t evaluations = 0;
+    const Vec3 point(0, 0, 20);
+    EXPECT_FALSE(find_inner_overlap(frame_of(c), {std::span(&point, 1), deep}, 1000, evaluations));
+    EXPECT_LT(evaluations, 25U);
+    EXPECT_NEAR(overlap_of(c).regions.at(0).delta_mm.lo, deep, 1e-9);
+  }
+}
+
+TEST(InnerOverlap, RandomOnesAgreeWithALattice) {
+  std::mt19937_64 rng(7);
+  const auto u = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(rng);
+  };
+  int deep = 0;
+  for (int i = 0; i < test::effort(12); ++i) {
+    Case c{solid(box({u(1, 3), u(1, 3), u(1, 3)})), i % 2
+                                                        ? solid(box({u(1, 3), u(1, 3), u(1, 3)}))
+                                                        : solid(sphere(u(1, 3), Vec3::Zero(), 12))};
+    c.X_WA = {rotation_exp(Vec3(u(-1, 1), u(-1, 1), u(-1, 1))), Vec3(u(-1, 1), u(-1, 1), u(-1, 1))};
+    const PairFrame frame = frame_of(c);
+    std::uint64_t evaluations = 0;
+    const auto found =
+        find_inner_overlap(frame, {std::span(&c.X_WA.p, 1), 0.01, true}, 100'000, evaluations);
+    const double lattice_mm = inner_overlap_brute_force(frame, 0.12);
+    if (!found) continue;
+    ++deep;
+    EXPECT_GE(found->depth_mm.hi, lattice_mm) << i;
+    EXPECT_GE(found->depth_mm.lo, lattice_mm - 0.12 * 1.8) << i;
+    EXPECT_LE(found->depth_mm.width(), 0.006 * found->depth_mm.hi + 1e-6) << i;
+    // At the named point both are as deep as is said.
+    double sum_mm = 0.0;
+    for (int body = 0; body < 2; ++body)
+      sum_mm -=
+          signed_distance_mm(*frame.bodies[body].solid, frame.X_W[body].inverse() * found->point_W);
+    EXPECT_NEAR(sum_mm, found->depth_mm.lo, 1e-9) << i;
+  }
+  EXPECT_GT(deep, test::effort(12) / 2);
+}
+
+// Where the work ends the bracket stays wide, and true.
+TEST(InnerOverlap, LittleWorkGivesAWideBracket) {
+  const Case c{solid(box({20, 15, 10})), solid(box({5, 6, 30}, {1, 2, 3}))};
+  const PairFrame frame = frame_of(c);
+  const Vec3 point = Vec3::Zero();
+  double width_mm = std::numeric_limits<double>::infinity();
+  for (const std::uint64_t cap : {60U, 300U, 3000U}) {
+    std::uint64_t evaluations = 0;
+    const auto found = find_inner_overlap(frame, {std::span(&point, 1), 0.01}, cap, evaluations);
+    ASSERT_TRUE(found);
+    EXPECT_LE(found->depth_mm.lo, 15.0 + 1e-9);
+    EXPECT_GE(found->depth_mm.hi, 15.0 - 1e-9);
+    EXPECT_LE(found->depth_mm.width(), width_mm);
+    width_mm = found->depth_mm.width();
+    EXPECT_LE(evaluations, cap + 200);
+  }
+}
+
+}  // namespace
+}  // namespace mortise
