@@ -263,23 +263,33 @@ SurfacePoint nearest_surface(const Solid& solid, const Vec3& x, std::uint32_t ne
   Vec3 outward = pseudonormal(solid, found.triangle, found.foot.spot);
   const double length = outward.norm();
   at.outward = length > 0.0 ? Vec3(outward / length) : at.face_normal;
-  const bool one_shell = solid.topology().closed() && solid.shells().size() == 1;
+  // Elsewhere the normals around a point do not tell the side: it is that of another shell, or of
+  // another fan of triangles.
+  const bool one_shell = solid.topology().manifold() && solid.shells().size() == 1;
   const bool is_inside =
       one_shell && length > 0.0 ? at.outward.dot(x - at.point) < 0.0 : inside(solid, x);
   at.depth_mm = is_inside ? distance : -distance;
   return at;
 }
 
+int winding_number(const Solid& solid, const Vec3& x) {
+  MORTISE_CHECK(x.allFinite(), "a point must be finite");
+  const auto& lids = solid.cracks().lids;
+  for (const Vec3& d : ray_directions()) {
+    Crossings count = cross_all(solid.bvh(), x, d);
+    for (std::size_t i = 0; i < lids.size() && !count.grazed; ++i)
+      cross_triangle(x, d, lids[i][0], lids[i][1], lids[i][2], count);
+    if (!count.grazed) return count.winding;
+  }
+  return static_cast<int>(std::lround(winding_number_brute_force(solid.mesh(), x)));
+}
+
 bool inside(const Solid& solid, const Vec3& x) {
   MORTISE_CHECK(x.allFinite(), "a point must be finite");
-  if (!solid.topology().closed()) return winding_number_brute_force(solid.mesh(), x) > 0.5;
+  if (!solid.has_inside()) return winding_number_brute_force(solid.mesh(), x) > 0.5;
   const Box& box = solid.bounds();
   if ((x.array() < box.lo.array()).any() || (x.array() > box.hi.array()).any()) return false;
-  for (const Vec3& d : ray_directions()) {
-    const Crossings count = cross_all(solid.bvh(), x, d);
-    if (!count.grazed) return count.winding > 0;
-  }
-  return winding_number_brute_force(solid.mesh(), x) > 0.5;
+  return winding_number(solid, x) > 0;
 }
 
 double signed_distance_mm(const Solid& solid, const Vec3& x) {

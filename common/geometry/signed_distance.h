@@ -29,16 +29,20 @@ struct SurfacePoint {
   std::uint32_t triangle = 0;
 };
 
-/// Side by the angle-weighted pseudonormal (Baerentzen and Aanaes 2005), exact for closed meshes of
-/// one shell; several shells and meshes with defects ask inside(). O(log n) typical.
+/// Side by the angle-weighted pseudonormal (Baerentzen and Aanaes 2005), exact for closed manifold
+/// meshes of one shell; all others ask inside(). O(log n) typical.
 /// `near`: a triangle that is likely close to x, for example that of a neighbouring point. It makes
 /// the query faster and never changes the answer.
 SurfacePoint nearest_surface(const Solid& solid, const Vec3& x,
                              std::uint32_t near = Topology::kNone);
 
-/// Is x inside the material? By the winding number > 1/2: closed meshes count signed crossings of a
-/// ray through the tree, O(log n); meshes with defects sum solid angles over all triangles, a
-/// majority vote, O(n).
+/// How often the surface winds around x: signed crossings of a ray through the tree, O(log n). For
+/// a mesh whose edges balance; the lids of the cracks of another count with it. Whichever of two
+/// neighbouring values on the surface itself.
+int winding_number(const Solid& solid, const Vec3& x);
+
+/// Is x inside the material? By the winding number >= 1; within a crack that is a guess. Meshes
+/// without an inside sum solid angles over all triangles, a majority vote, O(n).
 bool inside(const Solid& solid, const Vec3& x);
 
 /// Negative inside.

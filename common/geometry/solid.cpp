@@ -40,6 +40,29 @@ const std::vector<std::uint32_t>& Solid::shells() const {
   return shells_;
 }
 
+const Cracks& Solid::cracks() const {
+  std::call_once(cracks_once_, [this] {
+    if (topology().balanced()) return;
+    cracks_ = find_cracks(mesh_);
+    TriangleMesh whole = mesh_;
+    for (const auto& lid : cracks_.lids) {
+      const auto first = static_cast<std::uint32_t>(whole.points_mm.size());
+      whole.points_mm.insert(whole.points_mm.end(), lid.begin(), lid.end());
+      whole.triangles.push_back({first, first + 1, first + 2});
+    }
+    only_cracks_ = small(cracks_, sphere_.radius_mm) && signed_volume_mm3(whole) > 0.0;
+    derived_bytes_ += cracks_.all.capacity() * sizeof(cracks_.all[0]) +
+                      cracks_.lids.capacity() * sizeof(cracks_.lids[0]);
+  });
+  return cracks_;
+}
+
+bool Solid::has_inside() const {
+  if (topology().balanced()) return topology().closed();
+  cracks();
+  return only_cracks_;
+}
+
 std::size_t Solid::derived_bytes() const { return derived_bytes_; }
 
 }  // namespace mortise

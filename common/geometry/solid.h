@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/bvh/bvh.h"
+#include "common/geometry/cracks.h"
 #include "common/geometry/mesh.h"
 #include "common/geometry/shells.h"
 #include "common/geometry/topology.h"
@@ -31,6 +32,11 @@ class Solid {
   const Topology& topology() const;
   /// The lowest triangle of each connected shell, ascending.
   const std::vector<std::uint32_t>& shells() const;
+  /// Where an open mesh is open; nothing for a balanced one.
+  const Cracks& cracks() const;
+  /// Closed, or open at small cracks only; beside those what is inside is not known. Without an
+  /// inside crossing can be found, but no depth.
+  bool has_inside() const;
   /// Bytes of tree, topology and other derived data built so far, beyond the mesh itself.
   std::size_t derived_bytes() const;
 
@@ -39,10 +45,12 @@ class Solid {
   std::string hash_;
   BoundingSphere sphere_;
   Box bounds_;
-  mutable std::once_flag bvh_once_, topology_once_, shells_once_;
+  mutable std::once_flag bvh_once_, topology_once_, shells_once_, cracks_once_;
   mutable std::unique_ptr<const Bvh> bvh_;
   mutable std::unique_ptr<const Topology> topology_;
   mutable std::vector<std::uint32_t> shells_;
+  mutable Cracks cracks_;
+  mutable bool only_cracks_ = false;
   mutable std::atomic<std::size_t> derived_bytes_{0};
 };
 

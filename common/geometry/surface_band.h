@@ -43,7 +43,9 @@ struct SurfaceBand {
   /// Largest outward offset of any face, >= 0 for the band in which near pairs must be examined
   /// (mm).
   double largest_offset_mm = 0.0;
-  /// No face has deviation or tolerance: the mesh is the part.
+  /// Rounding of the coordinates of the part's file: part of every deviation above.
+  double quantum_mm = 0.0;
+  /// No face has deviation or tolerance, but for that rounding: the mesh is the part.
   bool trivial = true;
 };
 

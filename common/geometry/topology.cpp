@@ -94,12 +94,17 @@ double extent_of(const TriangleMesh& mesh) {
 /// Writes down one edge: `sides` are all triangles that have it.
 void record_edge(const TriangleMesh& mesh, double extent_mm, const Side* sides, std::size_t count,
                  bool no_length, Topology& topology) {
+  const auto forward = static_cast<std::size_t>(
+      std::count_if(sides, sides + count, [](const Side& side) { return side.forward; }));
+  if (no_length || 2 * forward != count) ++topology.unbalanced_edges;
   const auto triangle = [&](std::size_t i) { return sides[i].id / 3; };
   const auto edge = [&](std::size_t i) { return static_cast<int>(sides[i].id % 3); };
   if (no_length || count > 2) {
     ++topology.non_manifold_edges;
     for (std::size_t i = 0; i < count; ++i)
       topology.edge_kind[triangle(i)][edge(i)] = EdgeKind::kNonManifold;
+    for (std::size_t i = 0; i < count && count > 2; ++i)
+      topology.next_side[sides[i].id] = sides[(i + 1) % count].id;
     return;
   }
   if (count == 1) {
@@ -117,6 +122,27 @@ void record_edge(const TriangleMesh& mesh, double extent_mm, const Side* sides, 
     topology.edge_kind[triangle(i)][edge(i)] = shape.kind;
     topology.edge_sharp[triangle(i)][edge(i)] = shape.sharp;
   }
+}
+
+/// The corners of triangles at one point fall into fans, connected across edges of two triangles.
+std::uint64_t count_pinched_points(const TriangleMesh& mesh, const Topology& topology) {
+  std::vector<std::uint32_t> parent(3 * mesh.triangles.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto corner_at = [&](std::uint32_t t, std::uint32_t point) {
+    std::uint32_t k = 0;
+    while (k < 2 && mesh.triangles[t][k] != point) ++k;
+    return 3 * t + k;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::uint32_t k = 0; k < 3; ++k)
+      if (const std::uint32_t other = topology.neighbor[t][k]; other != Topology::kNone)
+        for (const std::uint32_t at : {k, (k + 1) % 3})
+          join(parent, 3 * t + at, corner_at(other, mesh.triangles[t][at]));
+  std::vector<std::uint32_t> fans(mesh.points_mm.size(), 0);
+  for (std::uint32_t i = 0; i < parent.size(); ++i)
+    if (parent[i] == i) ++fans[mesh.triangles[i / 3][i % 3]];
+  return static_cast<std::uint64_t>(
+      std::count_if(fans.begin(), fans.end(), [](std::uint32_t n) { return n > 1; }));
 }
 
 std::uint32_t count_components(std::vector<std::uint32_t>& parent) {
@@ -165,6 +191,7 @@ Topology build_topology(const TriangleMesh& mesh) {
     }
   }
   topology.components = count_components(parent);
+  topology.pinched_points = count_pinched_points(mesh, topology);
   return topology;
 }
 
@@ -191,6 +218,7 @@ Topology build_topology_brute_force(const TriangleMesh& mesh) {
       record_edge(mesh, extent_mm, same.data(), same.size(), from == to, topology);
     }
   topology.components = count_components(parent);
+  topology.pinched_points = count_pinched_points(mesh, topology);
   return topology;
 }
 
