@@ -1,5 +1,6 @@
 #include "common/ccd/start_state.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -34,24 +35,32 @@ bool inside_deeper(const Solid& solid, const Vec3& x, double margin_mm) {
 
 // Does a shell of `inner` start inside `outer`? Of each shell some corner is asked that does not
 // lie in the skin of the other.
-bool shell_inside(const Solid& inner, const Solid& outer, const Pose& X_OuterInner,
-                  double margin_mm) {
+Containment shell_inside(const Solid& inner, const Solid& outer, const Pose& X_OuterInner,
+                         double margin_mm) {
   const Box& box = outer.bounds();
-  for (const std::uint32_t triangle : inner.shells())
-    for (int k = 0; k < 4; ++k) {
+  Containment answer = Containment::kNo;
+  for (const std::uint32_t triangle : inner.shells()) {
+    bool covered = false, asked = false;
+    for (int k = 0; k < 4 && !asked; ++k) {
       const TriangleMesh& mesh = inner.mesh();
       const Vec3 x = k < 3 ? mesh.corner(triangle, k)
                            : Vec3((mesh.corner(triangle, 0) + mesh.corner(triangle, 1) +
                                    mesh.corner(triangle, 2)) /
                                   3.0);
       const Vec3 y = X_OuterInner * x;
-      if ((y.array() < box.lo.array()).any() || (y.array() > box.hi.array()).any()) break;
-      if (near_skin(outer, y, margin_mm)) continue;
-      if (!outer.topology().closed()) return false;
-      if (inside(outer, y)) return true;
-      break;
+      asked = (y.array() < box.lo.array()).any() || (y.array() > box.hi.array()).any();
+      if (asked || near_skin(outer, y, margin_mm)) continue;
+      if (!outer.has_inside()) return Containment::kUnknown;
+      if (outer.cracks().cover(y)) {
+        covered = true;
+        continue;
+      }
+      if (inside(outer, y)) return Containment::kYes;
+      asked = true;
     }
-  return false;
+    if (covered && !asked) answer = Containment::kUnknown;
+  }
+  return answer;
 }
 
 // The last distinct triangles seen, few.
@@ -76,7 +85,7 @@ StartState start_state(PairMotion& motion, const Solid& a, const Solid& b, const
                        CcdScratch& scratch, CcdWork& work) {
   StartState state;
   const PairState& pose = motion.state();
-  const bool closed = a.topology().closed() && b.topology().closed();
+  const bool closed = a.has_inside() && b.has_inside();
   Probes probes_a, probes_b;
   const double behind_mm = kBehindSkin * query.accuracy_mm;
   const auto behind = [&](const Triangle& t) {
@@ -124,14 +133,20 @@ StartState start_state(PairMotion& motion, const Solid& a, const Solid& b, const
 
 namespace mortise {
 
-bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-               double margin_mm) {
+Containment containment(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+                        double margin_mm) {
   MORTISE_CHECK(valid(X_WA) && valid(X_WB), "poses must be finite and their quaternions unit");
   MORTISE_CHECK(margin_mm >= 0.0 && std::isfinite(margin_mm), "a margin must be a length");
   const Pose X_BA{(X_WB.q.conjugate() * X_WA.q).normalized(),
                   X_WB.q.conjugate() * (X_WA.p - X_WB.p)};
-  return ccd::shell_inside(a, b, X_BA, margin_mm) ||
-         ccd::shell_inside(b, a, X_BA.inverse(), margin_mm);
+  const Containment first = ccd::shell_inside(a, b, X_BA, margin_mm);
+  if (first == Containment::kYes) return first;
+  return std::max(first, ccd::shell_inside(b, a, X_BA.inverse(), margin_mm));
+}
+
+bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+               double margin_mm) {
+  return containment(a, X_WA, b, X_WB, margin_mm) == Containment::kYes;
 }
 
 }  // namespace mortise

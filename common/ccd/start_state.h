@@ -26,8 +26,16 @@ StartState start_state(PairMotion& motion, const Solid& a, const Solid& b, const
 
 namespace mortise {
 
+/// Unknown: a shell of one part lies within the box of the other, of which nobody can say what is
+/// inside: it has no inside, or a crack there.
+enum class Containment : std::uint8_t { kNo = 0, kUnknown, kYes };
+
 /// Does a shell of one part lie inside the other, deeper than margin_mm, at these poses? For
-/// surfaces that do not cross. Open meshes have no inside: never.
+/// surfaces that do not cross.
+Containment containment(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+                        double margin_mm);
+
+/// The same where it is known.
 bool contained(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                double margin_mm);
 
