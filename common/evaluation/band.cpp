@@ -14,9 +14,25 @@ namespace {
 // Offsets below this are rounding of the declared numbers, not knowledge: a picometre.
 constexpr double kNothing_mm = 1e-9;
 
-bool says_nothing(const SurfaceBand::Face& face) {
-  return std::fabs(face.deviation_mm.lo) <= kNothing_mm &&
-         std::fabs(face.deviation_mm.hi) <= kNothing_mm && face.tolerance_mm == Interval{};
+// Beyond the rounding of the file, which every face has.
+bool says_nothing(const SurfaceBand& band, const SurfaceBand::Face& face) {
+  const double nothing_mm = kNothing_mm + band.quantum_mm;
+  return std::fabs(face.deviation_mm.lo) <= nothing_mm &&
+         std::fabs(face.deviation_mm.hi) <= nothing_mm && face.tolerance_mm == Interval{};
+}
+
+// A corner of the mesh is off by the rounding of its file. A declared surface is known apart from
+// the corners; a recognized one was fitted to them.
+void add_rounding(SurfaceBand& band, double quantum_mm, std::span<const Feature> features) {
+  band.quantum_mm = quantum_mm;
+  if (!(quantum_mm > 0.0)) return;
+  for (std::size_t i = 0; i < band.faces.size(); ++i) {
+    SurfaceBand::Face& face = band.faces[i];
+    if (i > 0 && i <= features.size() && features[i - 1].grade == DeviationGrade::kDeclaredFeature)
+      continue;
+    face.deviation_mm = face.deviation_mm + Interval{-quantum_mm, quantum_mm};
+    if (face.surface) face.residual_mm += quantum_mm;
+  }
 }
 
 // Faces without triangles (a part whose features cover it) must not widen the search for near
@@ -28,8 +44,9 @@ void summarize(SurfaceBand& band) {
   band.trivial = true;
   for (std::size_t i = 0; i < band.faces.size(); ++i) {
     const SurfaceBand::Face& face = band.faces[i];
-    if (!used[i] || says_nothing(face)) continue;
-    band.trivial = false;
+    if (!used[i]) continue;
+    if (!says_nothing(band, face)) band.trivial = false;
+    if (says_nothing(band, face) && band.quantum_mm == 0.0) continue;
     band.largest_offset_mm =
         std::max(band.largest_offset_mm, face.deviation_mm.hi + face.tolerance_mm.hi);
   }
@@ -132,6 +149,7 @@ SurfaceBand build_band(const BandInput& input) {
   }
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
   if (estimate) split_rest_by_estimate(band, *input.solid, input.quantum_mm);
+  add_rounding(band, input.quantum_mm, input.features);
   return with_statements(band, input.rest, input.of_feature);
 }
 

@@ -17,7 +17,7 @@ struct BandInput {
   FaceStatement rest;                     ///< every face without a statement of its own
   std::vector<FaceStatement> of_feature;  ///< by feature
   bool estimate = false;  ///< the rest by estimate (grade kEstimated); a chord error goes before it
-  double quantum_mm = 0.0;  ///< rounding of the file's coordinates, for the estimate
+  double quantum_mm = 0.0;  ///< rounding of the file's coordinates (README, section 1)
 };
 
 /// faces[0] is the rest of the part, faces[1 + i] feature i. With a declared chord error the rest

@@ -116,6 +116,7 @@ std::string mesh_error_name(const ExplainInput& in) {
     case DeviationGrade::kEstimated:
       return " estimated";
     case DeviationGrade::kNominal:
+      return " of rounding";
     case DeviationGrade::kUnknown:
       break;
   }
@@ -170,11 +171,25 @@ std::string thresholds_part(const ExplainInput& in) {
          because(why_real);
 }
 
+// Does the mesh error of a face come of its file's rounding alone?
+bool rounding_only(const SurfaceBand::Face* face) {
+  return face != nullptr && !face->surface && face->tolerance_source.empty() &&
+         (face->grade == DeviationGrade::kNominal || face->grade == DeviationGrade::kPlanar);
+}
+
 bool estimated(const ExplainInput& in) {
   const auto is = [](const SurfaceBand::Face* face) {
     return face != nullptr && face->grade == DeviationGrade::kEstimated;
   };
   return in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
+}
+
+// Nothing is known but the meshes, and their corners are no closer than that.
+bool within_rounding(const ExplainInput& in) {
+  return in.collision_class == CollisionClass::kPotential && !in.no_inside && !in.at_crack &&
+         in.grade != DeviationGrade::kEstimated && tolerance_source(in).text.empty() &&
+         in.thresholds.real_above_mm > 0.0 && in.delta_mm.lo <= in.thresholds.real_above_mm &&
+         rounding_only(in.face_a) && rounding_only(in.face_b);
 }
 
 // What the verdict rests on where that is less than a declared surface.
@@ -200,6 +215,7 @@ std::string conclusion(const ExplainInput& in) {
       return name + ", " + um(in.margin_mm) + " µm to spare";
     case CollisionClass::kPotential: {
       if (in.no_inside) return name + ", a part is open and has no inside";
+      if (in.at_crack) return name + ", a part is open here and its inside not known";
       char text[48];
       std::snprintf(text, sizeof text, ", P(interference) %.3g %%", 100.0 * in.probability);
       return name + text;
@@ -234,11 +250,15 @@ std::string explain(const ExplainInput& in) {
   if (in.no_inside && in.delta_mm.hi > 0.0)
     return "the surfaces cross, but a part is open and has no inside, so the depth is not known: " +
            std::string(name_of(in.collision_class));
+  if (in.at_crack && in.delta_mm.hi > 0.0)
+    return "a part is open here, so what is inside it is not known: " +
+           std::string(name_of(in.collision_class));
   std::string text =
       in.delta_mm.width() > kBracketOpen_mm
           ? explain_open_bracket(in)
           : overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
   text += grade_note(in);
+  if (within_rounding(in)) text += "; within the rounding of the files";
   if (in.capped) text += "; work limit reached, brackets are wide";
   return text;
 }

@@ -19,6 +19,7 @@ struct ExplainInput {
   DeviationGrade grade = DeviationGrade::kUnknown;
   double probability = 0.0;
   bool no_inside = false;
+  bool at_crack = false;
   bool capped = false;
   std::string fit;  ///< "Ø20 H7/g6" when the pair has one
 };
