@@ -28,6 +28,9 @@ bool has_convex_distance(const Surface& surface) {
          surface.kind == SurfaceKind::kSphere;
 }
 
+// Planes and surfaces at a corner that are not come to.
+constexpr std::uint32_t kBeyondEnd = 2;
+
 // A circle of corners is no circle with fewer.
 constexpr int kLeastCircle = 3;
 
@@ -89,7 +92,7 @@ Body::Body(const Solid& solid_of, const SurfaceBand& band_of)
     : solid(&solid_of),
       band(&band_of),
       mesh(&solid_of.mesh()),
-      has_inside(solid_of.topology().closed()),
+      has_inside(solid_of.has_inside()),
       index_(body_index(solid_of, band_of)) {
   for (const Layer layer : {Layer::kLower, Layer::kUpper})
     for (const SurfaceBand::Face& face : band->faces) {
@@ -186,6 +189,9 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       int k = 0;
       while (k < 2 && mesh->triangles[t][k] != point) ++k;
       t = topology.neighbor[t][k];
+      // The way around ends at an open edge or one of many triangles; who stands beyond is not
+      // known.
+      if (t == Topology::kNone) left_out += kBeyondEnd;
       if (t == triangle || t == Topology::kNone) break;
       const Vec3 normal_t = normal(t);
       if (normal_t.dot(n) > std::cos(kSharpEdge_rad) || normal_t.isZero(0.0)) continue;

@@ -10,6 +10,7 @@
 #include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
+#include "common/depth/unseen_depth.h"
 
 namespace mortise {
 namespace {
@@ -89,6 +90,12 @@ OverlapRegion region_without_depth(const PairFrame& pair, const Candidates& cand
   return region;
 }
 
+Bracket moved(Bracket bracket, double by_mm) {
+  bracket.best.depth_mm += by_mm;
+  bracket.hi_mm += by_mm;
+  return bracket;
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query) {}
@@ -116,10 +123,12 @@ class Overlap {
       if (const auto shared = find_shared_inside(pair_, candidates))
         result_.regions.push_back(region_of(pair_, *shared));
     if (result_.no_inside) add_without_depth(candidates);
+    mark_cracks(pair_, !query_.only_certain, result_);
     for (const OverlapRegion& region : result_.regions)
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
     result_.contained = result_.meshes_cross && candidates.triangles[0].empty() &&
                         candidates.triangles[1].empty() && candidates.known.empty();
+    if (result_.contained && query_.refinement == Refinement::kFull) look_inside(pair_, result_);
     if (candidates.cross) result_.meshes_cross = true;
     std::stable_sort(result_.regions.begin(), result_.regions.end(),
                      [](const OverlapRegion& a, const OverlapRegion& b) {
@@ -172,8 +181,15 @@ class Overlap {
   void search_regions() {
     const bool lazy = query_.refinement == Refinement::kDecided;
     const bool shape_only = lazy && !pair_.trivial;
-    const std::vector<Bracket> mesh =
+    std::vector<Bracket> mesh =
         search(Layer::kMesh, lazy, shape_only ? std::min(glance(), work_left()) : work_left());
+    // The sign of the depth is not enough where rounding may cover it.
+    const auto in_rounding = [&](const Bracket& d) {
+      return d.best.depth_mm > 0.0 && d.best.depth_mm <= pair_.reach_mm(Layer::kLower) &&
+             d.hi_mm > pair_.reach_mm(Layer::kLower);
+    };
+    if (lazy && pair_.trivial && std::any_of(mesh.begin(), mesh.end(), in_rounding))
+      mesh = search(Layer::kMesh, false, work_left());
     std::vector<Bracket> upper, lower;
     bool any_open = false;
     for (const bool open : regions_.may_interfere) any_open |= open;
@@ -189,13 +205,15 @@ class Overlap {
     }
     for (std::size_t i = 0; i < regions_.count; ++i) {
       const Bracket& d = mesh[i];
-      const Bracket p = pair_.trivial   ? d
+      const Bracket p = pair_.trivial   ? moved(d, pair_.reach_mm(Layer::kUpper))
                         : upper.empty() ? proven_apart(d, Layer::kUpper)
                                         : upper[i];
-      const Bracket c = pair_.trivial   ? d
+      const Bracket c = pair_.trivial   ? moved(d, -pair_.reach_mm(Layer::kLower))
                         : lower.empty() ? proven_apart(d, Layer::kLower)
                                         : lower[i];
-      if (d.best.depth_mm <= pair_.touch_mm && p.hi_mm <= pair_.touch_mm) continue;
+      // Rounding alone makes no collision of parts that only touch.
+      if (d.best.depth_mm <= pair_.touch_mm && (pair_.trivial ? d : p).hi_mm <= pair_.touch_mm)
+        continue;
       OverlapRegion region;
       region.delta_mm = bracket_of(d);
       region.possible_mm = bracket_of(p);
@@ -219,7 +237,8 @@ class Overlap {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Layer layer = pair_.trivial ? Layer::kMesh : Layer::kLower;
     const bool lazy = query_.refinement == Refinement::kDecided;
-    for (const Bracket& c : search(layer, lazy, work_left(), query_.ignore_below_mm)) {
+    for (const Bracket& found : search(layer, lazy, work_left(), query_.ignore_below_mm)) {
+      const Bracket c = pair_.trivial ? moved(found, -pair_.reach_mm(Layer::kLower)) : found;
       if (c.hi_mm <= pair_.touch_mm + query_.certain_from_mm) continue;
       OverlapRegion region;
       region.certain_mm = bracket_of(c);
@@ -459,9 +478,7 @@ bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,
   sample.point_K = pair.X_KS[place.role] * place.point_S;
   sample.at = nearest_surface(*pair.k(place.role).solid, sample.point_K);
   ++evaluations;
-  sample.depth_mm =
-      pair.k(place.role)
-          .depth_in(sample.point_K, sample.at, pair.trivial ? Layer::kMesh : Layer::kLower);
+  sample.depth_mm = pair.k(place.role).depth_in(sample.point_K, sample.at, Layer::kLower);
   return sample.depth_mm > pair.touch_mm && find_witness(pair, sample, evaluations).has_value();
 }
 

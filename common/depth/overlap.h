@@ -75,13 +75,14 @@ struct OverlapRegion {
       Vec3::Zero();  ///< inside both real parts for all tolerances, when certain_mm.lo > 0
   CertainPlace certain_place;  ///< the place from which the witness was found
   bool capped = false;         ///< work cap reached: brackets are wide
+  bool at_crack = false;       ///< within a crack of a part: what is inside there is not known
   std::vector<Vec3> points_W;  ///< sample of contact points for the fitted separating motion
 };
 
 struct OverlapResult {
   bool meshes_cross = false;
   bool contained = false;
-  bool no_inside = false;  ///< a part is open or non-manifold: crossing is known, depth is not
+  bool no_inside = false;              ///< a part has no inside: crossing is known, depth is not
   std::vector<OverlapRegion> regions;  ///< sorted by delta.lo, deepest first
   std::uint64_t evaluations = 0;
 };

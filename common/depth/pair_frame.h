@@ -39,7 +39,8 @@ struct PairFrame {
     }
     return deepest;
   }
-  /// No surface of the layer is farther from its mesh, both parts together.
+  /// No surface of the layer is farther from its mesh, both parts together. Where nothing is known but
+  /// the meshes it is the same everywhere: the rounding of the files.
   double reach_mm(Layer layer) const {
     return bodies[0].largest_offset_mm[static_cast<int>(layer)] +
            bodies[1].largest_offset_mm[static_cast<int>(layer)];

@@ -76,11 +76,12 @@ class Grouping {
         if (!keep) continue;
         kept_[role].push_back(t);
         if (capped) continue;
-        for (const std::uint32_t n : pair_.s(role).solid->topology().neighbor[t])
-          if (n != Topology::kNone && asked_[role].find(n) == nullptr) {
+        for (std::uint32_t k = 0; k < 3; ++k)
+          pair_.s(role).solid->topology().each_across(t, k, [&](std::uint32_t n) {
+            if (asked_[role].find(n) != nullptr) return;
             asked_[role][n].state = State::kReached;
             queue.push_back(n);
-          }
+          });
       }
       std::sort(kept_[role].begin(), kept_[role].end());
     }
@@ -190,8 +191,10 @@ class Grouping {
   void join_neighbours(int role, UnionFind& sets) const {
     const Topology& topology = pair_.s(role).solid->topology();
     for (const std::uint32_t t : kept_[role])
-      for (const std::uint32_t n : topology.neighbor[t])
-        if (const Asked* other = kept(role, n)) sets.join(kept(role, t)->number, other->number);
+      for (std::uint32_t k = 0; k < 3; ++k)
+        topology.each_across(t, k, [&](std::uint32_t n) {
+          if (const Asked* other = kept(role, n)) sets.join(kept(role, t)->number, other->number);
+        });
   }
 
   std::size_t count_sets(int role, UnionFind& sets) const {
