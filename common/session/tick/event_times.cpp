@@ -112,9 +112,11 @@ void find_event_times(PairWork& pair, double t_end, CcdScratch& ccd) {
   } else if (!pair.plain()) {
     search(pair, ccd);
   } else if (pair.meets) {
-    // The meshes are the parts: they interfere from where they press in.
+    // The meshes are the parts: they interfere from where they press in, but for the rounding of
+    // their files.
     pair.t_potential = pair.tau + (1.0 - pair.tau) * pair.t_enter;
-    if (!pair.no_inside()) pair.t_real = pair.t_potential;
+    if (!pair.no_inside() && (pair.band_mm == 0.0 || worst >= CollisionClass::kReal))
+      pair.t_real = pair.t_potential;
   }
   if (pair.blocks) t_end = 1.0;
   if (pair.t_potential > t_end) pair.t_potential = kNever;

@@ -4,6 +4,7 @@
 
 #include "common/broadphase/pair_filter.h"
 #include "common/ccd/distance.h"
+#include "common/ccd/start_state.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
 
@@ -38,6 +39,12 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, bool full_b
   judged.verdicts.b = b.id;
   judged.verdicts.no_inside = judgement.overlap.no_inside;
   judged.verdicts.verdicts = std::move(judgement.verdicts);
+  if (judged.verdicts.verdicts.empty() &&
+      containment(*a.solid, a.X_WP, *b.solid, b.X_WP, kAccuracyDefault_mm) ==
+          Containment::kUnknown) {
+    judged.verdicts.not_examined = true;
+    counts.not_examined = 1;
+  }
   if (!judged.verdicts.verdicts.empty() && !judgement.overlap.meshes_cross &&
       !judgement.overlap.contained) {
     counts.distance_queries = 1;
@@ -81,8 +88,9 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
     accumulate(counters, judged[i].counts);
     if (judged[i].verdicts.no_inside)
       for (const std::uint32_t part : {candidates[i].a, candidates[i].b})
-        if (!world.parts[part].solid->topology().closed()) without_inside[part] = 1;
-    if (!judged[i].verdicts.verdicts.empty()) report.pairs.push_back(std::move(judged[i].verdicts));
+        if (!world.parts[part].solid->has_inside()) without_inside[part] = 1;
+    if (!judged[i].verdicts.verdicts.empty() || judged[i].verdicts.not_examined)
+      report.pairs.push_back(std::move(judged[i].verdicts));
   }
   for (const auto& [pair, rule] : world.pair_rules) {
     if (!rule.excluded) continue;

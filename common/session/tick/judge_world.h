@@ -12,9 +12,12 @@ struct PairVerdicts {
   double distance_mm = 0.0;       ///< of the meshes when they do not cross
   bool excluded = false;
   bool no_inside = false;
+  /// One lies where the inside of the other is not known: nobody can say that they are apart.
+  bool not_examined = false;
 };
 struct JudgeReport {
-  std::vector<PairVerdicts> pairs;  ///< pairs with at least one verdict, and excluded ones
+  /// Pairs with at least one verdict, those not examined, and excluded ones.
+  std::vector<PairVerdicts> pairs;
   StepCounters counters;
 };
 JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets);

@@ -61,6 +61,7 @@ void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, b
   input.grade = verdict.grade;
   input.probability = verdict.probability;
   input.no_inside = no_inside;
+  input.at_crack = region.at_crack;
   input.capped = region.capped;
   if (query.rule != nullptr) input.fit = query.rule->fit;
   verdict.explanation = explain(input);
@@ -70,8 +71,8 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
   const Faces faces{band_a_of(query).face_of(region.deciding_triangle_a),
                     band_b_of(query).face_of(region.deciding_triangle_b)};
   Verdict verdict;
-  verdict.collision_class = classify(
-      {region.delta_mm, region.certain_mm, region.possible_mm, region.has_witness, no_inside});
+  verdict.collision_class = classify({region.delta_mm, region.certain_mm, region.possible_mm,
+                                      region.has_witness, no_inside || region.at_crack});
   verdict.delta_mm = region.delta_mm;
   const Thresholds thresholds =
       thresholds_of(region.delta_mm, region.certain_mm, region.possible_mm);
@@ -145,7 +146,7 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
     Verdict verdict = judge_region(query, region, judgement.overlap.no_inside);
     if (verdict.collision_class == CollisionClass::kNone) continue;
     if (query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
-        !judgement.overlap.no_inside)
+        !judgement.overlap.no_inside && !region.at_crack)
       add_generalized_depth(query, overlap, judgement.overlap.regions, region, scratch,
                             judgement.overlap.evaluations, verdict);
     judgement.verdicts.push_back(std::move(verdict));

@@ -38,6 +38,7 @@ void merge(OverlapRegion& into, const OverlapRegion& from) {
   merged.possible_mm = larger(into.possible_mm, from.possible_mm);
   merged.area_mm2 = into.area_mm2 + from.area_mm2;
   merged.capped = into.capped || from.capped;
+  merged.at_crack = into.at_crack || from.at_crack;
   merged.points_W = into.points_W;
   merged.points_W.insert(merged.points_W.end(), from.points_W.begin(), from.points_W.end());
   into = std::move(merged);

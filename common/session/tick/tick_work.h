@@ -151,7 +151,7 @@ struct PairWork {
   /// The meshes are the parts: no deviation or tolerance is known.
   bool plain() const { return band_a->trivial && band_b->trivial; }
   /// A part without an inside is potential at best, so that it stops no part.
-  bool no_inside() const { return !solid_a->topology().closed() || !solid_b->topology().closed(); }
+  bool no_inside() const { return !solid_a->has_inside() || !solid_b->has_inside(); }
 };
 
 /// Switches off optimizations, for tests; apart from counters the report must not change.
