@@ -196,6 +196,7 @@ Json json_of(const PairVerdicts& pair, const SessionNames& names) {
   json["part_b"] = names.part(pair.b);
   json["excluded"] = pair.excluded;
   json["no_inside"] = pair.no_inside;
+  json["not_examined"] = pair.not_examined;
   json["distance_mm"] = number(pair.distance_mm);
   json["verdicts"] = Json::array();
   for (const Verdict& verdict : pair.verdicts) json["verdicts"].push_back(json_of(verdict));

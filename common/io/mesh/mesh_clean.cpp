@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
+
+#include "common/geometry/border.h"
 
 namespace mortise {
 namespace {
@@ -160,9 +163,148 @@ std::uint64_t count_duplicates(const std::vector<Corners>& triangles) {
   return count;
 }
 
+// The triangles that are left of loose ones whose corners have been made one.
+struct Assembled {
+  std::vector<Corners> triangles;
+  std::uint64_t dropped = 0, split = 0;
+};
+
+Assembled assemble(const std::vector<Vec3>& corners, const std::vector<Corners>& loose) {
+  Assembled assembled;
+  for (const Corners& t : loose)
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+      ++assembled.dropped;
+    else
+      assembled.triangles.push_back(t);
+  FlatTriangles flats(corners, assembled.triangles);
+  flats.take_out();
+  assembled.dropped += flats.dropped();
+  assembled.split = flats.split();
+  return assembled;
+}
+
+/// Closes open edges whose corners are almost those of others, or lie almost on others.
+class CrackWelder {
+ public:
+  CrackWelder(const std::vector<Vec3>& corners, const std::vector<BorderEdge>& border, double near)
+      : corners_(corners), border_(border), near_(near) {
+    for (const BorderEdge& edge : border) points_.insert(points_.end(), {edge.from, edge.to});
+    std::sort(points_.begin(), points_.end(), [&](std::uint32_t i, std::uint32_t j) {
+      const double a = corners[i].x(), b = corners[j].x();
+      return a != b ? a < b : i < j;
+    });
+    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+  }
+
+  /// Corners of open edges onto the first one near them.
+  void join_corners(std::vector<Corners>& triangles) {
+    std::map<std::uint32_t, std::uint32_t> onto;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vec3& x = corners_[points_[i]];
+      std::uint32_t best = points_[i];
+      for (std::size_t j = i; j-- > 0 && corners_[points_[j]].x() >= x.x() - near_;) {
+        const auto earlier = onto.find(points_[j]);
+        if (earlier == onto.end() && (corners_[points_[j]] - x).norm() <= near_) best = points_[j];
+      }
+      if (best != points_[i]) onto[points_[i]] = best;
+    }
+    for (const auto& [point, to] : onto) note((corners_[point] - corners_[to]).norm());
+    if (onto.empty()) return;
+    for (Corners& triangle : triangles)
+      for (std::uint32_t& corner : triangle)
+        if (const auto found = onto.find(corner); found != onto.end()) corner = found->second;
+  }
+
+  /// Triangles along an open edge on which corners of others lie are cut there.
+  void cut_edges(std::vector<Corners>& triangles) {
+    std::vector<bool> cut(triangles.size(), false);
+    for (const BorderEdge& edge : border_) {
+      if (cut[edge.triangle]) continue;
+      std::vector<std::uint32_t> row = corners_on(edge);
+      if (row.empty()) continue;
+      cut[edge.triangle] = true;
+      row.push_back(edge.to);
+      const Corners whole = triangles[edge.triangle];
+      int k = 0;
+      while (k < 2 && whole[k] != edge.from) ++k;
+      const std::uint32_t across = whole[(k + 2) % 3];
+      triangles[edge.triangle] = {edge.from, row[0], across};
+      for (std::size_t i = 1; i < row.size(); ++i)
+        triangles.push_back({row[i - 1], row[i], across});
+    }
+  }
+
+  std::uint64_t moved() const { return moved_; }
+  double farthest() const { return farthest_; }
+
+ private:
+  // In the order of their place on the edge.
+  std::vector<std::uint32_t> corners_on(const BorderEdge& edge) {
+    const Vec3& a = corners_[edge.from];
+    const Vec3 along = corners_[edge.to] - a;
+    const double length2 = along.squaredNorm();
+    const double lo = std::min(a.x(), a.x() + along.x()) - near_;
+    const double hi = std::max(a.x(), a.x() + along.x()) + near_;
+    std::vector<std::pair<double, std::uint32_t>> found;
+    auto at = std::lower_bound(points_.begin(), points_.end(), lo,
+                               [&](std::uint32_t i, double x) { return corners_[i].x() < x; });
+    for (; at != points_.end() && corners_[*at].x() <= hi; ++at) {
+      if (*at == edge.from || *at == edge.to) continue;
+      const double share = along.dot(corners_[*at] - a) / length2;
+      const double off = (corners_[*at] - a - share * along).norm();
+      if (!(share > 0.0 && share < 1.0) || off > near_) continue;
+      if (std::min(share, 1.0 - share) * std::sqrt(length2) <= near_) continue;
+      found.emplace_back(share, *at);
+      note(off);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::uint32_t> row;
+    for (const auto& [share, point] : found) row.push_back(point);
+    return row;
+  }
+
+  void note(double distance) {
+    ++moved_;
+    farthest_ = std::max(farthest_, distance);
+  }
+
+  const std::vector<Vec3>& corners_;
+  const std::vector<BorderEdge>& border_;
+  double near_;
+  std::vector<std::uint32_t> points_;  // of the border, by x
+  std::uint64_t moved_ = 0;
+  double farthest_ = 0.0;
+};
+
+std::uint64_t open_edges(const std::vector<BorderEdge>& border) {
+  std::uint64_t count = 0;
+  for (const BorderEdge& edge : border) count += static_cast<std::uint64_t>(edge.times);
+  return count;
+}
+
+/// Corners first, then edges, each as far as it closes something.
+void weld_cracks(const std::vector<Vec3>& corners, double near, Assembled& assembled,
+                 CleanMesh& clean, double unit_mm) {
+  for (const bool edges : {false, true}) {
+    const std::vector<BorderEdge> border = border_of(assembled.triangles);
+    if (border.empty()) return;
+    CrackWelder welder(corners, border, near);
+    std::vector<Corners> triangles = assembled.triangles;
+    edges ? welder.cut_edges(triangles) : welder.join_corners(triangles);
+    if (welder.moved() == 0) continue;
+    Assembled welded = assemble(corners, triangles);
+    if (open_edges(border_of(welded.triangles)) >= open_edges(border)) continue;
+    welded.dropped += assembled.dropped;
+    welded.split += assembled.split;
+    assembled = std::move(welded);
+    clean.corners_moved += welder.moved();
+    clean.moved_mm += unit_mm * welder.farthest();
+  }
+}
+
 }  // namespace
 
-CleanMesh weld(const std::vector<double>& coordinates, double unit_mm) {
+CleanMesh weld(const std::vector<double>& coordinates, double unit_mm, double near) {
   // 1. Corners; adding zero turns -0 into 0, so that both weld and hash alike.
   std::vector<Vec3> corners(coordinates.size() / 3);
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -170,25 +312,20 @@ CleanMesh weld(const std::vector<double>& coordinates, double unit_mm) {
         Vec3(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]).array() + 0.0;
   const std::vector<std::uint32_t> first = first_at_same_place(corners);
 
-  // 2. Triangles with three corners, then those with an area.
+  // 2. Triangles with three corners, then those with an area; then what is almost closed.
   CleanMesh clean;
-  std::vector<Corners> triangles;
-  for (std::uint32_t i = 0; i + 2 < corners.size(); i += 3) {
-    const Corners t = {first[i], first[i + 1], first[i + 2]};
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-      ++clean.degenerate_dropped;
-    else
-      triangles.push_back(t);
-  }
-  FlatTriangles flats(corners, triangles);
-  flats.take_out();
-  clean.degenerate_dropped += flats.dropped();
-  clean.triangles_split = flats.split();
+  std::vector<Corners> loose;
+  for (std::uint32_t i = 0; i + 2 < corners.size(); i += 3)
+    loose.push_back({first[i], first[i + 1], first[i + 2]});
+  Assembled assembled = assemble(corners, loose);
+  if (near > 0.0) weld_cracks(corners, near, assembled, clean, unit_mm);
+  clean.degenerate_dropped = assembled.dropped;
+  clean.triangles_split = assembled.split;
 
   // 3. Points in the order of their use.
   constexpr std::uint32_t kNotUsed = 0xffffffffU;
   std::vector<std::uint32_t> number(corners.size(), kNotUsed);
-  for (Corners& triangle : triangles) {
+  for (Corners& triangle : assembled.triangles) {
     for (std::uint32_t& corner : triangle) {
       std::uint32_t& point = number[corner];
       if (point == kNotUsed) {

@@ -10,6 +10,7 @@
 #include "common/geometry/topology.h"
 #include "common/io/mesh/importer_process.h"
 #include "common/io/mesh/mesh_clean.h"
+#include "common/io/mesh/mesh_orient.h"
 
 namespace mortise {
 namespace {
@@ -21,6 +22,14 @@ constexpr std::array<const char*, 6> kReadable = {".stl", ".obj", ".ply", ".gltf
 /// Ten kilometres: beyond it doubles resolve less than a nanometre in the engine's products, and no
 /// part is so large; a wrong unit is.
 constexpr double kLargestCoordinate_mm = 1e7;
+
+/// Two corners that are one in the drawing are no farther apart than this many times the rounding
+/// of a coordinate: each is off by it in three directions, and a little for the sum.
+constexpr double kTwins = 4.0;
+
+/// Doubles that were worked out are off by more than their last digit; no drawing tells corners
+/// apart that are one float. Share of the largest coordinate.
+constexpr double kWorkedOut = 0x1p-25;
 
 std::string lower_extension(const fs::path& file) {
   std::string extension = file.extension().string();
@@ -68,15 +77,27 @@ double largest_coordinate(const std::vector<double>& coordinates) {
   return largest;
 }
 
-/// Turns all triangles when that makes the mesh a solid.
-void orient(TriangleMesh& mesh, Topology& topology, ImportReport& report) {
-  const bool tight = topology.boundary_edges == 0 && topology.non_manifold_edges == 0 &&
-                     topology.misoriented_edges == 0;
-  if (!tight || topology.volume_mm3 >= 0.0) return;
-  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-  topology.volume_mm3 = -topology.volume_mm3;
-  report.flipped = true;
-  report.notes.emplace_back("all triangles faced inwards and were turned");
+/// Makes an inside of what is closed: faces between bodies go, shells that face inwards are turned.
+void make_solid(TriangleMesh& mesh, ImportReport& report) {
+  if (const std::uint64_t turned = align_neighbours(mesh); turned > 0)
+    report.notes.push_back(std::to_string(turned) +
+                           " triangles faced against their neighbours and were turned");
+  if (const std::uint64_t inner = take_out_inner_faces(mesh); inner > 0)
+    report.notes.push_back(std::to_string(inner) +
+                           " triangles between bodies that share a face were dropped");
+  const ShellsTurned turned = orient_shells(mesh);
+  if (turned.filled > 0)
+    report.notes.push_back(std::to_string(turned.filled) +
+                           " shells within others face outwards like those: taken for material, "
+                           "not for hollows");
+  if (turned.turned == 0) return;
+  report.flipped = turned.turned == turned.shells;
+  if (report.flipped)
+    report.notes.emplace_back("all triangles faced inwards and were turned");
+  else
+    report.notes.push_back(std::to_string(turned.turned) + " of " + std::to_string(turned.shells) +
+                           " shells faced inwards and " + (turned.turned == 1 ? "was" : "were") +
+                           " turned");
 }
 
 void note_findings(const RawSoup& soup, double unit_mm, ImportReport& report) {
@@ -89,9 +110,10 @@ void note_findings(const RawSoup& soup, double unit_mm, ImportReport& report) {
   note(report.degenerate_dropped, "triangles without area were dropped");
   note(report.duplicate_triangles, "triangles occur twice");
   note(report.points_and_lines_dropped, "points and lines were left out");
-  note(report.boundary_edges, "open edges: the part has no inside");
-  note(report.non_manifold_edges, "edges of more than two triangles: the part has no inside");
-  note(report.misoriented_edges, "edges between triangles that face opposite ways: no inside");
+  if (report.closed) return;
+  note(report.boundary_edges, "open edges");
+  note(report.non_manifold_edges, "edges of more than two triangles");
+  note(report.misoriented_edges, "edges between triangles that face opposite ways");
 }
 
 Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, double unit_mm) {
@@ -107,11 +129,19 @@ Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, doubl
   report.raw_triangles = soup.coordinates.size() / 9;
   report.points_and_lines_dropped = soup.points_and_lines;
   report.quantum_mm = soup.quantum * unit_mm;
-  CleanMesh clean = weld(soup.coordinates, unit_mm);
+  CleanMesh clean =
+      weld(soup.coordinates, unit_mm,
+           kTwins * std::max(soup.quantum, kWorkedOut * largest_coordinate(soup.coordinates)));
   imported.mesh = std::move(clean.mesh);
   report.degenerate_dropped = clean.degenerate_dropped;
   report.triangles_split = clean.triangles_split;
   report.duplicate_triangles = clean.duplicate_triangles;
+  report.quantum_mm += clean.moved_mm;
+  if (clean.corners_moved > 0)
+    report.notes.push_back(std::to_string(clean.corners_moved) +
+                           " corners of open edges were up to " + number(1e3 * clean.moved_mm) +
+                           " µm apart and were welded");
+  if (!imported.mesh.triangles.empty()) make_solid(imported.mesh, report);
   report.points = imported.mesh.points_mm.size();
   report.triangles = imported.mesh.triangles.size();
   if (imported.mesh.triangles.empty())
@@ -119,8 +149,7 @@ Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, doubl
                 file + ": no triangles are left (" + std::to_string(report.raw_triangles) +
                     " read, all without area; " + std::to_string(report.points_and_lines_dropped) +
                     " points and lines); export the part as a solid");
-  Topology topology = build_topology(imported.mesh);
-  orient(imported.mesh, topology, report);
+  const Topology topology = build_topology(imported.mesh);
   report.boundary_edges = topology.boundary_edges;
   report.non_manifold_edges = topology.non_manifold_edges;
   report.misoriented_edges = topology.misoriented_edges;

@@ -22,10 +22,12 @@ struct ImportReport {
   std::uint64_t triangles_split = 0;  ///< split so that no dropped triangle left an open edge
   std::uint64_t boundary_edges = 0, non_manifold_edges = 0, misoriented_edges = 0, components = 0;
   double volume_mm3 = 0.0;
-  bool closed = false;
-  bool flipped = false;     ///< all triangles were reversed, because the volume was negative
-  double quantum_mm = 0.0;  ///< coordinates are floats: half an ulp of the largest coordinate, plus
-                            ///< what the node transforms of the file add
+  bool closed = false;   ///< every edge balances, positive volume
+  bool flipped = false;  ///< all triangles faced inwards and were turned
+  /// How far a corner may be off for the file: half an ulp of the largest coordinate, as floats, or
+  /// half of its last digit where the file was written with six or seven, plus what its node
+  /// transforms add and what was moved in welding.
+  double quantum_mm = 0.0;
   std::vector<std::string> notes;  ///< what a designer should know, one line each; often empty
 };
 

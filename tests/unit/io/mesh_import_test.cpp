@@ -86,11 +86,18 @@ TEST_F(MeshImport, InsideOutIsTurnedAndSaid) {
   EXPECT_NEAR(mesh->report.volume_mm3, 1.0 / 6.0, 1e-12);
 }
 
+std::string ply(const std::string& vertices, const std::string& faces, const std::string& body) {
+  return "ply\nformat ascii 1.0\nelement vertex " + vertices +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+         "\nproperty list uchar int vertex_indices\nend_header\n" + body;
+}
+
 TEST_F(MeshImport, MetresAreScaledInDouble) {
   // 0.1 is not a float: what arrives is the float times 1000, and the quantum covers the step.
-  const std::string tetra =
-      "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-  const auto mesh = import_mesh(write("tetra.obj", tetra), 1000.0);
+  const std::string tetra = ply("4", "4",
+                                "0 0 0\n0.1 0 0\n0 0.1 0\n0 0 0.1\n"
+                                "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  const auto mesh = import_mesh(write("tetra.ply", tetra), 1000.0);
   ASSERT_TRUE(mesh) << mesh.error().text;
   const double largest = bounds_of(mesh->mesh).hi.x();
   EXPECT_EQ(largest, 1000.0 * static_cast<double>(0.1F));
@@ -183,12 +190,6 @@ TEST_F(MeshImport, RefusalsSayWhy) {
 TEST_F(MeshImport, NoFileOfAnyOtherKindIsTriedAsSomethingElse) {
   // An OBJ in a file that says STL: assimp would guess by content.
   EXPECT_NE(one_line_error(write("really_an_obj.stl", kCubeObj)), "(imported)");
-}
-
-std::string ply(const std::string& vertices, const std::string& faces, const std::string& body) {
-  return "ply\nformat ascii 1.0\nelement vertex " + vertices +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
-         "\nproperty list uchar int vertex_indices\nend_header\n" + body;
 }
 
 TEST_F(MeshImport, HostileFilesNeverReachUs) {

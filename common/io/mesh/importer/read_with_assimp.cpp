@@ -13,18 +13,14 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <vector>
 
+#include "common/io/mesh/importer/written_digits.h"
+
 namespace mortise {
 namespace {
-
-/// Half the distance to the next float.
-double half_ulp(double x) {
-  const float magnitude = std::abs(static_cast<float>(x));
-  return 0.5 * (static_cast<double>(std::nextafter(magnitude, std::numeric_limits<float>::max())) -
-                static_cast<double>(magnitude));
-}
 
 /// Leaves only the readers that name the extension: the content of a file must not choose the
 /// parser.
@@ -101,21 +97,58 @@ std::string check(const aiMesh* mesh) {
   return {};
 }
 
+/// A mirrored placement turns the surface inside out.
+bool mirrors(const Affine& X) {
+  const auto& m = X.m;
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+         0.0;
+}
+
+/// The places of a mesh, with all digits of its file where they are found, and how far they may be
+/// off.
+struct Places {
+  std::vector<Triple> at;
+  double largest = 0.0, quantum = 0.0;
+};
+
+Places places_of(const aiMesh& mesh, const WrittenDigits& digits) {
+  Places places;
+  places.at.resize(mesh.mNumVertices);
+  bool all = true;
+  for (unsigned v = 0; v < mesh.mNumVertices && all; ++v) {
+    const aiVector3D& x = mesh.mVertices[v];
+    const Triple* written = digits.find(x.x, x.y, x.z);
+    all = written != nullptr;
+    if (all) places.at[v] = *written;
+  }
+  if (!all)
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& x = mesh.mVertices[v];
+      places.at[v] = {x.x, x.y, x.z};
+    }
+  for (const Triple& triple : places.at)
+    for (const double x : triple) places.largest = std::max(places.largest, std::abs(x));
+  // What assimp makes of a text is off by up to two ulps.
+  constexpr double kOfDoubles = 1e-15, kOfFloats = 1.8e-7;
+  places.quantum = written_quantum(places.at, all ? kOfDoubles : kOfFloats);
+  if (!all) places.quantum = std::max(places.quantum, half_ulp(places.largest));
+  return places;
+}
+
 /// Appends one placed mesh.
-void append(const aiMesh& mesh, const Affine& X, RawSoup& soup) {
-  double largest = 0.0;
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v)
-    for (unsigned k = 0; k < 3; ++k)
-      largest = std::max(largest, std::abs(static_cast<double>(mesh.mVertices[v][k])));
+void append(const aiMesh& mesh, const Places& places, const Affine& X, RawSoup& soup) {
   double row = 1.0;
   for (const auto& r : X.m) row = std::max(row, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
-  double quantum = row * half_ulp(largest);
+  double quantum = row * places.quantum;
   if (!X.identity) {
     for (const auto& r : X.m)
-      quantum = std::max(quantum,
-                         row * half_ulp(largest) + X.entry_ulp * (row * largest + std::abs(r[3])));
+      quantum = std::max(
+          quantum, row * places.quantum + X.entry_ulp * (row * places.largest + std::abs(r[3])));
   }
   soup.quantum = std::max(soup.quantum, quantum);
+  const bool turned = mirrors(X);
   soup.raw_vertices += mesh.mNumVertices;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
@@ -124,9 +157,8 @@ void append(const aiMesh& mesh, const Affine& X, RawSoup& soup) {
       continue;
     }
     for (unsigned k = 0; k < 3; ++k) {
-      const aiVector3D& v = mesh.mVertices[face.mIndices[k]];
-      const double x[3] = {v.x, v.y, v.z};
-      for (int i = 0; i < 3; ++i)
+      const Triple& x = places.at[face.mIndices[turned ? 2 - k : k]];
+      for (std::size_t i = 0; i < 3; ++i)
         soup.coordinates.push_back(
             X.identity ? x[i] : X.m[i][0] * x[0] + X.m[i][1] * x[1] + X.m[i][2] * x[2] + X.m[i][3]);
     }
@@ -134,7 +166,8 @@ void append(const aiMesh& mesh, const Affine& X, RawSoup& soup) {
 }
 
 /// Walks all nodes without recursion. Empty text on success.
-std::string place_all(const aiScene& scene, RawSoup& soup) {
+std::string place_all(const aiScene& scene, const WrittenDigits& digits, RawSoup& soup) {
+  std::map<unsigned, Places> known;
   struct Visit {
     const aiNode* node;
     Affine X;
@@ -151,7 +184,9 @@ std::string place_all(const aiScene& scene, RawSoup& soup) {
       const aiMesh& mesh = *scene.mMeshes[visit.node->mMeshes[i]];
       if (soup.coordinates.size() / 9 + mesh.mNumFaces > kMostRawTriangles)
         return "more than " + std::to_string(kMostRawTriangles) + " triangles";
-      append(mesh, X, soup);
+      const auto [places, fresh] = known.try_emplace(visit.node->mMeshes[i]);
+      if (fresh) places->second = places_of(mesh, digits);
+      append(mesh, places->second, X, soup);
     }
     for (unsigned i = visit.node->mNumChildren; i-- > 0;)
       open.push_back({visit.node->mChildren[i], X});
@@ -193,7 +228,9 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
     soup.stated_unit_mm = 1000.0 * metres;
   }
   if (extension == ".gltf" || extension == ".glb") soup.stated_unit_mm = 1000.0;  // by its standard
-  if (const std::string wrong = place_all(*scene, soup); !wrong.empty()) return refuse(wrong);
+  if (const std::string wrong = place_all(*scene, WrittenDigits(file, extension), soup);
+      !wrong.empty())
+    return refuse(wrong);
   return soup;
 }
 
