@@ -43,11 +43,33 @@ void read_mesh_file(YamlContext& context, const YAML::Node& node, Scenario::Mesh
   else if (!map.has("file"))
     map.error("file is missing: the path of the mesh, relative to the scenario");
   if (const auto unit = unit_of(context, map)) mesh.unit_mm = *unit;
-  if (const auto scale = map.number("scale")) {
+  const YAML::Node scale_node = map.find("scale");
+  if (scale_node && scale_node.IsSequence()) {
+    map.error("scale",
+              "expected one number; to mirror the part write mirror: x (y, z) beside mesh:");
+  } else if (const auto scale = map.number("scale")) {
     if (*scale > 0.0)
       mesh.unit_mm *= *scale;
     else
-      map.error("scale", "must be greater than 0");
+      map.error("scale",
+                "must be greater than 0; to mirror the part write mirror: x (y, z) beside mesh:");
+  }
+}
+
+// The whole part, mesh and features, becomes its mirror image in a plane of its own frame.
+void read_mirror(const YamlMap& map, Scenario::PartSpec& part) {
+  const auto text = map.text("mirror");
+  if (!text) return;
+  constexpr std::string_view kAxes = "xyz";
+  const std::size_t axis = text->size() == 1 ? kAxes.find((*text)[0]) : std::string_view::npos;
+  if (axis == std::string_view::npos) {
+    map.error("mirror", "'" + *text + "' is not known; write x, y or z");
+    return;
+  }
+  part.mesh.mirror ^= 1U << axis;
+  for (auto& feature : part.features) {
+    feature.surface.point[static_cast<int>(axis)] *= -1.0;
+    feature.surface.axis[static_cast<int>(axis)] *= -1.0;
   }
 }
 
@@ -273,9 +295,10 @@ void read_instances(YamlContext& context, const YAML::Node& list, const Scenario
   }
   for (const auto& node : list) {
     if (scenario.parts.size() > kMaxParts) return;
-    const YamlMap map(context, node, "instance", {"name", "pose", "moving"});
+    const YamlMap map(context, node, "instance", {"name", "pose", "moving", "mirror"});
     if (!map.usable()) continue;
     Scenario::PartSpec copy = part;
+    read_mirror(map, copy);
     copy.at.line = map.line();
     const auto name = map.text("name");
     if (!map.has("name")) map.error("name is missing");
@@ -339,8 +362,8 @@ std::optional<UndeclaredSurface> read_deviation(const YamlMap& map) {
 
 void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
   const YamlMap map(context, node, "part",
-                    {"name", "mesh", "generator", "pose", "moving", "chord_error", "deviation",
-                     "tolerance", "features", "instances", "repeat"});
+                    {"name", "mesh", "generator", "pose", "moving", "mirror", "chord_error",
+                     "deviation", "tolerance", "features", "instances", "repeat"});
   if (!map.usable()) return;
   Scenario::PartSpec part;
   part.at.line = map.line();
@@ -370,6 +393,8 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   if (const YAML::Node tolerance = map.find("tolerance"))
     part.tolerance = read_tolerance(context, tolerance, "part: tolerance");
   if (const YAML::Node features = map.find("features")) read_features(context, features, part);
+
+  read_mirror(map, part);
 
   const std::string many = map.one_of({"instances", "repeat"});
   if (many == "instances")

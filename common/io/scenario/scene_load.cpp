@@ -40,7 +40,7 @@ class AlikeKey {
 
 AlikeKey key_of(const Scenario::MeshSource& mesh) {
   AlikeKey key;
-  key.add(mesh.file).add(mesh.unit_mm).add(mesh.generator);
+  key.add(mesh.file).add(mesh.unit_mm).add(mesh.generator).add(static_cast<double>(mesh.mirror));
   for (const auto& [name, value] : mesh.parameters) key.add(name).add(value);
   return key;
 }
@@ -252,17 +252,11 @@ class SceneLoader {
     mesh.report = imported->report;
     SolidPtr solid = std::make_shared<const Solid>(std::move(imported->mesh));
     mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
-    if (!mesh.report.closed)
-      finding(false, spec.at,
-              "part " + spec.name + ": mesh " + mesh.report.file + " is open or not a manifold (" +
-                  std::to_string(mesh.report.boundary_edges) + " boundary, " +
-                  std::to_string(mesh.report.non_manifold_edges) + " non-manifold, " +
-                  std::to_string(mesh.report.misoriented_edges) +
-                  " misoriented edges): crossing is found, depth is not; repair it "
-                  "for more than potential");
+    if (!mesh.report.closed) say_open(spec, mesh);
     if (!spec.mesh.generator.empty()) {
       Result<GeneratedPart> generated = generate(spec.mesh.generator, spec.mesh.parameters);
       if (generated) {
+        mirror_part(*generated, spec.mesh.mirror);
         // A mesh from elsewhere (a log) may be another one: then its faces are found, not known.
         if (mesh_hash(generated->mesh) != mesh.solid->hash())
           for (Feature& feature : generated->features) feature.triangles.clear();
@@ -270,6 +264,24 @@ class SceneLoader {
       }
     }
     return mesh;
+  }
+
+  void say_open(const Scenario::PartSpec& spec, const LoadedMesh& mesh) {
+    const ImportReport& report = mesh.report;
+    const std::string edges = std::to_string(report.boundary_edges) + " boundary, " +
+                              std::to_string(report.non_manifold_edges) + " non-manifold, " +
+                              std::to_string(report.misoriented_edges) + " misoriented edges";
+    const bool volume = mesh.solid->topology().balanced();  // then it is the volume that is missing
+    finding(false, spec.at,
+            "part " + spec.name + ": mesh " + report.file +
+                (mesh.solid->has_inside()
+                     ? " is open at " + std::to_string(mesh.solid->cracks().all.size()) +
+                           " cracks (" + edges +
+                           "): beside them its inside is not known, and a clash there potential at "
+                           "best; repair it"
+                     : (volume ? " encloses no volume (" : " is open (") + edges +
+                           "): crossing is found, depth is not, and what lies within it is not "
+                           "examined; repair it for more than potential"));
   }
 
   // 3. features

@@ -1,5 +1,7 @@
 #include "common/io/scenario/scene_meshes.h"
 
+#include <utility>
+
 #include "common/generators/generators.h"
 #include "common/geometry/topology.h"
 
@@ -9,6 +11,7 @@ namespace {
 Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
   Result<GeneratedPart> generated = generate(part.mesh.generator, part.mesh.parameters);
   if (!generated) return generated.error();
+  mirror_part(*generated, part.mesh.mirror);
   ImportedMesh imported;
   imported.mesh = std::move(generated->mesh);
   ImportReport& report = imported.report;
@@ -28,11 +31,28 @@ Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
 
 }  // namespace
 
+void mirror_part(GeneratedPart& part, unsigned axes) {
+  if (axes == 0) return;
+  const Vec3 sign(axes & 1U ? -1.0 : 1.0, axes & 2U ? -1.0 : 1.0, axes & 4U ? -1.0 : 1.0);
+  for (Vec3& point : part.mesh.points_mm) point = point.cwiseProduct(sign);
+  if (sign.prod() < 0.0)
+    for (auto& triangle : part.mesh.triangles) std::swap(triangle[1], triangle[2]);
+  for (Feature& feature : part.features) {
+    feature.surface.point = feature.surface.point.cwiseProduct(sign);
+    feature.surface.axis = feature.surface.axis.cwiseProduct(sign);
+  }
+}
+
 MeshProvider default_meshes() {
   return [](const Scenario& scenario, const Scenario::PartSpec& part) -> Result<ImportedMesh> {
     if (!part.mesh.generator.empty()) return generated_mesh(part);
     const std::filesystem::path folder = std::filesystem::path(scenario.file).parent_path();
-    return import_mesh(folder / part.mesh.file, part.mesh.unit_mm);
+    Result<ImportedMesh> imported = import_mesh(folder / part.mesh.file, part.mesh.unit_mm);
+    if (!imported || part.mesh.mirror == 0) return imported;
+    GeneratedPart mirrored{std::move(imported->mesh), {}};
+    mirror_part(mirrored, part.mesh.mirror);
+    imported->mesh = std::move(mirrored.mesh);
+    return imported;
   };
 }
 

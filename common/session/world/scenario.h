@@ -60,6 +60,7 @@ struct Scenario {
   struct MeshSource {
     std::string file;                          ///< relative to the scenario; empty when generated
     double unit_mm = 1.0;                      ///< mm per file unit, times scale
+    unsigned mirror = 0;                       ///< bit 0, 1, 2: x, y, z are negated in the part
     std::string generator;                     ///< e.g. "shaft"; empty when from a file
     std::map<std::string, double> parameters;  ///< of the generator, mm, rad or counts
   };

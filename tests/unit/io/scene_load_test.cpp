@@ -200,5 +200,67 @@ TEST(SceneLoad, AScenarioWithoutPartsIsRefused) {
   EXPECT_FALSE(load_scene(Scenario{}, default_meshes()));
 }
 
+TEST(SceneLoad, AMirroredPartIsAnImageOfItself) {
+  const std::string base = R"(name: hands
+units: mm
+parts:
+  - generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 3}
+    features: {journal: {iso: h6}}
+    instances:
+      - {name: left}
+      - {name: right, mirror: z}
+      - {name: third, mirror: x}
+  - name: whole
+    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 32, phase_deg: 3}
+    mirror: z
+    features: {journal: {iso: h6}}
+)";
+  const LoadedScene scene = load(base);
+  ASSERT_TRUE(scene.usable()) << scene.findings.front().text;
+  const auto& parts = scene.world.parts;
+  ASSERT_EQ(parts.size(), 4U);
+  const Topology &left = parts[0].solid->topology(), &right = parts[1].solid->topology();
+  EXPECT_TRUE(right.closed());
+  EXPECT_NEAR(left.volume_mm3, right.volume_mm3, 1e-6);
+  EXPECT_NEAR(parts[1].solid->bounds().lo.z(), -parts[0].solid->bounds().hi.z(), 1e-12);
+  EXPECT_NE(parts[0].solid->hash(), parts[1].solid->hash());
+  EXPECT_NE(parts[1].solid->hash(), parts[2].solid->hash());
+  EXPECT_EQ(parts[1].solid->hash(), parts[3].solid->hash());  // an instance is mirrored like a part
+  // Its faces are known as well as those of the original.
+  const auto* journal = face_of(parts[1].band, "journal");
+  ASSERT_TRUE(journal);
+  EXPECT_EQ(journal->grade, DeviationGrade::kDeclaredFeature);
+  EXPECT_EQ(journal->deviation_mm, face_of(parts[0].band, "journal")->deviation_mm);
+}
+
+TEST(SceneLoad, ADeclaredFeatureIsMirroredWithItsPart) {
+  const auto reading = read_scenario_text(R"(name: hands
+units: mm
+parts:
+  - name: right
+    mesh: {file: l.stl, unit: mm}
+    mirror: x
+    features:
+      side: {kind: plane, point: [1, 2, 3], axis: [1, 0, 0]}
+  - name: bad
+    mesh: {file: l.stl, unit: mm}
+    mirror: w
+  - name: worse
+    mesh: {file: l.stl, unit: mm, scale: [1, -1, 1]}
+  - name: worst
+    mesh: {file: l.stl, unit: mm, scale: -1}
+)",
+                                          "s.yaml");
+  ASSERT_TRUE(reading);
+  const auto& part = reading->scenario.parts.at(0);
+  EXPECT_EQ(part.mesh.mirror, 1U);
+  EXPECT_EQ(part.features.at(0).surface.point, Vec3(-1, 2, 3));
+  EXPECT_EQ(part.features.at(0).surface.axis, Vec3(-1, 0, 0));
+  std::size_t with_advice = 0;
+  for (const Finding& f : reading->findings)
+    with_advice += f.is_error && f.text.find("mirror") != std::string::npos;
+  EXPECT_EQ(with_advice, 3U);
+}
+
 }  // namespace
 }  // namespace mortise
