@@ -85,6 +85,22 @@ TEST_F(Tool, UnitsAreThoseOfTheFiles) {
   EXPECT_NE(out.find("a,free,1,1,113.592253256989"), std::string::npos) << out;
 }
 
+TEST_F(Tool, WhatMayLieInAnOpenMeshIsNotFree) {
+  // The cube without one face, ten times as large; the small one stays in it, or beside it.
+  std::string open(kCube);
+  open.erase(open.rfind("f 2 4 8 6"));
+  for (std::size_t at = 0; (at = open.find("0.5", at)) != std::string::npos; at += 3)
+    open.replace(at, 3, "5.0");
+  write("open.obj", open);
+  write("motions.csv", std::string(kHeader) + "in,linear,0,0,0,0,0,0,1,0,0,0,1,0,0,1,0,0,0\n" +
+                           "beside,linear,0,0,0,20,0,0,1,0,0,0,21,0,0,1,0,0,0\n");
+  ASSERT_EQ(run("--moving cube.obj --static open.obj --motions motions.csv --out out.csv"), 0);
+  const std::string out = read("out.csv");
+  EXPECT_NE(out.find("in,no_inside,"), std::string::npos) << out;
+  EXPECT_NE(out.find("beside,free,"), std::string::npos) << out;
+  EXPECT_NE(read("stdout").find("1 motions: no inside"), std::string::npos) << read("stdout");
+}
+
 TEST_F(Tool, SaysUndecidedAtTheWorkCap) {
   ASSERT_EQ(run_motions("a,linear,0,0,0,-5,0.1,0.2,1,0,0,0,5,0,0,0.8,0.6,0,0\n", "--work-cap 1"),
             0);

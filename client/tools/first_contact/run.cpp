@@ -8,6 +8,7 @@
 #include "client/tools/first_contact/motions_file.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
+#include "common/ccd/start_state.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/mesh/obj_exact.h"
 
@@ -58,6 +59,7 @@ Result<SolidPtr> load(const std::string& file, double unit_mm) {
 
 struct Row {
   FirstContact answer;
+  bool hidden = false;  ///< surfaces keep clear, but what has no inside may hold the other
   double distance_mm = 0.0;
   double time_us = 0.0;
 };
@@ -70,6 +72,10 @@ Row ask(const ContactQuery& query, CcdScratch& scratch) {
       std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
   row.distance_mm = row.answer.distance_mm;
   const bool free = row.answer.state == ContactState::kFree;
+  for (const double t : {0.0, 1.0})
+    row.hidden |=
+        free && containment(*query.a, query.motion_a.pose_at(t), *query.b,
+                            query.motion_b.pose_at(t), query.accuracy_mm) == Containment::kUnknown;
   if (free || row.answer.state == ContactState::kUndecided)
     row.distance_mm = distance(*query.a, query.motion_a.pose_at(row.answer.t_clear), *query.b,
                                query.motion_b.pose_at(row.answer.t_clear), scratch)
@@ -78,10 +84,10 @@ Row ask(const ContactQuery& query, CcdScratch& scratch) {
 }
 
 void summarize(const std::vector<Row>& rows) {
-  int count[6] = {};
+  int count[6] = {}, hidden = 0;
   std::vector<double> time_us;
   for (const Row& row : rows) {
-    ++count[static_cast<int>(row.answer.state)];
+    ++(row.hidden ? hidden : count[static_cast<int>(row.answer.state)]);
     time_us.push_back(row.time_us);
   }
   std::sort(time_us.begin(), time_us.end());
@@ -94,6 +100,9 @@ void summarize(const std::vector<Row>& rows) {
       count[static_cast<int>(ContactState::kTouchingAtStart)],
       count[static_cast<int>(ContactState::kOverlappingAtStart)], time_us[time_us.size() / 2],
       time_us[(99 * (time_us.size() - 1)) / 100]);
+  if (hidden > 0)
+    std::printf("%d motions: no inside: one mesh is open and the other may lie within it\n",
+                hidden);
 }
 
 Status write(const std::string& file, const std::vector<NamedMotion>& motions,
@@ -103,8 +112,9 @@ Status write(const std::string& file, const std::vector<NamedMotion>& motions,
   std::fprintf(out, "id,state,t_clear,t_contact,distance_mm,time_us\n");
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::fprintf(out, "%s,%s,%.17g,%.17g,%.17g,%.17g\n", motions[i].id.c_str(),
-                 name_of(rows[i].answer.state), rows[i].answer.t_clear, rows[i].answer.t_contact,
-                 rows[i].distance_mm, rows[i].time_us);
+                 rows[i].hidden ? "no_inside" : name_of(rows[i].answer.state),
+                 rows[i].answer.t_clear, rows[i].answer.t_contact, rows[i].distance_mm,
+                 rows[i].time_us);
   const bool good = std::ferror(out) == 0;
   if (std::fclose(out) != 0 || !good)
     return fail(Code::kRuntime, file + ": writing broke off; check the disk");

@@ -14,7 +14,10 @@ namespace {
 // A round fit touches at every facet; the worst few say it. --json has them all.
 constexpr std::size_t kMostRegions = 4;
 
-std::string um(double mm) { return std::isfinite(mm) ? fmt::format("{:.1f}", mm * 1e3) : "inf"; }
+std::string um(double mm) {
+  if (!std::isfinite(mm)) return "inf";
+  return fmt::format("{:.1f}", std::fabs(mm) < 5e-5 ? 0.0 : mm * 1e3);  // no "-0.0"
+}
 
 std::string class_text(CollisionClass c, bool color) {
   const std::string name(name_of(c));
@@ -102,6 +105,18 @@ std::string reason_of(const World& world, const PairVerdicts& pair) {
   return rule == nullptr ? "" : rule->reason;
 }
 
+// Nothing crosses, but one lies within the box of the other, which has no inside.
+std::string hiding_text(const World& world, const PairVerdicts& pair) {
+  const Part &a = *world.find(pair.a), &b = *world.find(pair.b);
+  const auto sure = [](const Part& part) {
+    return part.solid->has_inside() && part.solid->cracks().all.empty();
+  };
+  const std::string open = sure(a) ? b.name : sure(b) ? a.name : a.name + " and " + b.name;
+  return "one may lie inside the other, and " + open +
+         (open == a.name || open == b.name ? " is" : " are") +
+         " open: the inside is not known there";
+}
+
 }  // namespace
 
 bool finds(const JudgeReport& report, CollisionClass at_least) {
@@ -121,7 +136,10 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
     if (pair.excluded) text += "  excluded: " + reason_of(world, pair);
     const PairRule* rule = world.rule(pair.a, pair.b);
     if (rule != nullptr && !rule->fit.empty()) text += "  " + rule->fit;
-    if (pair.no_inside) text += "  (a part is open: depth unknown)";
+    if (pair.not_examined)
+      text += "  not examined: " + hiding_text(world, pair);
+    else if (pair.no_inside)
+      text += "  (a part is open: depth unknown)";
     text += "\n";
     const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
     for (std::size_t i = 0; i < shown; ++i)
@@ -137,7 +155,12 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
   text += fmt::format("{}: {} pairs, {} asked; {} real, {} potential, {} fake; {} excluded",
                       opened.scenario.file, c.pairs.in, c.pairs.out, c.verdicts_by_class[3],
                       c.verdicts_by_class[2], c.verdicts_by_class[1], c.pairs_excluded);
-  if (c.not_examined > 0) text += fmt::format("; {} not settled by the work limit", c.not_examined);
+  const auto hidden = static_cast<std::uint64_t>(
+      std::count_if(report.pairs.begin(), report.pairs.end(),
+                    [](const PairVerdicts& pair) { return pair.not_examined; }));
+  if (hidden > 0) text += fmt::format("; {} not examined beside an open part", hidden);
+  if (c.not_examined > hidden)
+    text += fmt::format("; {} not settled by the work limit", c.not_examined - hidden);
   if (c.parts_without_inside > 0) text += fmt::format("; {} open parts", c.parts_without_inside);
   if (c.judged_plain > 0) text += fmt::format("; {} pairs with nothing declared", c.judged_plain);
   if (c.regions_decided_early > 0)

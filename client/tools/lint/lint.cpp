@@ -35,15 +35,24 @@ std::string findings_text(const OpenedScene& opened, bool color) {
   return text;
 }
 
+// What can be said of the inside of a part.
+const char* inside_text(const Solid& solid) {
+  if (!solid.has_inside()) return "no";
+  return solid.cracks().all.empty() ? "yes" : "cracked";
+}
+
 std::string parts_text(const LoadedScene& scene) {
-  std::string text = fmt::format("\n{:<28}{:>10}{:>9}{:>9}  {}\n", "part", "triangles", "closed",
-                                 "moving", "mesh");
+  std::string text = fmt::format("\n{:<28}{:>10}{:>9}{:>9}{:>34}{:>14}  {}\n", "part", "triangles",
+                                 "inside", "moving", "extent, mm", "rounding, µm", "mesh");
   const auto& parts = scene.world.parts;
   for (std::size_t i = 0; i < std::min(parts.size(), kMostRows); ++i) {
     const ImportReport& report = scene.imports[i];
-    text += fmt::format("  {:<26}{:>10}{:>9}{:>9}  {}\n", parts[i].name,
-                        parts[i].solid->mesh().triangles.size(), report.closed ? "yes" : "no",
-                        parts[i].moving ? "yes" : "no", report.file);
+    const Vec3 size = parts[i].solid->bounds().hi - parts[i].solid->bounds().lo;
+    text += fmt::format("  {:<26}{:>10}{:>9}{:>9}{:>34}{:>14}  {}\n", parts[i].name,
+                        parts[i].solid->mesh().triangles.size(), inside_text(*parts[i].solid),
+                        parts[i].moving ? "yes" : "no",
+                        fmt::format("{:.4g} × {:.4g} × {:.4g}", size.x(), size.y(), size.z()),
+                        fmt::format("{:.2g}", report.quantum_mm * kUmPerMm), report.file);
   }
   return text + more(parts.size());
 }
@@ -119,13 +128,18 @@ Json lint_json(const OpenedScene& opened) {
   for (std::size_t i = 0; i < scene.world.parts.size(); ++i) {
     const Part& part = scene.world.parts[i];
     const ImportReport& report = scene.imports[i];
-    json["parts"].push_back({{"name", part.name},
-                             {"mesh", report.file},
-                             {"mesh_hash", part.solid->hash()},
-                             {"triangles", part.solid->mesh().triangles.size()},
-                             {"closed", report.closed},
-                             {"moving", part.moving},
-                             {"largest_offset_mm", part.band.largest_offset_mm}});
+    json["parts"].push_back(
+        {{"name", part.name},
+         {"mesh", report.file},
+         {"mesh_hash", part.solid->hash()},
+         {"triangles", part.solid->mesh().triangles.size()},
+         {"closed", report.closed},
+         {"inside", inside_text(*part.solid)},
+         {"extent_mm", json_of(Vec3(part.solid->bounds().hi - part.solid->bounds().lo))},
+         {"quantum_mm", report.quantum_mm},
+         {"notes", report.notes},
+         {"moving", part.moving},
+         {"largest_offset_mm", part.band.largest_offset_mm}});
   }
   json["tolerances"] = Json::array();
   for (const auto& t : scene.tolerances)
