@@ -182,7 +182,9 @@ std::string closing_table(const Closing& closing, const TickLoop& loop) {
                         closing.follower.times_behind(), closing.follower.longest_ticks());
   }
   if (!closing.parts_without_inside.empty()) {
-    text += "\nParts without an inside (open or non-manifold: crossing is found, depth is not)\n";
+    text +=
+        "\nParts without an inside (open: crossing is found, depth is not, and what lies within is "
+        "not examined)\n";
     for (const std::string& part : closing.parts_without_inside) text += "  " + part + "\n";
   }
   if (!closing.log_file.empty()) {

@@ -201,7 +201,7 @@ Status Service::open_log() {
   closing_.policy = name_of(scene.world.policy);
   closing_.log_file = log_.file;
   for (std::size_t i = 0; i < scene.imports.size() && i < scene.world.parts.size(); ++i)
-    if (!scene.imports[i].closed)
+    if (!scene.imports[i].closed && !scene.world.parts[i].solid->has_inside())
       closing_.parts_without_inside.push_back(scene.world.parts[i].name);
   if (!resumed_) return ok();
   closing_.restored_from = start_->source;
@@ -266,8 +266,10 @@ void Service::say_session() const {
                options_.network.interface, world.parts.size(), world.tick_rate_hz, closing_.policy,
                closing_.log_file.empty() ? std::string() : ", log " + closing_.log_file);
   for (const std::string& part : closing_.parts_without_inside)
-    spdlog::warn("'{}' has no inside (open or non-manifold): crossing is found, depth is not",
-                 part);
+    spdlog::warn(
+        "'{}' has no inside (it is open): crossing is found, depth is not, and what lies within it "
+        "is not examined",
+        part);
 }
 
 Status Service::open_metrics() {
