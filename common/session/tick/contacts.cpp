@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/constants.h"
+#include "common/ccd/start_state.h"
 #include "common/session/memory/known_distance.h"
 #include "common/session/tick/contact_budget.h"
 #include "common/session/tick/depth_budget.h"
@@ -42,7 +43,23 @@ FirstContact ask_first_contact(PairWork& pair, double separation_mm, AtStart at_
   return contact;
 }
 
+// May one lie where the inside of the other is not known? Closed parts cost nothing.
+bool is_hidden(const PairWork& pair) {
+  const Pose &X_WA = pair.motion_a.X_W1, &X_WB = pair.motion_b.X_W1;
+  const BoundingSphere &a = pair.solid_a->sphere(), &b = pair.solid_b->sphere();
+  if ((X_WA * a.center_mm - X_WB * b.center_mm).norm() > a.radius_mm + b.radius_mm) return false;
+  const auto known = [](const Solid& solid) {
+    return solid.has_inside() && solid.cracks().all.empty();
+  };
+  if (known(*pair.solid_a) && known(*pair.solid_b)) return false;
+  return containment(*pair.solid_a, X_WA, *pair.solid_b, X_WB, kAccuracyDefault_mm) ==
+         Containment::kUnknown;
+}
+
+// A pair that is hidden is asked anew each tick.
 void note_contained(PairWork& pair, bool is_free) {
+  pair.hidden = is_free && is_hidden(pair);
+  is_free = is_free && !pair.hidden;
   if (pair.memo->not_contained != is_free) pair.memo.change().not_contained = is_free;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "common/ccd/start_state.h"
 #include "common/session/tick/candidate_pairs.h"
 #include "common/session/tick/clash_identity.h"
 #include "common/session/tick/commit.h"
@@ -19,15 +18,6 @@
 
 namespace mortise {
 namespace {
-
-// Does nothing cross, and yet one lie where the inside of the other is not known?
-bool is_hidden(const PairWork& pair) {
-  const bool unknown = pair.no_inside() || !pair.solid_a->cracks().all.empty() ||
-                       !pair.solid_b->cracks().all.empty();
-  return unknown && !pair.near &&
-         containment(*pair.solid_a, pair.motion_a.X_W1, *pair.solid_b, pair.motion_b.X_W1,
-                     kAccuracyDefault_mm) == Containment::kUnknown;
-}
 
 // Counts of the pairs, added in their order.
 void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters& counters) {
@@ -49,7 +39,7 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters&
     } else {
       ++counters.contacts_clear;
     }
-    if (!pair.undecided && !pair.withdrawal_unsure && is_hidden(pair)) ++counters.not_examined;
+    if (pair.hidden && !pair.undecided && !pair.withdrawal_unsure) ++counters.not_examined;
     if (!pair.near || !pair.judgement.overlap.no_inside) continue;
     for (const std::uint32_t part : {pair.a, pair.b})
       if (!world.parts[part].solid->has_inside()) open_parts.push_back(part);

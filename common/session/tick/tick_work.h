@@ -84,6 +84,7 @@ struct PairWork {
   bool asked = false;      ///< false: an earlier or a new distance proves that they stay apart
   bool near = false;       ///< overlapping or within the band at some time: to be judged
   bool touching = false;   ///< touched at the start and got no deeper: nothing to judge
+  bool hidden = false;     ///< clear, but one may lie where the inside of the other is not known
   bool entered = false;    ///< came within the band during the segment
   bool undecided = false;  ///< a work cap was reached
   bool meets = false;      ///< the meshes touch or overlap at some time, first at t_contact

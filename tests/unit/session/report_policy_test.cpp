@@ -48,6 +48,46 @@ TEST_F(ReportPolicy, APartThatNobodyGaveABandIsItsMesh) {
   EXPECT_NEAR(report.events[0].verdict.delta_mm.lo, 1.0, 1e-3);
 }
 
+// Through the open side of a bin no surface is met on the way in; what is in it is not called free.
+TEST_F(ReportPolicy, WhatMayLieInAnOpenPartIsCountedEveryTick) {
+  TriangleMesh bin = box_mesh(Vec3(-20, -20, -20), Vec3(20, 20, 20));
+  std::erase_if(bin.triangles, [&](const auto& t) {
+    return bin.points_mm[t[0]].z() + bin.points_mm[t[1]].z() + bin.points_mm[t[2]].z() > 50.0;
+  });
+  const PartId open = session.add("bin", bin, at(0, 0, 0), false);
+  const PartId peg = session.add("peg", cube_mesh(2), at(0, 0, 30), true);
+  ASSERT_FALSE(session.world.find(open)->solid->has_inside());
+  session.grab(ada, peg);
+  EXPECT_EQ(tick({session.push(ada, peg, Vec3(0, 0, -1))}).counters.not_examined, 0U);
+  for (int i = 0; i < 4; ++i) {
+    const StepReport report = tick({session.push(ada, peg, Vec3(0, 0, i == 0 ? -25 : 1))});
+    expect_balanced(report.counters);
+    EXPECT_TRUE(report.events.empty());
+    EXPECT_EQ(report.counters.not_examined, 1U) << i;
+  }
+  const JudgeReport judged = judge_world(session.world, scratch, false);
+  ASSERT_EQ(judged.pairs.size(), 1U);
+  EXPECT_TRUE(judged.pairs[0].not_examined);
+}
+
+// Overlap within the rounding of two files is never told as real.
+TEST_F(ReportPolicy, RoundingOfFilesIsNotReal) {
+  session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
+  const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
+  for (Part& part : session.world.parts) {
+    part.band.faces[0].deviation_mm = {-1e-3, 1e-3};
+    part.band.quantum_mm = part.band.largest_offset_mm = 1e-3;
+  }
+  session.grab(ada, peg);
+  const StepReport slight = tick({session.push(ada, peg, Vec3(4.001, 0, 0))});
+  ASSERT_EQ(slight.events.size(), 1U);
+  EXPECT_EQ(slight.events[0].verdict.collision_class, CollisionClass::kPotential);
+  EXPECT_GT(slight.events[0].t_real, 1.0);
+  const StepReport deep = tick({session.push(ada, peg, Vec3(1, 0, 0))});
+  ASSERT_FALSE(deep.events.empty());
+  EXPECT_EQ(deep.events.back().verdict.collision_class, CollisionClass::kReal);
+}
+
 TEST_F(ReportPolicy, ABandOfAnotherPartIsRefusedWithASentence) {
   session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
   const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
