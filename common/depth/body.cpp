@@ -28,7 +28,8 @@ bool has_convex_distance(const Surface& surface) {
          surface.kind == SurfaceKind::kSphere;
 }
 
-// Planes and surfaces at a corner that are not come to.
+// The way around a corner ends at an open edge, or at one of many triangles; so many planes and
+// surfaces may stand beyond.
 constexpr std::uint32_t kBeyondEnd = 2;
 
 // A circle of corners is no circle with fewer.
@@ -111,6 +112,11 @@ Vec3 Body::normal(std::uint32_t triangle) const {
 
 namespace {
 
+bool goes_on(const Surface* from, const Surface* to, const Vec3& x) {
+  return from != nullptr && to != nullptr &&
+         from->outward_normal(x).dot(to->outward_normal(x)) > std::cos(kSharpEdge_rad);
+}
+
 // How far a point of a declared surface may be from the triangles that stand for it.
 double off_face_mm(const SurfaceBand::Face& face) {
   const Interval& deviation = face.deviation_mm;
@@ -189,8 +195,6 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       int k = 0;
       while (k < 2 && mesh->triangles[t][k] != point) ++k;
       t = topology.neighbor[t][k];
-      // The way around ends at an open edge or one of many triangles; who stands beyond is not
-      // known.
       if (t == Topology::kNone) left_out += kBeyondEnd;
       if (t == triangle || t == Topology::kNone) break;
       const Vec3 normal_t = normal(t);
@@ -200,10 +204,7 @@ void Body::find_sharp_neighbours(std::uint32_t triangle) const {
       const Surface* other = surface_of(face(t), Layer::kUpper);
       if (face_index(t) == face_index(triangle) && own != nullptr) continue;
       // Nor is one sharp towards another that goes on from it.
-      const Vec3& x = mesh->points_mm[point];
-      if (own != nullptr && other != nullptr &&
-          own->outward_normal(x).dot(other->outward_normal(x)) > std::cos(kSharpEdge_rad))
-        continue;
+      if (goes_on(own, other, mesh->points_mm[point])) continue;
       if (!bounds(t, normal_t) || known(t, normal_t)) continue;
       if (sharp.size() - first < kMostSharp)
         sharp.push_back(t);
