@@ -7,19 +7,59 @@
 namespace mortise {
 namespace {
 
-// The other part comes into a crack: what it meets there is not known.
-OverlapRegion region_at_crack(const PairFrame& pair, int role, const Crack& crack,
-                              std::uint32_t nearest_of_k) {
+// A place of a lid, and whether the other part comes near it.
+struct Meeting {
+  Vec3 at_S = Vec3::Zero();
+  std::uint32_t triangle_k = Topology::kNone;
+};
+
+// Pieces of a lid that are no larger than its reach, or than this share of it, are not cut.
+constexpr double kLeastPiece = 1e-2;
+
+// Piece by piece: no point of one is nearer to the other part than its middle less its radius.
+Meeting meeting_of(const PairFrame& pair, int role, const Lid& lid, std::uint64_t& evaluations) {
+  const Solid& other = *pair.k(role).solid;
+  const double reach_mm = lid.reach_mm + pair.near_mm;
+  const auto radius = [](const std::array<Vec3, 3>& t, const Vec3& middle) {
+    return std::max({(t[0] - middle).norm(), (t[1] - middle).norm(), (t[2] - middle).norm()});
+  };
+  const auto middle_of = [](const std::array<Vec3, 3>& t) {
+    return Vec3((t[0] + t[1] + t[2]) / 3);
+  };
+  const double least_mm =
+      std::max(lid.reach_mm, kLeastPiece * radius(lid.corners, middle_of(lid.corners)));
+  std::vector<std::array<Vec3, 3>> pieces{lid.corners};
+  while (!pieces.empty()) {
+    const std::array<Vec3, 3> t = pieces.back();
+    pieces.pop_back();
+    const Vec3 middle = middle_of(t);
+    const double radius_mm = radius(t, middle);
+    const SurfacePoint at = nearest_surface(other, pair.X_KS[role] * middle);
+    ++evaluations;
+    if (at.depth_mm < -(reach_mm + radius_mm)) continue;
+    if (radius_mm <= least_mm) return {middle, at.triangle};
+    int k = 0;  // the longest edge is cut
+    for (int i = 1; i < 3; ++i)
+      if ((t[(i + 1) % 3] - t[i]).norm() > (t[(k + 1) % 3] - t[k]).norm()) k = i;
+    const Vec3 half = 0.5 * (t[k] + t[(k + 1) % 3]);
+    pieces.push_back({t[k], half, t[(k + 2) % 3]});
+    pieces.push_back({half, t[(k + 1) % 3], t[(k + 2) % 3]});
+  }
+  return {};
+}
+
+// What the other part meets in the crack is not known.
+OverlapRegion region_at_crack(const PairFrame& pair, int role, const Meeting& meeting) {
   OverlapRegion region;
-  const double depth = 2.0 * std::min({crack.reach_mm, pair.bodies[0].solid->sphere().radius_mm,
-                                       pair.bodies[1].solid->sphere().radius_mm});
+  const double depth = 2.0 * std::min(pair.bodies[0].solid->sphere().radius_mm,
+                                      pair.bodies[1].solid->sphere().radius_mm);
   region.delta_mm = region.possible_mm = {0.0, depth};
   region.certain_mm = {-depth, 0.0};
   region.at_crack = true;
-  region.point_W = pair.X_W[role] * crack.center_mm;
-  const std::uint32_t own = nearest_point(*pair.s(role).solid, crack.center_mm).triangle;
-  region.triangle_a = region.deciding_triangle_a = role == 0 ? own : nearest_of_k;
-  region.triangle_b = region.deciding_triangle_b = role == 0 ? nearest_of_k : own;
+  region.point_W = pair.X_W[role] * meeting.at_S;
+  const std::uint32_t own = nearest_point(*pair.s(role).solid, meeting.at_S).triangle;
+  region.triangle_a = region.deciding_triangle_a = role == 0 ? own : meeting.triangle_k;
+  region.triangle_b = region.deciding_triangle_b = role == 0 ? meeting.triangle_k : own;
   region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
   for (int i = 0; i < 2; ++i)
     (i == 0 ? region.shape_a : region.shape_b) =
@@ -30,25 +70,22 @@ OverlapRegion region_at_crack(const PairFrame& pair, int role, const Crack& crac
 }
 
 void mark_cracks_of(const PairFrame& pair, int role, bool tell, OverlapResult& result) {
-  const Solid& solid = *pair.s(role).solid;
-  if (!pair.s(role).has_inside) return;
+  const Cracks& cracks = pair.s(role).solid->cracks();
+  if (!pair.s(role).has_inside || cracks.count == 0) return;
   const Pose X_SW = pair.X_W[role].inverse();
-  const Box& box = pair.k(role).solid->bounds();
-  for (const Crack& crack : solid.cracks().all) {
-    const Vec3 center_K = pair.X_KS[role] * crack.center_mm;
-    const double reach_mm = crack.reach_mm + pair.near_mm;
-    if ((center_K.array() < box.lo.array() - reach_mm).any() ||
-        (center_K.array() > box.hi.array() + reach_mm).any())
+  bool told = false;
+  for (OverlapRegion& region : result.regions) {
+    if (!cracks.cover(X_SW * region.point_W) &&
+        !(region.has_witness && cracks.cover(X_SW * region.witness_W)))
       continue;
-    const SurfacePoint at = nearest_surface(*pair.k(role).solid, center_K);
-    ++result.evaluations;
-    if (at.depth_mm < -reach_mm) continue;
-    bool told = false;
-    for (OverlapRegion& region : result.regions)
-      if (crack.covers(X_SW * region.point_W) ||
-          (region.has_witness && crack.covers(X_SW * region.witness_W)))
-        region.at_crack = told = true;
-    if (!told && tell) result.regions.push_back(region_at_crack(pair, role, crack, at.triangle));
+    region.at_crack = told = true;
+  }
+  if (told || !tell) return;
+  for (const Lid& lid : cracks.lids) {
+    const Meeting meeting = meeting_of(pair, role, lid, result.evaluations);
+    if (meeting.triangle_k == Topology::kNone) continue;
+    result.regions.push_back(region_at_crack(pair, role, meeting));
+    return;  // one is enough to say that not all is known
   }
 }
 

@@ -1,30 +1,31 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "common/geometry/mesh.h"
 
 namespace mortise {
 
-/// A ball about one connected piece of the border of an open mesh, reaching kCrackReach times as
-/// far as the border: beyond it the winding number is known, within it nothing is (README, section
-/// 4). Part frame.
-struct Crack {
-  Vec3 center_mm = Vec3::Zero();
+/// One of the triangles that would close an open mesh. Part frame.
+struct Lid {
+  std::array<Vec3, 3> corners;
+  std::size_t crack = 0;  ///< which connected piece of the border it closes part of
+  /// So near the inside is not known: the width of the crack (README, section 4).
   double reach_mm = 0.0;
-
-  bool covers(const Vec3& x) const { return (x - center_mm).norm() <= reach_mm; }
 };
 
-/// What is missing of an open mesh: triangles that balance every edge of it, and where they lie.
+/// What is missing of an open mesh: lids that balance every edge of it, crack by crack.
 struct Cracks {
-  std::vector<Crack> all;
-  std::vector<std::array<Vec3, 3>> lids;
+  std::size_t count = 0;
+  std::vector<Lid> lids;
 
+  /// Is x so near a lid that its side is not known? O(lids).
   bool cover(const Vec3& x) const;
 };
 
-/// Ascending by the lowest point of the border. Empty for a balanced mesh. O(n log n).
+/// Ascending by the lowest point of the border. Empty for a balanced mesh. A crack is closed as
+/// flat as it can be seen to be. O(n log n), and the square of the edges of a crack.
 Cracks find_cracks(const TriangleMesh& mesh);
 
 /// Small enough beside a part of this radius that the rest of it has an inside.

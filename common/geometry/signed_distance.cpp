@@ -278,7 +278,7 @@ int winding_number(const Solid& solid, const Vec3& x) {
   for (const Vec3& d : ray_directions()) {
     Crossings count = cross_all(solid.bvh(), x, d);
     for (std::size_t i = 0; i < lids.size() && !count.grazed; ++i)
-      cross_triangle(x, d, lids[i][0], lids[i][1], lids[i][2], count);
+      cross_triangle(x, d, lids[i].corners[0], lids[i].corners[1], lids[i].corners[2], count);
     if (!count.grazed) return count.winding;
   }
   return static_cast<int>(std::lround(winding_number_brute_force(solid.mesh(), x)));

@@ -45,14 +45,13 @@ const Cracks& Solid::cracks() const {
     if (topology().balanced()) return;
     cracks_ = find_cracks(mesh_);
     TriangleMesh whole = mesh_;
-    for (const auto& lid : cracks_.lids) {
+    for (const Lid& lid : cracks_.lids) {
       const auto first = static_cast<std::uint32_t>(whole.points_mm.size());
-      whole.points_mm.insert(whole.points_mm.end(), lid.begin(), lid.end());
+      whole.points_mm.insert(whole.points_mm.end(), lid.corners.begin(), lid.corners.end());
       whole.triangles.push_back({first, first + 1, first + 2});
     }
     only_cracks_ = small(cracks_, sphere_.radius_mm) && signed_volume_mm3(whole) > 0.0;
-    derived_bytes_ += cracks_.all.capacity() * sizeof(cracks_.all[0]) +
-                      cracks_.lids.capacity() * sizeof(cracks_.lids[0]);
+    derived_bytes_ += cracks_.lids.capacity() * sizeof(cracks_.lids[0]);
   });
   return cracks_;
 }
@@ -62,6 +61,8 @@ bool Solid::has_inside() const {
   cracks();
   return only_cracks_;
 }
+
+bool Solid::inside_known() const { return has_inside() && cracks().count == 0; }
 
 std::size_t Solid::derived_bytes() const { return derived_bytes_; }
 

@@ -37,6 +37,8 @@ class Solid {
   /// Closed, or open at small cracks only; beside those what is inside is not known. Without an
   /// inside crossing can be found, but no depth.
   bool has_inside() const;
+  /// Has an inside, and no crack.
+  bool inside_known() const;
   /// Bytes of tree, topology and other derived data built so far, beyond the mesh itself.
   std::size_t derived_bytes() const;
 

@@ -108,9 +108,7 @@ std::string reason_of(const World& world, const PairVerdicts& pair) {
 // Nothing crosses, but one lies within the box of the other, which has no inside.
 std::string hiding_text(const World& world, const PairVerdicts& pair) {
   const Part &a = *world.find(pair.a), &b = *world.find(pair.b);
-  const auto sure = [](const Part& part) {
-    return part.solid->has_inside() && part.solid->cracks().all.empty();
-  };
+  const auto sure = [](const Part& part) { return part.solid->inside_known(); };
   const std::string open = sure(a) ? b.name : sure(b) ? a.name : a.name + " and " + b.name;
   return "one may lie inside the other, and " + open +
          (open == a.name || open == b.name ? " is" : " are") +

@@ -38,7 +38,7 @@ std::string findings_text(const OpenedScene& opened, bool color) {
 // What can be said of the inside of a part.
 const char* inside_text(const Solid& solid) {
   if (!solid.has_inside()) return "no";
-  return solid.cracks().all.empty() ? "yes" : "cracked";
+  return solid.inside_known() ? "yes" : "cracked";
 }
 
 std::string parts_text(const LoadedScene& scene) {

@@ -275,7 +275,7 @@ class SceneLoader {
     finding(false, spec.at,
             "part " + spec.name + ": mesh " + report.file +
                 (mesh.solid->has_inside()
-                     ? " is open at " + std::to_string(mesh.solid->cracks().all.size()) +
+                     ? " is open at " + std::to_string(mesh.solid->cracks().count) +
                            " cracks (" + edges +
                            "): beside them its inside is not known, and a clash there potential at "
                            "best; repair it"

@@ -48,10 +48,7 @@ bool is_hidden(const PairWork& pair) {
   const Pose &X_WA = pair.motion_a.X_W1, &X_WB = pair.motion_b.X_W1;
   const BoundingSphere &a = pair.solid_a->sphere(), &b = pair.solid_b->sphere();
   if ((X_WA * a.center_mm - X_WB * b.center_mm).norm() > a.radius_mm + b.radius_mm) return false;
-  const auto known = [](const Solid& solid) {
-    return solid.has_inside() && solid.cracks().all.empty();
-  };
-  if (known(*pair.solid_a) && known(*pair.solid_b)) return false;
+  if (pair.solid_a->inside_known() && pair.solid_b->inside_known()) return false;
   return containment(*pair.solid_a, X_WA, *pair.solid_b, X_WB, kAccuracyDefault_mm) ==
          Containment::kUnknown;
 }
