@@ -6,11 +6,11 @@
 
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
+#include "common/depth/crack_regions.h"
 #include "common/depth/inner_overlap.h"
 #include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
-#include "common/depth/unseen_depth.h"
 
 namespace mortise {
 namespace {
@@ -128,7 +128,6 @@ class Overlap {
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
     result_.contained = result_.meshes_cross && candidates.triangles[0].empty() &&
                         candidates.triangles[1].empty() && candidates.known.empty();
-    if (result_.contained && query_.refinement == Refinement::kFull) look_inside(pair_, result_);
     if (candidates.cross) result_.meshes_cross = true;
     std::stable_sort(result_.regions.begin(), result_.regions.end(),
                      [](const OverlapRegion& a, const OverlapRegion& b) {
@@ -256,7 +255,7 @@ class Overlap {
     if (result_.no_inside || !query_.want_delta || query_.only_certain || result_.regions.empty())
       return;
     OverlapRegion& region = result_.regions.front();
-    if (region.delta_mm.lo < -pair_.touch_mm) return;  // they are apart
+    if (region.at_crack || region.delta_mm.lo < -pair_.touch_mm) return;  // not known, or apart
     const bool full = query_.refinement == Refinement::kFull;
     const std::vector<Vec3> deepest = {region.point_W};
     const auto inner = find_inner_overlap(
@@ -269,8 +268,9 @@ class Overlap {
     region.delta_mm = delta;
     region.point_W = inner->point_W;
     const auto widened = [&](const Interval& known, Layer layer) {
-      if (pair_.trivial) return delta;
       const double reach_mm = pair_.reach_mm(layer);
+      const double by_mm = layer == Layer::kLower ? -reach_mm : reach_mm;
+      if (pair_.trivial) return Interval{delta.lo + by_mm, delta.hi + by_mm};
       return Interval{std::max(known.lo, delta.lo - reach_mm), delta.hi + reach_mm};
     };
     region.certain_mm = widened(region.certain_mm, Layer::kLower);

@@ -1,4 +1,4 @@
-#include "common/depth/unseen_depth.h"
+#include "common/depth/crack_regions.h"
 
 #include <algorithm>
 
@@ -93,43 +93,6 @@ void mark_cracks_of(const PairFrame& pair, int role, bool tell, OverlapResult& r
 
 void mark_cracks(const PairFrame& pair, bool tell, OverlapResult& result) {
   for (int role = 0; role < 2; ++role) mark_cracks_of(pair, role, tell, result);
-}
-
-// A point x of the inner part, y deep in it, has a point of its surface within y. So the depths at
-// x exceed the deepest of the surface by 2 y at most, which is no more than the least extent.
-void look_inside(const PairFrame& pair, OverlapResult& result) {
-  const bool a_is_inner =
-      pair.bodies[0].solid->sphere().radius_mm <= pair.bodies[1].solid->sphere().radius_mm;
-  const int role = a_is_inner ? 0 : 1;
-  const Solid &inner = *pair.s(role).solid, &outer = *pair.k(role).solid;
-  if (result.regions.empty() || !inner.has_inside() || !outer.has_inside()) return;
-  const auto depth = [&](const Vec3& x) {
-    ++result.evaluations;
-    const double own = nearest_surface(inner, x).depth_mm;
-    const double other = nearest_surface(outer, pair.X_KS[role] * x).depth_mm;
-    return own > 0.0 && other > 0.0 ? own + other : 0.0;
-  };
-  const Vec3 size = inner.bounds().hi - inner.bounds().lo;
-  Vec3 at = inner.bounds().center();
-  double deepest = depth(at);
-  for (double step = 0.25 * size.maxCoeff(); step > kDepthAccuracyDefault_mm; step *= 0.5)
-    for (int way = 0; way < 6; ++way) {
-      Vec3 to = at;
-      to[way / 2] += way % 2 == 0 ? step : -step;
-      if (const double there = depth(to); there > deepest) {
-        deepest = there;
-        at = to;
-      }
-    }
-  OverlapRegion& region = result.regions.front();
-  const double more = std::max(0.0, deepest - region.delta_mm.lo), most = size.minCoeff();
-  region.delta_mm = {region.delta_mm.lo + more,
-                     std::max(region.delta_mm.lo + more, region.delta_mm.hi + most)};
-  region.possible_mm.hi += std::max(more, most);
-  region.certain_mm.hi += std::max(more, most);
-  if (!pair.trivial) return;
-  region.possible_mm.lo += more;
-  region.certain_mm.lo += more;
 }
 
 }  // namespace mortise
