@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "common/base/check.h"
 #include "common/base/hash.h"
 #include "common/base/ids.h"
 #include "common/base/in_quotes.h"
+#include "common/base/plain_text.h"
+#include "common/base/ranges.h"
 #include "common/base/result.h"
 
 namespace mortise {
@@ -49,6 +53,56 @@ TEST(StateHash, DependsOnValuesAndOrderButNotOnTheSignOfZero) {
   EXPECT_NE(hash_of({1.0, 2.0}), hash_of({2.0, 1.0}));
   EXPECT_NE(hash_of({1.0}), hash_of({1.0 + 1e-15}));
   EXPECT_EQ(hash_of({0.0}), hash_of({-0.0}));
+}
+
+TEST(PlainText, KnowsUtf8FromWhatIsNot) {
+  EXPECT_EQ(utf8_prefix("Jäger Ø20 µm 軸 🙂"),
+            std::string("Jäger Ø20 µm 軸 🙂").size());
+  EXPECT_EQ(utf8_prefix("J\xe4ger"), 1U) << "Latin-1";
+  EXPECT_EQ(utf8_prefix("ab\xc3"), 2U) << "half a character";
+  EXPECT_EQ(utf8_prefix("a\xc0\x80"), 1U) << "not the shortest form";
+  EXPECT_EQ(utf8_prefix("a\xed\xa0\x80"), 1U) << "a surrogate";
+  EXPECT_EQ(utf8_prefix("a\xf4\x90\x80\x80"), 1U) << "beyond Unicode";
+  EXPECT_EQ(as_utf8("J\xe4ger \xc3"), "J\xef\xbf\xbdger \xef\xbf\xbd");
+  EXPECT_EQ(one_line("a\nb\xc2\x85"
+                     "c\xe2\x80\xa8"
+                     "d\xe2\x80\xae"
+                     "e"),
+            "a?b?c?d?e");
+}
+
+TEST(PlainText, ANameIsSeenAndNotMistaken) {
+  for (const char* good : {"ann", "Jäger 2", "軸受", "מיסב", "peg.journal", "*"})
+    EXPECT_TRUE(is_name(good)) << good;
+  for (const char* bad : {"", " ", "\xc2\xa0", "\xe3\x80\x80", "a\nb", "a\tb", "a\x7f", "J\xe4ger",
+                          "a\xc2\x9b"
+                          "b",
+                          "a\xe2\x80\xae"
+                          "b",
+                          "a\xe2\x81\xa6"
+                          "b",
+                          "a\xe2\x80\x8b"
+                          "b",
+                          "\xef\xbb\xbf"
+                          "a"})
+    EXPECT_FALSE(is_name(bad)) << one_line(bad);
+  EXPECT_TRUE(is_name(std::string(kMostName_bytes, 'a')));
+  EXPECT_FALSE(is_name(std::string(kMostName_bytes + 1, 'a')));
+  EXPECT_FALSE(is_name(std::string(kMostUserName_bytes + 1, 'a'), kMostUserName_bytes));
+}
+
+TEST(PlainText, ASessionNameIsPartOfAFileName) {
+  for (const char* good : {"default", "demo-2", "line_3.a"}) EXPECT_TRUE(is_session_name(good));
+  for (const char* bad : {"", "..", "../x", "a/b", "a b", "a\nb", ".hidden", "*", "ä"})
+    EXPECT_FALSE(is_session_name(bad)) << bad;
+  EXPECT_FALSE(is_session_name(std::string(65, 'a')));
+}
+
+TEST(Ranges, WhatIsNotFiniteLiesInNone) {
+  EXPECT_TRUE(within(-kLongest_mm, kLongest_mm));
+  EXPECT_FALSE(within(2.0 * kLongest_mm, kLongest_mm));
+  EXPECT_FALSE(within(std::nan(""), kLongest_mm));
+  EXPECT_FALSE(within(HUGE_VAL, kLongest_mm));
 }
 
 TEST(InQuotes, IsOneLineOfBoundedLength) {
