@@ -68,7 +68,8 @@ std::string refusal_text(const std::string& words, const ImportLimits& limits) {
   if (words.find("bad_alloc") != std::string::npos)
     return "reading it needs more than " + std::to_string(limits.memory_bytes >> 20U) +
            " MB of memory; the file is damaged, or raise the memory limit of the import";
-  return words + "; export the file again, or repair it";
+  return words.find(';') != std::string::npos ? words
+                                              : words + "; export the file again, or repair it";
 }
 
 double largest_coordinate(const std::vector<double>& coordinates) {
@@ -107,6 +108,7 @@ void note_findings(const RawSoup& soup, double unit_mm, ImportReport& report) {
   if (soup.stated_unit_mm > 0.0 && std::abs(soup.stated_unit_mm / unit_mm - 1.0) > 1e-6)
     report.notes.push_back("the file states a unit of " + number(soup.stated_unit_mm) +
                            " mm, the scenario " + number(unit_mm) + " mm; the scenario's is taken");
+  if (!soup.note.empty()) report.notes.push_back(soup.note);
   note(report.degenerate_dropped, "triangles without area were dropped");
   note(report.duplicate_triangles, "triangles occur twice");
   note(report.points_and_lines_dropped, "points and lines were left out");

@@ -13,6 +13,7 @@ namespace mortise {
 struct RawSoup {
   std::string refusal;          ///< not empty: nothing else is set
   std::string format;           ///< "STL", "OBJ", ...
+  std::string note;             ///< what the reader left out or found strange; often empty
   double stated_unit_mm = 0.0;  ///< mm per unit that the file itself states (DAE); 0: none
   double quantum = 0.0;  ///< largest rounding of a coordinate on its way from the file, file units
   std::uint64_t raw_vertices = 0;

@@ -192,6 +192,130 @@ TEST_F(MeshImport, NoFileOfAnyOtherKindIsTriedAsSomethingElse) {
   EXPECT_NE(one_line_error(write("really_an_obj.stl", kCubeObj)), "(imported)");
 }
 
+// A box of 1 x 2 x 3 as text; `facet` says a facet of the corners a, b, c.
+template <class Facet>
+std::string box_of(const Facet& facet) {
+  const auto corner = [](int i) {
+    return std::array<int, 3>{i & 1, 2 * (i >> 1 & 1), 3 * (i >> 2 & 1)};
+  };
+  constexpr int kFaces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                 {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  std::string text;
+  for (const auto& f : kFaces) text += facet(corner(f[0]), corner(f[1]), corner(f[2]));
+  return text;
+}
+std::string text_box(const std::string& last = "endsolid box\n") {
+  const auto row = [](const std::array<int, 3>& c) {
+    return "      vertex " + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " +
+           std::to_string(c[2]) + "\n";
+  };
+  return "solid box\n" + box_of([&](auto a, auto b, auto c) {
+           return "  facet normal 0 0 0\n    outer loop\n" + row(a) + row(b) + row(c) +
+                  "    endloop\n  endfacet\n";
+         }) +
+         last;
+}
+std::string binary_box(std::uint32_t count = 12, const std::string& header = "box",
+                       std::uint16_t attribute = 0) {
+  std::string bytes = header;
+  bytes.resize(80);
+  bytes.append(reinterpret_cast<const char*>(&count), 4);
+  return bytes + box_of([&](auto a, auto b, auto c) {
+           std::string record(12, '\0');
+           for (const auto& corner : {a, b, c})
+             for (const int x : corner) {
+               const auto value = static_cast<float>(x);
+               record.append(reinterpret_cast<const char*>(&value), 4);
+             }
+           return record.append(reinterpret_cast<const char*>(&attribute), 2);
+         });
+}
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+std::string upper(std::string text) {
+  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return text;
+}
+
+TEST_F(MeshImport, EveryDialectOfStlIsTheSameBox) {
+  const std::string text = text_box();
+  const std::pair<const char*, std::string> dialects[] = {
+      {"plain", text},
+      {"upper case", upper(text)},
+      {"leading newlines", "\n\r\n\n" + text},
+      {"leading blanks", "  \t" + text},
+      {"a mark", "\xef\xbb\xbf" + text},
+      {"CR", replaced(text, "\n", "\r")},
+      {"CRLF", replaced(text, "\n", "\r\n")},
+      {"one line", replaced(text, "\n", " ")},
+      {"end loop", replaced(replaced(text, "endloop", "end loop"), "endfacet", "end facet")},
+      {"end solid", replaced(text, "endsolid", "end solid")},
+      {"no end", text_box("")},
+      {"comments", replaced(text, "solid box", "solid box\n; made by\n# x\n// y")},
+      {"Latin-1 name", replaced(text, "solid box", "solid J\xe4ger")},
+      {"long name", replaced(text, "solid box", "solid " + std::string(5000, 'n'))},
+      {"no name", replaced(text, " box", "")},
+      {"exponents", replaced(replaced(text, " 3", " +3.0E+00"), " 2", " 0.2e1")},
+      {"strange normals", replaced(text, "normal 0 0 0", "normal nan -nan(ind) 1.#IND")},
+      {"binary", binary_box()},
+      {"binary solid", binary_box(12, "solid box")},
+      {"binary facet", binary_box(12, "solid facet normal 0 0 0")},
+      {"colours", binary_box(12, "COLOR=abcd,MATERIAL=", 0x8421)},
+      {"trailing bytes", binary_box() + "and more of them"},
+      {"padding", binary_box() + std::string(100, '\0')},
+  };
+  for (const auto& [name, bytes] : dialects) {
+    SCOPED_TRACE(name);
+    const auto mesh = import_mesh(write("box.stl", bytes), 1.0);
+    ASSERT_TRUE(mesh) << mesh.error().text;
+    EXPECT_EQ(mesh->mesh.triangles.size(), 12U);
+    EXPECT_TRUE(mesh->report.closed);
+    EXPECT_DOUBLE_EQ(mesh->report.volume_mm3, 6.0);
+  }
+  const std::string two = text + replaced(text, " 3\n", " 4\n");
+  EXPECT_EQ(import_mesh(write("two.stl", two), 1.0)->mesh.triangles.size(), 24U);
+  EXPECT_FALSE(import_mesh(write("b.stl", text_box("")), 1.0)->report.notes.empty());
+  EXPECT_FALSE(import_mesh(write("t.stl", binary_box() + "more"), 1.0)->report.notes.empty());
+}
+
+TEST_F(MeshImport, AWrongStlIsRefusedWithItsPlace) {
+  const auto says = [&](const std::string& bytes) {
+    return one_line_error(write("bad.stl", bytes));
+  };
+  expect_says(says(binary_box(20)), "header says 20 triangles, the file holds 12");
+  expect_says(says(binary_box(8)), "header says 8 triangles, the file holds 12");
+  expect_says(says(binary_box(0)), "header says 0 triangles, the file holds 12");
+  expect_says(says(binary_box(0xffffffff)), "the file holds 12");
+  expect_says(says(binary_box().substr(0, 600)), "header says 12 triangles, the file holds 10");
+  expect_says(says(binary_box(12, "solid box").substr(0, 600)), "the file holds 10");
+  std::string bytes = binary_box();
+  bytes.replace(84 + 50 + 12, 4, std::string("\0\0\xc0\x7f", 4));
+  expect_says(says(bytes), "triangle 2 has a coordinate that is no finite number");
+
+  const std::string text = text_box();
+  expect_says(says(replaced(text, "vertex 1 2 3", "vertex nan 2 3")), "is no finite number");
+  expect_says(says(replaced(text, "vertex 1 2 3", "vertex 1 inf 3")), "is no finite number");
+  expect_says(says(replaced(text, "vertex 1 2 3", "vertex 1 2 1e99")), "is no finite number");
+  expect_says(says(replaced(text, "vertex 1 2 3", "vertex 1 2 1e999")), "is no finite number");
+  expect_says(says(replaced(text, "vertex 0 0 0", "vertex 0 0,5 0")), "line 4: '0,5'");
+  expect_says(says(replaced(text, "vertex 0 0 0", "vertex 0 0,5 0")), "decimals have a point");
+  for (const std::size_t off : {12U, 20U, 30U, 36U, 40U, 60U, 66U, 70U})
+    expect_says(says(text.substr(0, text.size() - off)), "ends within a facet");
+  expect_says(says(replaced(text, "      vertex 1 2 3\n", "")), "has 2 vertices, not 3");
+  expect_says(says(replaced(text, "outer", "inner")), "'inner' is no word of STL");
+  expect_says(says(std::string("\xff\xfes\0o\0l\0i\0d\0", 12)), "UTF-16");
+  expect_says(says(kCubeObj), "neither begins with 'solid' nor is it binary");
+}
+
+std::string ply(const std::string& vertices, const std::string& faces, const std::string& body) {
+  return "ply\nformat ascii 1.0\nelement vertex " + vertices +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+         "\nproperty list uchar int vertex_indices\nend_header\n" + body;
+}
+
 TEST_F(MeshImport, HostileFilesNeverReachUs) {
   const std::string three = "0 0 0\n1 0 0\n0 1 0\n";
   const ImportLimits limits{2.0, 1ULL << 30U};

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <vector>
 
+#include "common/io/mesh/importer/stl_dialect.h"
 #include "common/io/mesh/importer/written_digits.h"
 
 namespace mortise {
@@ -194,6 +195,11 @@ std::string place_all(const aiScene& scene, const WrittenDigits& digits, RawSoup
   return {};
 }
 
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 RawSoup refuse(const std::string& why) {
   RawSoup soup;
   soup.refusal = why;
@@ -207,8 +213,17 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
   Assimp::Importer importer;
   keep_reader_of(extension, importer);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  if (importer.ReadFile(file.string(), 0) == nullptr) return refuse(importer.GetErrorString());
+  std::string note;
+  if (extension == ".stl") {
+    Result<StrictStl> stl = strict_stl(bytes_of(file));
+    if (!stl) return refuse(stl.error().text);
+    importer.ReadFileFromMemory(stl->bytes.data(), stl->bytes.size(), 0, "stl");
+    note = std::move(stl->note);
+  } else {
+    importer.ReadFile(file.string(), 0);
+  }
   const aiScene* scene = importer.GetScene();
+  if (scene == nullptr) return refuse(importer.GetErrorString());
   for (unsigned i = 0; i < scene->mNumMeshes; ++i)
     if (const std::string wrong = check(scene->mMeshes[i]); !wrong.empty()) return refuse(wrong);
 
@@ -220,6 +235,7 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
 
   // 3. Every placed mesh, moved into the frame of the file.
   RawSoup soup;
+  soup.note = std::move(note);
   soup.format = extension.substr(1);
   for (char& c : soup.format) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   if (extension == ".dae") {
