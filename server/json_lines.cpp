@@ -7,6 +7,8 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "common/base/json_text.h"
+
 namespace mortise {
 namespace {
 
@@ -24,9 +26,7 @@ class JsonLines final : public spdlog::formatter {
     line["level"] = view_of(spdlog::level::to_string_view(message.level));
     line["program"] = view_of(message.logger_name);
     line["message"] = view_of(message.payload);
-    // A name that is no UTF-8 must not end the program.
-    const std::string text =
-        line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    const std::string text = json_text(line, -1) + "\n";
     out.append(text.data(), text.data() + text.size());
   }
   std::unique_ptr<spdlog::formatter> clone() const override {

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <optional>
 
+#include "common/base/json_text.h"
 #include "idl/dds_channel.h"
 #include "server/announcer.h"
 #include "server/closing.h"
@@ -75,13 +76,13 @@ int close_session(const ServerOptions& options, Closing closing, SessionLogWrite
     closing.log_dropped_ticks = log->dropped_ticks();
   }
   if (options.json) {
-    std::cout << closing_json(closing, loop).dump(2) << std::endl;
+    std::cout << json_text(closing_json(closing, loop)) << std::endl;
   } else {
     std::cout << closing_table(closing, loop) << std::flush;
   }
   if (!options.stats.empty()) {
     std::ofstream out(options.stats);
-    out << closing_json(closing, loop).dump(2) << "\n";
+    out << json_text(closing_json(closing, loop)) << "\n";
     if (!out.flush()) {
       spdlog::error("{}: cannot be written", options.stats);
       exit_code = kExitRuntime;

@@ -13,6 +13,7 @@
 #include "client/bot/crew.h"
 #include "client/bot/load_text.h"
 #include "client/bot/processes.h"
+#include "common/base/json_text.h"
 #include "common/io/scenario/play_file.h"
 #include "idl/dds_channel.h"
 
@@ -61,7 +62,7 @@ Status write_junit(const std::string& file, const std::vector<LimitResult>& resu
 int conclude(const BotOptions& options, Json document) {
   const std::vector<LimitResult> results = check_limits(document, options.limits);
   if (!results.empty()) document["limits"] = json_of(results);
-  std::cout << (options.json ? document.dump(2) + "\n" : load_text(document)) << std::flush;
+  std::cout << (options.json ? json_text(document) + "\n" : load_text(document)) << std::flush;
   if (Status written = write_junit(options.junit, results, document["seconds"].get<double>());
       !written) {
     spdlog::error("{}", written.error().text);

@@ -12,6 +12,7 @@
 #include "client/report/export_html.h"
 #include "client/report/export_sqlite.h"
 #include "client/report/report.h"
+#include "common/base/json_text.h"
 #include "common/io/log/replay.h"
 #include "common/session/tick/statistics.h"
 
@@ -102,8 +103,7 @@ int run_export(const ExportOptions& options) {
   if (status && !options.sqlite.empty()) status = write_sqlite(tables, options.sqlite);
   if (status && !options.html.empty()) status = write_text(options.html, html_of(*report));
   if (status && !options.json.empty())
-    status = write_text(options.json,
-                        json_of(tables).dump(1, ' ', false, Json::error_handler_t::replace));
+    status = write_text(options.json, json_text(json_of(tables), 1));
   if (status && !options.bcf.empty()) status = write_bcf(*report, *log, options.bcf);
   return status ? kExitOk : say(status.error(), kExitRuntime);
 }

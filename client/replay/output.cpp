@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "client/replay/progress.h"
+#include "common/base/json_text.h"
 #include "common/io/log/log_chain.h"
 
 namespace mortise {
@@ -12,9 +13,7 @@ int say(const Error& error, int exit_code) {
   return exit_code;
 }
 
-void print(const Json& document) {
-  std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-}
+void print(const Json& document) { std::cout << json_text(document) << '\n'; }
 
 void print_lines(const Json& document) {
   for (const auto& [key, value] : document.items())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/json_text.h"
 #include "common/messages/names.h"
 
 namespace mortise::web {
@@ -185,8 +186,7 @@ ClassBits class_bits_of(std::span<const ClashEvent> open) {
 }
 
 SharedBytes text_of(const Json& json) {
-  return std::make_shared<const std::string>(
-      json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return std::make_shared<const std::string>(json_text(json, -1));
 }
 
 }  // namespace mortise::web

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/json_text.h"
+
 namespace mortise {
 
 std::string discovery_text(const DiscoveryCounts& c) {
@@ -45,7 +47,7 @@ std::string discovery_json(const DiscoveryCounts& c) {
                                      {"participants", c.participants},
                                      {"servers", c.servers},
                                      {"sessions", c.sessions}};
-  return document.dump(2) + "\n";
+  return json_text(document) + "\n";
 }
 
 }  // namespace mortise

@@ -74,4 +74,23 @@ TEST_F(ScenarioTools, JudgeRefusesABadScenarioAndABadOption) {
   EXPECT_EQ(run("mortise-judge", file("a.yaml", blocks("10")) + " --fail-on fake").exit_code, 2);
 }
 
+// The same line from every program that reads a scenario, and none of them falls over.
+TEST_F(ScenarioTools, LatinOneAndDistantPosesAreRefusedByAll) {
+  const std::string latin = file("latin.yaml", "name: J\xe4ger\n" + blocks("10.2").substr(13));
+  const std::string far = file("far.yaml", blocks("1e15"));
+  for (const std::string& scenario : {latin, far})
+    for (const char* program : {"mortise-lint", "mortise-judge"})
+      for (const char* option : {"", " --json"})
+        EXPECT_EQ(run(program, scenario + option).exit_code, 3) << program << " " << scenario;
+  EXPECT_NE(run("mortise-lint", latin).out.find("latin.yaml:1: the byte 0xe4"), std::string::npos);
+  EXPECT_NE(run("mortise-lint", far).out.find("1000 km"), std::string::npos);
+  // The name of a file may be anything.
+  const std::string strange = file("J\xe4ger.yaml", blocks("10.2"));
+  for (const char* program : {"mortise-lint", "mortise-judge"}) {
+    const Outcome outcome = run(program, strange + " --json");
+    EXPECT_EQ(outcome.exit_code, 0) << program;
+    EXPECT_FALSE(outcome.document().is_discarded()) << outcome.out;
+  }
+}
+
 }  // namespace

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/base/json_text.h"
+
 namespace mortise {
 namespace {
 
@@ -97,7 +99,7 @@ std::string listing_json(const std::vector<ListedServer>& servers) {
     document["servers"].push_back(row);
   }
   // Names may be any bytes.
-  return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(document) + "\n";
 }
 
 std::string nobody_text(const DirectoryCommand& command) {

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "client/tools/inspect/inspect.h"
+#include "common/base/json_text.h"
 #include "common/io/build_info.h"
 
 int main(int argc, char** argv) {
@@ -31,8 +32,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "mortise-inspect: %s\n", parts.error().text.c_str());
     return mortise::kExitBadInput;
   }
-  const std::string text =
-      json ? mortise::inspect_json(*parts).dump(2) + "\n" : mortise::inspect_text(*parts);
+  const std::string text = json ? mortise::json_text(mortise::inspect_json(*parts)) + "\n"
+                                : mortise::inspect_text(*parts);
   std::fputs(text.c_str(), stdout);
   return mortise::kExitOk;
 }

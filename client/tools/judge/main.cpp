@@ -6,6 +6,7 @@
 
 #include "client/picture/picture.h"
 #include "client/tools/judge/judge_report.h"
+#include "common/base/json_text.h"
 #include "common/io/build_info.h"
 
 int main(int argc, char** argv) {
@@ -44,7 +45,7 @@ int main(int argc, char** argv) {
   const mortise::JudgeReport report =
       judge_world(opened->scene.world, scratch, full || !picture.empty());
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-  const std::string text = json ? mortise::judge_json(*opened, report).dump(2) + "\n"
+  const std::string text = json ? mortise::json_text(mortise::judge_json(*opened, report)) + "\n"
                                 : mortise::judge_text(*opened, report, color);
   std::fputs(text.c_str(), stdout);
   if (!picture.empty())

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "client/tools/lint/lint.h"
+#include "common/base/json_text.h"
 #include "common/io/build_info.h"
 
 int main(int argc, char** argv) {
@@ -26,8 +27,8 @@ int main(int argc, char** argv) {
     return mortise::kExitBadInput;
   }
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-  const std::string text =
-      json ? mortise::lint_json(*opened).dump(2) + "\n" : mortise::lint_text(*opened, color);
+  const std::string text = json ? mortise::json_text(mortise::lint_json(*opened)) + "\n"
+                                : mortise::lint_text(*opened, color);
   std::fputs(text.c_str(), stdout);
   return opened->usable() ? mortise::kExitOk : mortise::kExitBadInput;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/base/json_text.h"
 #include "common/messages/names.h"
 #include "common/session/tick/statistics.h"
 
@@ -73,9 +74,7 @@ ordered_json json_of(const ClashEvent& event) {
 }
 
 // Text that is not UTF-8 must not stop a log: replaced, never thrown.
-std::string dump(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
+std::string dump(const ordered_json& json) { return json_text(json, -1); }
 
 // Reads typed members of one object; anything missing or of another type makes ok false.
 struct Members {

@@ -10,6 +10,10 @@
 #include <numbers>
 #include <sstream>
 
+#include "common/base/in_quotes.h"
+#include "common/base/plain_text.h"
+#include "common/base/ranges.h"
+
 namespace mortise {
 namespace {
 
@@ -29,14 +33,15 @@ void only_keys(const YAML::Node& map, std::initializer_list<const char*> known) 
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
     for (const char* name : known) list += (list.empty() ? "" : ", ") + std::string(name);
-    throw Fault{line_of(entry.first), "unknown key '" + key + "'; known here: " + list};
+    throw Fault{line_of(entry.first), "unknown key " + in_quotes(key) + "; known here: " + list};
   }
 }
 
 double number(const YAML::Node& node, const std::string& what) {
   double value = 0.0;
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value)) {
-    throw Fault{line_of(node), what + " must be a finite number"};
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) ||
+      !within(value, kLargestNumber)) {
+    throw Fault{line_of(node), what + " must be a number up to 1e9"};
   }
   return value;
 }
@@ -50,8 +55,8 @@ Vec3 vector(const YAML::Node& node, const std::string& what) {
 
 std::string text_of(const YAML::Node& map, const char* key) {
   const YAML::Node node = map[key];
-  if (!node || !node.IsScalar() || node.Scalar().empty()) {
-    throw Fault{line_of(map), std::string("'") + key + "' is missing; each act names one"};
+  if (!node || !node.IsScalar() || !is_name(node.Scalar())) {
+    throw Fault{line_of(map), std::string("'") + key + "' is missing or no name; each act has one"};
   }
   return node.Scalar();
 }
@@ -125,6 +130,8 @@ double Play::seconds() const {
 }
 
 Result<Play> read_play_text(std::string_view yaml, const std::string& name) {
+  if (utf8_prefix(yaml) < yaml.size())
+    return fail(Code::kInvalidInput, name + ": is not UTF-8; save the file as UTF-8");
   try {
     return read_document(YAML::Load(std::string(yaml)));
   } catch (const Fault& fault) {

@@ -4,12 +4,16 @@
 #include <fstream>
 #include <set>
 
+#include "common/base/in_quotes.h"
+#include "common/base/plain_text.h"
 #include "common/io/scenario/scenario_parts.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/io/scenario/scenario_yaml.h"
 
 namespace mortise {
 namespace {
+
+constexpr const char* kBadName = "must be short and printable: up to 128 bytes that one can see";
 
 // 1. the head: everything but the lists
 
@@ -37,9 +41,10 @@ void read_units(YamlContext& context, const YamlMap& top) {
 
 void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
   read_units(context, top);
-  if (const auto name = top.text("name"))
+  if (const auto name = top.text("name")) {
     scenario.name = *name;
-  else if (!top.has("name"))
+    if (!is_name(*name)) top.error("name", kBadName);
+  } else if (!top.has("name"))
     top.error("name is missing: give the scenario a name");
 
   if (const auto rate = top.number("tick_rate_hz")) {
@@ -128,9 +133,11 @@ void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   if (!map.usable()) return;
   Scenario::UserSpec user;
   user.at.line = map.line();
-  if (const auto name = map.text("name"))
+  if (const auto name = map.text("name")) {
     user.name = *name;
-  else if (!map.has("name"))
+    if (!is_name(*name, kMostUserName_bytes))
+      map.error("name", "must be short and printable: up to 64 bytes that one can see");
+  } else if (!map.has("name"))
     map.error("name is missing");
   if (const auto may_hold = map.texts("may_hold"))
     user.may_hold = *may_hold;
@@ -152,7 +159,7 @@ void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   }
   for (const auto& other : scenario.users)
     if (!user.name.empty() && other.name == user.name)
-      map.error("user '" + user.name + "' stands here twice; keep one");
+      map.error("user " + in_quotes(user.name) + " stands here twice; keep one");
   scenario.users.push_back(std::move(user));
 }
 
@@ -178,8 +185,8 @@ void check_names(YamlContext& context, const Scenario& scenario) {
   for (const auto& part : scenario.parts)
     if (!part.name.empty() && !names.insert(part.name).second)
       context.findings.push_back({true, context.file + ":" + std::to_string(part.at.line) +
-                                            ": part '" + part.name +
-                                            "' stands here twice; rename one"});
+                                            ": part " + in_quotes(part.name) +
+                                            " stands here twice; rename one"});
 }
 
 ScenarioReading read_document(const YAML::Node& document, const std::string& name) {

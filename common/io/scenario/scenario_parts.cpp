@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <tuple>
 
+#include "common/base/plain_text.h"
 #include "common/generators/generators.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/math/rotation.h"
@@ -48,11 +50,12 @@ void read_mesh_file(YamlContext& context, const YAML::Node& node, Scenario::Mesh
     map.error("scale",
               "expected one number; to mirror the part write mirror: x (y, z) beside mesh:");
   } else if (const auto scale = map.number("scale")) {
-    if (*scale > 0.0)
+    if (*scale >= 1.0 / kLargestNumber)
       mesh.unit_mm *= *scale;
     else
       map.error("scale",
-                "must be greater than 0; to mirror the part write mirror: x (y, z) beside mesh:");
+                "must be greater than 0, from 1e-9 to 1e9; to mirror the part write "
+                "mirror: x (y, z) beside mesh:");
   }
 }
 
@@ -171,12 +174,17 @@ Pose read_pose(YamlContext& context, const YAML::Node& node) {
   const YamlMap map(context, node, "pose",
                     {"position", "rotation_deg", "quaternion", "axis_angle"});
   if (!map.usable()) return X_WP;
-  if (const auto position = map.vector("position")) X_WP.p = *position * context.unit_mm;
+  if (const auto position = map.position_mm("position")) X_WP.p = *position;
   X_WP.q = read_rotation(context, map);
   return X_WP;
 }
 
 // 3. features
+
+constexpr const char* kBadName = "a name is one short word without '.' and '*'";
+bool good_name(const std::string& name) {
+  return is_name(name) && name.find_first_of(".*") == std::string::npos;
+}
 
 struct KindKeys {
   const char* name;
@@ -200,7 +208,7 @@ bool has_any(const YamlMap& map, std::string_view ways) {
          (bar != std::string_view::npos && map.has(ways.substr(bar + 1)));
 }
 
-void read_surface(YamlContext& context, const YamlMap& map, Surface& surface) {
+void read_surface(const YamlMap& map, Surface& surface) {
   for (const std::string_view key :
        {"point", "axis", "radius", "diameter", "tube_radius", "half_angle_deg", "inward"})
     if (!map.has("kind") && map.has(key))
@@ -219,7 +227,7 @@ void read_surface(YamlContext& context, const YamlMap& map, Surface& surface) {
   for (const std::string_view need : found->needs)
     if (!has_any(map, need)) map.error("kind", *kind + " needs " + std::string(need) + ":");
   surface.kind = found->kind;
-  if (const auto point = map.vector("point")) surface.point = *point * context.unit_mm;
+  if (const auto point = map.position_mm("point")) surface.point = *point;
   if (const auto axis = map.vector("axis")) {
     if (axis->norm() > kLeastLength)
       surface.axis = axis->normalized();
@@ -248,17 +256,18 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
   Scenario::FeatureSpec feature;
   feature.name = name;
   feature.at.line = map.line();
-  read_surface(context, map, feature.surface);
+  read_surface(map, feature.surface);
   if (!map.has("kind") && part.mesh.generator.empty() &&
       part.undeclared == UndeclaredSurface::kNominal)
     map.error(
         "kind is missing: write plane, cylinder, cone, sphere or torus, or deviation: recognized "
         "for the part");
   if (const auto along = map.numbers("along", 2)) {
-    if ((*along)[0] < (*along)[1])
-      feature.along_mm = Interval{(*along)[0] * context.unit_mm, (*along)[1] * context.unit_mm};
-    else
+    const Interval mm{(*along)[0] * context.unit_mm, (*along)[1] * context.unit_mm};
+    if (!(mm.lo < mm.hi))
       map.error("along", "expected [from, to] with from below to");
+    else if (within_range(context, map.find("along"), "feature along", {mm.lo, mm.hi, 0.0}))
+      feature.along_mm = mm;
   }
   read_feature_statement(context, map, feature);
   part.features.push_back(std::move(feature));
@@ -269,12 +278,12 @@ void read_features(YamlContext& context, const YAML::Node& node, Scenario::PartS
     context.error(node, "features: expected names and descriptions, e.g. bore: {kind: cylinder}");
     return;
   }
+  std::set<std::string> names;
   for (const auto& entry : node) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (name.empty() || name.find_first_of(".*") != std::string::npos)
-      context.error(entry.first, "features: a name is one word without '.' and '*'");
-    else if (std::any_of(part.features.begin(), part.features.end(),
-                         [&](auto& f) { return f.name == name; }))
+    if (!good_name(name))
+      context.error(entry.first, "features: " + std::string(kBadName));
+    else if (!names.insert(name).second)
       context.error(entry.first, "features: '" + name + "' stands here twice; rename one");
     else
       read_feature(context, name, entry.second, part);
@@ -283,8 +292,11 @@ void read_features(YamlContext& context, const YAML::Node& node, Scenario::PartS
 
 // 4. the part, its instances and repeats
 
-bool good_part_name(const std::string& name) {
-  return !name.empty() && name.size() <= 200 && name.find_first_of(".*\n\t") == std::string::npos;
+// Each part comes in through here.
+void add_part(YamlContext& context, const YAML::Node& at, Scenario::PartSpec part,
+              Scenario& scenario) {
+  if (within_range(context, at, "part " + part.name + ": its place", part.X_WP.p))
+    scenario.parts.push_back(std::move(part));
 }
 
 void read_instances(YamlContext& context, const YAML::Node& list, const Scenario::PartSpec& part,
@@ -302,11 +314,11 @@ void read_instances(YamlContext& context, const YAML::Node& list, const Scenario
     copy.at.line = map.line();
     const auto name = map.text("name");
     if (!map.has("name")) map.error("name is missing");
-    if (name && !good_part_name(*name)) map.error("name", "is one word without '.' and '*'");
+    if (name && !good_name(*name)) map.error("name", kBadName);
     copy.name = name.value_or("");
     if (const YAML::Node pose = map.find("pose")) copy.X_WP = read_pose(context, pose);
     if (const auto moving = map.boolean("moving")) copy.moving = *moving;
-    scenario.parts.push_back(std::move(copy));
+    add_part(context, node, std::move(copy), scenario);
   }
 }
 
@@ -343,7 +355,7 @@ void read_repeat(YamlContext& context, const YAML::Node& node, const Scenario::P
         // A row steps along the whole of `step`; a grid has one component of it for each direction.
         const Vec3 shift = row ? Vec3(*step * i) : Vec3(step->cwiseProduct(Vec3(i, j, k)));
         copy.X_WP.p += shift * context.unit_mm;
-        scenario.parts.push_back(std::move(copy));
+        add_part(context, node, std::move(copy), scenario);
         if (scenario.parts.size() > kMaxParts) return;
       }
 }
@@ -370,7 +382,7 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   const auto name = map.text("name");
   const bool named_by_instances = map.has("instances");
   if (!map.has("name") && !named_by_instances) map.error("name is missing");
-  if (name && !good_part_name(*name)) map.error("name", "is one word without '.' and '*'");
+  if (name && !good_name(*name)) map.error("name", kBadName);
   part.name = name.value_or("");
 
   const std::string source = map.one_of({"mesh", "generator"});
@@ -402,7 +414,7 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   else if (many == "repeat")
     read_repeat(context, map.find("repeat"), part, scenario);
   else
-    scenario.parts.push_back(std::move(part));
+    add_part(context, node, std::move(part), scenario);
 }
 
 }  // namespace mortise

@@ -1,23 +1,12 @@
 #include "common/io/scenario/scenario_tolerance.h"
 
 #include <cctype>
-#include <cmath>
-#include <cstdlib>
 #include <tuple>
 
 #include "common/evaluation/tolerance.h"
 
 namespace mortise {
 namespace {
-
-// The number at the start of text, and where it ends; nothing when there is none.
-std::optional<std::pair<double, std::size_t>> leading_number(const std::string& text) {
-  const char* begin = text.c_str();
-  char* end = nullptr;
-  const double value = std::strtod(begin, &end);
-  if (end == begin || !std::isfinite(value)) return std::nullopt;
-  return std::pair(value, static_cast<std::size_t>(end - begin));
-}
 
 bool take_prefix(std::string& text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return false;

@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <sstream>
+#include <unordered_set>
+
+#include "common/base/in_quotes.h"
+#include "common/base/plain_text.h"
 
 namespace mortise {
 namespace {
@@ -16,6 +21,11 @@ constexpr std::size_t kMaxBytes = 16U << 20;
 /// Nodes after aliases are followed. The largest scenario by size has fewer; an alias bomb has
 /// more.
 constexpr std::uint64_t kMaxExpandedNodes = 8'000'000;
+
+/// Findings that are told of one file, and unknown keys of one mapping: more is read by nobody.
+constexpr std::size_t kMostFindings = 200, kMostUnknownKeys = 20;
+/// A word of a list: the names of a part and a feature with a dot between.
+constexpr std::size_t kLongestWord_bytes = 2 * kMostName_bytes + 1;
 
 // Counts nodes as if every alias were written out, without writing any out.
 class ExpandedSize : public YAML::EventHandler {
@@ -93,6 +103,20 @@ std::size_t edits(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// Empty for UTF-8; else the line, and what is wrong there.
+std::string wrong_encoding(std::string_view text) {
+  const std::size_t good = std::min(utf8_prefix(text), text.find('\0'));
+  if (good >= text.size()) return {};
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") || text[good] == '\0')
+    return "1: is UTF-16 or binary";
+  constexpr char kDigits[] = "0123456789abcdef";
+  const auto byte = static_cast<unsigned char>(text[good]);
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(good), '\n');
+  return std::to_string(line) + ": the byte 0x" + kDigits[byte >> 4] + kDigits[byte & 15] +
+         " is not UTF-8";
+}
+
 std::string list_of(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -101,12 +125,13 @@ std::string list_of(const std::vector<std::string>& words) {
 
 }  // namespace
 
-void YamlContext::error(const YAML::Node& at, const std::string& text) {
-  findings.push_back({true, file + ":" + std::to_string(line_of(at)) + ": " + text});
-}
-
-void YamlContext::warning(const YAML::Node& at, const std::string& text) {
-  findings.push_back({false, file + ":" + std::to_string(line_of(at)) + ": " + text});
+void YamlContext::say(bool is_error, const YAML::Node& at, const std::string& text) {
+  if (findings.size() < kMostFindings)
+    findings.push_back({is_error, file + ":" + std::to_string(line_of(at)) + ": " + text});
+  else if (findings.size() == kMostFindings)
+    findings.push_back({is_error, file + ": has more findings; correct these first"});
+  else
+    findings.back().is_error = findings.back().is_error || is_error;
 }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
@@ -125,27 +150,36 @@ YamlMap::YamlMap(YamlContext& context, const YAML::Node& node, std::string what,
   }
   usable_ = true;
   const std::vector<std::string> words(known.begin(), known.end());
-  std::vector<std::string> seen;
+  std::unordered_set<std::string> strange;
   for (const auto& entry : node_) {
-    if (!entry.first.IsScalar()) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    const bool is_known = std::find(words.begin(), words.end(), key) != words.end();
+    if (!entry.first.IsScalar())
       context_.error(entry.first, what_ + ": a key must be a word");
-      continue;
-    }
-    const std::string& key = entry.first.Scalar();
-    if (std::find(words.begin(), words.end(), key) == words.end())
-      context_.error(entry.first, what_ + ": unknown key '" + key + "'; did you mean '" +
-                                      nearest_word(key, words) + "'? Known: " + list_of(words));
-    if (std::find(seen.begin(), seen.end(), key) != seen.end())
-      context_.error(entry.first, what_ + ": key '" + key + "' stands here twice; keep one");
-    seen.push_back(key);
+    else if (is_known ? !values_.emplace(key, entry.second).second : !strange.insert(key).second)
+      context_.error(entry.first,
+                     what_ + ": key " + in_quotes(key) + " stands here twice; keep one");
+    else if (!is_known)
+      say_unknown(entry.first, key, words);
   }
 }
 
+void YamlMap::say_unknown(const YAML::Node& at, const std::string& key,
+                          const std::vector<std::string>& words) {
+  if (++unknown_ == kMostUnknownKeys + 1)
+    context_.error(node_, what_ + ": more than " + std::to_string(kMostUnknownKeys) +
+                              " unknown keys; is this a scenario?");
+  if (unknown_ > kMostUnknownKeys) return;
+  // A word that is much longer than all known ones is none of them with a slip.
+  const bool near = key.size() <= 40;
+  context_.error(at, what_ + ": unknown key " + in_quotes(key) +
+                         (near ? "; did you mean '" + nearest_word(key, words) + "'?" : ";") +
+                         " Known: " + list_of(words));
+}
+
 YAML::Node YamlMap::find(std::string_view key) const {
-  if (usable_)
-    for (const auto& entry : node_)
-      if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
-  return YAML::Node(YAML::NodeType::Undefined);
+  const auto value = values_.find(key);
+  return value == values_.end() ? YAML::Node(YAML::NodeType::Undefined) : value->second;
 }
 
 void YamlMap::error(std::string_view key, const std::string& text) const {
@@ -160,7 +194,11 @@ std::optional<std::string> YamlMap::text(std::string_view key) const {
     error(key, "expected a word or a sentence");
     return std::nullopt;
   }
-  return value.Scalar();
+  std::string text = value.Scalar();
+  text.erase(text.find_last_not_of('\n') + 1);  // of a block
+  if (is_text(text) && !text.empty()) return text;
+  error(key, "expected one line without control characters, not " + in_quotes(text));
+  return std::nullopt;
 }
 
 std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
@@ -170,7 +208,24 @@ std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
     context.error(node, what + ": expected a number");
     return std::nullopt;
   }
-  return value;
+  if (std::fabs(value) <= kLargestNumber) return value;
+  context.error(node, what + ": " + in_quotes(node.Scalar()) + " is beyond ±1e9; check it");
+  return std::nullopt;
+}
+
+std::optional<std::pair<double, std::size_t>> leading_number(const std::string& text) {
+  const char* begin = text.c_str();
+  char* end = nullptr;
+  const double value = std::strtod(begin, &end);
+  if (end == begin || !(std::fabs(value) <= kLargestNumber)) return std::nullopt;
+  return std::pair(value, static_cast<std::size_t>(end - begin));
+}
+
+bool within_range(YamlContext& context, const YAML::Node& at, const std::string& what,
+                  const Vec3& mm) {
+  if ((mm.array().abs() <= kLongest_mm).all()) return true;
+  context.error(at, what + ": lies beyond 1000 km; check the number and the unit");
+  return false;
 }
 
 std::optional<double> YamlMap::number(std::string_view key) const {
@@ -181,13 +236,16 @@ std::optional<double> YamlMap::number(std::string_view key) const {
 
 std::optional<double> YamlMap::length_mm(std::string_view key) const {
   const std::optional<double> value = number(key);
-  return value ? std::optional(*value * context_.unit_mm) : std::nullopt;
+  if (!value) return value;
+  const double mm = *value * context_.unit_mm;
+  const bool good = within_range(context_, find(key), what_ + ": " + std::string(key), {mm, 0, 0});
+  return good ? std::optional(mm) : std::nullopt;
 }
 
 std::optional<double> YamlMap::positive_length_mm(std::string_view key) const {
   const std::optional<double> value = length_mm(key);
-  if (!value || *value > 0.0) return value;
-  error(key, "must be greater than 0");
+  if (!value || *value >= kShortest_mm) return value;
+  error(key, "must be greater than 0, and at least a nanometre");
   return std::nullopt;
 }
 
@@ -223,13 +281,22 @@ std::optional<Vec3> YamlMap::vector(std::string_view key) const {
   return list ? std::optional(Vec3((*list)[0], (*list)[1], (*list)[2])) : std::nullopt;
 }
 
+std::optional<Vec3> YamlMap::position_mm(std::string_view key) const {
+  const auto written = vector(key);
+  if (!written) return written;
+  const Vec3 mm = *written * context_.unit_mm;
+  const bool good = within_range(context_, find(key), what_ + ": " + std::string(key), mm);
+  return good ? std::optional(mm) : std::nullopt;
+}
+
 std::optional<std::vector<std::string>> YamlMap::texts(std::string_view key) const {
   const YAML::Node value = find(key);
   if (!value) return std::nullopt;
   std::vector<std::string> list;
   if (value.IsSequence())
     for (const auto& item : value)
-      if (item.IsScalar() && !item.Scalar().empty()) list.push_back(item.Scalar());
+      if (item.IsScalar() && is_name(item.Scalar(), kLongestWord_bytes))
+        list.push_back(item.Scalar());
   if (!value.IsSequence() || list.size() != value.size()) {
     error(key, "expected a list of words");
     return std::nullopt;
@@ -250,6 +317,8 @@ std::string YamlMap::one_of(std::initializer_list<std::string_view> keys) const 
 Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name) {
   if (yaml.size() > kMaxBytes)
     return fail(Code::kLimit, name + ": larger than 16 MiB; keep meshes in files of their own");
+  if (const std::string wrong = wrong_encoding(yaml); !wrong.empty())
+    return fail(Code::kInvalidInput, name + ":" + wrong + "; save the file as UTF-8");
   try {
     const std::string text(yaml);
     ExpandedSize size;

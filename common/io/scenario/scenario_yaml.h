@@ -2,11 +2,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/base/ranges.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/math/types.h"
 
@@ -20,9 +22,12 @@ struct YamlContext {
   std::vector<Finding> findings;
   double unit_mm = 1.0;
 
-  void error(const YAML::Node& at, const std::string& text);
-  void warning(const YAML::Node& at, const std::string& text);
+  void error(const YAML::Node& at, const std::string& text) { say(true, at, text); }
+  void warning(const YAML::Node& at, const std::string& text) { say(false, at, text); }
   int line_of(const YAML::Node& node) const { return node.Mark().line + 1; }
+
+ private:
+  void say(bool is_error, const YAML::Node& at, const std::string& text);
 };
 
 /// One mapping of the document. The constructor reports unknown and duplicate keys. A node that is
@@ -40,33 +45,47 @@ class YamlMap {
   void error(const std::string& text) const { context_.error(node_, what_ + ": " + text); }
   void error(std::string_view key, const std::string& text) const;
 
-  std::optional<std::string> text(std::string_view key) const;
+  std::optional<std::string> text(std::string_view key) const;  ///< of one line
   std::optional<double> number(std::string_view key) const;
-  std::optional<double> length_mm(std::string_view key) const;
+  std::optional<double> length_mm(std::string_view key) const;  ///< up to kLongest_mm
+  /// kShortest_mm to kLongest_mm
   std::optional<double> positive_length_mm(std::string_view key) const;
   std::optional<bool> boolean(std::string_view key) const;
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count) const;
   std::optional<Vec3> vector(std::string_view key) const;  ///< as written, unit not applied
+  std::optional<Vec3> position_mm(std::string_view key) const;
   std::optional<std::vector<std::string>> texts(std::string_view key) const;
   /// Which of these keys is present; more than one is an error, none gives "".
   std::string one_of(std::initializer_list<std::string_view> keys) const;
 
  private:
+  void say_unknown(const YAML::Node& at, const std::string& key,
+                   const std::vector<std::string>& words);
   YamlContext& context_;
   YAML::Node node_;
   std::string what_;
   bool usable_ = false;
+  std::map<std::string, YAML::Node, std::less<>> values_;  ///< of known keys, the first of each
+  std::size_t unknown_ = 0;
 };
 
 /// The known word that is fewest edits away, for "did you mean".
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
-/// A finite number, or an error at the node.
+/// The number that a text begins with, and where it ends; nothing when there is none, or one beyond
+/// kLargestNumber.
+std::optional<std::pair<double, std::size_t>> leading_number(const std::string& text);
+
+/// A number up to kLargestNumber, or an error at the node.
 std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
                                   const std::string& what);
 
-/// Parses text into one document. Refused: more than one document, too deep, too large, or aliases
-/// that expand to more than `kMaxExpandedNodes` nodes.
+/// Is a length of the file, in mm, no longer than any length may be? Else an error at the node.
+bool within_range(YamlContext& context, const YAML::Node& at, const std::string& what,
+                  const Vec3& mm);
+
+/// Parses text into one document. Refused: what is not UTF-8, more than one document, too deep, too
+/// large, or aliases that expand to more than `kMaxExpandedNodes` nodes.
 Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name);
 
 }  // namespace mortise

@@ -70,5 +70,16 @@ TEST(PlayFile, AMissingFileIsSaidSo) {
   EXPECT_NE(play.error().text.find("/nowhere/x.play.yaml"), std::string::npos);
 }
 
+TEST(PlayFile, TextsAndNumbersHaveARange) {
+  const auto play = [](const std::string& user, const std::string& step) {
+    return read_play_text("acts:\n  - {user: " + user + ", part: p, steps: [" + step + "]}\n", "p");
+  };
+  EXPECT_TRUE(play("ann", "{by: [1, 0, 0], seconds: 1}"));
+  EXPECT_FALSE(play("ann", "{by: [1e15, 0, 0], seconds: 1}"));
+  EXPECT_FALSE(play("ann", "{seconds: 1e300}"));
+  EXPECT_FALSE(play("J\xe4ger", "{seconds: 1}"));
+  EXPECT_FALSE(play(R"("a\nb")", "{seconds: 1}"));
+}
+
 }  // namespace
 }  // namespace mortise

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -312,6 +313,105 @@ TEST(ScenarioFile, AliasesInMeasureAreWelcome) {
   ASSERT_TRUE(reading);
   EXPECT_TRUE(reading->usable());
   EXPECT_EQ(reading->scenario.parts[1].mesh.generator, "dowel");
+}
+
+std::string errors_of(const std::string& yaml) {
+  const auto reading = read_scenario_text(yaml, "a.yaml");
+  if (!reading) return reading.error().text;
+  std::string text;
+  for (const Finding& finding : reading->findings)
+    if (finding.is_error) text += finding.text + "\n";
+  return text;
+}
+
+std::string peg(const std::string& keys) {
+  return "name: a\nunits: mm\nparts:\n  - {name: p, moving: true, generator: {kind: dowel}" + keys +
+         "}\n";
+}
+
+TEST(ScenarioDoor, OnlyUtf8ComesIn) {
+  EXPECT_EQ(errors_of("name: a\nunits: mm\nparts:\n  - {name: J\xe4ger}\n"),
+            "a.yaml:4: the byte 0xe4 is not UTF-8; save the file as UTF-8");
+  EXPECT_NE(errors_of(std::string("\xff\xfen\0a\0m\0e\0", 10)).find("is UTF-16"),
+            std::string::npos);
+  EXPECT_EQ(errors_of("\xef\xbb\xbf" + peg("")), "") << "a mark in front is no harm";
+  EXPECT_EQ(
+      errors_of("name: Jäger Ø20\nunits: mm\nparts:\n  - {name: ö, generator: {kind: dowel}}\n"),
+      "");
+}
+
+TEST(ScenarioDoor, NamesAreSeen) {
+  for (const char* name : {R"("a\nb")", R"("\x01")", R"("\u202e")", R"(" ")", R"("\u00a0")"}) {
+    const std::string text(name);
+    EXPECT_NE(
+        errors_of("name: " + text + "\nunits: mm\nparts: [{name: p, generator: {kind: dowel}}]"),
+        "")
+        << name;
+    EXPECT_NE(
+        errors_of("name: a\nunits: mm\nparts: [{name: " + text + ", generator: {kind: dowel}}]"),
+        "")
+        << name;
+    EXPECT_NE(errors_of(peg("") + "users:\n  - {name: " + text + ", may_hold: []}\n"), "") << name;
+  }
+  EXPECT_NE(errors_of(peg("") + "users:\n  - {name: " + std::string(65, 'a') + ", may_hold: []}\n"),
+            "");
+}
+
+// Each of these went through, and ended judge and server in a failed check or in nonsense.
+TEST(ScenarioDoor, NumbersHaveARange) {
+  for (const char* keys :
+       {", pose: {position: [1e15, 0, 0]}", ", pose: {position: [0, 1e308, 0]}",
+        ", pose: {position: [0, 0, -2e9]}", ", pose: {rotation_deg: [1e300, 0, 0]}",
+        ", tolerance: \"±1e300\"", ", tolerance: {profile: 1e10}", ", chord_error: 1e12",
+        ", repeat: {count: 3, step: [9e8, 0, 0]}", ", features: {journal: {iso: \"Ø1e200 h6\"}}",
+        ", features: {f: {kind: sphere, point: [0, 0, 0], radius: 1e-300}}",
+        ", features: {f: {kind: sphere, point: [1e20, 0, 0], radius: 1}}",
+        ", features: {f: {kind: cylinder, point: [0, 0, 0], axis: [0, 0, 1], radius: 1, along: [0, "
+        "1e99]}}"})
+    EXPECT_NE(errors_of(peg(keys)), "") << keys;
+  EXPECT_NE(errors_of("name: a\nunits: mm\nparts:\n  - {name: p, mesh: {file: a.stl, unit: mm, "
+                      "scale: 1e-300}}"),
+            "");
+  EXPECT_NE(errors_of("max_jump: 1e12\n" + peg("")), "");
+  // In metres, the number is within the range and the length is not.
+  EXPECT_NE(
+      errors_of(
+          "name: a\nunits: m\nparts:\n  - {name: p, generator: {kind: dowel}, pose: {position: "
+          "[1e7, 0, 0]}}"),
+      "");
+  EXPECT_EQ(errors_of(peg(", pose: {position: [7.8e6, -1e9, 0]}")), "");
+}
+
+TEST(ScenarioDoor, ManyUnknownKeysAreToldInShortTime) {
+  std::string yaml = peg("");
+  for (int i = 0; i < 200'000; ++i) yaml += "key" + std::to_string(i) + ": 1\n";
+  const auto begun = std::chrono::steady_clock::now();
+  const auto reading = read_scenario_text(yaml, "a.yaml");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  ASSERT_TRUE(reading);
+  EXPECT_EQ(reading->findings.size(), 21U) << "20 of them, and that there are more";
+  EXPECT_NE(reading->findings.back().text.find("more than 20 unknown keys"), std::string::npos);
+  EXPECT_LT(took.count(), 20.0) << "it grew with the square: minutes";
+}
+
+TEST(ScenarioDoor, WhatIsWrongEverywhereIsToldSoManyTimes) {
+  std::string yaml = "name: a\nunits: mm\nparts:\n";
+  for (int i = 0; i < 5000; ++i) yaml += "  - {name: p" + std::to_string(i) + "}\n";
+  const auto reading = read_scenario_text(yaml, "a.yaml");
+  ASSERT_TRUE(reading);
+  EXPECT_FALSE(reading->usable());
+  EXPECT_LT(reading->findings.size(), 300U);
+}
+
+TEST(ScenarioDoor, DeepAndExpandingYamlIsRefused) {
+  EXPECT_FALSE(read_scenario_text(std::string(100'000, '['), "a.yaml"));
+  EXPECT_FALSE(read_scenario_text("a: " + std::string(100'000, '{'), "a.yaml"));
+  std::string bomb = "a0: &a0 [x, x]\n";
+  for (int i = 1; i < 40; ++i) {
+    const std::string n = std::to_string(i), before = "*a" + std::to_string(i - 1);
+    bomb += "a" + n + ": &a" + n + " [" + before + ", " + before + "]\n";
+  }
+  EXPECT_FALSE(read_scenario_text(bomb, "a.yaml"));
 }
 
 }  // namespace
