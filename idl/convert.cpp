@@ -9,23 +9,14 @@
 
 namespace mortise {
 bool text_ok(const std::string& text, std::size_t limit) {
-  return text.size() <= limit && std::none_of(text.begin(), text.end(), [](char c) {
-           const auto byte = static_cast<unsigned char>(c);
-           return byte < 0x20 || byte == 0x7f;
-         });
+  return text.size() <= limit && is_text(text);
 }
 
 std::string clip(const std::string& text, std::size_t limit) {
-  std::size_t size = std::min(text.size(), limit);
-  // A byte 10xxxxxx continues a character: step back to its start.
-  while (size > 0 && size < text.size() &&
-         (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) {
-    --size;
-  }
-  std::string out = text.substr(0, size);
-  for (char& c : out) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) c = ' ';
+  std::string out = is_text(text) ? text : one_line(text);
+  if (out.size() > limit) {
+    out.resize(limit);
+    out.resize(utf8_prefix(out));
   }
   return out;
 }

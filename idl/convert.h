@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/base/plain_text.h"
+#include "common/base/ranges.h"
 #include "common/base/result.h"
 #include "common/messages/channel.h"
 #include "mortise.h"  // generated from mortise.idl
@@ -14,12 +16,12 @@
 /// clipped to the same bounds (texts) or taken as it is.
 namespace mortise {
 
-/// Nothing that people assemble lies further from the origin of the world, mm (1000 km); beyond, a
-/// double's rounding would pass a tolerance.
-inline constexpr double kMaxCoordinate_mm = 1e9;
+/// Nothing that people assemble lies further from the origin of the world, mm.
+inline constexpr double kMaxCoordinate_mm = kLongest_mm;
 /// A quaternion or direction further from unit length than this was not made by us.
 inline constexpr double kUnitNormAllowance = 1e-6;
-inline constexpr std::size_t kMaxName_bytes = 128;   ///< names of parts, users, faces, hashes
+inline constexpr std::size_t kMaxName_bytes =
+    kMostName_bytes;                                 ///< names of parts, users, faces, hashes
 inline constexpr std::size_t kMaxText_bytes = 1024;  ///< sentences
 inline constexpr std::size_t kMaxSequence = 65536;   ///< entries of one sample
 
@@ -101,10 +103,11 @@ Result<FeatureTable> from_wire(const wire::Features& chunk);
 wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial);
 Result<SessionPulse> from_wire(const wire::Pulse& pulse);
 
-/// Whether a text may pass: at most `limit` bytes, no control characters (they would break logs).
+/// Whether a text may pass: at most `limit` bytes of UTF-8 without control characters.
 bool text_ok(const std::string& text, std::size_t limit);
 
-/// First `limit` bytes of a text, not cutting a UTF-8 character, control characters as blanks.
+/// First `limit` bytes of a text, made such as may pass: no character is cut, what may not pass is
+/// '?' or U+FFFD.
 std::string clip(const std::string& text, std::size_t limit);
 
 }  // namespace mortise

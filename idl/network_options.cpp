@@ -2,13 +2,28 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/base/in_quotes.h"
+#include "common/base/plain_text.h"
+
 namespace mortise {
+
+void must_name_a_session(CLI::Option& option) {
+  option.check(
+      [](const std::string& name) {
+        if (is_session_name(name)) return std::string();
+        return in_quotes(name) +
+               " is no name of a session: up to 64 of letters, digits, '-', '_' and '.', the first "
+               "no '.'";
+      },
+      "");
+}
+
 namespace {
 
 void add_place(CLI::App& app, DdsOptions& o) {
-  app.add_option("--session", o.session, "Name of the session")
-      ->group(kSessionGroup)
-      ->capture_default_str();
+  must_name_a_session(*app.add_option("--session", o.session, "Name of the session")
+                           ->group(kSessionGroup)
+                           ->capture_default_str());
   app.add_option("--domain", o.domain, "DDS domain")
       ->group(kNetworkGroup)
       ->check(CLI::Range(0, 232))

@@ -3,7 +3,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace mortise {
 
@@ -22,5 +23,8 @@ void add_client_network_options(CLI::App& app, DdsOptions& options);
 /// The same for a program that looks in several domains and at several ports: without --session,
 /// --domain and --server-port.
 void add_search_network_options(CLI::App& app, DdsOptions& options);
+
+/// The option takes only what is_session_name().
+void must_name_a_session(CLI::Option& option);
 
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/base/plain_text.h"
 #include "common/messages/names.h"
 #include "common/session/world/decisions.h"
 #include "common/session/world/rights.h"
@@ -16,11 +17,6 @@ constexpr std::uint64_t kEverySeq = std::numeric_limits<std::uint64_t>::max();
 
 // So long users of a server that is gone may take to be heard again: twice a participant's lease.
 constexpr double kAwaitAdopted_s = 4.0;
-
-bool printable(const std::string& name) {
-  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  return !name.empty() && name.size() <= 64 && std::none_of(name.begin(), name.end(), control);
-}
 
 // What a proven identity may join as; empty: as this.
 std::string why_not(const Identity& identity, const std::string& name, Role role) {
@@ -44,8 +40,8 @@ Refusal check_join(const JoinRequest& request, const World& world, bool in_use,
                    std::uint64_t most_users, std::string& text) {
   const std::optional<Role> role = role_named(request.role);
   const Role wanted = role_wanted(world, request.name);
-  if (!printable(request.name)) {
-    text = "a name has 1 to 64 printable characters";
+  if (!is_name(request.name, kMostUserName_bytes)) {
+    text = "a name has 1 to 64 bytes of printable UTF-8, and is not blank";
     return Refusal::kNotAllowed;
   }
   if (!role) {

@@ -17,9 +17,10 @@ void add_session(CLI::App& app, ServerOptions& o) {
       "Continue from this session log, or from the newest one of the session in this folder (none "
       "there: "
       "begin SCENARIO)");
-  add("--standby-of", o.standby_of,
-      "Stand by for the server of this session, and take over when it is gone; --restore "
-      "names its log, or the folder of it");
+  must_name_a_session(
+      *add("--standby-of", o.standby_of,
+           "Stand by for the server of this session, and take over when it is gone; --restore "
+           "names its log, or the folder of it"));
   add("--policy", o.policy, "Response to a real contact instead of the scenario's")
       ->check(CLI::IsMember({"stop", "slide", "report"}));
   add("--rate", o.rate_hz, "Ticks a second instead of the scenario's")

@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+#include "common/base/plain_text.h"
+#include "common/base/ranges.h"
 #include "common/messages/names.h"
 
 namespace mortise::web {
@@ -15,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostNameBytes = 64;
+constexpr std::size_t kMostNameBytes = kMostUserName_bytes;
 constexpr std::size_t kMostTextBytes = 4096;
 constexpr double kLargestId = 9007199254740992.0;  // 2^53, as far as a page counts exactly
 constexpr double kSlowest = 0.1, kFastest = 16.0;
@@ -48,7 +50,7 @@ class Keys {
   }
   double number(const char* key) {
     const Json& value = at(key);
-    if (!value.is_number() || !std::isfinite(value.get<double>())) {
+    if (!value.is_number() || !within(value.get<double>(), kLargestNumber)) {
       throw Wrong{std::string("'") + key + "' is not a number"};
     }
     return value.get<double>();
@@ -81,11 +83,11 @@ class Keys {
   }
   Vec3 vector(const char* key) {
     const Json& list = at(key);
-    const auto is_finite = [](const Json& value) {
-      return value.is_number() && std::isfinite(value.get<double>());
+    const auto in_range = [](const Json& value) {
+      return value.is_number() && within(value.get<double>(), kLongest_mm);
     };
-    if (!list.is_array() || list.size() != 3 || !std::all_of(list.begin(), list.end(), is_finite)) {
-      throw Wrong{std::string("'") + key + "' is not three numbers"};
+    if (!list.is_array() || list.size() != 3 || !std::all_of(list.begin(), list.end(), in_range)) {
+      throw Wrong{std::string("'") + key + "' is not three numbers up to 1e9"};
     }
     return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
   }
@@ -109,16 +111,9 @@ class Keys {
   std::set<std::string> read_;
 };
 
-bool is_name(const std::string& name) {
-  return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte < 0x20 || byte == 0x7f;
-  });
-}
-
 JoinWish join_of(Keys& keys) {
   JoinWish wish{keys.text("name", kMostNameBytes)};
-  if (!is_name(wish.name)) throw Wrong{"'name' is empty or has control characters"};
+  if (!is_name(wish.name, kMostNameBytes)) throw Wrong{"'name' is empty, blank or not printable"};
   return wish;
 }
 

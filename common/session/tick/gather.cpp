@@ -5,6 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/base/constants.h"
+#include "common/base/ranges.h"
 #include "common/math/rotation.h"
 #include "common/session/guide/guidance.h"
 #include "common/session/world/rights.h"
@@ -179,12 +180,15 @@ void compose(World& world, std::span<const Increment> increments, Scratch::Impl&
       // The path of a tick turns by the shortest way: more than half a turn in all would go the
       // other way round.
       const double turned_rad = move.turned_rad + increment.rotation_rad.norm();
+      const Pose X_W1 = applied(increment, move.motion.X_W1, move.motion.reference_P);
       if (turned_rad > kMaxRotationPerTick_rad) {
         refusal = Refusal::kRotationTooLarge;
+      } else if (!within(X_W1.p.cwiseAbs().maxCoeff(), kLongest_mm)) {
+        refusal = Refusal::kJumpTooLarge;  // out of the world
       } else {
         move.user = increment.user;
         move.turned_rad = turned_rad;
-        move.motion.X_W1 = applied(increment, move.motion.X_W1, move.motion.reference_P);
+        move.motion.X_W1 = X_W1;
         world.find(increment.user)->last_seq = increment.seq;
         ++counters.increments.out;
         continue;

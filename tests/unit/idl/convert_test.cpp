@@ -167,6 +167,12 @@ TEST(Convert, RequestsAreRefused) {
   EXPECT_TRUE(joins("anna", "designer"));
   EXPECT_FALSE(joins("", "designer"));
   EXPECT_FALSE(joins("a\nb", "designer"));
+  EXPECT_FALSE(joins("J\xe4ger", "designer")) << "Latin-1";
+  EXPECT_FALSE(
+      joins("a\xc2\x85"
+            "b",
+            "designer"))
+      << "next line, of C1";
   EXPECT_FALSE(joins(std::string(kMaxName_bytes + 1, 'a'), "designer"));
   EXPECT_FALSE(joins("anna", "emperor"));
   EXPECT_FALSE(joins("anna", ""));
@@ -331,7 +337,9 @@ TEST(Convert, PulseGoesRoundAndIsRefused) {
 
 TEST(Convert, TextsAreClippedAtWholeCharacters) {
   EXPECT_EQ(clip("abc", 8), "abc");
-  EXPECT_EQ(clip("a\tb", 8), "a b");
+  EXPECT_EQ(clip("a\tb", 8), "a?b");
+  EXPECT_EQ(clip("\xe4", 8), "\xef\xbf\xbd");
+  EXPECT_EQ(clip("\xe4", 2), "");
   EXPECT_EQ(clip("ab\xc3\xa4", 3), "ab");  // half of an umlaut is none
   EXPECT_EQ(clip("ab\xc3\xa4", 4), "ab\xc3\xa4");
   Verdict verdict;

@@ -290,8 +290,13 @@ TEST_F(InboxTest, JoinsAreCheckedAndRepeatedOnesGetTheSameAnswer) {
   EXPECT_NE(reply_.text.find("in use"), std::string::npos);
   join("c", "");
   EXPECT_EQ(reply_.refusal, Refusal::kNotAllowed);
-  join("c", "a\nb");
-  EXPECT_EQ(reply_.refusal, Refusal::kNotAllowed);
+  for (const char* name : {"a\nb", " ", "\xc2\xa0", "J\xe4ger",
+                           "an\xe2\x80\xae"
+                           "na"}) {
+    join("c", name);
+    EXPECT_EQ(reply_.refusal, Refusal::kNotAllowed) << name;
+    EXPECT_NE(reply_.text.find("printable"), std::string::npos);
+  }
   EXPECT_EQ(world_.users.size(), 2U);
 }
 

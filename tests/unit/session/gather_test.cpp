@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/ranges.h"
 #include "common/math/rotation.h"
 #include "tests/unit/session/session_builder.h"
 
@@ -55,6 +56,19 @@ TEST_F(GatherTest, EveryReasonToRefuse) {
   EXPECT_EQ(refusal({ada, peg, 4, Vec3(1, 0, 0)}), Refusal::kStale);
   EXPECT_EQ(refusal({ada, peg, 9, Vec3(1, 0, 0)}), Refusal::kNone);  // gaps are losses
   EXPECT_EQ(session.pose(peg).p, Vec3(2, 0, 0));
+}
+
+// Step by step out of the world: poses beyond the range of lengths cannot come to be.
+TEST_F(GatherTest, NobodyLeavesTheWorld) {
+  session.world.max_jump_mm = kLongest_mm;
+  EXPECT_EQ(refusal({ada, peg, 1, Vec3(0.9 * kLongest_mm, 0, 0)}), Refusal::kNone);
+  EXPECT_EQ(refusal({ada, peg, 2, Vec3(0.9 * kLongest_mm, 0, 0)}), Refusal::kJumpTooLarge);
+  const StepReport report = play_tick(
+      session.world,
+      {{ada, peg, 3, Vec3(0, 0.9 * kLongest_mm, 0)}, {ada, peg, 4, Vec3(0, kLongest_mm, 0)}},
+      scratch);
+  EXPECT_EQ(report.counters.increments.out, 1U);
+  EXPECT_EQ(refusal({ada, peg, 5, Vec3(-1, 0, 0)}), Refusal::kNone);
 }
 
 TEST_F(GatherTest, RepeatInTheSameTickIsDropped) {

@@ -99,7 +99,7 @@ TEST(PageMessage, RefusesWhatIsNone) {
       {R"({"type":"fly"})", "not a type of message"},
       {R"({"type":"join"})", "'name' is missing"},
       {R"({"type":"join","name":""})", "'name' is empty"},
-      {R"({"type":"join","name":"a\nb"})", "control characters"},
+      {R"({"type":"join","name":"a\nb"})", "not printable"},
       {R"({"type":"join","name":"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"})",
        "more than 64"},
       {R"({"type":"join","name":"a","role":"bot"})", "'role' is not a key"},
