@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "common/io/build_info.h"
@@ -45,26 +47,23 @@ std::vector<Decision> depart_all(World& world) {
 
 }  // namespace
 
-std::optional<fs::path> log_to_restore(const fs::path& place, const std::string& session,
-                                       Newest by) {
+std::vector<fs::path> logs_to_restore(const fs::path& place, const std::string& session,
+                                      Newest by) {
   std::error_code error;
-  if (!fs::is_directory(place, error)) return chain_from(place).back();
-  std::optional<fs::path> newest;
-  // A file of the future was written before the clock was set back: it is an old one.
+  if (!fs::is_directory(place, error)) return {chain_from(place).back()};
+  // Names hold the time: the one that was begun last is the last one. A file of the future was
+  // written before the clock was set back: it is an old one.
   const fs::file_time_type future = fs::file_time_type::clock::now() + kFuture;
-  const auto written = [&](const fs::path& file) {
-    const fs::file_time_type at = fs::last_write_time(file, error);
-    return std::pair(at < future, at);
-  };
+  std::map<std::tuple<bool, fs::file_time_type, std::string>, fs::path> logs;
   for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
     if (!is_log_of(entry.path(), session)) continue;
-    // Names hold the time: the one that was begun last is the last one.
-    const bool later =
-        !newest || (by == Newest::kBegun ? entry.path().filename() > newest->filename()
-                                         : written(entry.path()) > written(*newest));
-    if (later) newest = entry.path();
+    fs::file_time_type at{};
+    if (by == Newest::kWritten) at = fs::last_write_time(entry.path(), error);
+    logs[{at < future, at, entry.path().filename().string()}] = entry.path();
   }
-  return newest;
+  std::vector<fs::path> newest_first;
+  for (auto log = logs.rbegin(); log != logs.rend(); ++log) newest_first.push_back(log->second);
+  return newest_first;
 }
 
 namespace {
@@ -76,7 +75,7 @@ SessionStatistics told_statistics(const SessionLog& log, std::uint64_t up_to) {
   std::uint64_t last = log.begin ? log.begin->state.tick : 0;
   for (const TickRecord& record : log.ticks) {
     if (record.tick > up_to) break;
-    for (; last + 1 < record.tick; ++last) told.add({});
+    if (record.tick > last + 1) told.add_idle(record.tick - last - 1);
     told.forget_users(record.decisions);
     told.add(record.report);
     last = record.tick;

@@ -26,11 +26,11 @@ struct Resumed {
 };
 
 enum class Newest { kBegun, kWritten };
-/// The log of the session in a folder that was begun, or written to, last; the last file of its
-/// chain when `place` is a file; none when the folder has no log of the session.
-std::optional<std::filesystem::path> log_to_restore(const std::filesystem::path& place,
-                                                    const std::string& session,
-                                                    Newest by = Newest::kBegun);
+/// The logs of the session in a folder, the one that was begun, or written to, last first; the last
+/// file of its chain when `place` is a file.
+std::vector<std::filesystem::path> logs_to_restore(const std::filesystem::path& place,
+                                                   const std::string& session,
+                                                   Newest by = Newest::kBegun);
 
 /// Plays a log again in `world`, as scene_of(log) made it or as of one of its checkpoints, and
 /// compares each tick with its logged events and state hash. Afterwards parts, clashes with their

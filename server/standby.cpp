@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/io/log/session_log_read.h"
 #include "common/session/world/decisions.h"
 #include "server/backlog.h"
 #include "server/silence.h"
@@ -90,6 +91,9 @@ Status Follower::take(const ToldTick& told) {
                                     std::to_string(tick.tick) +
                                     " were not told to this one: start it again");
   }
+  if (tick.tick - world_.tick > kMostIdleTicks)
+    return fail(Code::kRuntime, "tick " + std::to_string(tick.tick) + " was told after tick " +
+                                    std::to_string(world_.tick) + ": no session waits so long");
   while (world_.tick + 1 < tick.tick) {
     FollowedTick idle;
     idle.time_ns = tick.time_ns;

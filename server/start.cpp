@@ -120,11 +120,18 @@ std::string log_file(const ServerOptions& options, const std::optional<LogBegin>
 
 Result<SessionStart> read_start(const ServerOptions& options) {
   if (options.restore.empty()) return read_from_scenario(options);
-  const auto file = log_to_restore(options.restore, options.network.session,
-                                   // One that stood by before leaves a log that was begun later and
-                                   // is not of the one that leads.
-                                   options.standby_of.empty() ? Newest::kBegun : Newest::kWritten);
-  if (file) return read_from_log(*file);
+  const auto logs = logs_to_restore(options.restore, options.network.session,
+                                    // One that stood by before leaves a log that was begun later
+                                    // and is not of the one that leads.
+                                    options.standby_of.empty() ? Newest::kBegun : Newest::kWritten);
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    auto start = read_from_log(logs[i]);
+    // A machine that went down leaves a log without its front; what was before it is still there.
+    // Who stands by takes none but the log of the one that leads.
+    const bool last = i + 1 == logs.size() || !options.standby_of.empty();
+    if (start || last) return start;
+    spdlog::warn("{}; the log before it is taken: {}", start.error().text, logs[i + 1].string());
+  }
   if (options.scenario.empty()) {
     return fail(Code::kInvalidInput,
                 fmt::format("{}: no log of session '{}' in this folder; name a log file, or give a "

@@ -13,6 +13,7 @@
 
 #include "client/report/cells.h"
 #include "common/base/hash.h"
+#include "common/base/plain_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -43,7 +44,7 @@ std::string date_of(std::int64_t time_ns) {
 // XML has no word for control characters, and a field of the format may not be blank.
 std::string shown(const std::string& text, const char* otherwise) {
   std::string safe;
-  for (const char c : text)
+  for (const char c : as_utf8(text))
     if (static_cast<unsigned char>(c) >= 0x20 || c == '\n') safe += c;
   return safe.find_first_not_of(" \n") == std::string::npos ? otherwise : safe;
 }

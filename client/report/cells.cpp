@@ -4,11 +4,13 @@
 
 #include <cmath>
 
+#include "common/base/plain_text.h"
+
 namespace mortise {
 
 std::string escaped(std::string_view text) {
   std::string safe;
-  for (const char c : text) switch (c) {
+  for (const char c : as_utf8(text)) switch (c) {
       case '&':
         safe += "&amp;";
         break;

@@ -2,13 +2,15 @@
 
 #include "client/report/export_files.h"
 
+#include "common/base/plain_text.h"
+
 namespace mortise {
 namespace {
 
 std::string field_of(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
-  std::string text = value.get<std::string>();
+  std::string text = as_utf8(value.get_ref<const std::string&>());
   // Names and comments come from people. A spreadsheet computes what begins like this.
   if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
     text.insert(0, 1, '\'');

@@ -81,7 +81,7 @@ TEST_F(SplitHosts, OfTwoHalvesTheOneThatStoodByLeadsAndNobodySeesTwoTruths) {
   leave();
   standby_->signal(SIGTERM);
   EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
-  expect_one_truth(log_to_restore(logs_, "default")->string(), far(), 1, near(), 1);
+  expect_one_truth(logs_to_restore(logs_, "default").at(0).string(), far(), 1, near(), 1);
 }
 
 TEST_F(SplitHosts, AFirstThatKeepsMostUsersLeadsAndNobodySeesTwoTruths) {

@@ -166,7 +166,7 @@ TEST_F(Hosts, AFirstThatWasCutOffHasSaidNothingThatIsLost) {
   for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
   standby_->signal(SIGTERM);
   EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
-  EXPECT_EQ(lost(log_to_restore(logs_, "default")->string()), 0u);
+  EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
 }
 
 /// A further one that stands by on a host of its own: only one may lead when the first is gone.
@@ -193,7 +193,7 @@ TEST_F(Hosts, OnlyOneStandsBy) {
   for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
   standby_->signal(SIGTERM);
   EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
-  EXPECT_EQ(lost(log_to_restore(logs_, "default")->string()), 0u);
+  EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
 }
 
 TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
@@ -220,7 +220,7 @@ TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
         << part.info.name;
   standby_->signal(SIGTERM);
   EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
-  EXPECT_EQ(lost(log_to_restore(logs_, "default")->string()), 0u);
+  EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
 }
 
 }  // namespace

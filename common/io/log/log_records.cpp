@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "common/base/constants.h"
 #include "common/io/state/bytes.h"
 
 namespace mortise::log_records {
@@ -83,10 +84,7 @@ void put(ByteWriter& out, const std::string& text) {
   out.raw(text);
 }
 
-std::string get_text(ByteReader& in) {
-  const auto text = in.raw(in.varint());
-  return {reinterpret_cast<const char*>(text.data()), text.size()};
-}
+std::string get_text(ByteReader& in) { return in.text(in.varint()); }
 
 // Most decisions say nothing of a constraint: one byte.
 void put(ByteWriter& out, const Constraint& constraint) {
@@ -240,6 +238,7 @@ bool decode(std::span<const std::byte> bytes, Poses& out) {
     pose.holder.value = in.varint32();
     for (int k = 0; k < 3; ++k) pose.X_WP.p[k] = static_cast<double>(in.f32());
     pose.X_WP.q = unpack(in.u64());
+    if (!valid(pose.X_WP)) return false;
     out.poses.push_back(pose);
   }
   return in.at_end();
@@ -298,7 +297,7 @@ bool decode(std::span<const std::byte> bytes, TriangleMesh& out) {
   out.triangles.resize(triangles);
   for (Vec3& point : out.points_mm) {
     for (int k = 0; k < 3; ++k) point[k] = in.f64();
-    if (!point.allFinite()) return false;
+    if (!(point.array().abs() <= kLargestCoordinate_mm).all()) return false;
   }
   for (auto& triangle : out.triangles)
     for (std::uint32_t& corner : triangle)

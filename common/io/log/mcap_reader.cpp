@@ -370,11 +370,14 @@ Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler&
   const InputFile input(file);
   if (!input.is_open())
     return fail(Code::kNotFound, file.string() + ": cannot open the log: " + std::strerror(errno));
+  if (input.size() == 0)
+    return fail(Code::kInvalidInput, file.string() + ": is empty; there is nothing to read");
   std::vector<std::byte> magic;
   if (!std::ranges::equal(input.read(0, mcap::kMagic.size(), magic),
                           std::as_bytes(std::span(mcap::kMagic))))
     return fail(Code::kInvalidInput,
-                file.string() + ": not an MCAP file: it does not begin as one");
+                file.string() +
+                    ": is no session log (MCAP): it does not begin as one; is it the right file?");
   return Scanner(input, handler, limits).run();
 }
 

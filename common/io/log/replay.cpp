@@ -15,10 +15,6 @@
 namespace mortise {
 namespace {
 
-// Ticks without record between two records: a day at 60 a second. A longer pause is a damaged
-// number, which must not keep a replay busy for ever.
-constexpr std::uint64_t kMostIdleTicks = 6'000'000;
-
 // Logged poses are rounded to floats and to 2e-6 rad: a part is called moved away beyond this.
 constexpr double kRoundedPose_mm = 1e-2;
 
@@ -129,6 +125,11 @@ Result<LoadedScene> bare_scene_of(const SessionLog& log) {
     for (const auto& [hash, mesh] : log.meshes)
       if (hash == log.mesh_of_part[index])
         return ImportedMesh{mesh, index < log.imports.size() ? log.imports[index] : ImportReport{}};
+    // What a generator made it makes again, bit for bit, or the hash tells.
+    if (!part.mesh.generator.empty())
+      if (auto again = default_meshes()(scenario, part);
+          again && mesh_hash(again->mesh) == log.mesh_of_part[index])
+        return again;
     return fail(Code::kInvalidInput, "mesh " + log.mesh_of_part[index] + " of part " + part.name +
                                          " is missing from the log or damaged");
   };

@@ -142,10 +142,11 @@ void LogAssembler::end_tick(log_records::TickEnd end, std::int64_t time_ns) {
     open_gap("it goes on from " + log_.chain.previous +
              ", and the state that it begins with is missing or damaged");
   const std::uint64_t before = last_tick();
-  if (end.tick <= before || log_.ticks.size() >= kMostTicks) {
-    open_gap(end.tick > before ? "more ticks than a session has"
-                               : "tick " + std::to_string(end.tick) + " does not follow tick " +
-                                     std::to_string(before));
+  const bool follows = end.tick > before && end.tick - before <= kMostIdleTicks;
+  if (!follows || log_.ticks.size() >= kMostTicks) {
+    open_gap(follows ? "more ticks than a session has"
+                     : "tick " + std::to_string(end.tick) + " does not follow tick " +
+                           std::to_string(before));
     tick_.reset();
     events_.clear();
     return;

@@ -6,6 +6,10 @@
 
 namespace mortise {
 
+/// Ticks without a record between two records of a log, when nothing was sent: a day at 1000 a
+/// second. A longer pause is a damaged number, which must not keep anybody busy for ever.
+inline constexpr std::uint64_t kMostIdleTicks = 86'400'000;
+
 /// Ticks that happened and are missing in the log.
 struct LogGap {
   std::uint64_t after_tick = 0;  ///< last tick before it (0: none)

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/plain_text.h"
+
 namespace mortise {
 
 /// Little-endian output into a growing buffer.
@@ -83,9 +85,12 @@ class ByteReader {
     bytes_ = bytes_.subspan(static_cast<std::size_t>(length));
     return taken;
   }
-  std::string string() {
-    const auto data = raw(u32());
-    return {reinterpret_cast<const char*>(data.data()), data.size()};
+  std::string string() { return text(u32()); }
+  /// So many bytes as text; what is not UTF-8 in them is replaced: a damaged file must not break
+  /// what it is told in.
+  std::string text(std::uint64_t length) {
+    const auto data = raw(length);
+    return as_utf8({reinterpret_cast<const char*>(data.data()), data.size()});
   }
   /// Is there room for `count` items of at least `least_bytes` each? Else ok() becomes false: asked
   /// before anything is allocated for them.

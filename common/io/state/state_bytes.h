@@ -184,10 +184,7 @@ class Reader {
     plain(count);
     return in_.room_for(count, 1) ? count : 0;
   }
-  void text(std::string& text) {
-    const auto bytes = in_.raw(count(0));
-    text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  }
+  void text(std::string& text) { text = in_.text(count(0)); }
 
  private:
   ByteReader in_;

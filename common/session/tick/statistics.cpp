@@ -126,10 +126,19 @@ void SessionStatistics::add(const StepReport& report) {
   ++ticks_;
   accumulate(counters_, report.counters);
   for (const ClashEvent& event : report.events) take_in(event);
+  last_longer(1);
+}
+
+void SessionStatistics::add_idle(std::uint64_t ticks) {
+  ticks_ += ticks;
+  last_longer(ticks);
+}
+
+void SessionStatistics::last_longer(std::uint64_t ticks) {
   for (const ClashId id : open_) {
     ClashRow& clash = clashes_.at(id);
-    ++clash.ticks[index_of(clash.now)];
-    for_rows_of(clash, [&](Row& row) { ++row.ticks[index_of(clash.now)]; });
+    clash.ticks[index_of(clash.now)] += ticks;
+    for_rows_of(clash, [&](Row& row) { row.ticks[index_of(clash.now)] += ticks; });
   }
 }
 

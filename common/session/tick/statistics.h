@@ -36,6 +36,8 @@ class SessionStatistics {
   };
 
   void add(const StepReport& report);
+  /// The same as so many reports in which nothing happened, in one go.
+  void add_idle(std::uint64_t ticks);
   /// When a decision gives an id to another user, removes the former user's rows.
   void forget_users(std::span<const Decision> decisions);
 
@@ -75,6 +77,7 @@ class SessionStatistics {
   template <class Change>
   void for_rows_of(const ClashRow& clash, const Change& change);
   void take_in(const ClashEvent& event);
+  void last_longer(std::uint64_t ticks);  ///< the open clashes
   void end(ClashRow& clash, std::uint64_t tick);
   void drop_old_rows();
 

@@ -159,6 +159,7 @@ TEST_F(Replay, RefusesALogThatCannotBeReplayed) {
   SessionLog log = logged(*session_);
   SessionLog no_mesh = log;
   no_mesh.meshes.clear();
+  no_mesh.mesh_of_part.front() = "of no mesh that anybody makes";
   EXPECT_FALSE(verify(no_mesh, 1));
   SessionLog bad_scenario = log;
   bad_scenario.scenario_yaml = "name: [";
@@ -166,6 +167,18 @@ TEST_F(Replay, RefusesALogThatCannotBeReplayed) {
   SessionLog bad_tick = log;
   bad_tick.ticks.back().tick = UINT64_MAX;
   EXPECT_FALSE(verify(bad_tick, 1));
+}
+
+// The hash of a mesh is in the log beside it: a generator makes it again, or another one, which is
+// seen.
+TEST_F(Replay, MakesLostMeshesOfGeneratorsAgain) {
+  SessionLog log = logged(*session_);
+  ASSERT_FALSE(log.meshes.empty());
+  log.meshes.clear();
+  const auto report = verify(log, 1);
+  ASSERT_TRUE(report) << report.error().text;
+  EXPECT_FALSE(report->difference);
+  EXPECT_EQ(report->ticks_compared, session_->ticks.size());
 }
 
 // Other last bits, and so other hashes, are no difference; what a designer would notice is.

@@ -161,17 +161,20 @@ TEST_F(Restore, WhatLiesBehindAGapIsLeftOutAndCounted) {
 
 TEST(LogToRestore, IsTheNewestOfTheSessionAndNoOther) {
   TestFolder folder;
-  EXPECT_FALSE(log_to_restore(folder.path(), "demo"));
+  EXPECT_TRUE(logs_to_restore(folder.path(), "demo").empty());
   for (const char* name :
        {"demo-20260101-120000.mcap", "demo-20260101-120000_1.mcap", "demo-20251231-235959.mcap",
         "demo-2-20270101-000000.mcap", "demo-20280101-000000.mcap.begun", "demo-notes.txt"})
     folder.write(name, "x");
-  const auto file = log_to_restore(folder.path(), "demo");
-  ASSERT_TRUE(file);
-  EXPECT_EQ(file->filename(), "demo-20260101-120000_1.mcap");
-  EXPECT_EQ(log_to_restore(folder.path(), "demo-2")->filename(), "demo-2-20270101-000000.mcap");
-  EXPECT_FALSE(log_to_restore(folder.path(), "other"));
-  EXPECT_EQ(*log_to_restore(folder.path() / "x.mcap", "demo"), folder.path() / "x.mcap");
+  const auto files = logs_to_restore(folder.path(), "demo");
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_EQ(files[0].filename(), "demo-20260101-120000_1.mcap");
+  EXPECT_EQ(files[1].filename(), "demo-20260101-120000.mcap");
+  EXPECT_EQ(files[2].filename(), "demo-20251231-235959.mcap");
+  EXPECT_EQ(logs_to_restore(folder.path(), "demo-2").at(0).filename(),
+            "demo-2-20270101-000000.mcap");
+  EXPECT_TRUE(logs_to_restore(folder.path(), "other").empty());
+  EXPECT_EQ(logs_to_restore(folder.path() / "x.mcap", "demo").at(0), folder.path() / "x.mcap");
 }
 
 // A file of the future is one of before the clock was set back.
@@ -186,9 +189,10 @@ TEST(LogToRestore, OfThoseWrittenIsTheLastOneOfNow) {
   written("demo-20260101-130000.mcap", hours(1));
   written("demo-20260101-110000.mcap", -hours(1));
   written("demo-20260101-120000.mcap", std::chrono::seconds(0));
-  const auto file = log_to_restore(folder.path(), "demo", Newest::kWritten);
-  ASSERT_TRUE(file);
-  EXPECT_EQ(file->filename(), "demo-20260101-120000.mcap");
+  const auto files = logs_to_restore(folder.path(), "demo", Newest::kWritten);
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_EQ(files[0].filename(), "demo-20260101-120000.mcap");
+  EXPECT_EQ(files[2].filename(), "demo-20260101-130000.mcap");
 }
 
 TEST_F(Restore, TheNextLogKnowsWhenItsSessionWasLed) {
@@ -225,6 +229,41 @@ TEST(SystemClockSays, NoTimeBeforeTheOneItIsGiven) {
   SystemClock past(later_ns - 2 * kHour_ns);
   EXPECT_LT(past.wall_ns(), later_ns) << "the machine's, where that is later";
   EXPECT_NEAR(past.ahead_s(), 0.0, 1.0);
+}
+
+// A damaged number in a log must not keep a start busy for ever.
+TEST_F(Restore, ATickFarAheadIsDamageAndNoPause) {
+  const auto file = folder_.path() / "gap.mcap";
+  const std::uint64_t last = session_->ticks.back().tick;
+  session_->ticks.back().tick = session_->ticks.back().report.tick = std::uint64_t{1} << 56;
+  ASSERT_TRUE(write_log(*session_, file));
+  const auto log = read_session_log(file);
+  ASSERT_TRUE(log) << log.error().text;
+  EXPECT_LT(log->ticks.back().tick, last);
+  ASSERT_FALSE(log->gaps.empty());
+  EXPECT_NE(log->gaps.back().reason.find("does not follow"), std::string::npos);
+  auto scene = scene_of(*log);
+  ASSERT_TRUE(scene);
+  const auto resumed = resume_from(*log, scene->world, 1);
+  ASSERT_TRUE(resumed) << resumed.error().text;
+  EXPECT_EQ(scene->world.tick, log->ticks.back().tick);
+}
+
+// What a log tells of ticks without a record is what computing them tells.
+TEST_F(Restore, IdleTicksCountAllAtOnce) {
+  SessionStatistics one_by_one, at_once;
+  for (const TickRecord& record : log_.ticks) {
+    one_by_one.add(record.report);
+    at_once.add(record.report);
+    if (record.tick % 20 != 0) continue;
+    for (int i = 0; i < 7; ++i) one_by_one.add({});
+    at_once.add_idle(7);
+  }
+  EXPECT_EQ(at_once.ticks(), one_by_one.ticks());
+  ASSERT_EQ(at_once.clashes().size(), one_by_one.clashes().size());
+  ASSERT_FALSE(at_once.clashes().empty());
+  for (const auto& [id, clash] : at_once.clashes())
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(clash.ticks[c], one_by_one.clashes().at(id).ticks[c]);
 }
 
 }  // namespace
