@@ -251,16 +251,20 @@ int run_recover(const RecoverOptions& options) {
            {"ticks", recovery->ticks},
            {"messages", recovery->messages},
            {"lost_chunks", recovery->lost_chunks},
+           {"verified_to_tick", recovery->verified_to_tick},
+           {"not_verified", recovery->not_verified},
            {"notes", recovery->notes}});
-    return kExitOk;
+    return recovery->differs ? kExitMismatch : kExitOk;
   }
   for (const std::string& note : recovery->notes)
     std::cout << "lost or unexpected: " << note << '\n';
   std::cout << options.out.string() << ": " << recovery->ticks << " ticks, " << recovery->messages
             << " messages; " << recovery->lost_chunks << " chunks lost; "
             << (recovery->was_complete ? "the log had been closed" : "the log had not been closed")
+            << "; verified up to tick " << recovery->verified_to_tick
+            << (recovery->not_verified.empty() ? "" : ", not beyond: " + recovery->not_verified)
             << '\n';
-  return kExitOk;
+  return recovery->differs ? kExitMismatch : kExitOk;
 }
 
 }  // namespace mortise

@@ -101,6 +101,34 @@ TEST_F(ReplayProgram, RecoversALogWithoutTail) {
       << "an existing file is never overwritten";
 }
 
+// A file that recover leaves behind can be opened and verified, wherever the log was cut; where
+// that cannot be, there is no file.
+TEST_F(ReplayProgram, RecoversOrLeavesNoFile) {
+  const TemporaryFile file("program_whole.mcap"), cut("program_part.mcap");
+  ASSERT_TRUE(test::write_log(*session_, file.path()));
+  const auto size = std::filesystem::file_size(file.path());
+  int recovered = 0, refused = 0;
+  for (const int percent : {1, 3, 5, 8, 12, 20, 35, 50, 70, 90, 99}) {
+    SCOPED_TRACE(percent);
+    const TemporaryFile out("program_out.mcap");
+    std::filesystem::copy_file(file.path(), cut.path(),
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(cut.path(), size * static_cast<std::uintmax_t>(percent) / 100);
+    const Outcome outcome = run("recover --json " + quoted(cut) + " --out " + quoted(out));
+    if (outcome.exit_code == 0) {
+      ++recovered;
+      EXPECT_EQ(run("verify " + quoted(out)).exit_code, 0);
+      EXPECT_EQ(outcome.document()["verified_to_tick"], outcome.document()["ticks"]);
+    } else {
+      ++refused;
+      EXPECT_EQ(outcome.exit_code, 3);
+      EXPECT_FALSE(std::filesystem::exists(out.path()));
+    }
+  }
+  EXPECT_GE(recovered, 2);
+  EXPECT_GE(refused, 2);
+}
+
 // A sweep in two shards, put together, is the sweep.
 TEST_F(ReplayProgram, ShardsOfASweepComeTogether) {
   const TemporaryFile file("sweep.mcap"), first("first.json"), second("second.json");

@@ -5,6 +5,7 @@
 #include "common/io/log/log_layout.h"
 #include "common/io/log/mcap_reader.h"
 #include "common/io/log/mcap_writer.h"
+#include "common/io/log/replay.h"
 #include "common/io/log/session_log_read.h"
 
 namespace mortise {
@@ -65,6 +66,22 @@ class Copy {
   std::uint64_t time_ns_ = 0;
 };
 
+// What was written is read as anybody would read it.
+Status prove(const std::filesystem::path& file, Recovery& recovery) {
+  const Result<SessionLog> log = read_session_log(file);
+  if (!log) return log.error();
+  if (log->ticks.empty() && !recovery.was_complete)
+    return fail(Code::kInvalidInput, "no tick of the session is left");
+  const Result<ReplayReport> report = verify(*log, 1);
+  if (!report) return report.error();
+  recovery.verified_to_tick = report->verified_to_tick;
+  recovery.differs = report->difference.has_value();
+  recovery.not_verified = report->difference ? "tick " + std::to_string(report->difference->tick) +
+                                                   " differs: " + report->difference->what
+                                             : report->not_verifiable;
+  return ok();
+}
+
 }  // namespace
 
 Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
@@ -85,11 +102,18 @@ Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
     account["note/" + std::to_string(i + 1)] = readable->notes[i];
   out.add_metadata(log_layout::kRecoveryMetadata, account);
   if (const Status closed = out.close(); !closed) return closed.error();
-  return Recovery{.ticks = readable->ticks.size(),
-                  .messages = scan->messages,
-                  .lost_chunks = scan->lost_chunks,
-                  .was_complete = scan->complete,
-                  .notes = std::move(readable->notes)};
+  Recovery recovery{.ticks = readable->ticks.size(),
+                    .messages = scan->messages,
+                    .lost_chunks = scan->lost_chunks,
+                    .was_complete = scan->complete,
+                    .notes = std::move(readable->notes)};
+  const Status whole = prove(new_file, recovery);
+  if (whole) return recovery;
+  std::error_code ignored;
+  std::filesystem::remove(new_file, ignored);
+  return fail(
+      Code::kInvalidInput,
+      damaged.string() + ": not replayable, and nothing was written: " + whole.error().text);
 }
 
 }  // namespace mortise

@@ -13,8 +13,15 @@ struct Recovery {
   std::uint64_t ticks = 0, messages = 0, lost_chunks = 0;
   bool was_complete = false;
   std::vector<std::string> notes;  ///< what was lost, in words
+  /// Of the new log, computed again: the last tick that agrees, and why it is not the last of all;
+  /// empty: it is.
+  std::uint64_t verified_to_tick = 0;
+  std::string not_verified = {};
+  bool differs = false;  ///< a tick was computed and is another one
 };
-/// Copies all that is whole into a new, closed log; holes are marked as gaps.
+/// Copies all that is whole into a new, closed log; holes are marked as gaps. Then reads that log
+/// and computes it again, which costs what verify() costs. Fails (kInvalidInput: "not replayable")
+/// and leaves no file when the new log has no scene or no tick of a session that had some.
 Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
                                      const std::filesystem::path& new_file);
 

@@ -42,7 +42,11 @@ struct SampleHeader {
   TriangleMesh small = tetrahedron(1.0), large = tetrahedron(20.0);
   LogHeader header{.session = "sample",
                    .scenario_name = "sample.yaml",
-                   .scenario_yaml = "name: sample  # Ø20 H7/g6\n",
+                   .scenario_yaml =
+                       "name: sample  # Ø20 H7/g6\nunits: mm\nparts:\n"
+                       "  - {name: a, mesh: {file: part0.stl, unit: mm}}\n"
+                       "  - {name: b, mesh: {file: part1.stl, unit: mm}}\n"
+                       "  - {name: c, mesh: {file: part2.stl, unit: mm}}\n",
                    .meshes = {{mesh_hash(small), &small}, {mesh_hash(large), &large}},
                    .mesh_of_part = {mesh_hash(small), mesh_hash(large), mesh_hash(small)},
                    .imports = {}};
