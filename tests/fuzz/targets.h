@@ -20,6 +20,10 @@ bool fuzz_inbox(std::span<const std::uint8_t> input);
 /// out. Says whether it was read.
 bool fuzz_log(std::span<const std::uint8_t> input);
 
+/// A scenario file: read, linted, its scene made, its log begun, judged. Meshes are not read from
+/// files. Says whether it was usable.
+bool fuzz_scenario(std::span<const std::uint8_t> input);
+
 /// Good inputs, made by our own writers: the start of all mutations.
 std::vector<std::string> wire_seeds();
 std::vector<std::string> inbox_seeds();

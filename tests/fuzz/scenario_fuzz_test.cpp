@@ -1,0 +1,163 @@
+// Mutated scenarios, from the file to the verdict: a scenario is used or refused with findings of
+// one line each, in bounded time, and nothing behind the reader falls over what it let through.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string_view>
+
+#include "tests/fuzz/mutated.h"
+#include "tests/fuzz/targets.h"
+#include "tests/support/effort.h"
+#include "tests/support/small_scenarios.h"
+
+namespace mortise::test {
+namespace {
+
+// Everything that a scenario may say, small.
+constexpr const char* kRich = R"(name: rich
+units: mm
+tick_rate_hz: 60
+policy: slide
+max_jump: 50
+lease_s: 5
+deviation: recognized
+parts:
+  - name: plate
+    generator: {kind: plate_with_bore, bore: 20, facets: 8}
+    pose: {position: [0, 0, 1], rotation_deg: [0, 0, 30]}
+    tolerance: "±0.05"
+    features:
+      bore: {iso: H7, position: {zone: 0.05, at: mmc}}
+  - name: peg
+    generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1, facets: 8, phase_deg: 5.6}
+    moving: true
+    pose: {position: [0, 0, -10], axis_angle: {axis: [0, 0, 1], angle_deg: 10}}
+    features:
+      journal: {tolerance: {profile: 0.02, unequal: 0.01}}
+  - name: solid
+    mesh: {file: a.stl, unit: in, scale: 0.5}
+    chord_error: 0.01
+    pose: {position: [5, 5, 5], quaternion: [1, 0, 0, 0]}
+    deviation: none
+    features:
+      floor: {kind: plane, point: [0, 0, 0], axis: [0, 0, -1], tolerance: {lower: -0.01, upper: 0.02}}
+      ball: {kind: sphere, point: [0, 0, 0], radius: 3, along: [0, 5]}
+  - name: row
+    generator: {kind: block, x: 4, y: 4, z: 4}
+    repeat: {count: [2, 2, 1], step: [4, 5, 0]}
+  - generator: {kind: block, x: 3, y: 3, z: 3}
+    instances:
+      - {name: one, pose: {position: [30, 0, 0]}}
+      - {name: two, pose: {position: [31, 0, 0]}, moving: true}
+fits:
+  - {between: [plate.bore, peg.journal], code: Ø20 H7/g6}
+  - {between: [one, "t*"], plus_minus: 0.02}
+exclusions:
+  - {between: [row_1, solid], reason: of another line}
+users:
+  - {name: ann, may_hold: ["*"], may: [policy, review], role: designer}
+  - {name: eve, may_hold: []}
+)";
+
+// What goes wrong in numbers and words, and what has a meaning in YAML.
+constexpr std::array<std::string_view, 44> kWords = {
+    "0",         "-1",       "1e-300",    "1e300",       "1e15",     "-1e9",  "1e9",         "1e12",
+    "1e-7",      ".nan",     ".inf",      "4294967296",  "1e-12",    "~",     "true",        "[]",
+    "{}",        "''",       "\"\\x01\"", "\"\\u202e\"", "J\xe4ger", "Jäger", "&a x",        "*a",
+    "<<",        "!!binary", "|",         ">",           "- ",       "? ",    ": ",          "#",
+    "\t",        "\r\n",     "*",         ".",           "H7/g6",    "±0.1",  "profile 0.2", "a.b",
+    "[1, 2, 3]", "stop",     "0x10",      "Ø0"};
+
+std::size_t below(std::mt19937_64& random, std::size_t n) { return n == 0 ? 0 : random() % n; }
+
+bool in_word(char c) {
+  return c > ' ' && std::string_view("[]{},:\"'").find(c) == std::string_view::npos;
+}
+
+// One to three changes of words and lines, so that most results are still YAML.
+std::string mutated_words(std::string text, std::mt19937_64& random) {
+  for (std::size_t changes = 1 + below(random, 3); changes > 0 && !text.empty(); --changes) {
+    std::size_t at = below(random, text.size());
+    const auto line_end = [&](std::size_t from) {
+      return std::min(text.find('\n', from), text.size() - 1) + 1;
+    };
+    const std::size_t begin = text.rfind('\n', at) + 1;  // npos + 1 is the first line
+    switch (below(random, 6)) {
+      case 0:
+      case 1:
+      case 2: {  // another word
+        while (at > 0 && !in_word(text[at])) --at;
+        std::size_t first = at, last = at;
+        while (first > 0 && in_word(text[first - 1])) --first;
+        while (last < text.size() && in_word(text[last])) ++last;
+        text.replace(first, last - first, kWords[below(random, kWords.size())]);
+        break;
+      }
+      case 3:  // a line less
+        text.erase(begin, line_end(at) - begin);
+        break;
+      case 4: {  // a line twice, or somewhere else
+        const std::string line = text.substr(begin, line_end(at) - begin);
+        const std::size_t to = text.rfind('\n', below(random, text.size())) + 1;
+        text.insert(to, line);
+        break;
+      }
+      default:  // deeper or less deep
+        if (begin < text.size() && text[begin] == ' ')
+          text.erase(begin, 2);
+        else
+          text.insert(begin, "  ");
+    }
+  }
+  return text;
+}
+
+bool feed(const std::string& bytes) {
+  return fuzz_scenario({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+std::vector<std::string> seeds() { return {kRich, blocks_yaml(), peg_yaml()}; }
+
+// What falls over is left behind in the file that MORTISE_LAST names.
+void keep(const std::string& bytes) {
+  static const char* const file = std::getenv("MORTISE_LAST");
+  if (file != nullptr) std::ofstream(file, std::ios::binary) << bytes;
+}
+
+TEST(ScenarioFuzz, TheSeedsAreUsable) {
+  for (const std::string& seed : seeds()) EXPECT_TRUE(feed(seed)) << seed.substr(0, 40);
+}
+
+TEST(ScenarioFuzz, MutatedScenariosAreUsedOrRefused) {
+  std::mt19937_64 random(20'261'125);
+  const std::vector<std::string> from = seeds();
+  const int count = effort(1500);
+  int used = 0;
+  double slowest_s = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const std::string& seed = from[below(random, from.size())];
+    std::string bytes = mutated_words(seed, random);
+    if (below(random, 4) == 0) bytes = mutated(std::move(bytes), random);
+    keep(bytes);
+    const auto begun = std::chrono::steady_clock::now();
+    used += feed(bytes);
+    slowest_s = std::max(
+        slowest_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  }
+  std::printf("%d mutated scenarios, %d of them usable; the slowest took %.2f s\n", count, used,
+              slowest_s);
+  EXPECT_GT(used, count / 20) << "hardly anything gets through: only refusals are tested";
+  EXPECT_LT(used, count - count / 20) << "the mutations are too mild";
+  if (timed()) EXPECT_LT(slowest_s, 5.0);
+}
+
+}  // namespace
+}  // namespace mortise::test
