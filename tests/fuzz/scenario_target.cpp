@@ -17,7 +17,7 @@ namespace mortise::test {
 namespace {
 
 // Beyond this an honest scenario takes its time, and a run of many would see few of them.
-constexpr std::size_t kMostParts = 40, kMostTriangles = 6000;
+constexpr std::size_t kMostParts = 40, kMostTriangles = 2500;
 
 void need_line(const std::string& text) {
   MORTISE_CHECK(!text.empty() && is_text(text), "one line of text");

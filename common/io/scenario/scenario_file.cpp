@@ -157,9 +157,6 @@ void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario)
     if (!role) map.error("role", "'" + *word + "' is not known; write designer, observer or bot");
     user.role = role.value_or(Role::kUnknown);
   }
-  for (const auto& other : scenario.users)
-    if (!user.name.empty() && other.name == user.name)
-      map.error("user " + in_quotes(user.name) + " stands here twice; keep one");
   scenario.users.push_back(std::move(user));
 }
 
@@ -180,13 +177,13 @@ void read_list(YamlContext& context, const YamlMap& top, std::string_view key, S
 
 // 3. what only the whole can tell
 
-void check_names(YamlContext& context, const Scenario& scenario) {
+template <class Named>
+void check_names(YamlContext& context, const std::string& what, const std::vector<Named>& all) {
   std::set<std::string> names;
-  for (const auto& part : scenario.parts)
-    if (!part.name.empty() && !names.insert(part.name).second)
-      context.findings.push_back({true, context.file + ":" + std::to_string(part.at.line) +
-                                            ": part " + in_quotes(part.name) +
-                                            " stands here twice; rename one"});
+  for (const Named& one : all)
+    if (!one.name.empty() && !names.insert(one.name).second)
+      context.error(one.at.line,
+                    what + " " + in_quotes(one.name) + " stands here twice; rename or remove one");
 }
 
 ScenarioReading read_document(const YAML::Node& document, const std::string& name) {
@@ -208,7 +205,8 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
       top.error("parts", "is empty; a scenario needs at least one part");
     if (reading.scenario.parts.size() > kMaxParts)
       top.error("parts", "more than " + std::to_string(kMaxParts) + " parts; split the scenario");
-    check_names(context, reading.scenario);
+    check_names(context, "part", reading.scenario.parts);
+    check_names(context, "user", reading.scenario.users);
     const auto& parts = reading.scenario.parts;
     if (!parts.empty() &&
         std::none_of(parts.begin(), parts.end(), [](auto& p) { return p.moving; }))

@@ -24,6 +24,7 @@ constexpr std::uint64_t kMaxExpandedNodes = 8'000'000;
 
 /// Findings that are told of one file, and unknown keys of one mapping: more is read by nobody.
 constexpr std::size_t kMostFindings = 200, kMostUnknownKeys = 20;
+constexpr std::size_t kLongestFinding_bytes = 1000;
 /// A word of a list: the names of a part and a feature with a dot between.
 constexpr std::size_t kLongestWord_bytes = 2 * kMostName_bytes + 1;
 
@@ -125,9 +126,10 @@ std::string list_of(const std::vector<std::string>& words) {
 
 }  // namespace
 
-void YamlContext::say(bool is_error, const YAML::Node& at, const std::string& text) {
-  if (findings.size() < kMostFindings)
-    findings.push_back({is_error, file + ":" + std::to_string(line_of(at)) + ": " + text});
+void YamlContext::say(bool is_error, int line, const std::string& text) {
+  if (findings.size() < kMostFindings)  // what it quotes may be anything, of any length
+    findings.push_back({is_error, file + ":" + std::to_string(line) + ": " +
+                                      one_line(text.substr(0, kLongestFinding_bytes))});
   else if (findings.size() == kMostFindings)
     findings.push_back({is_error, file + ": has more findings; correct these first"});
   else

@@ -22,12 +22,13 @@ struct YamlContext {
   std::vector<Finding> findings;
   double unit_mm = 1.0;
 
-  void error(const YAML::Node& at, const std::string& text) { say(true, at, text); }
-  void warning(const YAML::Node& at, const std::string& text) { say(false, at, text); }
+  void error(const YAML::Node& at, const std::string& text) { say(true, line_of(at), text); }
+  void error(int line, const std::string& text) { say(true, line, text); }
+  void warning(const YAML::Node& at, const std::string& text) { say(false, line_of(at), text); }
   int line_of(const YAML::Node& node) const { return node.Mark().line + 1; }
 
  private:
-  void say(bool is_error, const YAML::Node& at, const std::string& text);
+  void say(bool is_error, int line, const std::string& text);
 };
 
 /// One mapping of the document. The constructor reports unknown and duplicate keys. A node that is
