@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 #include "idl/network_options.h"
 
 namespace mortise {
@@ -127,7 +128,7 @@ CommandLine read_command_line(int argc, char** argv) {
     if (!o.standby_of.empty()) o.network.session = o.standby_of;
     if (!peers.empty()) o.network.server = o.network.interface + "," + peers;
   } catch (const CLI::ParseError& error) {
-    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    line.exit_code = exit_of_usage(app, error);
   }
   return line;
 }

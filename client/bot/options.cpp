@@ -8,6 +8,7 @@
 #include "client/bot/load_report.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 #include "idl/network_options.h"
 
 namespace mortise {
@@ -141,7 +142,7 @@ BotCommandLine read_bot_command_line(int argc, char** argv) {
     o.network.meshes = false;  // a bot does not look at parts
     o.network.features = o.behaviour == "guided" && !o.observer;
   } catch (const CLI::ParseError& error) {
-    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    line.exit_code = exit_of_usage(app, error);
   }
   return line;
 }

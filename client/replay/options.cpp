@@ -9,6 +9,7 @@
 #include "client/replay/what_if_command.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 #include "idl/network_options.h"
 
 namespace mortise {
@@ -173,7 +174,7 @@ int run_replay_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+    return exit_of_usage(app, error);
   }
   return code;
 }

@@ -6,21 +6,23 @@
 #include <filesystem>
 
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 #include "idl/network_options.h"
 
 namespace mortise::web {
 namespace {
 
-/// Where the page lies: in the tree that one stands in, else where it was installed with the
+/// Where the page lies: in the tree of this build, else where it was installed with the
 /// program.
 std::string default_page() {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  const fs::path here = "client/web/page";
-  const fs::path installed =
-      fs::read_symlink("/proc/self/exe", ignored).parent_path() / "../share/mortise/page";
-  if (fs::exists(here, ignored) || !fs::exists(installed, ignored)) return here.string();
-  return installed.lexically_normal().string();
+  const fs::path page = "client/web/page";
+  // Of the sources that this was built in (build/PRESET/bin), or as installed.
+  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const fs::path& place : {bin / "../../.." / page, bin / "../share/mortise/page"})
+    if (fs::exists(place, ignored)) return place.lexically_normal().string();
+  return page.string();
 }
 
 void add_what_is_shown(CLI::App& app, WebOptions& o) {
@@ -112,7 +114,7 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
     app.parse(argc, argv);
     check_together(o);
   } catch (const CLI::ParseError& error) {
-    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    line.exit_code = exit_of_usage(app, error);
   }
   return line;
 }

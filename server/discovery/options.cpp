@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 #include "idl/network_options.h"
 
 namespace mortise {
@@ -31,7 +32,7 @@ DiscoveryCommand read_discovery_command(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    command.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    command.exit_code = exit_of_usage(app, error);
   }
   return command;
 }

@@ -86,7 +86,9 @@ const std::vector<NamedHere>& named_here() {
        std::regex("openssl/.*"),
        {"client/web/", "idl/identity.", "tests/network/page_client."}},
       {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
-      {"CLI11", std::regex("CLI/.*"), {"idl/network_options.", "server/", "client/", "tests/"}},
+      {"CLI11",
+       std::regex("CLI/.*"),
+       {"common/io/usage.", "idl/network_options.", "server/", "client/", "tests/"}},
   };
   return rules;
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 #include "idl/network_options.h"
 
 namespace mortise {
@@ -76,7 +77,7 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
     if (command.places.empty())
       throw CLI::ValidationError("--domain and --server-port need a number");
   } catch (const CLI::ParseError& error) {
-    command.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    command.exit_code = exit_of_usage(app, error);
   }
   return command;
 }

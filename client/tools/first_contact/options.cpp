@@ -1,16 +1,15 @@
 #include "client/tools/first_contact/options.h"
 
 #include <CLI/CLI.hpp>
-#include <map>
 
+#include "common/base/length_unit.h"
 #include "common/base/result.h"
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 
 namespace mortise {
 
 FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
-  const std::map<std::string, double> units_mm = {
-      {"um", 1e-3}, {"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}};
   FirstContactCommandLine line;
   FirstContactOptions& o = line.options;
   CLI::App app{
@@ -25,7 +24,7 @@ FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
       ->required();
   std::string unit = "mm";
   app.add_option("--unit", unit, "Unit of every length in the three files: mm, cm, m, in or um")
-      ->check(CLI::IsMember({"mm", "cm", "m", "in", "um"}))
+      ->check(CLI::IsMember(length_unit_names()))
       ->capture_default_str();
   app.add_option("--accuracy-mm", o.accuracy_mm, "Distance that counts as contact, mm")
       ->check(CLI::PositiveNumber)
@@ -42,9 +41,9 @@ FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
       "t_clear).\nExit codes: 0 ok, 1 cannot write, 2 usage, 3 bad input.");
   try {
     app.parse(argc, argv);
-    o.unit_mm = units_mm.at(unit);
+    o.unit_mm = *length_unit_mm(unit);
   } catch (const CLI::ParseError& error) {
-    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    line.exit_code = exit_of_usage(app, error);
   }
   return line;
 }

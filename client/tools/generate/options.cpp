@@ -6,6 +6,7 @@
 
 #include "common/base/result.h"
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 
 namespace mortise {
 
@@ -31,7 +32,7 @@ GenerateCommandLine read_generate_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    line.exit_code = app.exit(error) == 0 ? kExitOk : kExitUsage;
+    line.exit_code = exit_of_usage(app, error);
     return line;
   }
   for (const std::string& word : words) {

@@ -1,0 +1,65 @@
+#include "common/io/usage.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/base/in_quotes.h"
+#include "common/base/nearest_word.h"
+#include "common/base/result.h"
+
+namespace mortise {
+namespace {
+
+std::vector<std::string> options_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::App* command : app.get_subcommands()) {
+    const std::vector<std::string> more = options_of(*command);
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+std::vector<std::string> commands_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+// What is wrong with the first word that the program does not know; empty when it knows all.
+std::string unknown_word(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining(true);
+  for (const std::string& word : words)
+    if (word.starts_with("-")) {
+      const std::string name = word.substr(0, word.find('='));
+      const std::string nearest = nearest_word(name, options_of(app));
+      return "no such option: " + name +
+             (nearest.empty() ? "; --help lists them" : "; did you mean " + nearest + "?");
+    }
+  if (words.empty()) return {};
+  const std::vector<std::string> commands = commands_of(app);
+  if (!commands.empty() && app.get_subcommands().empty())
+    return "no such command: " + words.front() + did_you_mean(words.front(), commands);
+  return in_quotes(words.front()) + " is one argument too many; --help says what is expected";
+}
+
+}  // namespace
+
+int exit_of_usage(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    app.exit(error);
+    return kExitOk;
+  }
+  std::string wrong = unknown_word(app);
+  if (wrong.empty()) wrong = std::string(error.what()) + "; --help says what is expected";
+  std::fprintf(stderr, "%s: %s\n",
+               std::filesystem::path(app.get_name()).filename().string().c_str(), wrong.c_str());
+  return kExitUsage;
+}
+
+}  // namespace mortise
