@@ -4,7 +4,7 @@
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$1/mortise" "$1"/packages*.txt "$work"
+cp "$1/mortise" "$1"/packages*.txt "$1/CMakeLists.txt" "$work"
 mkdir -p "$work/bin" "$work/tests/bench" "$work/tests/unit/io/mcap_check/node_modules" "$work/client/tools/keys"
 cp "$1/tests/summary.awk" "$work/tests"
 touch "$work/tests/bench/session_bench.cpp"
@@ -19,9 +19,10 @@ for option; do case $option in -D*) echo "$option" | sed 's/-D\(.*\)=/\1:BOOL=/'
 TXT
 # Nothing to do where `fresh` is; otherwise a program is made that says its name and what it is given.
 cat >>"$work/bin/ninja" <<'TXT'
-[ "$3" != -n ] || { [ ! -e fresh ] || echo 'ninja: no work to do.'; exit 0; }
+folder=$2 # absolute
+[ "$3" != -n ] || { [ ! -e "$folder/fresh" ] || echo 'ninja: no work to do.'; exit 0; }
 shift 2
-for target; do printf '#!/bin/sh\necho "ran %s $*"\n' "$target" >"build/release/bin/$target"; chmod +x "build/release/bin/$target"; done
+for target; do printf '#!/bin/sh\necho "ran %s $* in $PWD"\n' "$target" >"$folder/bin/$target"; chmod +x "$folder/bin/$target"; done
 TXT
 # Every package is there.
 echo 'shift 2; for package; do echo "$package installed"; done' >>"$work/bin/dpkg-query"
@@ -52,25 +53,25 @@ done
 exits 0 lint some.yaml
 grep -q 'ran mortise-lint some.yaml' said || fail "lint: $(cat said)"
 called 'cmake --preset release -DMORTISE_TESTS=OFF'
-called '^ninja -C build/release mortise-lint$'
+called "^ninja -C $work/build/release mortise-lint\$"
 exits 0 lint some.yaml
-called '^ninja -C build/release mortise-lint$'
+called "^ninja -C $work/build/release mortise-lint\$"
 not_called '^cmake'
-touch fresh
+touch build/release/fresh
 exits 0 lint some.yaml
-not_called '^ninja -C build/release mortise-lint$'
-grep -qx 'ran mortise-lint some.yaml' said || fail "more than the program is heard: $(cat said)"
-rm fresh
+not_called "^ninja -C $work/build/release mortise-lint\$"
+grep -qx "ran mortise-lint some.yaml in $work" said || fail "more than the program is heard: $(cat said)"
+rm build/release/fresh
 
 # 3. the demo builds what it runs
 exits 0 demo --seconds 3
-called '^ninja -C build/release mortise-server mortise-bot$'
+called "^ninja -C $work/build/release mortise-server mortise-bot\$"
 
 # 4. tests are configured when they are asked for; the long ones with --soak; then not again
 exits 0 test -R some_name
 called '^cmake --preset release -DMORTISE_TESTS=ON -DMORTISE_SOAK=OFF$'
-called '^ninja -C build/release all$'
-called '^ctest --test-dir build/release .* -R some_name$'
+called "^ninja -C $work/build/release all\$"
+called "^ctest --test-dir $work/build/release .* -R some_name\$"
 exits 0 test
 not_called '^cmake'
 exits 0 test --soak
@@ -78,10 +79,42 @@ called '^cmake --preset release -DMORTISE_SOAK=ON$'
 called '^ctest .* -C Soak$'
 exits 0 test --sanitize thread
 called '^cmake --preset tsan '
-called '^ninja -C build/tsan sanitize-thread$'
-called '^ctest --test-dir build/tsan .* -L \^sanitize-thread\$$'
+called "^ninja -C $work/build/tsan sanitize-thread\$"
+called '^ctest --test-dir .*/build/tsan .* -L \^sanitize-thread\$$'
 
-# 5. the last line of what was tested
+# 5. the folder of the caller stays his: programs run there, with his paths, and only builds write into the checkout
+his=$work/his
+mkdir "$his"
+before=$(cd "$work" && find . -path ./his -prune -o -path ./build -prune -o -print | sort)
+(cd "$his" && exits_there() { "$work/mortise" "$@" >said 2>&1 || fail "mortise $* elsewhere: $(cat said)"; }
+  exits_there judge scene.yaml --picture out.png
+  grep -qx "ran mortise-judge scene.yaml --picture out.png in $his" said || fail "judge elsewhere: $(cat said)"
+  exits_there demo --seconds 3
+  grep -q "ran mortise-server $work/scenarios/gearbox.yaml .* --log sessions/.* in $his" said || fail "demo elsewhere: $(cat said)"
+  [ -d sessions ] || fail "the demo's logs are not in the folder of its caller")
+after=$(cd "$work" && find . -path ./his -prune -o -path ./build -prune -o -print | sort)
+[ "$before" = "$after" ] || fail "written into the checkout: $(diff <(echo "$before") <(echo "$after"))"
+called "^ninja -C $work/build/release mortise-server mortise-bot$"
+ln -s "$work/mortise" "$his/link"
+(cd "$his" && ./link lint a.yaml) | grep -q "ran mortise-lint a.yaml in $his" || fail "through a link"
+exits 0 --version
+grep -qx 'mortise [0-9.]*' said || fail "version: $(cat said)"
+
+# 6. a command that there is not: the one that was meant
+while read -r typed meant; do
+  exits 2 $typed x
+  grep -q "no such command: $typed; did you mean $meant?" said || fail "$typed: $(cat said)"
+  [ "$(wc -l <said)" -eq 1 ] || fail "$typed: more than one line"
+done <<'TXT'
+check judge
+judg judge
+lnit lint
+sevrer server
+a.stl judge
+inspekt inspect
+TXT
+
+# 7. the last line of what was tested
 cat >results.xml <<'TXT'
 	<testcase name="a" classname="a" time="0.1" status="run">
 	</testcase>
