@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "common/base/in_quotes.h"
 #include "common/geometry/topology.h"
 #include "common/io/mesh/importer_process.h"
 #include "common/io/mesh/mesh_clean.h"
@@ -18,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 6> kReadable = {".stl", ".obj", ".ply", ".gltf", ".glb", ".dae"};
+/// Shapes all the same, and refused with a reason of their own.
+constexpr std::array<const char*, 5> kOther = {".3mf", ".step", ".stp", ".iges", ".igs"};
 
 /// Ten kilometres: beyond it doubles resolve less than a nanometre in the engine's products, and no
 /// part is so large; a wrong unit is.
@@ -47,15 +50,20 @@ std::string number(double x) {
 std::string objection(const fs::path& file, const std::string& extension, double unit_mm) {
   if (!std::isfinite(unit_mm) || unit_mm <= 0.0)
     return "the unit must be a positive number of mm, not " + number(unit_mm);
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) return "is a folder; name a mesh file in it";
+  if (extension == ".yaml" || extension == ".yml") return "is a scenario, and a mesh is expected";
   if (extension == ".3mf")
     return "3MF is not read (its reader crashes on valid files); export STL, OBJ, PLY, glTF or DAE";
   if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs")
     return "STEP and IGES hold exact surfaces, no triangles; tessellate it in CAD (e.g. to STL)";
   if (std::find(kReadable.begin(), kReadable.end(), extension) == kReadable.end())
-    return "unknown format '" + extension + "'; known are .stl .obj .ply .gltf .glb .dae";
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) return "there is no such file; paths are relative to the scenario";
+    return (extension.empty() ? "has no ending that says its format"
+                              : "unknown format " + in_quotes(extension)) +
+           "; known are .stl .obj .ply .gltf .glb .dae";
+  if (!fs::exists(status))
+    return "there is no such file; a scenario's paths start at the scenario, others here";
   if (!fs::is_regular_file(status)) return "this is not a regular file";
   const auto size = fs::file_size(file, error);
   if (error) return "it cannot be read: " + error.message();
@@ -163,6 +171,13 @@ Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, doubl
 }
 
 }  // namespace
+
+bool is_mesh_name(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  const auto is = [&](const char* known) { return extension == known; };
+  return std::any_of(kReadable.begin(), kReadable.end(), is) ||
+         std::any_of(kOther.begin(), kOther.end(), is);
+}
 
 Result<ImportedMesh> import_mesh(const fs::path& file, double unit_mm,
                                  const ImportLimits& limits) try {

@@ -28,13 +28,18 @@ struct ImportReport {
   /// half of its last digit where the file was written with six or seven, plus what its node
   /// transforms add and what was moved in welding.
   double quantum_mm = 0.0;
-  std::vector<std::string> notes;  ///< what a designer should know, one line each; often empty
+  /// What a designer should know, one line each; often empty. Told by every program that reads the
+  /// mesh (scene_load makes findings of them), and to all clients of a session.
+  std::vector<std::string> notes;
 };
 
 struct ImportedMesh {
   TriangleMesh mesh;
   ImportReport report;
 };
+
+/// Does the name end as that of a mesh or of another shape (STEP)? The file is not looked at.
+bool is_mesh_name(const std::filesystem::path& file);
 
 /// Reads STL, OBJ, PLY, glTF/GLB or DAE with assimp in a child process with limits, since a hostile
 /// file can crash it. Node transforms applied, all meshes of the file joined, points welded by

@@ -5,7 +5,9 @@
 #include <set>
 
 #include "common/base/in_quotes.h"
+#include "common/base/length_unit.h"
 #include "common/base/plain_text.h"
+#include "common/io/mesh/mesh_import.h"
 #include "common/io/scenario/scenario_parts.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/io/scenario/scenario_yaml.h"
@@ -18,11 +20,6 @@ constexpr const char* kBadName = "must be short and printable: up to 128 bytes t
 // 1. the head: everything but the lists
 
 void read_units(YamlContext& context, const YamlMap& top) {
-  struct Unit {
-    const char* name;
-    double mm;
-  };
-  constexpr Unit kUnits[] = {{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}, {"um", 1e-3}};
   const auto text = top.text("units");
   if (!text) {
     if (!top.has("units"))
@@ -31,12 +28,11 @@ void read_units(YamlContext& context, const YamlMap& top) {
           "(known: mm, cm, m, in, um)");
     return;
   }
-  for (const Unit& unit : kUnits)
-    if (*text == unit.name) {
-      context.unit_mm = unit.mm;
-      return;
-    }
-  top.error("units", "'" + *text + "' is not known; write mm, cm, m, in or um");
+  if (const auto mm = length_unit_mm(*text))
+    context.unit_mm = *mm;
+  else
+    top.error("units",
+              in_quotes(*text) + " is not known" + did_you_mean(*text, length_unit_names()));
 }
 
 void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
@@ -44,8 +40,9 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
   if (const auto name = top.text("name")) {
     scenario.name = *name;
     if (!is_name(*name)) top.error("name", kBadName);
-  } else if (!top.has("name"))
-    top.error("name is missing: give the scenario a name");
+  } else if (!top.has("name")) {
+    top.error("name is missing: give the scenario a name, e.g. name: my_scene");
+  }
 
   if (const auto rate = top.number("tick_rate_hz")) {
     if (*rate >= 1.0 && *rate <= 1000.0)
@@ -106,9 +103,6 @@ void read_fit(YamlContext& context, const YAML::Node& node, Scenario& scenario) 
   const Side a = split_side((*between)[0]), b = split_side((*between)[1]);
   fit.part_a = a.part, fit.feature_a = a.feature;
   fit.part_b = b.part, fit.feature_b = b.feature;
-  if (way == "code" && (a.feature.empty() || b.feature.empty()))
-    map.error("between",
-              "a fit code needs a feature on both sides, e.g. [plate.bore, pin.journal]");
   if (way.empty() || (way != "code" && !fit.tolerance)) return;
   scenario.fits.push_back(std::move(fit));
 }
@@ -137,8 +131,9 @@ void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario)
     user.name = *name;
     if (!is_name(*name, kMostUserName_bytes))
       map.error("name", "must be short and printable: up to 64 bytes that one can see");
-  } else if (!map.has("name"))
-    map.error("name is missing");
+  } else if (!map.has("name")) {
+    map.error("name is missing: give the user one, e.g. name: ann");
+  }
   if (const auto may_hold = map.texts("may_hold"))
     user.may_hold = *may_hold;
   else if (!map.has("may_hold"))
@@ -207,10 +202,6 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
       top.error("parts", "more than " + std::to_string(kMaxParts) + " parts; split the scenario");
     check_names(context, "part", reading.scenario.parts);
     check_names(context, "user", reading.scenario.users);
-    const auto& parts = reading.scenario.parts;
-    if (!parts.empty() &&
-        std::none_of(parts.begin(), parts.end(), [](auto& p) { return p.moving; }))
-      context.warning(document, "no part has moving: true; nobody can move anything");
   }
   reading.scenario.unit_mm = context.unit_mm;
   reading.findings = std::move(context.findings);
@@ -224,17 +215,38 @@ bool ScenarioReading::usable() const {
                       [](const Finding& finding) { return finding.is_error; });
 }
 
-Result<ScenarioReading> read_scenario(const std::filesystem::path& file) {
+std::optional<Finding> nothing_moves(const Scenario& scenario) {
+  if (std::any_of(scenario.parts.begin(), scenario.parts.end(), [](auto& p) { return p.moving; }))
+    return std::nullopt;
+  return Finding{false, scenario.file + ": no part has moving: true; nobody can move anything"};
+}
+
+Result<std::string> scenario_text(const std::filesystem::path& file) {
   std::error_code problem;
   if (std::filesystem::is_directory(file, problem))
-    return fail(Code::kNotFound, file.string() + ": is a folder; name a scenario file");
+    return fail(Code::kNotFound, file.string() + ": is a folder; name a scenario file (.yaml)");
+  if (is_mesh_name(file))
+    return fail(Code::kInvalidInput,
+                file.string() +
+                    ": is a mesh, and a scenario (.yaml) is expected; mortise inspect " +
+                    file.string() + " > scene.yaml writes one, mortise judge takes two meshes");
+  if (file.extension() == ".mcap")
+    return fail(Code::kInvalidInput, file.string() +
+                                         ": is a session log, and a scenario (.yaml) is expected; "
+                                         "mortise replay reads logs");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return fail(Code::kNotFound, file.string() + ": cannot be read; check the path");
   // One byte more than allowed tells a file that is too large without reading all of it.
   std::string text((std::size_t{16} << 20) + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  return read_scenario_text(text, file.string());
+  return text;
+}
+
+Result<ScenarioReading> read_scenario(const std::filesystem::path& file) {
+  const Result<std::string> text = scenario_text(file);
+  if (!text) return text.error();
+  return read_scenario_text(*text, file.string());
 }
 
 Result<ScenarioReading> read_scenario_text(std::string_view yaml, const std::string& name) {

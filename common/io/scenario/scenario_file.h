@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,14 @@ struct ScenarioReading {
   std::vector<Finding> findings;  ///< all of them, not only the first
   bool usable() const;
 };
+
+/// The text of a scenario file, at most the largest that is read and one byte more. A folder, a
+/// mesh or a session log in its place is an error that says what to do.
+Result<std::string> scenario_text(const std::filesystem::path& file);
+
+/// A warning for a session, where parts are to move, and none of a scene that is only judged:
+/// nothing moves.
+std::optional<Finding> nothing_moves(const Scenario& scenario);
 
 /// Strict: unknown keys, missing units, wrong types are errors with file and line. Result fails
 /// only when the file cannot be read or is not YAML at all.

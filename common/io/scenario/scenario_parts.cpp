@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "common/base/in_quotes.h"
+#include "common/base/length_unit.h"
 #include "common/base/plain_text.h"
 #include "common/generators/generators.h"
 #include "common/io/scenario/scenario_tolerance.h"
@@ -18,23 +20,22 @@ namespace {
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // A direction or quaternion this short was not meant as one.
 constexpr double kLeastLength = 1e-9;
+constexpr const char* kNoName = "name is missing: give it one, e.g. name: plate";
 
 // 1. meshes
 
-std::optional<double> unit_of(YamlContext& context, const YamlMap& map) {
-  constexpr std::array<std::pair<const char*, double>, 5> kUnits{
-      {{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}, {"um", 1e-3}}};
+std::optional<double> unit_of(const YamlMap& map) {
   const auto text = map.text("unit");
   if (!text) {
     if (!map.has("unit"))
       map.error("unit is missing: mesh files do not carry one; write unit: mm (cm, m, in, um)");
     return std::nullopt;
   }
-  for (const auto& [name, mm] : kUnits)
-    if (*text == name) return mm;
-  context.error(map.find("unit"),
-                "mesh: unit '" + *text + "' is not known; write mm, cm, m, in, um");
-  return std::nullopt;
+  const auto mm = length_unit_mm(*text);
+  if (!mm)
+    map.error("unit",
+              in_quotes(*text) + " is not known" + did_you_mean(*text, length_unit_names()));
+  return mm;
 }
 
 void read_mesh_file(YamlContext& context, const YAML::Node& node, Scenario::MeshSource& mesh) {
@@ -44,7 +45,7 @@ void read_mesh_file(YamlContext& context, const YAML::Node& node, Scenario::Mesh
     mesh.file = *file;
   else if (!map.has("file"))
     map.error("file is missing: the path of the mesh, relative to the scenario");
-  if (const auto unit = unit_of(context, map)) mesh.unit_mm = *unit;
+  if (const auto unit = unit_of(map)) mesh.unit_mm = *unit;
   const YAML::Node scale_node = map.find("scale");
   if (scale_node && scale_node.IsSequence()) {
     map.error("scale",
@@ -114,8 +115,8 @@ void read_generator(YamlContext& context, const YAML::Node& node, Scenario::Mesh
   if (info == all.end()) {
     std::vector<std::string> names;
     for (const auto& g : all) names.push_back(g.name);
-    context.error(node["kind"], "generator: kind '" + kind + "' is not known; did you mean '" +
-                                    nearest_word(kind, names) + "'?");
+    context.error(node["kind"], "generator: kind " + in_quotes(kind) + " is not known" +
+                                    did_you_mean(kind, names));
     return;
   }
   mesh.generator = kind;
@@ -128,8 +129,8 @@ void read_generator(YamlContext& context, const YAML::Node& node, Scenario::Mesh
     if (!parameter) {
       std::vector<std::string> names;
       for (const auto& p : info->parameters) names.push_back(file_name_of(p.name));
-      context.error(entry.first, "generator " + kind + ": unknown parameter '" + key +
-                                     "'; did you mean '" + nearest_word(key, names) + "'?");
+      context.error(entry.first, "generator " + kind + ": unknown parameter " + in_quotes(key) +
+                                     did_you_mean(key, names));
     } else if (!mesh.parameters.insert(*parameter).second) {
       context.error(entry.first, "generator " + kind + ": '" + key + "' stands here twice");
     }
@@ -313,7 +314,7 @@ void read_instances(YamlContext& context, const YAML::Node& list, const Scenario
     read_mirror(map, copy);
     copy.at.line = map.line();
     const auto name = map.text("name");
-    if (!map.has("name")) map.error("name is missing");
+    if (!map.has("name")) map.error(kNoName);
     if (name && !good_name(*name)) map.error("name", kBadName);
     copy.name = name.value_or("");
     if (const YAML::Node pose = map.find("pose")) copy.X_WP = read_pose(context, pose);
@@ -381,7 +382,7 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   part.at.line = map.line();
   const auto name = map.text("name");
   const bool named_by_instances = map.has("instances");
-  if (!map.has("name") && !named_by_instances) map.error("name is missing");
+  if (!map.has("name") && !named_by_instances) map.error(kNoName);
   if (name && !good_name(*name)) map.error("name", kBadName);
   part.name = name.value_or("");
 

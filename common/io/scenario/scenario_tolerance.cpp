@@ -3,6 +3,7 @@
 #include <cctype>
 #include <tuple>
 
+#include "common/base/length_unit.h"
 #include "common/evaluation/tolerance.h"
 
 namespace mortise {
@@ -13,6 +14,17 @@ bool take_prefix(std::string& text, std::string_view prefix) {
   text.erase(0, prefix.size());
   while (!text.empty() && text.front() == ' ') text.erase(0, 1);
   return true;
+}
+
+// "0.1" in the unit of the file, or with a unit of its own: "0.1 mm", "20 µm".
+std::optional<double> length_mm(const std::string& text, double unit_mm) {
+  const auto number = leading_number(text);
+  if (!number) return std::nullopt;
+  std::string unit = text.substr(number->second);
+  take_prefix(unit, " ");
+  if (unit.empty()) return number->first * unit_mm;
+  const auto mm = length_unit_mm(unit == "µm" ? "um" : unit);
+  return mm ? std::optional(number->first * *mm) : std::nullopt;
 }
 
 Scenario::Tolerance plus_minus(double t_mm) {
@@ -83,10 +95,8 @@ std::optional<Scenario::Tolerance> tolerance_without_place(YamlContext& context,
   const bool symmetric =
       take_prefix(text, "±") || take_prefix(text, "+-") || take_prefix(text, "+/-");
   const bool zone = !symmetric && take_prefix(text, "profile");
-  const auto number = leading_number(text);
-  if ((symmetric || zone) && number && number->second == text.size() && number->first >= 0.0)
-    return symmetric ? plus_minus(number->first * context.unit_mm)
-                     : profile(number->first * context.unit_mm);
+  const auto mm = symmetric || zone ? length_mm(text, context.unit_mm) : std::nullopt;
+  if (mm && *mm >= 0.0) return symmetric ? plus_minus(*mm) : profile(*mm);
   context.error(node, what + ": '" + node.Scalar() +
                           "' is not understood; write \"±0.05\", {plus_minus: 0.05}, "
                           "{profile: 0.1} or {lower: -0.02, upper: 0.01}");

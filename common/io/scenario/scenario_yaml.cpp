@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <unordered_set>
 
 #include "common/base/in_quotes.h"
 #include "common/base/plain_text.h"
+
+#include "common/base/in_quotes.h"
+#include "common/base/nearest_word.h"
 
 namespace mortise {
 namespace {
@@ -21,6 +23,8 @@ constexpr std::size_t kMaxBytes = 16U << 20;
 /// Nodes after aliases are followed. The largest scenario by size has fewer; an alias bomb has
 /// more.
 constexpr std::uint64_t kMaxExpandedNodes = 8'000'000;
+/// Takes the keys of another map over, as YAML 1.1 has it.
+constexpr const char* kMergeKey = "<<";
 
 /// Findings that are told of one file, and unknown keys of one mapping: more is read by nobody.
 constexpr std::size_t kMostFindings = 200, kMostUnknownKeys = 20;
@@ -35,7 +39,8 @@ class ExpandedSize : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t anchor) override { leaf(anchor); }
   void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t anchor,
-                const std::string&) override {
+                const std::string& value) override {
+    merges_ = merges_ || value == kMergeKey;
     leaf(anchor);
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -60,6 +65,7 @@ class ExpandedSize : public YAML::EventHandler {
   std::uint64_t total() const { return total_; }
   int documents() const { return documents_; }
   int endless_line() const { return endless_line_; }
+  bool merges() const { return merges_; }
 
  private:
   struct Open {
@@ -87,22 +93,8 @@ class ExpandedSize : public YAML::EventHandler {
   std::uint64_t total_ = 0;
   int documents_ = 0;
   int endless_line_ = 0;
+  bool merges_ = false;
 };
-
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
 
 // Empty for UTF-8; else the line, and what is wrong there.
 std::string wrong_encoding(std::string_view text) {
@@ -124,6 +116,36 @@ std::string list_of(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string not_known(const std::string& key, const std::vector<std::string>& words) {
+  const std::string nearest = nearest_word(key, words);
+  return (nearest.empty() ? "; known: " : "; did you mean '" + nearest + "'? Known: ") +
+         list_of(words);
+}
+
+// Keys of the maps that `<<` names, where the map has none of its own; in place, so that lines and
+// shared nodes stay what they are.
+void merge_named_maps(YAML::Node node) {
+  if (node.IsSequence())
+    for (const auto& item : node) merge_named_maps(item);
+  if (!node.IsMap()) return;
+  std::vector<YAML::Node> named;
+  for (const auto& entry : node) {
+    merge_named_maps(entry.second);
+    if (!entry.first.IsScalar() || entry.first.Scalar() != kMergeKey) continue;
+    if (entry.second.IsMap()) named.push_back(entry.second);
+    if (entry.second.IsSequence())
+      for (const auto& item : entry.second)
+        if (item.IsMap()) named.push_back(item);
+  }
+  if (named.empty()) return;  // of another kind: an unknown key, said where the map is read
+  node.remove(kMergeKey);
+  const YAML::Node& own = node;  // asking a changeable one for a key adds it
+  for (const YAML::Node& map : named)
+    for (const auto& entry : map)
+      if (entry.first.IsScalar() && !own[entry.first.Scalar()])
+        node.force_insert(entry.first, entry.second);
+}
+
 }  // namespace
 
 void YamlContext::say(bool is_error, int line, const std::string& text) {
@@ -134,13 +156,6 @@ void YamlContext::say(bool is_error, int line, const std::string& text) {
     findings.push_back({is_error, file + ": has more findings; correct these first"});
   else
     findings.back().is_error = findings.back().is_error || is_error;
-}
-
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  const std::string* best = nullptr;
-  for (const std::string& candidate : known)
-    if (best == nullptr || edits(word, candidate) < edits(word, *best)) best = &candidate;
-  return best == nullptr ? "" : *best;
 }
 
 YamlMap::YamlMap(YamlContext& context, const YAML::Node& node, std::string what,
@@ -175,8 +190,7 @@ void YamlMap::say_unknown(const YAML::Node& at, const std::string& key,
   // A word that is much longer than all known ones is none of them with a slip.
   const bool near = key.size() <= 40;
   context_.error(at, what_ + ": unknown key " + in_quotes(key) +
-                         (near ? "; did you mean '" + nearest_word(key, words) + "'?" : ";") +
-                         " Known: " + list_of(words));
+                         (near ? not_known(key, words) : "; known: " + list_of(words)));
 }
 
 YAML::Node YamlMap::find(std::string_view key) const {
@@ -207,7 +221,8 @@ std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
                                   const std::string& what) {
   double value = 0.0;
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value)) {
-    context.error(node, what + ": expected a number");
+    context.error(node, what + ": expected a number" +
+                            (node.IsScalar() ? ", not " + in_quotes(node.Scalar()) : ""));
     return std::nullopt;
   }
   if (std::fabs(value) <= kLargestNumber) return value;
@@ -266,7 +281,9 @@ std::optional<std::vector<double>> YamlMap::numbers(std::string_view key, std::s
   const YAML::Node value = find(key);
   if (!value) return std::nullopt;
   if (!value.IsSequence() || value.size() != count) {
-    error(key, "expected a list of " + std::to_string(count) + " numbers");
+    const bool commas = value.IsSequence() && value.size() == 2 * count;
+    error(key, "expected a list of " + std::to_string(count) + " numbers" +
+                   (commas ? "; decimals have a point, 0.5" : ""));
     return std::nullopt;
   }
   std::vector<double> list;
@@ -340,10 +357,14 @@ Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name) {
                                     " values; use fewer aliases");
     if (size.documents() > 1)
       return fail(Code::kInvalidInput, name + ": holds more than one document; keep the first");
-    return YAML::Load(text);
+    YAML::Node document = YAML::Load(text);
+    if (size.merges()) merge_named_maps(document);
+    return document;
   } catch (const YAML::Exception& e) {
-    return fail(Code::kInvalidInput, name + ":" + std::to_string(e.mark.line + 1) +
-                                         ": not YAML: " + e.msg + "; check indent and quotes");
+    return fail(Code::kInvalidInput,
+                name + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + e.msg +
+                    (e.msg.find(" tab") != std::string::npos ? "; indent with blanks"
+                                                             : "; check indent and quotes"));
   } catch (const std::exception& e) {
     return fail(Code::kInvalidInput, name + ": not YAML: " + std::string(e.what()));
   }

@@ -70,9 +70,6 @@ class YamlMap {
   std::size_t unknown_ = 0;
 };
 
-/// The known word that is fewest edits away, for "did you mean".
-std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
-
 /// The number that a text begins with, and where it ends; nothing when there is none, or one beyond
 /// kLargestNumber.
 std::optional<std::pair<double, std::size_t>> leading_number(const std::string& text);
@@ -85,8 +82,9 @@ std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
 bool within_range(YamlContext& context, const YAML::Node& at, const std::string& what,
                   const Vec3& mm);
 
-/// Parses text into one document. Refused: what is not UTF-8, more than one document, too deep, too
-/// large, or aliases that expand to more than `kMaxExpandedNodes` nodes.
+/// Parses text into one document, with the keys that `<<: *other` takes over. Refused: what is not
+/// UTF-8, more than one document, too deep, too large, or aliases that expand to more than
+/// `kMaxExpandedNodes` nodes.
 Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name);
 
 }  // namespace mortise

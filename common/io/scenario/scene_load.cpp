@@ -275,8 +275,8 @@ class SceneLoader {
     finding(false, spec.at,
             "part " + spec.name + ": mesh " + report.file +
                 (mesh.solid->has_inside()
-                     ? " is open at " + std::to_string(mesh.solid->cracks().count) +
-                           " cracks (" + edges +
+                     ? " is open at " + std::to_string(mesh.solid->cracks().count) + " cracks (" +
+                           edges +
                            "): beside them its inside is not known, and a clash there potential at "
                            "best; repair it"
                      : (volume ? " encloses no volume (" : " is open (") + edges +

@@ -148,6 +148,63 @@ parts:
   EXPECT_EQ(parts[10].X_WP.p, Vec3(2, 4, 0));
 }
 
+TEST(ScenarioFile, ATolerancePhraseMayNameItsUnit) {
+  for (const auto& [phrase, mm] :
+       {std::pair{"±0.1", 25.4 * 0.1}, {"+-0.1 mm", 0.1}, {"+/-0.1mm", 0.1}, {"± 20 µm", 0.02}}) {
+    const auto reading = read_scenario_text(
+        std::string("name: a\nunits: in\nparts:\n  - {name: p, generator: {kind: dowel}, "
+                    "tolerance: \"") +
+            phrase + "\"}\n",
+        "a.yaml");
+    ASSERT_TRUE(reading && reading->usable()) << phrase;
+    EXPECT_NEAR(reading->scenario.parts[0].tolerance->offset_mm.hi, mm, 1e-12) << phrase;
+  }
+}
+
+TEST(ScenarioFile, AMapTakesTheKeysOfAnother) {
+  const auto reading = read_scenario_text(
+      "name: a\nunits: mm\nparts:\n"
+      "  - &pin {name: pin, generator: {kind: dowel, diameter: 8}, moving: true}\n"
+      "  - <<: *pin\n    name: second\n"
+      "  - {name: third, moving: false, <<: [*pin]}\n",
+      "a.yaml");
+  ASSERT_TRUE(reading);
+  for (const Finding& f : reading->findings) ADD_FAILURE() << f.text;
+  const auto& parts = reading->scenario.parts;
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_EQ(parts[1].name, "second");
+  EXPECT_EQ(parts[1].at.line, 5);
+  EXPECT_EQ(parts[1].mesh.parameters.at("diameter_mm"), 8.0);
+  EXPECT_TRUE(parts[1].moving);
+  EXPECT_FALSE(parts[2].moving);  // its own key wins
+}
+
+TEST(ScenarioFile, OtherFilesInItsPlaceAreNamed) {
+  const auto folder = std::filesystem::temp_directory_path();
+  for (const auto& [file, says] :
+       {std::pair{folder / "peg.stl",
+                  "is a mesh, and a scenario (.yaml) is expected; mortise inspect"},
+        {folder / "peg.STEP", "is a mesh"},
+        {folder / "s.mcap", "mortise replay"},
+        {folder, "is a folder; name a scenario"},
+        {folder / "nothere.yaml", "cannot be read; check the path"}}) {
+    const auto reading = read_scenario(file);
+    ASSERT_FALSE(reading) << file;
+    EXPECT_NE(reading.error().text.find(says), std::string::npos) << reading.error().text;
+    EXPECT_EQ(reading.error().text.find('\n'), std::string::npos);
+  }
+}
+
+TEST(ScenarioFile, ThatNothingMovesIsSaidWhereItMatters) {
+  const auto still = read_scenario_text(
+      "name: a\nunits: mm\nparts: [{name: p, generator: {kind: dowel}}]\n", "a.yaml");
+  ASSERT_TRUE(still);
+  EXPECT_TRUE(still->findings.empty());
+  ASSERT_TRUE(nothing_moves(still->scenario));
+  EXPECT_FALSE(nothing_moves(still->scenario)->is_error);
+  EXPECT_FALSE(nothing_moves(read_scenario_text(kGood, "good.yaml")->scenario));
+}
+
 struct Fault {
   std::string yaml;
   int line;
@@ -171,11 +228,13 @@ std::vector<Fault> faults() {
   const std::string good = part(kDowel);
   return {
       {"name: a\nparts: []\n", 1, "units is missing"},
-      {"units: mm\nparts: []\n", 1, "name is missing"},
+      {"units: mm\nparts: []\n", 1, "name is missing: give the scenario a name"},
+      {"name: a\nunits: inch\n" + good.substr(18), 2, "'inch' is not known; did you mean 'in'?"},
+      {good + "a: 1\n", 7, "unknown key 'a'; known: name, units"},
       {head(""), 1, "parts is missing"},
       {head("parts: []\n"), 3, "is empty"},
       {head("parts: 5\n"), 3, "expected a list"},
-      {"name: a\nunits: furlong\n" + good.substr(18), 2, "write mm, cm, m, in or um"},
+      {"name: a\nunits: furlong\n" + good.substr(18), 2, "known: mm, cm, m, in, um"},
       {good + "polcy: stop\n", 7, "did you mean 'policy'"},
       {good + "policy: maybe\n", 7, "write stop, slide or report"},
       {good + "policy: stop\npolicy: stop\n", 8, "stands here twice"},
@@ -190,11 +249,10 @@ std::vector<Fault> faults() {
       {good + "exclusions:\n  - {between: [p], reason: r}\n", 8, "expected two names"},
       {good + "fits:\n  - {code: H7/g6}\n", 8, "between is missing"},
       {good + "fits:\n  - {between: [p.a, p.b]}\n", 8, "say what holds"},
-      {good + "fits:\n  - {between: [p, p.b], code: H7/g6}\n", 8, "needs a feature on both"},
       {good + "fits:\n  - {between: [p.a, p.b], code: H7/g6, plus_minus: 1}\n", 8, "keep one"},
       {good + "fits:\n  - {between: [p.a, p.b], code: Ø20 H7/g6, nominal: 21}\n", 8, "contradicts"},
       {head("parts:\n  - {name: p, moving: true}\n"), 4, "has no shape"},
-      {head("parts:\n  - {moving: true, generator: {kind: dowel}}\n"), 4, "name is missing"},
+      {head("parts:\n  - {moving: true, generator: {kind: dowel}}\n"), 4, "e.g. name: plate"},
       {head("parts:\n  - {name: a.b, generator: {kind: dowel}}\n"), 4, "without '.'"},
       {head("parts:\n  - {name: a, generator: {kind: dowel}}\n"
             "  - {name: a, generator: {kind: dowel}}\n"),
@@ -209,6 +267,9 @@ std::vector<Fault> faults() {
       {part("    generator: {kind: dowel, diametr: 5}\n"), 6, "did you mean 'diameter'"},
       {part("    generator: {diameter: 5}\n"), 6, "say its kind"},
       {part(kDowel + "    pose: {position: [1, 2]}\n"), 7, "list of 3 numbers"},
+      {part(kDowel + "    pose: {position: [1,5, 2,0, 0,0]}\n"), 7, "decimals have a point"},
+      {part(kDowel + "    pose: {rotation: [1, 2, 3]}\n"), 7, "did you mean 'rotation_deg'?"},
+      {part(kDowel + "    <<: 5\n"), 7, "unknown key '<<'"},
       {part(kDowel + "    pose: {rotation_deg: [0,0,0], quaternion: [1,0,0,0]}\n"), 7, "keep one"},
       {part(kDowel + "    pose: {quaternion: [1, 1, 0, 0]}\n"), 7, "length 1"},
       {part(kDowel + "    pose: {axis_angle: {axis: [0,0,0], angle_deg: 5}}\n"), 7, "not be zero"},
@@ -218,6 +279,7 @@ std::vector<Fault> faults() {
        6, "true or false"},
       {part(kDowel + "    chord_error: -0.1\n"), 7, "negative"},
       {part(kDowel + "    tolerance: 0.1\n"), 7, "plus_minus"},
+      {part(kDowel + "    tolerance: \"±0.1 ell\"\n"), 7, "is not understood"},
       {part(kDowel + "    tolerance: {plus_minus: -0.1}\n"), 7, "negative"},
       {part(kDowel + "    tolerance: {profile: 0.1, unequal: 0.2}\n"), 7, "between 0 and profile"},
       {part(kDowel + "    tolerance: {lower: 1, upper: 0}\n"), 7, "not be above"},
