@@ -152,6 +152,7 @@ void Client::take_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
   policy_ = snapshot.policy;
   tick_rate_hz_ = snapshot.tick_rate_hz;
   session_users_ = snapshot.users;
+  notes_ = snapshot.notes;
   update.standing |= standing_.take(snapshot);
   for (const UserInfo& info : snapshot.users) own_.doubt(info);
   std::map<PartId, KnownPart> parts;

@@ -59,6 +59,8 @@ class Client final : public ClientCommands {
   const std::map<PartId, KnownPart>& parts() const { return parts_; }
   /// All users that the session knows, present or not, with their last role.
   const std::vector<UserInfo>& users() const { return session_users_; }
+  /// What was found when meshes of the session were read.
+  const std::vector<PartNote>& notes() const { return notes_; }
   /// The decisions in force, as the session tells them: policy, tolerances, exclusions, constraints
   /// and hand-over requests without an answer.
   const std::vector<Decision>& standing() const { return standing_.decisions(); }
@@ -92,6 +94,7 @@ class Client final : public ClientCommands {
   std::map<PartId, KnownPart> parts_;
   KnownFeatures features_;
   std::vector<UserInfo> session_users_;
+  std::vector<PartNote> notes_;
   KnownStanding standing_;
   std::uint64_t stale_tick_ = 0;  ///< poses up to here may have been missed
   bool server_present_ = false;

@@ -97,6 +97,9 @@ std::vector<wire::Snapshot> cut(const Snapshot& snapshot, std::uint64_t serial) 
   for (const Decision& decision : snapshot.standing) {
     cutter.add(to_wire(decision), member<wire::Decision>(&wire::Snapshot::standing));
   }
+  for (const PartNote& note : snapshot.notes) {
+    cutter.add(to_wire(note), member<wire::PartNote>(&wire::Snapshot::notes));
+  }
   std::vector<wire::Snapshot> chunks = std::move(cutter).take();
   number(chunks);
   return chunks;

@@ -117,6 +117,7 @@ void ClientReaders::take_snapshots(ClientInput& input) {
       append(part.users, into.users);
       append(part.open_clashes, into.open_clashes);
       append(part.standing, into.standing);
+      append(part.notes, into.notes);
     });
     if (whole) input.snapshots.push_back(std::move(*whole));
   });

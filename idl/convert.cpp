@@ -639,6 +639,21 @@ wire::PartInfo to_wire(const PartInfo& part) {
   return out;
 }
 
+wire::PartNote to_wire(const PartNote& note) {
+  wire::PartNote out;
+  out.part(note.part.value);
+  out.text(clip(note.text, kMaxText_bytes));
+  return out;
+}
+
+Result<PartNote> from_wire(const wire::PartNote& in) {
+  Door door("note of a part");
+  door.need(in.part() != 0, "part");
+  door.text(in.text(), "text");
+  if (!door.open()) return door.refusal();
+  return PartNote{PartId{in.part()}, in.text()};
+}
+
 wire::UserInfo to_wire(const UserInfo& user) {
   wire::UserInfo out;
   out.user(user.user.value);
@@ -664,6 +679,7 @@ Result<Snapshot> from_wire(const wire::Snapshot& in) {
   if (Status read = read_all(in.users(), snapshot.users); !read) return read.error();
   if (Status read = read_all(in.open_clashes(), snapshot.open_clashes); !read) return read.error();
   if (Status read = read_all(in.standing(), snapshot.standing); !read) return read.error();
+  if (Status read = read_all(in.notes(), snapshot.notes); !read) return read.error();
   return snapshot;
 }
 

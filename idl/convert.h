@@ -89,6 +89,8 @@ std::vector<ClashEvent> events_from_wire(const wire::EventBatch& batch, std::uin
 
 wire::PartInfo to_wire(const PartInfo& part);
 Result<PartInfo> from_wire(const wire::PartInfo& part);
+wire::PartNote to_wire(const PartNote& note);
+Result<PartNote> from_wire(const wire::PartNote& note);
 wire::UserInfo to_wire(const UserInfo& user);
 Result<UserInfo> from_wire(const wire::UserInfo& user);
 /// One chunk of a snapshot.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "common/io/log/log_file.h"
@@ -36,17 +35,12 @@ Status say_findings(const std::vector<Finding>& findings, bool usable, const std
 }
 
 Result<SessionStart> read_from_scenario(const ServerOptions& options) {
-  std::ifstream in(options.scenario, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  if (!in || fs::is_directory(options.scenario)) {
-    return fail(Code::kInvalidInput,
-                options.scenario + ": cannot be read; give the path of a scenario file");
-  }
+  Result<std::string> text = scenario_text(options.scenario);
+  if (!text) return text.error();
   SessionStart start;
   start.source = options.scenario;
   start.scenario_name = fs::path(options.scenario).filename().string();
-  start.scenario_yaml = text.str();
+  start.scenario_yaml = std::move(text).value();
   if (!options.policy.empty()) {
     start.scenario_yaml = with_top_level(start.scenario_yaml, "policy", options.policy);
   }
@@ -56,6 +50,8 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
   }
   auto reading = read_scenario_text(start.scenario_yaml, options.scenario);
   if (!reading) return reading.error();
+  if (const auto still = nothing_moves(reading->scenario); still && reading->usable())
+    reading->findings.push_back(*still);
   if (Status status = say_findings(reading->findings, reading->usable(), options.scenario);
       !status) {
     return status.error();
@@ -84,6 +80,8 @@ Result<SessionStart> read_from_log(const fs::path& file) {
   start.scenario_name = log->scenario_name;
   start.scenario_yaml = log->scenario_yaml;
   start.scene = std::move(at->scene);
+  // Notes of the meshes, as when the session began.
+  (void)say_findings(start.scene.findings, true, start.source);
   start.log_chain = log->chain;
   start.log_name = file.filename().string();
   start.led_until_ns = std::min(last_time_ns(*log), kLatest_ns);

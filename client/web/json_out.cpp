@@ -163,8 +163,15 @@ Json json_of(const Scene& scene, const ClassBits& classes) {
             {"standing", Json::array()}};
   for (const PartInfo& part : scene.parts) {
     const auto bits = classes.find(part.part);
-    json["parts"].push_back(json_of(part, bits == classes.end() ? 0u : bits->second));
+    Json row = json_of(part, bits == classes.end() ? 0u : bits->second);
+    row["notes"] = Json::array();
+    json["parts"].push_back(std::move(row));
   }
+  std::map<PartId, std::size_t> row_of;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) row_of[scene.parts[i].part] = i;
+  for (const PartNote& note : scene.notes)
+    if (const auto row = row_of.find(note.part); row != row_of.end())
+      json["parts"][row->second]["notes"].push_back(note.text);
   for (const UserInfo& user : scene.users) json["users"].push_back(json_of(user));
   for (ClashEvent clash : scene.clashes) {
     clash.kind = ClashEvent::Kind::kBegin;

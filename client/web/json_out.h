@@ -42,6 +42,7 @@ struct Scene {
   std::vector<UserInfo> users;
   std::vector<ClashEvent> clashes;
   std::vector<Decision> standing;
+  std::vector<PartNote> notes;
 };
 Json json_of(const Scene& scene, const ClassBits& classes);
 

@@ -105,6 +105,7 @@ SharedBytes LiveFeed::scene() {
   scene.users = client_.users();
   for (const auto& [id, clash] : client_.open_clashes()) scene.clashes.push_back(clash);
   scene.standing = client_.standing();
+  scene.notes = client_.notes();
   meshes_.expect(scene.parts);
   return text_of(json_of(scene, classes_));
 }

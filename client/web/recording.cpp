@@ -82,8 +82,8 @@ std::vector<PartId> Recording::moved_between(std::uint64_t from, std::uint64_t t
 
 Scene Recording::scene_at(std::uint64_t tick) const {
   const Agreement& agreement = agreement_at(tick);
-  Scene scene{session, agreement.policy, tick, tick_rate_hz,
-              parts,   agreement.users,  {},   agreement.standing};
+  Scene scene{session, agreement.policy,   tick,      tick_rate_hz, parts, agreement.users,
+              {},      agreement.standing, part_notes};
   for (PartInfo& part : scene.parts) {
     const PartState state = state_at(part.part, tick);
     part.X_WP = state.X_WP;
@@ -111,7 +111,9 @@ Result<Recording> read_recording(const std::filesystem::path& file) {
   recording.session = log->session;
   recording.tick_rate_hz = world.tick_rate_hz;
   recording.first_tick = recording.last_tick = world.tick;
-  recording.parts = snapshot_of(world).parts;
+  Snapshot at_start = snapshot_of(world);
+  recording.parts = std::move(at_start.parts);
+  recording.part_notes = std::move(at_start.notes);
   recording.notes = log->notes;
   recording.agreements.push_back(agreement_of(world, {}));
   for (const auto& [hash, mesh] : log->meshes) recording.meshes[hash] = mesh_of(mesh);

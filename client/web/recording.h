@@ -31,6 +31,7 @@ struct Recording {
   double tick_rate_hz = 60.0;
   std::uint64_t first_tick = 0, last_tick = 0;
   std::vector<PartInfo> parts;                ///< as the scenario put them
+  std::vector<PartNote> part_notes;           ///< of the import of their meshes
   std::map<PartId, std::vector<Step>> steps;  ///< by tick
   std::vector<ClashEvent> events;             ///< by tick
   std::vector<Agreement> agreements;          ///< by tick, the first from before all

@@ -20,6 +20,13 @@ struct PartInfo {
   double radius_mm = 0.0;           ///< of the bounding sphere
 };
 
+/// What was found when the mesh of a part was read: its file states another unit, triangles were
+/// turned or dropped, it has no inside. A sentence for people.
+struct PartNote {
+  PartId part;
+  std::string text;
+};
+
 struct UserInfo {
   UserId user;
   std::string name;
@@ -37,10 +44,11 @@ struct Snapshot {
   std::vector<PartInfo> parts;
   std::vector<UserInfo> users;
   std::vector<ClashEvent> open_clashes;
-  /// Earlier decisions that are in force: policy, tolerances, exclusions, constraints, and hand-over
-  /// requests that are not answered yet. Only the session knows which decision ends or replaces
-  /// which; it tells changes to this list as StandingChange.
+  /// Earlier decisions that are in force: policy, tolerances, exclusions, constraints, and
+  /// hand-over requests that are not answered yet. Only the session knows which decision ends or
+  /// replaces which; it tells changes to this list as StandingChange.
   std::vector<Decision> standing;
+  std::vector<PartNote> notes;  ///< by part
 };
 
 }  // namespace mortise

@@ -7,6 +7,7 @@
 #include "client/tools/lint/lint.h"
 #include "common/base/json_text.h"
 #include "common/io/build_info.h"
+#include "common/io/usage.h"
 
 int main(int argc, char** argv) {
   std::string file;
@@ -19,13 +20,15 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? mortise::kExitOk : mortise::kExitUsage;
+    return mortise::exit_of_usage(app, error);
   }
-  const auto opened = mortise::open_scene(file);
+  auto opened = mortise::open_scene(file);
   if (!opened) {
     std::fprintf(stderr, "mortise-lint: %s\n", opened.error().text.c_str());
     return mortise::kExitBadInput;
   }
+  if (const auto still = mortise::nothing_moves(opened->scenario); still && opened->usable())
+    opened->findings.push_back(*still);
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const std::string text = json ? mortise::json_text(mortise::lint_json(*opened)) + "\n"
                                 : mortise::lint_text(*opened, color);

@@ -10,10 +10,8 @@
 #include <unordered_set>
 
 #include "common/base/in_quotes.h"
-#include "common/base/plain_text.h"
-
-#include "common/base/in_quotes.h"
 #include "common/base/nearest_word.h"
+#include "common/base/plain_text.h"
 
 namespace mortise {
 namespace {

@@ -31,6 +31,8 @@ Snapshot snapshot_of(const World& world) {
     snapshot.parts.push_back({part.id, part.name, part.solid->hash(), part.moving, part.holder,
                               part.X_WP, part.solid->sphere().center_mm,
                               part.solid->sphere().radius_mm});
+  for (const Part& part : world.parts)
+    for (const std::string& note : part.notes) snapshot.notes.push_back({part.id, note});
   for (const User& user : world.users)
     snapshot.users.push_back({user.id, user.name, user.present, user.role});
   if (!world.state) return snapshot;

@@ -33,6 +33,7 @@ struct Part {
   UserId holder;
   UserId asked_by;  ///< the user who waits for a hand-over of the part
   MoveHistory history;
+  std::vector<std::string> notes;  ///< of the import of its mesh, for people
   GroupId group;  ///< parts of one group have one holder and move as one body; none: no group
 };
 

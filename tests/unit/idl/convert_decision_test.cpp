@@ -111,9 +111,16 @@ TEST(Convert, ReviewsGoRoundInEventsAndSnapshots) {
   snapshot.users = {{UserId{1}, "anna", true, Role::kObserver}};
   snapshot.open_clashes = {sent};
   snapshot.standing = {{Decision::Kind::kSetPolicy, UserId{1}, PartId{}, ""}};
+  snapshot.notes = {{PartId{2}, "all triangles faced inwards and were turned"}};
   wire::Snapshot chunk = cut(snapshot, 1)[0];
   const Result<Snapshot> back = from_wire(chunk);
   ASSERT_TRUE(back) << back.error().text;
+  ASSERT_EQ(back->notes.size(), 1u);
+  EXPECT_EQ(back->notes[0].part, PartId{2});
+  EXPECT_EQ(back->notes[0].text, snapshot.notes[0].text);
+  wire::Snapshot of_no_part = chunk;
+  of_no_part.notes()[0].part(0);
+  EXPECT_FALSE(from_wire(of_no_part));
   EXPECT_EQ(back->users[0].role, Role::kObserver);
   test::expect_same(back->open_clashes[0], sent);
   ASSERT_EQ(back->standing.size(), 1u);

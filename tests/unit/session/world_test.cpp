@@ -177,7 +177,10 @@ TEST_F(WorldTest, DecisionsReplayToTheSameState) {
 TEST_F(WorldTest, SnapshotNamesEverything) {
   session.grab(bob, pin);
   play_tick(session.world, {}, scratch);
+  session.world.parts[1].notes = {"was turned"};
   const Snapshot snapshot = snapshot_of(session.world);
+  ASSERT_EQ(snapshot.notes.size(), 1U);
+  EXPECT_EQ(snapshot.notes[0].part, PartId{2});
   ASSERT_EQ(snapshot.parts.size(), 3U);
   EXPECT_EQ(snapshot.parts[2].holder, bob);
   EXPECT_EQ(snapshot.parts[2].name, "pin");

@@ -69,6 +69,7 @@ TEST(JsonOut, TheWholeOfASceneWithClassesOfItsParts) {
   decision.user = UserId{1};
   decision.details.text = "slide";
   scene.standing.push_back(decision);
+  scene.notes = {{PartId{2}, "was turned"}, {PartId{2}, "is open"}, {PartId{9}, "of no part here"}};
 
   const Json json = json_of(scene, class_bits_of(scene.clashes));
   EXPECT_EQ(json["type"], "scene");
@@ -77,6 +78,8 @@ TEST(JsonOut, TheWholeOfASceneWithClassesOfItsParts) {
   EXPECT_EQ(json["parts"][0]["classes"], 5u);
   EXPECT_EQ(json["parts"][1]["classes"], 4u);
   EXPECT_EQ(json["parts"][2]["classes"], 1u);
+  EXPECT_EQ(json["parts"][0]["notes"], Json::array());
+  EXPECT_EQ(json["parts"][1]["notes"], Json::parse(R"(["was turned", "is open"])"));
   EXPECT_EQ(json["parts"][1]["p"], Json::parse("[2.0, 0.0, 0.0]"));
   EXPECT_EQ(json["parts"][1]["q"], Json::parse("[0.0, 0.0, 0.0, 1.0]"));
   EXPECT_EQ(json["users"][0]["role"], "designer");

@@ -39,8 +39,9 @@ export function makeTree({ session, choice, partsView, showPart }) {
 
   function fill(/** @type {HTMLElement} */ row, /** @type {Part} */ part) {
     const [, name, tag, marks] = /** @type {HTMLElement[]} */ ([...row.children]);
-    setText(name, part.name);
-    name.title = part.name;
+    const notes = part.notes ?? [];
+    setText(name, notes.length ? `${part.name} ⚠` : part.name);
+    name.title = [part.name, ...notes].join('\n');
     const mine = session.isMine(part);
     const holder = part.holder ? (mine ? 'you' : session.userName(part.holder)) : part.moving ? '' : 'fixed';
     setText(tag, holder);
@@ -51,7 +52,7 @@ export function makeTree({ session, choice, partsView, showPart }) {
       marks.dataset.worst = worst;
       marks.replaceChildren(...(rankOf(worst) ? [classMark(worst)] : []));
     }
-    const words = [part.name, part.moving ? 'moving' : 'fixed', part.holder ? `held by ${holder}` : '', rankOf(worst) ? `${worst} clash` : '', choice.group.has(part.id) ? 'gathered' : ''];
+    const words = [part.name, part.moving ? 'moving' : 'fixed', part.holder ? `held by ${holder}` : '', rankOf(worst) ? `${worst} clash` : '', choice.group.has(part.id) ? 'gathered' : '', ...notes];
     row.classList.toggle('gathered', choice.group.has(part.id));
     const label = words.filter(Boolean).join(', ');
     if (row.getAttribute('aria-label') !== label) row.setAttribute('aria-label', label);

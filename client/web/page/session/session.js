@@ -9,6 +9,7 @@ import { Signals } from './signals.js';
  * @property {boolean} moving @property {number} holder user, 0 nobody
  * @property {Vec3} p @property {Quat} q pose in the world, mm
  * @property {number} radius @property {Vec3} reference @property {number} classes bits: 1 fake, 2 potential, 4 real
+ * @property {string[]} [notes] what was found when its mesh was read
  */
 /** @typedef {{id: number, name: string, present: boolean, role: string}} User */
 /** @typedef {'real' | 'potential' | 'fake' | 'none'} ClashClass */
