@@ -168,7 +168,8 @@ Result<FitStatement> fit_statement(const std::string& code, double nominal_mm, c
       return fail(Code::kInvalidInput,
                   "fit " + code + ": " + a.name + " is modelled at Ø" +
                       size_text(2.0 * a.surface->radius_mm) + " and " + b.name + " at Ø" +
-                      size_text(2.0 * b.surface->radius_mm) + " mm; add nominal: the common size");
+                      size_text(2.0 * b.surface->radius_mm) +
+                      " mm; add nominal: the common size, or write it before the code (Ø20 H7/g6)");
     nominal_mm = 2.0 * (a.surface->inward ? a : b).surface->radius_mm;
   }
   Result<Fit> fit = iso286_fit(code, nominal_mm);

@@ -6,7 +6,7 @@
 #include "common/geometry/feature.h"
 #include "common/geometry/mesh.h"
 
-/// Private to recognition: what triangles show of a surface.
+/// What triangles show of a surface.
 namespace mortise {
 
 /// What a region shows of its surface; angles about the axis (sphere: about the best axis).

@@ -6,8 +6,9 @@
 #include <set>
 #include <tuple>
 
+#include "common/base/nearest_word.h"
 #include "common/evaluation/band.h"
-#include "common/io/scenario/scenario_yaml.h"
+#include "common/io/scenario/fit_candidates.h"
 #include "common/session/world/rights.h"
 
 namespace mortise {
@@ -16,8 +17,6 @@ namespace {
 /// Pairs one scenario may have rules for: each costs memory, and a wildcard on both sides of a
 /// large scene is rarely meant.
 constexpr std::size_t kMaxRulePairs = 2'000'000;
-
-bool has_wildcard(const std::string& text) { return text.find('*') != std::string::npos; }
 
 // The parts of the scene and their features by the names and patterns of a scenario.
 class Names {
@@ -36,8 +35,7 @@ class Names {
   std::string no_such_part(const std::string& pattern) const {
     std::vector<std::string> names;
     for (const Part& candidate : parts_) names.push_back(candidate.name);
-    return "no part is called '" + pattern + "'; did you mean '" + nearest_word(pattern, names) +
-           "'?";
+    return "no part is called '" + pattern + "'" + did_you_mean(pattern, names);
   }
 
   std::vector<std::size_t> features_matching(PartId id, const std::string& pattern) const {
@@ -55,8 +53,7 @@ class Names {
       for (const Feature& feature : part(id).features) names.push_back(feature.name);
     if (names.empty())
       return "part '" + part(ids.front()).name + "' has no features; declare '" + pattern + "'";
-    return "no feature of it is called '" + pattern + "'; did you mean '" +
-           nearest_word(pattern, names) + "'?";
+    return "no feature of it is called '" + pattern + "'" + did_you_mean(pattern, names);
   }
 
   std::string of_end(PartId id, std::size_t feature) const {
@@ -142,7 +139,10 @@ class RuleBook {
         if (b < a) std::swap(a, b), std::swap(fa, fb);
         if (!is_asked(a, b)) continue;
         if (!seen.insert({a, fa, b, fb}).second) continue;
-        if (state_pair(fit, a, fa, b, fb)) ++applied;
+        const auto pairs = fitting_features(fit, {part(a), fa}, {part(b), fb});
+        if (!pairs) error(fit.at, pairs.error().text);
+        if (pairs)
+          for (const auto& [i, j] : *pairs) applied += state_pair(fit, a, i, b, j) ? 1 : 0;
         if (out_.findings.size() > findings_before + 20) return;  // the same mistake many times
       }
     if (applied == 0 && out_.findings.size() == findings_before && !input_.only)
@@ -167,11 +167,6 @@ class RuleBook {
     in_live_ = false;
   }
 
-  FitSide side_of(PartId id, std::size_t feature) {
-    const Feature& f = part(id).features[feature];
-    return {&f.surface, f.residual_mm, part(id).name + "." + f.name};
-  }
-
   // Returns whether the fit speaks of this pair of features.
   bool state_pair(const Scenario::FitSpec& fit, PartId a, std::size_t fa, PartId b,
                   std::size_t fb) {
@@ -185,7 +180,7 @@ class RuleBook {
       resolved.clearance_mm = {-2.0 * both.hi, -2.0 * both.lo};
       text = fit.tolerance->text;
     } else {
-      const FitSide side_a = side_of(a, fa), side_b = side_of(b, fb);
+      const FitSide side_a = side_of({part(a), fa}), side_b = side_of({part(b), fb});
       const bool wide = has_wildcard(fit.feature_a) || has_wildcard(fit.feature_b);
       if (wide && side_a.surface->inward == side_b.surface->inward) return false;
       Result<FitStatement> statement = fit_statement(fit.code, fit.nominal_mm, side_a, side_b);

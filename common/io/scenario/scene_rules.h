@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/scenario/fit_candidates.h"
 #include "common/io/scenario/placed_statement.h"
 #include "common/io/scenario/scene_load.h"
 
@@ -32,7 +33,6 @@ std::string place_of(const Scenario& scenario, SourceLine at);
 
 /// Two features, or whole parts, of a pair: part, index of its feature; the lower part first.
 using FeaturePair = std::tuple<PartId, std::size_t, PartId, std::size_t>;
-inline constexpr std::size_t kWholePart = static_cast<std::size_t>(-1);
 
 /// A statement of the running session about one pair of ends; it replaces that of the file.
 struct LiveFit {

@@ -142,6 +142,71 @@ TEST(SceneLoad, RulesThatMatchNothingOrContradictAreErrors) {
   expect_error(load(base + "users:\n  - {name: u, may_hold: [plate]}\n"), 13, "moving: true");
 }
 
+// A casing with a bore of 20 and one of 8, a pin for each, all in place; rules start in line 11.
+constexpr const char* kTwoBores = R"(name: two bores
+units: mm
+deviation: recognized
+parts:
+  - {name: wide, generator: {kind: ring, bore: 20, outer: 60, width: 20}}
+  - {name: narrow, generator: {kind: ring, bore: 8, outer: 18, width: 20}, pose: {position: [100, 0, 0]}}
+  - {name: peg, generator: {kind: dowel, diameter: 20, length: 40, chamfer: 1}, moving: true}
+  - {name: pin, generator: {kind: dowel, diameter: 8, length: 40, chamfer: 1}, moving: true, pose: {position: [100, 0, 0]}}
+  - {name: lid, generator: {kind: block}, moving: true, pose: {position: [0, 100, 0]}}
+fits:
+)";
+
+TEST(SceneLoad, ACodeOfPartsTakesTheirOnlyHoleAndShaft) {
+  for (const char* between :
+       {"[wide, peg]", "[peg, wide]", "[wide.bore, peg]", "[wide, peg.journal]"}) {
+    const LoadedScene scene =
+        load(std::string(kTwoBores) + "  - {between: " + between + ", code: H7/g6}\n");
+    ASSERT_TRUE(scene.usable()) << between << ": " << scene.findings.front().text;
+    ASSERT_EQ(scene.fits.size(), 1U) << between;
+    EXPECT_EQ(scene.fits[0].code, "Ø20 H7/g6");
+    EXPECT_EQ(scene.fits[0].part_a + "." + scene.fits[0].feature_a, "wide.bore");
+    EXPECT_EQ(scene.fits[0].part_b + "." + scene.fits[0].feature_b, "peg.journal");
+  }
+  // Of all parts: those whose axes meet where they stand.
+  const LoadedScene all =
+      load(std::string(kTwoBores) + "  - {between: [\"*\", \"*\"], code: H7/g6}\n");
+  ASSERT_TRUE(all.usable()) << all.findings.front().text;
+  ASSERT_EQ(all.fits.size(), 2U);
+  EXPECT_EQ(all.fits[0].code, "Ø20 H7/g6");
+  EXPECT_EQ(all.fits[1].code, "Ø8 H7/g6");
+}
+
+TEST(SceneLoad, ACodeOfPartsWithoutOneSizeSaysWhatThereIs) {
+  const std::string base = kTwoBores;
+  expect_error(load(base + "  - {between: [wide, lid], code: H7/g6}\n"), 11,
+               "no hole and shaft of like size are known of wide and lid");
+  expect_error(load(base + "  - {between: [wide, pin], code: H7/g6}\n"), 11, "no hole and shaft");
+  expect_error(load(base + "  - {between: [wide, peg], code: H7/q6}\n"), 11, "p and r");
+  expect_error(load(base + "  - {between: [wide, peg], code: Ø25 H7/g6}\n"), 11, "wide.bore");
+}
+
+// A shaft of 8 and 20 beside a plate with holes of both sizes; rules start in line 8.
+std::string two_sizes(const std::string& x, const std::string& code) {
+  return "name: two sizes\nunits: mm\nparts:\n"
+         "  - {name: plate, generator: {kind: dowel_plate, hole1: 8, hole2: 20}}\n"
+         "  - {name: shaft, generator: {kind: shaft, d1: 8, l1: 20, d2: 20, l2: 20, d3: 0}, "
+         "moving: "
+         "true, pose: {position: [" +
+         x + ", 0, 0]}}\nfits:\n  - {between: [plate, shaft], code: " + code + "}\n";
+}
+
+TEST(SceneLoad, ACodeOfPartsInSeveralSizesAsksWhich) {
+  const LoadedScene beside = load(two_sizes("100", "H7/g6"));
+  expect_error(beside, 7, "plate.hole1 / shaft.seat1 Ø8, plate.hole2 / shaft.seat2 Ø20");
+  expect_error(beside, 7, "write the size before the code, e.g. Ø8 H7/g6, or name both");
+  EXPECT_EQ(beside.findings.size(), 1U);
+  for (const LoadedScene& scene : {load(two_sizes("100", "Ø20 H7/g6")),
+                                   load(two_sizes("15", "H7/g6"))}) {  // on the axis of 20
+    ASSERT_TRUE(scene.usable()) << scene.findings.front().text;
+    ASSERT_EQ(scene.fits.size(), 1U);
+    EXPECT_EQ(scene.fits[0].feature_a + " " + scene.fits[0].feature_b, "hole2 seat2");
+  }
+}
+
 TEST(SceneLoad, FeaturesThatContradictTheMeshAreErrors) {
   const auto with = [](const std::string& feature) {
     return load(
