@@ -40,17 +40,21 @@ class Inspect : public test::InFolder {
     EXPECT_EQ(run("mortise-generate", what + " -o " + path).exit_code, 0) << what;
     return path;
   }
-  // What inspect proposes, as a scenario file; `pose` is given to the last part.
-  std::string proposed(const std::string& meshes, const std::string& pose = "") const {
+  // What inspect proposes, as a scenario file; `position` is that of the last part.
+  std::string proposed(const std::string& meshes, const std::string& position = "") const {
     const Outcome seen = run("mortise-inspect", meshes);
-    EXPECT_EQ(seen.exit_code, 0) << meshes;
-    const std::size_t at = seen.out.find("units: ");
-    EXPECT_NE(at, std::string::npos) << seen.out;
-    std::string yaml = "name: proposed\n";
-    yaml.append(seen.out, at);
-    const std::size_t last = yaml.rfind("  - name: ");
-    yaml.insert(yaml.find('\n', last) + 1, std::string("    moving: true\n").append(pose));
+    EXPECT_EQ(seen.exit_code, 0) << meshes << seen.err;
+    std::string yaml = seen.out;
+    const std::string origin = "[0, 0, 0]";
+    if (!position.empty()) yaml.replace(yaml.rfind(origin), origin.size(), position);
     return yaml;
+  }
+  // With the proposed fits stated: a person removes '#' and writes a class.
+  static std::string with_fits(std::string yaml, const std::string& code) {
+    std::size_t at = yaml.find("#fits:");
+    EXPECT_NE(at, std::string::npos) << yaml;
+    for (; at != std::string::npos; at = yaml.find("\n#", at)) yaml.erase(yaml.find('#', at), 1);
+    return replaced(std::move(yaml), "??", code);
   }
   // Class of the worst region of the only pair; "" when there is none.
   std::string judged(const std::string& yaml) const {
@@ -179,7 +183,7 @@ TEST_F(Inspect, CountsOpenNonManifoldAndMisorientedEdges) {
   EXPECT_FALSE(parts.at(0).at("closed").get<bool>());
   EXPECT_EQ(parts.at(1).at("misoriented_edges"), 3);
   EXPECT_EQ(parts.at(2).at("non_manifold_edges"), 1);
-  const std::string text = run("mortise-inspect", (folder_ / "holed.obj").string()).out;
+  const std::string text = run("mortise-inspect", (folder_ / "holed.obj").string()).err;
   EXPECT_NE(text.find("not closed: 4 open, 0 non-manifold, 0 misoriented edges"), std::string::npos)
       << text;
 }
@@ -187,7 +191,7 @@ TEST_F(Inspect, CountsOpenNonManifoldAndMisorientedEdges) {
 TEST_F(Inspect, TextHasTheSameFiguresAsJson) {
   const std::string dowel =
       generated("dowel.obj", "dowel diameter_mm=20 length_mm=40 chamfer_mm=1 facets=48");
-  const std::string text = run("mortise-inspect", dowel).out;
+  const std::string text = run("mortise-inspect", dowel).err;
   for (const char* piece :
        {"dowel: 380 triangles, 1 shells, size 20.000 x 20.000 x 40.000 mm, closed",
         "shaft_1     Ø20.0000", "45.000° half", "360.0    38.000",
@@ -218,17 +222,65 @@ TEST_F(Inspect, WhatItProposesIsAScenarioThatJudgesRightly) {
   const std::string peg =
       generated("peg.obj", "dowel diameter_mm=20 length_mm=40 chamfer_mm=1 facets=32 phase_rad=" +
                                std::to_string(kHalfStep32_rad));
-  const std::string yaml = proposed(plate + " " + peg, "    pose: {position: [0, 0, -10]}\n");
-  EXPECT_NE(yaml.find("- {between: [plate.bore_1, peg.shaft_1], code: H7/g6}"), std::string::npos)
-      << yaml;
+  const std::string yaml = proposed(plate + " " + peg, "[0, 0, -10]");
+  // As it stands: the true surfaces touch, whatever the meshes do, and no tolerance is invented.
   EXPECT_EQ(judged(yaml), "fake");
-  EXPECT_EQ(judged(replaced(yaml, "H7/g6", "H7/k6")), "potential");
-  EXPECT_EQ(judged(replaced(yaml, "H7/g6", "H7/s6")), "real");
-  // The features carry it: without them nothing is known of the mesh but the mesh.
-  const std::size_t from = yaml.find("    features:"), to = yaml.find("  - name: peg");
-  std::string bare = yaml;
-  bare.erase(from, to - from);
-  EXPECT_NE(run("mortise-lint", file("bare.yaml", bare)).exit_code, 0);
+  EXPECT_EQ(run("mortise-lint", file("as_it_stands.yaml", yaml)).out.find("H7"), std::string::npos);
+  EXPECT_NE(yaml.find("#  - {between: [plate.bore_1, peg.shaft_1], code: ??}"), std::string::npos)
+      << yaml;
+  EXPECT_EQ(judged(with_fits(yaml, "H7/g6")), "fake");
+  EXPECT_EQ(judged(with_fits(yaml, "H7/k6")), "potential");
+  EXPECT_EQ(judged(with_fits(yaml, "H7/s6")), "real");
+  // What was recognized can be declared by hand.
+  const std::string bore = yaml.substr(yaml.find("#      bore_1: "));
+  const std::string declared =
+      replaced(replaced(yaml, "#    features:", "    features:"), "#      bore_1", "       bore_1");
+  EXPECT_EQ(judged(declared), "fake") << bore;
+}
+
+TEST_F(Inspect, TheScenarioIsAllThatIsOnStdout) {
+  const std::string a = mesh_file("a.v1.obj", shapes::box({5, 5, 5}));
+  std::filesystem::create_directories(folder_ / "other");
+  mesh_file("other/a.v1.obj", shapes::box({5, 5, 5}, Vec3(9, 0, 0)));
+  const Outcome seen = run("mortise-inspect", "a.v1.obj other/a.v1.obj --unit cm", folder_);
+  EXPECT_EQ(seen.exit_code, 0);
+  EXPECT_NE(seen.err.find("a_v1: 12 triangles"), std::string::npos) << seen.err;
+  EXPECT_NE(seen.out.find("unit: cm"), std::string::npos) << seen.out;
+  // It judges as it stands, and as the meshes do without it.
+  const std::string scenario = file("scene.yaml", seen.out);
+  const Outcome by_file = run("mortise-judge", "scene.yaml --json --fail-on real", folder_);
+  EXPECT_EQ(by_file.exit_code, 6) << by_file.err;
+  EXPECT_EQ(by_file.err, "");
+  EXPECT_EQ(run("mortise-lint", scenario).exit_code, 0);
+  const Outcome by_meshes =
+      run("mortise-judge", "a.v1.obj other/a.v1.obj --unit cm --json --fail-on real", folder_);
+  EXPECT_EQ(by_meshes.exit_code, 6);
+  EXPECT_EQ(by_file.document().at("pairs"), by_meshes.document().at("pairs"));
+  EXPECT_EQ(by_meshes.document().at("pairs").at(0).at("part_b"), "a_v1_2") << by_meshes.out;
+  // Apart: nothing is found, and that is no error.
+  mesh_file("other/a.v1.obj", shapes::box({5, 5, 5}, Vec3(11, 0, 0)));
+  EXPECT_EQ(run("mortise-judge", "scene.yaml --fail-on potential", folder_).exit_code, 0);
+}
+
+TEST_F(Inspect, AScenarioComesOutWithItsShapesAndPoses) {
+  const std::string scenario = std::string(MORTISE_SOURCE_DIR) + "/scenarios/fits.yaml";
+  const Outcome seen = run("mortise-inspect", scenario);
+  EXPECT_EQ(seen.exit_code, 0);
+  const std::string again = file("again.yaml", seen.out);
+  EXPECT_EQ(run("mortise-lint", again).exit_code, 0) << seen.out;
+  const auto before = run("mortise-lint", scenario + " --json").document();
+  const auto after = run("mortise-lint", again + " --json").document();
+  for (std::size_t i = 0; i < before.at("parts").size(); ++i)
+    EXPECT_EQ(after.at("parts").at(i).at("mesh_hash"), before.at("parts").at(i).at("mesh_hash"));
+  // Every peg still overlaps its own plate by the same, now without a fit.
+  const auto judged_before = run("mortise-judge", scenario + " --json --full").document();
+  const auto judged_after = run("mortise-judge", again + " --json --full").document();
+  ASSERT_EQ(judged_after.at("pairs").size(), judged_before.at("pairs").size());
+  for (std::size_t i = 0; i < judged_after.at("pairs").size(); ++i)
+    EXPECT_NEAR(
+        judged_after.at("pairs").at(i).at("verdicts").at(0).at("delta_mm").at(1).get<double>(),
+        judged_before.at("pairs").at(i).at("verdicts").at(0).at("delta_mm").at(1).get<double>(),
+        1e-6);
 }
 
 TEST_F(Inspect, SizesThatDifferAreProposedAsModelled) {
@@ -239,9 +291,9 @@ TEST_F(Inspect, SizesThatDifferAreProposedAsModelled) {
         "peg.obj",
         std::string("dowel diameter_mm=") + diameter +
             " length_mm=40 chamfer_mm=1 facets=32 phase_rad=" + std::to_string(kHalfStep32_rad));
-    const std::string yaml = proposed(plate + " " + peg, "    pose: {position: [0, 0, -10]}\n");
+    const std::string yaml = proposed(plate + " " + peg, "[0, 0, -10]");
     EXPECT_NE(yaml.find(std::string("clearance ") + clearance), std::string::npos) << yaml;
-    EXPECT_NE(yaml.find("plus_minus: 0"), std::string::npos) << yaml;
+    EXPECT_NE(yaml.find("code: Ø?? ??"), std::string::npos) << yaml;
     EXPECT_EQ(judged(yaml), expected) << diameter;
   }
 }
@@ -274,7 +326,7 @@ TEST_F(Inspect, PublishedPegAndHole) {
   // The hole's mesh is open, so that no depth in it can be called real.
   EXPECT_EQ(document.at("parts").at(0).at("open_edges"), 36);
   const auto at = [&](const char* x_mm) {
-    return judged(proposed(meshes, std::string("    pose: {position: [") + x_mm + ", 0, -10]}\n"));
+    return judged(proposed(meshes, std::string("[") + x_mm + ", 0, -10]"));
   };
   EXPECT_EQ(at("0"), "");  // 52 um of room on every side
   EXPECT_EQ(at("0.04"), "");

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/support/programs.h"
 
@@ -91,6 +95,139 @@ TEST_F(ScenarioTools, LatinOneAndDistantPosesAreRefusedByAll) {
     EXPECT_EQ(outcome.exit_code, 0) << program;
     EXPECT_FALSE(outcome.document().is_discarded()) << outcome.out;
   }
+}
+
+TEST_F(ScenarioTools, MeshesAreJudgedWithoutAScenario) {
+  const auto make = [&](const char* name, const std::string& what) {
+    EXPECT_EQ(run("mortise-generate", what + " -o " + name, folder_).exit_code, 0) << what;
+  };
+  make("plate.stl", "plate_with_bore bore_mm=20 facets=32");
+  make("peg.stl", "dowel diameter_mm=20 length_mm=40 chamfer_mm=1 facets=32 phase_rad=0.098174770");
+  const auto worst = [&](const std::string& arguments) {
+    const Outcome judged = run("mortise-judge", arguments + " --json", folder_);
+    EXPECT_EQ(judged.exit_code, 0) << arguments << judged.err;
+    return judged.document().at("pairs").at(0).at("verdicts").at(0).at("class").get<std::string>();
+  };
+  // Half a facet out of phase the meshes overlap by 48.2 um under each of them.
+  EXPECT_EQ(worst("plate.stl peg.stl"), "fake");
+  EXPECT_EQ(worst("plate.stl peg.stl --fit H7/g6"), "fake");
+  EXPECT_EQ(worst("peg.stl plate.stl --fit 'Ø20 H7/k6'"), "potential");
+  EXPECT_EQ(worst("plate.stl peg.stl --unit mm --fit H7/p6"), "real");
+  EXPECT_EQ(worst("./plate.stl " + (folder_ / "peg.stl").string() + " --fit H7/p6"), "real");
+  const Outcome drawn = run(
+      "mortise-judge", "plate.stl peg.stl --fit H7/p6 --picture out.png --fail-on real", folder_);
+  EXPECT_EQ(drawn.exit_code, 6) << drawn.err;
+  EXPECT_NE(drawn.out.find("Ø20 H7/p6"), std::string::npos) << drawn.out;
+  EXPECT_GT(std::filesystem::file_size(folder_ / "out.png"), 1000U);
+  // Three of them: the fit is that of the holes and shafts that stand in one another.
+  make("lid.stl", "block x_mm=5 y_mm=5 z_mm=5");
+  EXPECT_EQ(worst("plate.stl lid.stl peg.stl --fit H7/k6"), "potential");
+}
+
+// Wrong usage is one line that says what to do.
+TEST_F(ScenarioTools, WhatIsMistakenIsSaidInOneLineWithARemedy) {
+  EXPECT_EQ(run("mortise-generate", "block -o a.stl", folder_).exit_code, 0);
+  file("s.yaml", blocks("10"));
+  file("snippet.yaml", "parts:\n  - name: a\n    mesh: {file: a.stl, unit: mm}\n");
+  struct Case {
+    const char *program, *arguments;
+    int exit_code;
+    const char* says;
+  };
+  for (const Case& c :
+       {Case{"judge", "a.stl", 3, "name a second one, or a scenario"},
+        Case{"judge", "a.stl gone.stl", 3, "gone.stl: there is no such file"},
+        Case{"judge", "a.stl s.yaml", 3, "s.yaml: is a scenario, and a mesh is expected"},
+        Case{"judge", "s.yaml a.stl", 2, "one scenario, or two or more meshes"},
+        Case{"judge", "s.yaml --fit H7/g6", 2, "a scenario says them itself"},
+        Case{"judge", "a.stl a.stl --fit H7/g6", 3, "no hole and shaft of like size"},
+        Case{"judge", ".", 3, "is a folder; name a scenario"},
+        Case{"judge", "a.stl .", 3, "is a folder; name a mesh"},
+        Case{"judge", "s.yaml --pictur x.svg", 2,
+             "no such option: --pictur; did you mean --picture?"},
+        Case{"judge", "", 2, "files is required"},
+        Case{"lint", "a.stl", 3, "mortise inspect a.stl > scene.yaml"},
+        Case{"lint", "s.yaml --jsn", 2, "did you mean --json?"},
+        Case{"lint", "s.yaml t.yaml", 2, "'t.yaml' is one argument too many"},
+        Case{"server", "a.stl --no-log --domain 77", 3, "is a mesh, and a scenario"},
+        Case{"inspect", ".", 3, "is a folder; name a mesh"},
+        Case{"inspect", "a.stl --unit ft", 2, "--unit"},
+        Case{"replay", "verfy x.mcap", 2, "no such command: verfy; did you mean 'verify'?"},
+        Case{"replay", "verify --jsn x.mcap", 2, "did you mean --json?"}}) {
+    const Outcome said = run(std::string("mortise-") + c.program, c.arguments, folder_);
+    EXPECT_EQ(said.exit_code, c.exit_code) << c.program << " " << c.arguments << said.err;
+    EXPECT_NE(said.err.find(c.says), std::string::npos) << said.err << "\nnot: " << c.says;
+    EXPECT_EQ(std::count(said.err.begin(), said.err.end(), '\n'), 1) << said.err;
+    EXPECT_EQ(said.out, "") << c.program;
+  }
+  const Outcome snippet = run("mortise-judge", "snippet.yaml", folder_);
+  EXPECT_EQ(snippet.exit_code, 3);
+  EXPECT_NE(snippet.err.find("give the scenario a name, e.g. name: "), std::string::npos);
+  EXPECT_NE(snippet.err.find("e.g. units: mm"), std::string::npos);
+}
+
+TEST_F(ScenarioTools, ThatNothingMovesIsNoWarningOfJudge) {
+  const std::string still =
+      file("still.yaml", "name: s\nunits: mm\nparts:\n  - {name: a, generator: {kind: block}}\n");
+  const Outcome judged = run("mortise-judge", still);
+  EXPECT_EQ(judged.exit_code, 0);
+  EXPECT_EQ(judged.err, "");
+  EXPECT_NE(run("mortise-lint", still).out.find("nobody can move anything"), std::string::npos);
+}
+
+// An open box (one triangle is missing), inside out, with a triangle without area.
+constexpr const char* kPoorCorners[] = {
+    "0 0 0 0 10 0 10 10 0",  "0 0 0 10 10 0 10 0 0",   "0 0 9 10 10 9 0 10 9",
+    "0 0 9 10 0 9 10 10 9",  "0 0 0 10 0 9 0 0 9",     "0 0 0 10 0 0 10 0 9",
+    "0 10 0 0 10 9 10 10 9", "0 10 0 10 10 9 10 10 0", "0 0 0 0 0 9 0 10 9",
+    "0 0 0 0 10 9 0 10 0",   "10 0 0 10 10 9 10 0 9",  "10 0 0 10 10 0 10 10 9"};
+
+std::string stl(const std::vector<std::string>& triangles, bool turned) {
+  std::string text = "solid poor\n";
+  for (const std::string& triangle : triangles) {
+    std::istringstream in(triangle);
+    std::array<std::string, 3> corners;
+    for (auto& corner : corners) {
+      std::string x, y, z;
+      in >> x >> y >> z;
+      corner = "vertex " + x + " " + y + " " + z + "\n";
+    }
+    if (turned) std::swap(corners[1], corners[2]);
+    text += "facet normal 0 0 0\nouter loop\n" + corners[0] + corners[1] + corners[2] +
+            "endloop\nendfacet\n";
+  }
+  return text + "endsolid poor\n";
+}
+
+TEST_F(ScenarioTools, WhatTheImportFoundIsToldByEveryProgram) {
+  std::vector<std::string> all(std::begin(kPoorCorners), std::end(kPoorCorners));
+  std::vector<std::string> degenerate = all, open = all;
+  degenerate.emplace_back("0 0 0 5 0 0 10 0 0");
+  open.pop_back();
+  file("turned.stl", stl(all, true));
+  file("flat.stl", stl(degenerate, false));
+  file("open.stl", stl(open, false));
+  const char* const kNotes[] = {"all triangles faced inwards and were turned",
+                                "1 triangles without area were dropped",
+                                "3 open edges"};
+  std::string yaml = "name: notes\nunits: mm\nparts:\n";
+  int x = 0;
+  for (const char* name : {"turned", "flat", "open"})
+    yaml += std::string("  - {name: ") + name + ", moving: true, mesh: {file: " + name +
+            ".stl, unit: mm}, pose: {position: [" + std::to_string(x += 100) + ", 0, 0]}}\n";
+  file("s.yaml", yaml);
+  const std::string lint = run("mortise-lint", "s.yaml", folder_).out;
+  const std::string judge = run("mortise-judge", "s.yaml", folder_).err;
+  const std::string meshes = run("mortise-judge", "turned.stl flat.stl open.stl", folder_).err;
+  const std::string inspect = run("mortise-inspect", "turned.stl flat.stl open.stl", folder_).err;
+  const std::string server =
+      run("mortise-server", "s.yaml --no-log --domain 78 --duration 0.1", folder_).err;
+  for (const char* note : kNotes)
+    for (const std::string* text : {&lint, &judge, &meshes, &inspect, &server}) {
+      const std::size_t at = text->find(note);
+      EXPECT_NE(at, std::string::npos) << note << " is not in\n" << *text;
+      EXPECT_EQ(text->find(note, at + 1), std::string::npos) << "twice in\n" << *text;
+    }
 }
 
 }  // namespace

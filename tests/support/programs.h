@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -14,15 +15,18 @@ namespace mortise::test {
 
 struct Outcome {
   int exit_code = -1;
-  std::string out;
+  std::string out, err;
   /// Discarded when `out` is no JSON.
   nlohmann::json document() const { return nlohmann::json::parse(out, nullptr, false); }
 };
 
-/// Runs a program of the house as a user would; stderr is left out.
-inline Outcome run(const std::string& program, const std::string& arguments) {
-  const std::string command =
-      std::string(MORTISE_BIN_DIR) + "/" + program + " " + arguments + " 2>/dev/null";
+/// Runs a program of the house as a user would, in `folder` where one is given.
+inline Outcome run(const std::string& program, const std::string& arguments,
+                   const std::filesystem::path& folder = ".") {
+  const auto errors =
+      std::filesystem::temp_directory_path() / ("mortise_stderr_" + std::to_string(getpid()));
+  const std::string command = "cd '" + folder.string() + "' && " + MORTISE_BIN_DIR + "/" + program +
+                              " " + arguments + " 2>" + errors.string();
   Outcome outcome;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return outcome;
@@ -31,6 +35,9 @@ inline Outcome run(const std::string& program, const std::string& arguments) {
     outcome.out.append(buffer.data(), n);
   const int status = pclose(pipe);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  std::ifstream in(errors, std::ios::binary);
+  outcome.err.assign(std::istreambuf_iterator<char>(in), {});
+  std::filesystem::remove(errors);
   return outcome;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "client/tools/inspect/propose.h"
+#include "common/io/scenario/mesh_scenario.h"
 #include "common/io/scenario/open_scene.h"
 
 namespace mortise {
@@ -21,12 +22,11 @@ const char* kind_name(SurfaceKind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
-InspectedPart inspected(std::string name, SolidPtr solid, ImportReport report) {
+InspectedPart inspected(Scenario::PartSpec spec, SolidPtr solid, ImportReport report) {
   InspectedPart part;
-  part.name = std::move(name);
+  part.spec = std::move(spec);
   part.solid = std::move(solid);
   part.report = std::move(report);
-  part.file = part.report.file;
   part.found = recognize_features(*part.solid, {.quantum_mm = part.report.quantum_mm});
   return part;
 }
@@ -37,10 +37,13 @@ Result<std::vector<InspectedPart>> inspect_scenario(const std::string& file) {
   for (const Finding& f : opened->findings)
     if (f.is_error) return fail(Code::kInvalidInput, f.text);
   std::vector<InspectedPart> parts;
-  const auto& world = opened->scene.world.parts;
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    parts.push_back(inspected(world[i].name, world[i].solid, opened->scene.imports[i]));
-    parts.back().X_WP = world[i].X_WP;
+  for (std::size_t i = 0; i < opened->scenario.parts.size(); ++i) {
+    Scenario::PartSpec spec = opened->scenario.parts[i];
+    // The text that is proposed may lie in another folder: it names files as we see them from here.
+    if (!spec.mesh.file.empty())
+      spec.mesh.file = (std::filesystem::path(file).parent_path() / spec.mesh.file).string();
+    parts.push_back(
+        inspected(std::move(spec), opened->scene.world.parts[i].solid, opened->scene.imports[i]));
     parts.back().placed = true;
   }
   return parts;
@@ -77,13 +80,14 @@ std::string part_text(const InspectedPart& part) {
   const Topology& topology = part.solid->topology();
   const Vec3 size = part.solid->bounds().hi - part.solid->bounds().lo;
   std::string text = fmt::format(
-      "{}: {} triangles, {} shells, size {:.3f} x {:.3f} x {:.3f} mm, {}\n", part.name,
+      "{}: {} triangles, {} shells, size {:.3f} x {:.3f} x {:.3f} mm, {}\n", part.spec.name,
       part.solid->mesh().triangles.size(), part.solid->shells().size(), size.x(), size.y(),
       size.z(),
       topology.closed() ? fmt::format("closed, {:.3f} mm³", topology.volume_mm3)
                         : fmt::format("not closed: {} open, {} non-manifold, {} misoriented edges",
                                       topology.boundary_edges, topology.non_manifold_edges,
                                       topology.misoriented_edges));
+  for (const std::string& note : part.report.notes) text += "  note: " + note + "\n";
   std::size_t planes = 0, rows = 0;
   for (const Feature& f : part.found.features) planes += f.surface.kind == SurfaceKind::kPlane;
   if (planes < part.found.features.size())
@@ -105,9 +109,11 @@ std::string part_text(const InspectedPart& part) {
 }  // namespace
 
 Result<std::vector<InspectedPart>> inspect_files(const std::vector<std::string>& files,
-                                                 const std::string& unit, double unit_mm) {
+                                                 double unit_mm) {
   std::vector<InspectedPart> parts;
-  for (const std::string& file : files) {
+  const std::vector<std::string> names = part_names(files);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& file = files[i];
     if (file.ends_with(".yaml") || file.ends_with(".yml")) {
       if (files.size() > 1)
         return fail(Code::kInvalidInput, file + ": a scenario is inspected alone");
@@ -116,10 +122,13 @@ Result<std::vector<InspectedPart>> inspect_files(const std::vector<std::string>&
     Result<ImportedMesh> mesh = import_mesh(file, unit_mm);
     if (!mesh) return mesh.error();
     if (mesh->mesh.triangles.empty()) return fail(Code::kInvalidInput, file + ": has no triangles");
-    parts.push_back(inspected(std::filesystem::path(file).stem().string(),
-                              std::make_shared<const Solid>(std::move(mesh->mesh)), mesh->report));
-    parts.back().file = file;
-    parts.back().unit = unit;
+    Scenario::PartSpec spec;
+    spec.name = names[i];
+    spec.mesh.file = file;
+    spec.mesh.unit_mm = unit_mm;
+    spec.moving = i > 0;
+    parts.push_back(inspected(std::move(spec), std::make_shared<const Solid>(std::move(mesh->mesh)),
+                              mesh->report));
   }
   return parts;
 }
@@ -127,7 +136,7 @@ Result<std::vector<InspectedPart>> inspect_files(const std::vector<std::string>&
 std::string inspect_text(const std::vector<InspectedPart>& parts) {
   std::string text;
   for (const InspectedPart& part : parts) text += part_text(part) + "\n";
-  return text + "# For a scenario:\n" + proposed_yaml(parts);
+  return text;
 }
 
 Json inspect_json(const std::vector<InspectedPart>& parts) {
@@ -135,8 +144,9 @@ Json inspect_json(const std::vector<InspectedPart>& parts) {
   json["parts"] = Json::array();
   for (const InspectedPart& part : parts) {
     const Topology& topology = part.solid->topology();
-    Json p{{"name", part.name},
-           {"file", part.file},
+    Json p{{"name", part.spec.name},
+           {"file", part.report.file},
+           {"notes", part.report.notes},
            {"triangles", part.solid->mesh().triangles.size()},
            {"shells", part.solid->shells().size()},
            {"closed", topology.closed()},
@@ -171,9 +181,9 @@ Json inspect_json(const std::vector<InspectedPart>& parts) {
   }
   json["fits"] = Json::array();
   for (const ProposedFit& fit : proposed_fits(parts))
-    json["fits"].push_back({{"bore", parts[fit.bore_part].name + "." +
+    json["fits"].push_back({{"bore", parts[fit.bore_part].spec.name + "." +
                                          parts[fit.bore_part].found.features[fit.bore].name},
-                            {"shaft", parts[fit.shaft_part].name + "." +
+                            {"shaft", parts[fit.shaft_part].spec.name + "." +
                                           parts[fit.shaft_part].found.features[fit.shaft].name},
                             {"clearance_mm", fit.clearance_mm}});
   return json;

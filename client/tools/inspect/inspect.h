@@ -5,24 +5,24 @@
 #include "common/geometry/recognition/recognition.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/report_json.h"
-#include "common/math/pose.h"
+#include "common/session/world/scenario.h"
 
 namespace mortise {
 
 /// One mesh with what was recognized in it.
 struct InspectedPart {
-  std::string name, file, unit;
+  Scenario::PartSpec spec;  ///< name, mesh file (from here, or absolute) or generator, pose, moving
   SolidPtr solid;
   ImportReport report;
   Recognition found;
-  Pose X_WP;
-  bool placed = false;  ///< X_WP is known: from a scenario
+  bool placed = false;  ///< by a scenario; else as it lies in its file
 };
 
 /// Mesh files, or the parts of one scenario file (.yaml). The first that cannot be read fails all.
 Result<std::vector<InspectedPart>> inspect_files(const std::vector<std::string>& files,
-                                                 const std::string& unit, double unit_mm);
+                                                 double unit_mm);
 
+/// For people: sizes, features, notes of the import.
 std::string inspect_text(const std::vector<InspectedPart>& parts);
 Json inspect_json(const std::vector<InspectedPart>& parts);
 

@@ -2,31 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "common/io/scenario/fit_candidates.h"
+#include "common/io/scenario/mesh_scenario.h"
 
 namespace mortise {
 namespace {
 
-constexpr double kLikeRadii = 0.03;
-constexpr double kLikeAxes_rad = std::numbers::pi / 180.0;
-constexpr double kBesideAxis = 0.1;  // of the radius
 // Sizes that agree within this may carry a code; others are as modelled.
 constexpr double kSameSize_mm = 0.003;
 
 bool round(const InspectedPart& part, std::size_t i, bool inward) {
   const Surface& s = part.found.features[i].surface;
-  return s.kind == SurfaceKind::kCylinder && s.inward == inward &&
-         part.found.measures[i].arc_rad > std::numbers::pi;
-}
-
-bool axes_meet(const InspectedPart& a, const Surface& bore, const InspectedPart& b,
-               const Surface& shaft) {
-  const Vec3 axis_a = a.X_WP.q * bore.axis, axis_b = b.X_WP.q * shaft.axis;
-  if (std::asin(std::min(1.0, axis_a.cross(axis_b).norm())) > kLikeAxes_rad) return false;
-  const Vec3 d = b.X_WP * shaft.point - a.X_WP * bore.point;
-  return (d - d.dot(axis_a) * axis_a).norm() <= kBesideAxis * bore.radius_mm;
+  return is_round(s, part.found.measures[i].arc_rad) && s.inward == inward;
 }
 
 std::string triple(const Vec3& v) {
@@ -58,17 +48,33 @@ std::string feature_yaml(const Feature& f, const FeatureMeasure& m) {
   }
 }
 
+std::string yaml_end(const InspectedPart& part, const Feature& feature) {
+  const std::string name = yaml_word(part.spec.name);
+  return name == part.spec.name ? name + "." + feature.name
+                                : yaml_word(part.spec.name + "." + feature.name);
+}
+
 std::string fit_yaml(const std::vector<InspectedPart>& parts, const ProposedFit& fit) {
   const InspectedPart &a = parts[fit.bore_part], &b = parts[fit.shaft_part];
   const Feature &bore = a.found.features[fit.bore], &shaft = b.found.features[fit.shaft];
   const bool same = std::fabs(fit.clearance_mm) <= kSameSize_mm;
-  const std::string what = same ? "code: H7/g6" : "plus_minus: 0";
   return fmt::format(
-      "  # bore {:.4f}, shaft {:.4f}, clearance {:+.4f} as modelled{}\n"
-      "  - {{between: [{}.{}, {}.{}], {}}}\n",
+      "#  # bore {:.4f}, shaft {:.4f}, clearance {:+.4f} as modelled\n"
+      "#  - {{between: [{}, {}], code: {}}}\n",
       2.0 * bore.surface.radius_mm, 2.0 * shaft.surface.radius_mm, fit.clearance_mm,
-      same ? "; the class is a proposal" : "; say the tolerances", a.name, bore.name, b.name,
-      shaft.name, what);
+      yaml_end(a, bore), yaml_end(b, shaft), same ? "??" : "Ø?? ??");
+}
+
+// What is recognized, to be declared; and where tolerances belong, which no mesh tells.
+std::string remarks_of(const InspectedPart& part) {
+  std::string text;
+  for (std::size_t i = 0; i < part.found.features.size(); ++i) {
+    const Feature& f = part.found.features[i];
+    if (f.surface.kind == SurfaceKind::kPlane) continue;
+    text += fmt::format("#      {}: {}\n", f.name, feature_yaml(f, part.found.measures[i]));
+  }
+  if (!text.empty()) text = "#    features:\n" + text;
+  return "#    tolerance: \"±??\"\n" + text;
 }
 
 }  // namespace
@@ -83,8 +89,9 @@ std::vector<ProposedFit> proposed_fits(const std::vector<InspectedPart>& parts) 
         for (std::size_t j = 0; q != p && j < parts[q].found.features.size(); ++j) {
           if (!round(parts[q], j, false)) continue;
           const Surface& shaft = parts[q].found.features[j].surface;
-          if (std::fabs(bore.radius_mm - shaft.radius_mm) > kLikeRadii * bore.radius_mm) continue;
-          if (parts[p].placed && !axes_meet(parts[p], bore, parts[q], shaft)) continue;
+          if (!like_sizes(bore, shaft)) continue;
+          if (parts[p].placed && !axes_meet(bore, parts[p].spec.X_WP, shaft, parts[q].spec.X_WP))
+            continue;
           fits.push_back({p, i, q, j, 2.0 * (bore.radius_mm - shaft.radius_mm)});
         }
     }
@@ -92,22 +99,19 @@ std::vector<ProposedFit> proposed_fits(const std::vector<InspectedPart>& parts) 
 }
 
 std::string proposed_yaml(const std::vector<InspectedPart>& parts) {
-  std::string text = "units: mm\nparts:\n";
-  for (const InspectedPart& part : parts) {
-    text += fmt::format("  - name: {}\n", part.name);
-    if (!part.placed)
-      text += fmt::format("    mesh: {{file: \"{}\", unit: {}}}\n", part.file, part.unit);
-    bool first = true;
-    for (std::size_t i = 0; i < part.found.features.size(); ++i) {
-      const Feature& f = part.found.features[i];
-      if (f.surface.kind == SurfaceKind::kPlane) continue;
-      if (first) text += "    features:\n";
-      first = false;
-      text += fmt::format("      {}: {}\n", f.name, feature_yaml(f, part.found.measures[i]));
-    }
-  }
+  std::vector<PartText> written;
+  for (const InspectedPart& part : parts) written.push_back({part.spec, remarks_of(part)});
+  std::string name = parts.front().spec.name;
+  if (parts.size() == 2) name += ", " + parts.back().spec.name;
+  if (parts.size() > 2) name += fmt::format(" and {} more", parts.size() - 1);
+  std::string text =
+      "# No mesh tells tolerances: without any, parts are judged as modelled. To state one, write "
+      "it in the\n# place of ?? and remove the '#' before it. Features need that only where their "
+      "surface is to be\n# declared; recognized ones can be named as they are.\n";
+  text += scenario_yaml(name, written);
   const std::vector<ProposedFit> fits = proposed_fits(parts);
-  if (!fits.empty()) text += "fits:\n";
+  if (!fits.empty())
+    text += "# What may belong together; the class is unknown, e.g. H7/g6:\n#fits:\n";
   for (const ProposedFit& fit : fits) text += fit_yaml(parts, fit);
   return text;
 }

@@ -13,7 +13,8 @@ struct ProposedFit {
 /// only pairs whose axes agree within 1 degree and a tenth of the radius.
 std::vector<ProposedFit> proposed_fits(const std::vector<InspectedPart>& parts);
 
-/// Parts, features and fits as a scenario would have them, to be pasted.
+/// A scenario of these parts that can be judged as it stands; features and fits, whose tolerances
+/// are unknown, as comments.
 std::string proposed_yaml(const std::vector<InspectedPart>& parts);
 
 }  // namespace mortise

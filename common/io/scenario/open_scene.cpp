@@ -2,7 +2,26 @@
 
 #include <algorithm>
 
+#include "common/base/length_unit.h"
+#include "common/io/scenario/mesh_scenario.h"
+
 namespace mortise {
+namespace {
+
+Result<OpenedScene> opened_of(ScenarioReading reading) {
+  OpenedScene opened;
+  opened.findings = std::move(reading.findings);
+  opened.scenario = std::move(reading.scenario);
+  if (!opened.usable()) return opened;
+  Result<LoadedScene> scene = load_scene(opened.scenario, default_meshes());
+  if (!scene) return scene.error();
+  opened.scene = std::move(scene).value();
+  opened.findings.insert(opened.findings.end(), opened.scene.findings.begin(),
+                         opened.scene.findings.end());
+  return opened;
+}
+
+}  // namespace
 
 bool OpenedScene::usable() const {
   return std::none_of(findings.begin(), findings.end(),
@@ -12,15 +31,40 @@ bool OpenedScene::usable() const {
 Result<OpenedScene> open_scene(const std::filesystem::path& file) {
   Result<ScenarioReading> reading = read_scenario(file);
   if (!reading) return reading.error();
-  OpenedScene opened;
-  opened.findings = std::move(reading->findings);
-  opened.scenario = std::move(reading->scenario);
-  if (!opened.usable()) return opened;
-  Result<LoadedScene> scene = load_scene(opened.scenario, default_meshes());
-  if (!scene) return scene.error();
-  opened.scene = std::move(scene).value();
-  opened.findings.insert(opened.findings.end(), opened.scene.findings.begin(),
-                         opened.scene.findings.end());
+  return opened_of(std::move(reading).value());
+}
+
+Result<OpenedScene> open_meshes(const std::vector<std::string>& files, const std::string& unit,
+                                const std::string& fit) {
+  if (files.size() < 2)
+    return fail(
+        Code::kInvalidInput,
+        files.front() + ": one mesh meets nothing; name a second one, or a scenario (.yaml)");
+  const std::vector<std::string> names = part_names(files);
+  std::vector<PartText> parts(files.size());
+  std::string all_names, all_files;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    Scenario::PartSpec& spec = parts[i].spec;
+    spec.name = names[i];
+    spec.mesh.file = files[i];
+    spec.mesh.unit_mm = length_unit_mm(unit).value_or(1.0);
+    spec.moving = i > 0;
+    all_names += (i == 0 ? "" : ", ") + names[i];
+    all_files += (i == 0 ? "" : ", ") + files[i];
+  }
+  std::string yaml = scenario_yaml(all_names, parts);
+  if (!fit.empty()) {
+    const bool pair = files.size() == 2;
+    yaml += "fits:\n  - {between: [" + yaml_word(pair ? names[0] : "*") + ", " +
+            yaml_word(pair ? names[1] : "*") + "], code: " + yaml_word(fit) + "}\n";
+  }
+  Result<ScenarioReading> reading = read_scenario_text(yaml, "command line");
+  if (!reading) return reading.error();
+  // Nobody has seen the text: its lines mean nothing.
+  for (auto& part : reading->scenario.parts) part.at = {};
+  for (auto& stated : reading->scenario.fits) stated.at = {};
+  Result<OpenedScene> opened = opened_of(std::move(reading).value());
+  if (opened) opened->scenario.file = all_files;
   return opened;
 }
 

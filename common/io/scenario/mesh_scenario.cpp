@@ -1,0 +1,98 @@
+#include "common/io/scenario/mesh_scenario.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "common/base/length_unit.h"
+
+namespace mortise {
+namespace {
+
+constexpr std::size_t kLongestName = 100;
+
+std::string number(double x) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
+}
+
+std::string list_of(std::initializer_list<double> numbers) {
+  std::string text;
+  for (const double x : numbers) text += (text.empty() ? "[" : ", ") + number(x);
+  return text + "]";
+}
+
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string legal_name(std::string name) {
+  for (char& c : name)
+    if (c == '.' || c == '*' || static_cast<unsigned char>(c) < 0x20) c = '_';
+  if (name.size() > kLongestName) {
+    name.resize(kLongestName);  // not in the middle of a character
+    while (!name.empty() && (static_cast<unsigned char>(name.back()) & 0xc0) == 0x80)
+      name.pop_back();
+    if (!name.empty() && static_cast<unsigned char>(name.back()) >= 0xc0) name.pop_back();
+  }
+  return name.empty() ? "part" : name;
+}
+
+std::string shape_yaml(const Scenario::MeshSource& mesh) {
+  if (!mesh.generator.empty()) {
+    std::string text = "generator: {kind: " + yaml_word(mesh.generator);
+    for (const auto& [parameter, value] : mesh.parameters)
+      text += ", " + parameter + ": " + number(value);
+    return text + "}";
+  }
+  const std::string text = "mesh: {file: " + quoted(mesh.file) + ", unit: ";
+  for (const LengthUnit& unit : kLengthUnits)
+    if (mesh.unit_mm == unit.mm) return text + unit.name + "}";
+  return text + "mm, scale: " + number(mesh.unit_mm) + "}";
+}
+
+std::string pose_yaml(const Pose& X) {
+  std::string text = "pose: {position: " + list_of({X.p.x(), X.p.y(), X.p.z()});
+  if (X.q.vec().norm() > 0.0)
+    text += ", quaternion: " + list_of({X.q.w(), X.q.x(), X.q.y(), X.q.z()});
+  return text + "}";
+}
+
+}  // namespace
+
+std::vector<std::string> part_names(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const std::string& file : files) {
+    const std::string stem = legal_name(std::filesystem::path(file).stem().string());
+    std::string name = stem;
+    for (int i = 2; !taken.insert(name).second; ++i) name = stem + "_" + std::to_string(i);
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string yaml_word(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  const bool simple = !text.empty() && std::all_of(text.begin(), text.end(), plain);
+  return simple ? text : quoted(text);
+}
+
+std::string scenario_yaml(const std::string& name, std::span<const PartText> parts) {
+  std::string text =
+      "name: " + yaml_word(name) +
+      "\nunits: mm\ndeviation: recognized  # surfaces that the meshes show\nparts:\n";
+  for (const PartText& part : parts) {
+    text += "  - name: " + yaml_word(part.spec.name) + "\n    " + shape_yaml(part.spec.mesh) +
+            "\n    " + pose_yaml(part.spec.X_WP) + "\n";
+    if (part.spec.moving) text += "    moving: true\n";
+    text += part.remarks;
+  }
+  return text;
+}
+
+}  // namespace mortise
