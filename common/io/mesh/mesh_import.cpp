@@ -179,6 +179,17 @@ bool is_mesh_name(const fs::path& file) {
          std::any_of(kOther.begin(), kOther.end(), is);
 }
 
+std::vector<std::string> notes_of(const ImportReport& report) {
+  std::vector<std::string> notes = report.notes;
+  if (!report.closed)
+    notes.push_back("is open or not a manifold (" + std::to_string(report.boundary_edges) +
+                    " boundary, " + std::to_string(report.non_manifold_edges) + " non-manifold, " +
+                    std::to_string(report.misoriented_edges) +
+                    " misoriented edges): crossing is found, depth is not; repair it for more "
+                    "than potential");
+  return notes;
+}
+
 Result<ImportedMesh> import_mesh(const fs::path& file, double unit_mm,
                                  const ImportLimits& limits) try {
   const std::string extension = lower_extension(file);

@@ -38,6 +38,10 @@ struct ImportedMesh {
   ImportReport report;
 };
 
+/// What a designer should know of a mesh, one line each: its notes, and that it has no inside. Told
+/// by every program that reads it (scene_load makes findings of them), and to all of a session.
+std::vector<std::string> notes_of(const ImportReport& report);
+
 /// Does the name end as that of a mesh or of another shape (STEP)? The file is not looked at.
 bool is_mesh_name(const std::filesystem::path& file);
 

@@ -116,7 +116,7 @@ std::string list_of(const std::vector<std::string>& words) {
 
 std::string not_known(const std::string& key, const std::vector<std::string>& words) {
   const std::string nearest = nearest_word(key, words);
-  return (nearest.empty() ? "; known: " : "; did you mean '" + nearest + "'? Known: ") +
+  return (nearest.empty() ? ". Known: " : "; did you mean '" + nearest + "'? Known: ") +
          list_of(words);
 }
 

@@ -177,7 +177,7 @@ TEST_F(MeshImport, RefusalsSayWhy) {
   expect_says(one_line_error(write("noextension", "hello")), "known are .stl");
   expect_says(one_line_error(folder_ / "missing.stl"), "no such file");
   fs::create_directory(folder_ / "folder.stl");
-  expect_says(one_line_error(folder_ / "folder.stl"), "not a regular file");
+  expect_says(one_line_error(folder_ / "folder.stl"), "is a folder");
   expect_says(one_line_error(write("empty.ply", "")), "empty");
   expect_says(one_line_error(write("cube.obj", kCubeObj), 0.0), "positive");
   expect_says(one_line_error(write("cube.obj", kCubeObj), NAN), "positive");

@@ -230,7 +230,7 @@ std::vector<Fault> faults() {
       {"name: a\nparts: []\n", 1, "units is missing"},
       {"units: mm\nparts: []\n", 1, "name is missing: give the scenario a name"},
       {"name: a\nunits: inch\n" + good.substr(18), 2, "'inch' is not known; did you mean 'in'?"},
-      {good + "a: 1\n", 7, "unknown key 'a'; known: name, units"},
+      {good + "a: 1\n", 7, "unknown key 'a'. Known: name, units"},
       {head(""), 1, "parts is missing"},
       {head("parts: []\n"), 3, "is empty"},
       {head("parts: 5\n"), 3, "expected a list"},
