@@ -46,7 +46,7 @@ Result<SolidPtr> load(const std::string& file, double unit_mm) {
   } else {
     Result<ImportedMesh> imported = import_mesh(file, unit_mm);
     if (!imported) return imported.error();
-    for (const std::string& note : imported->report.notes)
+    for (const std::string& note : notes_of(imported->report))
       std::fprintf(stderr, "%s: %s\n", file.c_str(), note.c_str());
     if (imported->report.quantum_mm > 0.0)
       std::fprintf(stderr, "%s: coordinates are rounded to %.2g mm on import; an OBJ file is not\n",

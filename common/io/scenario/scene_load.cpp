@@ -187,7 +187,7 @@ class SceneLoader {
     part.features = kind->features;
     part.moving = spec.moving;
     part.X_WP = part.X_WP_scenario = spec.X_WP;
-    part.notes = kind->report.notes;
+    part.notes = notes_of(kind->report);
     scene_.imports.push_back(kind->report);
     resolve_for_report(part);
     scene_.world.parts.push_back(std::move(part));
@@ -253,7 +253,7 @@ class SceneLoader {
     mesh.report = imported->report;
     SolidPtr solid = std::make_shared<const Solid>(std::move(imported->mesh));
     mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
-    for (const std::string& note : mesh.report.notes)
+    for (const std::string& note : notes_of(mesh.report))
       finding(false, spec.at, "part " + spec.name + ": mesh " + mesh.report.file + ": " + note);
     if (!mesh.report.closed) say_open(spec, mesh);
     if (!spec.mesh.generator.empty()) {
