@@ -54,7 +54,7 @@ class Inspect : public test::InFolder {
     std::size_t at = yaml.find("#fits:");
     EXPECT_NE(at, std::string::npos) << yaml;
     for (; at != std::string::npos; at = yaml.find("\n#", at)) yaml.erase(yaml.find('#', at), 1);
-    return replaced(std::move(yaml), "??", code);
+    return replaced(std::move(yaml), "code: ??", "code: " + code);
   }
   // Class of the worst region of the only pair; "" when there is none.
   std::string judged(const std::string& yaml) const {

@@ -87,7 +87,7 @@ std::string part_text(const InspectedPart& part) {
                         : fmt::format("not closed: {} open, {} non-manifold, {} misoriented edges",
                                       topology.boundary_edges, topology.non_manifold_edges,
                                       topology.misoriented_edges));
-  for (const std::string& note : part.report.notes) text += "  note: " + note + "\n";
+  for (const std::string& note : notes_of(part.report)) text += "  note: " + note + "\n";
   std::size_t planes = 0, rows = 0;
   for (const Feature& f : part.found.features) planes += f.surface.kind == SurfaceKind::kPlane;
   if (planes < part.found.features.size())
@@ -146,7 +146,7 @@ Json inspect_json(const std::vector<InspectedPart>& parts) {
     const Topology& topology = part.solid->topology();
     Json p{{"name", part.spec.name},
            {"file", part.report.file},
-           {"notes", part.report.notes},
+           {"notes", notes_of(part.report)},
            {"triangles", part.solid->mesh().triangles.size()},
            {"shells", part.solid->shells().size()},
            {"closed", topology.closed()},
