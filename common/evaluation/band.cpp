@@ -7,6 +7,7 @@
 #include "common/base/check.h"
 #include "common/evaluation/deviation.h"
 #include "common/evaluation/estimate.h"
+#include "common/geometry/plane_faces.h"
 
 namespace mortise {
 namespace {
@@ -37,11 +38,12 @@ void add_rounding(SurfaceBand& band, double quantum_mm, std::span<const Feature>
 
 // Faces without triangles (a part whose features cover it) must not widen the search for near
 // pairs.
-void summarize(SurfaceBand& band) {
+void summarize(SurfaceBand& band, const Solid& solid) {
   std::vector<bool> used(band.faces.size(), band.face_of_triangle.empty());
   for (const std::uint16_t face : band.face_of_triangle) used[face] = true;
   band.largest_offset_mm = 0.0;
   band.trivial = true;
+  bool grown_planes = false;
   for (std::size_t i = 0; i < band.faces.size(); ++i) {
     const SurfaceBand::Face& face = band.faces[i];
     if (!used[i]) continue;
@@ -49,7 +51,11 @@ void summarize(SurfaceBand& band) {
     if (says_nothing(band, face) && band.quantum_mm == 0.0) continue;
     band.largest_offset_mm =
         std::max(band.largest_offset_mm, face.deviation_mm.hi + face.tolerance_mm.hi);
+    grown_planes |= is_plane_band(face) && face.tolerance_mm.hi > 0.0;
   }
+  band.largest_travel_mm = grown_planes && solid.topology().closed()
+                               ? find_plane_faces(solid, band).most_travel.outward_mm
+                               : 0.0;
 }
 
 void state(SurfaceBand::Face& face, const FaceStatement& statement) {
@@ -150,17 +156,17 @@ SurfaceBand build_band(const BandInput& input) {
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
   if (estimate) split_rest_by_estimate(band, *input.solid, input.quantum_mm);
   add_rounding(band, input.quantum_mm, input.features);
-  return with_statements(band, input.rest, input.of_feature);
+  return with_statements(band, *input.solid, input.rest, input.of_feature);
 }
 
-SurfaceBand with_statements(const SurfaceBand& band, const FaceStatement& rest,
+SurfaceBand with_statements(const SurfaceBand& band, const Solid& solid, const FaceStatement& rest,
                             std::span<const FaceStatement> of_feature) {
   SurfaceBand stated = band;
   const std::size_t features = feature_count(band);
   MORTISE_CHECK(of_feature.size() == features, "one statement for each feature of the band");
   for (std::size_t i = 0; i < stated.faces.size(); ++i)
     state(stated.faces[i], i >= 1 && i <= features ? of_feature[i - 1] : rest);
-  summarize(stated);
+  summarize(stated, solid);
   return stated;
 }
 

@@ -25,8 +25,8 @@ struct BandInput {
 /// topology are used only when something is declared.
 SurfaceBand build_band(const BandInput& input);
 
-/// The same faces under other statements, for a pair with its own fit.
-SurfaceBand with_statements(const SurfaceBand& band, const FaceStatement& rest,
+/// The same faces of the solid under other statements, for a pair with its own fit.
+SurfaceBand with_statements(const SurfaceBand& band, const Solid& solid, const FaceStatement& rest,
                             std::span<const FaceStatement> of_feature);
 
 }  // namespace mortise

@@ -129,8 +129,9 @@ class LiveRules final : public SurfaceRules {
       stated = before;
       return change;
     }
-    change->bands.emplace_back(target.part, with_statements(part.band, for_band(stated.rest),
-                                                            for_band(stated.of_feature)));
+    change->bands.emplace_back(target.part,
+                               with_statements(part.band, *part.solid, for_band(stated.rest),
+                                               for_band(stated.of_feature)));
     return change;
   }
 

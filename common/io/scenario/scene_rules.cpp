@@ -275,7 +275,8 @@ class RuleBook {
     statements.pop_back();
     std::shared_ptr<const SurfaceBand>& band = bands_[key];
     if (!band)
-      band = std::make_shared<const SurfaceBand>(with_statements(part(id).band, rest, statements));
+      band = std::make_shared<const SurfaceBand>(
+          with_statements(part(id).band, *part(id).solid, rest, statements));
     return band;
   }
 

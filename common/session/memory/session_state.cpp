@@ -25,7 +25,7 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
                   "parts are numbered from 1 and have a mesh");
     MORTISE_CHECK(valid(part.band, part.solid->mesh().triangles.size()),
                   "a band has a face for every triangle of its part");
-    state->parts[i].growth_mm = std::max(0.0, part.band.largest_offset_mm);
+    state->parts[i].growth_mm = part.band.farthest_mm();
     state->rehash.push_back(i);
     if (!part.moving) continue;
     ++state->moving_parts;
@@ -38,7 +38,7 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
       MORTISE_CHECK(valid(*band, world.find(part)->solid->mesh().triangles.size()),
                     "a band has a face for every triangle of its part");
       double& growth = state->parts[part.value - 1].growth_mm;
-      growth = std::max(growth, band->largest_offset_mm);
+      growth = std::max(growth, band->farthest_mm());
     };
     grow(pair.first, rule.band_a);
     grow(pair.second, rule.band_b);
@@ -48,12 +48,12 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
   return state;
 }
 
-double largest_offset_mm(const World& world, PartId part) {
-  double largest_mm = std::max(0.0, world.find(part)->band.largest_offset_mm);
+double farthest_mm(const World& world, PartId part) {
+  double largest_mm = world.find(part)->band.farthest_mm();
   for (const auto& [ids, rule] : world.pair_rules) {
     const auto& band = ids.first == part ? rule.band_a : rule.band_b;
     if ((ids.first == part || ids.second == part) && band)
-      largest_mm = std::max(largest_mm, band->largest_offset_mm);
+      largest_mm = std::max(largest_mm, band->farthest_mm());
   }
   return largest_mm;
 }
@@ -146,7 +146,7 @@ void note_surface(World& world, PartId part, PartId other, const Decision& by) {
   for (const PartId id : {part, other}) {
     if (!world.find(id)) continue;
     const std::uint32_t index = id.value - 1;
-    state.parts[index].growth_mm = largest_offset_mm(world, id) + kClashHysteresisMost_mm;
+    state.parts[index].growth_mm = farthest_mm(world, id) + kClashHysteresisMost_mm;
     state.broad_phase->set_box(index, resting_box(world, state, index));
   }
   // 2. The moving parts of the pairs concerned count as put where they stand: that voids what is

@@ -54,7 +54,7 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
   bands.rule = rule;
   pair.band_a = &band_a_of(bands);
   pair.band_b = &band_b_of(bands);
-  pair.band_mm = std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
+  pair.band_mm = pair.band_a->farthest_mm() + pair.band_b->farthest_mm();
   pair.memo = MemoInUse(state.memo(pair.a, pair.b));
   const auto open = state.open.find({a.id, b.id});
   if (open != state.open.end()) pair.open = &open->second;

@@ -244,7 +244,7 @@ TEST(Band, FeatureBeatsPartAndStatementsOfAPairBeatBoth) {
   EXPECT_EQ(band.faces[1].tolerance_mm, (Interval{-0.02, 0.0}));
   EXPECT_NEAR(band.largest_offset_mm, 0.1, 1e-12);
   const std::vector<FaceStatement> pair{{{-0.2, 0.3}, "pair"}};
-  const SurfaceBand of_pair = with_statements(band, input.rest, pair);
+  const SurfaceBand of_pair = with_statements(band, tube, input.rest, pair);
   EXPECT_EQ(of_pair.faces[1].tolerance_mm, (Interval{-0.2, 0.3}));
   EXPECT_EQ(of_pair.faces[1].tolerance_source, "pair");
   EXPECT_NEAR(of_pair.largest_offset_mm, 0.3, 1e-6);
