@@ -224,6 +224,12 @@ const std::vector<std::array<std::int32_t, Bvh::kWidth>>& Body::face_of_child() 
   return index_->face_of_child;
 }
 
+const PlaneFaces& Body::plane_faces() const {
+  if (!index_->plane_faces)
+    index_->plane_faces = std::make_unique<const PlaneFaces>(find_plane_faces(*solid, *band));
+  return *index_->plane_faces;
+}
+
 std::int32_t Body::find_faces_of_children(std::int32_t child) const {
   const Bvh& bvh = solid->bvh();
   if (child < 0) {

@@ -42,6 +42,9 @@ struct Body {
   static constexpr std::int32_t kMixed = -1;
   const std::vector<std::array<std::int32_t, Bvh::kWidth>>& face_of_child() const;
 
+  /// The plane faces of the part, merged.
+  const PlaneFaces& plane_faces() const;
+
   /// Does the face's mesh stand for its declared surface at the point of it nearest to x, or does
   /// the surface end before?
   bool stands_for(std::uint16_t face, const Vec3& x) const;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/plane_faces.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
 #include "common/math/interval.h"
@@ -30,6 +31,7 @@ struct BodyIndex {
   std::vector<std::uint32_t> sharp;                                  ///< see Body::sharp_neighbours
   std::vector<FaceEnds> ends;                                        ///< by face, see Body::ends_of
   std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;  ///< see Body::face_of_child
+  std::unique_ptr<const PlaneFaces> plane_faces;                     ///< see Body::plane_faces
 };
 
 /// The index of a part with a band: one that this thread has made of an equal part and band, else a

@@ -512,11 +512,14 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
   return first_interference(query, Layer::kLower);
 }
 
-// 1. Nothing is possible before the meshes are as near as the largest offsets of both reach: first
+namespace {
+
+// 1. Nothing is possible before the meshes are as near as the largest offsets of both faces reach:
+// first
 //    contact says when that is.
 // 2. Where all faces have the same zone that is the time itself: looked at shortly behind it.
 // 3. Else the surfaces that do meet there have narrower zones: the rest of the path is searched.
-PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
+PossibleTime find_faces_time(const SweptQuery& query, CcdScratch& scratch) {
   PossibleTime answer;
   const OverlapQuery& at = query.at_target;
   ContactQuery near;
@@ -563,6 +566,46 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   answer.t_possible = in_tick(found.t_real);
   answer.capped = found.capped;
   answer.evaluations += found.evaluations;
+  return answer;
+}
+
+// How often the time at which an edge meets something is halved.
+constexpr int kEdgeHalvings = 12;
+
+// Edges and corners that travel farther than faces may meet earlier than these. No later than
+// `answer` says, and not before the meshes are as near as edges travel.
+void look_at_edges(const SweptQuery& query, PossibleTime& answer, CcdScratch& scratch) {
+  const OverlapQuery& at = query.at_target;
+  ContactQuery near;
+  near.a = at.a;
+  near.b = at.b;
+  near.motion_a = query.motion_a;
+  near.motion_b = query.motion_b;
+  near.separation_mm = at.band_a->farthest_mm() + at.band_b->farthest_mm();
+  near.work_cap = std::min(kCcdWorkCap, kTestsPerEvaluation * std::min(kCcdWorkCap, at.work_cap));
+  const FirstContact first = first_contact(near, scratch);
+  double known = answer.becomes_possible ? answer.t_clear : 1.0;
+  if (first.state == ContactState::kFree || first.t_clear >= known ||
+      !is_possible_at(query, known, answer.evaluations, scratch))
+    return;
+  double clear = answer.t_clear = first.t_clear;
+  for (int i = 0; i < kEdgeHalvings; ++i) {
+    const double middle = 0.5 * (clear + known);
+    (is_possible_at(query, middle, answer.evaluations, scratch) ? known : clear) = middle;
+  }
+  answer.becomes_possible = true;
+  answer.t_possible = known;
+}
+
+}  // namespace
+
+PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
+  PossibleTime answer = find_faces_time(query, scratch);
+  const auto has_edges = [](const SurfaceBand& band) {
+    return band.farthest_mm() > std::max(0.0, band.largest_offset_mm);
+  };
+  if (has_edges(*query.at_target.band_a) || has_edges(*query.at_target.band_b))
+    look_at_edges(query, answer, scratch);
   return answer;
 }
 

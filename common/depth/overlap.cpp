@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
+#include "common/depth/cells/plane_pair.h"
 #include "common/depth/crack_regions.h"
 #include "common/depth/inner_overlap.h"
 #include "common/depth/pair_order.h"
@@ -98,7 +99,7 @@ Bracket moved(Bracket bracket, double by_mm) {
 
 class Overlap {
  public:
-  explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query) {}
+  explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query), planes_(pair_) {}
 
   OverlapResult run() {
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
@@ -123,6 +124,7 @@ class Overlap {
       if (const auto shared = find_shared_inside(pair_, candidates))
         result_.regions.push_back(region_of(pair_, *shared));
     if (result_.no_inside) add_without_depth(candidates);
+    planes_.tell(query_.only_certain, result_.regions);
     mark_cracks(pair_, !query_.only_certain, result_);
     for (const OverlapRegion& region : result_.regions)
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
@@ -138,6 +140,9 @@ class Overlap {
   }
 
  private:
+  // One region whose brackets in both layers are those of the sharp bodies.
+  bool told_by_planes() const { return regions_.count == 1 && planes_.has_brackets(); }
+
   // A chamfer that keeps clear of the bore in which its shaft sits: one contact, told of the shaft.
   static bool told_by_another(const KnownFacePair& known, const Candidates& candidates) {
     if (std::isfinite(known.overlap.lo_mm)) return false;
@@ -192,7 +197,10 @@ class Overlap {
     std::vector<Bracket> upper, lower;
     bool any_open = false;
     for (const bool open : regions_.may_interfere) any_open |= open;
-    if (!pair_.trivial && (any_open || !lazy)) {
+    if (told_by_planes()) {
+      upper = {planes_.told(mesh.front(), Layer::kUpper)};
+      lower = {planes_.told(mesh.front(), Layer::kLower)};
+    } else if (!pair_.trivial && (any_open || !lazy)) {
       upper = search(Layer::kUpper, lazy, work_left());
       bool may_be_certain = false;
       for (const Bracket& p : upper) may_be_certain |= p.hi_mm > pair_.touch_mm;
@@ -226,7 +234,7 @@ class Overlap {
       for (const Sample& sample : d.samples)
         region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
       region.points_W.push_back(region.point_W);
-      if (region.certain_mm.lo > 0.0)
+      if (region.certain_mm.lo > 0.0 && !told_by_planes())
         set_witness(find_witness(pair_, c.best, result_.evaluations), c.best, region);
       result_.regions.push_back(std::move(region));
     }
@@ -421,6 +429,7 @@ class Overlap {
 
   const OverlapQuery& query_;
   const PairFrame pair_;
+  const PlanePair planes_;
   SearchScratch scratch_;
   KnownOverlaps known_;
   Regions regions_;

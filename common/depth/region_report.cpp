@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/depth/cells/plane_pair.h"
+
 namespace mortise {
 namespace {
 
@@ -111,8 +113,10 @@ FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x) {
   return concave ? FaceShape::kConcave : FaceShape::kPlanar;
 }
 
-std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
-                                 std::uint64_t& evaluations) {
+namespace {
+
+std::optional<Vec3> find_inside(const PairFrame& pair, const Sample& least,
+                                std::uint64_t& evaluations) {
   const int role = least.role;
   const Vec3& p = least.point_K;
   Vec3 out = least.at.outward;
@@ -144,6 +148,15 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
     for (const Vec3& along : {out, Vec3(-out), u, Vec3(-u), v, Vec3(-v), inwards})
       if (climb.better(climb.at_K() + step_mm * along)) return climb.at_W();
   return std::nullopt;
+}
+
+}  // namespace
+
+// Depth by triangles knows no neighbour that cuts a face short; the sharp bodies do.
+std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
+                                 std::uint64_t& evaluations) {
+  const std::optional<Vec3> found = find_inside(pair, least, evaluations);
+  return found && is_outside_of_least_bodies(pair, *found) ? std::nullopt : found;
 }
 
 std::optional<SharedInside> find_shared_inside(const PairFrame& pair,

@@ -1,0 +1,208 @@
+#include "common/depth/cells/decide.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "common/depth/cells/deepest.h"
+
+namespace mortise {
+namespace {
+
+// Linear programs of a query.
+constexpr std::uint64_t kMostPrograms = 3000;
+// Windows of a query, and how often one is halved.
+constexpr std::size_t kMostWindows = 96;
+constexpr int kMostHalvings = 30;
+// A window is not halved when it is narrower than this share of the reach.
+constexpr double kNarrow = 0.5;
+// A wider window is made with room, so that it is wide enough for what it newly contains.
+constexpr double kReachShare = 1.01;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Where both parts can be.
+Box core_of(const SharpQuery& query) {
+  const auto grown = [&](const SharpPart& part, const Box& box) {
+    return box.grown(part.planes->most_travel.by_mm(query.depth_mm));
+  };
+  Box of_a;
+  const Box& a = query.a.solid->bounds();
+  for (int corner = 0; corner < 8; ++corner)
+    of_a.add(query.X_BA * Vec3((corner & 1 ? a.hi : a.lo).x(), (corner & 2 ? a.hi : a.lo).y(),
+                               (corner & 4 ? a.hi : a.lo).z()));
+  of_a = grown(query.a, of_a);
+  const Box of_b = grown(query.b, query.b.solid->bounds());
+  Box core;
+  core.lo = of_a.lo.cwiseMax(of_b.lo);
+  core.hi = of_a.hi.cwiseMin(of_b.hi);
+  return core;
+}
+
+class Decision {
+ public:
+  Decision(const SharpQuery& query, double reach_mm)
+      : query_(query), reach_mm_(reach_mm), core_(core_of(query)), origin_(core_.center()) {}
+
+  SharpDecision run() {
+    const auto decided = [&] { return decision_.state == SharpDecision::State::kDecided; };
+    for (const SharpLayer layer : {SharpLayer::kLeast, SharpLayer::kLargest}) {
+      SharpDepth& depth = layer == SharpLayer::kLeast ? decision_.least : decision_.largest;
+      if (decided()) find_margin(layer, depth);
+      if (decided() && depth.margin_mm.lo > 0.0) find_overlap(layer, depth);
+    }
+    return decision_;
+  }
+
+  /// With kTooSharp: what the window that was too small would have needed.
+  double needed_reach_mm() const { return needed_reach_mm_; }
+
+ private:
+  void find_margin(SharpLayer layer, SharpDepth& depth) {
+    depth.margin_mm = search({layer, SharpMeasure::kMargin, query_.depth_mm}, -kInfinity);
+    depth.has_point = point_.has_value();
+    if (!point_) return;
+    depth.point_B = *point_;
+    depth.face_a = deciding_[0];
+    depth.face_b = deciding_[1];
+  }
+  // A point with both depths above zero has more than the margin.
+  void find_overlap(SharpLayer layer, SharpDepth& depth) {
+    depth.overlap_mm = search({layer, SharpMeasure::kSum, query_.depth_mm}, depth.margin_mm.lo);
+  }
+
+  Interval search(const DeepestPoint& deepest, double best) {
+    best_ = best;
+    upper_ = -kInfinity;
+    point_.reset();
+    if (!core_.empty()) search_core(deepest, core_, 0);
+    return {best_, std::max({best_, upper_, deepest.nothing_mm()})};
+  }
+
+  void search_core(const DeepestPoint& deepest, const Box& core, int level) {
+    if (decision_.state != SharpDecision::State::kDecided) return;
+    WindowPair* windows = windows_of(core);
+    if (windows == nullptr) return;
+    const bool narrow =
+        (core.hi - core.lo).maxCoeff() < kNarrow * reach_mm_ || level >= kMostHalvings;
+    bool crowded = false;
+    for (const SharpWindow& part : windows->part)
+      crowded |= part.state() == SharpWindow::State::kCrowded;
+    if (crowded && narrow) return give_up(SharpDecision::State::kTooMuch);
+    if (crowded) return search_halves(deepest, core, level, core.center());
+    for (const SharpWindow& part : windows->part)
+      if (part.faces().empty() && !part.solid_inside()) return;
+    DeepestPoint::Found found = find(deepest, *windows, false);
+    if (found.bound <= best_ || (!found.closed && found.bound <= deepest.nothing_mm())) return;
+    if (found.closed && deepest.in_least(*windows, found.at)) {
+      upper_ = std::max(upper_, found.bound);
+      return take(deepest, *windows, found.at);
+    }
+    if (!narrow)
+      return search_halves(deepest, core, level, found.closed ? place(found.at) : core.center());
+    // Ambiguous here: the largest of the bodies bound it from above, the least from below.
+    upper_ = std::max(upper_, found.bound);
+    found = find(deepest, *windows, true);
+    if (found.closed && deepest.in_least(*windows, found.at)) take(deepest, *windows, found.at);
+  }
+
+  DeepestPoint::Found find(const DeepestPoint& deepest, WindowPair& windows, bool least_bodies) {
+    const DeepestPoint::Found found = deepest.find(windows, least_bodies, best_);
+    decision_.programs += found.programs;
+    if (decision_.programs > kMostPrograms) give_up(SharpDecision::State::kTooMuch);
+    return found;
+  }
+
+  void give_up(SharpDecision::State state) { decision_.state = state; }
+
+  // The half with the point first.
+  void search_halves(const DeepestPoint& deepest, const Box& core, int level, const Vec3& point) {
+    int k = 0;
+    (core.hi - core.lo).maxCoeff(&k);
+    Box halves[2] = {core, core};
+    halves[0].hi[k] = halves[1].lo[k] = core.center()[k];
+    const int first = point[k] > core.center()[k] ? 1 : 0;
+    search_core(deepest, halves[first], level + 1);
+    search_core(deepest, halves[1 - first], level + 1);
+  }
+
+  // Null, and given up: there are too many, or it cannot be judged.
+  WindowPair* windows_of(const Box& core) {
+    const std::array<double, 6> key = {core.lo.x(), core.lo.y(), core.lo.z(),
+                                       core.hi.x(), core.hi.y(), core.hi.z()};
+    const auto known = windows_.find(key);
+    if (known != windows_.end()) return &known->second;
+    if (windows_.size() == kMostWindows) {
+      give_up(SharpDecision::State::kTooMuch);
+      return nullptr;
+    }
+    WindowPair& windows =
+        windows_.emplace(key, WindowPair(query_, reach_mm_, core, origin_)).first->second;
+    for (const SharpWindow& part : windows.part) {
+      if (part.state() == SharpWindow::State::kNotPlane) give_up(SharpDecision::State::kNotPlane);
+      if (part.state() != SharpWindow::State::kTooSharp) continue;
+      give_up(SharpDecision::State::kTooSharp);
+      needed_reach_mm_ = std::max(needed_reach_mm_, part.needed_reach_mm());
+    }
+    return decision_.state == SharpDecision::State::kDecided ? &windows : nullptr;
+  }
+
+  void take(const DeepestPoint& deepest, const WindowPair& windows,
+            const LinearProgram::Optimum& at) {
+    if (deepest.proven_mm(at) <= best_) return;
+    best_ = deepest.proven_mm(at);
+    point_ = place(at);
+    for (int part = 0; part < 2; ++part) {
+      double least = kInfinity;
+      const std::vector<double> slack_of = deepest.slacks(windows, part, at);
+      for (std::size_t i = 0; i < slack_of.size(); ++i) {
+        if (std::fabs(slack_of[i]) >= least) continue;
+        least = std::fabs(slack_of[i]);
+        deciding_[part] = windows.part[part].faces()[i];
+      }
+    }
+  }
+
+  Vec3 place(const LinearProgram::Optimum& at) const {
+    return origin_ + Vec3(at.y[0], at.y[1], at.y[2]);
+  }
+
+  const SharpQuery& query_;
+  double reach_mm_, needed_reach_mm_ = 0.0;
+  Box core_;  // where common points are looked for, frame of B
+  Vec3 origin_;
+  std::map<std::array<double, 6>, WindowPair> windows_;
+  double best_ = -kInfinity, upper_ = -kInfinity;
+  std::optional<Vec3> point_;
+  std::uint32_t deciding_[2] = {0, 0};
+  SharpDecision decision_;
+};
+
+}  // namespace
+
+// A wider window is tried where an edge or tip asks for it.
+SharpDecision decide(const SharpQuery& query) {
+  double face_mm = query.depth_mm;
+  for (const SharpPart& part : {query.a, query.b})
+    for (const PlaneFace& face : part.planes->faces)
+      face_mm = std::max(face_mm, query.depth_mm + std::max(std::fabs(face.offset_mm.lo),
+                                                            std::fabs(face.offset_mm.hi)));
+  double reach_mm = kReachShare * PlaneFaces::kUsualTravel * face_mm;
+  std::uint64_t programs = 0;
+  for (;;) {
+    Decision decision(query, reach_mm);
+    SharpDecision result = decision.run();
+    result.programs += programs;
+    const double needed_mm = decision.needed_reach_mm();
+    if (result.state != SharpDecision::State::kTooSharp ||
+        needed_mm > PlaneFaces::kMostTravel * face_mm)
+      return result;
+    programs = result.programs;
+    reach_mm = kReachShare * needed_mm;
+  }
+}
+
+}  // namespace mortise

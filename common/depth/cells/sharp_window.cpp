@@ -1,0 +1,242 @@
+#include "common/depth/cells/sharp_window.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "common/base/constants.h"
+#include "common/depth/body.h"
+#include "common/depth/cells/linear_program.h"
+
+namespace mortise {
+namespace {
+
+// Points of proof keep away from planes by more than rounding and the corners' distance from them.
+constexpr double kLeastApart_mm = 1e-8;
+constexpr double kNoises = 4.0;
+// A polygon with less area holds no point of proof, mm^2.
+constexpr double kLeastArea_mm2 = 1e-8;
+// A point of proof near a corner of what is left of a facet: this share of the way to it.
+constexpr double kTowardsCorner = 0.98;
+// Clauses that are kept of one question; the shortest.
+constexpr std::size_t kMostClauses = 8;
+
+void clip(std::vector<Vec3>& polygon, const Vec3& n, double c) {
+  std::vector<Vec3> left;
+  left.reserve(polygon.size() + 1);
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double at_a = n.dot(a) - c, at_b = n.dot(b) - c;
+    if (at_a <= 0.0) left.push_back(a);
+    if ((at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0))
+      left.push_back(a + at_a / (at_a - at_b) * (b - a));
+  }
+  if (left.size() < 3) left.clear();
+  polygon.swap(left);
+}
+
+double area(const std::vector<Vec3>& polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    sum += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
+  return 0.5 * sum.norm();
+}
+
+Vec3 middle_of(const std::vector<Vec3>& polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& corner : polygon) sum += corner;
+  return sum / static_cast<double>(polygon.size());
+}
+
+bool shorter(FaceSet a, FaceSet b) {
+  const int of_a = std::popcount(a), of_b = std::popcount(b);
+  return of_a != of_b ? of_a < of_b : a < b;
+}
+
+}  // namespace
+
+SharpWindow::SharpWindow(const Solid& solid, const PlaneFaces& planes, const Box& core,
+                         double reach_mm, double depth_mm)
+    : solid_(solid), planes_(planes), box_(core.grown(reach_mm)) {
+  apart_mm_ = std::max({kLeastApart_mm, kNoises * planes.noise_mm,
+                        kRoundingFactor * kUnitRoundoff * solid.bvh().extent_mm});
+  gather();
+  if (state_ == State::kReady) need_reach(core, depth_mm);
+  if (state_ == State::kReady && !(needed_reach_mm_ <= reach_mm)) state_ = State::kTooSharp;
+}
+
+void SharpWindow::gather() {
+  for_each_triangle_in(solid_.bvh(), box_, [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
+    const std::uint32_t face = planes_.face_of_triangle[t];
+    if (state_ != State::kReady || face == PlaneFaces::kWithoutArea) return;
+    Polygon polygon(c.begin(), c.end());
+    if (!clip_to_box(polygon)) return;
+    if (face == PlaneFaces::kNone) {
+      state_ = State::kNotPlane;
+      return;
+    }
+    const auto known = std::find(faces_.begin(), faces_.end(), face);
+    const auto index = static_cast<std::size_t>(known - faces_.begin());
+    if (known == faces_.end()) {
+      if (faces_.size() == kMostFaces) {
+        state_ = State::kCrowded;
+        return;
+      }
+      faces_.push_back(face);
+      triangles_.emplace_back();
+    }
+    triangles_[index].push_back(t);
+  });
+  all_ = faces_.size() == kMostFaces ? ~FaceSet{0} : (FaceSet{1} << faces_.size()) - 1;
+}
+
+void SharpWindow::need_reach(const Box& core, double depth_mm) {
+  const Topology& topology = solid_.topology();
+  const auto take = [&](double travel_mm) {
+    needed_reach_mm_ = std::max(needed_reach_mm_, travel_mm + 2.0 * apart_mm_);
+  };
+  for (std::size_t i = 0; i < faces_.size(); ++i)
+    for (const std::uint32_t t : triangles_[i])
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t other = planes_.face_of_triangle[topology.neighbor[t][k]];
+        if (other < PlaneFaces::kWithoutArea && other > faces_[i])
+          take(edge_travel(planes_.faces[faces_[i]], planes_.faces[other]).by_mm(depth_mm));
+      }
+  for (const std::uint32_t point : planes_.sharp_points) {
+    const Vec3& at = solid_.mesh().points_mm[point];
+    const double travel_mm = planes_.travel_of[point].by_mm(depth_mm);
+    if ((at - at.cwiseMax(core.lo).cwiseMin(core.hi)).norm() <= travel_mm) take(travel_mm);
+  }
+}
+
+bool SharpWindow::solid_inside() const { return is_inside(box_.center()); }
+
+bool SharpWindow::is_inside(const Vec3& x) const { return inside(solid_, x); }
+
+SharpWindow::Polygon SharpWindow::facet(std::uint32_t triangle) const {
+  const TriangleMesh& mesh = solid_.mesh();
+  return {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
+}
+
+bool SharpWindow::clip_to_box(Polygon& polygon) const {
+  for (int k = 0; k < 3 && !polygon.empty(); ++k) {
+    clip(polygon, Vec3::Unit(k), box_.hi[k] - apart_mm_);
+    if (!polygon.empty()) clip(polygon, -Vec3::Unit(k), -box_.lo[k] - apart_mm_);
+  }
+  return !polygon.empty();
+}
+
+bool SharpWindow::clip_to_held(Polygon& polygon, FaceSet held) const {
+  for (std::size_t i = 0; i < faces_.size() && !polygon.empty(); ++i)
+    if (held >> i & 1) {
+      const PlaneFace& face = planes_.faces[faces_[i]];
+      clip(polygon, face.n, face.c - 2.0 * apart_mm_);
+    }
+  return !polygon.empty() && area(polygon) > kLeastArea_mm2;
+}
+
+bool SharpWindow::clip_to_failed(Polygon& polygon, FaceSet failed) const {
+  for (std::size_t i = 0; i < faces_.size() && !polygon.empty(); ++i)
+    if (failed >> i & 1) {
+      const PlaneFace& face = planes_.faces[faces_[i]];
+      clip(polygon, -face.n, -face.c - 2.0 * apart_mm_);
+    }
+  return !polygon.empty() && area(polygon) > kLeastArea_mm2;
+}
+
+FaceSet SharpWindow::outside_of(const Vec3& x) const {
+  FaceSet set = 0;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const PlaneFace& face = planes_.faces[faces_[i]];
+    if (face.n.dot(x) - face.c > -apart_mm_) set |= FaceSet{1} << i;
+  }
+  return set;
+}
+
+// Points just outside of a facet and inside of all faces that are held.
+void SharpWindow::clauses_of_facet(std::size_t face, const Polygon& left,
+                                   std::vector<FaceSet>& found) const {
+  const Vec3 outwards = apart_mm_ * planes_.faces[faces_[face]].n;
+  const Vec3 middle = middle_of(left);
+  FaceSet best = 0;
+  for (std::size_t i = 0; i <= left.size(); ++i) {
+    const Vec3 z = i == left.size()
+                       ? middle
+                       : Vec3(kTowardsCorner * left[i] + (1.0 - kTowardsCorner) * middle);
+    const FaceSet clause = outside_of(z) | FaceSet{1} << face;
+    if ((best == 0 || shorter(clause, best)) && !is_inside(z + outwards)) best = clause;
+  }
+  if (best != 0 && std::find(found.begin(), found.end(), best) == found.end())
+    found.push_back(best);
+}
+
+std::vector<FaceSet> SharpWindow::find_clauses(FaceSet held) {
+  std::vector<FaceSet> found;
+  for (std::size_t g = 0; g < faces_.size(); ++g) {
+    if (held >> g & 1) continue;
+    for (const std::uint32_t t : triangles_[g]) {
+      Polygon polygon = facet(t);
+      if (clip_to_box(polygon) && clip_to_held(polygon, held)) clauses_of_facet(g, polygon, found);
+    }
+  }
+  std::sort(found.begin(), found.end(), shorter);
+  if (found.size() > kMostClauses) found.resize(kMostClauses);
+  if (!found.empty()) return found;
+  // No border of the part lies in what the held faces leave: it is wholly in or wholly out.
+  Vec3 z;
+  if (middle(held, false, z) && !is_inside(z)) found.push_back(outside_of(z));
+  return found;
+}
+
+const std::vector<FaceSet>& SharpWindow::clauses(FaceSet held) {
+  const auto [place, fresh] = clauses_of_.try_emplace(held);
+  if (fresh) place->second = find_clauses(held);
+  return place->second;
+}
+
+bool SharpWindow::find_least(FaceSet held) {
+  const FaceSet failed = all_ & ~held;
+  for (std::size_t g = 0; g < faces_.size(); ++g) {
+    if (!(held >> g & 1)) continue;
+    for (const std::uint32_t t : triangles_[g]) {
+      Polygon polygon = facet(t);
+      if (!clip_to_box(polygon) || !clip_to_failed(polygon, failed)) continue;
+      if (is_inside(middle_of(polygon) - apart_mm_ * planes_.faces[faces_[g]].n)) return true;
+    }
+  }
+  Vec3 y;
+  return middle(failed, true, y) && is_inside(y);
+}
+
+bool SharpWindow::in_least(FaceSet held) {
+  const auto [place, fresh] = least_of_.try_emplace(held);
+  if (fresh) place->second = find_least(held);
+  return place->second;
+}
+
+bool SharpWindow::middle(FaceSet half_spaces, bool outside, Vec3& at) const {
+  const Vec3 half = box_.half(), origin = box_.center();
+  LinearProgram program(4, {-half.x(), -half.y(), -half.z(), 0.0},
+                        {half.x(), half.y(), half.z(), half.minCoeff()}, {0.0, 0.0, 0.0, 1.0});
+  const auto add = [&](const Vec3& n, double c) {
+    program.rows.push_back({{n.x(), n.y(), n.z(), 1.0}, c - n.dot(origin)});
+  };
+  for (int k = 0; k < 3; ++k) {
+    add(Vec3::Unit(k), box_.hi[k]);
+    add(-Vec3::Unit(k), -box_.lo[k]);
+  }
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    if (!(half_spaces >> i & 1)) continue;
+    const PlaneFace& face = planes_.faces[faces_[i]];
+    if (outside)
+      add(-face.n, -face.c);
+    else
+      add(face.n, face.c);
+  }
+  LinearProgram::Optimum optimum;
+  if (!program.maximize(optimum) || optimum.y[3] < 2.0 * apart_mm_) return false;
+  at = origin + Vec3(optimum.y[0], optimum.y[1], optimum.y[2]);
+  return true;
+}
+
+}  // namespace mortise

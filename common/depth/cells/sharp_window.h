@@ -1,0 +1,81 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "common/geometry/plane_faces.h"
+#include "common/math/box.h"
+
+namespace mortise {
+
+/// A set of faces of one window, a bit each.
+using FaceSet = std::uint64_t;
+
+/// The faces of one part that reach into a box, and two questions about its sharp offset body there
+/// (README, section 10). A face is *held* at a point that lies inside the offset half-space of it.
+/// Which faces are held is all that the answers depend on: neither offsets nor pose count.
+class SharpWindow {
+ public:
+  static constexpr std::size_t kMostFaces = 64;
+  enum class State : std::uint8_t {
+    kReady,
+    kCrowded,   ///< more than kMostFaces: a smaller window may have less
+    kNotPlane,  ///< something in the box is not a plane face
+    kTooSharp,  ///< a tip may come from farther off than the reach
+  };
+
+  /// core: the points that are asked for, part frame. The box is the core grown by reach_mm, which
+  /// must cover what edges and corners travel by their bands and by `depth_mm` more: checked, if it
+  /// is at least PlaneFaces::kUsualTravel times what faces do.
+  SharpWindow(const Solid& solid, const PlaneFaces& planes, const Box& core, double reach_mm,
+              double depth_mm);
+
+  State state() const { return state_; }
+  /// Reach that the edges and corners need that may come into the core.
+  double needed_reach_mm() const { return needed_reach_mm_; }
+  /// Indices into PlaneFaces::faces; bit i of a FaceSet is faces()[i].
+  const std::vector<std::uint32_t>& faces() const { return faces_; }
+  FaceSet all() const { return all_; }
+  /// Is the core inside the part? Asked where no face reaches into the box.
+  bool solid_inside() const;
+
+  /// Clauses that a point which holds just these faces violates: "one face of the set must be
+  /// held" by all points of the largest body. Each is the set of faces that some point outside the
+  /// part, verified, is outside of. None: the point is in the largest body.
+  const std::vector<FaceSet>& clauses(FaceSet held);
+
+  /// Does a point that holds just these faces belong to the least body? Then some point inside the
+  /// part, verified, is outside of all others.
+  bool in_least(FaceSet held);
+
+ private:
+  using Polygon = std::vector<Vec3>;
+  void gather();
+  void need_reach(const Box& core, double depth_mm);
+  std::vector<FaceSet> find_clauses(FaceSet held);
+  bool find_least(FaceSet held);
+  void clauses_of_facet(std::size_t face, const Polygon& left, std::vector<FaceSet>& found) const;
+  bool clip_to_box(Polygon& polygon) const;
+  bool clip_to_held(Polygon& polygon, FaceSet held) const;
+  bool clip_to_failed(Polygon& polygon, FaceSet failed) const;
+  FaceSet outside_of(const Vec3& x) const;
+  bool is_inside(const Vec3& x) const;
+  Polygon facet(std::uint32_t triangle) const;
+  /// A point well inside the half-spaces (outside of them) and the box.
+  bool middle(FaceSet half_spaces, bool outside, Vec3& at) const;
+
+  const Solid& solid_;
+  const PlaneFaces& planes_;
+  Box box_;
+  State state_ = State::kReady;
+  double apart_mm_ = 0.0;
+  double needed_reach_mm_ = 0.0;
+  std::vector<std::uint32_t> faces_;
+  std::vector<std::vector<std::uint32_t>> triangles_;  // by face
+  FaceSet all_ = 0;
+  std::map<FaceSet, std::vector<FaceSet>> clauses_of_;  // by faces held
+  std::map<FaceSet, bool> least_of_;
+};
+
+}  // namespace mortise
