@@ -170,8 +170,9 @@ bool is_outside_of_least_bodies(const PairFrame& pair, const Vec3& x_W) {
     const PlaneFaces& planes = body.plane_faces();
     Box point;
     point.add(pair.X_W[i].inverse() * x_W);
-    SharpWindow window(*body.solid, planes, point, planes.most_travel.by_band_mm + pair.touch_mm,
-                       0.0);
+    const double reach_mm =
+        std::max(planes.most_travel.by_band_mm, PlaneFaces::kUsualTravel * body.most_offset_mm());
+    SharpWindow window(*body.solid, planes, point, reach_mm + pair.touch_mm, 0.0);
     if (window.state() != SharpWindow::State::kReady) continue;
     FaceSet held = 0;
     for (std::size_t f = 0; f < window.faces().size(); ++f) {
