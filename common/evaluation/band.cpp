@@ -51,7 +51,7 @@ void summarize(SurfaceBand& band, const Solid& solid) {
     if (says_nothing(band, face) && band.quantum_mm == 0.0) continue;
     band.largest_offset_mm =
         std::max(band.largest_offset_mm, face.deviation_mm.hi + face.tolerance_mm.hi);
-    grown_planes |= is_plane_band(face) && face.tolerance_mm.hi > 0.0;
+    grown_planes |= is_plane_band(band, face) && face.tolerance_mm.hi > 0.0;
   }
   band.largest_travel_mm = grown_planes && solid.topology().closed()
                                ? find_plane_faces(solid, band).most_travel.outward_mm

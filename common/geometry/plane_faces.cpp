@@ -45,7 +45,7 @@ class Merge {
     // The largest facet of a face knows its plane best.
     std::vector<std::pair<double, std::uint32_t>> by_area;
     for (std::uint32_t t = 0; t < count; ++t)
-      if (is_plane_band(band_.face_of(t))) by_area.push_back({-area_vector(mesh_, t).norm(), t});
+      if (is_plane_band(band_, band_.face_of(t))) by_area.push_back({-area_vector(mesh_, t).norm(), t});
     std::sort(by_area.begin(), by_area.end());
     for (const auto& [area, t] : by_area) {
       if (result_.face_of_triangle[t] != PlaneFaces::kNone) continue;
@@ -86,7 +86,7 @@ class Merge {
   bool belongs(const PlaneFace& face, std::uint32_t t) const {
     if (result_.face_of_triangle[t] != PlaneFaces::kNone) return false;
     const SurfaceBand::Face& band = band_.face_of(t);
-    if (!is_plane_band(band) || !(band.deviation_mm + band.tolerance_mm == face.offset_mm))
+    if (!is_plane_band(band_, band) || !(band.deviation_mm + band.tolerance_mm == face.offset_mm))
       return false;
     for (int k = 0; k < 3; ++k)
       if (std::fabs(face.n.dot(mesh_.corner(t, k)) - face.c) > flat_mm_) return false;
@@ -193,9 +193,10 @@ void find_travel(const TriangleMesh& mesh, PlaneFaces& planes) {
 
 }  // namespace
 
-bool is_plane_band(const SurfaceBand::Face& face) {
+bool is_plane_band(const SurfaceBand& band, const SurfaceBand::Face& face) {
   if (face.surface) return false;
-  return face.grade == DeviationGrade::kPlanar || face.deviation_mm == Interval{};
+  return face.grade == DeviationGrade::kPlanar ||
+         (face.deviation_mm.lo >= -band.quantum_mm && face.deviation_mm.hi <= band.quantum_mm);
 }
 
 PlaneFaces find_plane_faces(const Solid& solid, const SurfaceBand& band) {

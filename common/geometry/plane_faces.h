@@ -52,8 +52,9 @@ struct PlaneFaces {
   static constexpr double kMostTravel = 20.0;
 };
 
-/// Is the band of a face that of a plane: no surface of its own, and no error of a mesh?
-bool is_plane_band(const SurfaceBand::Face& face);
+/// Is the band of a face that of a plane: no surface of its own, and no error of a mesh but the
+/// rounding of its file?
+bool is_plane_band(const SurfaceBand& band, const SurfaceBand::Face& face);
 
 /// O(n log n), once a part and band.
 PlaneFaces find_plane_faces(const Solid& solid, const SurfaceBand& band);

@@ -29,7 +29,8 @@ double all_offsets_mm(const PairFrame& pair) {
 
 bool has_plane_faces(const Body& body) {
   return body.has_inside &&
-         std::any_of(body.band->faces.begin(), body.band->faces.end(), is_plane_band) &&
+         std::any_of(body.band->faces.begin(), body.band->faces.end(),
+                     [&](const auto& face) { return is_plane_band(*body.band, face); }) &&
          !body.plane_faces().faces.empty();
 }
 
