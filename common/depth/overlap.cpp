@@ -27,6 +27,8 @@ constexpr std::uint64_t kInnerQuestions = 8'000, kInnerQuestionsLazily = 800;
 
 // Evaluations of a search that only has to find points, not to prove that there are none.
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
+// Evaluations of the overlap of the meshes, where the sharp bodies decide.
+constexpr std::uint64_t kMeshAlone = 1000;
 
 // Corners, middles of edges, centre.
 std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
@@ -185,8 +187,12 @@ class Overlap {
   void search_regions() {
     const bool lazy = query_.refinement == Refinement::kDecided;
     const bool shape_only = lazy && !pair_.trivial;
+    // Where no layer has to be searched, the meshes may cost more.
     std::vector<Bracket> mesh =
-        search(Layer::kMesh, lazy, shape_only ? std::min(glance(), work_left()) : work_left());
+        lazy && told_by_planes()
+            ? search(Layer::kMesh, false, std::min(kMeshAlone, work_left()))
+            : search(Layer::kMesh, lazy,
+                     shape_only ? std::min(glance(), work_left()) : work_left());
     // The sign of the depth is not enough where rounding may cover it.
     const auto in_rounding = [&](const Bracket& d) {
       return d.best.depth_mm > 0.0 && d.best.depth_mm <= pair_.reach_mm(Layer::kLower) &&

@@ -66,6 +66,7 @@ class Decision {
     depth.has_point = point_.has_value();
     if (!point_) return;
     depth.point_B = *point_;
+    depth.facing = facing_;
     depth.face_a = deciding_[0];
     depth.face_b = deciding_[1];
   }
@@ -99,14 +100,14 @@ class Decision {
     if (found.bound <= best_ || (!found.closed && found.bound <= deepest.nothing_mm())) return;
     if (found.closed && deepest.in_least(*windows, found.at)) {
       upper_ = std::max(upper_, found.bound);
-      return take(deepest, *windows, found.at);
+      return take(deepest, *windows, found);
     }
     if (!narrow)
       return search_halves(deepest, core, level, found.closed ? place(found.at) : core.center());
     // Ambiguous here: the largest of the bodies bound it from above, the least from below.
     upper_ = std::max(upper_, found.bound);
     found = find(deepest, *windows, true);
-    if (found.closed && deepest.in_least(*windows, found.at)) take(deepest, *windows, found.at);
+    if (found.closed && deepest.in_least(*windows, found.at)) take(deepest, *windows, found);
   }
 
   DeepestPoint::Found find(const DeepestPoint& deepest, WindowPair& windows, bool least_bodies) {
@@ -151,8 +152,10 @@ class Decision {
   }
 
   void take(const DeepestPoint& deepest, const WindowPair& windows,
-            const LinearProgram::Optimum& at) {
+            const DeepestPoint::Found& found) {
+    const LinearProgram::Optimum& at = found.at;
     if (deepest.proven_mm(at) <= best_) return;
+    facing_ = found.facing;
     best_ = deepest.proven_mm(at);
     point_ = place(at);
     for (int part = 0; part < 2; ++part) {
@@ -177,6 +180,7 @@ class Decision {
   std::map<std::array<double, 6>, WindowPair> windows_;
   double best_ = -kInfinity, upper_ = -kInfinity;
   std::optional<Vec3> point_;
+  double facing_ = 1.0;
   std::uint32_t deciding_[2] = {0, 0};
   SharpDecision decision_;
 };

@@ -26,6 +26,9 @@ struct SharpDepth {
   /// Bracket of twice the largest lesser depth: > 0 if and only if the interiors meet; below zero
   /// a gap. Between -2 and 2 depth_mm; beyond that at least so much.
   Interval margin_mm;
+  /// A gap of -margin is so much wider between the bodies: -margin / facing, where convex edges and
+  /// corners meet. 0 < facing <= 1.
+  double facing = 1.0;
   /// With a margin above zero: bracket of the largest sum of both depths, both above zero.
   Interval overlap_mm;
   bool has_point = false;  ///< margin.lo is reached at point_B, verified in both bodies

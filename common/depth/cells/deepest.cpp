@@ -15,6 +15,9 @@ constexpr double kBranchOverlap_mm = 1e-7;
 // Linear programs of one window before it is halved.
 constexpr std::uint64_t kMostPrograms = 400;
 
+// Where less faces the other part, the gap is told as if so much did.
+constexpr double kLeastFacing = 0.05;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Box moved(const Pose& X, const Box& box) {
@@ -192,12 +195,30 @@ DeepestPoint::Found DeepestPoint::find(WindowPair& windows, bool least_bodies, d
     if (clause == 0) {
       found.closed = true;
       found.at = node.optimum;
+      found.facing = facing(windows, node);
       return found;
     }
     found.programs += branch(windows, node, part, clause, best, open);
   }
   found.bound = nothing_mm();
   return found;
+}
+
+// The multipliers balance the normals of both parts, and make 2 together. For all x of A, sum of
+// multiplier times (n · x - c) <= 0; the same of B: along the sum of A's the parts are m apart.
+double DeepestPoint::facing(const WindowPair& windows, const Node& node) const {
+  LinearProgram program = program_of(windows);
+  for (const Literal& literal : node.literals) program.rows.push_back(row_of(windows, literal));
+  const LinearProgram::Vector weights = program.multipliers(node.optimum);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const int id = node.optimum.active[i];
+    if (!(weights[i] > 0.0) || id < 0 || node.literals[static_cast<std::size_t>(id)].part != 0)
+      continue;
+    const LinearProgram::Row row = program.row_of(id);
+    sum += weights[i] * Vec3(row.g[0], row.g[1], row.g[2]);
+  }
+  return std::clamp(sum.norm(), kLeastFacing, 1.0);
 }
 
 // A child for each face of the clause: it is held, and those before it fail.

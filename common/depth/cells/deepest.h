@@ -44,6 +44,9 @@ class DeepestPoint {
     double bound = -std::numeric_limits<double>::infinity();  ///< nothing is deeper
     bool closed = false;        ///< `at` is the optimum of the bodies asked for
     LinearProgram::Optimum at;  ///< x, y, z, depth of A, with kSum depth of B
+    /// closed: length of the mean of the normals of A that bound the depth, weighted by their dual
+    /// multipliers. 1: one face. A gap of m is m / facing wide.
+    double facing = 1.0;
     std::uint64_t programs = 0;
   };
   /// least_bodies: of the bodies that every admissible trimming contains, otherwise of those that
@@ -70,6 +73,7 @@ class DeepestPoint {
                    bool least_bodies) const;
   FaceSet violated(WindowPair& windows, const LinearProgram::Optimum& at, bool least_bodies,
                    int& part) const;
+  double facing(const WindowPair& windows, const Node& node) const;
   std::uint64_t branch(WindowPair& windows, const Node& node, int part, FaceSet clause, double best,
                        Queue& open) const;
 

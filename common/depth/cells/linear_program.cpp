@@ -168,14 +168,13 @@ LinearProgram::Row LinearProgram::row_of(int id) const {
   return row;
 }
 
-double LinearProgram::upper_bound(const Optimum& optimum) const {
+// Sum of multiplier times active row = objective, by elimination with pivots.
+LinearProgram::Vector LinearProgram::multipliers(const Optimum& optimum) const {
   const int n = variables_;
-  Row active[kMostVariables];
-  // Multipliers m of the rows: sum of m_i g_i = objective, by elimination with pivots.
   double m[kMostVariables][kMostVariables + 1] = {};
   for (int i = 0; i < n; ++i) {
-    active[i] = row_of(optimum.active[i]);
-    for (int k = 0; k < n; ++k) m[k][i] = active[i].g[k];
+    const Row row = row_of(optimum.active[i]);
+    for (int k = 0; k < n; ++k) m[k][i] = row.g[k];
   }
   for (int k = 0; k < n; ++k) m[k][n] = objective_[k];
   for (int i = 0; i < n; ++i) {
@@ -190,15 +189,23 @@ double LinearProgram::upper_bound(const Optimum& optimum) const {
       for (int j = i; j <= n; ++j) m[k][j] -= share * m[i][j];
     }
   }
+  Vector weights{};
+  for (int i = 0; i < n; ++i)
+    if (std::fabs(m[i][i]) >= kParallel) weights[i] = std::max(0.0, m[i][n] / m[i][i]);
+  return weights;
+}
+
+double LinearProgram::upper_bound(const Optimum& optimum) const {
+  const Vector weights = multipliers(optimum);
   Vector left = objective_;
   double bound = 0.0, size = 0.0;
-  for (int i = 0; i < n; ++i) {
-    const double weight = std::fabs(m[i][i]) < kParallel ? 0.0 : std::max(0.0, m[i][n] / m[i][i]);
-    bound += weight * active[i].h;
-    size += std::fabs(weight * active[i].h);
-    for (int k = 0; k < n; ++k) left[k] -= weight * active[i].g[k];
+  for (int i = 0; i < variables_; ++i) {
+    const Row row = row_of(optimum.active[i]);
+    bound += weights[i] * row.h;
+    size += std::fabs(weights[i] * row.h);
+    for (int k = 0; k < variables_; ++k) left[k] -= weights[i] * row.g[k];
   }
-  for (int k = 0; k < n; ++k)
+  for (int k = 0; k < variables_; ++k)
     bound += std::fabs(left[k]) * std::max(std::fabs(lo_[k]), std::fabs(hi_[k]));
   return bound + kRoundings * kUnitRoundoff * size;
 }

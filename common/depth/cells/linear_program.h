@@ -32,11 +32,15 @@ class LinearProgram {
   /// The optimum of all rows and `row`, given that of all rows alone, which `row` cuts off.
   bool maximize_with(const Row& row, Optimum& optimum);
   bool cuts_off(const Row& row, const Optimum& optimum) const;
+  /// A row by its number, or a bound, see Optimum::active.
+  Row row_of(int id) const;
 
   /// Upper bound of the objective over all points that fulfil the rows: the sum of the active rows
   /// weighted by their dual multipliers, and what these leave over times the bounds. It is true
   /// whatever the active rows are.
   double upper_bound(const Optimum& optimum) const;
+  /// The dual multiplier of each active row, >= 0.
+  Vector multipliers(const Optimum& optimum) const;
 
  private:
   struct Reduced {
@@ -53,7 +57,6 @@ class LinearProgram {
   bool solve_line(Optimum& found);
   bool solve_on(int variables, const Reduced& row, std::size_t rows_before, Optimum& found);
   static bool push(Level& level, int variables, const Reduced& row);
-  Row row_of(int id) const;
 
   int variables_;
   Vector lo_, hi_, objective_;

@@ -11,8 +11,8 @@
 namespace mortise {
 namespace {
 
-// Depths are told up to so many times what all offsets make together.
-constexpr double kDepths = 2.0;
+// Depths are told up to so many times what all offsets make together; beyond, so much deeper.
+constexpr double kDepths = 2.0, kDeeper = 4.0;
 // A place for a later look lies this share of the way from the witness to the face of A.
 constexpr double kTowardsFace = 0.9;
 
@@ -38,17 +38,30 @@ bool has_plane_faces(const Body& body) {
 
 PlanePair::PlanePair(const PairFrame& pair) : pair_(pair) {
   if (pair.trivial || !has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return;
-  depth_mm_ = kDepths * all_offsets_mm(pair);
-  if (!(depth_mm_ > pair.touch_mm)) return;
+  look(kDepths * all_offsets_mm(pair));
+  // Windows that reach farther may know less of the signs: what is known stays.
+  if (!decided_ || has_brackets()) return;
+  const SharpDecision near = decision_;
+  const double near_mm = depth_mm_;
+  look(kDeeper * near_mm);
+  if (has_brackets()) return;
+  decision_ = near;
+  depth_mm_ = near_mm;
+  decided_ = true;
+}
+
+void PlanePair::look(double depth_mm) {
+  if (!(depth_mm > pair_.touch_mm)) return;
+  depth_mm_ = depth_mm;
   SharpQuery query;
-  query.a = {pair.bodies[0].solid, &pair.bodies[0].plane_faces()};
-  query.b = {pair.bodies[1].solid, &pair.bodies[1].plane_faces()};
-  query.X_BA = pair.X_KS[0];
-  query.depth_mm = depth_mm_;
+  query.a = {pair_.bodies[0].solid, &pair_.bodies[0].plane_faces()};
+  query.b = {pair_.bodies[1].solid, &pair_.bodies[1].plane_faces()};
+  query.X_BA = pair_.X_KS[0];
+  query.depth_mm = depth_mm;
   decision_ = decide(query);
   const auto has_sign = [&](const SharpDepth& depth) {
-    return depth.margin_mm.hi <= pair.touch_mm ||
-           (depth.has_point && depth.margin_mm.lo > pair.touch_mm);
+    return depth.margin_mm.hi <= pair_.touch_mm ||
+           (depth.has_point && depth.margin_mm.lo > pair_.touch_mm);
   };
   decided_ = decision_.state == SharpDecision::State::kDecided && has_sign(decision_.least) &&
              has_sign(decision_.largest);
@@ -58,7 +71,8 @@ std::optional<Interval> PlanePair::bracket_mm(Layer layer) const {
   const SharpDepth& depth = depth_of(layer);
   if (!(depth.margin_mm.lo > pair_.touch_mm)) {
     if (!std::isfinite(depth.margin_mm.lo)) return std::nullopt;
-    return without_touch(depth.margin_mm, pair_.touch_mm);
+    const Interval gap{depth.margin_mm.lo / depth.facing, depth.margin_mm.hi / depth.facing};
+    return without_touch(gap, pair_.touch_mm);
   }
   // A deeper point would show with as much.
   if (!(depth.overlap_mm.hi < depth_mm_)) return std::nullopt;

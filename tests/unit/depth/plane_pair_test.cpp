@@ -84,6 +84,7 @@ TEST(PlanePair, AnEdgeMayReachFartherThanItsFaces) {
   ASSERT_EQ(edge.regions.size(), 1U);
   EXPECT_NEAR(edge.regions[0].delta_mm.lo, -0.15, kExact_mm);
   EXPECT_NEAR(edge.regions[0].possible_mm.hi, 0.05 / std::sin(15 * kDegree) - 0.15, kExact_mm);
+  EXPECT_NEAR(edge.regions[0].certain_mm.lo, -0.05 / std::sin(15 * kDegree) - 0.15, kExact_mm);
 }
 
 TEST(PlanePair, AnEdgeIsCertainWhereItsLeastBodyReaches) {
@@ -141,7 +142,9 @@ OverlapCase tab_in_slot(double gap_mm) {
 
 TEST(PlanePair, FlatPartsHaveTheThresholdsOfTheirTolerances) {
   for (const double gap_mm : {0.025, 0.05, -0.03}) {
-    const OverlapResult result = overlap_of(tab_in_slot(gap_mm));
+    OverlapCase c = tab_in_slot(gap_mm);
+    c.refinement = gap_mm < 0.0 ? Refinement::kDecided : Refinement::kFull;
+    const OverlapResult result = overlap_of(c);
     ASSERT_FALSE(result.regions.empty());
     EXPECT_EQ(worst_class(result), CollisionClass::kPotential);
     const OverlapRegion& region = result.regions[0];
