@@ -37,6 +37,7 @@ class PlanePair {
     return layer == Layer::kLower ? decision_.least : decision_.largest;
   }
   double upper_mm(Layer layer) const;
+  double gap_mm() const;
   OverlapRegion& nearest(std::vector<OverlapRegion>& regions, const Vec3& x_W) const;
   void tell_least(OverlapRegion& region) const;
   void tell_largest(OverlapRegion& region) const;
