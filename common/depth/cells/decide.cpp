@@ -42,9 +42,9 @@ Box core_of(const SharpQuery& query) {
   return core;
 }
 
-class Decision {
+class Deciding {
  public:
-  Decision(const SharpQuery& query, double reach_mm)
+  Deciding(const SharpQuery& query, double reach_mm)
       : query_(query), reach_mm_(reach_mm), core_(core_of(query)), origin_(core_.center()) {}
 
   SharpDecision run() {
@@ -197,10 +197,10 @@ SharpDecision decide(const SharpQuery& query) {
   double reach_mm = kReachShare * PlaneFaces::kUsualTravel * face_mm;
   std::uint64_t programs = 0;
   for (;;) {
-    Decision decision(query, reach_mm);
-    SharpDecision result = decision.run();
+    Deciding deciding(query, reach_mm);
+    SharpDecision result = deciding.run();
     result.programs += programs;
-    const double needed_mm = decision.needed_reach_mm();
+    const double needed_mm = deciding.needed_reach_mm();
     if (result.state != SharpDecision::State::kTooSharp ||
         needed_mm > PlaneFaces::kMostTravel * face_mm)
       return result;
