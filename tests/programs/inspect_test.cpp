@@ -166,7 +166,7 @@ TEST_F(Inspect, PrintsBallFilletAndOpenArc) {
     EXPECT_EQ(fit.dump().find("half."), std::string::npos) << fit;
 }
 
-TEST_F(Inspect, CountsOpenNonManifoldAndMisorientedEdges) {
+TEST_F(Inspect, CountsOpenAndNonManifoldEdgesAndTurnsTriangles) {
   TriangleMesh holed = shapes::box({5, 5, 5}, Vec3::Zero(), 2), turned = holed;
   holed.triangles.erase(holed.triangles.begin() + 6, holed.triangles.begin() + 8);  // one square
   std::swap(turned.triangles[9][0], turned.triangles[9][1]);
@@ -181,8 +181,10 @@ TEST_F(Inspect, CountsOpenNonManifoldAndMisorientedEdges) {
           .at("parts");
   EXPECT_EQ(parts.at(0).at("open_edges"), 4);
   EXPECT_FALSE(parts.at(0).at("closed").get<bool>());
-  EXPECT_EQ(parts.at(1).at("misoriented_edges"), 3);
+  EXPECT_EQ(parts.at(1).at("misoriented_edges"), 0);
+  EXPECT_TRUE(parts.at(1).at("closed").get<bool>());
   EXPECT_EQ(parts.at(2).at("non_manifold_edges"), 1);
+  EXPECT_TRUE(parts.at(2).at("closed").get<bool>());
   const std::string text = run("mortise-inspect", (folder_ / "holed.obj").string()).err;
   EXPECT_NE(text.find("not closed: 4 open, 0 non-manifold, 0 misoriented edges"), std::string::npos)
       << text;
@@ -323,14 +325,14 @@ TEST_F(Inspect, PublishedPegAndHole) {
   ASSERT_EQ(document.at("fits").size(), 1U) << document.at("fits");
   // The publisher states 8.1 mm and 7.995 mm.
   EXPECT_NEAR(document.at("fits").at(0).at("clearance_mm").get<double>(), 0.105, 3e-3);
-  // The hole's mesh is open, so that no depth in it can be called real.
-  EXPECT_EQ(document.at("parts").at(0).at("open_edges"), 36);
+  // The 36 open edges of the file are closed on import.
+  EXPECT_EQ(document.at("parts").at(0).at("open_edges"), 0);
   const auto at = [&](const char* x_mm) {
     return judged(proposed(meshes, std::string("[") + x_mm + ", 0, -10]"));
   };
   EXPECT_EQ(at("0"), "");  // 52 um of room on every side
   EXPECT_EQ(at("0.04"), "");
-  EXPECT_EQ(at("0.08"), "potential");  // 28 um into the wall
+  EXPECT_EQ(at("0.08"), "real");  // 28 um into the wall
 }
 
 }  // namespace

