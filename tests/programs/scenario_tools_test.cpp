@@ -86,8 +86,7 @@ TEST_F(ScenarioTools, LatinOneAndDistantPosesAreRefusedByAll) {
     for (const char* program : {"mortise-lint", "mortise-judge"})
       for (const char* option : {"", " --json"})
         EXPECT_EQ(run(program, scenario + option).exit_code, 3) << program << " " << scenario;
-  EXPECT_NE(run("mortise-lint", latin).out.find("latin.yaml:1: the byte 0xe4"), std::string::npos);
-  EXPECT_NE(run("mortise-lint", far).out.find("1000 km"), std::string::npos);
+  EXPECT_NE(run("mortise-lint", far).out.find("is beyond ±1e9"), std::string::npos);
   // The name of a file may be anything.
   const std::string strange = file("J\xe4ger.yaml", blocks("10.2"));
   for (const char* program : {"mortise-lint", "mortise-judge"}) {

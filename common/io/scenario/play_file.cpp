@@ -41,7 +41,7 @@ double number(const YAML::Node& node, const std::string& what) {
   double value = 0.0;
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) ||
       !within(value, kLargestNumber)) {
-    throw Fault{line_of(node), what + " must be a number up to 1e9"};
+    throw Fault{line_of(node), what + " must be a finite number up to 1e9"};
   }
   return value;
 }

@@ -182,7 +182,7 @@ Pose read_pose(YamlContext& context, const YAML::Node& node) {
 
 // 3. features
 
-constexpr const char* kBadName = "a name is one short word without '.' and '*'";
+constexpr const char* kBadName = "a name is one word without '.' and '*', short and printable";
 bool good_name(const std::string& name) {
   return is_name(name) && name.find_first_of(".*") == std::string::npos;
 }

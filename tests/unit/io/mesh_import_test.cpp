@@ -401,7 +401,7 @@ TEST(RawSoup, EveryCutAndEveryLieIsNoticed) {
   std::vector<std::byte> longer = bytes;
   longer.push_back(std::byte{0});
   EXPECT_FALSE(decode(longer));
-  for (std::size_t at = 56; at < 64; ++at) {  // the triangle count
+  for (std::size_t at = 64; at < 72; ++at) {  // the triangle count
     std::vector<std::byte> lie = bytes;
     lie[at] ^= std::byte{0x80};
     EXPECT_FALSE(decode(lie)) << at;
