@@ -29,11 +29,6 @@ struct Body {
   bool has_inside;
   double largest_offset_mm[3] = {0.0, 0.0, 0.0};  ///< by Layer: largest |offset| of any face
 
-  /// Largest |offset| of any face in either layer.
-  double most_offset_mm() const {
-    return std::max(largest_offset_mm[static_cast<int>(Layer::kLower)],
-                    largest_offset_mm[static_cast<int>(Layer::kUpper)]);
-  }
   const SurfaceBand::Face& face(std::uint32_t triangle) const { return band->face_of(triangle); }
   std::uint16_t face_index(std::uint32_t triangle) const {
     return band->face_of_triangle.empty() ? std::uint16_t{0} : band->face_of_triangle[triangle];

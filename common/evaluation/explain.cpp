@@ -123,6 +123,16 @@ std::string mesh_error_name(const ExplainInput& in) {
   return "";
 }
 
+// Plane faces lie where their triangles do.
+bool has_no_mesh_error(const ExplainInput& in) {
+  const auto is_plane = [](const SurfaceBand::Face* face) {
+    return face != nullptr && !face->surface && face->deviation_mm == Interval{} &&
+           (face->grade == DeviationGrade::kPlanar || face->grade == DeviationGrade::kNominal);
+  };
+  return (in.grade == DeviationGrade::kPlanar || in.grade == DeviationGrade::kNominal) &&
+         is_plane(in.face_a) && is_plane(in.face_b);
+}
+
 // What a threshold is made of: fake ends at the upper offsets, real begins at the lower ones. A fit
 // that leaves room adds clearance.
 enum class End { kFake, kReal };
@@ -133,7 +143,11 @@ std::string made_of(const ExplainInput& in, End end, bool name_source) {
   // What the tolerance does not explain of the threshold, so that the terms add up to it.
   const double deviation_mm = -threshold_mm - tolerance_mm;
   std::string text;
-  if (shown(deviation_mm))
+  if (has_no_mesh_error(in)) {
+    // Within the bracket of the overlap it is nothing; beyond, edges travel farther than faces.
+    if (std::fabs(deviation_mm) > in.delta_mm.width() + kShown_um / kUmPerMm)
+      text = signed_term(text, deviation_mm > 0.0, "sharp edge " + um(std::fabs(deviation_mm)));
+  } else if (shown(deviation_mm))
     text = signed_term(text, deviation_mm > 0.0,
                        "mesh error " + um(std::fabs(deviation_mm)) + mesh_error_name(in));
   const Source source = tolerance_source(in);

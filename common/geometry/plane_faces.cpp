@@ -14,7 +14,7 @@ namespace {
 // meshes are written.
 constexpr double kFlatRoundings = 8.0 / 16777216.0;
 // Facets of one face look the same way.
-constexpr double kSameWay = 0.9;
+constexpr double kLeastAlong = 0.9;
 // More faces in one corner: their travel is not worked out.
 constexpr std::size_t kMostFacesOfCorner = 12;
 // Three planes whose normals span less have no corner of their own.
@@ -28,7 +28,7 @@ double largest_coordinate(const TriangleMesh& mesh) {
   return largest;
 }
 
-Vec3 area_vector(const TriangleMesh& mesh, std::uint32_t t) {
+Vec3 twice_area_of(const TriangleMesh& mesh, std::uint32_t t) {
   return (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
 }
 
@@ -45,7 +45,8 @@ class Merge {
     // The largest facet of a face knows its plane best.
     std::vector<std::pair<double, std::uint32_t>> by_area;
     for (std::uint32_t t = 0; t < count; ++t)
-      if (is_plane_band(band_, band_.face_of(t))) by_area.push_back({-area_vector(mesh_, t).norm(), t});
+      if (is_plane_band(band_, band_.face_of(t)))
+        by_area.push_back({-twice_area_of(mesh_, t).norm(), t});
     std::sort(by_area.begin(), by_area.end());
     for (const auto& [area, t] : by_area) {
       if (result_.face_of_triangle[t] != PlaneFaces::kNone) continue;
@@ -61,7 +62,7 @@ class Merge {
   void grow(std::uint32_t seed, double twice_area) {
     const auto index = static_cast<std::uint32_t>(result_.faces.size());
     PlaneFace face;
-    face.n = area_vector(mesh_, seed) / twice_area;
+    face.n = twice_area_of(mesh_, seed) / twice_area;
     face.c = face.n.dot(mesh_.corner(seed, 0));
     face.triangle = seed;
     const SurfaceBand::Face& band = band_.face_of(seed);
@@ -90,8 +91,8 @@ class Merge {
       return false;
     for (int k = 0; k < 3; ++k)
       if (std::fabs(face.n.dot(mesh_.corner(t, k)) - face.c) > flat_mm_) return false;
-    const Vec3 area = area_vector(mesh_, t);
-    return area.dot(face.n) >= kSameWay * area.norm();
+    const Vec3 area = twice_area_of(mesh_, t);
+    return area.dot(face.n) >= kLeastAlong * area.norm();
   }
 
   const TriangleMesh& mesh_;

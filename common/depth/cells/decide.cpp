@@ -13,7 +13,7 @@ namespace mortise {
 namespace {
 
 // Linear programs of a query.
-constexpr std::uint64_t kMostPrograms = 3000;
+constexpr std::uint64_t kMostPrograms = 1000;
 // Windows of a query, and how often one is halved.
 constexpr std::size_t kMostWindows = 96;
 constexpr int kMostHalvings = 30;
@@ -42,9 +42,9 @@ Box core_of(const SharpQuery& query) {
   return core;
 }
 
-class Deciding {
+class SharpSearch {
  public:
-  Deciding(const SharpQuery& query, double reach_mm)
+  SharpSearch(const SharpQuery& query, double reach_mm)
       : query_(query), reach_mm_(reach_mm), core_(core_of(query)), origin_(core_.center()) {}
 
   SharpDecision run() {
@@ -197,10 +197,10 @@ SharpDecision decide(const SharpQuery& query) {
   double reach_mm = kReachShare * PlaneFaces::kUsualTravel * face_mm;
   std::uint64_t programs = 0;
   for (;;) {
-    Deciding deciding(query, reach_mm);
-    SharpDecision result = deciding.run();
+    SharpSearch search(query, reach_mm);
+    SharpDecision result = search.run();
     result.programs += programs;
-    const double needed_mm = deciding.needed_reach_mm();
+    const double needed_mm = search.needed_reach_mm();
     if (result.state != SharpDecision::State::kTooSharp ||
         needed_mm > PlaneFaces::kMostTravel * face_mm)
       return result;

@@ -27,6 +27,12 @@ double all_offsets_mm(const PairFrame& pair) {
   return sum;
 }
 
+// Of any face, round ones as well: what is within reach must be seen.
+double most_offset_mm(const Body& body) {
+  return std::max(body.largest_offset_mm[static_cast<int>(Layer::kLower)],
+                  body.largest_offset_mm[static_cast<int>(Layer::kUpper)]);
+}
+
 bool has_plane_faces(const Body& body) {
   return body.has_inside &&
          std::any_of(body.band->faces.begin(), body.band->faces.end(),
@@ -157,7 +163,7 @@ void PlanePair::tell(bool only_certain, std::vector<OverlapRegion>& regions) con
   tell_least(place(certain() ? decision_.least : decision_.largest));
   // Where no point of one mesh lies in the other, delta is the gap, found faster than by search.
   Interval& delta_mm = regions.front().delta_mm;
-  if (regions.size() == 1 && delta_mm.lo <= 0.0 && delta_mm.width() > kDepthAccuracyDefault_mm)
+  if (regions.size() == 1 && delta_mm.lo <= 0.0 && delta_mm.width() > pair_.touch_mm)
     if (const double gap = gap_mm(); gap > pair_.touch_mm) delta_mm = {-gap, -gap};
   if (!only_certain) return;
   for (OverlapRegion& region : regions) region.possible_mm = {region.certain_mm.lo, kInfinity};
@@ -200,7 +206,7 @@ bool is_outside_of_least_bodies(const PairFrame& pair, const Vec3& x_W) {
     Box point;
     point.add(pair.X_W[i].inverse() * x_W);
     const double reach_mm =
-        std::max(planes.most_travel.by_band_mm, PlaneFaces::kUsualTravel * body.most_offset_mm());
+        std::max(planes.most_travel.by_band_mm, PlaneFaces::kUsualTravel * most_offset_mm(body));
     SharpWindow window(*body.solid, planes, point, reach_mm + pair.touch_mm, 0.0);
     if (window.state() != SharpWindow::State::kReady) continue;
     FaceSet held = 0;

@@ -254,7 +254,10 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
   // 2. Hysteresis: not interfering any more, but by less than can be told for certain.
   double h = kClashHysteresis_mm;
   for (const OpenClash& clash : open) h = std::max(h, hysteresis_mm(clash.now));
-  const bool close = distance_mm <= pair.band_mm + h;
+  // Edges reach farther than faces, but only where they meet; that is known exactly.
+  const double faces_mm =
+      std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
+  const bool close = distance_mm <= faces_mm + h;
   const bool barely =
       std::any_of(pair.judgement.overlap.regions.begin(), pair.judgement.overlap.regions.end(),
                   [&](const OverlapRegion& region) {

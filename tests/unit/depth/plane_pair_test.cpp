@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/depth/cells/sharp_window.h"
 #include "common/evaluation/band.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/overlap_case.h"
@@ -106,6 +107,17 @@ TEST(PlanePair, ATipBeyondTheLimitIsNotFollowed) {
   // 0.05 / sin(2°) = 1.43 would be needed, twenty times 0.05 is followed.
   EXPECT_EQ(agreed_class(Above(4 * kDegree, 1.2, 0.05).c), CollisionClass::kNone);
   EXPECT_EQ(agreed_class(Above(10 * kDegree, 0.5, 0.05).c), CollisionClass::kPotential);
+}
+
+TEST(PlanePair, AWindowThatATipMayComeIntoFromOutsideIsNotUsed) {
+  const SolidPtr knife = wedge(15 * kDegree);
+  const SurfaceBand band = plus_minus(knife, 0.1);
+  const PlaneFaces planes = find_plane_faces(*knife, band);
+  // Half a millimetre before the edge: it may come to 0.1 / sin(7.5°) = 0.766.
+  Box core;
+  core.add(Vec3(0, 0, -0.5));
+  EXPECT_EQ(SharpWindow(*knife, planes, core, 0.55, 0.0).state(), SharpWindow::State::kTooSharp);
+  EXPECT_EQ(SharpWindow(*knife, planes, core, 0.78, 0.0).state(), SharpWindow::State::kReady);
 }
 
 // A tab in a slot, gap on both sides, all faces +-0.1: thresholds are -0.2 and 0.2 exactly.

@@ -74,6 +74,32 @@ TEST(Explain, OtherSentences) {
             "P(interference) 25 %");
 }
 
+TEST(Explain, AnEdgeOfPlaneFacesIsNoMeshError) {
+  SurfaceBand::Face face;
+  face.grade = DeviationGrade::kPlanar;
+  face.tolerance_source = "±0.05 mm";
+  face.tolerance_mm = {-0.05, 0.05};
+  SurfaceBand::Face other;
+  other.grade = DeviationGrade::kPlanar;
+  ExplainInput in;
+  in.collision_class = CollisionClass::kPotential;
+  in.face_a = &face;
+  in.face_b = &other;
+  in.grade = DeviationGrade::kPlanar;
+  in.tolerance_mm = face.tolerance_mm;
+  in.delta_mm = {-0.15, -0.15};
+  in.thresholds = {-0.1932, 0.1932};
+  in.probability = 0.25;
+  EXPECT_EQ(explain(in),
+            "gap 150.0 µm; fake up to -193.2 µm (-sharp edge 143.2 - tolerance 50.0 of ±0.05 mm), "
+            "real above 193.2 µm (sharp edge 143.2 + tolerance 50.0): potential, "
+            "P(interference) 25 %");
+  // Within the accuracy of the overlap it is nothing.
+  in.delta_mm = {0.01, 0.0101};
+  in.thresholds = {-0.0499, 0.05};
+  EXPECT_EQ(explain(in).find("sharp edge"), std::string::npos);
+}
+
 // A pin in a hole of 32 facets, corner before the middle of a facet, with the zones of a fit.
 struct RoundFit {
   SurfaceBand::Face hole, shaft;
