@@ -168,7 +168,9 @@ TEST(ScenarioFuzz, MutatedScenariosAreUsedOrRefused) {
               slowest_s);
   EXPECT_GT(used, count / 20) << "hardly anything gets through: only refusals are tested";
   EXPECT_LT(used, count - count / 20) << "the mutations are too mild";
-  if (timed()) EXPECT_LT(slowest_s, 5.0);
+  if (timed()) {
+    EXPECT_LT(slowest_s, 5.0);
+  }
 }
 
 }  // namespace

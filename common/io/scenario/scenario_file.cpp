@@ -15,7 +15,7 @@
 namespace mortise {
 namespace {
 
-constexpr const char* kBadName = "must be short and printable: up to 128 bytes that one can see";
+constexpr const char* kBadSceneName = "must be short and printable: up to 128 bytes that one can see";
 
 // 1. the head: everything but the lists
 
@@ -39,7 +39,7 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
   read_units(context, top);
   if (const auto name = top.text("name")) {
     scenario.name = *name;
-    if (!is_name(*name)) top.error("name", kBadName);
+    if (!is_name(*name)) top.error("name", kBadSceneName);
   } else if (!top.has("name")) {
     top.error("name is missing: give the scenario a name, e.g. name: my_scene");
   }

@@ -310,12 +310,6 @@ TEST_F(MeshImport, AWrongStlIsRefusedWithItsPlace) {
   expect_says(says(kCubeObj), "neither begins with 'solid' nor is it binary");
 }
 
-std::string ply(const std::string& vertices, const std::string& faces, const std::string& body) {
-  return "ply\nformat ascii 1.0\nelement vertex " + vertices +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
-         "\nproperty list uchar int vertex_indices\nend_header\n" + body;
-}
-
 TEST_F(MeshImport, HostileFilesNeverReachUs) {
   const std::string three = "0 0 0\n1 0 0\n0 1 0\n";
   const ImportLimits limits{2.0, 1ULL << 30U};
