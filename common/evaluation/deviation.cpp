@@ -116,6 +116,7 @@ class Matcher {
       if (!(length > 0.0)) continue;
       const Vec3 true_normal = surface_.outward_normal((a + b + c) / 3.0);
       if (!inclined_alike(normal / length, true_normal)) continue;
+      if (surface_.is_cap(a, b, c, kNearOfRadius * size_of(surface_, mesh_, candidate))) continue;
       candidate.normal_agreement = normal.dot(true_normal) / length;
       const double near = near_mm(candidate);
       const double agrees = plane_ ? kPlaneNormalAgrees : kNormalAgrees;

@@ -241,6 +241,17 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
   return inward ? Interval{-most, -least} : Interval{least, most};
 }
 
+bool Surface::is_cap(const Vec3& a, const Vec3& b, const Vec3& c, double near_mm) const {
+  if (kind != SurfaceKind::kCylinder && kind != SurfaceKind::kCone && kind != SurfaceKind::kTorus)
+    return false;
+  const auto on_circle = [&](const Vec3& x, const Vec3& y) {
+    const double up_x = (x - point).dot(axis), up_y = (y - point).dot(axis);
+    const double out_x = (x - point - up_x * axis).norm(), out_y = (y - point - up_y * axis).norm();
+    return std::fabs(up_x - up_y) <= near_mm && std::fabs(out_x - out_y) <= near_mm;
+  };
+  return on_circle(a, b) && on_circle(b, c) && on_circle(c, a);
+}
+
 bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double limit_mm) const {
   constexpr int kHalvings = 24;  // pieces of 6e-8 of the triangle: what is open then counts as no
   if (std::max({signed_distance_mm(a), signed_distance_mm(b), signed_distance_mm(c)}) > limit_mm)

@@ -33,6 +33,9 @@ struct Surface {
   /// over the triangle).
   Interval signed_distance_range_mm(const Vec3& a, const Vec3& b, const Vec3& c,
                                     double accuracy_mm = 1e-7) const;
+  /// Do the corners of a triangle lie on one circle about the axis, within near_mm? Then it stands
+  /// for the flat inside of that circle, not for the cylinder, cone or torus that begins there.
+  bool is_cap(const Vec3& a, const Vec3& b, const Vec3& c, double near_mm) const;
   /// Is the signed distance no larger than limit_mm over a whole triangle? True is proven; false
   /// where it is larger, or exceeds the limit by less than the bend of a piece of 1/4096 of it.
   bool stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double limit_mm) const;

@@ -91,6 +91,8 @@ bool RegionGrower::goes_on(const Surface& surface, std::uint32_t t, std::uint32_
 bool RegionGrower::belongs(std::uint32_t t, const Surface& surface, double allowed_mm) const {
   for (int k = 0; k < 3; ++k)
     if (!(std::fabs(surface.signed_distance_mm(mesh_.corner(t, k))) <= allowed_mm)) return false;
+  if (surface.is_cap(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2), allowed_mm))
+    return false;
   const std::uint32_t f = facets_.of_triangle[t];
   if (!facets_.reliable[f]) return true;
   const Vec3 middle = (mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2)) / 3.0;
