@@ -259,7 +259,7 @@ const Surface* Body::surface_of(const SurfaceBand::Face& face, Layer layer) {
 double Body::offset_of(const SurfaceBand::Face& face, Layer layer) {
   if (layer == Layer::kMesh) return 0.0;
   const bool exact = surface_of(face, layer) != nullptr;
-  const Interval doubt = exact ? Interval{-face.doubt_mm(), face.doubt_mm()} : face.deviation_mm;
+  const Interval doubt = exact ? face.doubt_mm() : face.deviation_mm;
   return layer == Layer::kLower ? doubt.lo + face.tolerance_mm.lo : doubt.hi + face.tolerance_mm.hi;
 }
 

@@ -22,7 +22,7 @@ bool same(const Interval& a, const Interval& b) { return a.lo == b.lo && a.hi ==
 bool same_face(const SurfaceBand::Face& a, const SurfaceBand::Face& b) {
   if (a.surface.has_value() != b.surface.has_value()) return false;
   if (a.surface && !same_surface(*a.surface, *b.surface)) return false;
-  return a.residual_mm == b.residual_mm && a.grade == b.grade &&
+  return a.residual_mm == b.residual_mm && a.grade == b.grade && same(a.unsure_mm, b.unsure_mm) &&
          same(a.deviation_mm, b.deviation_mm) && same(a.tolerance_mm, b.tolerance_mm);
 }
 

@@ -5,8 +5,10 @@
 #include <map>
 
 #include "common/base/check.h"
+#include "common/base/constants.h"
 #include "common/evaluation/deviation.h"
 #include "common/evaluation/estimate.h"
+#include "common/evaluation/roundness.h"
 #include "common/geometry/plane_faces.h"
 
 namespace mortise {
@@ -27,9 +29,9 @@ bool says_nothing(const SurfaceBand& band, const SurfaceBand::Face& face) {
 void add_rounding(SurfaceBand& band, double quantum_mm, std::span<const Feature> features) {
   band.quantum_mm = quantum_mm;
   if (!(quantum_mm > 0.0)) return;
-  for (std::size_t i = 0; i < band.faces.size(); ++i) {
-    SurfaceBand::Face& face = band.faces[i];
-    if (i > 0 && i <= features.size() && features[i - 1].grade == DeviationGrade::kDeclaredFeature)
+  for (SurfaceBand::Face& face : band.faces) {
+    if (face.feature >= 0 &&
+        features[static_cast<std::size_t>(face.feature)].grade == DeviationGrade::kDeclaredFeature)
       continue;
     face.deviation_mm = face.deviation_mm + Interval{-quantum_mm, quantum_mm};
     if (face.surface) face.residual_mm += quantum_mm;
@@ -50,7 +52,8 @@ void summarize(SurfaceBand& band, const Solid& solid) {
     if (!says_nothing(band, face)) band.trivial = false;
     if (says_nothing(band, face) && band.quantum_mm == 0.0) continue;
     band.largest_offset_mm =
-        std::max(band.largest_offset_mm, face.deviation_mm.hi + face.tolerance_mm.hi);
+        std::max(band.largest_offset_mm,
+                 face.deviation_mm.hi + std::max(0.0, face.unsure_mm.hi) + face.tolerance_mm.hi);
     grown_planes |= is_plane_band(band, face) && face.tolerance_mm.hi > 0.0;
   }
   band.largest_travel_mm = grown_planes && solid.topology().closed()
@@ -63,9 +66,11 @@ void state(SurfaceBand::Face& face, const FaceStatement& statement) {
   face.tolerance_source = statement.source;
 }
 
-SurfaceBand::Face face_of_feature(const Feature& feature, const TriangleMesh& mesh) {
+SurfaceBand::Face face_of_feature(const Feature& feature, std::size_t index,
+                                  const TriangleMesh& mesh) {
   SurfaceBand::Face face;
   face.name = feature.name;
+  face.feature = static_cast<std::int32_t>(index);
   face.residual_mm = feature.residual_mm > kNothing_mm ? feature.residual_mm : 0.0;
   if (feature.surface.kind == SurfaceKind::kPlane) {
     face.grade = DeviationGrade::kPlanar;
@@ -83,6 +88,30 @@ SurfaceBand::Face face_of_feature(const Feature& feature, const TriangleMesh& me
   }
   face.deviation_mm = face.deviation_mm + Interval{-face.residual_mm, face.residual_mm};
   return face;
+}
+
+// What of a recognized face may be flat is a face of its own, round by estimate: its real surface
+// is between the facets and the surface through their corners. faces[1 + index] keeps what is
+// round.
+void split_off_doubtful(SurfaceBand& band, const Feature& feature, std::size_t index,
+                        const TriangleMesh& mesh) {
+  const Roundness roundness = roundness_of(mesh, feature);
+  if (roundness.doubtful.empty()) return;
+  Feature doubtful = feature;
+  doubtful.triangles = roundness.doubtful;
+  SurfaceBand::Face face = face_of_feature(doubtful, index, mesh);
+  face.grade = DeviationGrade::kEstimated;
+  const Interval chord = hull(-face.deviation_mm, Interval{});
+  // Beyond the surface, too, where the facets are too few to tell the circle from another curve.
+  const double beyond = roundness.is_circle ? 0.0 : kEstimatedDeviationFactor - 1.0;
+  face.unsure_mm = {chord.lo - beyond * chord.hi, chord.hi - beyond * chord.lo};
+  if (doubtful.triangles.size() == feature.triangles.size()) {
+    band.faces[1 + index] = std::move(face);
+    return;
+  }
+  const auto own = static_cast<std::uint16_t>(band.faces.size());
+  for (const std::uint32_t t : doubtful.triangles) band.face_of_triangle[t] = own;
+  band.faces.push_back(std::move(face));
 }
 
 // The rest of the part by shape: faces[0] keeps what is of unknown shape, the others go behind.
@@ -131,9 +160,9 @@ void split_rest_by_estimate(SurfaceBand& band, const Solid& solid, double quantu
 }
 
 std::size_t feature_count(const SurfaceBand& band) {
-  return static_cast<std::size_t>(
-      std::count_if(band.faces.begin() + 1, band.faces.end(),
-                    [](const SurfaceBand::Face& face) { return !face.name.empty(); }));
+  std::int32_t last = -1;
+  for (const SurfaceBand::Face& face : band.faces) last = std::max(last, face.feature);
+  return static_cast<std::size_t>(last + 1);
 }
 
 }  // namespace
@@ -148,11 +177,13 @@ SurfaceBand build_band(const BandInput& input) {
   const bool estimate = input.estimate && !chord;
   if (!input.features.empty() || chord || estimate)
     band.face_of_triangle.assign(mesh.triangles.size(), 0);
-  for (const Feature& feature : input.features) {
-    const auto index = static_cast<std::uint16_t>(band.faces.size());
-    for (const std::uint32_t t : feature.triangles) band.face_of_triangle[t] = index;
-    band.faces.push_back(face_of_feature(feature, mesh));
+  for (std::size_t i = 0; i < input.features.size(); ++i) {
+    const auto face = static_cast<std::uint16_t>(band.faces.size());
+    for (const std::uint32_t t : input.features[i].triangles) band.face_of_triangle[t] = face;
+    band.faces.push_back(face_of_feature(input.features[i], i, mesh));
   }
+  for (std::size_t i = 0; i < input.features.size(); ++i)
+    split_off_doubtful(band, input.features[i], i, mesh);
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
   if (estimate) split_rest_by_estimate(band, *input.solid, input.quantum_mm);
   add_rounding(band, input.quantum_mm, input.features);
@@ -164,8 +195,8 @@ SurfaceBand with_statements(const SurfaceBand& band, const Solid& solid, const F
   SurfaceBand stated = band;
   const std::size_t features = feature_count(band);
   MORTISE_CHECK(of_feature.size() == features, "one statement for each feature of the band");
-  for (std::size_t i = 0; i < stated.faces.size(); ++i)
-    state(stated.faces[i], i >= 1 && i <= features ? of_feature[i - 1] : rest);
+  for (SurfaceBand::Face& face : stated.faces)
+    state(face, face.feature >= 0 ? of_feature[static_cast<std::size_t>(face.feature)] : rest);
   summarize(stated, solid);
   return stated;
 }

@@ -21,8 +21,9 @@ struct BandInput {
 };
 
 /// faces[0] is the rest of the part, faces[1 + i] feature i. With a declared chord error the rest
-/// is split by shape into further faces behind them, with an estimate by its size. Triangles and
-/// topology are used only when something is declared.
+/// is split by shape into further faces behind them, with an estimate by its size. What may be flat
+/// of a recognized feature (see roundness.h) is one of these further faces, with the feature's name
+/// and statements. Triangles and topology are used only when something is declared.
 SurfaceBand build_band(const BandInput& input);
 
 /// The same faces of the solid under other statements, for a pair with its own fit.

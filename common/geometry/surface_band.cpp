@@ -9,7 +9,7 @@ Interval SurfaceBand::offset_mm(std::uint32_t triangle, const Vec3& x) const {
   if (!face.surface) return face.deviation_mm + face.tolerance_mm;
   // A mesh point inside the material lies as deep as the true surface stands outward of it.
   const double outward = -face.surface->signed_distance_mm(x);
-  return Interval{outward - face.doubt_mm(), outward + face.doubt_mm()} + face.tolerance_mm;
+  return Interval{outward, outward} + face.doubt_mm() + face.tolerance_mm;
 }
 
 bool valid(const SurfaceBand& band, std::size_t triangles) {

@@ -17,16 +17,22 @@ struct SurfaceBand {
   struct Face {
     std::string name;  ///< feature name, empty for the rest of the part
     std::optional<Surface>
-        surface;  ///< set: deviation is the exact e(x) of this surface +- residual
+        surface;  ///< set: deviation is the exact e(x) of this surface + doubt_mm()
     double residual_mm = 0.0;
     Interval deviation_mm;  ///< where `surface` is not set: [0, s], [-s, 0], [-s, s]; where it is
                             ///< set: bound of e(x) +- residual over all triangles of the face
     Interval tolerance_mm;  ///< outward positive, of the modelled surface
     DeviationGrade grade = DeviationGrade::kNominal;
-    /// How far the true surface may be off `surface`: a declared surface is the truth, whatever the
-    /// corners of the mesh; a recognized one is known only as well as the corners fit.
-    double doubt_mm() const {
-      return grade == DeviationGrade::kDeclaredFeature ? 0.0 : residual_mm;
+    /// Of a face that is round only by estimate: how far its real surface may be off `surface`
+    /// beside the residual, outward positive. Its flat facets are within.
+    Interval unsure_mm;
+    /// Feature whose statements hold for the face, counted from zero; -1: those of the rest.
+    std::int32_t feature = -1;
+    /// How far the true surface may be off `surface`, outward: a declared surface is the truth,
+    /// whatever the corners of the mesh; a recognized one is known only as well as the corners fit.
+    Interval doubt_mm() const {
+      if (grade == DeviationGrade::kDeclaredFeature) return {};
+      return unsure_mm + Interval{-residual_mm, residual_mm};
     }
     std::string tolerance_source;  ///< "Ø20 H7", "profile 0.1", "" when nothing is declared
   };

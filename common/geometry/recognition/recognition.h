@@ -44,7 +44,8 @@ struct RecognitionOptions {
 /// residual reached is in Feature::residual_mm, and bands carry it on both sides.
 ///
 /// Only corners and facet normals are known. A prism whose flats turn by 35 degrees or less and
-/// whose corners lie on a circle counts as round: twelve flats do, six and eight do not. A round
+/// whose corners lie on a circle is found as round: twelve flats are, six and eight are not. Whether
+/// a facet may be taken for round is another question (evaluation/roundness.h). A round
 /// face needs three facets (two may be chamfers); a torus four strips, or three equal ones. A flat
 /// whose corners lie on the round face is recognized by being three times as wide as the median
 /// facet. A single row of facets between smooth neighbours may be a step of a drawn curve and is

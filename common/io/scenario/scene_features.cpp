@@ -50,7 +50,7 @@ std::optional<Interval> estimated_deviation_of(const SurfaceBand& band) {
   std::optional<Interval> all;
   for (const SurfaceBand::Face& face : band.faces)
     if (face.grade == DeviationGrade::kEstimated)
-      all = all ? hull(*all, face.deviation_mm) : face.deviation_mm;
+      all = hull(all.value_or(face.deviation_mm), face.deviation_mm + face.unsure_mm);
   return all;
 }
 

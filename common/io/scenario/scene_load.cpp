@@ -199,7 +199,8 @@ class SceneLoader {
       if (face.name.empty() && face.tolerance_source.empty() &&
           face.grade != DeviationGrade::kDeclaredChord)
         continue;
-      if (face.grade == DeviationGrade::kEstimated) continue;  // all in one line below
+      // Estimated faces without a name: all in one line below.
+      if (face.grade == DeviationGrade::kEstimated && face.name.empty()) continue;
       scene_.tolerances.push_back({part.name, face.name, face.tolerance_source, face.tolerance_mm,
                                    face.grade, face.deviation_mm, face.residual_mm});
     }
@@ -226,7 +227,7 @@ class SceneLoader {
     kind.band =
         build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
                     for_band(kind.stated.rest), for_band(kind.stated.of_feature),
-                    spec.undeclared == UndeclaredSurface::kEstimated, kind.report.quantum_mm});
+                    spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm});
     return kind;
   }
 

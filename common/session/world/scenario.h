@@ -50,8 +50,8 @@ std::optional<Right> right_named(std::string_view name);
 /// What is assumed about surfaces without a declaration.
 enum class UndeclaredSurface : std::uint8_t {
   kNominal = 0,  ///< the mesh is taken for the surface
-  kRecognized,   ///< planes, cylinders, cones, spheres and tori found in the mesh
-  kEstimated,    ///< these, and the rest by estimate
+  kRecognized,   ///< planes, cylinders, cones, spheres and tori found in the mesh, rest by estimate
+  kEstimated,    ///< the same
 };
 
 /// A scenario as it is written, in mm and rad; read from YAML by io/scenario/scenario_file, or made
