@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ constexpr double kAroundWeight = 8.0;
 
 // Corners of a polygon that a patch holds at both ends of an interval.
 constexpr std::size_t kMostCorners = Patch::kMost / 2;
+
+// A direction this near to an axis, as a share, has no angle about it.
+constexpr double kFlat = 1e-9;
 
 double clamp01(double x) { return std::clamp(x, 0.0, 1.0); }
 
@@ -67,6 +71,17 @@ std::vector<Cut> cuts_of(const Body& s, Layer layer, std::uint32_t triangle) {
   return cuts;
 }
 
+// The point of a cone at the height of x, in the same direction from the axis: a face that ends on
+// a circle about its axis is what its triangles are mapped to. The nearest point of the cone would
+// lie beyond that circle. x itself where the cone is not.
+Vec3 at_height_of(const Surface& cone, const Vec3& x) {
+  const double height = (x - cone.point).dot(cone.axis);
+  const Vec3 across = around(cone, x - cone.point);
+  const double distance = across.norm();
+  if (!(height > 0.0) || !(distance > 0.0)) return x;
+  return x + (height * std::tan(cone.half_angle_rad) / distance - 1.0) * across;
+}
+
 // A corner moved to the layer's surface; outward offsets are left to Patch::plus, which also covers
 // the wedge between two faces at a sharp edge.
 class Lift {
@@ -80,8 +95,9 @@ class Lift {
   Vec3 operator()(const Vec3& corner) const {
     if (mesh_) return corner;
     if (surface_ == nullptr) return corner + inward_ * normal_;
-    const Vec3 n = surface_->outward_normal(corner);
-    return corner + (inward_ - surface_->signed_distance_mm(corner)) * n;
+    const Vec3 x = surface_->kind == SurfaceKind::kCone ? at_height_of(*surface_, corner) : corner;
+    const Vec3 n = surface_->outward_normal(x);
+    return x + (inward_ - surface_->signed_distance_mm(x)) * n;
   }
   const Surface* surface() const { return surface_; }
   const Vec3& triangle_normal() const { return normal_; }  // where there is no surface
@@ -177,8 +193,51 @@ void shorten(const Surface& shaft, double radius_mm, const Cut& cut, double& lo,
   if (lo > hi) lo = hi = z;
 }
 
-void set_curvature(const Surface& surface, const Piece& piece, const Vec3& middle,
+// Upper bound of the angle between directions across an axis, rad; pi from a right angle on. An arc
+// is at most s + 0.571 s^3, s its sine: equal at both ends of that range.
+double angle_at_most(const Vec3& a, const Vec3& b) {
+  const double size = a.norm() * b.norm();
+  const double sine = size > 0.0 ? a.cross(b).norm() / size : 1.0;
+  if (!(a.dot(b) > 0.0)) return std::numbers::pi;
+  return sine * (1.0 + 0.571 * sine * sine);
+}
+
+// Of a cone over a piece whose points are mapped at their height (at_height_of). Let a_i be the
+// radii of the cone at the corners with the weights of a point, u_i their directions, V the sum of
+// a_i u_i, which is in the hull, and A the sum of a_i. The point's image is A u, across the axis as
+// V is. Where the mesh stands off the cone by the same share e at all corners, u is along V, and A
+// - |V| <= A (1 - cos(turn / 2)). Otherwise u is off V by at most (e_most - e_least) turn / 2 over
+// (1 - e_most) cos(turn / 2).
+void set_curvature_of_cone(const Surface& cone, const Piece& piece, double inward_mm,
+                           PieceShape& shape) {
+  double radius_mm = 0.0, turn_rad = 0.0, least = 1.0, most = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 d = piece.corners[k] - cone.point, across = around(cone, d);
+    const Vec3 next = around(cone, piece.corners[(k + 1) % 3] - cone.point);
+    const double radius = d.dot(cone.axis) * std::tan(cone.half_angle_rad);
+    radius_mm = std::max(radius_mm, radius);
+    const bool apex = across.norm() <= kFlat * d.norm() || next.norm() <= kFlat * d.norm();
+    if (!apex) turn_rad = std::max(turn_rad, angle_at_most(across, next));
+    const double off = across.norm() > kFlat * d.norm() ? 1.0 - across.norm() / radius : 0.0;
+    least = std::min(least, off);
+    most = std::max(most, off);
+  }
+  radius_mm += inward_mm;  // the images are moved along normals that turn alike
+  shape.turn_rad = turn_rad;
+  shape.bulges_outward = !cone.inward;
+  if (turn_rad > 0.5 * std::numbers::pi || most > 0.5 || least < -0.5) {
+    shape.bulge_mm = shape.slip_mm = 2.0 * radius_mm;
+    return;
+  }
+  const double cosine = std::cos(0.5 * turn_rad);
+  shape.bulge_mm = radius_mm * (1.0 - cosine);
+  shape.slip_mm = radius_mm * 0.5 * (most - least) * turn_rad / ((1.0 - most) * cosine);
+}
+
+void set_curvature(const Surface& surface, const Piece& piece, const Vec3& middle, double inward_mm,
                    PieceShape& shape) {
+  if (surface.kind == SurfaceKind::kCone)
+    return set_curvature_of_cone(surface, piece, inward_mm, shape);
   const double width = width_around(surface, piece);
   const double bend = surface.curvature_bound(middle);
   shape.turn_rad = width * bend;
@@ -189,8 +248,8 @@ void set_curvature(const Surface& surface, const Piece& piece, const Vec3& middl
   shape.bulges_outward = !surface.inward;
 }
 
-// The surface over the piece, moved by its offset, between two circles. Its foot
-// points leave the heights of the corners by no more than the bulge and their own distance.
+// The surface over the piece, moved by its offset, between two circles at the heights of its
+// corners.
 void add_circles(const Surface& surface, double offset, const Piece& piece,
                  std::span<const Cut> cuts, PieceShape& shape) {
   if (surface.kind == SurfaceKind::kSphere) {
@@ -198,12 +257,11 @@ void add_circles(const Surface& surface, double offset, const Piece& piece,
                                            true};
     return;
   }
-  double lo = std::numeric_limits<double>::infinity(), hi = -lo, off = 0.0;
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (const Vec3& x : piece.corners) {
     const double z = (x - surface.point).dot(surface.axis);
     lo = std::min(lo, z);
     hi = std::max(hi, z);
-    off = std::max(off, std::fabs(surface.signed_distance_mm(x)));
   }
   if (surface.kind == SurfaceKind::kCylinder) {
     for (const Cut& cut : cuts) shorten(surface, surface.radius_mm + offset, cut, lo, hi);
@@ -213,9 +271,8 @@ void add_circles(const Surface& surface, double offset, const Piece& piece,
     return;
   }
   const double sine = std::sin(surface.half_angle_rad), cosine = std::cos(surface.half_angle_rad);
-  const double grown = off + shape.bulge_mm;
-  if (!(lo - grown > 0.0)) return;  // around the apex
-  for (const double z : {lo - grown, hi + grown})
+  if (!(lo > 0.0)) return;  // around the apex
+  for (const double z : {lo, hi})
     shape.circles[shape.circle_count++] = {
         surface.point + (z - offset * sine) * surface.axis, surface.axis,
         std::max(0.0, z * sine / cosine + offset * cosine), false};
@@ -239,6 +296,7 @@ Patch placed(const PieceShape& shape, const Pose& X_KS) {
   Patch patch;
   patch.turn_rad = shape.turn_rad;
   patch.bulge_mm = shape.bulge_mm;
+  patch.slip_mm = shape.slip_mm;
   patch.spread_mm = shape.spread_mm;
   patch.bulges_outward = shape.bulges_outward;
   patch.center = X_KS * shape.center;
@@ -248,6 +306,7 @@ Patch placed(const PieceShape& shape, const Pose& X_KS) {
   for (int i = 0; i < shape.plus_count; ++i)
     patch.plus[i] = {X_KS.q * shape.plus[i].normal, shape.plus[i].offset_mm, shape.plus[i].flat};
   if (shape.on_cylinder) patch.axis = X_KS.q * shape.axis;
+  if (shape.on_cone) patch.cone_axis = X_KS.q * shape.axis;
   patch.rim_count = shape.rim_count;
   for (int i = 0; i < shape.rim_count; ++i)
     patch.rims_from[i] = patch.rims_to[i] = shape.rims[i].seen_from(X_KS);
@@ -270,7 +329,7 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
   if (shape.polygon.empty()) return shape;
   if (was_cut) middle = middle_of(shape.polygon, cuts);
   shape.normal = surface != nullptr ? surface->outward_normal(middle) : lifted.triangle_normal();
-  if (surface != nullptr) set_curvature(*surface, piece, middle, shape);
+  if (surface != nullptr) set_curvature(*surface, piece, middle, std::max(0.0, -offset), shape);
   shape.center = (was_cut && surface == nullptr ? middle : lifted(middle)) +
                  std::max(0.0, offset) * shape.normal;
   const auto add_plus = [&](const Vec3& normal, double offset_mm, bool flat) {
@@ -278,8 +337,9 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
   };
   add_plus(shape.normal, offset, surface == nullptr);
   shape.plus_is_own = shape.plus_count > 0;
-  if (surface != nullptr && surface->kind == SurfaceKind::kCylinder) {
-    shape.on_cylinder = true;
+  if (surface != nullptr) {
+    shape.on_cylinder = surface->kind == SurfaceKind::kCylinder;
+    shape.on_cone = surface->kind == SurfaceKind::kCone;
     shape.axis = surface->axis;
   }
   if (s.largest_offset_mm[static_cast<int>(layer)] > 0.0) {
@@ -310,11 +370,23 @@ double Patch::neighbours_beyond(const Vec3& facet_normal, double facet_turn_rad)
   return sum;
 }
 
+double Patch::bulge_beyond(const Vec3& facet_normal, double facet_turn_rad) const {
+  const bool cone = !cone_axis.isZero(0.0);
+  const double along = cone ? facet_normal.dot(cone_axis) : 0.0;
+  const double most = cone ? clamp01(std::sqrt(std::max(0.0, 1.0 - along * along)) +
+                                     motion_turn_rad + facet_turn_rad)
+                           : across(facet_normal, facet_turn_rad);
+  const Vec3 bulging =
+      cone ? Vec3((normal - normal.dot(cone_axis) * cone_axis).stableNormalized()) : normal;
+  const double facing = (bulges_outward ? -1.0 : 1.0) * bulging.dot(facet_normal);
+  return bulge_mm * std::min(most, clamp01(facing + turn_rad + facet_turn_rad)) + slip_mm * most;
+}
+
 double Patch::beyond(const Vec3& facet_normal, double facet_turn_rad) const {
   const double turn = turn_rad + facet_turn_rad;
-  const double facing = -normal.dot(facet_normal), most = across(facet_normal, facet_turn_rad);
+  const double most = across(facet_normal, facet_turn_rad);
   double sum = spread_mm + neighbours_beyond(facet_normal, facet_turn_rad) +
-               bulge_mm * std::min(most, clamp01((bulges_outward ? facing : -facing) + turn));
+               bulge_beyond(facet_normal, facet_turn_rad);
   if (plus_is_own)
     sum += plus[0].offset_mm * std::min(most, clamp01(-plus[0].normal.dot(facet_normal) + turn));
   return sum;
@@ -354,7 +426,7 @@ double Patch::depth_at_rims_mm(const Surface& round) const {
 }
 
 double Patch::thickness() const {
-  double sum = spread_mm + bulge_mm;
+  double sum = spread_mm + bulge_mm + slip_mm;
   for (int i = 0; i < plus_count; ++i) sum += plus[i].offset_mm;
   return sum;
 }

@@ -22,6 +22,7 @@ struct Patch {
   double turn_rad = 0.0;       ///< the normal turns by no more than this over the patch
   double bulge_mm = 0.0;       ///< the surface leaves the hull by no more than this ...
   bool bulges_outward = true;  ///< ... outward (convex face) or inward (concave)
+  double slip_mm = 0.0;        ///< and sideways on a cone, across its axis
   double spread_mm = 0.0;      ///< and in any direction (paths of rotation, neighbours left out)
   static constexpr int kMostPlus = 1 + static_cast<int>(Body::kMostSharp);
   std::array<Plus, kMostPlus> plus;  ///< outward offsets: of the face, and of sharp neighbours
@@ -30,6 +31,8 @@ struct Patch {
   double motion_turn_rad = 0.0;  ///< part of turn_rad that is owed to a motion
   /// A cylinder bulges and is offset only across its axis. Zero: no cylinder.
   Vec3 axis = Vec3::Zero();
+  /// A cone bulges only across its axis, but is offset along its normal. Zero: no cone.
+  Vec3 cone_axis = Vec3::Zero();
   /// On a convex round face: circles whose hull contains all of the patch, its own offset included,
   /// but its neighbours' offsets and spread, so that its extreme in any direction is known. At both
   /// ends of an interval.
@@ -51,6 +54,8 @@ struct Patch {
   double across(const Vec3& facet_normal, double facet_turn_rad) const;
   /// What the offsets of sharp neighbours add.
   double neighbours_beyond(const Vec3& facet_normal, double facet_turn_rad) const;
+  /// How much of the bulge counts against a facet.
+  double bulge_beyond(const Vec3& facet_normal, double facet_turn_rad) const;
   /// How far beyond the hull the patch may reach against a facet of K with this outward normal.
   double beyond(const Vec3& facet_normal, double facet_turn_rad) const;
   /// How far the patch may reach below the plane through `point`, by its points or by its circles.
@@ -74,8 +79,8 @@ struct Piece {
 struct PieceShape {
   std::vector<Vec3> polygon;
   Vec3 center = Vec3::Zero(), normal = Vec3::Zero(), axis = Vec3::Zero();
-  double turn_rad = 0.0, bulge_mm = 0.0, spread_mm = 0.0;
-  bool bulges_outward = true, plus_is_own = false, on_cylinder = false;
+  double turn_rad = 0.0, bulge_mm = 0.0, slip_mm = 0.0, spread_mm = 0.0;
+  bool bulges_outward = true, plus_is_own = false, on_cylinder = false, on_cone = false;
   std::array<Patch::Plus, Patch::kMostPlus> plus;
   int plus_count = 0;
   std::array<Patch::Circle, 2> circles;
