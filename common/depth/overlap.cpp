@@ -1,6 +1,7 @@
 #include "common/depth/overlap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -99,6 +100,44 @@ Bracket moved(Bracket bracket, double by_mm) {
   return bracket;
 }
 
+// A chamfer that keeps clear of the bore in which its shaft sits: one contact, told of the shaft.
+bool told_by_another(const KnownFacePair& known, const Candidates& candidates) {
+  if (std::isfinite(known.overlap.lo_mm)) return false;
+  for (const KnownFacePair& other : candidates.known)
+    if (std::isfinite(other.overlap.lo_mm) &&
+        (other.face[0] == known.face[0] || other.face[1] == known.face[1]))
+      return true;
+  return false;
+}
+
+// A bound holds over all triangles of the region, a witness by the faces beside it.
+void set_grade(const PairFrame& pair, const Regions& regions, std::size_t index,
+               const std::array<const Sample*, 2>& decide, OverlapRegion& region) {
+  const auto use = [&](int role, std::uint32_t triangle, bool decides) {
+    const DeviationGrade grade = pair.s(role).face(triangle).grade;
+    if (decides) region.grade = std::max(region.grade, grade);
+    region.estimated |= grade == DeviationGrade::kEstimated;
+  };
+  for (const Sample* sample : decide) {
+    if (!std::isfinite(sample->depth_mm)) continue;
+    use(sample->role, sample->triangle, true);
+    use(1 - sample->role, sample->at.triangle, true);
+  }
+  if (region.has_witness) return;
+  for (const Root& root : regions.roots)
+    if (root.region == index) use(root.role, root.triangle, false);
+}
+
+// Of the refined search and the lazy one the better: what the lazy one has decided stays decided.
+std::vector<Bracket> better_of(std::vector<Bracket> refined, const std::vector<Bracket>& lazily) {
+  for (std::size_t i = 0; i < refined.size(); ++i) {
+    Bracket& bracket = refined[i];
+    if (lazily[i].best.depth_mm > bracket.best.depth_mm) bracket.best = lazily[i].best;
+    bracket.hi_mm = std::max(std::min(bracket.hi_mm, lazily[i].hi_mm), bracket.best.depth_mm);
+  }
+  return refined;
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query), planes_(pair_) {}
@@ -145,16 +184,6 @@ class Overlap {
   // One region whose brackets in both layers are those of the sharp bodies.
   bool told_by_planes() const { return regions_.count == 1 && planes_.has_brackets(); }
 
-  // A chamfer that keeps clear of the bore in which its shaft sits: one contact, told of the shaft.
-  static bool told_by_another(const KnownFacePair& known, const Candidates& candidates) {
-    if (std::isfinite(known.overlap.lo_mm)) return false;
-    for (const KnownFacePair& other : candidates.known)
-      if (std::isfinite(other.overlap.lo_mm) &&
-          (other.face[0] == known.face[0] || other.face[1] == known.face[1]))
-        return true;
-    return false;
-  }
-
   std::uint64_t work_left() const {
     return query_.work_cap - std::min(query_.work_cap, result_.evaluations);
   }
@@ -200,21 +229,23 @@ class Overlap {
     };
     if (lazy && pair_.trivial && std::any_of(mesh.begin(), mesh.end(), in_rounding))
       mesh = search(Layer::kMesh, false, work_left());
-    std::vector<Bracket> upper, lower;
+    std::vector<Bracket> upper, lower, lower_lazily;
     bool any_open = false;
     for (const bool open : regions_.may_interfere) any_open |= open;
     if (told_by_planes()) {
       upper = {planes_.told(mesh.front(), Layer::kUpper)};
       lower = {planes_.told(mesh.front(), Layer::kLower)};
     } else if (!pair_.trivial && (any_open || !lazy)) {
-      upper = search(Layer::kUpper, lazy, work_left());
+      upper = search(Layer::kUpper, true, work_left());
+      if (!lazy) upper = better_of(search(Layer::kUpper, false, work_left()), upper);
       bool may_be_certain = false;
       for (const Bracket& p : upper) may_be_certain |= p.hi_mm > pair_.touch_mm;
       // What is not seen to be certain is potential: that none of it is needs no proof.
       if (may_be_certain || !lazy)
-        lower = search(
-            Layer::kLower, lazy,
-            lazy && !query_.prove_not_certain ? std::min(glance(), work_left()) : work_left());
+        lower = lower_lazily =
+            search(Layer::kLower, true,
+                   query_.prove_not_certain ? work_left() : std::min(glance(), work_left()));
+      if (!lazy) lower = better_of(search(Layer::kLower, false, work_left()), lower_lazily);
     }
     for (std::size_t i = 0; i < regions_.count; ++i) {
       const Bracket& d = mesh[i];
@@ -240,8 +271,12 @@ class Overlap {
       for (const Sample& sample : d.samples)
         region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
       region.points_W.push_back(region.point_W);
-      if (region.certain_mm.lo > 0.0 && !told_by_planes())
-        set_witness(find_witness(pair_, c.best, result_.evaluations), c.best, region);
+      if (region.certain_mm.lo > 0.0 && !told_by_planes()) {
+        try_witness(c.best, region);
+        if (!lower_lazily.empty()) try_witness(lower_lazily[i].best, region);
+        for (const Sample& sample : c.samples) try_witness(sample, region);
+      }
+      set_grade(pair_, regions_, i, {&deciding, &c.best}, region);
       result_.regions.push_back(std::move(region));
     }
   }
@@ -311,6 +346,13 @@ class Overlap {
     return without_touch({bracket.best.depth_mm, bracket.hi_mm}, pair_.touch_mm);
   }
 
+  // From another point of the least surface, where there is no witness yet.
+  void try_witness(const Sample& from, OverlapRegion& region) {
+    if (region.has_witness || !(from.depth_mm > pair_.touch_mm)) return;
+    set_witness(find_witness(pair_, from, result_.evaluations, &region.witnesses_refused), from,
+                region);
+  }
+
   void set_witness(const std::optional<Vec3>& witness_W, const Sample& from,
                    OverlapRegion& region) const {
     region.has_witness = witness_W.has_value();
@@ -333,9 +375,12 @@ class Overlap {
     const auto [at_least, at_most] = known.overlap.of_layer_mm;
     region.possible_mm = without_touch({at_most.lo + upper, at_most.hi + upper}, pair_.touch_mm);
     region.certain_mm = without_touch({at_least.lo + lower, at_least.hi + lower}, pair_.touch_mm);
+    region.grade = std::max(face_a.grade, face_b.grade);
+    for (const SurfaceBand::Face* face : {&face_a, &face_b})
+      region.estimated |= face->grade == DeviationGrade::kEstimated;
     if (region.certain_mm.lo > 0.0) {
       Sample least;
-      const auto witness_W = known_witness(known, least);
+      const auto witness_W = known_witness(known, least, region.witnesses_refused);
       if (!witness_W && query_.only_certain) return false;
       set_witness(witness_W, least, region);
     }
@@ -362,7 +407,8 @@ class Overlap {
   }
 
   // From the point that the closed form names, and from others farther from the end of its face.
-  std::optional<Vec3> known_witness(const KnownFacePair& known, Sample& least) {
+  std::optional<Vec3> known_witness(const KnownFacePair& known, Sample& least,
+                                    std::uint64_t& refused) {
     const int role = pair_.bodies[0].band->faces[known.face[0]].surface->inward ? 1 : 0;
     const SurfaceBand::Face& convex = pair_.s(role).band->faces[known.face[role]];
     const SurfaceBand::Face& hollow = pair_.k(role).band->faces[known.face[1 - role]];
@@ -382,7 +428,8 @@ class Overlap {
       if (!(least.depth_mm > 0.0)) continue;
       least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
       least.triangle = nearest_point(*pair_.s(role).solid, x).triangle;
-      if (const auto witness = find_witness(pair_, least, result_.evaluations)) return witness;
+      if (const auto witness = find_witness(pair_, least, result_.evaluations, &refused))
+        return witness;
     }
     return std::nullopt;
   }

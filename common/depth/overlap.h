@@ -74,6 +74,13 @@ struct OverlapRegion {
   Vec3 witness_W =
       Vec3::Zero();  ///< inside both real parts for all tolerances, when certain_mm.lo > 0
   CertainPlace certain_place;  ///< the place from which the witness was found
+  /// Points that the surfaces called inside both parts and a mesh did not bear out; such a region
+  /// is real only by another point.
+  std::uint64_t witnesses_refused = 0;
+  /// Worst grade of the faces that decide, and whether any face that was used is known by estimate
+  /// only.
+  DeviationGrade grade = DeviationGrade::kUnknown;
+  bool estimated = false;
   bool capped = false;         ///< work cap reached: brackets are wide
   bool at_crack = false;       ///< within a crack of a part: what is inside there is not known
   std::vector<Vec3> points_W;  ///< sample of contact points for the fitted separating motion

@@ -113,10 +113,26 @@ FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x) {
   return concave ? FaceShape::kConcave : FaceShape::kPlanar;
 }
 
+bool is_borne_out(const Body& body, const Vec3& x, double rounding_mm) {
+  if (inside(*body.solid, x)) return true;
+  const Vec3 at = nearest_point(*body.solid, x).point;
+  bool any = false, within = true;
+  for_each_triangle_in(body.solid->bvh(), Box{at.array() - rounding_mm, at.array() + rounding_mm},
+                       [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
+                         if ((nearest_on_triangle(at, c[0], c[1], c[2]) - at).norm() > rounding_mm)
+                           return;
+                         const double stated_mm =
+                             std::max(0.0, body.offset_at(t, at, Layer::kLower));
+                         any = true;
+                         within &= body.normal(t).dot(x - at) <= stated_mm + rounding_mm;
+                       });
+  return any && within;
+}
+
 namespace {
 
 std::optional<Vec3> find_inside(const PairFrame& pair, const Sample& least,
-                                std::uint64_t& evaluations) {
+                                std::uint64_t& evaluations, std::uint64_t* refused) {
   const int role = least.role;
   const Vec3& p = least.point_K;
   Vec3 out = least.at.outward;
@@ -134,10 +150,18 @@ std::optional<Vec3> find_inside(const PairFrame& pair, const Sample& least,
                              3.0);
   const Vec3 inwards = ((middle_K - p).stableNormalized() + into_s).stableNormalized();
   Climb climb(pair, role, p, evaluations);
+  const auto found_at = [&](const Vec3& to_K) {
+    if (!climb.better(to_K)) return false;
+    const bool good =
+        is_borne_out(pair.k(role), climb.at_K(), pair.rounding_mm) &&
+        is_borne_out(pair.s(role), pair.X_KS[1 - role] * climb.at_K(), pair.rounding_mm);
+    if (!good && refused != nullptr) ++*refused;
+    return good;
+  };
   for (const double share : kWitnessShares)
     for (const Vec3& along : {out, into_s, Vec3((out + into_s).stableNormalized()), inwards,
                               Vec3((out + inwards).stableNormalized())})
-      if (climb.better(p + share * least.depth_mm * along)) return climb.at_W();
+      if (found_at(p + share * least.depth_mm * along)) return climb.at_W();
   // Near an edge there may be room in no one of these directions: uphill from the best of them,
   // along the wall of K to the middle of the triangle, across, and off the wall.
   const Vec3 to_middle = middle_K - p;
@@ -146,7 +170,7 @@ std::optional<Vec3> find_inside(const PairFrame& pair, const Sample& least,
   double step_mm = kFirstClimb * least.depth_mm;
   for (int i = 0; i < kWitnessHalvings; ++i, step_mm *= 0.5)
     for (const Vec3& along : {out, Vec3(-out), u, Vec3(-u), v, Vec3(-v), inwards})
-      if (climb.better(climb.at_K() + step_mm * along)) return climb.at_W();
+      if (found_at(climb.at_K() + step_mm * along)) return climb.at_W();
   return std::nullopt;
 }
 
@@ -154,8 +178,8 @@ std::optional<Vec3> find_inside(const PairFrame& pair, const Sample& least,
 
 // Depth by triangles knows no neighbour that cuts a face short; the sharp bodies do.
 std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
-                                 std::uint64_t& evaluations) {
-  const std::optional<Vec3> found = find_inside(pair, least, evaluations);
+                                 std::uint64_t& evaluations, std::uint64_t* refused) {
+  const std::optional<Vec3> found = find_inside(pair, least, evaluations, refused);
   return found && is_outside_of_least_bodies(pair, *found) ? std::nullopt : found;
 }
 

@@ -17,9 +17,15 @@ FaceShape face_shape(const Body& body, std::uint32_t triangle, const Vec3& x);
 
 /// A point inside both real parts for all their offsets: tried halfway between the deepest point
 /// of one least surface and the other, and verified in both parts (README, section 7). World frame.
-/// Costs up to some 300 evaluations, where there is none.
+/// Costs up to some 300 evaluations, where there is none. `refused`, may be null, counts points
+/// that the surfaces called inside and a mesh did not bear out.
 std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
-                                 std::uint64_t& evaluations);
+                                 std::uint64_t& evaluations, std::uint64_t* refused = nullptr);
+
+/// Does the mesh itself bear out that a point (part frame) is inside the least part? The winding
+/// number is one there, or the point stands above each triangle at the nearest place of the mesh by
+/// no more than what is stated of that triangle. Asks no surface continued beyond its triangles.
+bool is_borne_out(const Body& body, const Vec3& x, double rounding_mm);
 
 /// A point inside both meshes below two coinciding faces with the same outward direction, and the
 /// sum of its depths in both.

@@ -195,7 +195,7 @@ bool estimated(const ExplainInput& in) {
   const auto is = [](const SurfaceBand::Face* face) {
     return face != nullptr && face->grade == DeviationGrade::kEstimated;
   };
-  return in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
+  return in.estimated || in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
 }
 
 // Nothing is known but the meshes, and their corners are no closer than that.
@@ -209,7 +209,10 @@ bool within_rounding(const ExplainInput& in) {
 // What the verdict rests on where that is less than a declared surface.
 std::string grade_note(const ExplainInput& in) {
   if (estimated(in)) return "; mesh error estimated, not guaranteed";
-  if (in.grade == DeviationGrade::kRecognizedFeature) {
+  const auto recognized = [](const SurfaceBand::Face* face) {
+    return face != nullptr && face->grade == DeviationGrade::kRecognizedFeature;
+  };
+  if (recognized(in.face_a) || recognized(in.face_b)) {
     const double residual_mm = residual_of(in, DeviationGrade::kRecognizedFeature);
     return "; surfaces recognized in the mesh, residual " +
            (shown(residual_mm) ? um(residual_mm) + " µm" : std::string("below 0.1 µm"));
@@ -273,6 +276,9 @@ std::string explain(const ExplainInput& in) {
           : overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
   text += grade_note(in);
   if (within_rounding(in)) text += "; within the rounding of the files";
+  if (in.collision_class == CollisionClass::kPotential && in.witnesses_refused > 0)
+    text += "; " + std::to_string(in.witnesses_refused) +
+            " points taken for inside both are not inside the meshes";
   if (in.capped) text += "; work limit reached, brackets are wide";
   return text;
 }

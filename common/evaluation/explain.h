@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "common/evaluation/verdict.h"
@@ -21,7 +22,9 @@ struct ExplainInput {
   bool no_inside = false;
   bool at_crack = false;
   bool capped = false;
-  std::string fit;  ///< "Ø20 H7/g6" when the pair has one
+  bool estimated = false;               ///< a face that was used is known by estimate only
+  std::uint64_t witnesses_refused = 0;  ///< points taken for inside both that a mesh denies
+  std::string fit;                      ///< "Ø20 H7/g6" when the pair has one
 };
 std::string explain(const ExplainInput& input);
 

@@ -63,6 +63,8 @@ void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, b
   input.no_inside = no_inside;
   input.at_crack = region.at_crack;
   input.capped = region.capped;
+  input.estimated = region.estimated;
+  input.witnesses_refused = region.witnesses_refused;
   if (query.rule != nullptr) input.fit = query.rule->fit;
   verdict.explanation = explain(input);
 }
@@ -91,7 +93,8 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
   verdict.witness_W = region.witness_W;
   verdict.shape_a = region.shape_a;
   verdict.shape_b = region.shape_b;
-  verdict.grade = worst_of(faces.a.grade, faces.b.grade);
+  verdict.grade = worst_of(worst_of(faces.a.grade, faces.b.grade), region.grade);
+  if (region.estimated) verdict.grade = worst_of(verdict.grade, DeviationGrade::kEstimated);
   verdict.face_a = faces.a.name;
   verdict.face_b = faces.b.name;
   explain_verdict(query, region, no_inside, faces, verdict);

@@ -39,6 +39,9 @@ void merge(OverlapRegion& into, const OverlapRegion& from) {
   merged.area_mm2 = into.area_mm2 + from.area_mm2;
   merged.capped = into.capped || from.capped;
   merged.at_crack = into.at_crack || from.at_crack;
+  merged.witnesses_refused = into.witnesses_refused + from.witnesses_refused;
+  merged.grade = std::max(into.grade, from.grade);
+  merged.estimated = into.estimated || from.estimated;
   merged.points_W = into.points_W;
   merged.points_W.insert(merged.points_W.end(), from.points_W.begin(), from.points_W.end());
   into = std::move(merged);
