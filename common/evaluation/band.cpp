@@ -137,13 +137,23 @@ void split_rest_by_shape(SurfaceBand& band, const Solid& solid, double chord_err
 }
 
 // The rest of the part by estimate: one face a class of offsets. faces[0] stays with what is flat.
-void split_rest_by_estimate(SurfaceBand& band, const Solid& solid, double quantum_mm) {
+// A recognized plane that may bend is of the rest as well: a facet of a curve beside a recognized
+// round has no smooth neighbour that is not spoken for.
+void split_rest_by_estimate(SurfaceBand& band, const Solid& solid,
+                            std::span<const Feature> features, double quantum_mm) {
   constexpr std::size_t kMostFaces = 65000;  // face indices are 16 bit
   const std::vector<Interval> estimates = estimated_deviation_mm(solid, quantum_mm);
   band.faces[0].grade = DeviationGrade::kPlanar;
   std::map<std::pair<double, double>, std::uint16_t> face_of;
+  std::vector<bool> may_bend(1 + features.size(), false);
+  may_bend[0] = true;
+  for (std::size_t i = 0; i < features.size(); ++i)
+    may_bend[1 + i] = features[i].origin == FeatureOrigin::kRecognized &&
+                      features[i].surface.kind == SurfaceKind::kPlane;
   for (std::size_t t = 0; t < estimates.size(); ++t) {
-    if (band.face_of_triangle[t] != 0) continue;
+    if (const std::uint16_t own = band.face_of_triangle[t];
+        own >= may_bend.size() || !may_bend[own])
+      continue;
     const Interval offset = coarsened(estimates[t]);
     if (offset == Interval{}) continue;
     const auto [known, fresh] =
@@ -185,7 +195,7 @@ SurfaceBand build_band(const BandInput& input) {
   for (std::size_t i = 0; i < input.features.size(); ++i)
     split_off_doubtful(band, input.features[i], i, mesh);
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
-  if (estimate) split_rest_by_estimate(band, *input.solid, input.quantum_mm);
+  if (estimate) split_rest_by_estimate(band, *input.solid, input.features, input.quantum_mm);
   add_rounding(band, input.quantum_mm, input.features);
   return with_statements(band, *input.solid, input.rest, input.of_feature);
 }

@@ -15,6 +15,9 @@ constexpr double kMostFlats = 64.5;
 constexpr double kWiderThanOthers = 1.5;
 // Fewer facets fix no circle: four corners are on any ellipse whose axes they are symmetric about.
 constexpr std::uint32_t kFacetsOfCircle = 5;
+// An open arc whose corners are farther off the circle, as a share of its size, may be of another
+// curve.
+constexpr double kExactArc = 2e-6;
 
 // By how much a triangle turns about the axis, rad. The diagonal of a facet turns as the facet
 // does.
@@ -42,7 +45,10 @@ Roundness roundness_of(const TriangleMesh& mesh, const Feature& feature) {
       (kind != SurfaceKind::kCylinder && kind != SurfaceKind::kCone))
     return roundness;
   const RegionMeasure measure = measure_region(mesh, feature.surface, feature.triangles);
-  roundness.is_circle = measure.steps >= kFacetsOfCircle;
+  const bool closed = measure.arc_rad >= 2.0 * std::numbers::pi;
+  roundness.is_circle = measure.steps >= kFacetsOfCircle &&
+                        (closed || feature.residual_mm <= kExactArc * size_mm(feature.surface, mesh,
+                                                                              feature.triangles));
   std::vector<double> steps;
   for (const std::uint32_t t : feature.triangles)
     steps.push_back(step_rad(mesh, feature.surface, t));

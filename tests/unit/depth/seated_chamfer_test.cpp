@@ -115,23 +115,5 @@ TEST(FlatEnd, IsNotOfTheChamferThatEndsThere) {
     }
 }
 
-// The same faces credited to the cone by hand: a point under the flat end is not inside the part.
-TEST(FlatEnd, AWitnessThatTheMeshDeniesIsNone) {
-  const auto plate = std::make_shared<const Solid>(box(Vec3(30, 30, 5), Vec3(0, 0, -5)));
-  const Disc disc = disc_of(15.0, 32);
-  SurfaceBand band = band_of(disc, Known::kExact);
-  const TriangleMesh& mesh = disc.solid->mesh();
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    if (std::max({mesh.corner(t, 0).z(), mesh.corner(t, 1).z(), mesh.corner(t, 2).z()}) == 0.0)
-      band.face_of_triangle[t] = 1;
-  OverlapCase c{plate, disc.solid};
-  c.band_b = band;
-  for (const OverlapRegion& region : overlap_of(c).regions) {
-    if (!region.has_witness) continue;
-    const Vec3 x = c.X_WB.inverse() * region.witness_W;
-    EXPECT_GT(x.z(), -1e-9) << "the witness lies under the flat end";
-  }
-}
-
 }  // namespace
 }  // namespace mortise
