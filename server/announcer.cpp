@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "common/evaluation/clash_line.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -81,17 +82,24 @@ void Announcer::say_clashes(const TickLoop& loop) {
   if (report.events.empty()) return;
   const SessionNames names = names_of(loop.world());
   for (const ClashEvent& event : report.events) {
-    const std::string pair = names.pair(event.part_a, event.part_b);
+    const PairRule* rule = loop.world().rule(event.part_a, event.part_b);
+    ClashLine line{names.part(event.part_a),
+                   names.part(event.part_b),
+                   &event.verdict,
+                   rule != nullptr ? rule->fit : "",
+                   0,
+                   fmt::format("clash {}", event.clash.value)};
     clear_line();
     if (event.kind == ClashEvent::Kind::kBegin) {
-      spdlog::info("clash {} begins: {} by {}: {}", event.clash.value, pair, names.user(event.user),
-                   event.verdict.explanation);
+      if (event.user) line.note += " by " + names.user(event.user);
+      spdlog::info("{}", clash_line(line));
+      spdlog::debug("clash {}: {}", event.clash.value, event.verdict.explanation);
     } else if (event.kind == ClashEvent::Kind::kEnd) {
-      spdlog::info("clash {} ends: {}, worst {}, {:.1f} s", event.clash.value, pair,
-                   name_of(event.worst_class),
+      spdlog::info("clash {} ends: {} × {}, worst {}, {:.1f} s", event.clash.value, line.part_a,
+                   line.part_b, name_of(event.worst_class),
                    static_cast<double>(event.tick - event.begin_tick) / loop.world().tick_rate_hz);
     } else {
-      spdlog::debug("clash {} changes: {}: {}", event.clash.value, pair, event.verdict.explanation);
+      spdlog::debug("{}", clash_line(line));
     }
   }
 }

@@ -5,39 +5,24 @@
 #include <cstdio>
 #include <string>
 
+#include "common/evaluation/threshold_text.h"
+#include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
 namespace {
 
-constexpr double kUmPerMm = 1e3;
-constexpr double kShown_um = 0.05;  // sentences show tenths: less is nothing
-// A bracket as narrow as depth refines it (0.1 um) reads as one number.
-constexpr double kBracketShown_um = 0.11;
 // A bracket wider than this was left open because the class was decided; what the thresholds are
 // made of is then not known, only that they were passed.
 constexpr double kBracketOpen_mm = 2e-3;
 
-std::string um(double mm) {
-  char text[32];
-  const double value = mm * kUmPerMm;
-  std::snprintf(text, sizeof text, "%.1f", std::fabs(value) < kShown_um ? 0.0 : value);
-  return text;
-}
-
-bool shown(double mm) { return std::fabs(mm) * kUmPerMm >= kShown_um; }
-
-std::string range(double lo_mm, double hi_mm) {
-  if (!std::isfinite(hi_mm)) return "at least " + um(lo_mm);
-  return (hi_mm - lo_mm) * kUmPerMm > kBracketShown_um ? um(lo_mm) + " to " + um(hi_mm)
-                                                       : um(0.5 * (lo_mm + hi_mm));
-}
+bool shown(double mm) { return !reads_as_zero(mm); }
 
 std::string overlap_part(const Interval& delta) {
-  if (delta.hi < 0.0) return "gap " + range(-delta.hi, -delta.lo) + " µm";
+  if (delta.hi < 0.0) return "gap " + range_text(-delta);
   if (delta.lo < 0.0 && shown(delta.lo))
-    return "overlap at most " + um(delta.hi) + " µm, gap at most " + um(-delta.lo) + " µm";
-  return "overlap " + range(std::fmax(delta.lo, 0.0), delta.hi) + " µm";
+    return "overlap at most " + length_text(delta.hi) + ", gap at most " + length_text(-delta.lo);
+  return "overlap " + range_text({std::fmax(delta.lo, 0.0), delta.hi});
 }
 
 // Who set the tolerances of both faces together, and whether that is a fit.
@@ -107,7 +92,7 @@ std::string mesh_error_name(const ExplainInput& in) {
     case DeviationGrade::kPlanar:
     case DeviationGrade::kDeclaredFeature: {
       const double residual_mm = residual_of(in, DeviationGrade::kDeclaredFeature);
-      return shown(residual_mm) ? " ±" + um(residual_mm) : " exact";
+      return shown(residual_mm) ? " ±" + length_text(residual_mm) : " exact";
     }
     case DeviationGrade::kDeclaredChord:
       return " by declared chord error";
@@ -149,7 +134,7 @@ std::string made_of(const ExplainInput& in, End end, bool name_source) {
       text = signed_term(text, deviation_mm > 0.0, "sharp edge " + um(std::fabs(deviation_mm)));
   } else if (shown(deviation_mm))
     text = signed_term(text, deviation_mm > 0.0,
-                       "mesh error " + um(std::fabs(deviation_mm)) + mesh_error_name(in));
+                       "mesh error " + length_text(std::fabs(deviation_mm)) + mesh_error_name(in));
   const Source source = tolerance_source(in);
   if (source.text.empty()) return text;
   const bool interferes = tolerance_mm > 0.0;
@@ -160,9 +145,9 @@ std::string made_of(const ExplainInput& in, End end, bool name_source) {
     what = fake ? "largest radial interference" : "least radial interference";
   else
     what = fake ? "least radial clearance" : "largest radial clearance";
-  return signed_term(
-      text, interferes,
-      what + " " + um(std::fabs(tolerance_mm)) + (name_source ? " of " + source.text : ""));
+  return signed_term(text, interferes,
+                     what + " " + length_text(std::fabs(tolerance_mm)) +
+                         (name_source ? " of " + source.text : ""));
 }
 
 // Each threshold that has to do with the class, and what it is made of.
@@ -172,17 +157,20 @@ std::string thresholds_part(const ExplainInput& in) {
   if (made_of(in, End::kFake, true).empty() && !shown(fake) && !shown(real)) {
     const bool nominal =
         in.grade == DeviationGrade::kNominal || in.grade == DeviationGrade::kUnknown;
-    return nominal
-               ? "nothing declared, the mesh is taken for the surface (nominal)"
-               : "no tolerance declared, mesh error 0.0 (" + std::string(name_of(in.grade)) + ")";
+    return nominal ? "nothing declared, the mesh is taken for the surface (nominal)"
+                   : "no tolerance declared, mesh error " + length_text(0.0) + " (" +
+                         std::string(name_of(in.grade)) + ")";
   }
   const bool is_real = in.collision_class == CollisionClass::kReal;
   const bool is_fake = in.collision_class == CollisionClass::kFake;
   const std::string why_fake = is_real ? "" : made_of(in, End::kFake, true);
   const std::string why_real = is_fake ? "" : made_of(in, End::kReal, why_fake.empty());
   const auto because = [](const std::string& why) { return why.empty() ? "" : " (" + why + ")"; };
-  return "fake up to " + um(fake) + " µm" + because(why_fake) + ", real above " + um(real) + " µm" +
-         because(why_real);
+  std::string text;
+  if (in.fake_known || is_fake) text = fake_text(fake) + because(why_fake);
+  if (in.real_known || is_real)
+    text += (text.empty() ? "" : ", ") + real_text(real) + because(why_real);
+  return text;
 }
 
 // Does the mesh error of a face come of its file's rounding alone?
@@ -215,7 +203,7 @@ std::string grade_note(const ExplainInput& in) {
   if (recognized(in.face_a) || recognized(in.face_b)) {
     const double residual_mm = residual_of(in, DeviationGrade::kRecognizedFeature);
     return "; surfaces recognized in the mesh, residual " +
-           (shown(residual_mm) ? um(residual_mm) + " µm" : std::string("below 0.1 µm"));
+           (shown(residual_mm) ? length_text(residual_mm) : std::string("below 0.1 µm"));
   }
   const bool nominal = in.grade == DeviationGrade::kNominal;
   return nominal && !tolerance_source(in).text.empty() ? "; mesh taken for the surface (nominal)"
@@ -227,9 +215,9 @@ std::string conclusion(const ExplainInput& in) {
       std::string(name_of(in.collision_class)) + (estimated(in) ? " by estimate" : "");
   switch (in.collision_class) {
     case CollisionClass::kReal:
-      return name + ", " + um(in.margin_mm) + " µm beyond";
+      return name + ", " + length_text(in.margin_mm) + " beyond";
     case CollisionClass::kFake:
-      return name + ", " + um(in.margin_mm) + " µm to spare";
+      return name + ", " + length_text(in.margin_mm) + " to spare";
     case CollisionClass::kPotential: {
       if (in.no_inside) return name + ", a part is open and has no inside";
       if (in.at_crack) return name + ", a part is open here and its inside not known";
@@ -253,12 +241,13 @@ std::string explain_open_bracket(const ExplainInput& in) {
                                      "mesh error: " + std::string(name_of(in.grade)) + ")";
   const Interval& delta = in.delta_mm;
   if (in.collision_class == CollisionClass::kFake)
-    return "overlap at most " + um(delta.hi) + " µm; fake up to " +
-           um(in.thresholds.fake_below_mm) + " µm" + of + ": " + conclusion(in);
-  const std::string least =
-      delta.lo >= 0.0 ? "overlap at least " + um(delta.lo) : "gap at most " + um(-delta.lo);
-  return least + " µm; real above " + um(in.thresholds.real_above_mm) + " µm" + of + ": " +
-         conclusion(in);
+    return "overlap at most " + length_text(delta.hi) + "; " +
+           fake_text(in.thresholds.fake_below_mm) + of + ": " + conclusion(in);
+  if (in.collision_class == CollisionClass::kPotential && !in.real_known)
+    return overlap_part(delta) + of + ": " + conclusion(in);
+  const std::string least = delta.lo >= 0.0 ? "overlap at least " + length_text(delta.lo)
+                                            : "gap at most " + length_text(-delta.lo);
+  return least + "; " + real_text(in.thresholds.real_above_mm) + of + ": " + conclusion(in);
 }
 
 }  // namespace
@@ -270,10 +259,11 @@ std::string explain(const ExplainInput& in) {
   if (in.at_crack && in.delta_mm.hi > 0.0)
     return "a part is open here, so what is inside it is not known: " +
            std::string(name_of(in.collision_class));
+  const std::string why = thresholds_part(in);
   std::string text =
       in.delta_mm.width() > kBracketOpen_mm
           ? explain_open_bracket(in)
-          : overlap_part(in.delta_mm) + "; " + thresholds_part(in) + ": " + conclusion(in);
+          : overlap_part(in.delta_mm) + (why.empty() ? "" : "; " + why) + ": " + conclusion(in);
   text += grade_note(in);
   if (within_rounding(in)) text += "; within the rounding of the files";
   if (in.collision_class == CollisionClass::kPotential && in.witnesses_refused > 0)

@@ -8,7 +8,6 @@
 namespace mortise {
 
 /// One sentence that explains the class: overlap, thresholds, what determined each, margin.
-/// Micrometres.
 struct ExplainInput {
   CollisionClass collision_class = CollisionClass::kNone;
   Interval delta_mm;
@@ -24,7 +23,10 @@ struct ExplainInput {
   bool capped = false;
   bool estimated = false;               ///< a face that was used is known by estimate only
   std::uint64_t witnesses_refused = 0;  ///< points taken for inside both that a mesh denies
-  std::string fit;                      ///< "Ø20 H7/g6" when the pair has one
+  /// False: the class was decided before this threshold was; it is left out,
+  /// but for the one that the class rests on.
+  bool fake_known = true, real_known = true;
+  std::string fit;  ///< "Ø20 H7/g6" when the pair has one
 };
 std::string explain(const ExplainInput& input);
 

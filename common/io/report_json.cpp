@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "common/evaluation/clash_line.h"
+#include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -38,10 +41,6 @@ Json json_of_row(const SessionStatistics::Row& row) {
 
 Json json_of_stage(const StageCount& stage) { return {{"in", stage.in}, {"out", stage.out}}; }
 
-std::string micrometres(double mm) {
-  return std::isfinite(mm) ? fmt::format("{:.1f} µm", mm * 1e3) : "unbounded";
-}
-
 template <class Rows, class NameOf>
 std::string rows_table(const char* title, const Rows& rows, NameOf name_of_key) {
   if (rows.empty()) return {};
@@ -50,7 +49,7 @@ std::string rows_table(const char* title, const Rows& rows, NameOf name_of_key) 
   for (const auto& [key, row] : rows) {
     text += fmt::format("  {:<32}{:>6}{:>11}{:>6}  {} {}\n", name_of_key(key), row.clashes[3],
                         row.clashes[2], row.clashes[1], name_of(row.worst.collision_class),
-                        micrometres(row.worst.delta_mm.lo));
+                        length_text(row.worst.delta_mm.lo));
   }
   return text;
 }
@@ -258,25 +257,35 @@ std::string collision_table(const SessionStatistics& statistics, const SessionNa
   const auto total = [&](CollisionClass c) { return statistics.clashes_total(c); };
   const auto open = [&](CollisionClass c) { return statistics.clashes_open(c); };
   using enum CollisionClass;
+  std::uint64_t pairs[4] = {};
+  for (const auto& [key, row] : statistics.by_pair())
+    ++pairs[static_cast<std::size_t>(row.worst.collision_class)];
   std::string text =
-      fmt::format("{:<34}{:>6}{:>11}{:>6}\n  {:<32}{:>6}{:>11}{:>6}\n", "Collisions", "real",
-                  "potential", "fake", "in all", total(kReal), total(kPotential), total(kFake));
-  text += fmt::format("  {:<32}{:>6}{:>11}{:>6}\n", "still open", open(kReal), open(kPotential),
-                      open(kFake));
+      fmt::format("{:<34}{:>6}{:>11}{:>6}\n", "Collisions", "real", "potential", "fake");
+  const auto counts = [&](const char* what, std::uint64_t real, std::uint64_t potential,
+                          std::uint64_t fake) {
+    text += fmt::format("  {:<32}{:>6}{:>11}{:>6}\n", what, real, potential, fake);
+  };
+  counts("pairs of parts, by their worst", pairs[3], pairs[2], pairs[1]);
+  counts("places, in all", total(kReal), total(kPotential), total(kFake));
+  counts("places, still open", open(kReal), open(kPotential), open(kFake));
   text += rows_table("By pair", statistics.by_pair(),
                      [&](const auto& key) { return names.pair(key.first, key.second); });
   text += rows_table("By user", statistics.by_user(), [&](UserId id) { return names.user(id); });
 
-  std::string worst;
-  for (const auto& [key, row] : statistics.by_pair()) {
-    const Verdict& v = row.worst;
-    if (v.collision_class == kNone) continue;
-    worst += fmt::format("  {}, tick {}: {}, overlap {}; fake up to {}, real above {}\n    {}\n",
-                         names.pair(key.first, key.second), row.worst_tick,
-                         name_of(v.collision_class), micrometres(v.delta_mm.lo),
-                         micrometres(v.fake_below_mm), micrometres(v.real_above_mm), v.explanation);
-  }
-  if (!worst.empty()) text += "\nWorst of each pair\n" + worst;
+  std::vector<ClashLine> worst;
+  for (const auto& [key, row] : statistics.by_pair())
+    if (row.worst.collision_class != kNone)
+      worst.push_back({names.part(key.first), names.part(key.second), &row.worst, "", 0,
+                       fmt::format("tick {}", row.worst_tick)});
+  std::stable_sort(worst.begin(), worst.end(), [](const ClashLine& x, const ClashLine& y) {
+    return x.verdict->collision_class > y.verdict->collision_class;
+  });
+  if (worst.empty()) return text;
+  text += "\nWorst of each pair\n";
+  const std::vector<std::string> lines = clash_lines(worst);
+  for (std::size_t i = 0; i < worst.size(); ++i)
+    text += fmt::format("{}\n  {}\n", lines[i], worst[i].verdict->explanation);
   return text;
 }
 

@@ -6,33 +6,22 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/evaluation/clash_line.h"
+#include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
 namespace {
 
-// A round fit touches at every facet; the worst few say it. --json has them all.
+// A round fit touches at every facet; the worst few explain it. --json has them all.
 constexpr std::size_t kMostRegions = 4;
 
-std::string um(double mm) {
-  if (!std::isfinite(mm)) return "inf";
-  return fmt::format("{:.1f}", std::fabs(mm) < 5e-5 ? 0.0 : mm * 1e3);  // no "-0.0"
-}
-
-std::string class_text(CollisionClass c, bool color) {
-  const std::string name(name_of(c));
-  if (!color) return name;
-  const int code = c == CollisionClass::kReal ? 31 : c == CollisionClass::kPotential ? 33 : 32;
-  return fmt::format("\033[{}m{}\033[0m", code, name);
-}
-
-// Micrometres as long as they are read as such.
-std::string length(double mm) {
-  return std::fabs(mm) < 1.0 ? um(mm) + " µm" : fmt::format("{:.3f} mm", mm);
-}
-
-std::string range(const Interval& mm) {
-  return mm.width() < 5e-5 ? length(mm.lo) : length(mm.lo) + " to " + length(mm.hi);
+// The first word of the line is its class.
+std::string colored(const std::string& line, CollisionClass c, bool color) {
+  if (!color) return line;
+  const int code = c == CollisionClass::kReal ? 31 : c == CollisionClass::kPotential ? 33 : 34;
+  const std::size_t end = line.find(' ');
+  return fmt::format("\033[{}m{}\033[0m{}", code, line.substr(0, end), line.substr(end));
 }
 
 std::string vector(const Vec3& v, int digits) {
@@ -46,51 +35,51 @@ std::string face_text(const std::string& part, const std::string& face, FaceShap
   return fmt::format("{}{} ({})", part, face.empty() ? "" : "." + face, name_of(shape));
 }
 
-std::string depth_text(const Verdict& v) {
-  const Interval apart{-v.delta_mm.hi, -v.delta_mm.lo};
-  const std::string depth =
-      v.delta_mm.hi < 0.0 ? "meshes apart " + range(apart) : "meshes overlap " + range(v.delta_mm);
-  const char* edge = v.collision_class == CollisionClass::kReal   ? "beyond real"
-                     : v.collision_class == CollisionClass::kFake ? "to spare below potential"
-                                                                  : "to the nearer threshold";
-  return fmt::format("{}; fake up to {}, real above {}; {} {}", depth, length(v.fake_below_mm),
-                     length(v.real_above_mm), length(v.margin_mm), edge);
-}
-
 struct RegionNames {
   std::size_t number = 0;
   std::string part_a, part_b;
-  bool only_b_moves = false;
+  bool a_moves = true, b_moves = true;
 };
 
-std::string way_out_text(const Verdict& v, const RegionNames& names) {
-  // The motion is that of A; where A stands fast, a shift is told as the opposite one of B.
-  const double turn = v.separation_rotation_rad.norm();
-  const bool of_b = names.only_b_moves && turn <= 1e-9;
-  const std::string& part = of_b ? names.part_b : names.part_a;
-  const Vec3 shift = (of_b ? -1.0 : 1.0) * v.separation_translation_mm;
-  const std::string least = "at least " + length(v.gpd_mm.lo);
-  if (v.separation_way == SeparationWay::kNone)
-    return least + "; no motion was found that frees it";
-  std::string text = fmt::format("{}, and {} does: {} moved {}", least, length(v.gpd_mm.hi), part,
-                                 name_of(v.separation_way));
-  if (const double by = shift.norm(); by > 0.0)
-    text += fmt::format(", {} towards {}", length(by), vector(shift / by, 3));
-  if (turn > 1e-9)
-    text += fmt::format(", turned {:.4f}° about {}", turn * 180.0 / std::numbers::pi,
-                        vector(v.separation_rotation_rad / turn, 3));
-  return text;
+// "turned 25.9764° about (0, 0, 1)": below a full turn, the shorter way round. Nothing where that
+// is none.
+std::string turn_text(const Vec3& rotation_rad) {
+  const double turn_rad = rotation_rad.norm();
+  const double less_rad = std::remainder(turn_rad, 2.0 * std::numbers::pi);
+  const double turn_deg = std::fabs(less_rad) * 180.0 / std::numbers::pi;
+  if (turn_deg < 0.5e-4) return "";
+  return fmt::format("turned {:.4f}° about {}", turn_deg,
+                     vector(rotation_rad / std::copysign(turn_rad, less_rad), 3));
 }
 
-std::string region_text(const RegionNames& names, const Verdict& v, bool color) {
-  std::string text = fmt::format("  [{}] {}  {} / {}\n      {}\n", names.number,
-                                 class_text(v.collision_class, color),
+// The motion is that of A. Where A stands fast it is told as the opposite one of B; with a turn its
+// shift is left out, for that depends on the point about which it is told.
+std::string way_out_text(const Verdict& v, const RegionNames& names) {
+  const std::string least = length_text(v.gpd_mm.lo);
+  const std::string most = length_text(v.gpd_mm.hi);
+  const std::string range = least == most ? least : "at least " + least + ", and " + most + " does";
+  if (v.separation_way == SeparationWay::kNone)
+    return "at least " + length_text(v.gpd_mm.lo) + "; no motion was found that frees it";
+  const bool of_b = !names.a_moves && names.b_moves;
+  const double sign = of_b ? -1.0 : 1.0;
+  const Vec3 shift = sign * v.separation_translation_mm;
+  const std::string turn = turn_text(sign * v.separation_rotation_rad);
+  const std::string mover = names.a_moves   ? names.part_a + " moved"
+                            : names.b_moves ? names.part_b + " moved"
+                                            : "apart from each other";
+  std::string text = fmt::format("{}: {} {}", range, mover, name_of(v.separation_way));
+  if (const double by = shift.norm(); by > 0.0 && (turn.empty() || !of_b))
+    text += fmt::format(", towards {}", vector(shift / by, 3));
+  return turn.empty() ? text : text + ", " + turn;
+}
+
+std::string region_text(const RegionNames& names, const Verdict& v) {
+  std::string text = fmt::format("  [{}] {} / {}\n      {}\n", names.number,
                                  face_text(names.part_a, v.face_a, v.shape_a),
                                  face_text(names.part_b, v.face_b, v.shape_b), v.explanation);
   const auto row = [&](const char* what, const std::string& how) {
     text += fmt::format("      {:<12}{}\n", what, how);
   };
-  row("depth", depth_text(v));
   row("mesh error", std::string(name_of(v.grade)));
   if (v.gpd_mm.hi > 0.0) row("comes free", way_out_text(v, names));
   row("where", fmt::format("{} mm, normal {}{}", vector(v.point_W, 3), vector(v.normal_W, 3),
@@ -115,44 +104,49 @@ std::string hiding_text(const World& world, const PairVerdicts& pair) {
          " open: the inside is not known there";
 }
 
-}  // namespace
+// A pair with its regions, worst first.
+struct Clash {
+  const PairVerdicts* pair = nullptr;
+  std::size_t number = 0;  // of its first region
+  CollisionClass worst() const { return pair->verdicts.front().collision_class; }
+};
 
-bool finds(const JudgeReport& report, CollisionClass at_least) {
-  return std::any_of(report.pairs.begin(), report.pairs.end(), [&](const PairVerdicts& pair) {
-    return std::any_of(pair.verdicts.begin(), pair.verdicts.end(),
-                       [&](const Verdict& v) { return v.collision_class >= at_least; });
-  });
+std::vector<Clash> clashes_of(const JudgeReport& report) {
+  std::vector<Clash> clashes;
+  std::size_t number = 1;
+  for (const PairVerdicts& pair : report.pairs) {
+    if (!pair.verdicts.empty()) clashes.push_back({&pair, number});
+    number += pair.verdicts.size();
+  }
+  std::stable_sort(clashes.begin(), clashes.end(),
+                   [](const Clash& x, const Clash& y) { return x.worst() > y.worst(); });
+  return clashes;
 }
 
-std::string judge_text(const OpenedScene& opened, const JudgeReport& report, bool color) {
-  const World& world = opened.scene.world;
-  const SessionNames names = names_of(world);
+std::string places_text(const World& world, const Clash& clash) {
+  const PairVerdicts& pair = *clash.pair;
+  const Part &a = *world.find(pair.a), &b = *world.find(pair.b);
+  const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
   std::string text;
-  std::size_t number = 0;
-  for (const PairVerdicts& pair : report.pairs) {
-    text += names.pair(pair.a, pair.b);
-    if (pair.excluded) text += "  excluded: " + reason_of(world, pair);
-    const PairRule* rule = world.rule(pair.a, pair.b);
-    if (rule != nullptr && !rule->fit.empty()) text += "  " + rule->fit;
-    if (pair.not_examined)
-      text += "  not examined: " + hiding_text(world, pair);
-    else if (pair.no_inside)
-      text += "  (a part is open: depth unknown)";
-    text += "\n";
-    const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
-    for (std::size_t i = 0; i < shown; ++i)
-      text += region_text({number + i + 1, names.part(pair.a), names.part(pair.b),
-                           !world.find(pair.a)->moving && world.find(pair.b)->moving},
-                          pair.verdicts[i], color);
-    number += pair.verdicts.size();
-    if (shown < pair.verdicts.size())
-      text += fmt::format("  ... {} more regions, none worse; --json lists all\n",
-                          pair.verdicts.size() - shown);
-  }
+  for (std::size_t i = 0; i < shown; ++i)
+    text += region_text({clash.number + i, a.name, b.name, a.moving, b.moving}, pair.verdicts[i]);
+  if (shown < pair.verdicts.size())
+    text += fmt::format("  ... {} more places, none worse; --json lists all\n",
+                        pair.verdicts.size() - shown);
+  return text;
+}
+
+std::string summary_text(const OpenedScene& opened, const JudgeReport& report,
+                         const std::vector<Clash>& clashes) {
   const StepCounters& c = report.counters;
-  text += fmt::format("{}: {} pairs, {} asked; {} real, {} potential, {} fake; {} excluded",
-                      opened.scenario.file, c.pairs.in, c.pairs.out, c.verdicts_by_class[3],
-                      c.verdicts_by_class[2], c.verdicts_by_class[1], c.pairs_excluded);
+  const auto pairs_of = [&](CollisionClass collision_class) {
+    return std::count_if(clashes.begin(), clashes.end(),
+                         [&](const Clash& clash) { return clash.worst() == collision_class; });
+  };
+  std::string text = fmt::format(
+      "{}: {} pairs, {} asked; {} real, {} potential, {} fake; {} excluded", opened.scenario.file,
+      c.pairs.in, c.pairs.out, pairs_of(CollisionClass::kReal),
+      pairs_of(CollisionClass::kPotential), pairs_of(CollisionClass::kFake), c.pairs_excluded);
   const auto hidden = static_cast<std::uint64_t>(
       std::count_if(report.pairs.begin(), report.pairs.end(),
                     [](const PairVerdicts& pair) { return pair.not_examined; }));
@@ -165,6 +159,41 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, boo
     text += fmt::format("; {} regions decided before their depth was, --full refines",
                         c.regions_decided_early);
   return text + "\n";
+}
+
+}  // namespace
+
+bool finds(const JudgeReport& report, CollisionClass at_least) {
+  return std::any_of(report.pairs.begin(), report.pairs.end(), [&](const PairVerdicts& pair) {
+    return std::any_of(pair.verdicts.begin(), pair.verdicts.end(),
+                       [&](const Verdict& v) { return v.collision_class >= at_least; });
+  });
+}
+
+std::string judge_text(const OpenedScene& opened, const JudgeReport& report, JudgeTextStyle style) {
+  const World& world = opened.scene.world;
+  const SessionNames names = names_of(world);
+  const std::vector<Clash> clashes = clashes_of(report);
+  std::vector<ClashLine> rows;
+  for (const Clash& clash : clashes) {
+    const PairRule* rule = world.rule(clash.pair->a, clash.pair->b);
+    rows.push_back({names.part(clash.pair->a), names.part(clash.pair->b),
+                    &clash.pair->verdicts.front(), rule != nullptr ? rule->fit : "",
+                    clash.pair->verdicts.size() - 1, ""});
+  }
+  const std::vector<std::string> lines = clash_lines(rows);
+  std::string text;
+  for (std::size_t i = 0; i < clashes.size(); ++i) {
+    text += colored(lines[i], rows[i].verdict->collision_class, style.color) + "\n";
+    if (style.verbose) text += places_text(world, clashes[i]);
+  }
+  for (const PairVerdicts& pair : report.pairs)
+    if (pair.excluded)
+      text += fmt::format("excluded  {}: {}\n", names.pair(pair.a, pair.b), reason_of(world, pair));
+    else if (pair.not_examined)
+      text += fmt::format("not examined  {}: {}\n", names.pair(pair.a, pair.b),
+                          hiding_text(world, pair));
+  return text + summary_text(opened, report, clashes);
 }
 
 Json judge_json(const OpenedScene& opened, const JudgeReport& report) {

@@ -8,9 +8,14 @@
 
 namespace mortise {
 
-/// Verdicts of all pairs for people: for each region class, overlap and separation brackets,
-/// thresholds and their sources, and the explaining sentence.
-std::string judge_text(const OpenedScene& opened, const JudgeReport& report, bool color);
+struct JudgeTextStyle {
+  bool color = false;
+  bool verbose = false;  ///< places below each clash: depth, way out, and the explaining sentence
+};
+
+/// Clashes for people, worst first: one line a pair, led by its worst region. Then excluded pairs
+/// that are near, and what was counted.
+std::string judge_text(const OpenedScene& opened, const JudgeReport& report, JudgeTextStyle style);
 
 /// The same as one document.
 Json judge_json(const OpenedScene& opened, const JudgeReport& report);

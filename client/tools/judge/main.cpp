@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
       judge_world(opened->scene.world, scratch, o.full || !o.picture.empty());
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const std::string text = o.json ? mortise::json_text(mortise::judge_json(*opened, report)) + "\n"
-                                  : mortise::judge_text(*opened, report, color);
+                                  : mortise::judge_text(*opened, report, {color, o.verbose});
   std::fputs(text.c_str(), stdout);
   if (!o.picture.empty())
     if (const auto drawn = mortise::draw_regions(opened->scene.world, report, o.regions, o.picture);

@@ -23,6 +23,8 @@ JudgeCommandLine read_judge_command_line(int argc, char** argv) {
   app.add_option("--unit", o.unit, "of the numbers in meshes: mm (default), cm, m, in, um")
       ->check(CLI::IsMember(length_unit_names()));
   app.add_flag("--json", o.json, "one JSON document on stdout");
+  app.add_flag("-v,--verbose", o.verbose,
+               "below each clash its places, and why each has its class");
   app.add_flag("--full", o.full, "refine every bracket, not only until the class is decided");
   app.add_option("--fail-on", o.fail_on, "exit 6 when a collision of this class or worse is found")
       ->check(CLI::IsMember({"real", "potential"}));

@@ -70,8 +70,15 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
   std::vector<IndexPair> candidates;
   state.broad_phase->find_pairs(all, candidates);
   std::erase_if(candidates, [&](IndexPair pair) {
-    const PairRule* rule = world.rule(world.parts[pair.a].id, world.parts[pair.b].id);
-    return rule && rule->excluded;
+    const PartId a = world.parts[pair.a].id, b = world.parts[pair.b].id;
+    const PairRule* rule = world.rule(a, b);
+    if (rule == nullptr || !rule->excluded) return false;
+    PairVerdicts excluded;  // listed, for it is near
+    excluded.a = std::min(a, b);
+    excluded.b = std::max(a, b);
+    excluded.excluded = true;
+    report.pairs.push_back(std::move(excluded));
+    return true;
   });
 
   std::vector<Judged> judged(candidates.size());
@@ -92,15 +99,7 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
     if (!judged[i].verdicts.verdicts.empty() || judged[i].verdicts.not_examined)
       report.pairs.push_back(std::move(judged[i].verdicts));
   }
-  for (const auto& [pair, rule] : world.pair_rules) {
-    if (!rule.excluded) continue;
-    ++counters.pairs_excluded;
-    PairVerdicts excluded;
-    excluded.a = pair.first;
-    excluded.b = pair.second;
-    excluded.excluded = true;
-    report.pairs.push_back(std::move(excluded));
-  }
+  for (const auto& [pair, rule] : world.pair_rules) counters.pairs_excluded += rule.excluded;
   std::sort(report.pairs.begin(), report.pairs.end(),
             [](const PairVerdicts& x, const PairVerdicts& y) {
               return std::pair(x.a, x.b) < std::pair(y.a, y.b);

@@ -32,8 +32,8 @@ TEST(Explain, TheSentenceOfAFit) {
   in.face_a = &shaft;
   in.face_b = &hole;
   EXPECT_EQ(explain(in),
-            "overlap 48.2 µm; fake up to 51.7 µm (mesh error 48.2 exact + least radial clearance "
-            "3.5 of Ø20 H7/g6), real above 68.7 µm: fake, 3.5 µm to spare");
+            "overlap 48.2 µm; fake up to 51.7 µm (mesh error 48.2 µm exact + least radial "
+            "clearance 3.5 µm of Ø20 H7/g6), real above 68.7 µm: fake, 3.5 µm to spare");
 }
 
 TEST(Explain, OtherSentences) {
@@ -54,9 +54,10 @@ TEST(Explain, OtherSentences) {
   in.thresholds = {-0.1, 0.1};
   in.grade = DeviationGrade::kPlanar;
   in.probability = 0.25;
-  EXPECT_EQ(explain(in),
-            "gap 50.0 µm; fake up to -100.0 µm (-tolerance 100.0 of twice profile 0.1 mm), real "
-            "above 100.0 µm (tolerance 100.0): potential, P(interference) 25 %");
+  EXPECT_EQ(
+      explain(in),
+      "gap 50.0 µm; fake from a gap of 100.0 µm (-tolerance 100.0 µm of twice profile 0.1 mm), "
+      "real above 100.0 µm (tolerance 100.0 µm): potential, P(interference) 25 %");
   in.no_inside = true;
   EXPECT_NE(explain(in).find("a part is open"), std::string::npos);
   in.delta_mm = {0.05, 1.0};
@@ -136,18 +137,19 @@ void expect_not_in(const std::string& sentence, const std::string& part) {
 TEST(Explain, ARealVerdictSaysWhatItsOwnThresholdIsMadeOf) {
   EXPECT_EQ(sentence_of(round_fit(CollisionClass::kReal, {0.0005, 0.0175}, "Ø20 H7", "Ø20 p6",
                                   DeviationGrade::kDeclaredFeature)),
-            "overlap 48.2 µm; fake up to 30.7 µm, real above 47.7 µm (mesh error 48.2 exact - "
-            "least radial interference 0.5 of Ø20 H7/p6): real, 0.5 µm beyond");
+            "overlap 48.2 µm; fake up to 30.7 µm, real above 47.7 µm (mesh error 48.2 µm exact - "
+            "least radial interference 0.5 µm of Ø20 H7/p6): real, 0.5 µm beyond");
 }
 
 TEST(Explain, APotentialVerdictSaysWhatBothThresholdsAreMadeOf) {
   RoundFit fit = round_fit(CollisionClass::kPotential, {-0.0095, 0.0075}, "Ø20 H7", "Ø20 k6",
                            DeviationGrade::kDeclaredFeature);
   fit.in.probability = 0.31353;
-  EXPECT_EQ(sentence_of(fit),
-            "overlap 48.2 µm; fake up to 40.7 µm (mesh error 48.2 exact - largest radial "
-            "interference 7.5 of Ø20 H7/k6), real above 57.7 µm (mesh error 48.2 exact + largest "
-            "radial clearance 9.5): potential, P(interference) 31.4 %");
+  EXPECT_EQ(
+      sentence_of(fit),
+      "overlap 48.2 µm; fake up to 40.7 µm (mesh error 48.2 µm exact - largest radial "
+      "interference 7.5 µm of Ø20 H7/k6), real above 57.7 µm (mesh error 48.2 µm exact + largest "
+      "radial clearance 9.5 µm): potential, P(interference) 31.4 %");
 }
 
 // Brackets that were left open have no middle to speak of: the terms follow the thresholds.
@@ -157,10 +159,26 @@ TEST(Explain, TheTermsAddUpToTheThreshold) {
   fit.in.thresholds.real_above_mm = 0.0320;
   fit.hole.residual_mm = 0.0012;  // corners of the mesh off the declared surface
   const std::string text = sentence_of(fit);
-  EXPECT_NE(text.find("real above 32.0 µm (mesh error 32.5 ±1.2 - least radial "
-                      "interference 0.5 of Ø20 H7/p6)"),
+  EXPECT_NE(text.find("real above 32.0 µm (mesh error 32.5 µm ±1.2 µm - least radial "
+                      "interference 0.5 µm of Ø20 H7/p6)"),
             std::string::npos)
       << text;
+}
+
+// The class was decided before the other threshold was: where the search stopped is not told.
+TEST(Explain, AnOpenBracketIsNoThreshold) {
+  RoundFit fit = round_fit(CollisionClass::kReal, {0.0005, 0.0175}, "Ø20 H7", "Ø20 p6",
+                           DeviationGrade::kDeclaredFeature);
+  fit.in.thresholds.fake_below_mm = -41.8396;
+  fit.in.fake_known = false;
+  expect_not_in(sentence_of(fit), "fake");
+  expect_in(sentence_of(fit), "real above 47.7 µm");
+  fit.in.collision_class = CollisionClass::kPotential;
+  fit.in.real_known = false;
+  expect_not_in(sentence_of(fit), "41.8");
+  expect_not_in(sentence_of(fit), "real above");
+  fit.in.delta_mm.hi += 1.0;
+  expect_not_in(sentence_of(fit), "real above");
 }
 
 TEST(Explain, AnEstimateNeverReadsAsGuaranteed) {

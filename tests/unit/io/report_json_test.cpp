@@ -73,8 +73,8 @@ TEST(ReportTables, NameThePairBothThresholdsTheSentenceAndTheReasons) {
   SessionStatistics statistics;
   statistics.add(report_with_a_clash());
   const std::string table = collision_table(statistics, names());
-  for (const char* part : {"shaft × housing", "anna", "fake up to 20.0 µm", "real above 80.0 µm",
-                           "overlap 50.0 µm: potential"}) {
+  for (const char* part : {"pairs of parts", "anna", "POTENTIAL  shaft × housing   P(interference)",
+                           "tick 7", "overlap 50.0 µm: potential"}) {
     EXPECT_NE(table.find(part), std::string::npos) << part << " is missing in\n" << table;
   }
   const std::string stages = stage_table(statistics.counters());

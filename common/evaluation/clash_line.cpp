@@ -1,0 +1,120 @@
+#include "common/evaluation/clash_line.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "common/messages/length_text.h"
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+// Longer ones are shortened so that room for the names of the parts is left.
+constexpr std::size_t kFitColumns = 20, kNoteColumns = 26, kLeastPairColumns = 11;
+// A bracket wider than this was left open because the class was decided.
+constexpr double kLeastKnown_mm = 2e-3;
+
+bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }
+
+// The first `count` code points, or all after the first `count`.
+std::size_t byte_of(const std::string& text, std::size_t count) {
+  std::size_t at = 0;
+  for (; at < text.size(); ++at)
+    if (starts_code_point(text[at]) && count-- == 0) break;
+  return at;
+}
+
+std::string shortened(const std::string& text, std::size_t columns) {
+  const std::size_t has = columns_of(text);
+  if (has <= columns) return text;
+  const std::size_t kept = columns > 0 ? columns - 1 : 0, tail = kept / 2;
+  return text.substr(0, byte_of(text, kept - tail)) + "…" + text.substr(byte_of(text, has - tail));
+}
+
+std::string padded(const std::string& text, std::size_t columns) {
+  return text + std::string(columns - std::min(columns, columns_of(text)), ' ');
+}
+
+std::string class_word(const Verdict& verdict) {
+  std::string word(name_of(verdict.collision_class));
+  for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return word;
+}
+
+std::string pair_text(const ClashLine& clash, std::size_t columns) {
+  const std::size_t names = columns - std::min<std::size_t>(columns, 3);
+  const std::size_t a = columns_of(clash.part_a), b = columns_of(clash.part_b);
+  const std::size_t half = names / 2;
+  const std::size_t of_a = b <= half ? names - b : std::max(half, names - std::min(names, b));
+  const std::string left = shortened(clash.part_a, std::min(a, of_a));
+  return left + " × " + shortened(clash.part_b, names - std::min(names, columns_of(left)));
+}
+
+// "H7/p6" of "Ø20 H7/p6": the size is that of the parts. Nothing where other faces than those of
+// the fit decided.
+std::string fit_code(const ClashLine& clash) {
+  if (clash.fit.empty() || clash.verdict->explanation.find(clash.fit) == std::string::npos)
+    return "";
+  const std::size_t blank = clash.fit.find(' ');
+  const bool sized =
+      blank != std::string::npos && clash.fit.find(' ', blank + 1) == std::string::npos;
+  return shortened(sized ? clash.fit.substr(blank + 1) : clash.fit, kFitColumns);
+}
+
+std::string how_much(const ClashLine& clash) {
+  const Verdict& v = *clash.verdict;
+  if (v.explanation.find("no inside") != std::string::npos)
+    return "depth not known, a part is open";
+  const std::string code = fit_code(clash);
+  const std::string in_fit = code.empty() ? "" : " in " + code;
+  if (v.collision_class == CollisionClass::kPotential) {
+    char text[48];
+    std::snprintf(text, sizeof text, "P(interference) %.3g %%", 100.0 * v.probability);
+    return text + in_fit;
+  }
+  const std::string least = (v.delta_mm.width() > kLeastKnown_mm ? "at least " : "");
+  const std::string margin = least + length_text(v.margin_mm);
+  if (v.collision_class != CollisionClass::kReal) return margin + " to spare" + in_fit;
+  if (!code.empty()) return margin + " beyond " + code;
+  return reads_as_zero(v.real_above_mm) ? margin + " deep"
+                                        : margin + " beyond tolerance and mesh error";
+}
+
+std::string said_of(const ClashLine& clash) {
+  std::string text = how_much(clash);
+  if (clash.more_places > 0)
+    text +=
+        ", +" + std::to_string(clash.more_places) + (clash.more_places == 1 ? " place" : " places");
+  if (!clash.note.empty()) text += "   " + shortened(clash.note, kNoteColumns);
+  return text;
+}
+
+}  // namespace
+
+std::size_t columns_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts_code_point));
+}
+
+std::vector<std::string> clash_lines(std::span<const ClashLine> clashes) {
+  std::size_t class_columns = 0, said_columns = 0, pair_columns = 0;
+  for (const ClashLine& clash : clashes) {
+    class_columns = std::max(class_columns, columns_of(class_word(*clash.verdict)));
+    said_columns = std::max(said_columns, columns_of(said_of(clash)));
+    pair_columns = std::max(pair_columns, columns_of(clash.part_a) + 3 + columns_of(clash.part_b));
+  }
+  const std::size_t taken = class_columns + 2 + 3 + said_columns;
+  const std::size_t room = kClashLineColumns - std::min(kClashLineColumns, taken);
+  pair_columns = std::min(pair_columns, std::max(room, kLeastPairColumns));
+  std::vector<std::string> lines;
+  for (const ClashLine& clash : clashes)
+    lines.push_back(shortened(padded(class_word(*clash.verdict), class_columns) + "  " +
+                                  padded(pair_text(clash, pair_columns), pair_columns) + "   " +
+                                  said_of(clash),
+                              kClashLineColumns));
+  return lines;
+}
+
+std::string clash_line(const ClashLine& clash) { return clash_lines(std::span(&clash, 1)).front(); }
+
+}  // namespace mortise

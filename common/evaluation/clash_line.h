@@ -1,0 +1,28 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/messages/verdict.h"
+
+namespace mortise {
+
+/// One clash of a list for people: the worst region of a pair leads, the others are counted.
+struct ClashLine {
+  std::string part_a, part_b;
+  const Verdict* verdict = nullptr;
+  std::string fit;              ///< of the pair, "Ø20 H7/p6", or empty
+  std::size_t more_places = 0;  ///< further regions of the pair
+  std::string note;             ///< at the end, or empty: "clash 4 by ann"
+};
+
+/// "REAL  cover × bearing   0.5 µm beyond H7/p6", the columns of all lines aligned. At most
+/// kClashLineColumns columns each; names that are too long lose their middle.
+std::vector<std::string> clash_lines(std::span<const ClashLine> clashes);
+std::string clash_line(const ClashLine& clash);
+inline constexpr std::size_t kClashLineColumns = 100;
+
+/// Columns of UTF-8 text on a terminal: code points.
+std::size_t columns_of(const std::string& text);
+
+}  // namespace mortise
