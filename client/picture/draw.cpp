@@ -5,29 +5,23 @@
 #include <cmath>
 #include <tuple>
 
+#include "client/picture/class_colours.h"
+#include "common/evaluation/threshold_text.h"
+#include "common/messages/length_text.h"
+
 namespace mortise {
 
 Color color_of_part(int part) {
   return part == 0 ? Color{0.15, 0.39, 0.68} : Color{0.80, 0.38, 0.06};
 }
 
-Color color_of(CollisionClass collision_class) {
-  switch (collision_class) {
-    case CollisionClass::kReal:
-      return {0.78, 0.12, 0.13};
-    case CollisionClass::kPotential:
-      return {0.85, 0.56, 0.02};
-    case CollisionClass::kFake:
-      return {0.13, 0.52, 0.25};
-    case CollisionClass::kNone:
-      break;
-  }
-  return kGrey;
+Color color_of_hex(std::uint32_t hex) {
+  const auto part = [&](int shift) { return static_cast<double>(hex >> shift & 0xffu) / 255.0; };
+  return {part(16), part(8), part(0)};
 }
 
-std::string um_text(double mm) {
-  const double um = mm * 1e3;
-  return fmt::format("{:.1f}", std::fabs(um) < 0.05 ? 0.0 : um);
+Color color_of(CollisionClass collision_class) {
+  return color_of_hex(class_colours(collision_class).light);
 }
 
 void draw_overview(Canvas& canvas, const Box2& box, const Overview& view) {
@@ -54,8 +48,11 @@ void draw_overview(Canvas& canvas, const Box2& box, const Overview& view) {
 }
 
 void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
-  const double fake = verdict.fake_below_mm, real = verdict.real_above_mm;
+  const bool fake_known = states_fake(verdict), real_known = states_real(verdict);
   const double delta = verdict.delta_mm.middle();
+  // Of a threshold that is not known only its side is.
+  const double fake = fake_known ? verdict.fake_below_mm : std::min(0.0, delta);
+  const double real = real_known ? verdict.real_above_mm : std::max(fake, delta);
   double lo = std::min({0.0, fake, delta}), hi = std::max({0.0, real, delta});
   const double room = std::max(0.18 * (hi - lo), 1e-3);
   lo -= room;
@@ -69,9 +66,12 @@ void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
     if (canvas.text_width(name, font) + 6.0 < area.width)
       canvas.text({area.x + 0.5 * area.width, bottom - 4.0}, name, font);
   };
-  zone(lo, fake, CollisionClass::kFake, "fake");
-  if (real > fake) zone(fake, real, CollisionClass::kPotential, "potential");
-  zone(real, hi, CollisionClass::kReal, "real");
+  if (fake_known) zone(lo, fake, CollisionClass::kFake, "fake");
+  const double unknown_from = fake_known ? fake : lo, unknown_to = real_known ? real : hi;
+  if (unknown_to > unknown_from && (fake_known || real_known))
+    zone(unknown_from, unknown_to, CollisionClass::kPotential,
+         fake_known && real_known ? "potential" : "");
+  if (real_known) zone(real, hi, CollisionClass::kReal, "real");
   const auto threshold = [&](double mm, const std::string& text, Canvas::Align align) {
     const double x = x_of(mm);
     canvas.line({{x, top - 4.0}, {x, bottom}}, {kInk, 1.2});
@@ -82,23 +82,17 @@ void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
       font.align = Canvas::Align::kRight;
     canvas.text({x, top - 7.0}, text, font);
   };
-  threshold(fake,
-            fake < 0.0 ? "fake from a gap of " + um_text(-fake) + " µm"
-                       : "fake up to " + um_text(fake) + " µm",
-            Canvas::Align::kRight);
-  threshold(real,
-            real < 0.0 ? "real below a gap of " + um_text(-real) + " µm"
-                       : "real above " + um_text(real) + " µm",
-            Canvas::Align::kLeft);
+  if (fake_known) threshold(fake, fake_text(fake), Canvas::Align::kRight);
+  if (real_known) threshold(real, real_text(real), Canvas::Align::kLeft);
   const double x = x_of(delta);
   canvas.line({{x, top - 2.0}, {x, bottom + 6.0}}, {kInk, 2.4});
   canvas.fill({{{x, bottom}, {x - 5.0, bottom + 9.0}, {x + 5.0, bottom + 9.0}}}, kInk);
-  const std::string text = delta < 0.0 ? "gap of the meshes " + um_text(-delta)
-                                       : "overlap of the meshes " + um_text(delta);
+  const std::string text = delta < 0.0 ? "gap of the meshes " + length_text(-delta)
+                                       : "overlap of the meshes " + length_text(delta);
   const Canvas::Align align = x < box.x + 0.2 * box.width   ? Canvas::Align::kLeft
                               : x > box.x + 0.8 * box.width ? Canvas::Align::kRight
                                                             : Canvas::Align::kMiddle;
-  canvas.text({x, bottom + 21.0}, text + " µm", {11.0, true, kInk, align});
+  canvas.text({x, bottom + 21.0}, text, {11.0, true, kInk, align});
 }
 
 namespace {
@@ -201,7 +195,7 @@ void draw_gaps(Canvas& canvas, const Frame& frame, const DetailView& view) {
     for (const double h : {from_h, to_h})
       canvas.line({frame({s0, h}), frame({s, h})}, {kInk.faded(0.55), 0.7});
     Dimension d{frame({s, 0.0}).x(), frame({s, from_h}).y(), frame({s, to_h}).y(),
-                what + " " + um_text(std::fabs(to_h - from_h)) + " µm"};
+                what + " " + length_text(std::fabs(to_h - from_h))};
     d.label_high = share > 0.2;
     draw_dimension(canvas, d);
   };
@@ -289,8 +283,8 @@ void draw_detail(Canvas& canvas, const Box2& box, const DetailView& view, const 
   const bool apart = verdict.delta_mm.hi < 0.0;
   draw_dimension(canvas, {frame(view.point).x(), frame({0.0, view.overlap_h_mm.lo}).y(),
                           frame({0.0, view.overlap_h_mm.hi}).y(),
-                          fmt::format("meshes {} {} µm", apart ? "apart" : "overlap",
-                                      um_text(std::fabs(verdict.delta_mm.middle()))),
+                          fmt::format("meshes {} {}", apart ? "apart" : "overlap",
+                                      length_text(std::fabs(verdict.delta_mm.middle()))),
                           true});
   draw_witness(canvas, frame, view);
   draw_scale_bar(canvas, frame, 0.22);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "client/picture/canvas.h"
@@ -12,8 +13,8 @@ Color color_of_part(int part);
 Color color_of(CollisionClass collision_class);
 inline constexpr Color kInk{0.13, 0.13, 0.15}, kGrey{0.45, 0.45, 0.48}, kPale{0.90, 0.90, 0.92};
 
-/// Micrometres with one decimal, never "-0.0".
-std::string um_text(double mm);
+/// 0xRRGGBB.
+Color color_of_hex(std::uint32_t hex);
 
 /// Maps a window of the world to the sheet. Up stays up.
 struct Frame {

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "client/picture/draw.h"
+#include "client/picture/heat.h"
+#include "common/messages/length_text.h"
 
 namespace mortise {
 namespace {
@@ -47,20 +49,15 @@ Color mixed(const Color& a, const Color& b, double share) {
 
 Color shaded(const Color& color, double light) { return mixed({0, 0, 0}, color, light); }
 
-// From yellow to dark red, so that it falls in grey as well.
-Color heat(double share) { return mixed({1.0, 0.87, 0.45}, {0.62, 0.05, 0.10}, share); }
-
 class PartView {
  public:
   PartView(const TriangleMesh& mesh, const SurfaceBand& band, const std::vector<ContactMark>& marks)
       : mesh_(mesh), band_(band), marks_(marks) {
-    for (const ContactMark& mark : marks) {
-      most_mm_ = std::max(most_mm_, mark.overlap_mm);
+    for (const ContactMark& mark : marks)
       if (!mark.face.empty()) {
-        double& deepest = of_face_.try_emplace(mark.face, mark.overlap_mm).first->second;
-        deepest = std::max(deepest, mark.overlap_mm);
+        Heat& worst = of_face_[mark.face];
+        worst = std::max(worst, heat_of(mark));
       }
-    }
   }
 
   void draw(Canvas& canvas, const View& view, const std::string& title) const {
@@ -70,10 +67,6 @@ class PartView {
   }
 
  private:
-  double share(double overlap_mm) const {
-    return most_mm_ > 0.0 ? std::clamp(overlap_mm / most_mm_, 0.0, 1.0) : 0.0;
-  }
-
   // Farthest first, so that the nearest are seen.
   void triangles(Canvas& canvas, const View& view) const {
     struct Seen {
@@ -95,7 +88,7 @@ class PartView {
     constexpr Color kMetal{0.86, 0.88, 0.91};
     for (const Seen& s : seen) {
       const auto found = of_face_.find(band_.face_of(s.triangle).name);
-      const Color color = found == of_face_.end() ? kMetal : heat(share(found->second));
+      const Color color = found == of_face_.end() ? kMetal : color_of(found->second);
       const Color drawn = shaded(color, s.light);
       std::vector<Vec2> outline;
       for (int k = 0; k < 3; ++k) outline.push_back(view(mesh_.corner(s.triangle, k)));
@@ -116,7 +109,7 @@ class PartView {
       const ContactMark& mark = marks_[order[rank]];
       if (mark.out_P.dot(view.ahead) > 0.2) continue;  // on the other side
       const Vec2 at = view(mark.point_P);
-      const double radius = kSmallest + (kLargest - kSmallest) * std::sqrt(share(mark.overlap_mm));
+      const double radius = kSmallest + (kLargest - kSmallest) * std::sqrt(heat_of(mark).share());
       const Color color = color_of(mark.collision_class);
       canvas.circle(at, radius, {{1, 1, 1}, 4.0});
       canvas.circle(at, radius, {color, 2.0});
@@ -126,7 +119,7 @@ class PartView {
       canvas.text(at + Vec2(0.0, 3.2), letter, {9.0, true, color, Canvas::Align::kMiddle});
       if (rank >= kLabels) continue;
       const Canvas::Font font{11.0, true, kInk, Canvas::Align::kLeft};
-      const std::string label = um_text(mark.overlap_mm) + " µm";
+      const std::string label = length_text(mark.overlap_mm);
       const Vec2 from = at + Vec2(radius + 4.0, 4.0);
       const double width = canvas.text_width(label, font);
       canvas.rectangle({from.x() - 2.0, from.y() - 11.0, width + 4.0, 14.0}, {1, 1, 1, 0.75});
@@ -137,8 +130,7 @@ class PartView {
   const TriangleMesh& mesh_;
   const SurfaceBand& band_;
   const std::vector<ContactMark>& marks_;
-  double most_mm_ = 0.0;
-  std::map<std::string, double> of_face_;  // deepest overlap
+  std::map<std::string, Heat> of_face_;  // worst heat
 };
 
 }  // namespace

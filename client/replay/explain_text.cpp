@@ -4,21 +4,29 @@
 
 #include <cmath>
 
+#include "common/evaluation/threshold_text.h"
+#include "common/messages/length_text.h"
+
 namespace mortise {
 namespace {
 
 // What null stands for is said by the caller.
 double real(const Json& value) { return value.is_number() ? value.get<double>() : std::nan(""); }
 
-std::string um(const Json& value) {
+std::string length_of(const Json& value) {
   const double mm = real(value);
-  return std::isfinite(mm) ? fmt::format("{:.1f}", std::fabs(mm) < 5e-5 ? 0.0 : 1e3 * mm)
-                           : "not bounded";
+  return std::isfinite(mm) ? length_text(mm) : "not bounded";
 }
 
 std::string range(const Json& interval) {
-  const std::string lo = um(interval[0]), hi = um(interval[1]);
-  return lo == hi ? fmt::format("{} µm", lo) : fmt::format("{} to {} µm", lo, hi);
+  const double hi = real(interval[1]);
+  return range_text({real(interval[0]), std::isfinite(hi) ? hi : HUGE_VAL});
+}
+
+// A term of a sum.
+std::string signed_length(const Json& value) {
+  const double mm = real(value);
+  return (mm < 0.0 ? "- " : "+ ") + length_text(std::fabs(mm));
 }
 
 std::string vector(const Json& v, int digits = 3) {
@@ -112,19 +120,25 @@ std::string faces(const Json& chain) {
 
 std::string thresholds(const Json& chain) {
   const Json& t = chain["thresholds"];
-  return fmt::format(
-      "7 Thresholds on the overlap\n  fake up to {} µm = {} for the mesh error {:+.1f} for the "
-      "largest real parts\n  real above {} µm = {} for the mesh error {:+.1f} for the least real "
-      "parts\n",
-      um(t["fake_below_mm"]), um(t["fake_by_mesh_error_mm"]), 1e3 * real(t["fake_by_tolerance_mm"]),
-      um(t["real_above_mm"]), um(t["real_by_mesh_error_mm"]),
-      1e3 * real(t["real_by_tolerance_mm"]));
+  const std::string sentence = text(chain["verdict"]["explanation"]);
+  const double fake = real(t["fake_below_mm"]), above = real(t["real_above_mm"]);
+  std::string out = "7 Thresholds on the overlap\n";
+  const auto terms = [&](const std::string& what, const char* mesh, const char* tolerance,
+                         const char* parts) {
+    return fmt::format("  {} = {} for the mesh error {} for the {} real parts\n", what,
+                       length_of(t[mesh]), signed_length(t[tolerance]), parts);
+  };
+  if (states_fake(sentence, fake))
+    out += terms(fake_text(fake), "fake_by_mesh_error_mm", "fake_by_tolerance_mm", "largest");
+  if (states_real(sentence, above))
+    out += terms(real_text(above), "real_by_mesh_error_mm", "real_by_tolerance_mm", "least");
+  return out;
 }
 
 std::string verdict(const Json& chain) {
   const Json& v = chain["verdict"];
   std::string out = fmt::format("8 Verdict: {}\n  {}\n", text(v["class"]), text(v["explanation"]));
-  out += fmt::format("  margin {} µm; generalized penetration depth {}\n", um(v["margin_mm"]),
+  out += fmt::format("  margin {}; generalized penetration depth {}\n", length_of(v["margin_mm"]),
                      range(v["gpd_mm"]));
   const std::string logged = text(chain["as_logged"]);
   return out + (logged.empty() ? std::string("  the same as the log tells\n")

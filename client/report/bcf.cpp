@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "client/report/cells.h"
+#include "client/report/pair_groups.h"
 #include "common/base/hash.h"
 #include "common/base/plain_text.h"
 #include "common/messages/names.h"
@@ -117,7 +118,7 @@ class BcfWriter {
     entries_.emplace_back("bcf.version", text_of(version));
     entries_.emplace_back("project.bcfp", text_of(project));
     const Table& clashes = table_named(report_.tables, "clashes");
-    for (const auto& row : clashes.rows) topic(Cells(clashes, row));
+    for (const PairGroup& group : pair_groups(clashes)) topic(clashes, group);
     entries_.emplace_back("extensions.xml", extensions());
     Archive archive;
     Status status = archive.open(file);
@@ -158,12 +159,36 @@ class BcfWriter {
     return name;
   }
 
-  void topic(const Cells& clash) {
+  std::string name_of_clash(std::uint64_t number) const {
+    return log_.session + "/" + std::to_string(time_of(0)) + "/" + log_.scenario_name + "/" +
+           std::to_string(number);
+  }
+
+  void comment_of(const Cells& clash, const std::string& view, pugi::xml_node topic) {
+    if (clash.raw("comment").empty()) return;
+    pugi::xml_node comments = topic.child("Comments");
+    if (!comments) comments = topic.append_child("Comments");
+    pugi::xml_node comment = comments.append_child("Comment");
+    comment.append_attribute("Guid") =
+        guid_of(name_of_clash(clash["clash"].get<std::uint64_t>()) + "/comment").c_str();
+    add_text(comment, "Date", date_of(time_of(clash["begin_tick"].get<std::uint64_t>())));
+    add_text(comment, "Author", author(clash.raw("status_by")));
+    add_text(comment, "Comment", shown(clash.raw("comment"), "–"));
+    comment.append_child("Viewpoint").append_attribute("Guid") = view.c_str();
+  }
+
+  // A pair of parts: what its worst place is, and how many more there are.
+  void topic(const Table& clashes, const PairGroup& group) {
+    const Cells clash(clashes, clashes.rows[group.lead]);
     const auto number = clash["clash"].get<std::uint64_t>();
-    const std::string name = log_.session + "/" + std::to_string(time_of(0)) + "/" +
-                             log_.scenario_name + "/" + std::to_string(number);
+    // The first clash of the pair names the topic, so that it stays the same when another gets
+    // worse.
+    std::uint64_t first = number;
+    for (const std::size_t row : group.others)
+      first = std::min(first, Cells(clashes, clashes.rows[row])["clash"].get<std::uint64_t>());
+    const std::string name = name_of_clash(first);
     const std::string guid = guid_of(name), view = guid_of(name + "/view");
-    const std::string klass = shown(clash.raw("class"), "none");
+    const std::string klass = shown(clash.raw("class"), "none"), also = also_text(group);
     pugi::xml_document document;
     pugi::xml_node topic = document.append_child("Markup").append_child("Topic");
     topic.append_attribute("Guid") = guid.c_str();
@@ -171,21 +196,18 @@ class BcfWriter {
     topic.append_attribute("TopicType") = "Clash";
     topic.append_attribute("TopicStatus") = shown(clash.raw("status"), "new").c_str();
     add_text(topic, "Title",
-             shown(klass + ": " + clash.raw("part_a") + " × " + clash.raw("part_b"), "clash"));
+             shown(klass + ": " + clash.raw("part_a") + " × " + clash.raw("part_b") +
+                       (also.empty() ? "" : " (" + also + ")"),
+                   "clash"));
     add_text(topic, "Priority", kPriorities[klass == "real" ? 0 : klass == "potential" ? 1 : 2]);
     add_text(topic.append_child("Labels"), "Label", klass);
     const std::string begun = date_of(time_of(clash["begin_tick"].get<std::uint64_t>()));
     add_text(topic, "CreationDate", begun);
     add_text(topic, "CreationAuthor", author(clash.raw("user")));
     add_text(topic, "Description", shown(clash.raw("explanation"), "no explanation"));
-    if (!clash.raw("comment").empty()) {
-      pugi::xml_node comment = topic.append_child("Comments").append_child("Comment");
-      comment.append_attribute("Guid") = guid_of(name + "/comment").c_str();
-      add_text(comment, "Date", begun);
-      add_text(comment, "Author", author(clash.raw("status_by")));
-      add_text(comment, "Comment", shown(clash.raw("comment"), "–"));
-      comment.append_child("Viewpoint").append_attribute("Guid") = view.c_str();
-    }
+    comment_of(clash, view, topic);
+    for (const std::size_t row : group.others)
+      comment_of(Cells(clashes, clashes.rows[row]), view, topic);
     pugi::xml_node viewpoint = topic.append_child("Viewpoints").append_child("ViewPoint");
     viewpoint.append_attribute("Guid") = view.c_str();
     add_text(viewpoint, "Viewpoint", "viewpoint.bcfv");

@@ -1,10 +1,9 @@
 #include "client/report/cells.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "common/base/plain_text.h"
+#include "common/messages/length_text.h"
 
 namespace mortise {
 
@@ -47,9 +46,9 @@ double Cells::number(std::string_view name) const {
   return value.is_number() ? value.get<double>() : std::nan("");
 }
 
-std::string Cells::micrometres(std::string_view name) const {
+std::string Cells::length(std::string_view name) const {
   const double mm = number(name);
-  return std::isfinite(mm) ? fmt::format("{:.1f}", 1e3 * mm) : "–";
+  return std::isfinite(mm) ? length_text(mm) : "–";
 }
 
 }  // namespace mortise

@@ -18,8 +18,8 @@ class Cells {
   const Json& operator[](std::string_view name) const;  ///< null when there is no such column
   std::string raw(std::string_view name) const;         ///< "" for null
   std::string text(std::string_view name) const { return escaped(raw(name)); }
-  double number(std::string_view name) const;            ///< NaN when it is no number
-  std::string micrometres(std::string_view name) const;  ///< one decimal; a dash when no number
+  double number(std::string_view name) const;       ///< NaN when it is no number
+  std::string length(std::string_view name) const;  ///< of mm, to read; a dash when no number
 
  private:
   const Table& table_;

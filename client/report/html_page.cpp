@@ -1,14 +1,32 @@
 #include "client/report/html_page.h"
 
+#include <fmt/format.h>
+
+#include "client/picture/class_colours.h"
+#include "common/messages/names.h"
+
 namespace mortise {
 
-std::string_view report_style() {
-  return R"(
-:root { --ink: #1d2329; --dim: #5b6670; --line: #d5dbe1; --page: #ffffff; --band: #f4f6f8;
-        --real: #b3261e; --potential: #a15c00; --fake: #2e6b3a; }
+namespace {
+
+// "--real: #c62828; ..." on light or dark ground.
+std::string class_variables(std::uint32_t ClassColours::*ground) {
+  std::string css;
+  for (const auto c : {CollisionClass::kReal, CollisionClass::kPotential, CollisionClass::kFake})
+    css += fmt::format("--{}: #{:06x}; ", name_of(c), class_colours(c).*ground);
+  return css;
+}
+
+}  // namespace
+
+std::string report_style() {
+  const std::string light = class_variables(&ClassColours::light);
+  return ":root { " + light + "} @media (prefers-color-scheme: dark) { :root { " +
+         class_variables(&ClassColours::dark) + "} } @media print { :root { " + light + "} }" +
+         R"(
+:root { --ink: #1d2329; --dim: #5b6670; --line: #d5dbe1; --page: #ffffff; --band: #f4f6f8; }
 @media (prefers-color-scheme: dark) {
-  :root { --ink: #e4e8ec; --dim: #9aa6b1; --line: #38424b; --page: #14181c; --band: #1c2228;
-          --real: #ff8a80; --potential: #ffb74d; --fake: #81c995; } }
+  :root { --ink: #e4e8ec; --dim: #9aa6b1; --line: #38424b; --page: #14181c; --band: #1c2228; } }
 body { font: 15px/1.45 system-ui, sans-serif; color: var(--ink); background: var(--page);
        max-width: 76rem; margin: 2rem auto; padding: 0 1.5rem; }
 h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
@@ -20,7 +38,9 @@ table { border-collapse: collapse; width: 100%; font-size: .87rem; }
 th, td { text-align: left; vertical-align: top; padding: .35rem .55rem;
          border-bottom: 1px solid var(--line); }
 th { background: var(--band); position: sticky; top: 0; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+th.n, td.n { text-align: right; } td.n { font-variant-numeric: tabular-nums; white-space: nowrap; }
+td { overflow-wrap: anywhere; } #clashes { table-layout: fixed; }
+details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { font-weight: 600; } dd { margin: 0 0 .2rem 1rem; }
 .real { color: var(--real); } .potential { color: var(--potential); } .fake { color: var(--fake); }
 .letter { display: inline-block; width: 1.5em; text-align: center; font-weight: 700;
           border: 1.5px solid currentColor; }
@@ -35,8 +55,7 @@ figcaption { font-size: .87rem; color: var(--dim); }
 .parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
 tr.now td { font-weight: 700; background: var(--band); }
 td a { color: inherit; }
-@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; --real: #b3261e;
-    --potential: #a15c00; --fake: #2e6b3a; }
+@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
   body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
   .wide { overflow: visible; } table { font-size: 7.5pt; } .wide > svg { width: 100%; height: auto; }
   figure > svg { width: 100%; } .parts { grid-template-columns: 1fr 1fr; }
@@ -65,6 +84,7 @@ document.querySelector('.filters').hidden = false;
 for (const box of boxes) box.addEventListener('change', filter);
 search.addEventListener('input', filter);
 filter();
+addEventListener('beforeprint', () => { for (const d of document.querySelectorAll('details')) d.open = true; });
 )";
 }
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "client/report/cells.h"
+#include "client/report/pair_groups.h"
+#include "common/messages/length_text.h"
 
 namespace mortise {
 namespace {
@@ -33,6 +36,19 @@ std::string counted(std::size_t clashes) {
 
 std::string signed_um(double mm) { return fmt::format("{:+.0f}", 1e3 * mm); }
 
+// A name of several words may be broken into lines.
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+// To read: as many digits as mean something. The other exports have them all.
+std::string value_text(const Cells& cells, const Table::Column& column) {
+  const double x = cells.number(column.name);
+  return column.type == Table::Type::kNumber && std::isfinite(x) ? fmt::format("{:.6g}", x)
+                                                                 : cells.text(column.name);
+}
+
 }  // namespace
 
 std::string letter_of(const std::string& klass) {
@@ -47,14 +63,16 @@ std::string plain_table(const Table& table, const std::string& title) {
   std::string html =
       fmt::format("<h2>{}</h2>\n<p class=\"dim\">{}</p>\n<div class=\"wide\"><table><thead><tr>",
                   title, escaped(table.about));
-  for (const Table::Column& column : table.columns) html += "<th>" + escaped(column.name) + "</th>";
+  for (const Table::Column& column : table.columns)
+    html += (column.type == Table::Type::kText ? "<th>" : "<th class=\"n\">") +
+            spaced(escaped(column.name)) + "</th>";
   html += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < std::min(table.rows.size(), kMostRows); ++i) {
     const Cells cells(table, table.rows[i]);
     html += "<tr>";
     for (const Table::Column& column : table.columns)
       html += (column.type == Table::Type::kText ? "<td>" : "<td class=\"n\">") +
-              cells.text(column.name) + "</td>";
+              value_text(cells, column) + "</td>";
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
@@ -74,15 +92,22 @@ std::string picture_section(const SessionReport& report) {
       "meshes, the surfaces that they stand for, where the real surfaces may lie, overlap and both "
       "thresholds. Drawn from the poses in the log, which are rounded to a float and to 4e-6 rad; "
       "numbers are those of the engine.</p>\n";
-  for (const auto& cells : clashes.rows) {
-    const Cells clash(clashes, cells);
+  const auto figure = [&](std::size_t row) -> std::string {
+    const Cells clash(clashes, clashes.rows[row]);
     const auto found = pictures.of_clash.find(clash["clash"].get<std::uint64_t>());
-    if (found == pictures.of_clash.end()) continue;
-    html += fmt::format(
+    if (found == pictures.of_clash.end()) return "";
+    return fmt::format(
         "<figure id=\"clash-{0}\">{1}<figcaption>{2} #{0} {3} × {4}, tick {5}</figcaption>"
         "</figure>\n",
         found->first, found->second, letter_of(clash.text("class")), clash.text("part_a"),
         clash.text("part_b"), clash.text("worst_tick"));
+  };
+  for (const PairGroup& group : pair_groups(clashes)) {
+    html += figure(group.lead);
+    std::string others;
+    for (const std::size_t row : group.others) others += figure(row);
+    if (!others.empty())
+      html += "<details><summary>" + also_text(group) + "</summary>\n" + others + "</details>\n";
   }
   if (pictures.clashes_left_out > 0)
     html +=
@@ -95,15 +120,19 @@ std::string part_section(const SessionReport& report) {
   std::string html;
   if (!pictures.of_part.empty()) {
     html =
-        "<h2>Where parts were touched</h2>\n<p class=\"dim\">Faces are the darker the deeper they "
-        "were overlapped at worst; each ring is a clash, the larger the deeper, with the letter of "
-        "its class; the deepest three in µm.</p>\n<div class=\"parts\">\n";
+        "<h2>Where parts were touched</h2>\n<p class=\"dim\">Faces have the colour of the class of "
+        "their "
+        "worst clash, the deeper the nearer to the next class; each ring is a clash, the larger "
+        "the "
+        "worse, with the letter of its class; the deepest three with their overlap.</p>\n<div "
+        "class=\"parts\">\n";
     for (const PartPicture& part : pictures.of_part)
       html += fmt::format(
-          "<figure><img alt=\"{0}: {1}, the deepest {2:.1f} µm\" width=\"450\" "
-          "src=\"data:image/png;base64,{3}\"><figcaption>{0}: {1}, at most {2:.1f} µm"
+          "<figure><img alt=\"{0}: {1}, the deepest {2}\" width=\"450\" "
+          "src=\"data:image/png;base64,{3}\"><figcaption>{0}: {1}, at most {2}"
           "</figcaption></figure>\n",
-          escaped(part.part), counted(part.clashes), 1e3 * part.deepest_mm, base64(part.png));
+          escaped(part.part), counted(part.clashes), length_text(part.deepest_mm),
+          base64(part.png));
     html += "</div>\n";
     if (pictures.parts_left_out > 0)
       html +=
@@ -120,9 +149,10 @@ std::string tolerance_section(const SessionReport& report) {
       "zone of every face were wider (+) or narrower (−) by so many µm to each side, each at its "
       "worst recorded moment. Parts that would have stopped elsewhere are not moved here: "
       "<code>mortise replay whatif</code> computes the session again.</p>\n<table><thead><tr>"
-      "<th>zones, µm</th>";
+      "<th class=\"n\">zones, µm</th>";
   constexpr const char* kColumns[] = {"real", "potential", "fake", "none", "not_known"};
-  for (const char* column : kColumns) html += fmt::format("<th>{}</th>", column);
+  for (const char* column : kColumns)
+    html += fmt::format("<th class=\"n\">{}</th>", spaced(column));
   html += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     const Cells cells(table, row);

@@ -8,6 +8,7 @@
 #include "client/picture/picture.h"
 #include "client/report/cells.h"
 #include "client/report/moments.h"
+#include "client/report/pair_groups.h"
 
 namespace mortise {
 namespace {
@@ -22,29 +23,24 @@ struct MarkedPart {
     for (const ContactMark& mark : marks) deepest = std::max(deepest, mark.overlap_mm);
     return deepest;
   }
+  CollisionClass worst() const {
+    CollisionClass worst = CollisionClass::kNone;
+    for (const ContactMark& mark : marks) worst = std::max(worst, mark.collision_class);
+    return worst;
+  }
 };
 
-// The rows of the table, worst first: by class, then by how far beyond its threshold.
-std::vector<std::uint64_t> worst_first(const Table& clashes) {
-  struct Row {
-    std::uint64_t clash;
-    int rank;
-    double beyond_mm;
+// The worst of each pair first, then their other places.
+std::vector<std::uint64_t> drawing_order(const Table& clashes) {
+  std::vector<std::uint64_t> order, others;
+  const auto number = [&](std::size_t row) {
+    return Cells(clashes, clashes.rows[row])["clash"].get<std::uint64_t>();
   };
-  std::vector<Row> rows;
-  for (const auto& cells : clashes.rows) {
-    const Cells clash(clashes, cells);
-    const std::string klass = clash.raw("class");
-    const int rank = klass == "real" ? 3 : klass == "potential" ? 2 : klass == "fake" ? 1 : 0;
-    const double beyond_mm = clash.number("overlap_lo_mm") - clash.number("real_above_mm");
-    rows.push_back(
-        {clash["clash"].get<std::uint64_t>(), rank, std::isfinite(beyond_mm) ? beyond_mm : 0.0});
+  for (const PairGroup& group : pair_groups(clashes)) {
+    order.push_back(number(group.lead));
+    for (const std::size_t row : group.others) others.push_back(number(row));
   }
-  std::stable_sort(rows.begin(), rows.end(), [](const Row& x, const Row& y) {
-    return x.rank != y.rank ? x.rank > y.rank : x.beyond_mm > y.beyond_mm;
-  });
-  std::vector<std::uint64_t> order;
-  for (const Row& row : rows) order.push_back(row.clash);
+  order.insert(order.end(), others.begin(), others.end());
   return order;
 }
 
@@ -78,7 +74,10 @@ class Drawing {
     std::vector<const std::pair<const std::string, MarkedPart>*> order;
     for (const auto& row : parts_) order.push_back(&row);
     std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) {
-      return x->second.deepest_mm() > y->second.deepest_mm();
+      const auto rank = [](const MarkedPart& part) {
+        return std::pair(part.worst(), part.deepest_mm());
+      };
+      return rank(x->second) > rank(y->second);
     });
     for (const auto* row : order) {
       const MarkedPart& part = row->second;
@@ -98,7 +97,8 @@ class Drawing {
     MarkedPart& marked = parts_[part.name];
     if (!marked.solid) marked.solid = part.solid, marked.band = part.band;
     const double overlap_mm = std::max(0.0, verdict.delta_mm.lo);
-    marked.marks.push_back({p, out_P, overlap_mm, verdict.collision_class, face});
+    marked.marks.push_back({p, out_P, overlap_mm, verdict.fake_below_mm, verdict.real_above_mm,
+                            verdict.collision_class, face});
   }
 
   Pictures& pictures_;
@@ -112,7 +112,7 @@ class Drawing {
 Pictures pictures_of(const SessionLog& log, const Table& clashes, const PictureLimits& limits,
                      const std::function<void(double share)>& on_progress) {
   Pictures pictures;
-  const std::vector<std::uint64_t> order = worst_first(clashes);
+  const std::vector<std::uint64_t> order = drawing_order(clashes);
   const std::size_t drawn = std::min(order.size(), limits.clashes);
   EventKeys wanted;
   for (const auto& cells : clashes.rows) {

@@ -33,7 +33,7 @@ struct PartPicture {
 struct Pictures {
   std::map<std::uint64_t, std::string> of_clash;  ///< section as SVG, by clash
   std::map<std::uint64_t, std::string> png_of_clash;
-  std::vector<PartPicture> of_part;                      ///< by the deepest overlap
+  std::vector<PartPicture> of_part;                      ///< by class, then overlap
   std::map<std::uint64_t, Touch> touches;                ///< by clash; all of them
   std::map<std::uint64_t, Circumstances> circumstances;  ///< likewise
   std::size_t clashes_left_out = 0, parts_left_out = 0;

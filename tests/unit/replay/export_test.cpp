@@ -1,8 +1,8 @@
 // The session as tables: CSV, JSON, SQLite and HTML say the same, and say it safely.
+#include "client/report/circumstances.h"
 #include "client/report/export_files.h"
 #include "client/report/export_html.h"
 #include "client/report/export_sqlite.h"
-#include "client/report/circumstances.h"
 #include "client/report/report.h"
 #include "client/report/summary_tables.h"
 #include "common/geometry/signed_distance.h"
@@ -242,7 +242,7 @@ TEST(ExportCircumstances, OfAFitAreThoseOfTheStandardAndOfTheMesh) {
     EXPECT_GT(row["eps_a_hi_mm"].get<double>(), 0.01);
     EXPECT_NEAR(row["eps_b_hi_mm"].get<double>(), 0.0, 1e-9);
     EXPECT_LT(row["eps_b_lo_mm"].get<double>(), -0.01);
-    EXPECT_NE(html.find("Ø20 H7/k6<br>-15.0 … 19.0"), std::string::npos);
+    EXPECT_NE(html.find("Ø20 H7/k6, clearance -15.0 to 19.0 µm"), std::string::npos);
   }
   EXPECT_GT(fitted, 0U);
   EXPECT_GT(unfitted, 0U);
@@ -291,6 +291,24 @@ TEST_F(Export, ThePageHasPicturesAndSaysItsLimits) {
   EXPECT_EQ(less->pictures.clashes_left_out, clashes.rows.size());
   EXPECT_EQ(less->pictures.parts_left_out, 1U);
   EXPECT_NE(html_of(*less).find("clashes are not drawn"), std::string::npos);
+}
+
+// Places of a pair are one row, and a number stands under a head of its own side.
+TEST_F(Export, ThePageHasOneRowAPair) {
+  auto report = report_of(*log_, {.pictures = {0, 0}, .coverage = {}, .more = {}});
+  ASSERT_TRUE(report) << report.error().text;
+  Table& clashes = table_named(report->tables, "clashes");
+  clashes.rows.resize(1);
+  for (int i = 1; i < 8; ++i) clashes.rows.push_back(clashes.rows[0]);
+  const std::string html = html_of(*report);
+  std::size_t rows = 0;
+  for (std::size_t at = 0; (at = html.find("<tr data-class", at)) != std::string::npos; ++at)
+    ++rows;
+  EXPECT_EQ(rows, 1U);
+  EXPECT_NE(html.find("<b>+7 places</b>"), std::string::npos);
+  EXPECT_NE(html.find("<th class=\"n\">overlap</th>"), std::string::npos);
+  EXPECT_NE(html.find("<div class=\"card\"><b>1</b><span class=\"letter real\""),
+            std::string::npos);
 }
 
 // The place of a clash on a part is on the part.

@@ -1,7 +1,7 @@
 // What the colours on the faces mean: of the chosen clash in micrometres, of many the zones alone.
+import { CLASS_COLOURS, hex } from '../session/class_colours.js';
 import { scaleOf, zonesOf } from '../session/heat_scale.js';
 import { bracket, small } from '../session/words.js';
-import { ZONE_COLOURS } from '../view/heat_material.js';
 import { byId, el } from './dom.js';
 
 /** @typedef {import('../session/session.js').Clash} Clash */
@@ -23,10 +23,9 @@ export function makeHeatLegend({ heat }) {
   /** @param {ReadonlyArray<{name: 'fake' | 'potential' | 'real', lo: number, hi: number}>} zones */
   function fillZones(zones) {
     const share = 100 / zones.length;
-    const hex = (/** @type {number} */ colour) => `#${colour.toString(16).padStart(6, '0')}`;
     scale.replaceChildren(...zones.map(({ name }, i) => {
       const zone = el('span', { class: `zone is-${name}` }, el('b', {}, name[0].toUpperCase()));
-      const [light, deep] = ZONE_COLOURS[name];
+      const [light, deep] = CLASS_COLOURS[name].heat;
       zone.style.setProperty('--zone', `linear-gradient(0deg, ${hex(light)}, ${hex(deep)})`);
       zone.style.bottom = `${share * i}%`;
       zone.style.height = `${share}%`;

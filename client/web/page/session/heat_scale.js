@@ -1,5 +1,7 @@
 // The scale of heat of one clash: fake up to the one threshold, potential between, real above the other. Each zone is drawn equally tall, whatever its width.
 
+import { knownFake, knownReal } from './words.js';
+
 /** @typedef {import('./session.js').Clash} Clash */
 /**
  * @typedef {object} HeatScale mm
@@ -12,8 +14,9 @@ const LEAST_REAL_MM = 0.005;
 
 /** @param {Clash} clash @returns {HeatScale} */
 export function scaleOf(clash) {
-  const real = Number.isFinite(clash.real_above) ? clash.real_above : 0;
-  const fake = Math.min(Number.isFinite(clash.fake_below) ? clash.fake_below : 0, real);
+  const known = knownReal(clash);
+  const real = known ?? Math.max(0, knownFake(clash) ?? 0, clash.class === 'real' ? 0 : (clash.delta[0] ?? 0));
+  const fake = Math.min(knownFake(clash) ?? 0, real);
   const from = Math.min(0, fake);
   const deepest = clash.delta.reduce((/** @type {number} */ most, d) => Math.max(most, d ?? 0), 0);
   return { from, fake: Math.max(fake, from), real, top: Math.max(real + Math.max(LEAST_REAL_MM, 0.5 * (real - from)), deepest) };

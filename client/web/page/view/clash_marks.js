@@ -1,5 +1,6 @@
 // Clashes in the picture: a mark at each open one, and at the chosen one its witness point, its normal and the motion that separates.
 import * as THREE from 'three';
+import { CLASS_COLOURS, hex } from '../session/class_colours.js';
 import { rankOf } from '../session/words.js';
 
 /** @typedef {import('../session/session.js').Clash} Clash */
@@ -8,7 +9,7 @@ import { rankOf } from '../session/words.js';
 const MARK_SIZES = { real: 1.2, potential: 1, fake: 0.8 };
 const MARK_PIXELS = 22;
 const ARROW_PIXELS = 74;
-const CLASS_COLOUR = { real: '#e5484d', potential: '#f0a92e', fake: '#3f97e0', none: '#888888' };
+const NO_CLASS = '#888888';
 
 /** Octagon, triangle, disc with a letter: the same shapes as in the lists. @param {string} name */
 function drawMark(name) {
@@ -24,7 +25,7 @@ function drawMark(name) {
     pen.lineTo(32 + 27 * Math.cos(angle), middle + 27 * Math.sin(angle));
   }
   pen.closePath();
-  pen.fillStyle = /** @type {Record<string, string>} */ (CLASS_COLOUR)[name];
+  pen.fillStyle = name in CLASS_COLOURS ? hex(CLASS_COLOURS[/** @type {keyof typeof CLASS_COLOURS} */ (name)].dark) : NO_CLASS;
   pen.lineWidth = 5;
   pen.strokeStyle = '#ffffff';
   pen.fill();

@@ -1,8 +1,6 @@
 // How a field of overlap looks: a colour for each zone of the scale that deepens within it, stripes beside the colour, a line at each threshold.
 import * as THREE from 'three';
-
-/** The lightest and the deepest of each zone; the legend shows the same. @type {Record<'fake' | 'potential' | 'real', [number, number]>} */
-export const ZONE_COLOURS = { fake: [0xb5d8f5, 0x2b76b8], potential: [0xf8dc6a, 0xe8842a], real: [0xe8575b, 0x8a0d2a] };
+import { CLASS_COLOURS } from '../session/class_colours.js';
 
 const DECLARED = `
 varying float overlapHere;
@@ -36,7 +34,7 @@ export class HeatMaterial extends THREE.MeshStandardMaterial {
   constructor(behind) {
     super({ roughness: 0.7, flatShading: true, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1, opacity: behind ? 0.32 : 1 });
     if (behind) this.depthFunc = THREE.GreaterDepth;
-    const colours = Object.values(ZONE_COLOURS).flat().map((colour) => new THREE.Color(colour));
+    const colours = Object.values(CLASS_COLOURS).flatMap(({ heat }) => heat).map((colour) => new THREE.Color(colour));
     this.onBeforeCompile = (/** @type {THREE.WebGLProgramParametersWithUniforms} */ shader) => {
       Object.assign(shader.uniforms, { heatScale: this.heat.scale, heatLift: this.heat.lift, heatColours: { value: colours } });
       shader.vertexShader = shader.vertexShader
