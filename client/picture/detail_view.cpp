@@ -1,5 +1,7 @@
 #include "client/picture/detail_view.h"
 
+#include "client/picture/told_overlap.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -158,7 +160,7 @@ class Detail {
     view_.point = view_.chart.to_chart(Vec2::Zero());
     // The point lies on the mesh of one part; the other surface is as far away as the overlap is
     // deep.
-    const double depth = verdict_.delta_mm.middle();
+    const double depth = told_overlap_mm(verdict_);
     const double to_a =
         nearest_point(*sides_[0].part->solid, sides_[0].in_part(point_W_)).distance_mm;
     const double to_b =

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "client/picture/class_colours.h"
+#include "client/picture/told_overlap.h"
 #include "common/evaluation/threshold_text.h"
 #include "common/messages/length_text.h"
 
@@ -49,7 +50,7 @@ void draw_overview(Canvas& canvas, const Box2& box, const Overview& view) {
 
 void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
   const bool fake_known = states_fake(verdict), real_known = states_real(verdict);
-  const double delta = verdict.delta_mm.middle();
+  const double delta = told_overlap_mm(verdict);
   // Of a threshold that is not known only its side is.
   const double fake = fake_known ? verdict.fake_below_mm : std::min(0.0, delta);
   const double real = real_known ? verdict.real_above_mm : std::max(fake, delta);
@@ -87,8 +88,7 @@ void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
   const double x = x_of(delta);
   canvas.line({{x, top - 2.0}, {x, bottom + 6.0}}, {kInk, 2.4});
   canvas.fill({{{x, bottom}, {x - 5.0, bottom + 9.0}, {x + 5.0, bottom + 9.0}}}, kInk);
-  const std::string text = delta < 0.0 ? "gap of the meshes " + length_text(-delta)
-                                       : "overlap of the meshes " + length_text(delta);
+  const std::string text = "meshes " + told_overlap_text(verdict);
   const Canvas::Align align = x < box.x + 0.2 * box.width   ? Canvas::Align::kLeft
                               : x > box.x + 0.8 * box.width ? Canvas::Align::kRight
                                                             : Canvas::Align::kMiddle;
@@ -280,12 +280,9 @@ void draw_detail(Canvas& canvas, const Box2& box, const DetailView& view, const 
   draw_heights(canvas, frame);
   canvas.clip(frame.box);
   draw_gaps(canvas, frame, view);
-  const bool apart = verdict.delta_mm.hi < 0.0;
   draw_dimension(canvas, {frame(view.point).x(), frame({0.0, view.overlap_h_mm.lo}).y(),
                           frame({0.0, view.overlap_h_mm.hi}).y(),
-                          fmt::format("meshes {} {}", apart ? "apart" : "overlap",
-                                      length_text(std::fabs(verdict.delta_mm.middle()))),
-                          true});
+                          "meshes " + told_overlap_text(verdict), true});
   draw_witness(canvas, frame, view);
   draw_scale_bar(canvas, frame, 0.22);
   canvas.unclip();

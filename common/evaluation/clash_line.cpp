@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "common/evaluation/open_bracket.h"
 #include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
@@ -12,8 +13,6 @@ namespace {
 
 // Longer ones are shortened so that room for the names of the parts is left.
 constexpr std::size_t kFitColumns = 20, kNoteColumns = 26, kLeastPairColumns = 11;
-// A bracket wider than this was left open because the class was decided.
-constexpr double kLeastKnown_mm = 2e-3;
 
 bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }
 
@@ -73,7 +72,7 @@ std::string how_much(const ClashLine& clash) {
     std::snprintf(text, sizeof text, "P(interference) %.3g %%", 100.0 * v.probability);
     return text + in_fit;
   }
-  const std::string least = (v.delta_mm.width() > kLeastKnown_mm ? "at least " : "");
+  const std::string least = (is_open(v.delta_mm) ? "at least " : "");
   const std::string margin = least + length_text(v.margin_mm);
   if (v.collision_class != CollisionClass::kReal) return margin + " to spare" + in_fit;
   if (!code.empty()) return margin + " beyond " + code;

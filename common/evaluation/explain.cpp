@@ -5,16 +5,13 @@
 #include <cstdio>
 #include <string>
 
+#include "common/evaluation/open_bracket.h"
 #include "common/evaluation/threshold_text.h"
 #include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
 namespace {
-
-// A bracket wider than this was left open because the class was decided; what the thresholds are
-// made of is then not known, only that they were passed.
-constexpr double kBracketOpen_mm = 2e-3;
 
 bool shown(double mm) { return !reads_as_zero(mm); }
 
@@ -261,7 +258,7 @@ std::string explain(const ExplainInput& in) {
            std::string(name_of(in.collision_class));
   const std::string why = thresholds_part(in);
   std::string text =
-      in.delta_mm.width() > kBracketOpen_mm
+      is_open(in.delta_mm)
           ? explain_open_bracket(in)
           : overlap_part(in.delta_mm) + (why.empty() ? "" : "; " + why) + ": " + conclusion(in);
   text += grade_note(in);

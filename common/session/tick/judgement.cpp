@@ -5,14 +5,11 @@
 #include <limits>
 
 #include "common/evaluation/explain.h"
+#include "common/evaluation/open_bracket.h"
 #include "common/session/tick/merge_regions.h"
 
 namespace mortise {
 namespace {
-
-// A threshold is as uncertain as the bracket of the overlap with offsets that it is made of. Wider
-// than this it is where the search stopped, not a threshold to tell.
-constexpr double kThresholdKnown_mm = 2e-3;
 
 // A margin that nothing bounds is not a number that the wire can carry.
 double finite_or_zero(double x) { return std::isfinite(x) ? x : 0.0; }
@@ -69,8 +66,9 @@ void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, b
   input.capped = region.capped;
   input.estimated = region.estimated;
   input.witnesses_refused = region.witnesses_refused;
-  input.fake_known = region.possible_mm.width() <= kThresholdKnown_mm;
-  input.real_known = region.certain_mm.width() <= kThresholdKnown_mm;
+  // A threshold is as uncertain as the bracket of the overlap with offsets that it is made of.
+  input.fake_known = !is_open(region.possible_mm);
+  input.real_known = !is_open(region.certain_mm);
   if (query.rule != nullptr) input.fit = query.rule->fit;
   verdict.explanation = explain(input);
 }

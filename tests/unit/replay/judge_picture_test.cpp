@@ -8,6 +8,7 @@
 
 #include "client/picture/detail_view.h"
 #include "client/picture/picture.h"
+#include "client/picture/told_overlap.h"
 #include "common/io/scenario/open_scene.h"
 #include "tests/support/shapes.h"
 
@@ -168,6 +169,23 @@ TEST_F(FitsPicture, IsWrittenAsSvgAndPng) {
   ASSERT_TRUE(draw_regions(world, *report_, {2, 6}, file("b.png")));
   EXPECT_EQ(head(file("b.png")).substr(1, 3), "PNG");
   for (const char* name : {"a.svg", "b.png"}) std::filesystem::remove(file(name));
+}
+
+// Where the bracket was left open the arrow is as long as the sentence says, not up to its middle.
+TEST(ToldOverlap, OfAnOpenBracketTheEndThatDecided) {
+  Verdict v;
+  v.collision_class = CollisionClass::kReal;
+  v.delta_mm = {0.2499, 22.3213};
+  EXPECT_EQ(told_overlap_mm(v), 0.2499);
+  EXPECT_EQ(told_overlap_text(v), "overlap at least 249.9 µm");
+  v.collision_class = CollisionClass::kFake;
+  v.delta_mm = {0.03, 0.0361};
+  EXPECT_EQ(told_overlap_text(v), "overlap at most 36.1 µm");
+  v.delta_mm = {0.0482, 0.0483};
+  EXPECT_EQ(told_overlap_text(v), "overlap 48.2 µm");
+  v.collision_class = CollisionClass::kPotential;
+  v.delta_mm = {-0.05, -0.02};
+  EXPECT_EQ(told_overlap_text(v), "apart at most 50.0 µm");
 }
 
 TEST_F(FitsPicture, RefusesInOneLine) {
