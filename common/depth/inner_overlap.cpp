@@ -12,8 +12,8 @@
 namespace mortise {
 namespace {
 
-// A bracket is narrow enough at this share of the depth: what is told of parts that lie deep in
-// each other is how deep, not to the micrometre.
+// Lazily a bracket is narrow enough at this share of the depth: what is told of parts that lie deep
+// in each other is how deep, not to the micrometre.
 constexpr double kNarrow = 0.005;
 // Lazily the overlap is said to grow away from the surface when it does by more than this share.
 constexpr double kGrowth = 0.01;
@@ -53,6 +53,8 @@ class InnerSearch {
       : pair_(pair),
         start_mm_(start.depth_mm),
         growth_(start.everywhere ? 0.0 : kGrowth),
+        narrow_(start.everywhere ? 0.0 : kNarrow),
+        accuracy_mm_(std::max(start.accuracy_mm, pair.touch_mm)),
         thin_mm_(std::min(half_extent_mm(0), half_extent_mm(1))),
         left_(work_cap),
         evaluations_(evaluations) {}
@@ -99,7 +101,7 @@ class InnerSearch {
     const Box& box = pair_.bodies[body].solid->bounds();
     return 0.5 * (box.hi - box.lo).minCoeff();
   }
-  double narrow_mm() const { return std::max(kNarrow * best_mm_, pair_.touch_mm); }
+  double narrow_mm() const { return std::max(narrow_ * best_mm_, accuracy_mm_); }
 
   SurfacePoint surface(int body, const Vec3& x_B) {
     ++evaluations_;
@@ -226,6 +228,8 @@ class InnerSearch {
   const PairFrame& pair_;
   double start_mm_;
   double growth_;   ///< share of it by which what is found must be deeper
+  double narrow_;   ///< share of the depth at which its bracket is narrow enough
+  double accuracy_mm_;
   double thin_mm_;  ///< half the least extent of the thinner part
   std::uint64_t left_;
   std::uint64_t& evaluations_;

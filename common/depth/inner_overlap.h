@@ -24,6 +24,8 @@ struct InnerStart {
   /// True: where the overlap does not grow away from those points, it is looked for all over the
   /// parts.
   bool everywhere = false;
+  /// The bracket is to be no wider. Not everywhere: than some thousandths of the depth.
+  double accuracy_mm = 0.0;
 };
 
 /// None where no point is found at which the overlap is larger than at the start: there the overlap

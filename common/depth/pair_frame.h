@@ -39,11 +39,14 @@ struct PairFrame {
     }
     return deepest;
   }
-  /// No surface of the layer is farther from its mesh, both parts together. Where nothing is known but
-  /// the meshes it is the same everywhere: the rounding of the files.
+  /// No surface of the layer is farther from its mesh, both parts together. Where nothing is known
+  /// but the meshes it is the same everywhere: the rounding of the files.
   double reach_mm(Layer layer) const {
     return bodies[0].largest_offset_mm[static_cast<int>(layer)] +
            bodies[1].largest_offset_mm[static_cast<int>(layer)];
+  }
+  double smaller_radius_mm() const {
+    return std::min(bodies[0].solid->sphere().radius_mm, bodies[1].solid->sphere().radius_mm);
   }
   /// A point of frame K of a role in the world.
   Vec3 in_world(int role, const Vec3& x_K) const { return X_W[1 - role] * x_K; }

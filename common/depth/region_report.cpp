@@ -209,6 +209,21 @@ std::optional<SharedInside> find_shared_inside(const PairFrame& pair,
   return std::nullopt;
 }
 
+void set_shapes(const PairFrame& pair, OverlapRegion& region) {
+  region.shape_a =
+      face_shape(pair.bodies[0], region.triangle_a, pair.X_W[0].inverse() * region.point_W);
+  region.shape_b =
+      face_shape(pair.bodies[1], region.triangle_b, pair.X_W[1].inverse() * region.point_W);
+}
+
+void set_witness(const PairFrame& pair, const std::optional<Vec3>& witness_W, const Sample& from,
+                 OverlapRegion& region) {
+  region.has_witness = witness_W.has_value();
+  if (!witness_W) return;
+  region.witness_W = *witness_W;
+  region.certain_place = {from.role, from.triangle, pair.X_KS[1 - from.role] * from.point_K};
+}
+
 void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,
               OverlapRegion& region) {
   const int role = deepest.role;

@@ -40,6 +40,13 @@ std::optional<SharedInside> find_shared_inside(const PairFrame& pair, const Cand
 void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,
               OverlapRegion& region);
 
+/// The shapes of the faces at its place.
+void set_shapes(const PairFrame& pair, OverlapRegion& region);
+
+/// The witness, which may be none, and the place from which it was found.
+void set_witness(const PairFrame& pair, const std::optional<Vec3>& witness_W, const Sample& from,
+                 OverlapRegion& region);
+
 /// Sets values within touch_mm of zero to zero (rounding and the accuracy of first contact).
 Interval without_touch(Interval value, double touch_mm);
 

@@ -127,8 +127,9 @@ std::string made_of(const ExplainInput& in, End end, bool name_source) {
   std::string text;
   if (has_no_mesh_error(in)) {
     // Within the bracket of the overlap it is nothing; beyond, edges travel farther than faces.
-    if (std::fabs(deviation_mm) > in.delta_mm.width() + kShown_um / kUmPerMm)
-      text = signed_term(text, deviation_mm > 0.0, "sharp edge " + um(std::fabs(deviation_mm)));
+    if (shown(std::max(0.0, std::fabs(deviation_mm) - in.delta_mm.width())))
+      text = signed_term(text, deviation_mm > 0.0,
+                         "sharp edge " + length_text(std::fabs(deviation_mm)));
   } else if (shown(deviation_mm))
     text = signed_term(text, deviation_mm > 0.0,
                        "mesh error " + length_text(std::fabs(deviation_mm)) + mesh_error_name(in));

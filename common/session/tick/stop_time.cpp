@@ -23,6 +23,9 @@ constexpr std::uint64_t kLookWorkCap = 2'000;
 // The same of a look at what is withdrawn: the shafts of the demo need 1,100. Where it ends, the
 // depth is told too small; the pair is counted as not examined.
 constexpr std::uint64_t kWithdrawalLookWorkCap = 5'000;
+// The same of the depth at the start, with which those on the way are compared, where the usual
+// look does not find it.
+constexpr std::uint64_t kWithdrawalStartWorkCap = 8 * kWithdrawalLookWorkCap;
 // The same of how deep parts lie in each other; where it ends, they may move a little deeper.
 constexpr std::uint64_t kInnerWorkCap = 600;
 
@@ -95,7 +98,7 @@ constexpr double kAll = -kInfinity;
 
 // What is no deeper than ignore_below_mm is only known to be so.
 Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
-                   double ignore_below_mm, CcdScratch& ccd) {
+                   double ignore_below_mm, std::uint64_t work_cap, CcdScratch& ccd) {
   OverlapQuery query = overlap_query(pair);
   query.X_WA = pair.motion_a.pose_at(t);
   query.X_WB = pair.motion_b.pose_at(t);
@@ -105,7 +108,7 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   // go deeper.
   query.only_certain = refinement == Refinement::kFull;
   query.ignore_below_mm = ignore_below_mm;
-  query.work_cap = query.only_certain ? kWithdrawalLookWorkCap : pair.cap_of(kLookWorkCap);
+  query.work_cap = work_cap;
   query.prove_not_certain = true;
   query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
   const OverlapResult overlap = find_overlap(query, ccd);
@@ -153,7 +156,8 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   Advance advance;
   double t = advance.t_free = t_start;
   for (int i = 0; i < kAdvanceSteps; ++i) {
-    const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, kAll, ccd);
+    const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, kAll,
+                                    pair.cap_of(kLookWorkCap), ccd);
     const Interval& depth_mm = look.depth_mm;
     if (look.witnessed && t == 0.0) {
       advance.state = Advanced::kRealAtStart;
@@ -178,12 +182,19 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   return advance;
 }
 
+Look withdrawal_look(PairWork& pair, double t, double ignore_below_mm, std::uint64_t work_cap,
+                     CcdScratch& ccd) {
+  return certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ignore_below_mm, work_cap,
+                       ccd);
+}
+
 // How deep a withdrawn pair is for certain. Parts that lie deep in each other may become deeper at
 // their surfaces on the way out, so that there what they have inside counts.
 double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
-  const Look look = certain_depth(pair, 0.0, kDeepeningSlack_mm, Refinement::kFull, kAll, ccd);
+  Look look = withdrawal_look(pair, 0.0, kAll, kWithdrawalLookWorkCap, ccd);
+  if (look.capped) look = withdrawal_look(pair, 0.0, kAll, kWithdrawalStartWorkCap, ccd);
   pair.withdrawal_unsure |= look.capped;
-  // An unfinished look has found too little: what it takes for the depth would hold the part.
+  // A look that is unfinished even so has found too little, and would hold the part.
   const double depth_mm = std::max(0.0, look.capped ? look.depth_mm.hi : look.depth_mm.lo);
   if (!look.has_place || pair.no_inside()) return depth_mm;
   OverlapQuery query = overlap_query(pair);
@@ -200,8 +211,7 @@ double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   // Between two looks the depth may have grown and shrunk again; a quarter of a tick is short.
   constexpr int kLooks = 4;
   const auto depth_mm = [&](double t, double ignore_below_mm) {
-    const Look look =
-        certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ignore_below_mm, ccd);
+    const Look look = withdrawal_look(pair, t, ignore_below_mm, kWithdrawalLookWorkCap, ccd);
     pair.withdrawal_unsure |= look.capped;
     return std::max(0.0, look.depth_mm.lo);
   };

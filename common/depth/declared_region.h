@@ -1,0 +1,24 @@
+#pragma once
+#include <optional>
+
+#include "common/depth/candidates.h"
+#include "common/depth/overlap.h"
+#include "common/depth/search.h"
+
+namespace mortise {
+
+struct DeclaredRegion {
+  /// True: the closed form alone says that it is certain, and knows no neighbour that cuts a face
+  /// short: to be searched like any other pair of faces.
+  bool left_to_search = false;
+  std::optional<OverlapRegion> region;  ///< none: not even possible
+};
+
+/// The region of a pair of declared faces whose overlap has a closed form: certain and possible are
+/// those of the form (README, section 8), only the overlap of the meshes is searched. Adds to
+/// `evaluations`.
+DeclaredRegion find_declared_region(const PairFrame& pair, const OverlapQuery& query,
+                                    const KnownFacePair& known, SearchScratch& scratch,
+                                    std::uint64_t& evaluations);
+
+}  // namespace mortise
