@@ -8,7 +8,7 @@ namespace mortise {
 namespace {
 
 // Evaluations, some microseconds each; where they end, the depth is told as "at least".
-constexpr std::uint64_t kQuestions = 20'000, kQuestionsLazily = 800;
+constexpr std::uint64_t kQuestions = 80'000, kQuestionsLazily = 800;
 
 }  // namespace
 

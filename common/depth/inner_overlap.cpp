@@ -36,6 +36,77 @@ struct LessPromising {
 
 using Corners = std::array<Vec3, 8>;
 
+// Triangles of a plane face that are looked at to see how far it reaches.
+constexpr std::size_t kMostOfFace = 24;
+
+// The face of a triangle, continued across flat edges, below a box.
+class FaceBelow {
+ public:
+  FaceBelow(const Solid& solid, std::uint32_t triangle) : mesh_(solid.mesh()), solid_(solid) {
+    origin_ = mesh_.corner(triangle, 0);
+    u_ = (mesh_.corner(triangle, 1) - origin_).stableNormalized();
+    normal_ = u_.cross(mesh_.corner(triangle, 2) - origin_).stableNormalized();
+    v_ = normal_.cross(u_);
+    seen_.push_back(triangle);
+  }
+
+  // Do the feet of all points between the corners lie in the face? Then no such point is deeper
+  // than distance_mm(). False where that is not seen at once.
+  bool holds(const Corners& corners, const Vec3& center) {
+    if (normal_.isZero()) return false;
+    for (const Vec3& x : corners) box_.extend(flat(x));
+    if (!is_in(seen_.front(), flat(center))) return false;
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const std::uint32_t t = seen_[i];
+      for (int k = 0; k < 3; ++k) {
+        off_mm_ = std::max(off_mm_, std::fabs(normal_.dot(mesh_.corner(t, k) - origin_)));
+        const Flat from = flat(mesh_.corner(t, k)), to = flat(mesh_.corner(t, (k + 1) % 3));
+        if (misses(from, to)) continue;
+        if (solid_.topology().edge_kind[t][k] != EdgeKind::kFlat) return false;
+        const std::uint32_t next = solid_.topology().neighbor[t][k];
+        if (std::find(seen_.begin(), seen_.end(), next) != seen_.end()) continue;
+        if (seen_.size() == kMostOfFace) return false;
+        seen_.push_back(next);
+      }
+    }
+    return true;
+  }
+
+  double distance_mm(const Vec3& x) const {
+    return std::fabs(normal_.dot(x - origin_)) + off_mm_;
+  }
+
+ private:
+  using Flat = Eigen::Vector2d;
+  Flat flat(const Vec3& x) const { return {u_.dot(x - origin_), v_.dot(x - origin_)}; }
+
+  bool is_in(std::uint32_t t, const Flat& x) const {
+    for (int k = 0; k < 3; ++k) {
+      const Flat from = flat(mesh_.corner(t, k)), to = flat(mesh_.corner(t, (k + 1) % 3));
+      const Flat along = to - from, by = x - from;
+      if (along.x() * by.y() - along.y() * by.x() < 0.0) return false;
+    }
+    return true;
+  }
+
+  // Certainly no point of the edge in the box.
+  bool misses(const Flat& from, const Flat& to) const {
+    if ((from.cwiseMin(to).array() > box_.max().array()).any() ||
+        (from.cwiseMax(to).array() < box_.min().array()).any())
+      return true;
+    const Flat across(from.y() - to.y(), to.x() - from.x());
+    const double middle = across.dot(box_.center() - from);
+    return std::fabs(middle) > 0.5 * across.cwiseAbs().dot(box_.sizes());
+  }
+
+  const TriangleMesh& mesh_;
+  const Solid& solid_;
+  Vec3 origin_, u_, v_, normal_;
+  double off_mm_ = 0.0;
+  Eigen::AlignedBox2d box_;
+  std::vector<std::uint32_t> seen_;
+};
+
 Corners corners_of(const Cell& cell) {
   Corners corners;
   for (int i = 0; i < 8; ++i)
@@ -62,7 +133,7 @@ class InnerSearch {
   // The overlap at a point of one surface grows inwards where the other surface is not what is
   // nearest there.
   bool grows_from(const Vec3& from_B) {
-    look_at(from_B);
+    start_mm_ = std::max(start_mm_, look_at(from_B));
     const SurfacePoint at[2] = {surface(0, from_B), surface(1, from_B)};
     const int on = std::fabs(at[0].depth_mm) <= std::fabs(at[1].depth_mm) ? 0 : 1;
     const Vec3 inwards_B = on == 0 ? Vec3(pair_.X_KS[0].q * -at[0].outward) : Vec3(-at[1].outward);
@@ -93,7 +164,9 @@ class InnerSearch {
   }
 
   InnerOverlap found() const {
-    return {{best_mm_, most_mm_ + 2.0 * pair_.rounding_mm}, pair_.X_W[1] * best_B_, in_either_mm_};
+    return {{best_mm_, most_mm_ + 2.0 * pair_.rounding_mm},
+            pair_.X_W[1] * best_B_,
+            in_either_mm_};
   }
 
  private:
@@ -166,10 +239,9 @@ class InnerSearch {
     }
   }
 
-  // Distance of the corners from the nearest triangle of the centre and from the one that is
-  // nearest on the far side of it. No point in the part is deeper than its distance from any
-  // triangle, and the mean of two such distances bounds it as well: exact between two parallel
-  // faces.
+  // Distance of the corners from the nearest face of the centre and from the one that is nearest on
+  // the far side of it. No point in the part is deeper than its distance from any face, and the
+  // mean of two such distances bounds it as well: exact between two parallel faces.
   using Bounds = std::array<std::array<double, 8>, 3>;
   Bounds bounds_of(int body, const Cell& cell, const SurfacePoint& at, double radius_mm) {
     const Vec3 center = body == 0 ? Vec3(pair_.X_KS[1] * cell.center) : cell.center;
@@ -178,21 +250,32 @@ class InnerSearch {
     near_[body] = at.triangle;
     const SurfacePoint other = surface(body, body == 0 ? Vec3(pair_.X_KS[0] * beyond) : beyond);
     Bounds bounds;
-    const Corners corners = corners_of(cell);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vec3 x = body == 0 ? Vec3(pair_.X_KS[1] * corners[i]) : corners[i];
-      bounds[0][i] = from_triangle_mm(body, at.triangle, x);
-      bounds[1][i] = from_triangle_mm(body, other.triangle, x);
+    Corners corners = corners_of(cell);
+    if (body == 0)
+      for (Vec3& x : corners) x = pair_.X_KS[1] * x;
+    bounds[0] = distances_mm(body, at.triangle, corners, center);
+    bounds[1] = distances_mm(body, other.triangle, corners, center);
+    for (std::size_t i = 0; i < corners.size(); ++i)
       bounds[2][i] = 0.5 * (bounds[0][i] + bounds[1][i]);
-    }
     return bounds;
   }
 
-  double from_triangle_mm(int body, std::uint32_t triangle, const Vec3& x) const {
+  // Of the corners from the plane face of the triangle, where it lies below all of the box;
+  // otherwise from the triangle.
+  std::array<double, 8> distances_mm(int body, std::uint32_t triangle, const Corners& corners,
+                                     const Vec3& center) const {
+    std::array<double, 8> distances;
+    FaceBelow face(*pair_.bodies[body].solid, triangle);
+    const bool is_over = face.holds(corners, center);
     const TriangleMesh& mesh = *pair_.bodies[body].mesh;
-    const Vec3 nearest = nearest_on_triangle(x, mesh.corner(triangle, 0), mesh.corner(triangle, 1),
-                                             mesh.corner(triangle, 2));
-    return (x - nearest).norm();
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      distances[i] =
+          is_over ? face.distance_mm(corners[i])
+                  : (corners[i] - nearest_on_triangle(corners[i], mesh.corner(triangle, 0),
+                                                      mesh.corner(triangle, 1),
+                                                      mesh.corner(triangle, 2)))
+                        .norm();
+    return distances;
   }
 
   // Leaves out what has no point in both, or none that is deeper than the best.

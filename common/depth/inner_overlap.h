@@ -16,8 +16,8 @@ struct InnerOverlap {
   double in_either_mm = 0.0;  ///< the smaller of the two depths at point_W
 };
 
-/// Where the search begins: points of the overlap, and how deep the deepest of them is. World
-/// frame, mm.
+/// Where the search begins: points of the overlap, and how deep the deepest of them is, at least.
+/// World frame, mm.
 struct InnerStart {
   std::span<const Vec3> points_W;
   double depth_mm = 0.0;

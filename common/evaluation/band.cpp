@@ -64,6 +64,9 @@ void summarize(SurfaceBand& band, const Solid& solid) {
 void state(SurfaceBand::Face& face, const FaceStatement& statement) {
   face.tolerance_mm = statement.offset_mm;
   face.tolerance_source = statement.source;
+  if (!statement.is_size || face.unsure_mm == Interval{}) return;
+  face.unsure_mm = {};
+  face.grade = DeviationGrade::kRecognizedFeature;
 }
 
 SurfaceBand::Face face_of_feature(const Feature& feature, std::size_t index,

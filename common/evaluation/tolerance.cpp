@@ -35,7 +35,7 @@ Result<FaceStatement> statement_of(const SizeLimits& limits, const Modelled& mod
                 std::string("modelled ") + modelled.what + " " + size_text(modelled.size_mm) +
                     " mm is neither the nominal size nor within the limits " + size_text(least_mm) +
                     " to " + size_text(most_mm) + " mm of " + name + "; state its nominal size");
-  return FaceStatement{size_offset_mm(limits, 0.5 * modelled.size_mm), name};
+  return FaceStatement{size_offset_mm(limits, 0.5 * modelled.size_mm), name, {}, true};
 }
 
 Modelled diameter_of(const Surface& surface) { return {"diameter", 2.0 * surface.radius_mm, "Ø"}; }
@@ -57,6 +57,7 @@ std::string size_text(double mm) {
 
 std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStatement& b) {
   FaceStatement both = b.source.empty() ? a : b;
+  both.is_size = a.is_size || b.is_size;
   both.position = a.position.zone_mm > b.position.zone_mm ? a.position : b.position;
   if (a.source.empty() || b.source.empty()) return both;
   const Interval x = a.offset_mm, y = b.offset_mm;

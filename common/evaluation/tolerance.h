@@ -28,6 +28,9 @@ struct FaceStatement {
   Interval offset_mm;
   std::string source;
   Position position = {};  ///< not part of offset_mm, see with_position
+  /// A size in a system of limits is that of a round (or of a width): what recognition only took
+  /// for round is round by it.
+  bool is_size = false;
 };
 
 /// Two statements about one face hold together: the offsets that satisfy both. The source is that

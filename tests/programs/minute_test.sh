@@ -15,7 +15,7 @@ fail() { echo "FAILED: $*"; cat said 2>/dev/null; exit 1; }
 start=$(date +%s%N)
 mortise-judge plate.stl peg.stl --fit H7/p6 --picture verdict.png >said 2>&1 || fail "exit $?"
 took_ms=$((($(date +%s%N) - start) / 1000000))
-grep -q 'Ø20 H7/p6' said || fail "the fit is not named"
+grep -q '^REAL  *plate × peg .*H7/p6' said || fail "the fit is not named"
 grep -q 'real' said || fail "no verdict"
 [ "$(head -c 4 verdict.png | tail -c 3)" = PNG ] || fail "no picture"
 [ "$(ls)" = "$(printf '%s\n' peg.stl plate.stl said verdict.png)" ] || fail "left behind: $(ls)"

@@ -73,7 +73,7 @@ parts:
   EXPECT_TRUE(pair_of(report, "bin", "beside").is_null());
   EXPECT_EQ(report.at("counters").at("not_examined"), 1);
   const std::string text = run("mortise-judge", scenario).out;
-  EXPECT_NE(text.find("bin × within  not examined: "), std::string::npos) << text;
+  EXPECT_NE(text.find("not examined  bin × within: "), std::string::npos) << text;
   EXPECT_NE(text.find("bin is open"), std::string::npos) << text;
   EXPECT_NE(text.find("1 not examined beside an open part"), std::string::npos) << text;
 }

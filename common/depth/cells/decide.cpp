@@ -158,15 +158,10 @@ class SharpSearch {
     facing_ = found.facing;
     best_ = deepest.proven_mm(at);
     point_ = place(at);
-    for (int part = 0; part < 2; ++part) {
-      double least = kInfinity;
-      const std::vector<double> slack_of = deepest.slacks(windows, part, at);
-      for (std::size_t i = 0; i < slack_of.size(); ++i) {
-        if (std::fabs(slack_of[i]) >= least) continue;
-        least = std::fabs(slack_of[i]);
-        deciding_[part] = windows.part[part].faces()[i];
-      }
-    }
+    for (int part = 0; part < 2; ++part)
+      if (found.deciding[part] >= 0)
+        deciding_[part] =
+            windows.part[part].faces()[static_cast<std::size_t>(found.deciding[part])];
   }
 
   Vec3 place(const LinearProgram::Optimum& at) const {

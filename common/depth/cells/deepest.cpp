@@ -195,7 +195,7 @@ DeepestPoint::Found DeepestPoint::find(WindowPair& windows, bool least_bodies, d
     if (clause == 0) {
       found.closed = true;
       found.at = node.optimum;
-      found.facing = facing(windows, node);
+      tell_faces(windows, node, found);
       return found;
     }
     found.programs += branch(windows, node, part, clause, best, open);
@@ -206,19 +206,24 @@ DeepestPoint::Found DeepestPoint::find(WindowPair& windows, bool least_bodies, d
 
 // The multipliers balance the normals of both parts, and make 2 together. For all x of A, sum of
 // multiplier times (n · x - c) <= 0; the same of B: along the sum of A's the parts are m apart.
-double DeepestPoint::facing(const WindowPair& windows, const Node& node) const {
+void DeepestPoint::tell_faces(const WindowPair& windows, const Node& node, Found& found) const {
   LinearProgram program = program_of(windows);
   for (const Literal& literal : node.literals) program.rows.push_back(row_of(windows, literal));
   const LinearProgram::Vector weights = program.multipliers(node.optimum);
   Vec3 sum = Vec3::Zero();
+  double most[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const int id = node.optimum.active[i];
-    if (!(weights[i] > 0.0) || id < 0 || node.literals[static_cast<std::size_t>(id)].part != 0)
-      continue;
+    if (!(weights[i] > 0.0) || id < 0) continue;
+    const Literal& literal = node.literals[static_cast<std::size_t>(id)];
+    if (!literal.fails && weights[i] > most[literal.part]) {
+      most[literal.part] = weights[i];
+      found.deciding[literal.part] = literal.bit;
+    }
     const LinearProgram::Row row = program.row_of(id);
-    sum += weights[i] * Vec3(row.g[0], row.g[1], row.g[2]);
+    if (literal.part == 0) sum += weights[i] * Vec3(row.g[0], row.g[1], row.g[2]);
   }
-  return std::clamp(sum.norm(), kLeastFacing, 1.0);
+  found.facing = std::clamp(sum.norm(), kLeastFacing, 1.0);
 }
 
 // A child for each face of the clause: it is held, and those before it fail.

@@ -47,6 +47,8 @@ class DeepestPoint {
     /// closed: length of the mean of the normals of A that bound the depth, weighted by their dual
     /// multipliers. 1: one face. A gap of m is m / facing wide.
     double facing = 1.0;
+    /// closed: of each part the face with the largest multiplier, by its bit; -1: none has one.
+    int deciding[2] = {-1, -1};
     std::uint64_t programs = 0;
   };
   /// least_bodies: of the bodies that every admissible trimming contains, otherwise of those that
@@ -73,7 +75,7 @@ class DeepestPoint {
                    bool least_bodies) const;
   FaceSet violated(WindowPair& windows, const LinearProgram::Optimum& at, bool least_bodies,
                    int& part) const;
-  double facing(const WindowPair& windows, const Node& node) const;
+  void tell_faces(const WindowPair& windows, const Node& node, Found& found) const;
   std::uint64_t branch(WindowPair& windows, const Node& node, int part, FaceSet clause, double best,
                        Queue& open) const;
 

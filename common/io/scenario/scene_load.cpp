@@ -224,12 +224,6 @@ class SceneLoader {
                                         : &recognized_.of(*kind.solid, kind.report.quantum_mm);
     if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
     if (recognized != nullptr) add_undeclared(*recognized, kind);
-    // Who gives a recognized face a fit by its name says that it is round.
-    for (Feature& feature : kind.features)
-      for (const Scenario::FitSpec& fit : scenario_.fits)
-        if ((fit.part_a == spec.name && fit.feature_a == feature.name) ||
-            (fit.part_b == spec.name && fit.feature_b == feature.name))
-          feature.origin = FeatureOrigin::kDeclared;
     kind.band =
         build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
                     for_band(kind.stated.rest), for_band(kind.stated.of_feature),

@@ -269,7 +269,8 @@ class RuleBook {
       statements.push_back(for_band(*all));
       char bytes[sizeof(Interval)];
       std::memcpy(bytes, &statements.back().offset_mm, sizeof bytes);
-      key.append(bytes, sizeof bytes).append(statements.back().source).push_back('\n');
+      key.append(bytes, sizeof bytes).append(statements.back().source);
+      key.push_back(statements.back().is_size ? '\r' : '\n');
     }
     const FaceStatement rest = statements.back();
     statements.pop_back();

@@ -189,7 +189,8 @@ Look withdrawal_look(PairWork& pair, double t, double ignore_below_mm, std::uint
 }
 
 // How deep a withdrawn pair is for certain. Parts that lie deep in each other may become deeper at
-// their surfaces on the way out, so that there what they have inside counts.
+// their surfaces on the way out, so that what they have inside counts: in their meshes, less what
+// the least surfaces lie below them.
 double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
   Look look = withdrawal_look(pair, 0.0, kAll, kWithdrawalLookWorkCap, ccd);
   if (look.capped) look = withdrawal_look(pair, 0.0, kAll, kWithdrawalStartWorkCap, ccd);
@@ -203,7 +204,7 @@ double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
   const PairFrame frame(query);
   const auto inner = find_inner_overlap(frame, {std::span(&look.point_W, 1), depth_mm},
                                         kInnerWorkCap, pair.counts.depth_evaluations);
-  return inner ? inner->depth_mm.hi + frame.reach_mm(Layer::kLower) : depth_mm;
+  return inner ? std::max(depth_mm, inner->depth_mm.lo - frame.reach_mm(Layer::kLower)) : depth_mm;
 }
 
 // Up to the time t_most at the latest.

@@ -124,7 +124,7 @@ TEST(InnerOverlap, RandomOnesAgreeWithALattice) {
 TEST(InnerOverlap, LittleWorkGivesAWideBracket) {
   const Case c{solid(box({20, 15, 10})), solid(box({5, 6, 30}, {1, 2, 3}))};
   const PairFrame frame = frame_of(c);
-  const Vec3 point = Vec3::Zero();
+  const Vec3 point(6, 2, 3);  // on the surface of b
   double width_mm = std::numeric_limits<double>::infinity();
   for (const std::uint64_t cap : {60U, 300U, 3000U}) {
     std::uint64_t evaluations = 0;

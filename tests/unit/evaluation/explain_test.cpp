@@ -92,8 +92,8 @@ TEST(Explain, AnEdgeOfPlaneFacesIsNoMeshError) {
   in.thresholds = {-0.1932, 0.1932};
   in.probability = 0.25;
   EXPECT_EQ(explain(in),
-            "gap 150.0 µm; fake up to -193.2 µm (-sharp edge 143.2 - tolerance 50.0 of ±0.05 mm), "
-            "real above 193.2 µm (sharp edge 143.2 + tolerance 50.0): potential, "
+            "gap 150.0 µm; fake from a gap of 193.2 µm (-sharp edge 143.2 µm - tolerance 50.0 µm of "
+            "±0.05 mm), real above 193.2 µm (sharp edge 143.2 µm + tolerance 50.0 µm): potential, "
             "P(interference) 25 %");
   // Within the accuracy of the overlap it is nothing.
   in.delta_mm = {0.01, 0.0101};
