@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "common/evaluation/open_bracket.h"
@@ -84,7 +85,15 @@ double residual_of(const ExplainInput& in, DeviationGrade grade) {
   return residual_mm;
 }
 
+bool estimated(const ExplainInput& in) {
+  const auto is = [](const SurfaceBand::Face* face) {
+    return face != nullptr && face->grade == DeviationGrade::kEstimated;
+  };
+  return in.estimated || in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
+}
+
 std::string mesh_error_name(const ExplainInput& in) {
+  if (estimated(in)) return " estimated";
   switch (in.grade) {
     case DeviationGrade::kPlanar:
     case DeviationGrade::kDeclaredFeature: {
@@ -95,24 +104,29 @@ std::string mesh_error_name(const ExplainInput& in) {
       return " by declared chord error";
     case DeviationGrade::kRecognizedFeature:
       return " recognized";
-    case DeviationGrade::kEstimated:
-      return " estimated";
     case DeviationGrade::kNominal:
       return " of rounding";
+    case DeviationGrade::kEstimated:
     case DeviationGrade::kUnknown:
       break;
   }
   return "";
 }
 
-// Plane faces lie where their triangles do.
-bool has_no_mesh_error(const ExplainInput& in) {
-  const auto is_plane = [](const SurfaceBand::Face* face) {
-    return face != nullptr && !face->surface && face->deviation_mm == Interval{} &&
-           (face->grade == DeviationGrade::kPlanar || face->grade == DeviationGrade::kNominal);
-  };
-  return (in.grade == DeviationGrade::kPlanar || in.grade == DeviationGrade::kNominal) &&
-         is_plane(in.face_a) && is_plane(in.face_b);
+// Plane faces lie where their triangles do, but for the rounding of the file: nullopt for others,
+// else that rounding of both.
+std::optional<double> rounding_of_planes_mm(const ExplainInput& in) {
+  if (in.grade != DeviationGrade::kPlanar && in.grade != DeviationGrade::kNominal)
+    return std::nullopt;
+  double rounding_mm = 0.0;
+  for (const SurfaceBand::Face* face : {in.face_a, in.face_b}) {
+    if (face == nullptr || face->surface ||
+        (face->grade != DeviationGrade::kPlanar && face->grade != DeviationGrade::kNominal))
+      return std::nullopt;
+    rounding_mm += face->deviation_mm.hi;
+  }
+  if (estimated(in)) return std::nullopt;
+  return rounding_mm;
 }
 
 // What a threshold is made of: fake ends at the upper offsets, real begins at the lower ones. A fit
@@ -125,14 +139,14 @@ std::string made_of(const ExplainInput& in, End end, bool name_source) {
   // What the tolerance does not explain of the threshold, so that the terms add up to it.
   const double deviation_mm = -threshold_mm - tolerance_mm;
   std::string text;
-  if (has_no_mesh_error(in)) {
-    // Within the bracket of the overlap it is nothing; beyond, edges travel farther than faces.
-    if (shown(std::max(0.0, std::fabs(deviation_mm) - in.delta_mm.width())))
-      text = signed_term(text, deviation_mm > 0.0,
-                         "sharp edge " + length_text(std::fabs(deviation_mm)));
-  } else if (shown(deviation_mm))
+  const double size_mm = std::fabs(deviation_mm);
+  const std::optional<double> rounding_mm = rounding_of_planes_mm(in);
+  // Within the bracket of the overlap it is nothing; beyond, edges travel farther than faces.
+  const bool is_edge = rounding_mm && size_mm > 2.0 * *rounding_mm;
+  if (shown(rounding_mm ? std::max(0.0, size_mm - in.delta_mm.width()) : size_mm))
     text = signed_term(text, deviation_mm > 0.0,
-                       "mesh error " + length_text(std::fabs(deviation_mm)) + mesh_error_name(in));
+                       is_edge ? "sharp edge " + length_text(size_mm)
+                               : "mesh error " + length_text(size_mm) + mesh_error_name(in));
   const Source source = tolerance_source(in);
   if (source.text.empty()) return text;
   const bool interferes = tolerance_mm > 0.0;
@@ -175,13 +189,6 @@ std::string thresholds_part(const ExplainInput& in) {
 bool rounding_only(const SurfaceBand::Face* face) {
   return face != nullptr && !face->surface && face->tolerance_source.empty() &&
          (face->grade == DeviationGrade::kNominal || face->grade == DeviationGrade::kPlanar);
-}
-
-bool estimated(const ExplainInput& in) {
-  const auto is = [](const SurfaceBand::Face* face) {
-    return face != nullptr && face->grade == DeviationGrade::kEstimated;
-  };
-  return in.estimated || in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
 }
 
 // Nothing is known but the meshes, and their corners are no closer than that.
