@@ -82,6 +82,9 @@ std::string how_much(const ClashLine& clash) {
 
 std::string said_of(const ClashLine& clash) {
   std::string text = how_much(clash);
+  const std::string& why = clash.verdict->explanation;
+  if (why.find(kSamePartTwice) != std::string::npos) text += ", " + kSamePartTwice;
+  if (why.find(kWhollyInside) != std::string::npos) text += ", one inside the other";
   if (clash.more_places > 0)
     text +=
         ", +" + std::to_string(clash.more_places) + (clash.more_places == 1 ? " place" : " places");

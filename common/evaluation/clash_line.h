@@ -16,6 +16,10 @@ struct ClashLine {
   std::string note;             ///< at the end, or empty: "clash 4 by ann"
 };
 
+/// What an explanation says where parts are not pressed into each other, but placed so.
+inline const std::string kSamePartTwice = "the same part twice";
+inline const std::string kWhollyInside = " lies wholly inside ";
+
 /// "REAL  cover × bearing   0.5 µm beyond H7/p6", the columns of all lines aligned. At most
 /// kClashLineColumns columns each; names that are too long lose their middle.
 std::vector<std::string> clash_lines(std::span<const ClashLine> clashes);

@@ -209,7 +209,7 @@ TEST_F(ScenarioTools, WhatTheImportFoundIsToldByEveryProgram) {
   file("open.stl", stl(open, false));
   const char* const kNotes[] = {"all triangles faced inwards and were turned",
                                 "1 triangles without area were dropped",
-                                "3 open edges"};
+                                "3 boundary"};
   std::string yaml = "name: notes\nunits: mm\nparts:\n";
   int x = 0;
   for (const char* name : {"turned", "flat", "open"})

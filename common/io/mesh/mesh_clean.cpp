@@ -163,6 +163,42 @@ std::uint64_t count_duplicates(const std::vector<Corners>& triangles) {
   return count;
 }
 
+// Copies of a triangle of which all three edges are passed more often its way than the other way:
+// without one of them they balance better. Copies that face each other, and a mesh that is there
+// twice as a whole, stay.
+std::uint64_t drop_surplus_copies(std::vector<Corners>& triangles) {
+  std::map<Corners, std::uint32_t> copies;
+  const auto from_least = [](Corners t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  };
+  for (const Corners& t : triangles) ++copies[from_least(t)];
+  if (copies.size() == triangles.size()) return 0;
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::map<Edge, int> surplus;  // of passes from the smaller corner to the larger
+  const auto passes = [&](const Corners& t, int k) -> std::pair<int*, int> {
+    const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+    return {&surplus[std::minmax(from, to)], from < to ? 1 : -1};
+  };
+  for (const Corners& t : triangles)
+    for (int k = 0; k < 3; ++k) {
+      const auto [count, way] = passes(t, k);
+      *count += way;
+    }
+  return std::erase_if(triangles, [&](const Corners& t) {
+    std::uint32_t& left = copies[from_least(t)];
+    if (left < 2) return false;
+    for (int k = 0; k < 3; ++k)
+      if (const auto [count, way] = passes(t, k); *count * way < 1) return false;
+    for (int k = 0; k < 3; ++k) {
+      const auto [count, way] = passes(t, k);
+      *count -= way;
+    }
+    --left;
+    return true;
+  });
+}
+
 // The triangles that are left of loose ones whose corners have been made one.
 struct Assembled {
   std::vector<Corners> triangles;
@@ -325,6 +361,7 @@ CleanMesh weld(const std::vector<double>& coordinates, double unit_mm, double ne
   // 3. Points in the order of their use.
   constexpr std::uint32_t kNotUsed = 0xffffffffU;
   std::vector<std::uint32_t> number(corners.size(), kNotUsed);
+  std::vector<Corners>& triangles = clean.mesh.triangles;
   for (Corners& triangle : assembled.triangles) {
     for (std::uint32_t& corner : triangle) {
       std::uint32_t& point = number[corner];
@@ -334,9 +371,10 @@ CleanMesh weld(const std::vector<double>& coordinates, double unit_mm, double ne
       }
       corner = point;
     }
-    clean.mesh.triangles.push_back(triangle);
+    triangles.push_back(triangle);
   }
-  clean.duplicate_triangles = count_duplicates(clean.mesh.triangles);
+  clean.duplicate_triangles = count_duplicates(triangles);
+  clean.duplicates_dropped = drop_surplus_copies(triangles);
   return clean;
 }
 

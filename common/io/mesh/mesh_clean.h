@@ -10,7 +10,8 @@ struct CleanMesh {
   TriangleMesh mesh;
   std::uint64_t degenerate_dropped = 0;   ///< no area: two corners in one place, or all on a line
   std::uint64_t triangles_split = 0;      ///< neighbours cut in two so that no edge opened
-  std::uint64_t duplicate_triangles = 0;  ///< same three points as an earlier one; kept
+  std::uint64_t duplicate_triangles = 0;  ///< same three points as an earlier one
+  std::uint64_t duplicates_dropped = 0;   ///< of them: copies without which the mesh closes
   std::uint64_t corners_moved = 0;        ///< of open edges, onto a corner or edge beside them
   double moved_mm = 0.0;                  ///< the farthest of them
 };

@@ -118,12 +118,9 @@ void note_findings(const RawSoup& soup, double unit_mm, ImportReport& report) {
                            " mm, the scenario " + number(unit_mm) + " mm; the scenario's is taken");
   if (!soup.note.empty()) report.notes.push_back(soup.note);
   note(report.degenerate_dropped, "triangles without area were dropped");
-  note(report.duplicate_triangles, "triangles occur twice");
+  note(report.duplicate_triangles - report.duplicates_dropped, "triangles occur twice");
+  note(report.duplicates_dropped, "triangles that occur twice were dropped");
   note(report.points_and_lines_dropped, "points and lines were left out");
-  if (report.closed) return;
-  note(report.boundary_edges, "open edges");
-  note(report.non_manifold_edges, "edges of more than two triangles");
-  note(report.misoriented_edges, "edges between triangles that face opposite ways");
 }
 
 Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, double unit_mm) {
@@ -146,6 +143,7 @@ Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, doubl
   report.degenerate_dropped = clean.degenerate_dropped;
   report.triangles_split = clean.triangles_split;
   report.duplicate_triangles = clean.duplicate_triangles;
+  report.duplicates_dropped = clean.duplicates_dropped;
   report.quantum_mm += clean.moved_mm;
   if (clean.corners_moved > 0)
     report.notes.push_back(std::to_string(clean.corners_moved) +

@@ -254,7 +254,7 @@ class SceneLoader {
     mesh.report = imported->report;
     SolidPtr solid = std::make_shared<const Solid>(std::move(imported->mesh));
     mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
-    for (const std::string& note : notes_of(mesh.report))
+    for (const std::string& note : mesh.report.notes)
       finding(false, spec.at, "part " + spec.name + ": mesh " + mesh.report.file + ": " + note);
     if (!mesh.report.closed) say_open(spec, mesh);
     if (!spec.mesh.generator.empty()) {

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/constants.h"
+#include "common/evaluation/clash_line.h"
 #include "common/evaluation/explain.h"
 #include "common/evaluation/open_bracket.h"
+#include "common/messages/length_text.h"
 #include "common/session/tick/merge_regions.h"
 
 namespace mortise {
@@ -126,6 +129,27 @@ void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& over
   verdict.separation_way = depth.way;
 }
 
+// Parts of one mesh whose points all lie within this share of its radius of their twins are
+// duplicates: nobody assembles so.
+constexpr double kDuplicateShare = 0.01;
+
+// "the same part twice in one place", "pin lies wholly inside block", or nothing.
+std::string placement_text(const JudgementQuery& query, const OverlapResult& overlap) {
+  const Part &a = *query.a, &b = *query.b;
+  const double radius_mm = a.solid->sphere().radius_mm;
+  if (a.solid == b.solid) {
+    const Pose X_AB = query.motion_a.X_W1.inverse() * query.motion_b.X_W1;
+    const double apart_mm = (X_AB * a.solid->sphere().center_mm - a.solid->sphere().center_mm).norm() +
+                            2.0 * X_AB.q.vec().norm() * radius_mm;
+    if (apart_mm <= kAccuracyDefault_mm) return kSamePartTwice + " in one place";
+    if (apart_mm <= kDuplicateShare * radius_mm)
+      return kSamePartTwice + ", " + length_text(apart_mm) + " apart";
+  }
+  if (!overlap.contained) return "";
+  const bool a_is_inner = radius_mm < b.solid->sphere().radius_mm;
+  return (a_is_inner ? a : b).name + kWhollyInside + (a_is_inner ? b : a).name;
+}
+
 // Is the depth of the region known as closely as was asked for at most, layer by layer?
 bool is_refined(const OverlapRegion& region) {
   const double most = 2.0 * kDepthAccuracyDefault_mm;
@@ -163,6 +187,11 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
       judgement.verdicts.begin(), judgement.verdicts.end(), [](const Verdict& x, const Verdict& y) {
         return static_cast<int>(x.collision_class) > static_cast<int>(y.collision_class);
       });
+  if (judgement.verdicts.empty()) return judgement;
+  Verdict& worst = judgement.verdicts.front();
+  if (const std::string text = placement_text(query, judgement.overlap);
+      worst.collision_class == CollisionClass::kReal && !text.empty())
+    worst.explanation += "; " + text;
   return judgement;
 }
 

@@ -15,6 +15,7 @@
 #include "common/geometry/topology.h"
 #include "common/io/mesh/mesh_clean.h"
 #include "common/io/mesh/raw_soup.h"
+#include "tests/support/shapes.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {
@@ -413,11 +414,35 @@ TEST(Weld, CountsDegenerateAndDuplicate) {
       0, 0, 0, 1,    0, 0, 0, 1e-6, 0   // thin, but a triangle
   };
   const CleanMesh clean = weld(soup, 1000.0);
-  EXPECT_EQ(clean.mesh.triangles.size(), 3U);
+  EXPECT_EQ(clean.mesh.triangles.size(), 2U);
   EXPECT_EQ(clean.mesh.points_mm.size(), 4U);
   EXPECT_EQ(clean.degenerate_dropped, 2U);
   EXPECT_EQ(clean.duplicate_triangles, 1U);
+  EXPECT_EQ(clean.duplicates_dropped, 1U);
   EXPECT_EQ(clean.mesh.points_mm[1].x(), 1000.0);
+}
+
+TEST(Weld, ACopyOfATriangleOpensNothing) {
+  const TriangleMesh cube = shapes::box({1, 1, 1});
+  const auto with = [&](const std::vector<std::array<std::uint32_t, 3>>& more) {
+    TriangleMesh mesh = cube;
+    mesh.triangles.insert(mesh.triangles.end(), more.begin(), more.end());
+    std::vector<double> soup;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) soup.push_back(mesh.corner(t, k)[i]);
+    return weld(soup, 1.0);
+  };
+  const auto& t = cube.triangles;
+  const std::array<std::uint32_t, 3> rolled = {t[4][1], t[4][2], t[4][0]};
+  const std::array<std::uint32_t, 3> turned = {t[4][1], t[4][0], t[4][2]};
+  const CleanMesh copies = with({t[4], rolled, t[7]});
+  EXPECT_EQ(copies.duplicates_dropped, 3U);
+  EXPECT_EQ(copies.mesh.triangles.size(), 12U);
+  EXPECT_TRUE(build_topology(copies.mesh).closed());
+  // A sheet of two sides, and the whole twice, balance as they are.
+  EXPECT_EQ(with({t[4], turned}).duplicates_dropped, 0U);
+  EXPECT_EQ(with(t).duplicates_dropped, 0U);
 }
 
 TEST(Weld, DroppingATriangleOnALineOpensNothing) {

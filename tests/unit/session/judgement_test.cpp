@@ -64,6 +64,31 @@ TEST(Judgement, APartStatedAnewIsJudgedAsInAFreshThread) {
   EXPECT_EQ(here.overlap.evaluations, fresh.overlap.evaluations);
 }
 
+TEST(Judgement, NamesTheSamePartTwiceAndAPartWithinAnother) {
+  const SolidPtr block = solid(box({10, 10, 10})), pin = solid(box({1, 1, 1}));
+  const auto said = [](const SolidPtr& a, const SolidPtr& b, const Vec3& at) {
+    Part part_a = part_of(1, a, nominal_band()), part_b = part_of(2, b, nominal_band());
+    part_a.name = "block";
+    part_b.name = "other";
+    JudgementQuery query;
+    query.a = &part_a;
+    query.b = &part_b;
+    query.motion_a = still_motion(Pose());
+    query.motion_b = still_motion(Pose::translation(at));
+    CcdScratch scratch;
+    const Judgement judgement = judge_pair(query, scratch);
+    return judgement.verdicts.empty() ? "" : judgement.verdicts[0].explanation;
+  };
+  const auto says = [&](const std::string& text, const std::string& what) {
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  says(said(block, block, Vec3::Zero()), "; the same part twice in one place");
+  says(said(block, block, {0.01, 0, 0}), "; the same part twice, 10.0 µm apart");
+  says(said(block, pin, {3, 2, 1}), "; other lies wholly inside block");
+  EXPECT_EQ(said(block, block, {15, 0, 0}).find("same part"), std::string::npos);
+  EXPECT_EQ(said(block, pin, {10, 2, 1}).find("inside"), std::string::npos);
+}
+
 TEST(Judgement, FakeFitInOneSentence) {
   const Judgement judgement = FitPair("H7/g6").judge();
   ASSERT_EQ(judgement.verdicts.size(), 1U);
