@@ -7,6 +7,7 @@
 #include <queue>
 #include <vector>
 
+#include "common/depth/face_below.h"
 #include "common/geometry/signed_distance.h"
 
 namespace mortise {
@@ -34,78 +35,7 @@ struct LessPromising {
   }
 };
 
-using Corners = std::array<Vec3, 8>;
-
-// Triangles of a plane face that are looked at to see how far it reaches.
-constexpr std::size_t kMostOfFace = 24;
-
-// The face of a triangle, continued across flat edges, below a box.
-class FaceBelow {
- public:
-  FaceBelow(const Solid& solid, std::uint32_t triangle) : mesh_(solid.mesh()), solid_(solid) {
-    origin_ = mesh_.corner(triangle, 0);
-    u_ = (mesh_.corner(triangle, 1) - origin_).stableNormalized();
-    normal_ = u_.cross(mesh_.corner(triangle, 2) - origin_).stableNormalized();
-    v_ = normal_.cross(u_);
-    seen_.push_back(triangle);
-  }
-
-  // Do the feet of all points between the corners lie in the face? Then no such point is deeper
-  // than distance_mm(). False where that is not seen at once.
-  bool holds(const Corners& corners, const Vec3& center) {
-    if (normal_.isZero()) return false;
-    for (const Vec3& x : corners) box_.extend(flat(x));
-    if (!is_in(seen_.front(), flat(center))) return false;
-    for (std::size_t i = 0; i < seen_.size(); ++i) {
-      const std::uint32_t t = seen_[i];
-      for (int k = 0; k < 3; ++k) {
-        off_mm_ = std::max(off_mm_, std::fabs(normal_.dot(mesh_.corner(t, k) - origin_)));
-        const Flat from = flat(mesh_.corner(t, k)), to = flat(mesh_.corner(t, (k + 1) % 3));
-        if (misses(from, to)) continue;
-        if (solid_.topology().edge_kind[t][k] != EdgeKind::kFlat) return false;
-        const std::uint32_t next = solid_.topology().neighbor[t][k];
-        if (std::find(seen_.begin(), seen_.end(), next) != seen_.end()) continue;
-        if (seen_.size() == kMostOfFace) return false;
-        seen_.push_back(next);
-      }
-    }
-    return true;
-  }
-
-  double distance_mm(const Vec3& x) const {
-    return std::fabs(normal_.dot(x - origin_)) + off_mm_;
-  }
-
- private:
-  using Flat = Eigen::Vector2d;
-  Flat flat(const Vec3& x) const { return {u_.dot(x - origin_), v_.dot(x - origin_)}; }
-
-  bool is_in(std::uint32_t t, const Flat& x) const {
-    for (int k = 0; k < 3; ++k) {
-      const Flat from = flat(mesh_.corner(t, k)), to = flat(mesh_.corner(t, (k + 1) % 3));
-      const Flat along = to - from, by = x - from;
-      if (along.x() * by.y() - along.y() * by.x() < 0.0) return false;
-    }
-    return true;
-  }
-
-  // Certainly no point of the edge in the box.
-  bool misses(const Flat& from, const Flat& to) const {
-    if ((from.cwiseMin(to).array() > box_.max().array()).any() ||
-        (from.cwiseMax(to).array() < box_.min().array()).any())
-      return true;
-    const Flat across(from.y() - to.y(), to.x() - from.x());
-    const double middle = across.dot(box_.center() - from);
-    return std::fabs(middle) > 0.5 * across.cwiseAbs().dot(box_.sizes());
-  }
-
-  const TriangleMesh& mesh_;
-  const Solid& solid_;
-  Vec3 origin_, u_, v_, normal_;
-  double off_mm_ = 0.0;
-  Eigen::AlignedBox2d box_;
-  std::vector<std::uint32_t> seen_;
-};
+using Corners = FaceBelow::Corners;
 
 Corners corners_of(const Cell& cell) {
   Corners corners;
@@ -164,9 +94,7 @@ class InnerSearch {
   }
 
   InnerOverlap found() const {
-    return {{best_mm_, most_mm_ + 2.0 * pair_.rounding_mm},
-            pair_.X_W[1] * best_B_,
-            in_either_mm_};
+    return {{best_mm_, most_mm_ + 2.0 * pair_.rounding_mm}, pair_.X_W[1] * best_B_, in_either_mm_};
   }
 
  private:
@@ -269,12 +197,12 @@ class InnerSearch {
     const bool is_over = face.holds(corners, center);
     const TriangleMesh& mesh = *pair_.bodies[body].mesh;
     for (std::size_t i = 0; i < corners.size(); ++i)
-      distances[i] =
-          is_over ? face.distance_mm(corners[i])
-                  : (corners[i] - nearest_on_triangle(corners[i], mesh.corner(triangle, 0),
-                                                      mesh.corner(triangle, 1),
-                                                      mesh.corner(triangle, 2)))
-                        .norm();
+      distances[i] = is_over
+                         ? face.distance_mm(corners[i])
+                         : (corners[i] - nearest_on_triangle(corners[i], mesh.corner(triangle, 0),
+                                                             mesh.corner(triangle, 1),
+                                                             mesh.corner(triangle, 2)))
+                               .norm();
     return distances;
   }
 
@@ -310,8 +238,8 @@ class InnerSearch {
 
   const PairFrame& pair_;
   double start_mm_;
-  double growth_;   ///< share of it by which what is found must be deeper
-  double narrow_;   ///< share of the depth at which its bracket is narrow enough
+  double growth_;  ///< share of it by which what is found must be deeper
+  double narrow_;  ///< share of the depth at which its bracket is narrow enough
   double accuracy_mm_;
   double thin_mm_;  ///< half the least extent of the thinner part
   std::uint64_t left_;
