@@ -95,8 +95,7 @@ class DeclaredSearch {
       if (!(least.depth_mm > 0.0)) continue;
       least.at = nearest_surface(*pair_.k(role).solid, least.point_K);
       least.triangle = nearest_point(*pair_.s(role).solid, x).triangle;
-      if (const auto witness = find_witness(pair_, least, evaluations_, &refused))
-        return witness;
+      if (const auto witness = find_witness(pair_, least, evaluations_, &refused)) return witness;
     }
     return std::nullopt;
   }

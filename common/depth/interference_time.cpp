@@ -514,23 +514,29 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
 
 namespace {
 
-// 1. Nothing is possible before the meshes are as near as the largest offsets of both faces reach:
-// first
-//    contact says when that is.
-// 2. Where all faces have the same zone that is the time itself: looked at shortly behind it.
-// 3. Else the surfaces that do meet there have narrower zones: the rest of the path is searched.
-PossibleTime find_faces_time(const SweptQuery& query, CcdScratch& scratch) {
-  PossibleTime answer;
+// When the meshes come that near.
+FirstContact first_nearer(const SweptQuery& query, double separation_mm, CcdScratch& scratch) {
   const OverlapQuery& at = query.at_target;
   ContactQuery near;
   near.a = at.a;
   near.b = at.b;
   near.motion_a = query.motion_a;
   near.motion_b = query.motion_b;
-  near.separation_mm =
-      std::max(0.0, at.band_a->largest_offset_mm) + std::max(0.0, at.band_b->largest_offset_mm);
+  near.separation_mm = separation_mm;
   near.work_cap = std::min(kCcdWorkCap, kTestsPerEvaluation * std::min(kCcdWorkCap, at.work_cap));
-  const FirstContact first = first_contact(near, scratch);
+  return first_contact(near, scratch);
+}
+
+// 1. Nothing is possible before the meshes are as near as the largest offsets of both faces reach:
+//    first contact says when that is.
+// 2. Where all faces have the same zone that is the time itself: looked at shortly behind it.
+// 3. Else the surfaces that do meet there have narrower zones: the rest of the path is searched.
+PossibleTime find_faces_time(const SweptQuery& query, CcdScratch& scratch) {
+  PossibleTime answer;
+  const OverlapQuery& at = query.at_target;
+  const double separation_mm =
+      std::max(0.0, at.band_a->largest_offset_mm) + std::max(0.0, at.band_b->largest_offset_mm);
+  const FirstContact first = first_nearer(query, separation_mm, scratch);
   if (first.state == ContactState::kFree) return answer;
   if (first.state == ContactState::kUndecided) {
     answer.t_clear = first.t_clear;
@@ -543,7 +549,7 @@ PossibleTime find_faces_time(const SweptQuery& query, CcdScratch& scratch) {
   double step = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
   const bool widest_meet =
       reach_mm(*at.band_a, first.triangle_a) + reach_mm(*at.band_b, first.triangle_b) >=
-      near.separation_mm - query.accuracy_mm;
+      separation_mm - query.accuracy_mm;
   for (int i = 0; i < kLooks && (widest_meet || !begins); ++i, step *= 2.0) {
     const double t = begins ? t0 + step : 0.0;
     if (t > 1.0) break;
@@ -576,14 +582,8 @@ constexpr int kEdgeHalvings = 12;
 // `answer` says, and not before the meshes are as near as edges travel.
 void look_at_edges(const SweptQuery& query, PossibleTime& answer, CcdScratch& scratch) {
   const OverlapQuery& at = query.at_target;
-  ContactQuery near;
-  near.a = at.a;
-  near.b = at.b;
-  near.motion_a = query.motion_a;
-  near.motion_b = query.motion_b;
-  near.separation_mm = at.band_a->farthest_mm() + at.band_b->farthest_mm();
-  near.work_cap = std::min(kCcdWorkCap, kTestsPerEvaluation * std::min(kCcdWorkCap, at.work_cap));
-  const FirstContact first = first_contact(near, scratch);
+  const FirstContact first =
+      first_nearer(query, at.band_a->farthest_mm() + at.band_b->farthest_mm(), scratch);
   double known = answer.becomes_possible ? answer.t_clear : 1.0;
   if (first.state == ContactState::kFree || first.t_clear >= known ||
       !is_possible_at(query, known, answer.evaluations, scratch))

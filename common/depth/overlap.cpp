@@ -181,11 +181,10 @@ class Overlap {
     // Where no layer has to be searched, the meshes may cost more.
     Found found;
     auto& [mesh, upper, lower, lower_lazily] = found;
-    mesh =
-        lazy && told_by_planes()
-            ? search(Layer::kMesh, false, std::min(kMeshAlone, work_left()))
-            : search(Layer::kMesh, lazy,
-                     shape_only ? std::min(glance(), work_left()) : work_left());
+    mesh = lazy && told_by_planes()
+               ? search(Layer::kMesh, false, std::min(kMeshAlone, work_left()))
+               : search(Layer::kMesh, lazy,
+                        shape_only ? std::min(glance(), work_left()) : work_left());
     // The sign of the depth is not enough where rounding may cover it.
     const auto in_rounding = [&](const Bracket& d) {
       return d.best.depth_mm > 0.0 && d.best.depth_mm <= pair_.reach_mm(Layer::kLower) &&
@@ -222,12 +221,12 @@ class Overlap {
   // None where the parts only touch: rounding alone makes no collision.
   std::optional<OverlapRegion> region_from(const Found& found, std::size_t i) {
     const Bracket& d = found.mesh[i];
-    const Bracket p = pair_.trivial   ? moved(d, pair_.reach_mm(Layer::kUpper))
+    const Bracket p = pair_.trivial         ? moved(d, pair_.reach_mm(Layer::kUpper))
                       : found.upper.empty() ? proven_apart(d, Layer::kUpper)
-                                      : found.upper[i];
-    const Bracket c = pair_.trivial   ? moved(d, -pair_.reach_mm(Layer::kLower))
+                                            : found.upper[i];
+    const Bracket c = pair_.trivial         ? moved(d, -pair_.reach_mm(Layer::kLower))
                       : found.lower.empty() ? proven_apart(d, Layer::kLower)
-                                      : found.lower[i];
+                                            : found.lower[i];
     if (d.best.depth_mm <= pair_.touch_mm && (pair_.trivial ? d : p).hi_mm <= pair_.touch_mm)
       return std::nullopt;
     OverlapRegion region;
@@ -237,7 +236,8 @@ class Overlap {
     region.certain_mm.hi = std::min(region.certain_mm.hi, region.possible_mm.hi);
     region.certain_mm.lo = std::min(region.certain_mm.lo, region.certain_mm.hi);
     region.area_mm2 = d.area_mm2;
-    region.capped = regions_.capped || p.undecided || (query_.refinement == Refinement::kFull && (d.undecided || c.undecided));
+    region.capped = regions_.capped || p.undecided ||
+                    (query_.refinement == Refinement::kFull && (d.undecided || c.undecided));
     const Sample& deciding = region.possible_mm.lo > 0.0 ? c.best : p.best;
     describe(pair_, d.best, deciding, region);
     for (const Sample& sample : d.samples)
@@ -289,8 +289,8 @@ class Overlap {
   // From another point of the least surface, where there is no witness yet.
   void try_witness(const Sample& from, OverlapRegion& region) {
     if (region.has_witness || !(from.depth_mm > pair_.touch_mm)) return;
-    set_witness(pair_, find_witness(pair_, from, result_.evaluations, &region.witnesses_refused), from,
-                region);
+    set_witness(pair_, find_witness(pair_, from, result_.evaluations, &region.witnesses_refused),
+                from, region);
   }
 
   void add_declared(const KnownFacePair& known, Candidates& candidates) {

@@ -24,7 +24,7 @@ LinearProgram::LinearProgram(int variables, const Vector& lo, const Vector& hi,
                              const Vector& objective)
     : variables_(variables), lo_(lo), hi_(hi), objective_(objective) {}
 
-bool LinearProgram::maximize(Optimum& optimum) {
+LinearProgram::Level& LinearProgram::set_up() {
   Level& top = level_[variables_];
   top.rows.clear();
   top.lo = lo_;
@@ -33,6 +33,11 @@ bool LinearProgram::maximize(Optimum& optimum) {
   for (int k = 0; k < variables_; ++k) top.variable[k] = k;
   for (std::size_t i = 0; i < rows.size(); ++i)
     top.rows.push_back({rows[i].g, rows[i].h, static_cast<int>(i)});
+  return top;
+}
+
+bool LinearProgram::maximize(Optimum& optimum) {
+  set_up();
   return solve(variables_, optimum);
 }
 
@@ -45,14 +50,7 @@ bool LinearProgram::cuts_off(const Row& row, const Optimum& optimum) const {
 bool LinearProgram::maximize_with(const Row& row, Optimum& optimum) {
   rows.push_back(row);
   if (!cuts_off(row, optimum)) return true;
-  Level& top = level_[variables_];
-  top.rows.clear();
-  top.lo = lo_;
-  top.hi = hi_;
-  top.objective = objective_;
-  for (int k = 0; k < variables_; ++k) top.variable[k] = k;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    top.rows.push_back({rows[i].g, rows[i].h, static_cast<int>(i)});
+  const Level& top = set_up();
   const Reduced last = top.rows.back();
   return solve_on(variables_, last, top.rows.size() - 1, optimum);
 }

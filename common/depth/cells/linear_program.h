@@ -53,6 +53,7 @@ class LinearProgram {
     Vector lo{}, hi{}, objective{};
     std::array<int, kMostVariables> variable{};  // which of the original ones
   };
+  Level& set_up();
   bool solve(int variables, Optimum& found);
   bool solve_line(Optimum& found);
   bool solve_on(int variables, const Reduced& row, std::size_t rows_before, Optimum& found);
