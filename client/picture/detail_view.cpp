@@ -350,6 +350,7 @@ class Detail {
   // The verdict's own where it lies in the window; else the middle between the two surfaces of
   // least material, where these overlap at the point.
   void mark_witness() {
+    view_.witness_is_declared = is_declared(verdict_.grade);
     if (verdict_.collision_class != CollisionClass::kReal) return;
     if (verdict_.has_witness) {
       const Vec2 at = view_.chart.to_chart(view_.plane.project(verdict_.witness_W));

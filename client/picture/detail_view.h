@@ -47,6 +47,7 @@ struct DetailView {
   int upper = 0;                       ///< which of them lies above
   std::optional<Vec2> witness;         ///< inside both real parts
   bool witness_is_of_verdict = false;  ///< else it is one found in this section
+  bool witness_is_declared = false;    ///< it holds however the parts are made
   Vec3 axis_W = Vec3::UnitZ();         ///< along the round face: what a second section may show
 };
 

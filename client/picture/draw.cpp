@@ -213,7 +213,10 @@ void draw_witness(Canvas& canvas, const Frame& frame, const DetailView& view) {
   canvas.circle(at, 5.0, {color, 2.0});
   canvas.line({at - Vec2(9, 0), at + Vec2(9, 0)}, {color, 1.2});
   canvas.line({at - Vec2(0, 9), at + Vec2(0, 9)}, {color, 1.2});
-  draw_label(canvas, at - Vec2(8.0, 13.0), "inside both, however made", true, color);
+  draw_label(
+      canvas, at - Vec2(8.0, 13.0),
+      view.witness_is_declared ? "inside both, however made" : "inside both, by their meshes", true,
+      color);
 }
 
 std::string scales_text(const Frame& frame, const DetailView& view) {

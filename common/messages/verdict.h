@@ -22,6 +22,12 @@ enum class DeviationGrade : std::uint8_t {
   kNominal = 6,    ///< nothing known: the mesh is taken for the surface
 };
 
+/// Does the designer, or a plane, answer for the surface, and not its mesh alone? Only then may a
+/// finding be said to hold however the parts are made.
+inline bool is_declared(DeviationGrade grade) {
+  return grade == DeviationGrade::kPlanar || grade == DeviationGrade::kDeclaredFeature;
+}
+
 /// Shape of a face, or of the pair of faces of a region (concave-convex determination of the
 /// paper).
 enum class FaceShape : std::uint8_t { kUnknown = 0, kPlanar, kConvex, kConcave, kSaddle, kEdge };

@@ -119,6 +119,16 @@ TEST_F(ScenarioTools, MeshesAreJudgedWithoutAScenario) {
   EXPECT_EQ(drawn.exit_code, 6) << drawn.err;
   EXPECT_NE(drawn.out.find("0.5 µm beyond H7/p6"), std::string::npos) << drawn.out;
   EXPECT_GT(std::filesystem::file_size(folder_ / "out.png"), 1000U);
+  // Only a declared surface holds however the parts are made.
+  const auto explained = [&](const std::string& arguments) {
+    return run("mortise-judge", arguments + " -v", folder_).out;
+  };
+  const std::string recognized = explained("plate.stl peg.stl --fit H7/p6");
+  EXPECT_NE(recognized.find("as far as their meshes tell"), std::string::npos) << recognized;
+  EXPECT_EQ(recognized.find("however they are made"), std::string::npos) << recognized;
+  const std::string declared = explained(std::string(MORTISE_SOURCE_DIR) + "/scenarios/fits.yaml");
+  EXPECT_NE(declared.find("however they are made"), std::string::npos) << declared;
+  EXPECT_EQ(declared.find("as far as their meshes tell"), std::string::npos) << declared;
   // Three of them: the fit is that of the holes and shafts that stand in one another.
   make("lid.stl", "block x_mm=5 y_mm=5 z_mm=5");
   EXPECT_EQ(worst("plate.stl lid.stl peg.stl --fit H7/k6"), "potential");
@@ -166,6 +176,24 @@ TEST_F(ScenarioTools, WhatIsMistakenIsSaidInOneLineWithARemedy) {
   EXPECT_NE(snippet.err.find("e.g. units: mm"), std::string::npos);
 }
 
+TEST_F(ScenarioTools, NamesOfFilesThatAreNoNamesOfPartsAreReplaced) {
+  const std::string right_to_left = "b\u202e.stl", no_utf8 = "a\xff.stl";
+  for (const std::string& name : {right_to_left, no_utf8})
+    EXPECT_EQ(
+        run("mortise-generate", "block x_mm=5 y_mm=5 z_mm=5 -o '" + name + "'", folder_).exit_code,
+        0);
+  const std::string two = "'" + right_to_left + "' '" + right_to_left + "' --json";
+  const Outcome judged = run("mortise-judge", two, folder_);
+  EXPECT_EQ(judged.exit_code, 0) << judged.err;
+  ASSERT_FALSE(judged.document().is_discarded()) << judged.out;
+  EXPECT_EQ(judged.document().at("pairs").at(0).at("part_a"), "b?");
+  const Outcome refused =
+      run("mortise-judge", "'" + no_utf8 + "' '" + right_to_left + "'", folder_);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("is not UTF-8; rename the file"), std::string::npos) << refused.err;
+  EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+}
+
 TEST_F(ScenarioTools, ThatNothingMovesIsNoWarningOfJudge) {
   const std::string still =
       file("still.yaml", "name: s\nunits: mm\nparts:\n  - {name: a, generator: {kind: block}}\n");
@@ -208,8 +236,7 @@ TEST_F(ScenarioTools, WhatTheImportFoundIsToldByEveryProgram) {
   file("flat.stl", stl(degenerate, false));
   file("open.stl", stl(open, false));
   const char* const kNotes[] = {"all triangles faced inwards and were turned",
-                                "1 triangles without area were dropped",
-                                "3 boundary"};
+                                "1 triangles without area were dropped", "3 boundary"};
   std::string yaml = "name: notes\nunits: mm\nparts:\n";
   int x = 0;
   for (const char* name : {"turned", "flat", "open"})

@@ -85,7 +85,9 @@ std::string region_text(const RegionNames& names, const Verdict& v) {
   row("where", fmt::format("{} mm, normal {}{}", vector(v.point_W, 3), vector(v.normal_W, 3),
                            v.area_mm2 > 0.0 ? fmt::format(", {:.3g} mm²", v.area_mm2) : ""));
   if (v.has_witness)
-    row("witness", vector(v.witness_W, 3) + " mm lies inside both, however they are made");
+    row("witness", vector(v.witness_W, 3) + " mm lies inside both, " +
+                       (is_declared(v.grade) ? "however they are made"
+                                             : "as far as their meshes tell the surfaces"));
   return text;
 }
 

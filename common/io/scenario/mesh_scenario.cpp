@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
+#include "common/base/json_text.h"
 #include "common/base/length_unit.h"
+#include "common/base/plain_text.h"
 
 namespace mortise {
 namespace {
@@ -24,20 +27,14 @@ std::string list_of(std::initializer_list<double> numbers) {
   return text + "]";
 }
 
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string quoted(const std::string& text) { return json_text(nlohmann::json(text), -1); }
 
-std::string legal_name(std::string name) {
+std::string legal_name(const std::string& stem) {
+  std::string name = one_line(stem);
   for (char& c : name)
-    if (c == '.' || c == '*' || static_cast<unsigned char>(c) < 0x20) c = '_';
-  if (name.size() > kLongestName) {
-    name.resize(kLongestName);  // not in the middle of a character
-    while (!name.empty() && (static_cast<unsigned char>(name.back()) & 0xc0) == 0x80)
-      name.pop_back();
-    if (!name.empty() && static_cast<unsigned char>(name.back()) >= 0xc0) name.pop_back();
-  }
-  return name.empty() ? "part" : name;
+    if (c == '.' || c == '*') c = '_';
+  name.resize(utf8_prefix(std::string_view(name).substr(0, kLongestName)));
+  return is_name(name) ? name : "part";
 }
 
 std::string shape_yaml(const Scenario::MeshSource& mesh) {

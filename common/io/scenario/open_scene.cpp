@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/length_unit.h"
+#include "common/base/plain_text.h"
 #include "common/io/scenario/mesh_scenario.h"
 
 namespace mortise {
@@ -44,6 +45,9 @@ Result<OpenedScene> open_meshes(const std::vector<std::string>& files, const std
   std::vector<PartText> parts(files.size());
   std::string all_names, all_files;
   for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!is_text(files[i]))
+      return fail(Code::kInvalidInput,
+                  one_line(files[i]) + ": the name of the file is not UTF-8; rename the file");
     Scenario::PartSpec& spec = parts[i].spec;
     spec.name = names[i];
     spec.mesh.file = files[i];
