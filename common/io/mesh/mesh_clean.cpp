@@ -173,7 +173,6 @@ std::uint64_t drop_surplus_copies(std::vector<Corners>& triangles) {
     return t;
   };
   for (const Corners& t : triangles) ++copies[from_least(t)];
-  if (copies.size() == triangles.size()) return 0;
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::map<Edge, int> surplus;  // of passes from the smaller corner to the larger
   const auto passes = [&](const Corners& t, int k) -> std::pair<int*, int> {
@@ -374,7 +373,7 @@ CleanMesh weld(const std::vector<double>& coordinates, double unit_mm, double ne
     triangles.push_back(triangle);
   }
   clean.duplicate_triangles = count_duplicates(triangles);
-  clean.duplicates_dropped = drop_surplus_copies(triangles);
+  if (clean.duplicate_triangles > 0) clean.duplicates_dropped = drop_surplus_copies(triangles);
   return clean;
 }
 

@@ -139,8 +139,9 @@ std::string placement_text(const JudgementQuery& query, const OverlapResult& ove
   const double radius_mm = a.solid->sphere().radius_mm;
   if (a.solid == b.solid) {
     const Pose X_AB = query.motion_a.X_W1.inverse() * query.motion_b.X_W1;
-    const double apart_mm = (X_AB * a.solid->sphere().center_mm - a.solid->sphere().center_mm).norm() +
-                            2.0 * X_AB.q.vec().norm() * radius_mm;
+    const double apart_mm =
+        (X_AB * a.solid->sphere().center_mm - a.solid->sphere().center_mm).norm() +
+        2.0 * X_AB.q.vec().norm() * radius_mm;
     if (apart_mm <= kAccuracyDefault_mm) return kSamePartTwice + " in one place";
     if (apart_mm <= kDuplicateShare * radius_mm)
       return kSamePartTwice + ", " + length_text(apart_mm) + " apart";

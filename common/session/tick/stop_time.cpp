@@ -26,7 +26,8 @@ constexpr std::uint64_t kWithdrawalLookWorkCap = 5'000;
 // The same of the depth at the start, with which those on the way are compared, where the usual
 // look does not find it.
 constexpr std::uint64_t kWithdrawalStartWorkCap = 8 * kWithdrawalLookWorkCap;
-// The same of how deep parts lie in each other; where it ends, they may move a little deeper.
+// The same of how deep parts lie in each other; where it ends, that is told too small, and may hold
+// a part that would become deeper on its way out.
 constexpr std::uint64_t kInnerWorkCap = 600;
 
 // How closely the advance approaches the time at which the pair becomes real, mm of depth, and the
