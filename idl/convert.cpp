@@ -455,7 +455,9 @@ Result<Verdict> from_wire(const wire::Verdict& in) {
   door.number(in.fake_below_mm(), "fake_below_mm");
   door.number(in.real_above_mm(), "real_above_mm");
   door.number(in.margin_mm(), "margin_mm");
-  door.need(in.probability() >= 0.0 && in.probability() <= 1.0, "probability");
+  door.need(in.probability() == kProbabilityUnknown ||
+                (in.probability() >= 0.0 && in.probability() <= 1.0),
+            "probability");
   door.finite(in.travel_mm(), "travel_mm");
   door.finite(in.normal_travel_mm(), "normal_travel_mm");
   door.position(in.point_mm(), "point_mm");

@@ -13,6 +13,7 @@ namespace {
 
 struct Rank {
   int collision_class;
+  bool known;  // within the class: those of a known probability first
   double within;
   friend auto operator<=>(const Rank&, const Rank&) = default;
 };
@@ -23,9 +24,10 @@ Rank rank_of(const Cells& clash) {
     const double x = clash.number(column);
     return std::isfinite(x) ? x : 0.0;
   };
-  if (klass == "real") return {3, finite("margin_mm")};
-  if (klass == "potential") return {2, finite("probability")};
-  return {klass == "fake" ? 1 : 0, -finite("margin_mm")};
+  if (klass == "real") return {3, true, finite("margin_mm")};
+  if (klass != "potential") return {klass == "fake" ? 1 : 0, true, -finite("margin_mm")};
+  const bool known = clash["probability"].is_number();
+  return {2, known, finite(known ? "probability" : "overlap_lo_mm")};
 }
 
 bool at_one_time(const Cells& x, const Cells& y) {

@@ -7,7 +7,8 @@
 namespace mortise {
 
 /// The clashes of one pair of parts, as rows of the table of clashes. The worst leads: by class,
-/// then by how far beyond its threshold, how probable, or how near to its threshold.
+/// then by how far beyond its threshold, how probable (behind these by depth, where that is not
+/// known), or how near to its threshold.
 struct PairGroup {
   std::size_t lead = 0;
   std::vector<std::size_t> others;  ///< worst first

@@ -296,8 +296,8 @@ std::vector<Json> Session::clash_row(ClashId id, const SessionStatistics::ClashR
   for (const double x :
        {v.delta_mm.lo, v.delta_mm.hi, v.gpd_mm.lo, v.gpd_mm.hi, v.fake_below_mm, v.real_above_mm,
         v.margin_mm, severity_of(v), 0.5 * (v.delta_mm.lo - v.real_above_mm),
-        0.5 * (v.fake_below_mm - v.delta_mm.hi), v.probability, v.travel_mm, v.normal_travel_mm,
-        v.area_mm2})
+        0.5 * (v.fake_below_mm - v.delta_mm.hi), has_probability(v) ? v.probability : std::nan(""),
+        v.travel_mm, v.normal_travel_mm, v.area_mm2})
     row.push_back(number(x));
   add_vector(row, v.point_W);
   add_vector(row, v.normal_W);

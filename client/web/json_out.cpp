@@ -40,7 +40,7 @@ void put_verdict(Json& json, const Verdict& verdict) {
   json["fake_below"] = number(verdict.fake_below_mm);
   json["real_above"] = number(verdict.real_above_mm);
   json["margin"] = number(verdict.margin_mm);
-  json["probability"] = number(verdict.probability);
+  json["probability"] = has_probability(verdict) ? number(verdict.probability) : Json(nullptr);
   json["travel"] = number(verdict.travel_mm);
   json["normal_travel"] = number(verdict.normal_travel_mm);
   json["point"] = json_of(verdict.point_W);

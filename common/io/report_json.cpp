@@ -106,7 +106,7 @@ Json json_of(const Verdict& verdict) {
   json["fake_below_mm"] = number(verdict.fake_below_mm);
   json["real_above_mm"] = number(verdict.real_above_mm);
   json["margin_mm"] = number(verdict.margin_mm);
-  json["probability"] = number(verdict.probability);
+  json["probability"] = has_probability(verdict) ? number(verdict.probability) : Json(nullptr);
   json["travel_mm"] = number(verdict.travel_mm);
   json["normal_travel_mm"] = number(verdict.normal_travel_mm);
   json["point_mm"] = json_of(verdict.point_W);

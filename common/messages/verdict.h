@@ -41,6 +41,8 @@ enum class SeparationWay : std::uint8_t {
   kAxis = 4,    ///< along the axis of a round face: drawn out of its hole
 };
 
+inline constexpr double kProbabilityUnknown = -1.0;
+
 /// The judged collision of one region of one pair of parts. World frame, mm.
 /// delta: overlap of the meshes, -min_p(sd_A + sd_B), negative when apart. Class by the two
 /// thresholds: real iff delta > real_above, fake iff delta <= fake_below (over every pair of faces
@@ -53,7 +55,8 @@ struct Verdict {
   double real_above_mm = 0.0;
   double margin_mm =
       0.0;  ///< distance of delta to the nearest threshold that would change the class, >= 0
-  double probability = 0.0;  ///< P(interference) for kPotential; 0 for fake, 1 for real
+  double probability = 0.0;  ///< P(interference): 0 for fake, 1 for real; of kPotential where the
+                             ///< surfaces are known but for tolerances, else kProbabilityUnknown
   double travel_mm = 0.0;  ///< path length from contact to target, largest over the region's points
   double normal_travel_mm = 0.0;  ///< its part along the normal
   Vec3 point_W = Vec3::Zero();
@@ -71,5 +74,7 @@ struct Verdict {
   std::string face_a, face_b;  ///< feature names, empty when none
   std::string explanation;     ///< one sentence
 };
+
+inline bool has_probability(const Verdict& verdict) { return verdict.probability >= 0.0; }
 
 }  // namespace mortise

@@ -45,7 +45,7 @@ ordered_json json_of(const ClashEvent& event) {
           {"fake_below_mm", number(v.fake_below_mm)},
           {"real_above_mm", number(v.real_above_mm)},
           {"margin_mm", number(v.margin_mm)},
-          {"probability", number(v.probability)},
+          {"probability", has_probability(v) ? number(v.probability) : ordered_json(nullptr)},
           {"travel_mm", number(v.travel_mm)},
           {"normal_travel_mm", number(v.normal_travel_mm)},
           {"point_W", vector(v.point_W)},
@@ -267,7 +267,7 @@ bool decode(std::string_view text, ClashEvent& event) {
   in.real("fake_below_mm", v.fake_below_mm);
   in.real("real_above_mm", v.real_above_mm);
   in.real("margin_mm", v.margin_mm);
-  in.real("probability", v.probability);
+  in.real("probability", v.probability, kProbabilityUnknown);
   in.real("travel_mm", v.travel_mm);
   in.real("normal_travel_mm", v.normal_travel_mm);
   in.vector("point_W", v.point_W);

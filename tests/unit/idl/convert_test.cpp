@@ -300,6 +300,8 @@ TEST(Convert, EventsAreRefused) {
   EXPECT_FALSE(passes([](E& e) { e.review().status(kReviewStatusCount); }));
   EXPECT_FALSE(passes([](E& e) { e.review().comment("a\nb"); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().probability(-0.1); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().probability(1.1); }));
+  EXPECT_TRUE(passes([](E& e) { e.verdict().probability(-1.0); }));  // not known
   EXPECT_FALSE(passes([](E& e) { e.verdict().probability(kNan); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().fake_below_mm(kNan); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().point_mm({kInf, 0, 0}); }));

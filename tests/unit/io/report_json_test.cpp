@@ -50,6 +50,9 @@ TEST(ReportJson, InfinityIsNullAndTheTextParsesBack) {
   EXPECT_EQ(json["gpd_mm"][0], 0.1);
   EXPECT_TRUE(json["margin_mm"].is_null());
   EXPECT_TRUE(json["witness_mm"].is_null());
+  EXPECT_EQ(json["probability"], 0.0);
+  verdict.probability = kProbabilityUnknown;
+  EXPECT_TRUE(json_of(verdict)["probability"].is_null());
 }
 
 TEST(ReportJson, StatisticsSayWhoWithWhomAndWhatWasSkipped) {

@@ -101,6 +101,10 @@ TEST(SessionLog, InfiniteEndsAndRoundedTextSurvive) {
   EXPECT_EQ(read.verdict.gpd_mm.hi, std::numeric_limits<double>::infinity());
   EXPECT_EQ(std::bit_cast<std::uint64_t>(read.verdict.delta_mm.lo),
             std::bit_cast<std::uint64_t>(0.1 + 0.2));
+  event.verdict.probability = kProbabilityUnknown;
+  EXPECT_NE(log_json::encode(event).find("\"probability\":null"), std::string::npos);
+  ASSERT_TRUE(log_json::decode(log_json::encode(event), read));
+  EXPECT_EQ(read.verdict.probability, kProbabilityUnknown);
   EXPECT_FALSE(log_json::decode("{\"tick\": 1}", read));
   EXPECT_FALSE(log_json::decode("[[[[", read));
   ClashEvent other = event;

@@ -54,5 +54,18 @@ TEST(PairGroups, RealOnesAreFirst) {
   EXPECT_EQ(leads, (std::vector<std::size_t>{3, 2, 5, 1, 4}));
 }
 
+// How deep says less than how probable: a mesh error may be all of it.
+TEST(PairGroups, WhereNoProbabilityIsKnownTheDeeperIsFirst) {
+  const auto row = [](const char* other, Json probability, Json overlap) {
+    return std::vector<Json>{"a", other, "potential", 0.0, probability, 0, 9, overlap};
+  };
+  Table table = clashes({row("b", nullptr, 0.01), row("c", 0.2, -0.1), row("d", nullptr, 0.3),
+                         row("e", 0.0, 0.0), row("f", 0.9, -0.2), row("g", nullptr, -0.1)});
+  table.columns.push_back({"overlap_lo_mm", Type::kNumber});
+  std::vector<std::size_t> leads;
+  for (const PairGroup& group : pair_groups(table)) leads.push_back(group.lead);
+  EXPECT_EQ(leads, (std::vector<std::size_t>{4, 1, 3, 2, 0, 5}));
+}
+
 }  // namespace
 }  // namespace mortise

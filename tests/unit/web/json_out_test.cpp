@@ -43,6 +43,9 @@ TEST(JsonOut, AnEventHasAllOfAVerdict) {
   EXPECT_EQ(json["t_contact"], 1.0);
   EXPECT_EQ(json["review"]["status"], "approved");
   EXPECT_EQ(json["explanation"], "they meet");
+  EXPECT_EQ(json["probability"], 0.0);
+  event.verdict.probability = kProbabilityUnknown;
+  EXPECT_TRUE(json_of(event)["probability"].is_null());
   event.verdict.has_witness = true;
   event.verdict.witness_W = Vec3(0.5, 0, 0);
   EXPECT_EQ(json_of(event)["witness"], Json::parse("[0.5, 0.0, 0.0]"));

@@ -43,7 +43,7 @@ export function makeClashDetail(desk) {
     return [
       ['Overlap', bracket(clash.delta)],
       ['Margin', `${small(clash.margin)} ${margin}`],
-      ['Interference', clash.class === 'potential' ? percent(clash.probability) : ''],
+      ['Interference', clash.class === 'potential' && clash.probability !== null ? percent(clash.probability) : ''],
       ['Faces', faces],
       ['Comes free', clash.separation.way === 'none' ? '' : `${small(Math.hypot(...clash.separation.t))} ${clash.separation.way}`],
       ['Worst so far', worst],

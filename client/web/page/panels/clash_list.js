@@ -73,7 +73,8 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
     const [depth, bar, margin] = /** @type {HTMLElement[]} */ ([...figures.children]);
     setText(depth, small(clash.delta[1]));
     fillDepthBar(bar, clash);
-    setText(margin, of === 'potential' ? `P ${(100 * clash.probability).toFixed(0)} %` : `${small(clash.margin)} ${of === 'real' ? 'beyond' : 'spare'}`);
+    const chance = clash.probability === null ? '–' : `P ${(100 * clash.probability).toFixed(0)} %`;
+    setText(margin, of === 'potential' ? chance : `${small(clash.margin)} ${of === 'real' ? 'beyond' : 'spare'}`);
     row.setAttribute('aria-label', `${of}, ${pair}, overlap ${bracket(clash.delta)}, margin ${small(clash.margin)}, ${clash.ended ? 'ended' : review}`);
   }
 

@@ -17,7 +17,7 @@ import { Signals } from './signals.js';
  * @typedef {object} Clash an event of protocol.md, the latest of this clash
  * @property {string} kind @property {number} seq @property {number} tick @property {number} clash @property {number} a @property {number} b
  * @property {number} user @property {ClashClass} class @property {[number, number]} delta @property {[number, number]} gpd
- * @property {number} fake_below @property {number} real_above @property {number} margin @property {number} probability
+ * @property {number} fake_below @property {number} real_above @property {number} margin @property {number | null} probability
  * @property {number} area @property {Vec3} point @property {Vec3} normal @property {Vec3 | null} witness
  * @property {{t: Vec3, r: Vec3, way: string}} separation @property {[string, string]} shapes @property {[string, string]} faces
  * @property {string} grade @property {string} explanation @property {number | null} t_contact @property {number | null} t_real
