@@ -64,6 +64,8 @@ void summarize(SurfaceBand& band, const Solid& solid) {
 void state(SurfaceBand::Face& face, const FaceStatement& statement) {
   face.tolerance_mm = statement.offset_mm;
   face.tolerance_source = statement.source;
+  face.position_mm = statement.position.zone_mm;
+  face.position_grows = statement.position.condition != MaterialCondition::kRegardless;
   if (!statement.is_size || face.unsure_mm == Interval{}) return;
   face.unsure_mm = {};
   face.grade = DeviationGrade::kRecognizedFeature;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 #include "common/evaluation/open_bracket.h"
+#include "common/evaluation/threshold_text.h"
 #include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
@@ -61,17 +61,41 @@ std::string fit_code(const ClashLine& clash) {
   return shortened(sized ? clash.fit.substr(blank + 1) : clash.fit, kFitColumns);
 }
 
+bool says(const Verdict& v, const char* words) {
+  return v.explanation.find(words) != std::string::npos;
+}
+
+// As the sentence has it, which knows how closely.
+std::string probability_of(const Verdict& v) {
+  const std::size_t at = v.explanation.find("P(interference)");
+  if (at == std::string::npos) return probability_text({v.probability, v.probability});
+  return v.explanation.substr(at, v.explanation.find('%', at) + 1 - at);
+}
+
+// Where no probability is known: how deep, and what that has to be for a real clash.
+std::string depth_of(const Verdict& v) {
+  const Interval& delta = v.delta_mm;
+  const bool gap = delta.hi < 0.0;
+  std::string text = gap ? "gap " : "overlap ";
+  if (!is_open(delta))
+    text += range_text(gap ? -delta : Interval{std::max(delta.lo, 0.0), delta.hi});
+  else if (gap || delta.lo >= 0.0)
+    text += "at least " + length_text(gap ? -delta.hi : delta.lo);
+  else
+    text += "at most " + length_text(delta.hi);
+  if (says(v, "by estimate")) return text + ", by estimate";
+  const bool decides = !reads_as_zero(v.real_above_mm) && v.real_above_mm > delta.hi;
+  return decides && states_real(v) ? text + ", " + real_text(v.real_above_mm) : text;
+}
+
 std::string how_much(const ClashLine& clash) {
   const Verdict& v = *clash.verdict;
-  if (v.explanation.find("no inside") != std::string::npos)
+  if (says(v, "no inside") || says(v, "a part is open here"))
     return "depth not known, a part is open";
   const std::string code = fit_code(clash);
   const std::string in_fit = code.empty() ? "" : " in " + code;
-  if (v.collision_class == CollisionClass::kPotential) {
-    char text[48];
-    std::snprintf(text, sizeof text, "P(interference) %.3g %%", 100.0 * v.probability);
-    return text + in_fit;
-  }
+  if (v.collision_class == CollisionClass::kPotential)
+    return (has_probability(v) ? probability_of(v) : depth_of(v)) + in_fit;
   const std::string least = (is_open(v.delta_mm) ? "at least " : "");
   const std::string margin = least + length_text(v.margin_mm);
   if (v.collision_class != CollisionClass::kReal) return margin + " to spare" + in_fit;

@@ -2,7 +2,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -223,13 +222,10 @@ std::string conclusion(const ExplainInput& in) {
       return name + ", " + length_text(in.margin_mm) + " beyond";
     case CollisionClass::kFake:
       return name + ", " + length_text(in.margin_mm) + " to spare";
-    case CollisionClass::kPotential: {
+    case CollisionClass::kPotential:
       if (in.no_inside) return name + ", a part is open and has no inside";
       if (in.at_crack) return name + ", a part is open here and its inside not known";
-      char text[48];
-      std::snprintf(text, sizeof text, ", P(interference) %.3g %%", 100.0 * in.probability);
-      return name + text;
-    }
+      return name + (in.probability ? ", " + probability_text(*in.probability) : "");
     case CollisionClass::kNone:
       break;
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/evaluation/verdict.h"
@@ -17,7 +18,7 @@ struct ExplainInput {
   const SurfaceBand::Face* face_b = nullptr;
   Interval tolerance_mm;  ///< sum of both
   DeviationGrade grade = DeviationGrade::kUnknown;
-  double probability = 0.0;
+  std::optional<Interval> probability;  ///< of potential, where it is known
   bool no_inside = false;
   bool at_crack = false;
   bool capped = false;

@@ -1,6 +1,5 @@
 #include "common/evaluation/interference_draws.h"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -30,19 +29,21 @@ double InterferenceEstimate::sampling_error(double p) const {
 InterferenceEstimate draw_interference(const InterferenceZones& zones, std::uint64_t seed,
                                        std::uint64_t draws) {
   MORTISE_CHECK(draws > 0, "an estimate needs draws");
-  const double lo_mm = zones.certain_mm.lo;
-  const double hi_mm = std::max(zones.possible_mm.lo, lo_mm);
-  // Overlap of the meshes with the least mesh error; what is left to hi is doubt about the mesh.
-  const double meshes_mm = lo_mm - zones.tolerance_a_mm.lo - zones.tolerance_b_mm.lo;
-  const double doubt_mm =
-      std::max(0.0, hi_mm - meshes_mm - zones.tolerance_a_mm.hi - zones.tolerance_b_mm.hi);
-  ZoneDraw offset_a(zones.tolerance_a_mm), offset_b(zones.tolerance_b_mm);
-  ZoneDraw doubt({0.0, doubt_mm});
+  const double modelled_mm = modelled_overlap_mm(zones).middle();
+  const ParallelAxes axes = zones.axes.value_or(ParallelAxes{});
+  ZoneDraw size_a(zones.size_a_mm), size_b(zones.size_b_mm);
+  ZoneDraw place_a({-0.5 * zones.position_a_mm, 0.5 * zones.position_a_mm});
+  ZoneDraw place_b({-0.5 * zones.position_b_mm, 0.5 * zones.position_b_mm});
   std::mt19937_64 random(seed);
   InterferenceEstimate estimate{draws, 0};
-  for (std::uint64_t i = 0; i < draws; ++i)
-    if (meshes_mm + offset_a(random) + offset_b(random) + doubt(random) > 0.0)
+  for (std::uint64_t i = 0; i < draws; ++i) {
+    const double x = axes.apart_mm + place_a(random) - place_b(random);
+    const double y = place_a(random) - place_b(random);
+    const double farther_mm = std::sqrt(x * x + y * y) - axes.apart_mm;
+    const double sizes_mm = size_a(random) + size_b(random);
+    if (modelled_mm + sizes_mm + (axes.nested ? farther_mm : -farther_mm) > 0.0)
       ++estimate.interfering;
+  }
   return estimate;
 }
 

@@ -1,15 +1,9 @@
 #pragma once
 #include <cstdint>
 
-#include "common/math/interval.h"
+#include "common/evaluation/interference.h"
 
 namespace mortise {
-
-/// Where the overlap of one region may lie, as interference_probability takes it. mm.
-struct InterferenceZones {
-  Interval certain_mm, possible_mm;         ///< overlap at the lower and at the upper offsets
-  Interval tolerance_a_mm, tolerance_b_mm;  ///< outward offsets of both faces
-};
 
 struct InterferenceEstimate {
   std::uint64_t draws = 0;
@@ -21,9 +15,10 @@ struct InterferenceEstimate {
   double sampling_error(double p) const;
 };
 
-/// The slow twin of interference_probability: draws both offsets and the doubt about the mesh
-/// (normal, +-3 sigma at the limits) and counts how often they interfere. The same seed and number
-/// of draws give the same count. draws > 0; O(draws).
+/// The slow twin of interference_probability: draws both sizes and both axes (normal, +-3 sigma at
+/// the limits, each component of an axis by itself), moves the axes and counts how often the parts
+/// interfere; the modelled overlap is the middle of its bracket. The same seed and number of draws
+/// give the same count. draws > 0; O(draws).
 InterferenceEstimate draw_interference(const InterferenceZones& zones, std::uint64_t seed,
                                        std::uint64_t draws);
 

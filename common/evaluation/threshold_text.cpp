@@ -1,6 +1,8 @@
 #include "common/evaluation/threshold_text.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "common/messages/length_text.h"
 
@@ -28,6 +30,22 @@ std::string fake_text(double fake_below_mm) {
 }
 std::string real_text(double real_above_mm) {
   return text_of(real_above_mm, kRealOverlap, kRealGap);
+}
+
+std::string probability_text(Interval p) {
+  // Nearer to never and to always nobody trusts a distribution.
+  constexpr double kLeast = 0.01, kMost = 99.9;
+  const double lo = 100.0 * p.lo, hi = 100.0 * p.hi;
+  char text[64];
+  if (lo < kLeast)
+    std::snprintf(text, sizeof text, "below %.3g %%", std::max(hi, kLeast));
+  else if (hi > kMost)
+    std::snprintf(text, sizeof text, "above %.3g %%", std::min(lo, kMost));
+  else if (hi - lo <= std::pow(10.0, std::floor(std::log10(hi)) - 2.0))  // one of the third digit
+    std::snprintf(text, sizeof text, "%.3g %%", 0.5 * (lo + hi));
+  else
+    std::snprintf(text, sizeof text, "%.3g to %.3g %%", lo, hi);
+  return std::string("P(interference) ") + text;
 }
 
 bool states_fake(const std::string& explanation, double fake_below_mm) {

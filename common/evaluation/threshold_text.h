@@ -10,6 +10,10 @@ namespace mortise {
 std::string fake_text(double fake_below_mm);
 std::string real_text(double real_above_mm);
 
+/// "P(interference) 31.4 %", "P(interference) 5.82 to 6.31 %" where it is not known to its digits,
+/// "P(interference) below 0.01 %". p within [0, 1].
+std::string probability_text(Interval p);
+
 /// Is the threshold known, or only a bracket that was left open when the class was decided? Known
 /// is what the explaining sentence tells, and zero.
 bool states_fake(const std::string& explanation, double fake_below_mm);

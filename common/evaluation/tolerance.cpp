@@ -83,7 +83,6 @@ FaceStatement with_position(const FaceStatement& statement) {
   const double half_mm = 0.5 * position.zone_mm;
   const Interval size = statement.offset_mm, stated = position.size_offset_mm;
   FaceStatement widened = statement;
-  widened.position = {};
   widened.source += std::string(statement.source.empty() ? "" : ", ") + "position Ø" +
                     size_text(position.zone_mm) + " mm";
   switch (position.condition) {

@@ -27,7 +27,7 @@ struct Position {
 struct FaceStatement {
   Interval offset_mm;
   std::string source;
-  Position position = {};  ///< not part of offset_mm, see with_position
+  Position position = {};  ///< part of offset_mm only after with_position
   /// A size in a system of limits is that of a round (or of a width): what recognition only took
   /// for round is round by it.
   bool is_size = false;
@@ -42,7 +42,7 @@ std::optional<FaceStatement> both_hold(const FaceStatement& a, const FaceStateme
 /// diameter T moves its surface by up to T/2 either way, in addition to its size (README, section
 /// 2). Under a material condition the zone grows with the size, so that one end stays at the
 /// virtual condition: at maximum material the outer end (pin MMC + T, hole MMC - T), at least
-/// material the inner one.
+/// material the inner one. Once a statement: its position stays, to be told.
 FaceStatement with_position(const FaceStatement& statement);
 
 /// Limits of size as offsets of the modelled surface of radius R (README, section 2):

@@ -24,9 +24,4 @@ struct ClassifyInput {
 };
 CollisionClass classify(const ClassifyInput& input);
 
-/// P(interference) when the offsets are independent and normal with +-3 sigma at their limits;
-/// ranks potential clashes, never changes a class (README, section 4). Closed form.
-double interference_probability(Interval certain_mm, Interval possible_mm, Interval tolerance_a_mm,
-                                Interval tolerance_b_mm);
-
 }  // namespace mortise

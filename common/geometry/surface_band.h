@@ -22,6 +22,13 @@ struct SurfaceBand {
     Interval deviation_mm;  ///< where `surface` is not set: [0, s], [-s, 0], [-s, s]; where it is
                             ///< set: bound of e(x) +- residual over all triangles of the face
     Interval tolerance_mm;  ///< outward positive, of the modelled surface
+    /// Diameter of the zone of the axis or centre, half of which is at either end of tolerance_mm.
+    double position_mm = 0.0;
+    bool position_grows = false;  ///< with the size, under a material condition
+    /// tolerance_mm without the position, which does not grow.
+    Interval size_mm() const {
+      return tolerance_mm + Interval{0.5 * position_mm, -0.5 * position_mm};
+    }
     DeviationGrade grade = DeviationGrade::kNominal;
     /// Of a face that is round only by estimate: how far its real surface may be off `surface`
     /// beside the residual, outward positive. Its flat facets are within.

@@ -7,6 +7,7 @@
 #include "common/base/constants.h"
 #include "common/evaluation/clash_line.h"
 #include "common/evaluation/explain.h"
+#include "common/evaluation/interference.h"
 #include "common/evaluation/open_bracket.h"
 #include "common/messages/length_text.h"
 #include "common/session/tick/merge_regions.h"
@@ -52,8 +53,34 @@ OverlapQuery overlap_query(const JudgementQuery& query) {
   return overlap;
 }
 
+bool surfaces_known(const OverlapRegion& region, const Faces& faces, const Verdict& verdict) {
+  return !region.at_crack && !region.estimated && region.witnesses_refused == 0 &&
+         verdict.grade != DeviationGrade::kDeclaredChord &&
+         verdict.grade != DeviationGrade::kEstimated && is_surface_known(faces.a, region.shape_a) &&
+         is_surface_known(faces.b, region.shape_b);
+}
+
+std::optional<Interval> probability_of(const JudgementQuery& query, const OverlapRegion& region,
+                                       bool no_inside, const Faces& faces, const Verdict& verdict) {
+  if (no_inside || !surfaces_known(region, faces, verdict)) return std::nullopt;
+  InterferenceZones zones{region.certain_mm,
+                          region.possible_mm,
+                          faces.a.size_mm(),
+                          faces.b.size_mm(),
+                          faces.a.position_mm,
+                          faces.b.position_mm,
+                          {}};
+  const double length_mm =
+      2.0 * std::min(query.a->solid->sphere().radius_mm, query.b->solid->sphere().radius_mm);
+  if (zones.position_a_mm + zones.position_b_mm > 0.0)
+    zones.axes = parallel_axes(
+        {&faces.a, &faces.b, query.motion_a.X_W1, query.motion_b.X_W1, region.point_W, length_mm});
+  return interference_probability(zones);
+}
+
 void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, bool no_inside,
-                     const Faces& faces, Verdict& verdict) {
+                     const Faces& faces, const std::optional<Interval>& probability,
+                     Verdict& verdict) {
   ExplainInput input;
   input.collision_class = verdict.collision_class;
   input.delta_mm = region.delta_mm;
@@ -63,7 +90,7 @@ void explain_verdict(const JudgementQuery& query, const OverlapRegion& region, b
   input.face_b = &faces.b;
   input.tolerance_mm = faces.a.tolerance_mm + faces.b.tolerance_mm;
   input.grade = verdict.grade;
-  input.probability = verdict.probability;
+  input.probability = probability;
   input.no_inside = no_inside;
   input.at_crack = region.at_crack;
   input.capped = region.capped;
@@ -90,9 +117,6 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
   verdict.margin_mm =
       finite_or_zero(margin_of(verdict.collision_class, region.delta_mm, thresholds));
   if (verdict.collision_class == CollisionClass::kReal) verdict.probability = 1.0;
-  if (verdict.collision_class == CollisionClass::kPotential)
-    verdict.probability = interference_probability(region.certain_mm, region.possible_mm,
-                                                   faces.a.tolerance_mm, faces.b.tolerance_mm);
   verdict.point_W = region.point_W;
   verdict.normal_W = region.normal_W;
   verdict.area_mm2 = region.area_mm2;
@@ -104,7 +128,12 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
   if (region.estimated) verdict.grade = worst_of(verdict.grade, DeviationGrade::kEstimated);
   verdict.face_a = faces.a.name;
   verdict.face_b = faces.b.name;
-  explain_verdict(query, region, no_inside, faces, verdict);
+  std::optional<Interval> probability;
+  if (verdict.collision_class == CollisionClass::kPotential) {
+    probability = probability_of(query, region, no_inside, faces, verdict);
+    verdict.probability = probability ? probability->middle() : kProbabilityUnknown;
+  }
+  explain_verdict(query, region, no_inside, faces, probability, verdict);
   return verdict;
 }
 

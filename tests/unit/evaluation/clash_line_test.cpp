@@ -58,6 +58,16 @@ TEST(ThresholdText, WhatTheSentenceLeavesOutIsNotKnown) {
   EXPECT_TRUE(states_fake(v));
 }
 
+TEST(ThresholdText, AProbabilityHasTheDigitsThatAreKnown) {
+  EXPECT_EQ(probability_text({0.31353, 0.31353}), "P(interference) 31.4 %");
+  EXPECT_EQ(probability_text({0.3135, 0.3144}), "P(interference) 31.4 %");
+  EXPECT_EQ(probability_text({0.058, 0.0631}), "P(interference) 5.8 to 6.31 %");
+  EXPECT_EQ(probability_text({3e-9, 3e-9}), "P(interference) below 0.01 %");
+  EXPECT_EQ(probability_text({1e-5, 0.002}), "P(interference) below 0.2 %");
+  EXPECT_EQ(probability_text({0.999994, 0.999994}), "P(interference) above 99.9 %");
+  EXPECT_EQ(probability_text({0.97, 1.0}), "P(interference) above 97 %");
+}
+
 TEST(ClashLine, SaysTheClassFirst) {
   Verdict v = verdict_of(CollisionClass::kReal, 0.0005, "of Ø20 H7/p6): real");
   EXPECT_EQ(clash_line({"cover", "bearing_out_upper", &v, "Ø20 H7/p6", 0, ""}),
@@ -79,10 +89,35 @@ TEST(ClashLine, OfEveryClass) {
   const Verdict may = verdict_of(CollisionClass::kPotential, 0.0035, "of Ø20 H7/k6): potential");
   EXPECT_EQ(clash_line({"a", "b", &may, "Ø20 H7/k6", 0, ""}),
             "POTENTIAL  a × b   P(interference) 31.4 % in H7/k6");
+  const Verdict about = verdict_of(CollisionClass::kPotential, 0.0035,
+                                   "potential, P(interference) 30 to 33 %; recognized");
+  EXPECT_EQ(clash_line({"a", "b", &about, "", 0, ""}),
+            "POTENTIAL  a × b   P(interference) 30 to 33 %");
   const Verdict open = verdict_of(CollisionClass::kPotential, 0.0,
                                   "the surfaces cross, but a part is open and has no inside");
   EXPECT_EQ(clash_line({"a", "b", &open, "", 0, ""}),
             "POTENTIAL  a × b   depth not known, a part is open");
+}
+
+TEST(ClashLine, WithoutAProbabilityItSaysHowDeep) {
+  Verdict v = verdict_of(CollisionClass::kPotential, 0.0, "real above 96.3 µm: potential");
+  v.probability = kProbabilityUnknown;
+  v.real_above_mm = 0.0963;
+  const auto said = [&] { return clash_line({"a", "b", &v, "", 0, ""}).substr(20); };
+  EXPECT_EQ(said(), "overlap 48.2 µm, real above 96.3 µm");
+  v.explanation = "potential";  // where the search stopped
+  EXPECT_EQ(said(), "overlap 48.2 µm");
+  v.delta_mm.hi = 3.0;
+  EXPECT_EQ(said(), "overlap at least 48.2 µm");
+  v.delta_mm.lo = -1.0;
+  EXPECT_EQ(said(), "overlap at most 3.000 mm");
+  v.delta_mm = {-0.02, -0.02};
+  v.explanation = "real above 96.3 µm: potential by estimate; mesh error estimated";
+  EXPECT_EQ(said(), "gap 20.0 µm, by estimate");
+  v.delta_mm.lo = -0.5;
+  EXPECT_EQ(said(), "gap at least 20.0 µm, by estimate");
+  v.explanation = "a part is open here, so what is inside it is not known: potential";
+  EXPECT_EQ(said(), "depth not known, a part is open");
 }
 
 TEST(ClashLine, ColumnsOfAListAreAligned) {

@@ -53,7 +53,7 @@ TEST(Explain, OtherSentences) {
   in.tolerance_mm = {-0.1, 0.1};
   in.thresholds = {-0.1, 0.1};
   in.grade = DeviationGrade::kPlanar;
-  in.probability = 0.25;
+  in.probability = Interval{0.25, 0.25};
   EXPECT_EQ(
       explain(in),
       "gap 50.0 µm; fake from a gap of 100.0 µm (-tolerance 100.0 µm of twice profile 0.1 mm), "
@@ -90,11 +90,12 @@ TEST(Explain, AnEdgeOfPlaneFacesIsNoMeshError) {
   in.tolerance_mm = face.tolerance_mm;
   in.delta_mm = {-0.15, -0.15};
   in.thresholds = {-0.1932, 0.1932};
-  in.probability = 0.25;
-  EXPECT_EQ(explain(in),
-            "gap 150.0 µm; fake from a gap of 193.2 µm (-sharp edge 143.2 µm - tolerance 50.0 µm of "
-            "±0.05 mm), real above 193.2 µm (sharp edge 143.2 µm + tolerance 50.0 µm): potential, "
-            "P(interference) 25 %");
+  in.probability = Interval{0.25, 0.25};
+  EXPECT_EQ(
+      explain(in),
+      "gap 150.0 µm; fake from a gap of 193.2 µm (-sharp edge 143.2 µm - tolerance 50.0 µm of "
+      "±0.05 mm), real above 193.2 µm (sharp edge 143.2 µm + tolerance 50.0 µm): potential, "
+      "P(interference) 25 %");
   // Within the accuracy of the overlap it is nothing.
   in.delta_mm = {0.01, 0.0101};
   in.thresholds = {-0.0499, 0.05};
@@ -144,12 +145,25 @@ TEST(Explain, ARealVerdictSaysWhatItsOwnThresholdIsMadeOf) {
 TEST(Explain, APotentialVerdictSaysWhatBothThresholdsAreMadeOf) {
   RoundFit fit = round_fit(CollisionClass::kPotential, {-0.0095, 0.0075}, "Ø20 H7", "Ø20 k6",
                            DeviationGrade::kDeclaredFeature);
-  fit.in.probability = 0.31353;
+  fit.in.probability = Interval{0.31353, 0.31353};
   EXPECT_EQ(
       sentence_of(fit),
       "overlap 48.2 µm; fake up to 40.7 µm (mesh error 48.2 µm exact - largest radial "
       "interference 7.5 µm of Ø20 H7/k6), real above 57.7 µm (mesh error 48.2 µm exact + largest "
       "radial clearance 9.5 µm): potential, P(interference) 31.4 %");
+}
+
+TEST(Explain, AProbabilityIsToldWhereItIsKnown) {
+  RoundFit fit = round_fit(CollisionClass::kPotential, {-0.0095, 0.0075}, "Ø20 H7", "Ø20 k6",
+                           DeviationGrade::kDeclaredFeature);
+  EXPECT_TRUE(sentence_of(fit).ends_with(": potential")) << sentence_of(fit);
+  fit.in.probability = Interval{0.058, 0.0631};
+  expect_in(sentence_of(fit), ": potential, P(interference) 5.8 to 6.31 %");
+  fit.in.delta_mm.hi += 1.0;  // an open bracket of the overlap: the offsets may be known
+  expect_in(sentence_of(fit), ": potential, P(interference) 5.8 to 6.31 %");
+  fit.in.estimated = true;
+  fit.in.probability = {};
+  expect_in(sentence_of(fit), ": potential by estimate;");
 }
 
 // Brackets that were left open have no middle to speak of: the terms follow the thresholds.

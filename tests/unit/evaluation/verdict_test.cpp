@@ -170,30 +170,5 @@ TEST(Verdict, PlanarBlocksWithProfileZones) {
   EXPECT_EQ(class_at(-0.2), CollisionClass::kNone);
 }
 
-double probability_of(const char* code) {
-  const auto fit = fit_of(code, 20.0, 10.0, 10.0);
-  const Interval sum = fit->a.offset_mm + fit->b.offset_mm;
-  return interference_probability({sum.lo, sum.lo}, {sum.hi, sum.hi}, fit->a.offset_mm,
-                                  fit->b.offset_mm);
-}
-
-TEST(Probability, NumbersOfTheStandardFits) {
-  EXPECT_NEAR(probability_of("H7/g6"), 2.76e-9, 0.01e-9);
-  EXPECT_NEAR(probability_of("H7/h6"), 1.81e-5, 0.01e-5);
-  EXPECT_NEAR(probability_of("H7/k6"), 0.31353, 1e-5);
-  EXPECT_NEAR(probability_of("H7/n6"), 0.99623, 1e-5);
-  EXPECT_NEAR(probability_of("H7/p6"), 0.9999939, 1e-7);
-  EXPECT_NEAR(probability_of("H8/f7"), 2.8e-13, 0.05e-13);
-}
-
-TEST(Probability, WithoutAnySpreadItIsAStep) {
-  EXPECT_EQ(interference_probability({0.1, 0.1}, {0.1, 0.1}, {}, {}), 1.0);
-  EXPECT_EQ(interference_probability({-0.1, -0.1}, {-0.1, -0.1}, {}, {}), 0.0);
-  EXPECT_EQ(interference_probability({0.0, 0.0}, {0.0, 0.0}, {}, {}), 0.5);
-  // Doubt about the mesh counts like one more tolerance.
-  EXPECT_NEAR(interference_probability({-0.3, -0.3}, {0.1, 0.1}, {}, {}),
-              0.5 * std::erfc(0.1 / (0.4 / 6.0) / std::sqrt(2.0)), 1e-12);
-}
-
 }  // namespace
 }  // namespace mortise

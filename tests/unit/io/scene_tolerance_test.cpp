@@ -182,6 +182,29 @@ TEST(Position, AddsToSizeAndIsNoTighterStatement) {
   expect_face(alone.world.parts[0].band, "bore", {-20, 20}, "position Ø0.04 mm");
 }
 
+// A hole Ø10 H7 and a pin Ø10 g6, coaxial as modelled. The numbers are those of 2e7 draws of both
+// diameters and both components of the axis, made apart from this program.
+TEST(Position, IsDrawnAsAPlaceOfTheAxis) {
+  const auto judged = [](const std::string& position) {
+    LoadedScene scene = load(
+        "name: pin in plate\nunits: mm\nparts:\n"
+        "  - name: plate\n    generator: {kind: ring, bore: 10, outer: 40, width: 20}\n"
+        "    features:\n      bore: {iso: H7, position: " +
+        position +
+        "}\n  - name: pin\n    generator: {kind: dowel, diameter: 10, length: 40, phase_deg: 5}\n"
+        "    moving: true\n    features:\n      journal: {iso: g6}\n");
+    Scratch scratch;
+    const JudgeReport report = judge_world(scene.world, scratch, false);
+    EXPECT_EQ(report.pairs.size(), 1U);
+    const Verdict verdict = report.pairs.at(0).verdicts.at(0);
+    EXPECT_EQ(verdict.collision_class, CollisionClass::kPotential) << verdict.explanation;
+    return verdict;
+  };
+  EXPECT_NEAR(judged("0.02").probability, 0.05976, 0.001) << judged("0.02").explanation;
+  EXPECT_NEAR(judged("0.03").probability, 0.25350, 0.001) << judged("0.03").explanation;
+  EXPECT_FALSE(has_probability(judged("{zone: 0.03, at: mmc}")));
+}
+
 // At maximum material the outer ends stay at the virtual conditions, hole MMC - T and pin MMC + T;
 // the other ends get the bonus: what the size leaves of its tolerance.
 TEST(Position, UnderAMaterialConditionOneEndIsTheVirtualCondition) {

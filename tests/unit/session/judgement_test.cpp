@@ -124,6 +124,52 @@ TEST(Judgement, PotentialAndRealFits) {
   EXPECT_GE(v.gpd_mm.hi, v.gpd_mm.lo);
 }
 
+// Sizes and axes are drawn, mesh errors are not.
+TEST(Judgement, AProbabilityIsKnownOnlyOfKnownSurfaces) {
+  const auto p_of = [](FitPair& pair) {
+    const Judgement judgement = pair.judge();
+    EXPECT_EQ(judgement.verdicts.size(), 1U);
+    const Verdict& v = judgement.verdicts.at(0);
+    EXPECT_EQ(v.collision_class, CollisionClass::kPotential) << v.explanation;
+    EXPECT_EQ(has_probability(v), v.explanation.find("P(") != std::string::npos) << v.explanation;
+    return v.probability;
+  };
+  FitPair pair("H7/k6");
+  EXPECT_NEAR(p_of(pair), 0.31353, 0.001);
+  FitPair refused = pair;
+  refused.a.band.faces[1].grade = DeviationGrade::kEstimated;
+  EXPECT_EQ(p_of(refused), kProbabilityUnknown);
+  // Facets taken for the shaft, and nothing but a bound of their error.
+  for (const DeviationGrade grade : {DeviationGrade::kNominal, DeviationGrade::kDeclaredChord}) {
+    FitPair faceted = pair;
+    faceted.a.band = uniform_band({}, {-0.06, 0.01}, grade);
+    EXPECT_EQ(p_of(faceted), kProbabilityUnknown);
+  }
+  FitPair untold = pair;  // nothing declared, recognized to 2 µm
+  for (SurfaceBand* band : {&untold.a.band, &untold.b.band}) {
+    band->faces[1].tolerance_mm = {};
+    band->faces[1].grade = DeviationGrade::kRecognizedFeature;
+    band->faces[1].residual_mm = 0.001;
+  }
+  EXPECT_EQ(p_of(untold), kProbabilityUnknown);
+}
+
+TEST(Judgement, APositionIsDrawnWhereTwoCylindersAreParallel) {
+  FitPair pair("H7/g6");
+  SurfaceBand::Face& bore = pair.b.band.faces[1];
+  bore.position_mm = 0.03;
+  bore.tolerance_mm = bore.tolerance_mm + Interval{-0.015, 0.015};
+  pair.b.band.largest_offset_mm = 0.015;
+  const Judgement drawn = pair.judge();
+  ASSERT_EQ(drawn.verdicts.size(), 1U);
+  // Radial clearance 3.5 to 20.5 µm, sigma of the sizes 2.06, of both components of the axis 5 µm.
+  const double c = 12.0, s = std::hypot(10.5, 6.5) / 6, both = std::hypot(s, 5.0);
+  const double p = 5.0 / both * std::exp(-0.5 * c * c / both / both);
+  EXPECT_NEAR(drawn.verdicts[0].probability, p, 0.002) << drawn.verdicts[0].explanation;
+  bore.position_grows = true;
+  EXPECT_EQ(pair.judge().verdicts.at(0).probability, kProbabilityUnknown);
+}
+
 TEST(Judgement, NominalBlocksHaveGpdOnlyWhenAsked) {
   FitPair pair("H7/g6");
   const SolidPtr cube = solid(box({.5, .5, .5}));
