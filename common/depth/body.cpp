@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/base/constants.h"
 
@@ -21,11 +22,9 @@ constexpr double kChordMargin = 1.1;
 // Planes that differ by less than this share of a triangle's size are one plane.
 constexpr double kFlatShare = 1e-9;
 
-// Torus faces are bounded by their triangles and the band's deviation: the distance to a torus is
-// not convex.
-bool has_convex_distance(const Surface& surface) {
-  return surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone ||
-         surface.kind == SurfaceKind::kSphere;
+// A plane is what its triangles are.
+bool is_round(const Surface& surface) {
+  return surface.kind != SurfaceKind::kPlane && surface.kind != SurfaceKind::kUnknown;
 }
 
 // The way around a corner ends at an open edge, or at one of many triangles; so many planes and
@@ -85,6 +84,84 @@ class LevelEnd {
   std::uint16_t face_;
   const Surface& surface_;
   double sign_, end_, off_mm_, flat_mm_;
+};
+
+// A gap between two triangles that is no more than the rounding of their angles.
+constexpr double kNoGap_rad = 1e-9;
+
+// The angles that arcs cover together: all but the widest gap.
+FaceArc covered_by(std::vector<Interval> arcs) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  std::sort(arcs.begin(), arcs.end(),
+            [](const Interval& a, const Interval& b) { return a.lo < b.lo; });
+  double reached = -kTurn;
+  for (const Interval& arc : arcs) reached = std::max(reached, arc.hi - kTurn);
+  Interval gap{0.0, kNoGap_rad};
+  for (const Interval& arc : arcs) {
+    if (arc.lo - reached > gap.width()) gap = {reached, arc.lo};
+    reached = std::max(reached, arc.hi);
+  }
+  if (!(gap.width() > kNoGap_rad)) return {};
+  return {gap.middle() + std::numbers::pi, 0.5 * (kTurn - gap.width())};
+}
+
+// Directions of a torus that a face has, by its triangles.
+class TorusArcs {
+ public:
+  TorusArcs(const Body& body, std::uint16_t face)
+      : body_(body),
+        face_(face),
+        torus_(*body.band->faces[face].surface),
+        e1_(torus_.axis.unitOrthogonal()),
+        e2_(torus_.axis.cross(e1_)) {
+    for (std::uint32_t t = 0; t < body.mesh->triangles.size(); ++t)
+      if (body.face_index(t) == face) add(t);
+  }
+
+  void tell(FaceEnds& ends) {
+    ends.around_axis = covered_by(std::move(turns_));
+    ends.around_tube = covered_by(std::move(tubes_));
+    ends.level[0] = ends.level[1] = square_;
+  }
+
+ private:
+  // A triangle spans less than half a turn.
+  static Interval arc_of(const std::array<double, 3>& rad) {
+    Interval arc{rad[0], rad[0]};
+    for (const double a : {rad[1], rad[2]}) {
+      const double from = std::remainder(a - rad[0], 2.0 * std::numbers::pi);
+      arc = hull(arc, {rad[0] + from, rad[0] + from});
+    }
+    return arc;
+  }
+
+  void add(std::uint32_t t) {
+    std::array<double, 3> turn, tube;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 d = body_.mesh->corner(t, k) - torus_.point;
+      const double z = d.dot(torus_.axis);
+      turn[k] = std::atan2(d.dot(e2_), d.dot(e1_));
+      tube[k] = std::atan2(z, (d - z * torus_.axis).norm() - torus_.radius_mm);
+    }
+    turns_.push_back(arc_of(turn));
+    tubes_.push_back(arc_of(tube));
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t other = body_.solid->topology().neighbor[t][k];
+      if (other != Topology::kNone && body_.face_index(other) == face_) continue;
+      const int next = (k + 1) % 3;
+      square_ = square_ && (is_same(turn[k], turn[next]) || is_same(tube[k], tube[next]));
+    }
+  }
+  static bool is_same(double a, double b) {
+    return std::fabs(std::remainder(a - b, 2.0 * std::numbers::pi)) <= kNoGap_rad;
+  }
+
+  const Body& body_;
+  std::uint16_t face_;
+  const Surface& torus_;
+  Vec3 e1_, e2_;
+  std::vector<Interval> turns_, tubes_;
+  bool square_ = true;  // its border runs along and across the tube
 };
 
 }  // namespace
@@ -252,7 +329,7 @@ std::int32_t Body::find_faces_of_children(std::int32_t child) const {
 }
 
 const Surface* Body::surface_of(const SurfaceBand::Face& face, Layer layer) {
-  if (layer == Layer::kMesh || !face.surface || !has_convex_distance(*face.surface)) return nullptr;
+  if (layer == Layer::kMesh || !face.surface || !is_round(*face.surface)) return nullptr;
   return &*face.surface;
 }
 
@@ -392,11 +469,13 @@ const FaceEnds& Body::ends_of(std::uint16_t face) const {
         ends[f].extent_mm.hi = std::max(ends[f].extent_mm.hi, z);
       }
     }
-    for (std::uint16_t f = 0; f < ends.size(); ++f)
-      if (const auto& surface = band->faces[f].surface;
-          surface && surface->kind == SurfaceKind::kSphere)
+    for (std::uint16_t f = 0; f < ends.size(); ++f) {
+      const auto& surface = band->faces[f].surface;
+      if (surface && surface->kind == SurfaceKind::kSphere)
         for (const bool upper : {false, true})
           ends[f].level[upper] = LevelEnd(*this, f, upper).found();
+      if (surface && surface->kind == SurfaceKind::kTorus) TorusArcs(*this, f).tell(ends[f]);
+    }
   }
   return ends[face];
 }

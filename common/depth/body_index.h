@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,25 @@
 
 namespace mortise {
 
+/// A range of angles, rad: middle +- half. Of a torus about its axis they are counted from
+/// axis.unitOrthogonal() towards axis x that, of the tube from the way off the axis towards the
+/// axis.
+struct FaceArc {
+  double middle_rad = 0.0;
+  double half_rad = std::numbers::pi;
+  bool whole() const { return half_rad >= std::numbers::pi; }
+};
+
 /// Where a face with a surface ends along the axis of that surface, from its point, mm.
 struct FaceEnds {
   Interval extent_mm;  ///< of its corners
   /// At the lower and the upper end: a whole circle of corners in one plane that ends the face, so
-  /// that the true face goes no farther either.
+  /// that the true face goes no farther either. Of a torus: its border runs along and across the
+  /// tube.
   bool level[2] = {false, false};
+  /// Of a torus: which directions from its axis, and from its centre circle, the face has. Whole
+  /// turns where it goes all around.
+  FaceArc around_axis = {}, around_tube = {};
 };
 
 /// What depth derives from one part and its band, and reuses at every pose. Body fills it in when

@@ -281,7 +281,8 @@ bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
     // Far behind a wall there may be anything: then the face has to be the nearest one.
     const Surface& surface = *body.band->faces[pair.face[i]].surface;
     const Vec3 from = x - surface.point;
-    const double radius = surface.kind == SurfaceKind::kCone
+    const double radius = surface.kind == SurfaceKind::kTorus ? surface.tube_radius_mm
+                          : surface.kind == SurfaceKind::kCone
                               ? (from - from.dot(surface.axis) * surface.axis).norm()
                               : surface.radius_mm;
     return std::fabs(pair.overlap.hi_mm) <= kShallowShare * radius ||
@@ -312,6 +313,13 @@ namespace {
 KnownOverlaps::Row row_of(const PairFrame& pair, const KnownFacePair& known, bool told) {
   KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
   row.told = told;
+  // Of a torus the ends are angles: what is known of it holds everywhere, or of its faces alone.
+  if (std::isfinite(known.overlap.continued_hi_mm)) {
+    row.within_mm = row.along_mm = known.overlap.continued_hi_mm;
+    const bool all = known.overlap.near_hi_mm >= known.overlap.continued_hi_mm;
+    row.holds_along_mm[0] = row.holds_along_mm[1] = all ? kEverywhere_mm : Interval{1.0, -1.0};
+    return row;
+  }
   for (int i = 0; i < 2; ++i) {
     const Surface& surface = *pair.bodies[i].band->faces[known.face[i]].surface;
     if (surface.kind == SurfaceKind::kSphere && !surface.inward) continue;  // all of the ball

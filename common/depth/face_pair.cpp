@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/depth/round_pair.h"
+#include "common/depth/tube_reach.h"
 
 namespace mortise {
 namespace {
@@ -117,10 +118,14 @@ FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surfac
   for (std::size_t i = 0; i < body.band->faces.size(); ++i)
     if (i != face)
       moved_mm = std::max(moved_mm, Body::offset_of(body.band->faces[i], Layer::kUpper));
-  FaceExtent extent{ends.extent_mm.lo, ends.extent_mm.hi, {moved_mm, moved_mm}};
+  FaceExtent extent{ends.extent_mm.lo,
+                    ends.extent_mm.hi,
+                    {moved_mm, moved_mm},
+                    ends.around_axis,
+                    ends.around_tube};
   // The pole of a sphere need not be a corner.
   const Interval& off = body.band->faces[face].deviation_mm;
-  if (surface.kind == SurfaceKind::kSphere)
+  if (surface.kind == SurfaceKind::kSphere || surface.kind == SurfaceKind::kTorus)
     for (int end = 0; end < 2; ++end)
       if (!ends.level[end])
         extent.beyond_mm[end] = std::max({moved_mm, std::fabs(off.lo), std::fabs(off.hi)});
@@ -145,6 +150,8 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
                                                  const Surface& b, const FaceExtent& extent_b,
                                                  const Pose& X_BA, double margin_mm,
                                                  const std::array<PairOffsets, 2>* layers) {
+  if (a.kind == SurfaceKind::kTorus || b.kind == SurfaceKind::kTorus)
+    return tube_overlap(a, extent_a, b, extent_b, X_BA, margin_mm, layers);
   if (a.kind != b.kind || a.inward == b.inward) return std::nullopt;
   const Surface a_B = moved(a, X_BA);
   const Surface &convex = a.inward ? b : a_B, &hollow = a.inward ? a_B : b;

@@ -17,6 +17,7 @@ struct FaceExtent {
   double lo_mm = 0.0, hi_mm = 0.0;
   /// By which the face may go on beyond its outermost corners, at the lower and the upper end.
   double beyond_mm[2] = {0.0, 0.0};
+  FaceArc around_axis = {}, around_tube = {};  ///< of a torus
 };
 FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surface);
 
@@ -24,11 +25,14 @@ FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surfac
 /// of -(s_a + s_b). Frame B.
 struct FacePairOverlap {
   double lo_mm = 0.0, hi_mm = 0.0;
-  double near_hi_mm = 0.0;      ///< upper end over all that is within the margin of the faces' ends
-  Vec3 point_B = Vec3::Zero();  ///< on the surface of the convex face, where lo is reached
+  double near_hi_mm = 0.0;  ///< upper end over all that is within the margin of the faces' ends
+  Vec3 point_B = Vec3::Zero();    ///< on the surface of the convex face, where lo is reached
   Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
   /// lo and hi for each of the layers asked for (see there), without its offsets.
   std::array<Interval, 2> of_layer_mm = {};
+  /// The same of both surfaces continued: no point inside the one is deeper below the other. Known
+  /// of tubes.
+  double continued_hi_mm = std::numeric_limits<double>::infinity();
 };
 
 /// Outward offsets of A's and B's surface in a layer, mm.
@@ -36,12 +40,12 @@ struct PairOffsets {
   double a_mm = 0.0, b_mm = 0.0;
 };
 
-/// Closed form for a shaft in a bore, a cone in a cone (nearly parallel axes; see round_reach) and
-/// a ball in a socket; nothing for other pairs. `margin_mm` is how far beyond its end a face still
-/// counts as near. Nothing either where no point of the convex face is within the
-/// margin; lo and hi are -infinity where none is within both faces' ends.
-/// `layers`, may be null: the brackets are to hold when the offsets of these layers are added; a
-/// ball at the rim of its socket is not offset alike.
+/// Closed form for a shaft in a bore, a cone in a cone (nearly parallel axes; see round_reach), a
+/// ball in a socket, and a torus with any round surface (see tube_reach); nothing for other pairs.
+/// `margin_mm` is how far beyond its end a face still counts as near. Nothing either where no point
+/// of the convex face is within the margin; lo and hi are -infinity where none is within both
+/// faces' ends. `layers`, may be null: the brackets are to hold when the offsets of these layers
+/// are added; a ball at the rim of its socket is not offset alike.
 std::optional<FacePairOverlap> face_pair_overlap(
     const Surface& a, const FaceExtent& extent_a, const Surface& b, const FaceExtent& extent_b,
     const Pose& X_BA, double margin_mm, const std::array<PairOffsets, 2>* layers = nullptr);

@@ -12,6 +12,13 @@ constexpr double kLeastFacing = 1e-3;
 }  // namespace
 
 double depth_below_facing_tangent(const Patch& patch, const Surface& surface) {
+  // A torus lies below any plane that its hull does: the one that faces the patch.
+  if (surface.kind == SurfaceKind::kTorus) {
+    const Patch::Circle hull{surface.point, surface.axis, surface.radius_mm,
+                             surface.tube_radius_mm};
+    const Vec3 facing = -patch.normal;
+    return patch.depth_below_plane(facing, surface.point + hull.reach_mm(facing) * facing, 0.0);
+  }
   const int n = patch.count;
   if (n <= 0) return std::numeric_limits<double>::infinity();
   std::array<Vec3, Patch::kMost> across;

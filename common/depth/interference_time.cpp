@@ -65,7 +65,9 @@ bool later(const Item& a, const Item& b) {
   return a.order > b.order;
 }
 
+// Of a tube there is one at a pose, but it is not convex in the displacement.
 bool has_closed_form(const Surface& a, const Surface& b) {
+  if (a.kind == SurfaceKind::kTorus || b.kind == SurfaceKind::kTorus) return false;
   return a.inward != b.inward && (a.kind == b.kind || is_round_in_bore(a, b));
 }
 

@@ -25,7 +25,7 @@ constexpr double kFlat = 1e-9;
 double clamp01(double x) { return std::clamp(x, 0.0, 1.0); }
 
 Vec3 around(const Surface& surface, const Vec3& d) {
-  if (surface.kind == SurfaceKind::kSphere) return d;
+  if (surface.kind == SurfaceKind::kSphere || surface.kind == SurfaceKind::kTorus) return d;
   return d - d.dot(surface.axis) * surface.axis;
 }
 
@@ -121,6 +121,17 @@ Vec3 crossing(const Cut& cut, Vec3 kept, Vec3 gone) {
   return gone;
 }
 
+// Of the material around a hollow tube a figure with all corners in the tube may still have a part:
+// that is where the tube bends around it.
+bool bends_around(const Cut& cut, const Polygon& polygon) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    if (cut.outside(a) > 0.0 && cut.outside(b) > 0.0 && cut.outside(0.5 * (a + b)) <= 0.0)
+      return true;
+  }
+  return false;
+}
+
 // The hull of the result contains what the cut leaves. A bore's inside is round and leaves a hollow
 // rim, whose hull is spanned by its ends; a shaft or a plane cuts along the tangent plane below
 // each point that is outside.
@@ -154,7 +165,8 @@ bool cut_polygon(std::span<const Cut> cuts, Polygon& polygon) {
   for (const Cut& cut : cuts) {
     bool any = false;
     for (const Vec3& x : polygon) any |= cut.outside(x) > 0.0;
-    if (!any) continue;
+    const bool tube = cut.surface != nullptr && cut.surface->kind == SurfaceKind::kTorus;
+    if (!any || (tube && (!cut.surface->inward || bends_around(cut, polygon)))) continue;
     Polygon left = cut_by(cut, polygon);
     if (left.size() > kMostCorners) continue;
     was_cut = true;
@@ -234,8 +246,46 @@ void set_curvature_of_cone(const Surface& cone, const Piece& piece, double inwar
   shape.slip_mm = radius_mm * 0.5 * (most - least) * turn_rad / ((1.0 - most) * cosine);
 }
 
+// Of a torus over a piece with corners near it: across the centre circle it bends by 1 / tube
+// radius, around the axis by no more than 1 / distance from the axis, on the far side outward and
+// on the near side inward. Edges that run around the axis dip towards it, too.
+void set_curvature_of_torus(const Surface& torus, const Piece& piece, double inward_mm,
+                            PieceShape& shape) {
+  constexpr double kMargin = 1.25;  // for the piece's own distance from the surface
+  std::array<double, 3> out, up;
+  double longest = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 d = piece.corners[k] - torus.point;
+    up[k] = d.dot(torus.axis);
+    out[k] = (d - up[k] * torus.axis).norm();
+    nearest = std::min(nearest, out[k]);
+    longest = std::max(longest, (piece.corners[(k + 1) % 3] - piece.corners[k]).norm());
+  }
+  shape.bulges_outward = !torus.inward;
+  shape.bulges_both = true;
+  // An edge between points that far from the axis comes no nearer to it than this.
+  const double tube = torus.tube_radius_mm;
+  const double edge2 = std::max(0.0, nearest * nearest - 0.25 * longest * longest);
+  const double dip = nearest - std::sqrt(edge2);
+  double across = 0.0;
+  for (int k = 0; k < 3; ++k)
+    across = std::max(across, std::hypot(out[(k + 1) % 3] - out[k], up[(k + 1) % 3] - up[k]));
+  across += dip;
+  const double closest = std::max(nearest - dip - 0.25 * across, torus.radius_mm - tube);
+  if (!(closest > 0.0) || across > 2.0 * tube) {
+    shape.turn_rad = std::numbers::pi;
+    shape.bulge_mm = 2.0 * (torus.radius_mm + tube + inward_mm);
+    return;
+  }
+  shape.turn_rad = kMargin * (longest / closest + across / tube);
+  shape.bulge_mm = kMargin / 6.0 * (longest * longest / closest + across * across / tube) *
+                   (1.0 + inward_mm / tube);
+}
+
 void set_curvature(const Surface& surface, const Piece& piece, const Vec3& middle, double inward_mm,
                    PieceShape& shape) {
+  if (surface.kind == SurfaceKind::kTorus)
+    return set_curvature_of_torus(surface, piece, inward_mm, shape);
   if (surface.kind == SurfaceKind::kCone)
     return set_curvature_of_cone(surface, piece, inward_mm, shape);
   const double width = width_around(surface, piece);
@@ -253,8 +303,13 @@ void set_curvature(const Surface& surface, const Piece& piece, const Vec3& middl
 void add_circles(const Surface& surface, double offset, const Piece& piece,
                  std::span<const Cut> cuts, PieceShape& shape) {
   if (surface.kind == SurfaceKind::kSphere) {
-    shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm + offset,
-                                           true};
+    shape.circles[shape.circle_count++] = {surface.point, surface.axis, 0.0,
+                                           surface.radius_mm + offset};
+    return;
+  }
+  if (surface.kind == SurfaceKind::kTorus) {
+    shape.circles[shape.circle_count++] = {surface.point, surface.axis, surface.radius_mm,
+                                           surface.tube_radius_mm + offset};
     return;
   }
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -267,22 +322,22 @@ void add_circles(const Surface& surface, double offset, const Piece& piece,
     for (const Cut& cut : cuts) shorten(surface, surface.radius_mm + offset, cut, lo, hi);
     for (const double z : {lo, hi})
       shape.circles[shape.circle_count++] = {surface.point + z * surface.axis, surface.axis,
-                                             surface.radius_mm + offset, false};
+                                             surface.radius_mm + offset};
     return;
   }
   const double sine = std::sin(surface.half_angle_rad), cosine = std::cos(surface.half_angle_rad);
   if (!(lo > 0.0)) return;  // around the apex
   for (const double z : {lo, hi})
-    shape.circles[shape.circle_count++] = {
-        surface.point + (z - offset * sine) * surface.axis, surface.axis,
-        std::max(0.0, z * sine / cosine + offset * cosine), false};
+    shape.circles[shape.circle_count++] = {surface.point + (z - offset * sine) * surface.axis,
+                                           surface.axis,
+                                           std::max(0.0, z * sine / cosine + offset * cosine)};
 }
 
 void add_circles(const PieceShape& shape, const Pose& X_KS, Patch& patch) {
   for (int i = 0; i < shape.circle_count; ++i) {
     const Patch::Circle& circle = shape.circles[i];
     patch.circles[patch.circle_count++] = {X_KS * circle.center, X_KS.q * circle.axis,
-                                           circle.radius_mm, circle.ball};
+                                           circle.radius_mm, circle.ball_mm};
   }
 }
 
@@ -299,6 +354,7 @@ Patch placed(const PieceShape& shape, const Pose& X_KS) {
   patch.slip_mm = shape.slip_mm;
   patch.spread_mm = shape.spread_mm;
   patch.bulges_outward = shape.bulges_outward;
+  patch.bulges_both = shape.bulges_both;
   patch.center = X_KS * shape.center;
   patch.normal = X_KS.q * shape.normal;
   patch.plus_count = shape.plus_count;
@@ -355,6 +411,11 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
   return shape;
 }
 
+double Patch::Circle::reach_mm(const Vec3& along) const {
+  const double off = along.dot(axis);
+  return ball_mm + radius_mm * std::sqrt(std::max(0.0, 1.0 - off * off));
+}
+
 double Patch::across(const Vec3& facet_normal, double facet_turn_rad) const {
   if (axis.isZero(0.0)) return 1.0;
   const double along = facet_normal.dot(axis);
@@ -378,7 +439,9 @@ double Patch::bulge_beyond(const Vec3& facet_normal, double facet_turn_rad) cons
                            : across(facet_normal, facet_turn_rad);
   const Vec3 bulging =
       cone ? Vec3((normal - normal.dot(cone_axis) * cone_axis).stableNormalized()) : normal;
-  const double facing = (bulges_outward ? -1.0 : 1.0) * bulging.dot(facet_normal);
+  const double along_facet = bulging.dot(facet_normal);
+  const double facing =
+      bulges_both ? std::fabs(along_facet) : (bulges_outward ? -along_facet : along_facet);
   return bulge_mm * std::min(most, clamp01(facing + turn_rad + facet_turn_rad)) + slip_mm * most;
 }
 
@@ -402,10 +465,8 @@ double Patch::depth_below_plane(const Vec3& facet_normal, const Vec3& point,
   double by_circles = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < circle_count; ++i) {
     const Circle& circle = circles[i];
-    const double along = facet_normal.dot(circle.axis);
-    const double reach = circle.ball ? 1.0 : std::sqrt(std::max(0.0, 1.0 - along * along));
-    by_circles =
-        std::max(by_circles, circle.radius_mm * reach - facet_normal.dot(circle.center - point));
+    by_circles = std::max(by_circles,
+                          circle.reach_mm(facet_normal) - facet_normal.dot(circle.center - point));
   }
   // The hull of the points bulges; the circles do not.
   const double outward = spread_mm + neighbours_beyond(facet_normal, facet_turn_rad);

@@ -21,7 +21,8 @@ struct Patch {
   Vec3 normal = Vec3::Zero();  ///< outward normal of the surface
   double turn_rad = 0.0;       ///< the normal turns by no more than this over the patch
   double bulge_mm = 0.0;       ///< the surface leaves the hull by no more than this ...
-  bool bulges_outward = true;  ///< ... outward (convex face) or inward (concave)
+  bool bulges_outward = true;  ///< ... outward (convex face) or inward (concave) ...
+  bool bulges_both = false;    ///< ... or both ways (torus)
   double slip_mm = 0.0;        ///< and sideways on a cone, across its axis
   double spread_mm = 0.0;      ///< and in any direction (paths of rotation, neighbours left out)
   static constexpr int kMostPlus = 1 + static_cast<int>(Body::kMostSharp);
@@ -38,8 +39,10 @@ struct Patch {
   /// ends of an interval.
   struct Circle {
     Vec3 center = Vec3::Zero(), axis = Vec3::UnitZ();
-    double radius_mm = 0.0;  ///< about the axis; of a ball when `ball`
-    bool ball = false;
+    double radius_mm = 0.0;  ///< about the axis
+    double ball_mm = 0.0;    ///< of balls all along the circle: of a ball, of a torus
+    /// How far it reaches along a unit vector, from its centre.
+    double reach_mm(const Vec3& along) const;
   };
   std::array<Circle, 4> circles;
   int circle_count = 0;
@@ -80,7 +83,8 @@ struct PieceShape {
   std::vector<Vec3> polygon;
   Vec3 center = Vec3::Zero(), normal = Vec3::Zero(), axis = Vec3::Zero();
   double turn_rad = 0.0, bulge_mm = 0.0, slip_mm = 0.0, spread_mm = 0.0;
-  bool bulges_outward = true, plus_is_own = false, on_cylinder = false, on_cone = false;
+  bool bulges_outward = true, bulges_both = false, plus_is_own = false, on_cylinder = false,
+       on_cone = false;
   std::array<Patch::Plus, Patch::kMostPlus> plus;
   int plus_count = 0;
   std::array<Patch::Circle, 2> circles;

@@ -66,6 +66,23 @@ double turn_of(const Surface& surface, const Patch& patch) {
   return std::min(1.0, surface.curvature_bound(patch.center) * patch.radius_mm);
 }
 
+// A cylinder or cone lies within the hull of its end circles.
+bool has_straight_lines(const Surface& surface) {
+  return surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone;
+}
+
+// The distance to a torus is convex but for its bend around the axis, inside its centre circle, of
+// no more than 1 / distance from the axis: by so much it may be off any tangent or chord over the
+// patch.
+double concave_bend_mm(const Surface& surface, const Patch& patch) {
+  if (surface.kind != SurfaceKind::kTorus) return 0.0;
+  const Vec3 from = patch.center - surface.point;
+  const double nearest_mm = (from - from.dot(surface.axis) * surface.axis).norm() - patch.radius_mm;
+  if (nearest_mm >= surface.radius_mm) return 0.0;
+  return nearest_mm > 0.0 ? 0.5 * patch.radius_mm * patch.radius_mm / nearest_mm
+                          : std::numeric_limits<double>::infinity();
+}
+
 // Does a triangle of k lie in the plane of the wall?
 bool is_in_plane(const Body& k, std::uint32_t t, const Facet& wall, double rounding_mm) {
   return k.normal(t).dot(wall.normal) > 1.0 - kOnePlane &&
@@ -210,15 +227,16 @@ class Neighbourhood {
       return facet.offset_mm + patch_.depth_below_plane(facet.normal, facet.point, 0.0);
     const Surface& surface = *facet.surface;
     double deepest = -std::numeric_limits<double>::infinity();
-    if (surface.inward) {  // the distance is convex
+    const double bend_mm = concave_bend_mm(surface, patch_);
+    if (surface.inward) {  // the distance is convex, but for that bend
       for (int i = 0; i < patch_.count; ++i)
         deepest = std::max(deepest, -surface.signed_distance_mm(patch_.points[i]));
-      deepest += patch_.beyond(facet.normal, turn_of(surface, patch_));
+      deepest += patch_.beyond(facet.normal, turn_of(surface, patch_)) + bend_mm;
     } else {  // it lies below each of its tangent planes
-      deepest = patch_.depth_below_plane(facet.normal, facet.point, 0.0);
+      deepest = patch_.depth_below_plane(facet.normal, facet.point, 0.0) + bend_mm;
       if (deepest + facet.offset_mm > std::min(0.0, proof_.limit_mm))
         deepest = std::min(deepest, depth_below_facing_tangent(patch_, surface));
-      if (surface.kind != SurfaceKind::kSphere && deepest + facet.offset_mm > proof_.limit_mm)
+      if (has_straight_lines(surface) && deepest + facet.offset_mm > proof_.limit_mm)
         deepest = std::min(deepest, patch_.depth_at_rims_mm(surface));
     }
     return deepest + facet.offset_mm;
@@ -265,7 +283,7 @@ class Neighbourhood {
   bool round_face_below(std::uint32_t t, const Facet& wall) const {
     const SurfaceBand::Face& face = k_.face(t);
     const Surface* round = Body::surface_of(face, proof_.layer);
-    if (round == nullptr || round->inward || round->kind == SurfaceKind::kSphere) return false;
+    if (round == nullptr || round->inward || !has_straight_lines(*round)) return false;
     const Surface* shaft = wall.surface;
     if (shaft != nullptr && (shaft->inward || shaft->kind != SurfaceKind::kCylinder)) return false;
     const Interval& extent = k_.extent_of(k_.face_index(t));
@@ -294,7 +312,8 @@ class Neighbourhood {
       // Faces that end on a bore end on its true circle; their triangles end on chords of it.
       const double chord = std::max(0.0, -k_.face(wall.triangle).deviation_mm.lo);
       allowed += chord;
-      if (wall.surface->inward && proof_.layer != Layer::kMesh) {
+      const bool convex = !wall.surface->inward && wall.surface->kind != SurfaceKind::kTorus;
+      if (!convex && proof_.layer != Layer::kMesh) {
         const double rise = rise_above(t, c, wall);
         return highest + rise <= allowed &&
                wall.surface->stays_below_mm(c[0], c[1], c[2], allowed - rise);
@@ -318,7 +337,9 @@ class Neighbourhood {
     Facet facet;
     facet.triangle = t;
     facet.surface = Body::surface_of(k_.face(t), proof_.layer);
-    if (facet.surface != nullptr && !facet.surface->inward) return std::nullopt;
+    if (facet.surface != nullptr &&
+        (!facet.surface->inward || facet.surface->kind == SurfaceKind::kTorus))
+      return std::nullopt;
     facet.offset_mm = Body::offset_of(k_.face(t), proof_.layer);
     set_out(facet, c, patch_.center);
     if (facet.normal.isZero(0.0)) return std::nullopt;

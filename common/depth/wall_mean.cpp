@@ -32,16 +32,17 @@ class Shares {
 };
 
 /// Depth of a circle's points below a wall: at most `middle_mm` + its point u of the unit circle
-/// times `slope_mm`; and at most `most_mm`.
+/// times `slope_mm` + any unit vector times `of_balls_mm`; and at most `most_mm`.
 struct OnCircle {
   double middle_mm = kInfinity;
-  Vec3 slope_mm = Vec3::Zero();
+  Vec3 slope_mm = Vec3::Zero(), of_balls_mm = Vec3::Zero();
   double most_mm = kInfinity;
 };
 
-// Part of v in the plane of the circle: what a point that goes around can gain along it.
-double gain_mm(const Patch::Circle& circle, const Vec3& v) {
-  return circle.ball ? v.norm() : (v - v.dot(circle.axis) * circle.axis).norm();
+// What a point that goes around the circle can gain along `slope`, and one of a ball along
+// `of_ball`.
+double gain_mm(const Patch::Circle& circle, const Vec3& slope, const Vec3& of_ball) {
+  return (slope - slope.dot(circle.axis) * circle.axis).norm() + of_ball.norm();
 }
 
 OnCircle on_circle(const ConvexWall& wall, const Patch& patch, const Patch::Circle& circle) {
@@ -51,7 +52,8 @@ OnCircle on_circle(const ConvexWall& wall, const Patch& patch, const Patch::Circ
   if (wall.surface == nullptr) {
     on.middle_mm = more - wall.normal.dot(circle.center - wall.point);
     on.slope_mm = -circle.radius_mm * wall.normal;
-    on.most_mm = on.middle_mm + gain_mm(circle, on.slope_mm);
+    on.of_balls_mm = -circle.ball_mm * wall.normal;
+    on.most_mm = on.middle_mm + gain_mm(circle, on.slope_mm, on.of_balls_mm);
     return on;
   }
   if (wall.surface->kind != SurfaceKind::kCylinder) return on;
@@ -60,11 +62,12 @@ OnCircle on_circle(const ConvexWall& wall, const Patch& patch, const Patch::Circ
   // |d|).
   const Vec3 from = circle.center - wall.surface->point;
   const Vec3 d = from - from.dot(wall.surface->axis) * wall.surface->axis;
-  const double r = circle.radius_mm, off = d.norm();
+  const double r = circle.radius_mm + circle.ball_mm, off = d.norm();
   on.most_mm = more + off + r - wall.surface->radius_mm;
-  if (!(off < r)) return on;
+  // Of a torus u is neither of the circle nor any.
+  if (!(off < r) || (circle.radius_mm > 0.0 && circle.ball_mm > 0.0)) return on;
   on.middle_mm = more + r - wall.surface->radius_mm + 0.5 * off * off / (r - off);
-  on.slope_mm = d;
+  (circle.ball_mm > 0.0 ? on.of_balls_mm : on.slope_mm) = d;
   return on;
 }
 
@@ -89,7 +92,8 @@ bool circles_keep_off(const ConvexWall& first, const ConvexWall& second, const P
     for (int i = 0; i < patch.circle_count; ++i)
       most = std::max(most,
                       (1.0 - s) * a[i].middle_mm + s * b[i].middle_mm +
-                          gain_mm(patch.circles[i], (1.0 - s) * a[i].slope_mm + s * b[i].slope_mm));
+                          gain_mm(patch.circles[i], (1.0 - s) * a[i].slope_mm + s * b[i].slope_mm,
+                                  (1.0 - s) * a[i].of_balls_mm + s * b[i].of_balls_mm));
     return most;
   };
   double lo = 0.0, hi = 1.0;
