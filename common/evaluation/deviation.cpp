@@ -30,6 +30,7 @@ constexpr double kRunsAround = 0.9;
 struct Candidate {
   std::uint32_t triangle = 0;
   Interval corner_mm;  // signed distances of the corners
+  Interval depth_mm;   // and of all its points
   double normal_agreement = 0.0;
 };
 
@@ -66,6 +67,8 @@ class Matcher {
   Result<FeatureMatch> run() {
     gather();
     if (near_.empty()) return not_found();
+    if (!plane_)
+      for (Candidate& c : near_) c.depth_mm = depth_of(c);
     FeatureMatch match;
     match.feature.name = declared_.name;
     match.feature.surface = surface_;
@@ -158,7 +161,7 @@ class Matcher {
   std::string drop_deep_facets() {
     std::vector<double> depth_mm;
     for (const Candidate& c : near_) {
-      const Interval d = depth_of(c);
+      const Interval& d = c.depth_mm;
       depth_mm.push_back(std::max(std::fabs(d.lo), std::fabs(d.hi)));
     }
     std::vector<double> sorted = depth_mm;
@@ -200,10 +203,10 @@ class Matcher {
 
   // 3. corners may stand off by the chord error, but then the facets must reach the surface
   std::string contradicts() const {
-    Interval all = depth_of(near_.front());
+    Interval all = near_.front().depth_mm;
     Interval corners = near_.front().corner_mm;
     for (const Candidate& c : near_) {
-      all = hull(all, depth_of(c));
+      all = hull(all, c.depth_mm);
       corners = hull(corners, c.corner_mm);
     }
     const double slack = kNearOfRadius * size_of(surface_, mesh_, near_.front());

@@ -93,6 +93,9 @@ double concave_bend(const Surface& s, const Vec3& middle, double reach_mm) {
   return nearest_mm > 0.0 ? 1.0 / nearest_mm : std::numeric_limits<double>::infinity();
 }
 
+// How closely the least distance to a torus is found, as a share of how deep a triangle is.
+constexpr double kTorusShare = 1e-2;
+
 // Rounding of a distance, as a share of it.
 constexpr double kRoundingShare = 1e-15;
 
@@ -155,8 +158,19 @@ double least_over(LeastSearch& search, const Corners& c, int depth) {
                   least_over(search, halves[1], depth - 1));
 }
 
-// Is the outside distance, a convex function, nowhere less than the limit? By tangents, halving
-// only where they leave it open.
+// By how much the outside distance may exceed that of the corners. A convex function is largest at
+// a corner; a torus exceeds that by its bend over the circle around the triangle, whose radius is
+// at most longest edge / sqrt(3).
+double most_above_corners(const Surface& s, const Corners& c) {
+  if (s.kind != SurfaceKind::kTorus) return 0.0;
+  const double longest = std::sqrt(std::max(
+      {(c[0] - c[1]).squaredNorm(), (c[1] - c[2]).squaredNorm(), (c[2] - c[0]).squaredNorm()}));
+  const double bend = concave_bend(s, (c[0] + c[1] + c[2]) / 3.0, longest);
+  return std::min(longest, longest * longest / 6.0 * bend);
+}
+
+// Is the outside distance nowhere less than the limit? By tangents, halving only where they leave
+// it open.
 bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int depth) {
   const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
   const double at_middle = outside_distance(s, middle);
@@ -167,7 +181,8 @@ bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int dept
     bound = std::min(bound, at_middle + slope.dot(corner - middle));
     reach = std::max(reach, (corner - middle).norm());
   }
-  if (std::max(bound, at_middle - reach) >= limit_mm) return true;
+  const double bend = concave_bend(s, middle, reach);
+  if (std::max(bound - 0.5 * bend * reach * reach, at_middle - reach) >= limit_mm) return true;
   if (depth == 0) return false;
   const auto halves = halves_of(c);
   return nowhere_below(s, limit_mm, halves[0], depth - 1) &&
@@ -226,18 +241,16 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
     least = distance_to_flat_triangle(point, axis, corners) * (1.0 - kRoundingShare) -
             radius_mm * (1.0 + kRoundingShare);
   } else {
-    LeastSearch search{*this, accuracy_mm, std::min({da, db, dc})};
+    // Tangents of a torus are off by its bend: closing them far below the sagitta costs the most.
+    double accuracy = accuracy_mm;
+    if (kind == SurfaceKind::kTorus) {
+      const double sagitta = std::min({da, db, dc}) - outside_distance(*this, (a + b + c) / 3.0);
+      accuracy = std::max(accuracy, kTorusShare * std::fabs(sagitta));
+    }
+    LeastSearch search{*this, accuracy, std::min({da, db, dc})};
     least = least_over(search, corners, kHalvings);
   }
-  // A convex function is largest at a corner; a torus exceeds that by its bend over the circle
-  // around the triangle, whose radius is at most longest edge / sqrt(3).
-  double most = std::max({da, db, dc});
-  if (kind == SurfaceKind::kTorus) {
-    const double longest =
-        std::sqrt(std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()}));
-    const double bend = concave_bend(*this, (a + b + c) / 3.0, longest);
-    most += std::min(longest, longest * longest / 6.0 * bend);
-  }
+  const double most = std::max({da, db, dc}) + most_above_corners(*this, {a, b, c});
   return inward ? Interval{-most, -least} : Interval{least, most};
 }
 
@@ -256,8 +269,11 @@ bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double
   constexpr int kHalvings = 24;  // pieces of 6e-8 of the triangle: what is open then counts as no
   if (std::max({signed_distance_mm(a), signed_distance_mm(b), signed_distance_mm(c)}) > limit_mm)
     return false;
-  if (kind == SurfaceKind::kTorus) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
-  if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown || !inward) return true;
+  if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown) return true;
+  if (!inward)
+    return std::max({signed_distance_mm(a), signed_distance_mm(b), signed_distance_mm(c)}) +
+               most_above_corners(*this, {a, b, c}) <=
+           limit_mm;
   if (kind == SurfaceKind::kCylinder) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
   return nowhere_below(*this, -limit_mm, {a, b, c}, kHalvings);
 }
