@@ -272,9 +272,37 @@ class Finder {
 
 }  // namespace
 
+namespace {
+
+// Of a tube and its wall: is there a point as deep in both parts as the closed form says? The face
+// beside the end of a groove may be nearer to the tube's deepest point than the groove is. Then the
+// foot of that point may still be as deep in the tube.
+bool is_reached(const PairFrame& frame, const KnownFacePair& pair) {
+  const auto depth_of = [&](int i, const Vec3& x_B) {
+    const Body& body = frame.bodies[i];
+    const Vec3 x = i == 0 ? Vec3(frame.X_KS[1] * x_B) : x_B;
+    return body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower) -
+           Body::offset_of(body.band->faces[pair.face[i]], Layer::kLower);
+  };
+  const auto foot_of = [&](int i, const Vec3& x_B) {
+    const Surface& surface = *frame.bodies[i].band->faces[pair.face[i]].surface;
+    const Vec3 x = i == 0 ? Vec3(frame.X_KS[1] * x_B) : x_B;
+    const Vec3 foot = x - surface.signed_distance_mm(x) * surface.outward_normal(x);
+    return i == 0 ? Vec3(frame.X_KS[0] * foot) : foot;
+  };
+  const Vec3& x_B = pair.overlap.point_B;
+  for (const Vec3& at_B : {x_B, foot_of(0, x_B), foot_of(1, x_B)})
+    if (depth_of(0, at_B) + depth_of(1, at_B) >= pair.overlap.lo_mm - kDepthAccuracyDefault_mm)
+      return true;
+  return false;
+}
+
+}  // namespace
+
 bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
   for (const Interval& of_layer : pair.overlap.of_layer_mm)
     if (!(of_layer.hi - of_layer.lo <= kDepthAccuracyDefault_mm)) return false;
+  if (std::isfinite(pair.overlap.continued_hi_mm) && !is_reached(frame, pair)) return false;
   const auto on_face = [&](int i, const Vec3& x) {
     const Body& body = frame.bodies[i];
     if (!body.stands_for(pair.face[i], x)) return false;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/depth/region_report.h"
+#include "common/math/rotation.h"
 
 namespace mortise {
 namespace {
@@ -14,6 +15,9 @@ namespace {
 constexpr std::size_t kQuestions = 24;
 // Where a witness is looked for: shares of the way to the middle of the face.
 constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
+
+// Of a torus along its tube, to so far.
+constexpr double kWitnessTurn_rad = 0.5;
 
 // Corners, middles of edges, centre.
 std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
@@ -35,6 +39,7 @@ class DeclaredSearch {
     };
     const double lower = offsets(Layer::kLower), upper = offsets(Layer::kUpper);
     OverlapRegion region;
+    region.closed_form = true;
     const auto [at_least, at_most] = known.overlap.of_layer_mm;
     region.possible_mm = without_touch({at_most.lo + upper, at_most.hi + upper}, pair_.touch_mm);
     region.certain_mm = without_touch({at_least.lo + lower, at_least.hi + lower}, pair_.touch_mm);
@@ -85,7 +90,11 @@ class DeclaredSearch {
     const double z = (named_S - surface.point).dot(surface.axis);
     const double to_middle = pair_.s(role).extent_of(known.face[role]).middle() - z;
     for (const double share : kWitnessShares) {
+      // Along a shaft, or along a tube.
       Vec3 x = named_S + share * to_middle * surface.axis;
+      if (surface.kind == SurfaceKind::kTorus)
+        x = surface.point +
+            rotation_exp(share * kWitnessTurn_rad * surface.axis) * (named_S - surface.point);
       const Vec3 n = surface.outward_normal(x);
       x += (Body::offset_of(convex, Layer::kLower) - surface.signed_distance_mm(x)) * n;
       least.role = role;

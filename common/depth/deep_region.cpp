@@ -48,6 +48,8 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, Overla
   const auto widened = [&](const Interval& known, Layer layer) {
     const double reach_mm = pair.reach_mm(layer);
     const double by_mm = layer == Layer::kLower ? -reach_mm : reach_mm;
+    // What the surfaces themselves say is known better; parts that do not meet meet nowhere inside.
+    if (region.closed_form || (!pair.trivial && known.hi <= 0.0)) return known;
     if (pair.trivial) return Interval{delta.lo + by_mm, delta.hi + by_mm};
     return Interval{std::max(known.lo, delta.lo - reach_mm), delta.hi + reach_mm};
   };

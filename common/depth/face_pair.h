@@ -25,8 +25,8 @@ FaceExtent extent_of(const Body& body, std::uint16_t face, const Surface& surfac
 /// of -(s_a + s_b). Frame B.
 struct FacePairOverlap {
   double lo_mm = 0.0, hi_mm = 0.0;
-  double near_hi_mm = 0.0;  ///< upper end over all that is within the margin of the faces' ends
-  Vec3 point_B = Vec3::Zero();    ///< on the surface of the convex face, where lo is reached
+  double near_hi_mm = 0.0;      ///< upper end over all that is within the margin of the faces' ends
+  Vec3 point_B = Vec3::Zero();  ///< on the surface of the convex face, where lo is reached
   Vec3 normal_B = Vec3::UnitZ();  ///< outward normal of B's face there
   /// lo and hi for each of the layers asked for (see there), without its offsets.
   std::array<Interval, 2> of_layer_mm = {};

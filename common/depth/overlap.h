@@ -82,6 +82,7 @@ struct OverlapRegion {
   DeviationGrade grade = DeviationGrade::kUnknown;
   bool estimated = false;
   bool capped = false;         ///< work cap reached: brackets are wide
+  bool closed_form = false;    ///< certain_mm and possible_mm are those of two declared faces
   bool at_crack = false;       ///< within a crack of a part: what is inside there is not known
   std::vector<Vec3> points_W;  ///< sample of contact points for the fitted separating motion
 };

@@ -71,16 +71,16 @@ bool has_straight_lines(const Surface& surface) {
   return surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone;
 }
 
-// The distance to a torus is convex but for its bend around the axis, inside its centre circle, of
-// no more than 1 / distance from the axis: by so much it may be off any tangent or chord over the
-// patch.
+// What is above a bore is convex; above a hollow torus it is not.
+bool is_bore(const Surface& surface) {
+  return surface.inward && surface.kind != SurfaceKind::kTorus;
+}
+
+// What a tangent or chord of the surface leaves out over the patch.
 double concave_bend_mm(const Surface& surface, const Patch& patch) {
-  if (surface.kind != SurfaceKind::kTorus) return 0.0;
-  const Vec3 from = patch.center - surface.point;
-  const double nearest_mm = (from - from.dot(surface.axis) * surface.axis).norm() - patch.radius_mm;
-  if (nearest_mm >= surface.radius_mm) return 0.0;
-  return nearest_mm > 0.0 ? 0.5 * patch.radius_mm * patch.radius_mm / nearest_mm
-                          : std::numeric_limits<double>::infinity();
+  return surface.concave_bend_mm(patch.center,
+                                 {patch.points.data(), static_cast<std::size_t>(patch.count)},
+                                 patch.thickness());
 }
 
 // Does a triangle of k lie in the plane of the wall?
@@ -337,9 +337,7 @@ class Neighbourhood {
     Facet facet;
     facet.triangle = t;
     facet.surface = Body::surface_of(k_.face(t), proof_.layer);
-    if (facet.surface != nullptr &&
-        (!facet.surface->inward || facet.surface->kind == SurfaceKind::kTorus))
-      return std::nullopt;
+    if (facet.surface != nullptr && !is_bore(*facet.surface)) return std::nullopt;
     facet.offset_mm = Body::offset_of(k_.face(t), proof_.layer);
     set_out(facet, c, patch_.center);
     if (facet.normal.isZero(0.0)) return std::nullopt;

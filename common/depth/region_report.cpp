@@ -18,6 +18,10 @@ constexpr double kSameWay = 0.99;
 // overlap is deep.
 constexpr double kWitnessShares[] = {0.5, 0.25, 0.1, 0.02, 2e-3, 2e-4, 2e-5, 2e-6};
 
+// From a facet to its surface it is longer along the facet's normal than straight, by less than
+// this.
+constexpr double kOblique = 1.1;
+
 // Steps uphill to a witness start at so many times the overlap and are halved so many times.
 constexpr double kFirstClimb = 8.0;
 constexpr int kWitnessHalvings = 16;
@@ -117,15 +121,20 @@ bool is_borne_out(const Body& body, const Vec3& x, double rounding_mm) {
   if (inside(*body.solid, x)) return true;
   const Vec3 at = nearest_point(*body.solid, x).point;
   bool any = false, within = true;
-  for_each_triangle_in(body.solid->bvh(), Box{at.array() - rounding_mm, at.array() + rounding_mm},
-                       [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
-                         if ((nearest_on_triangle(at, c[0], c[1], c[2]) - at).norm() > rounding_mm)
-                           return;
-                         const double stated_mm =
-                             std::max(0.0, body.offset_at(t, at, Layer::kLower));
-                         any = true;
-                         within &= body.normal(t).dot(x - at) <= stated_mm + rounding_mm;
-                       });
+  for_each_triangle_in(
+      body.solid->bvh(), Box{at.array() - rounding_mm, at.array() + rounding_mm},
+      [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
+        if ((nearest_on_triangle(at, c[0], c[1], c[2]) - at).norm() > rounding_mm) return;
+        const double stated_mm = std::max(0.0, body.offset_at(t, at, Layer::kLower));
+        const double above_mm = body.normal(t).dot(x - at);
+        const SurfaceBand::Face& face = body.face(t);
+        const Surface* surface = Body::surface_of(face, Layer::kLower);
+        // Off the middle of a facet its normal is not that of the surface.
+        const bool below = surface != nullptr && above_mm <= kOblique * stated_mm &&
+                           surface->signed_distance_mm(x) <= Body::offset_of(face, Layer::kLower);
+        any = true;
+        within &= below || above_mm <= stated_mm + rounding_mm;
+      });
   return any && within;
 }
 

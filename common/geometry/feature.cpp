@@ -83,16 +83,6 @@ Vec3 outside_normal(const Surface& s, const Vec3& x) {
   return s.axis;
 }
 
-// The distance to a cylinder, cone or sphere is a convex function. That to a torus bends the other
-// way inside its centre circle, around the axis, by no more than 1 / distance from the axis: here
-// over all points within reach of the middle.
-double concave_bend(const Surface& s, const Vec3& middle, double reach_mm) {
-  if (s.kind != SurfaceKind::kTorus) return 0.0;
-  const double nearest_mm = view_from_axis(s, middle).r_mm - reach_mm;
-  if (nearest_mm >= s.radius_mm) return 0.0;
-  return nearest_mm > 0.0 ? 1.0 / nearest_mm : std::numeric_limits<double>::infinity();
-}
-
 // How closely the least distance to a torus is found, as a share of how deep a triangle is.
 constexpr double kTorusShare = 1e-2;
 
@@ -150,23 +140,11 @@ double least_over(LeastSearch& search, const Corners& c, int depth) {
     search.best = std::min(search.best, outside_distance(search.surface, corner));
   }
   // A distance changes by no more than the path walked, whatever the curvature.
-  const double bend = concave_bend(search.surface, middle, reach);
-  bound = std::max(at_middle - reach, bound - 0.5 * bend * reach * reach);
+  bound = std::max(at_middle - reach, bound - search.surface.concave_bend_mm(middle, c, 0.0));
   if (bound >= search.best - search.accuracy_mm || depth == 0) return bound;
   const auto halves = halves_of(c);
   return std::min(least_over(search, halves[0], depth - 1),
                   least_over(search, halves[1], depth - 1));
-}
-
-// By how much the outside distance may exceed that of the corners. A convex function is largest at
-// a corner; a torus exceeds that by its bend over the circle around the triangle, whose radius is
-// at most longest edge / sqrt(3).
-double most_above_corners(const Surface& s, const Corners& c) {
-  if (s.kind != SurfaceKind::kTorus) return 0.0;
-  const double longest = std::sqrt(std::max(
-      {(c[0] - c[1]).squaredNorm(), (c[1] - c[2]).squaredNorm(), (c[2] - c[0]).squaredNorm()}));
-  const double bend = concave_bend(s, (c[0] + c[1] + c[2]) / 3.0, longest);
-  return std::min(longest, longest * longest / 6.0 * bend);
 }
 
 // Is the outside distance nowhere less than the limit? By tangents, halving only where they leave
@@ -181,8 +159,8 @@ bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int dept
     bound = std::min(bound, at_middle + slope.dot(corner - middle));
     reach = std::max(reach, (corner - middle).norm());
   }
-  const double bend = concave_bend(s, middle, reach);
-  if (std::max(bound - 0.5 * bend * reach * reach, at_middle - reach) >= limit_mm) return true;
+  bound -= s.concave_bend_mm(middle, c, 0.0);
+  if (std::max(bound, at_middle - reach) >= limit_mm) return true;
   if (depth == 0) return false;
   const auto halves = halves_of(c);
   return nowhere_below(s, limit_mm, halves[0], depth - 1) &&
@@ -224,6 +202,25 @@ double Surface::curvature_bound(const Vec3& x) const {
   return 0.0;
 }
 
+// Around the axis it bends by no more than 1 / distance from the axis, and only what points differ
+// by in that direction counts: t at the middle, elsewhere turned by their angle about the axis.
+double Surface::concave_bend_mm(const Vec3& middle, std::span<const Vec3> points,
+                                double more_mm) const {
+  if (kind != SurfaceKind::kTorus) return 0.0;
+  const AxisView view = view_from_axis(*this, middle);
+  const Vec3 t = axis.cross(view.radial);
+  double reach_mm = more_mm, around_mm = more_mm;
+  for (const Vec3& x : points) {
+    reach_mm = std::max(reach_mm, (x - middle).norm() + more_mm);
+    around_mm = std::max(around_mm, std::fabs((x - middle).dot(t)) + more_mm);
+  }
+  const double nearest_mm = view.r_mm - reach_mm;
+  if (nearest_mm >= radius_mm) return 0.0;
+  if (!(nearest_mm > 0.0)) return 2.0 * reach_mm;
+  const double width_mm = std::min(reach_mm, around_mm + reach_mm * around_mm / nearest_mm);
+  return std::min(2.0 * reach_mm, 0.5 * width_mm * width_mm / nearest_mm);
+}
+
 Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const Vec3& c,
                                            double accuracy_mm) const {
   MORTISE_CHECK(a.allFinite() && b.allFinite() && c.allFinite() && accuracy_mm > 0.0,
@@ -250,7 +247,9 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
     LeastSearch search{*this, accuracy, std::min({da, db, dc})};
     least = least_over(search, corners, kHalvings);
   }
-  const double most = std::max({da, db, dc}) + most_above_corners(*this, {a, b, c});
+  // A convex function is largest at a corner.
+  const double most =
+      std::max({da, db, dc}) + concave_bend_mm((a + b + c) / 3.0, Corners{a, b, c}, 0.0);
   return inward ? Interval{-most, -least} : Interval{least, most};
 }
 
@@ -272,7 +271,7 @@ bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double
   if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown) return true;
   if (!inward)
     return std::max({signed_distance_mm(a), signed_distance_mm(b), signed_distance_mm(c)}) +
-               most_above_corners(*this, {a, b, c}) <=
+               concave_bend_mm((a + b + c) / 3.0, Corners{a, b, c}, 0.0) <=
            limit_mm;
   if (kind == SurfaceKind::kCylinder) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
   return nowhere_below(*this, -limit_mm, {a, b, c}, kHalvings);

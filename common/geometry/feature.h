@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ struct Surface {
   Vec3 outward_normal(const Vec3& x) const;
   /// Upper bound of |1/curvature radius| near x: 1/R for a cylinder. 0 for a plane.
   double curvature_bound(const Vec3& x) const;
+  /// A distance to a cylinder, cone or sphere, counted from inside the radius, is a convex
+  /// function. That to a torus bends the other way around the axis, inside its centre circle. By no
+  /// more than this it falls below its tangent at `middle`, or rises above its chords, over the
+  /// hull of points grown by more_mm. mm; 0 for other surfaces.
+  double concave_bend_mm(const Vec3& middle, std::span<const Vec3> points, double more_mm) const;
   /// Bracket of the signed distance over a whole triangle: contains it, and is wider by about
   /// accuracy_mm (cone of long triangles: by the bend over 1/4096 of its length; torus: by its bend
   /// over the triangle).
