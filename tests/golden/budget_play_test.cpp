@@ -2,7 +2,9 @@
 // plays again.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,27 @@ TEST(BudgetPlay, ThePressFitIsToldHoweverIncrementsArrive) {
     EXPECT_GT(world.find_part("bearing_out_upper")->X_WP.p.z(),
               world.find_part("bearing_in_upper")->X_WP.p.z() + 1.0)
         << seed;
+  }
+}
+
+// Programs start when they do: whoever is late, the same clashes of the same classes are told.
+TEST(BudgetPlay, EachDesignerMayBeThreeSecondsLate) {
+  const auto scenarios = std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios";
+  const auto on_time = read_play(scenarios / "gearbox.play.yaml");
+  ASSERT_TRUE(on_time) << on_time.error().text;
+  std::ostringstream yaml;
+  yaml << std::ifstream(scenarios / "gearbox.yaml").rdbuf();
+  const auto told_with = [&](const Play& play) {
+    const auto played = test::play_session("gearbox.yaml", yaml.str(), play);
+    EXPECT_TRUE(played) << played.error().text;
+    return played ? told_in(*played) : Told{};
+  };
+  const Told told = told_with(*on_time);
+  EXPECT_EQ(told.at("cover - bearing_out_upper"), std::vector<std::string>{"begin real"});
+  for (const std::string& user : on_time->users()) {
+    Play late = *on_time;
+    for (Play::Act& act : late.acts) act.at_s += act.user == user ? 3.0 : 0.0;
+    EXPECT_EQ(told_with(late), told) << user;
   }
 }
 
