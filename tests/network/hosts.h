@@ -30,13 +30,14 @@
 #include "tests/network/overheard.h"
 #include "tests/network/site.h"
 #include "tests/network/small_server.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::test {
 
 inline constexpr int kDomain = 215, kServerSide = 0, kStandbySide = 1, kDiscoverSide = 3,
                      kLastSide = 4, kSides = 5;
 inline constexpr std::array<const char*, 4> kNames = {"anna", "ben", "cleo", "dan"};
-inline constexpr double kPi = 3.14159265358979323846, kBeat_s = 1.0 / 60.0;
+inline constexpr double kBeat_s = 1.0 / 60.0;
 
 inline std::string wall_yaml() {
   std::string yaml =

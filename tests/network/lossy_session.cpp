@@ -13,6 +13,7 @@
 #include "idl/dds_channel.h"
 #include "server/tick_loop.h"
 #include "tests/network/small_server.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/server/small_world.h"
 
 namespace mortise::test {
@@ -20,7 +21,6 @@ namespace {
 
 using mortise::testing::small_world;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kUsers = LossyRun::kUsers;
 
 DdsOptions options_on(int side) {

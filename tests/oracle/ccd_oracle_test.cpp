@@ -4,17 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <numbers>
 
 #include "common/ccd/distance.h"
 #include "tests/oracle/fcl_model.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Pair {
   SolidPtr a, b;

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <fstream>
-#include <numbers>
 
 #include "client/tools/generate/write_mesh.h"
+#include "tests/support/numbers.h"
 #include "tests/support/programs.h"
 #include "tests/support/test_data.h"
 #include "tests/support/turned_part.h"
@@ -17,8 +17,6 @@ namespace {
 using nlohmann::json;
 using test::Outcome;
 using test::run;
-
-constexpr double kPi = std::numbers::pi;
 
 double sagitta_mm(double radius_mm, int facets) {
   return radius_mm * (1.0 - std::cos(kPi / facets));

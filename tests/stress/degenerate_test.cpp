@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kPi = std::numbers::pi;
 
 std::string seeded(const char* what, std::uint64_t seed) {
   return std::string(what) + " of random_case(" + std::to_string(seed) + ")";

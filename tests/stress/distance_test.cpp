@@ -2,17 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "common/ccd/distance.h"
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Found {
   int apart = 0, crossing = 0;

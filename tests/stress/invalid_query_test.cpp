@@ -2,19 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "common/ccd/distance.h"
 #include "tests/stress/meshes.h"
 #include "tests/stress/record.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 const SolidPtr& cube() {
   static const SolidPtr cube = solid(box_mesh({1, 1, 1}));

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "common/ccd/start_state.h"
 #include "common/geometry/feature.h"
@@ -12,15 +10,12 @@
 #include "common/geometry/triangle_distance.h"
 #include "tests/stress/meshes.h"
 #include "tests/stress/record.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kPi = std::numbers::pi;
 
 std::vector<Pose> bad_poses() {
   std::vector<Pose> bad;

@@ -2,16 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 FirstContact solve(const Case& c) {
   thread_local CcdScratch scratch;

@@ -7,13 +7,12 @@
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kPi = std::numbers::pi;
 
 std::string label(const char* what, double by, int i) {
   return std::string(what) + " " + std::to_string(by) + " (" + std::to_string(by * 1e12) +

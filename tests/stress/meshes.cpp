@@ -3,13 +3,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
+
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 
 using namespace mortise::testing;
-
-constexpr double kPi = std::numbers::pi;
 
 namespace {
 double uniform(std::mt19937_64& random, double lo, double hi) {

@@ -2,18 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kPi = std::numbers::pi;
 
 Pose any_pose(std::mt19937_64& random, double reach_mm) {
   return {rotation_exp(random_turn(random, kPi)), random_vector(random, reach_mm)};

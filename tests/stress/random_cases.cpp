@@ -1,6 +1,6 @@
 #include "tests/stress/random_cases.h"
 
-#include <numbers>
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 
@@ -58,7 +58,6 @@ Case with_far_mesh(const Case& c, const Vec3& away_mm) {
 }
 
 Case random_case(std::uint64_t seed) {
-  constexpr double kPi = std::numbers::pi;
   std::mt19937_64 random(seed);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   Case c;

@@ -3,18 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/stress/random_cases.h"
 #include "tests/stress/record.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 
 namespace mortise::stress {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kPi = std::numbers::pi;
 
 // Any pair, brought to the distance asked for, where it then stays. Empty when they do not meet.
 bool bring_near(std::uint64_t seed, double gap_mm, Case& c, Vec3& normal) {

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/numbers.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // Never late, and early by no more than the accuracy along the way.
 void expect_contact(const FirstContact& c, double t, double closing_speed_mm,

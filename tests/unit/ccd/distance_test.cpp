@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include "common/ccd/distance.h"
 #include "common/ccd/hull_gap.h"
@@ -12,12 +11,11 @@
 #include "common/geometry/triangle_distance.h"
 #include "tests/support/effort.h"
 #include "tests/support/float_traps.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Triangle triangle_of(const TriangleMesh& mesh, std::uint32_t t) {
   return {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
 #include "common/ccd/distance.h"
 #include "common/ccd/pair_motion.h"
 #include "common/geometry/triangle_distance.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace {
@@ -27,8 +27,6 @@ void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace mortise::testing {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 TEST(BoxKernels, WideAndPortableAgreeToTheLastBit) {
   if (ccd::wide_kernels() == nullptr)

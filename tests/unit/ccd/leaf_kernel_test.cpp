@@ -1,15 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <numbers>
 
 #include "common/ccd/leaf_pair.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/ccd/shapes.h"
 
 namespace mortise::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTarget_mm = 1e-7, kSuspect_mm = 1e-6;
 
 // A leaf of up to four triangles, and the same as a mesh.

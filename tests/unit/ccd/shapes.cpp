@@ -1,11 +1,10 @@
 #include "tests/unit/ccd/shapes.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "tests/support/numbers.h"
 
 namespace mortise::testing {
-
-constexpr double kPi = std::numbers::pi;
 
 TriangleMesh box_mesh(const Vec3& size, const Vec3& center) {
   TriangleMesh mesh;

@@ -8,14 +8,13 @@
 #include "common/depth/face_pair.h"
 #include "common/depth/patch.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {
 namespace {
 
 using namespace shapes;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // A triangle of a cylinder's mesh, and the true surface over it.
 struct CylinderPiece {

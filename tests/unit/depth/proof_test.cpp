@@ -7,6 +7,7 @@
 
 #include "common/geometry/signed_distance.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {
@@ -84,7 +85,6 @@ TEST(Proof, AFarFacetIsNoSecondWall) {
 // ends on them; what is inside of the round end's cylinder then is no rim's.
 TEST(Proof, AThirdFaceThatMovesOutwardLeavesNoRim) {
   constexpr int kN = 16;
-  constexpr double kPi = 3.14159265358979323846;
   std::vector<std::array<double, 2>> points = {{-10, -10}, {10, -10}, {10, 10}, {5, 10}};
   for (int i = 0; i <= kN; ++i)
     points.push_back({5 * std::cos(-kPi * i / kN), 5 * std::sin(-kPi * i / kN)});

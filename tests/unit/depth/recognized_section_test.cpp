@@ -4,6 +4,7 @@
 
 #include "common/geometry/recognition/recognition.h"
 #include "tests/support/lofted.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/depth/overlap_case.h"
 
 namespace mortise {
@@ -11,7 +12,6 @@ namespace {
 
 using namespace shapes;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kFacets[] = {6, 8, 11, 12, 16, 17, 24, 32, 48, 64};
 constexpr double kMargin_mm = 4e-3;
 

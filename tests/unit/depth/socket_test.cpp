@@ -5,6 +5,7 @@
 #include "common/depth/face_pair.h"
 #include "common/depth/overlap.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 #include "tests/support/turned_part.h"
 #include "tests/unit/depth/depth_bands.h"
 
@@ -12,8 +13,6 @@ namespace mortise {
 namespace {
 
 using namespace shapes;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Surface sphere(double radius_mm, bool inward) {
   Surface surface;

@@ -1,19 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <numbers>
 #include <random>
 
 #include "common/depth/patch.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/depth/overlap_case.h"
 
 namespace mortise {
 namespace {
 
 using namespace shapes;
-
-constexpr double kPi = std::numbers::pi;
 
 struct RowPoint {
   double out = 0.0, up = 0.0;

@@ -4,14 +4,13 @@
 
 #include "common/base/constants.h"
 #include "common/evaluation/band.h"
+#include "tests/support/numbers.h"
 #include "tests/support/turned_part.h"
 
 namespace mortise {
 namespace {
 
 using shapes::Chain;
-
-constexpr double kPi = std::numbers::pi;
 
 // The estimate of the triangle whose middle lies nearest to x.
 Interval estimate_at(const Solid& solid, const std::vector<Interval>& all, const Vec3& x) {

@@ -3,16 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "common/generators/triangulate.h"
 #include "common/geometry/topology.h"
+#include "tests/support/numbers.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 GeneratedPart made(const std::string& kind, const std::map<std::string, double>& parameters = {}) {
   auto part = generate(kind, parameters);

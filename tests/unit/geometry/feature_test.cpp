@@ -4,17 +4,15 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <vector>
 
 #include "common/math/pose.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // A point of the true surface at two parameters, about z with `point` at the origin: how the slow
 // twin below knows the surface, by formula instead of by distance.

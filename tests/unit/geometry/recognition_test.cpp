@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/numbers.h"
 #include "tests/support/turned_part.h"
 
 namespace mortise {
@@ -9,8 +10,6 @@ namespace {
 
 using shapes::Chain;
 using shapes::TurnedSurface;
-
-constexpr double kPi = std::numbers::pi;
 
 // How far the found surface runs from the true one, over the length that the true one has.
 double radius_error_mm(const Surface& truth, const TurnedSurface& local, const Surface& found) {

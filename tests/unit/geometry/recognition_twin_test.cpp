@@ -6,6 +6,7 @@
 
 #include "common/geometry/recognition/recognition.h"
 #include "tests/support/effort.h"
+#include "tests/support/numbers.h"
 #include "tests/support/turned_part.h"
 #include "tests/unit/geometry/recognition_twin.h"
 
@@ -13,8 +14,6 @@ namespace mortise {
 namespace {
 
 using shapes::Chain;
-
-constexpr double kPi = std::numbers::pi;
 
 // A bored part: chamfered or not, a cylinder or a ball in the middle, perhaps a shoulder above;
 // whole or part of a turn. Rows that lie smoothly beside each other are of very unlike widths, else

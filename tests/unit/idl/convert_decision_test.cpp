@@ -1,17 +1,13 @@
 // The door for what people say and what is decided.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "idl/chunks.h"
 #include "idl/convert.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/idl/samples.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Convert, DetailsOfACommandGoRound) {
   Request command;

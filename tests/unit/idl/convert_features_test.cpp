@@ -1,18 +1,14 @@
 // The door for what constraints can name, and its chunks.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "idl/chunks.h"
 #include "idl/convert.h"
 #include "idl/topics.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/idl/samples.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Features, GoRound) {
   const FeatureInfo cone = test::some_feature();

@@ -4,18 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "common/base/constants.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 #include "tests/unit/idl/samples.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Convert, IncrementGoesRound) {
   const Increment sent = test::some_increment();

@@ -1,18 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "common/math/box.h"
 #include "common/math/interval.h"
 #include "common/math/pose.h"
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Vec3 random_vector(std::mt19937_64& random, double scale) {
   std::uniform_real_distribution<double> uniform(-scale, scale);

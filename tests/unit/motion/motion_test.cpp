@@ -7,11 +7,10 @@
 #include <random>
 
 #include "common/math/rotation.h"
+#include "tests/support/numbers.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Pose pose(const Vec3& w, const Vec3& p) { return {rotation_exp(w), p}; }
 

@@ -3,17 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "tests/support/numbers.h"
 #include "tests/unit/server/inbox_bench.h"
 
 namespace mortise {
 namespace {
 
 using namespace mortise::testing;
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(SequenceWindow, TellsNewRepeatedAndLate) {
   SequenceWindow window;
