@@ -76,7 +76,7 @@ void serve(Books& books) {
   books.closed = true;
 }
 
-struct Hand {
+struct Mover {
   std::unique_ptr<ClientChannel> channel;
   std::unique_ptr<Client> client;
   PartId part;
@@ -85,7 +85,7 @@ struct Hand {
 
 /// Two designers push their cubes into the wall and pull them out again, 60 times a second.
 void act(Books& books, double seconds) {
-  std::array<Hand, kUsers> hands;
+  std::array<Mover, kUsers> hands;
   for (int i = 0; i < kUsers; ++i) {
     auto channel = open_client_channel(options_on(1));
     if (!channel) {
@@ -107,29 +107,29 @@ void act(Books& books, double seconds) {
   const auto all = [&](auto condition) {
     return std::all_of(hands.begin(), hands.end(), condition);
   };
-  const auto holder = [](const Hand& hand) {
+  const auto holder = [](const Mover& hand) {
     return hand.client->parts().at(hand.part).info.holder;
   };
   if (!until(
           15.0,
           [&] {
-            return all([](const Hand& h) { return h.client->synced() && h.client->user_id(0); });
+            return all([](const Mover& h) { return h.client->synced() && h.client->user_id(0); });
           },
           turn)) {
     books.fault = "nobody joined in 15 s";
     return;
   }
-  for (Hand& hand : hands) hand.client->grab(0, hand.part);
+  for (Mover& hand : hands) hand.client->grab(0, hand.part);
   if (!until(
           10.0,
-          [&] { return all([&](const Hand& h) { return holder(h) == h.client->user_id(0); }); },
+          [&] { return all([&](const Mover& h) { return holder(h) == h.client->user_id(0); }); },
           turn)) {
     books.fault = "nobody grabbed in 10 s";
     return;
   }
   const double start_s = now_s();
   for (int beat = 1; now_s() - start_s < seconds; ++beat) {
-    for (Hand& hand : hands) {
+    for (Mover& hand : hands) {
       const double side = hand.part == PartId{2} ? -1.0 : 1.0;  // towards the wall
       const double x_mm = side * 7.0 * (1.0 - std::cos(2.0 * kPi * beat / 90.0));
       const std::lock_guard lock(books.mutex);
@@ -147,7 +147,7 @@ void act(Books& books, double seconds) {
       10.0,
       [&] {
         const std::lock_guard lock(books.mutex);
-        return books.accepted == books.run.sent && all([&](const Hand& h) {
+        return books.accepted == books.run.sent && all([&](const Mover& h) {
                  return h.client->statistics().highest_event_seq ==
                         (books.run.events.empty() ? 0 : books.run.events.back().seq);
                });

@@ -26,9 +26,9 @@ constexpr int kMostStalledKills = 4;
 using Standby = SecondServer;
 
 /// Takes the processors from a program: it runs at the lowest priority, among many that are busy.
-class Crowd {
+class BusyThreads {
  public:
-  explicit Crowd(const Program& starved) {
+  explicit BusyThreads(const Program& starved) {
     const std::string threads = "/proc/" + std::to_string(starved.pid()) + "/task";
     for (const auto& thread : std::filesystem::directory_iterator(threads)) {
       const sched_param least{};
@@ -39,12 +39,12 @@ class Crowd {
         while (!stop_) std::atomic_signal_fence(std::memory_order_seq_cst);
       });
   }
-  ~Crowd() {
+  ~BusyThreads() {
     stop_ = true;
     for (std::thread& thread : busy_) thread.join();
   }
-  Crowd(const Crowd&) = delete;
-  Crowd& operator=(const Crowd&) = delete;
+  BusyThreads(const BusyThreads&) = delete;
+  BusyThreads& operator=(const BusyThreads&) = delete;
 
  private:
   std::atomic<bool> stop_{false};
@@ -256,7 +256,7 @@ TEST_F(Standby, SoakAFirstWithoutAProcessorLosesNothingThatItAcknowledged) {
   ASSERT_FALSE(HasFailure());
   moves_ = true;
   {
-    Crowd crowd(*first);
+    BusyThreads crowd(*first);
     turn(6.0);
   }
   turn(3.0);

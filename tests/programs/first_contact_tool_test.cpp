@@ -11,7 +11,7 @@
 
 #include "common/io/mesh/obj_exact.h"
 
-namespace mortise::testing {
+namespace mortise::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ TEST_F(Tool, ObjKeepsAllDigitsAndNamesMistakes) {
 }
 
 }  // namespace
-}  // namespace mortise::testing
+}  // namespace mortise::test

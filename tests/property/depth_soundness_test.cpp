@@ -83,14 +83,14 @@ Fit random_fit(std::mt19937_64& random, bool exact_features) {
   return fit;
 }
 
-struct Tally {
+struct Contradictions {
   int contradictions = 0, real = 0, fake = 0, potential = 0, potential_in_vain = 0;
 };
 
-Tally play(std::uint64_t seed, int rounds, bool exact_features, double planted_mm) {
+Contradictions play(std::uint64_t seed, int rounds, bool exact_features, double planted_mm) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  Tally tally;
+  Contradictions tally;
   for (int i = 0; i < rounds; ++i) {
     const Fit fit = random_fit(random, exact_features);
     const CollisionClass verdict = judge(fit);
@@ -117,14 +117,14 @@ Tally play(std::uint64_t seed, int rounds, bool exact_features, double planted_m
 }
 
 TEST(DepthSoundness, NoAdmissibleFitContradictsAVerdict) {
-  const Tally exact = play(101, test::effort(60), true, 0.0);
+  const Contradictions exact = play(101, test::effort(60), true, 0.0);
   EXPECT_EQ(exact.contradictions, 0);
   EXPECT_GT(exact.real, 2);
   EXPECT_GT(exact.fake, 5);
   EXPECT_GT(exact.potential, 5);
   // Exact features leave nothing open that the zones do not.
   EXPECT_LE(exact.potential_in_vain, 3);
-  const Tally chord = play(102, test::effort(12), false, 0.0);
+  const Contradictions chord = play(102, test::effort(12), false, 0.0);
   EXPECT_EQ(chord.contradictions, 0);
 }
 

@@ -32,9 +32,9 @@ struct Said {
 };
 
 // H7/g6 at 20 mm, facets out of phase: fake while it sits straight, real when pushed or tilted far.
-class Insertion {
+class PegInBore {
  public:
-  explicit Insertion(double scale) : scale_(scale) {
+  explicit PegInBore(double scale) : scale_(scale) {
     const FitOffsets offsets = fit_offsets("H7/g6", 10.0);
     shaft_ = solid(scaled(peg({10, -5, 15, 32, 1, std::numbers::pi / 32}), scale));
     hole_ = solid(scaled(ring({10, 0, 20, 48, 1, 0}, 20), scale));
@@ -87,13 +87,13 @@ std::vector<Step> steps(std::mt19937_64& random) {
 TEST(InsertionInvariance, TheSameIsSaidEverywhereAndAtAnySize) {
   std::mt19937_64 random(4711);
   int told[4] = {0, 0, 0, 0};
-  const Insertion plain(1.0);
+  const PegInBore plain(1.0);
   for (int round = 0; round < test::effort(3); ++round) {
     const std::vector<Step> path = steps(random);
     for (const World& world :
          {World{1.0, random_pose(random, 100.0)}, World{1.0, random_pose(random, 2e4)},
           World{0.05, random_pose(random, 50.0)}, World{40.0, random_pose(random, 1e4)}}) {
-      const Insertion elsewhere(world.scale);
+      const PegInBore elsewhere(world.scale);
       for (std::size_t i = 0; i < path.size(); ++i) {
         const Said here = plain.judge(path[i], Pose());
         const Said there = elsewhere.judge(path[i], world.X);
@@ -117,7 +117,7 @@ TEST(InsertionInvariance, TheSameIsSaidEverywhereAndAtAnySize) {
 
 // An error of a hundredth of the clearance is no rounding: it is seen.
 TEST(InsertionInvariance, AShiftOfAMicrometreIsSeen) {
-  const Insertion plain(1.0);
+  const PegInBore plain(1.0);
   const Step step{Vec3(0.0069, 0.0, 10.0), Vec3::Zero()},
       shifted{Vec3(0.0079, 0.0, 10.0), Vec3::Zero()};
   const Said here = plain.judge(step, Pose()), there = plain.judge(shifted, Pose());

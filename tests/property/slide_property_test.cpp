@@ -18,13 +18,13 @@ World as_new(const World& world, Policy policy) {
   return copy;
 }
 
-struct Outcome {
+struct Slid {
   std::uint64_t pushes = 0, slid = 0, legs = 0, cut_short = 0;
   double deepest_mm = -1e300, deeper_mm = -1e300, farther_mm = 0.0;
 };
 
 // One mover among walls and posts, `pushes` times somewhere.
-void play(std::uint64_t seed, int ticks, int movers, Outcome& outcome) {
+void play(std::uint64_t seed, int ticks, int movers, Slid& outcome) {
   RandomPlay slide(Policy::kSlide, seed, movers, false);
   Scratch scratch;
   for (int i = 0; i < ticks; ++i) {
@@ -50,7 +50,7 @@ void play(std::uint64_t seed, int ticks, int movers, Outcome& outcome) {
   }
 }
 
-void tell(const char* what, const Outcome& o) {
+void tell(const char* what, const Slid& o) {
   std::printf(
       "%s: %llu pushes, %llu parts slid in %llu legs, %llu cut short; deepest %.3g mm, "
       "deeper than stop by %.3g mm at most; %.3g mm farther in all\n",
@@ -60,7 +60,7 @@ void tell(const char* what, const Outcome& o) {
 }
 
 TEST(SlideProperty, OneMoverNeverEndsDeeperThanUnderStop) {
-  Outcome outcome;
+  Slid outcome;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(24)); ++seed)
     ASSERT_NO_FATAL_FAILURE(play(seed, 50, 1, outcome));
   tell("one mover", outcome);
@@ -69,7 +69,7 @@ TEST(SlideProperty, OneMoverNeverEndsDeeperThanUnderStop) {
 }
 
 TEST(SlideProperty, NorDoSixMovers) {
-  Outcome outcome;
+  Slid outcome;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(4)); ++seed)
     ASSERT_NO_FATAL_FAILURE(play(1000 + seed, 25, 6, outcome));
   tell("six movers", outcome);

@@ -12,7 +12,7 @@
 namespace mortise {
 namespace {
 
-const char* const kScenario = R"(
+const char* const kPress = R"(
 name: press
 units: mm
 policy: stop
@@ -28,7 +28,7 @@ fits:
 )";
 
 TEST(ClashIdentity, AroundARingItIsOneClash) {
-  auto reading = read_scenario_text(kScenario, "press.yaml");
+  auto reading = read_scenario_text(kPress, "press.yaml");
   ASSERT_TRUE(reading && reading->usable());
   auto scene = load_scene(reading->scenario, default_meshes());
   ASSERT_TRUE(scene && scene->usable());

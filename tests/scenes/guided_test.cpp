@@ -14,7 +14,7 @@ namespace mortise {
 namespace {
 
 // Two pegs of 10 um less radius than their bores, one from above and one, askew, from below.
-constexpr const char* kScenario = R"(
+constexpr const char* kGuided = R"(
 name: guided
 units: mm
 policy: stop
@@ -44,7 +44,7 @@ class StepClock : public Clock {
 
 /// What became of the tries of two bots.
 std::vector<Insertions> insert(const std::string& policy, const GuidedSettings& wanted) {
-  std::string yaml = kScenario;
+  std::string yaml = kGuided;
   yaml.replace(yaml.find("policy: stop"), 12, "policy: " + policy);
   auto reading = read_scenario_text(yaml, "guided.yaml");
   EXPECT_TRUE(reading) << reading.error().text;

@@ -42,7 +42,7 @@ inline Outcome run(const std::string& program, const std::string& arguments,
 }
 
 /// A test with a folder of its own for the files that programs read.
-class InFolder : public testing::Test {
+class InFolder : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() / ("mortise_test_" + std::to_string(getpid()));

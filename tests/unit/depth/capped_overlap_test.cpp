@@ -23,8 +23,10 @@ struct Scene {
 Scene random_scene(std::mt19937_64& random, int i) {
   std::uniform_real_distribution<double> one(-1.0, 1.0);
   Scene scene;
-  scene.a = i % 2 == 0 ? solid(box({3, 2, 4}, Vec3::Zero(), 5)) : solid(sphere(3.0, {}, 10));
-  scene.b = i % 3 == 0 ? solid(box({2, 5, 3}, Vec3::Zero(), 5)) : solid(sphere(4.0, {}, 10));
+  scene.a =
+      i % 2 == 0 ? solid(box({3, 2, 4}, Vec3::Zero(), 5)) : solid(sphere(3.0, Vec3::Zero(), 10));
+  scene.b =
+      i % 3 == 0 ? solid(box({2, 5, 3}, Vec3::Zero(), 5)) : solid(sphere(4.0, Vec3::Zero(), 10));
   if (i % 4 >= 2) {
     scene.band_a = uniform_band({}, {-0.05, 0.02});
     scene.band_b = uniform_band({}, {-0.01, 0.03});

@@ -14,14 +14,14 @@ namespace {
 
 using namespace shapes;
 
-struct Scene {
+struct MovedPair {
   SolidPtr a, b;
   Motion motion_a = still_motion(Pose()), motion_b = still_motion(Pose());
   double t_contact = 1.0;
   SurfaceBand band_a = nominal_band(), band_b = nominal_band();
 };
 
-GeneralizedDepth depth_of(const Scene& s, OverlapResult* overlap = nullptr) {
+GeneralizedDepth depth_of(const MovedPair& s, OverlapResult* overlap = nullptr) {
   GpdQuery query;
   query.overlap.a = s.a.get();
   query.overlap.b = s.b.get();
@@ -53,7 +53,7 @@ TEST(GeneralizedDepth, CubesComeApartAlongTheNormal) {
 
 // A sphere of radius 1 sinks 0.3 below a plane, coming at 60 degrees from its normal.
 TEST(GeneralizedDepth, SphereComesInAtSixtyDegrees) {
-  Scene s{solid(sphere(1, Vec3::Zero(), 32)), solid(box({10, 10, 2}, {0, 0, -2}))};
+  MovedPair s{solid(sphere(1, Vec3::Zero(), 32)), solid(box({10, 10, 2}, {0, 0, -2}))};
   const Vec3 end(0, 0, 0.7);
   const Vec3 way = Vec3(std::sin(std::numbers::pi / 3), 0, -std::cos(std::numbers::pi / 3));
   s.motion_a =
@@ -71,7 +71,7 @@ TEST(GeneralizedDepth, SphereComesInAtSixtyDegrees) {
 
 // A turn by 0.1 rad at 10 mm is a path of 1 mm, its chord 0.99958.
 TEST(GeneralizedDepth, PathOfATurn) {
-  Scene s{solid(box({10, .5, .5})), solid(box({.5, .5, .5}, {9.5, 1.2, 0}))};
+  MovedPair s{solid(box({10, .5, .5})), solid(box({.5, .5, .5}, {9.5, 1.2, 0}))};
   s.motion_a = linear_motion(Pose(), Pose{rotation_exp({0, 0, 0.1}), Vec3::Zero()}, Vec3::Zero());
   s.t_contact = 0.0;
   OverlapResult overlap;
@@ -85,14 +85,14 @@ TEST(GeneralizedDepth, PathOfATurn) {
 }
 
 // Is some translation of A this long at most enough? Asked in many directions.
-bool a_translation_frees(const Scene& s, double length_mm) {
+bool a_translation_frees(const MovedPair& s, double length_mm) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 400; ++i) {
     Vec3 d = i < 6 ? Vec3((i < 3 ? 1.0 : -1.0) * Vec3::Unit(i % 3))
                    : Vec3(normal(random), normal(random), normal(random)).normalized();
     for (const double share : {1.0, 0.5, 0.25}) {
-      Scene moved = s;
+      MovedPair moved = s;
       moved.motion_a = still_motion(Pose::translation(share * length_mm * d) * s.motion_a.X_W1);
       CcdScratch scratch;
       if (!surfaces_cross(*s.a, moved.motion_a.X_W1, *s.b, s.motion_b.X_W1, scratch)) return true;
@@ -104,7 +104,7 @@ bool a_translation_frees(const Scene& s, double length_mm) {
 // A key turned in its slot by 0.02 jams between the walls. A turn back by as much, 11 mm
 // from its centre at most, frees it; a translation has to lift it out of the slot by 8 mm.
 TEST(GeneralizedDepth, ATurnFreesTheKeyOfASlotSooner) {
-  Scene s{solid(box({3.98, 3, 10})), solid(u_slot(10, 4, 8, 5, 0, 30))};
+  MovedPair s{solid(box({3.98, 3, 10})), solid(u_slot(10, 4, 8, 5, 0, 30))};
   s.motion_a = still_motion({rotation_exp({0, 0, 0.02}), {0, 3.3, 15}});
   OverlapResult overlap;
   const GeneralizedDepth gpd = depth_of(s, &overlap);
@@ -124,11 +124,11 @@ struct Standing {
     scene.b = solid(ring({10, 0, 20, 32, 1, 0}, 20));
     scene.motion_a = still_motion(Pose::translation({0, 0, 20 - into_mm}));
   }
-  Scene scene;
+  MovedPair scene;
 };
 
 TEST(GeneralizedDepth, APegComesOutAlongItsAxis) {
-  Scene s = Standing(15).scene;
+  MovedPair s = Standing(15).scene;
   for (const bool declared : {false, true}) {
     if (declared) {
       s.band_a = cylinder_band(s.a, 10.01, false, {});
@@ -145,7 +145,7 @@ TEST(GeneralizedDepth, APegComesOutAlongItsAxis) {
 TEST(GeneralizedDepth, TheShorterWayAlongTheAxisAnywhereInTheWorld) {
   std::mt19937_64 random(8);
   for (const double into : {4.0, 30.0}) {  // 30: its foot 10 below the plate, 10 mm to go that way
-    Scene s = Standing(into).scene;
+    MovedPair s = Standing(into).scene;
     const Pose G = random_pose(random, 50.0);
     s.motion_b = still_motion(G);
     s.motion_a = still_motion(G * s.motion_a.X_W1);
@@ -158,7 +158,7 @@ TEST(GeneralizedDepth, TheShorterWayAlongTheAxisAnywhereInTheWorld) {
 
 // A bottom of the hole does not matter when the way out is the way it came.
 TEST(GeneralizedDepth, ABlindHoleIsLeftUpwards) {
-  Scene s = Standing(15).scene;
+  MovedPair s = Standing(15).scene;
   s.b = solid(together(ring({10, 0, 20, 32, 1, 0}, 20), box({15, 15, 1}, {0, 0, -2})));
   const GeneralizedDepth gpd = depth_of(s);
   EXPECT_EQ(gpd.way, SeparationWay::kAxis);
@@ -167,7 +167,7 @@ TEST(GeneralizedDepth, ABlindHoleIsLeftUpwards) {
 
 // Where only the zones meet, the meshes are free as they are.
 TEST(GeneralizedDepth, ApartMeansNothingToDo) {
-  Scene s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}, {1.02, .1, .2}))};
+  MovedPair s{solid(box({.5, .5, .5})), solid(box({.5, .5, .5}, {1.02, .1, .2}))};
   s.band_a = s.band_b = uniform_band({}, {-.05, .05});
   const GeneralizedDepth gpd = depth_of(s);
   EXPECT_EQ(gpd.gpd_mm, Interval{});
@@ -204,7 +204,7 @@ TEST(GeneralizedDepth, BracketsThePenetrationOfConvexBodies) {
   for (int i = 0; i < 60; ++i) {
     const Vec3 half_a(size(random), size(random), size(random)),
         half_b(size(random), size(random), size(random));
-    Scene s{solid(box(half_a)), solid(box(half_b))};
+    MovedPair s{solid(box(half_a)), solid(box(half_b))};
     Pose X_A = random_pose(random, 0.0), X_B = random_pose(random, 0.0);
     X_A.p = (1.2 + 0.5 * size(random)) * (X_A.q * Vec3::UnitX());
     const double exact = penetration_of_boxes(half_a, X_A, half_b, X_B);
@@ -229,7 +229,7 @@ TEST(GeneralizedDepth, ReportedMotionSeparates) {
   const SolidPtr a = solid(box({.5, .5, .5})), b = solid(box({.5, .5, .5}, {.9, .13, .07}));
   const GeneralizedDepth gpd = depth_of({a, b});
   const auto overlaps_after = [&](double share) {
-    Scene moved{a, b, still_motion(Pose::translation(share * gpd.translation_mm))};
+    MovedPair moved{a, b, still_motion(Pose::translation(share * gpd.translation_mm))};
     OverlapResult overlap;
     depth_of(moved, &overlap);
     return overlap.meshes_cross;

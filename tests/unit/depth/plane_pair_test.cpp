@@ -29,7 +29,7 @@ SolidPtr convex(const std::vector<polyhedra::HalfSpace>& half_spaces) {
   return std::make_shared<const Solid>(std::move(mesh));
 }
 
-SolidPtr box(const Vec3& lo, const Vec3& hi) {
+SolidPtr block(const Vec3& lo, const Vec3& hi) {
   std::vector<polyhedra::HalfSpace> six;
   for (int k = 0; k < 3; ++k) {
     six.push_back({Vec3::Unit(k), hi[k], {}});
@@ -54,7 +54,7 @@ struct Above {
   OverlapCase c;
   Above(double angle_rad, double height_mm, double t_mm) {
     c.a = wedge(angle_rad);
-    c.b = box({-20, -20, -10}, {20, 20, 0});
+    c.b = block({-20, -20, -10}, {20, 20, 0});
     c.band_a = plus_minus(c.a, t_mm);
     c.X_WA.p.z() = height_mm;
   }
@@ -146,7 +146,7 @@ OverlapCase tab_in_slot(double gap_mm) {
   }
   c.a = std::make_shared<const Solid>(std::move(slot));
   EXPECT_TRUE(c.a->topology().closed());
-  c.b = box({-w + gap_mm, -4, -3}, {w - gap_mm, 20, 3});
+  c.b = block({-w + gap_mm, -4, -3}, {w - gap_mm, 20, 3});
   c.band_a = plus_minus(c.a, 0.1);
   c.band_b = plus_minus(c.b, 0.1);
   return c;

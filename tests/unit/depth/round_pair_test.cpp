@@ -79,13 +79,13 @@ Case far_case(std::mt19937_64& random) {
   return c;
 }
 
-struct Tally {
+struct Played {
   int above_hi = 0, far_below_lo = 0, wide = 0;
 };
 
-Tally play(double planted_mm) {
+Played play(double planted_mm) {
   std::mt19937_64 random(20);
-  Tally tally;
+  Played tally;
   for (int i = 0; i < test::effort(300); ++i) {
     const Case c = random_case(random, i % 3 == 0 ? 0.0 : 0.004);
     const double margin = i % 2 == 0 ? 0.0 : 0.05;
@@ -106,7 +106,7 @@ Tally play(double planted_mm) {
 }
 
 TEST(RoundPair, BracketHoldsAgainstDenseSampling) {
-  const Tally tally = play(0.0);
+  const Played tally = play(0.0);
   EXPECT_EQ(tally.above_hi, 0);
   EXPECT_EQ(tally.far_below_lo, 0);
   EXPECT_EQ(tally.wide, 0);

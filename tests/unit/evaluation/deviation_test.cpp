@@ -8,18 +8,11 @@
 
 #include "common/evaluation/band.h"
 #include "common/math/rotation.h"
+#include "tests/unit/evaluation/fit_faces.h"
 #include "tests/unit/evaluation/shapes.h"
 
 namespace mortise {
 namespace {
-
-Surface cylinder(double radius_mm, bool inward) {
-  Surface s;
-  s.kind = SurfaceKind::kCylinder;
-  s.radius_mm = radius_mm;
-  s.inward = inward;
-  return s;
-}
 
 FeatureDeclaration declared(const std::string& name, const Surface& surface) {
   FeatureDeclaration d;

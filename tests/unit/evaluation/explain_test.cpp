@@ -6,11 +6,10 @@
 
 #include "common/evaluation/explain.h"
 #include "common/evaluation/verdict.h"
+#include "tests/unit/evaluation/fit_faces.h"
 
 namespace mortise {
 namespace {
-
-constexpr double kSagitta_mm = 0.048152733;
 
 SurfaceBand::Face face(const char* source, Interval tolerance) {
   SurfaceBand::Face f;

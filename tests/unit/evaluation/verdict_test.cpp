@@ -5,17 +5,10 @@
 #include <cmath>
 
 #include "common/evaluation/tolerance.h"
+#include "tests/unit/evaluation/fit_faces.h"
 
 namespace mortise {
 namespace {
-
-Surface cylinder(double radius_mm, bool inward) {
-  Surface s;
-  s.kind = SurfaceKind::kCylinder;
-  s.radius_mm = radius_mm;
-  s.inward = inward;
-  return s;
-}
 
 Result<FitStatement> fit_of(const std::string& code, double nominal_mm, double hole_radius_mm,
                             double shaft_radius_mm, double residual_mm = 0.0) {
@@ -79,8 +72,6 @@ struct Case63 {
   double certain_mm, possible_mm;
   CollisionClass expected;
 };
-constexpr double kSagitta_mm = 0.048152733;
-
 TEST(Verdict, PositionDependentErrorDecides) {
   constexpr Case63 kCases[] = {{"H7/g6", -0.0205, -0.0035, CollisionClass::kFake},
                                {"H7/h6", -0.0170, 0.0, CollisionClass::kFake},

@@ -15,13 +15,13 @@ namespace {
 
 using Outcome = Introductions::Outcome;
 using Ports = std::vector<int>;
-constexpr std::uint32_t kHere = 0x7f000001, kThere = 0x0a000002;
+constexpr std::uint32_t kHost = 0x7f000001, kThere = 0x0a000002;
 
 /// Participants with a place of their own each.
 class Introduced : public ::testing::Test {
  protected:
   static Announcement of(int number, bool serves, const std::string& session, int domain = 0,
-                         std::uint32_t host = kHere) {
+                         std::uint32_t host = kHost) {
     Announcement told;
     std::memcpy(told.participant.data(), &number, sizeof number);
     told.purpose = Purpose{serves, domain, session};
@@ -34,7 +34,7 @@ class Introduced : public ::testing::Test {
     return told;
   }
   Introductions::Answer take(const Announcement& told) {
-    const std::uint32_t host = told.places.empty() ? kHere : told.places.front().ipv4;
+    const std::uint32_t host = told.places.empty() ? kHost : told.places.front().ipv4;
     return take(told, host);
   }
   Introductions::Answer take(const Announcement& told, std::uint32_t from) {
@@ -245,12 +245,12 @@ TEST_F(Introduced, AgreeWithTheRuleInEveryCrowd) {
           });
         }
       if (all[me].here && random() % 8 == 0) {
-        EXPECT_EQ(introductions.take(goodbye(all[me].told), kHere, now_s).outcome, Outcome::kTaken);
+        EXPECT_EQ(introductions.take(goodbye(all[me].told), kHost, now_s).outcome, Outcome::kTaken);
         all[me].here = false;
         std::erase_if(pairs, [me](const auto& pair) { return pair.first.first == me; });
         continue;
       }
-      const auto answer = introductions.take(all[me].told, kHere, now_s);
+      const auto answer = introductions.take(all[me].told, kHost, now_s);
       if (answer.outcome == Outcome::kFull) {
         ++full;
         continue;

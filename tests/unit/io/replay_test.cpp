@@ -15,7 +15,7 @@ using test::TemporaryFile;
 using test::write_log;
 
 // A block is pushed into a wall and past it, turned, and pulled back; another user leaves it alone.
-constexpr const char* kScenario = R"(
+constexpr const char* kWall = R"(
 name: wall
 units: mm
 policy: stop
@@ -46,7 +46,7 @@ class Replay : public testing::Test {
   void SetUp() override {
     const auto play = read_play_text(kPlay, "wall.play.yaml");
     ASSERT_TRUE(play) << play.error().text;
-    auto session = play_session("wall.yaml", kScenario, *play);
+    auto session = play_session("wall.yaml", kWall, *play);
     ASSERT_TRUE(session) << session.error().text;
     session_ = std::make_unique<PlayedSession>(std::move(*session));
   }

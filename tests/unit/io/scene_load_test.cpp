@@ -6,6 +6,8 @@
 #include <set>
 #include <string>
 
+#include "tests/unit/io/scene_text.h"
+
 namespace mortise {
 namespace {
 
@@ -22,27 +24,7 @@ parts:
     moving: true
 )";
 
-LoadedScene load(const std::string& yaml) {
-  const auto reading = read_scenario_text(yaml, "s.yaml");
-  EXPECT_TRUE(reading);
-  for (const Finding& f : reading->findings) EXPECT_FALSE(f.is_error) << f.text;
-  auto scene = load_scene(reading->scenario, default_meshes());
-  EXPECT_TRUE(scene);
-  return std::move(scene).value();
-}
-
-void expect_error(const LoadedScene& scene, int line, const std::string& says) {
-  EXPECT_FALSE(scene.usable());
-  const std::string place = "s.yaml:" + std::to_string(line) + ": ";
-  std::string all;
-  for (const Finding& f : scene.findings) {
-    if (f.is_error && f.text.starts_with(place) && f.text.find(says) != std::string::npos) return;
-    all += f.text + "\n";
-  }
-  ADD_FAILURE() << "wanted " << place << says << "\ngot\n" << all;
-}
-
-const SurfaceBand::Face* face_of(const SurfaceBand& band, const std::string& name) {
+const SurfaceBand::Face* find_face(const SurfaceBand& band, const std::string& name) {
   for (const auto& face : band.faces)
     if (face.name == name) return &face;
   return nullptr;
@@ -59,8 +41,8 @@ TEST(SceneLoad, FillsTheWorld) {
   EXPECT_TRUE(world.evaluates);
   EXPECT_TRUE(scene.imports[0].closed);
   // Feature beats part; what is not spoken of follows the part.
-  const auto* bore = face_of(world.parts[0].band, "bore");
-  const auto* outer = face_of(world.parts[0].band, "outer");
+  const auto* bore = find_face(world.parts[0].band, "bore");
+  const auto* outer = find_face(world.parts[0].band, "outer");
   ASSERT_TRUE(bore && outer);
   EXPECT_NEAR(bore->tolerance_mm.lo, -0.0105, 1e-12);
   EXPECT_EQ(bore->tolerance_source, "Ø20 H7");
@@ -69,8 +51,8 @@ TEST(SceneLoad, FillsTheWorld) {
   EXPECT_NEAR(bore->deviation_mm.lo, -0.048152733, 2e-7);
   EXPECT_NEAR(bore->deviation_mm.hi, 0.0, 1e-9);
   // The generator's faces are known exactly even where the file says nothing.
-  EXPECT_EQ(face_of(world.parts[1].band, "journal")->tolerance_source, "");
-  EXPECT_TRUE(face_of(world.parts[1].band, "journal")->surface.has_value());
+  EXPECT_EQ(find_face(world.parts[1].band, "journal")->tolerance_source, "");
+  EXPECT_TRUE(find_face(world.parts[1].band, "journal")->surface.has_value());
 }
 
 TEST(SceneLoad, AFitGivesThePairBandsOfItsOwn) {
@@ -80,9 +62,9 @@ TEST(SceneLoad, AFitGivesThePairBandsOfItsOwn) {
   const PairRule* rule = &scene.world.pair_rules.at({PartId{1}, PartId{2}});
   ASSERT_TRUE(rule->band_a && rule->band_b);
   EXPECT_EQ(rule->fit, "Ø20 H7/g6");
-  EXPECT_EQ(face_of(*rule->band_b, "journal")->tolerance_mm, (Interval{-0.01, -0.0035}));
-  EXPECT_EQ(face_of(*rule->band_a, "outer")->tolerance_source, "±0.1 mm");
-  EXPECT_EQ(face_of(scene.world.parts[1].band, "journal")->tolerance_mm, (Interval{}));
+  EXPECT_EQ(find_face(*rule->band_b, "journal")->tolerance_mm, (Interval{-0.01, -0.0035}));
+  EXPECT_EQ(find_face(*rule->band_a, "outer")->tolerance_source, "±0.1 mm");
+  EXPECT_EQ(find_face(scene.world.parts[1].band, "journal")->tolerance_mm, (Interval{}));
   ASSERT_EQ(scene.fits.size(), 1U);
   EXPECT_NEAR(scene.fits[0].clearance_mm.lo, 0.007, 1e-12);
   EXPECT_NEAR(scene.fits[0].clearance_mm.hi, 0.041, 1e-12);
@@ -292,10 +274,10 @@ parts:
   EXPECT_NE(parts[1].solid->hash(), parts[2].solid->hash());
   EXPECT_EQ(parts[1].solid->hash(), parts[3].solid->hash());  // an instance is mirrored like a part
   // Its faces are known as well as those of the original.
-  const auto* journal = face_of(parts[1].band, "journal");
+  const auto* journal = find_face(parts[1].band, "journal");
   ASSERT_TRUE(journal);
   EXPECT_EQ(journal->grade, DeviationGrade::kDeclaredFeature);
-  EXPECT_EQ(journal->deviation_mm, face_of(parts[0].band, "journal")->deviation_mm);
+  EXPECT_EQ(journal->deviation_mm, find_face(parts[0].band, "journal")->deviation_mm);
 }
 
 TEST(SceneLoad, ADeclaredFeatureIsMirroredWithItsPart) {

@@ -7,6 +7,7 @@
 #include "common/io/scenario/scene_load.h"
 #include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
+#include "tests/unit/io/scene_text.h"
 
 // Statements of part, feature and pair about the same face: all of them hold.
 namespace mortise {
@@ -23,34 +24,11 @@ std::string peg_in_hole(const std::string& plate, const std::string& bore,
          journal + "}\n" + fits;
 }
 
-LoadedScene load(const std::string& yaml) {
-  const auto reading = read_scenario_text(yaml, "s.yaml");
-  EXPECT_TRUE(reading);
-  for (const Finding& f : reading->findings) EXPECT_FALSE(f.is_error) << f.text;
-  auto scene = load_scene(reading->scenario, default_meshes());
-  EXPECT_TRUE(scene);
-  return std::move(scene).value();
-}
-
 const SurfaceBand::Face& face_of(const SurfaceBand& band, const std::string& name) {
   for (const auto& face : band.faces)
     if (face.name == name) return face;
   ADD_FAILURE() << "no face " << name;
   return band.faces[0];
-}
-
-void expect_error(const LoadedScene& scene, int line, const std::string& says,
-                  const std::string& and_says) {
-  EXPECT_FALSE(scene.usable());
-  std::string all;
-  for (const Finding& f : scene.findings) {
-    all += f.text + "\n";
-    if (f.is_error && f.text.starts_with("s.yaml:" + std::to_string(line) + ": ") &&
-        f.text.find(says) != std::string::npos && f.text.find(and_says) != std::string::npos)
-      return;
-  }
-  ADD_FAILURE() << "wanted line " << line << ": " << says << " ... " << and_says << "\ngot\n"
-                << all;
 }
 
 void expect_face(const SurfaceBand& band, const std::string& name, Interval offset_um,

@@ -4,22 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/golden/played_session.h"
-#include "tests/support/programs.h"
 #include "tests/unit/io/log_samples.h"
+#include "tests/unit/replay/played.h"
 
 namespace mortise {
 namespace {
-
-Result<SessionLog> played(const std::string& name) {
-  const std::string path = std::string(MORTISE_SOURCE_DIR) + "/scenarios/" + name;
-  auto session = test::play_session(path + ".yaml", path + ".play.yaml");
-  if (!session) return session.error();
-  const test::TemporaryFile file("explain.mcap");
-  if (const Status written = test::write_log(*session, file.path()); !written)
-    return written.error();
-  return read_session_log(file.path());
-}
 
 double number(const Json& json) { return json.get<double>(); }
 

@@ -10,24 +10,11 @@
 #include "common/messages/memory_channel.h"
 #include "common/session/tick/statistics.h"
 #include "server/tick_loop.h"
-#include "tests/golden/played_session.h"
 #include "tests/unit/io/log_samples.h"
+#include "tests/unit/replay/played.h"
 
 namespace mortise {
 namespace {
-
-std::string scenario(const std::string& name) {
-  return std::string(MORTISE_SOURCE_DIR) + "/scenarios/" + name;
-}
-
-Result<SessionLog> played(const std::string& name) {
-  auto session = test::play_session(scenario(name + ".yaml"), scenario(name + ".play.yaml"));
-  if (!session) return session.error();
-  const test::TemporaryFile file("play.mcap");
-  if (const Status written = test::write_log(*session, file.path()); !written)
-    return written.error();
-  return read_session_log(file.path());
-}
 
 /// A live session over memory, in a thread of its own.
 struct Live {

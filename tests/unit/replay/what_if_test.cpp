@@ -8,41 +8,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/golden/played_session.h"
-#include "tests/support/programs.h"
 #include "tests/unit/io/log_samples.h"
+#include "tests/unit/replay/played.h"
 
 namespace mortise {
 namespace {
-
-std::string scenario(const std::string& name) {
-  return std::string(MORTISE_SOURCE_DIR) + "/scenarios/" + name;
-}
-
-std::string text_of_file(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-// The log of a session that was played as the file says, with one piece of its text otherwise.
-Result<SessionLog> played(const std::string& name, const std::string& from = "",
-                          const std::string& to = "") {
-  std::string text = text_of_file(scenario(name + ".yaml"));
-  if (!from.empty()) {
-    for (std::size_t at = text.find(from); at != std::string::npos;
-         at = text.find(from, at + to.size()))
-      text.replace(at, from.size(), to);
-  }
-  const test::TemporaryFile yaml("what_if.yaml"), file("what_if.mcap");
-  std::ofstream(yaml.path()) << text;
-  auto session = test::play_session(yaml.path().string(), scenario(name + ".play.yaml"));
-  if (!session) return session.error();
-  if (const auto written = test::write_log(*session, file.path()); !written)
-    return fail(Code::kRuntime, "the log could not be written");
-  return read_session_log(file.path());
-}
 
 std::vector<Change> changes(const std::vector<std::string>& texts) {
   std::vector<Change> made;
@@ -67,7 +37,7 @@ void expect_same(const Clashes& x, const Clashes& y) {
   }
 }
 
-struct Live {
+struct Replaced {
   const char* scenario;
   const char* from;
   const char* to;
@@ -75,7 +45,7 @@ struct Live {
 };
 
 TEST(WhatIf, GivesWhatPlayingItGives) {
-  const Live lives[] = {
+  const Replaced lives[] = {
       {"blocks_profile", "policy: report", "policy: stop", {"policy = stop"}},
       {"blocks_profile",
        "+-0.05",
@@ -89,7 +59,7 @@ TEST(WhatIf, GivesWhatPlayingItGives) {
        "code: Ø35 H7/p6",
        "code: Ø35 H7/h6",
        {"fit cover.seat_out, bearing_out_upper.outer = Ø35 H7/h6"}}};
-  for (const Live& live : lives) {
+  for (const Replaced& live : lives) {
     const auto log = played(live.scenario), other = played(live.scenario, live.from, live.to);
     ASSERT_TRUE(log && other) << live.scenario;
     const auto base = clashes_with(*log, {}), replayed = clashes_with(*log, changes(live.change));

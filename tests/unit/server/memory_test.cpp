@@ -29,14 +29,14 @@ TEST(Memory, LargeBlocksGoBack) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizer: not the allocator of glibc";
 #endif
-  EXPECT_EXIT(std::exit(lies_apart() ? 1 : 0), testing::ExitedWithCode(0), "")
+  EXPECT_EXIT(std::exit(lies_apart() ? 1 : 0), ::testing::ExitedWithCode(0), "")
       << "glibc does so by itself: the settings are not needed any more";
   EXPECT_EXIT(
       {
         give_back_large_memory();
         std::exit(lies_apart() ? 0 : 1);
       },
-      testing::ExitedWithCode(0), "");
+      ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr PartId kPeg{2};
+constexpr PartId kPegId{2};
 
 /// What the session was like, tick by tick.
 struct Truth {
@@ -54,16 +54,16 @@ Truth play_session(const fs::path& file) {
     }
   };
   turn(4);
-  client.grab(ann, kPeg);
+  client.grab(ann, kPegId);
   turn(3);
   for (int i = 0; i < 50; ++i) {
-    client.send(ann, kPeg, Vec3(0, 0, i < 25 ? -2.0 : 2.0));
+    client.send(ann, kPegId, Vec3(0, 0, i < 25 ? -2.0 : 2.0));
     turn(1);
   }
   turn(10);
-  client.undo(ann, kPeg);
+  client.undo(ann, kPegId);
   turn(5);
-  client.release(ann, kPeg);
+  client.release(ann, kPegId);
   turn(20);
   EXPECT_TRUE((*log)->close());
   return truth;
@@ -117,7 +117,7 @@ TEST_F(ReplayOfASession, PlaysOnFromAnywhere) {
     for (int i = 0; i < 200; ++i) {
       feed.turn(1.0 + i / 60.0);
       page.take(feed);
-      if (page.seen.contains(kPeg)) peg_mm = page.seen[kPeg].X_WP.p;
+      if (page.seen.contains(kPegId)) peg_mm = page.seen[kPegId].X_WP.p;
     }
     EXPECT_EQ(page.last("replay")["tick"], recording.last_tick);
     EXPECT_EQ(page.last("replay")["playing"], false);
@@ -161,8 +161,8 @@ TEST_F(ReplayOfASession, NothingIsDoneInIt) {
   Page page(Role::kDesigner);
   feed.enter(page);
   EXPECT_TRUE(feed.take(page, JoinWish{"ann"}));
-  EXPECT_TRUE(feed.take(page, CommandWish{3, CommandKind::kGrab, kPeg, {}}));
-  EXPECT_FALSE(feed.take(page, MoveWish{kPeg, Vec3(1, 0, 0), Vec3::Zero()}));
+  EXPECT_TRUE(feed.take(page, CommandWish{3, CommandKind::kGrab, kPegId, {}}));
+  EXPECT_FALSE(feed.take(page, MoveWish{kPegId, Vec3(1, 0, 0), Vec3::Zero()}));
   page.take(feed);
   EXPECT_EQ(page.count("join_refused"), 1u);
   EXPECT_EQ(page.last("reply")["done"], false);
