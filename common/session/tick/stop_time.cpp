@@ -22,10 +22,9 @@ constexpr std::uint64_t kRealTimeWorkCap = 10'000;
 constexpr std::uint64_t kLookWorkCap = 2'000;
 // The same of a look at what is withdrawn: the shafts of the demo need 1,100. Where it ends, the
 // depth is told too small; the pair is counted as not examined.
-constexpr std::uint64_t kWithdrawalLookWorkCap = 5'000;
-// The same of the depth at the start, with which those on the way are compared, where the usual
-// look does not find it.
-constexpr std::uint64_t kWithdrawalStartWorkCap = 8 * kWithdrawalLookWorkCap;
+constexpr std::uint64_t kWithdrawalLookWorkCap = 2'000;
+// The same of the depth in the tick in which a withdrawal begins, where that look does not find it.
+constexpr std::uint64_t kWithdrawalStartWorkCap = 20 * kWithdrawalLookWorkCap;
 // The same of how deep parts lie in each other; where it ends, that is told too small, and may hold
 // a part that would become deeper on its way out.
 constexpr std::uint64_t kInnerWorkCap = 600;
@@ -183,19 +182,22 @@ Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
   return advance;
 }
 
-Look withdrawal_look(PairWork& pair, double t, double ignore_below_mm, std::uint64_t work_cap,
-                     CcdScratch& ccd) {
+Look withdrawal_look(PairWork& pair, double t, double ignore_below_mm, CcdScratch& ccd,
+                     std::uint64_t work_cap = kWithdrawalLookWorkCap) {
   return certain_depth(pair, t, kDeepeningSlack_mm, Refinement::kFull, ignore_below_mm, work_cap,
                        ccd);
 }
 
 // How deep a withdrawn pair is for certain. Parts that lie deep in each other may become deeper at
 // their surfaces on the way out, so that what they have inside counts: in their meshes, less what
-// the least surfaces lie below them.
+// the least surfaces lie below them. Infinite where that is not found in a later tick: then what
+// was found in the first one holds on.
 double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
-  Look look = withdrawal_look(pair, 0.0, kAll, kWithdrawalLookWorkCap, ccd);
-  if (look.capped) look = withdrawal_look(pair, 0.0, kAll, kWithdrawalStartWorkCap, ccd);
+  const bool begins = !std::isfinite(pair.memo->allowed_depth_mm);
+  Look look = withdrawal_look(pair, 0.0, kAll, ccd);
+  if (look.capped && begins) look = withdrawal_look(pair, 0.0, kAll, ccd, kWithdrawalStartWorkCap);
   pair.withdrawal_unsure |= look.capped;
+  if (look.capped && !begins) return kInfinity;
   // A look that is unfinished even so has found too little, and would hold the part.
   const double depth_mm = std::max(0.0, look.capped ? look.depth_mm.hi : look.depth_mm.lo);
   if (!look.has_place || pair.no_inside()) return depth_mm;
@@ -212,19 +214,21 @@ double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
 double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   // Between two looks the depth may have grown and shrunk again; a quarter of a tick is short.
   constexpr int kLooks = 4;
-  const auto depth_mm = [&](double t, double ignore_below_mm) {
-    const Look look = withdrawal_look(pair, t, ignore_below_mm, kWithdrawalLookWorkCap, ccd);
-    pair.withdrawal_unsure |= look.capped;
-    return std::max(0.0, look.depth_mm.lo);
-  };
   double& allowed_mm = pair.memo.change().allowed_depth_mm;
   allowed_mm = std::min(allowed_mm, depth_at_start_mm(pair, ccd));
   // The less it interferes, the less it may gain: what one tick grants must not be the licence of
   // the next.
   const double slack_mm = std::clamp(allowed_mm, 10.0 * kAccuracyDefault_mm, kDeepeningSlack_mm);
   const double most_mm = allowed_mm + slack_mm;
-  for (int i = 1; i <= kLooks; ++i)
-    if (depth_mm(t_most * i / kLooks, most_mm) > most_mm) return t_most * (i - 1) / kLooks;
+  int free = 0;
+  for (int i = 1; i <= kLooks; ++i) {
+    const Look look = withdrawal_look(pair, t_most * i / kLooks, most_mm, ccd);
+    pair.withdrawal_unsure |= look.capped;
+    if (look.depth_mm.lo > most_mm) return t_most * free / kLooks;
+    free = i;
+    // Where one look is not finished, those between it and the end are not either.
+    if (look.capped) i = std::max(i, kLooks - 1);
+  }
   return t_most;
 }
 
