@@ -10,6 +10,8 @@ const std::vector<JudgementSection>& judgement_sections() {
       {"recognition", "surfaces found again in their meshes", section_recognition},
       {"depth", "meshes of known exact depth, however they are cut", section_depth},
       {"speed", "judging beside first contact, decided beside full", section_speed},
+      {"convex", "convex polyhedra with bands against linear programs", section_convex},
+      {"csg", "unions and differences of simple solids against their membership", section_csg},
       {"insertion", "a shaft through its bore, tick by tick", section_insertion},
   };
   return all;
@@ -22,7 +24,7 @@ int run(int argc, char** argv) {
   CLI::App app("Judgement: real, potential, fake against exact truth; run time against error");
   add_bench_options(app, options, judgement_sections());
   app.add_option("--plot", options.plot_file, "draw time against error to this SVG file");
-  app.add_option("--cases", options.cases, "random cases of the section truth");
+  app.add_option("--cases", options.cases, "random cases of the sections truth, convex and csg");
   app.add_option("--case", options.one_case, "FAMILY:SEED as the run named it: only this, in full");
   try {
     app.parse(argc, argv);
@@ -32,8 +34,8 @@ int run(int argc, char** argv) {
   if (!options.one_case.empty()) {
     if (tell_case(options.one_case)) return 0;
     std::fprintf(stderr,
-                 "--case %s: no such case; a family (cylinder, cone, ball, key, blocks), a "
-                 "colon, a seed\n",
+                 "--case %s: no such case; a family (cylinder, cone, ball, key, blocks, "
+                 "convex, csg), a colon, a seed\n",
                  options.one_case.c_str());
     return 2;
   }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/session/tick/judgement.h"
+#include "tests/bench/judgement_ask.h"
 #include "tests/bench/judgement_cases.h"
 
 namespace mortise::bench {
@@ -18,28 +18,10 @@ bool applies(Grade grade, const JudgedCase& c);
 /// A statement of a grade without features is one of the whole part.
 bool speaks_of_whole(Grade grade, const JudgedCase& c);
 
-/// A case as it comes to the engine: both parts with their bands. Nothing when a grade cannot be
-/// reached: a surface of the case that was not recognized.
-struct KnownPair {
-  Part a, b;
-};
+/// A case as it comes to the engine. Nothing when a grade cannot be reached: a surface of the case
+/// that was not recognized.
 std::optional<KnownPair> with_grade(const JudgedCase& c, Grade grade);
 
-/// One word about a case, of ours or of a peer.
-struct Word {
-  CollisionClass collision_class = CollisionClass::kNone;
-  double time_s = 0.0;               ///< CPU
-  std::optional<Interval> depth_mm;  ///< of the meshes: bracket, or the one value of a peer
-  std::optional<Interval> certain_mm, possible_mm;  ///< of the worst region
-  bool capped = false;
-};
-
-constexpr std::uint64_t kFullWorkCap = 200'000;  ///< what a full bracket may take
-struct AskOurs {
-  Refinement refinement = Refinement::kDecided;
-  bool swapped = false;             ///< B before A
-  std::uint64_t work_cap = 10'000;  ///< a tick's, see kTickOverlapCap in the session
-};
 Word ask_ours(const JudgedCase& c, const KnownPair& pair, const AskOurs& how);
 
 /// FCL's contacts, deepest penetration, against a threshold of zero.

@@ -1,23 +1,10 @@
 // Ours, as a session asks it: bands from what is known and stated, then the whole judgement.
-#include <algorithm>
-
 #include "common/evaluation/band.h"
 #include "tests/bench/judgement_methods.h"
 #include "tests/bench/judgement_recognition.h"
-#include "tests/bench/statistics.h"
 
 namespace mortise::bench {
 namespace {
-
-Part part_of(std::uint32_t id, const JudgedPart& judged, SurfaceBand band) {
-  Part part;
-  part.id = PartId{id};
-  part.name = id == 1 ? "inner" : "outer";
-  part.solid = judged.solid;
-  part.band = std::move(band);
-  part.features = judged.features;
-  return part;
-}
 
 SurfaceBand declared_band(const JudgedPart& part, const Interval& offset_mm, std::size_t stated) {
   BandInput input;
@@ -127,33 +114,7 @@ std::optional<KnownPair> with_grade(const JudgedCase& c, Grade grade) {
 }
 
 Word ask_ours(const JudgedCase& c, const KnownPair& pair, const AskOurs& how) {
-  JudgementQuery query;
-  query.a = how.swapped ? &pair.b : &pair.a;
-  query.b = how.swapped ? &pair.a : &pair.b;
-  query.motion_a = still_motion(how.swapped ? c.X_WB : c.X_WA);
-  query.motion_b = still_motion(how.swapped ? c.X_WA : c.X_WB);
-  query.refinement = how.refinement;
-  query.want_gpd = false;
-  query.work_cap = how.work_cap;
-  // Trees and topologies belong to the part, not to the question.
-  for (const Part* part : {query.a, query.b}) part->solid->bvh(), part->solid->topology();
-  CcdScratch scratch;
-  const Stopwatch watch;
-  const Judgement judgement = judge_pair(query, scratch);
-  Word word;
-  word.time_s = watch.elapsed_s();
-  if (!judgement.verdicts.empty()) word.collision_class = judgement.verdicts[0].collision_class;
-  for (const OverlapRegion& region : judgement.overlap.regions) {
-    const auto deeper = [](std::optional<Interval>& worst, const Interval& found) {
-      worst =
-          worst ? Interval{std::max(worst->lo, found.lo), std::max(worst->hi, found.hi)} : found;
-    };
-    deeper(word.depth_mm, region.delta_mm);
-    deeper(word.certain_mm, region.certain_mm);
-    deeper(word.possible_mm, region.possible_mm);
-    word.capped |= region.capped;
-  }
-  return word;
+  return ask_ours(pair, c.X_WA, c.X_WB, how);
 }
 
 }  // namespace mortise::bench

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,16 @@ void section_recognition(Report& report, const JudgementOptions& options);
 void section_depth(Report& report, const JudgementOptions& options);
 void section_speed(Report& report, const JudgementOptions& options);
 void section_insertion(Report& report, const JudgementOptions& options);
+void section_convex(Report& report, const JudgementOptions& options);
+void section_csg(Report& report, const JudgementOptions& options);
 
 using JudgementSection = BenchSection<JudgementOptions>;
 const std::vector<JudgementSection>& judgement_sections();
 
 /// Prints truth and every word about one case. False when it is not the name of a case.
 bool tell_case(const std::string& name);
+/// The same of the pair of a seed.
+void tell_convex_case(std::uint64_t seed);
+void tell_csg_case(std::uint64_t seed);
 
 }  // namespace mortise::bench

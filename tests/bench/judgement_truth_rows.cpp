@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <map>
 
+#include "tests/bench/judgement_oracle.h"
 #include "tests/bench/judgement_plot.h"
 #include "tests/bench/judgement_score.h"
 #include "tests/bench/judgement_sections.h"
@@ -9,20 +10,6 @@
 
 namespace mortise::bench {
 namespace {
-
-const char* word_of(CollisionClass collision_class) {
-  switch (collision_class) {
-    case CollisionClass::kReal:
-      return "real";
-    case CollisionClass::kPotential:
-      return "potential";
-    case CollisionClass::kFake:
-      return "fake";
-    case CollisionClass::kNone:
-      return "none";
-  }
-  return "";
-}
 
 std::string told(const std::optional<Interval>& bracket) {
   if (!bracket) return "-";
@@ -255,9 +242,18 @@ void section_truth(Report& report, const JudgementOptions& options) {
 bool tell_case(const std::string& name) {
   const std::size_t colon = name.find(':');
   if (colon == std::string::npos) return false;
+  const std::uint64_t seed = std::strtoull(name.c_str() + colon + 1, nullptr, 10);
+  if (name.starts_with("convex:")) {
+    tell_convex_case(seed);
+    return true;
+  }
+  if (name.starts_with("csg:")) {
+    tell_csg_case(seed);
+    return true;
+  }
   for (const Family family : kFamilies) {
     if (name.substr(0, colon) != name_of(family)) continue;
-    const JudgedCase c = draw_case(family, std::strtoull(name.c_str() + colon + 1, nullptr, 10));
+    const JudgedCase c = draw_case(family, seed);
     for (const Grade grade : kGrades)
       for (const bool swapped : {false, true}) {
         if (!applies(grade, c)) continue;
