@@ -18,11 +18,12 @@ void section_csg(Report& report, const JudgementOptions& options) {
     const auto seed = static_cast<std::uint64_t>(i);
     const CsgCase c = draw_csg(seed);
     const bool full = i % kFullStride == 0;
-    ask_oracle(c.asked(seed, false), {kDeclared, i % 2 == 1, i % kOrderStride == 0, full},
-               declared);
+    declared.add(c.asked(seed, false), {kDeclared, i % 2 == 1, i % kOrderStride == 0, full});
     if (!c.by_face && i % kRecognizedStride == 0)
-      ask_oracle(c.asked(seed, true), {kRecognized, i % 2 == 1, false, full}, recognized);
+      recognized.add(c.asked(seed, true), {kRecognized, i % 2 == 1, false, full});
   }
+  declared.finish();
+  recognized.finish();
   declared.add_table(report, "CSG parts against their membership (columns: truth: word)");
   recognized.add_table(report, "The same, faces recognized and the rest estimated");
   declared.add_bars(report, "csg", wanted, 95.0);
@@ -33,8 +34,9 @@ void section_csg(Report& report, const JudgementOptions& options) {
 void tell_csg_case(std::uint64_t seed) {
   const CsgCase c = draw_csg(seed);
   OracleRun run;
-  ask_oracle(c.asked(seed, false), {kDeclared, false, true, true, true}, run);
-  if (!c.by_face) ask_oracle(c.asked(seed, true), {kRecognized, false, true, true, true}, run);
+  run.add(c.asked(seed, false), {kDeclared, false, true, true, true});
+  if (!c.by_face) run.add(c.asked(seed, true), {kRecognized, false, true, true, true});
+  run.finish();
 }
 
 }  // namespace mortise::bench

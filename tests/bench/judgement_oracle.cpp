@@ -1,10 +1,16 @@
 #include "tests/bench/judgement_oracle.h"
 
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <new>
 
+#include "common/base/check.h"
 #include "tests/bench/judgement_score.h"
 #include "tests/bench/statistics.h"
 
@@ -125,9 +131,123 @@ void tell_oracle(const std::string& what, const OracleTruth& truth, const Word& 
   std::fflush(stdout);
 }
 
+/// What a child process found out about one pair.
+struct OracleRun::Answers {
+  std::optional<Word> lazy, swapped, full;
+};
+
+/// What a child leaves behind, whatever becomes of it.
+class OracleRun::Ledger {
+ public:
+  explicit Ledger(std::size_t count) : bytes_(sizeof(Shared) + count * sizeof(Answers)) {
+    void* memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    MORTISE_CHECK(memory != MAP_FAILED, "no memory to share with a child process");
+    shared_ = new (memory) Shared{};
+    for (std::size_t i = 0; i < count; ++i) new (answers() + i) Answers{};
+  }
+  ~Ledger() { munmap(shared_, bytes_); }
+  Ledger(const Ledger&) = delete;
+  Ledger& operator=(const Ledger&) = delete;
+  std::size_t& at() { return shared_->at; }  ///< the pair that is worked on
+  Answers* answers() { return reinterpret_cast<Answers*>(shared_ + 1); }
+
+ private:
+  struct alignas(64) Shared {
+    std::size_t at = 0;
+  };
+  std::size_t bytes_;
+  Shared* shared_;
+};
+
+void OracleRun::work(const std::vector<Waiting>& waiting, Ledger& ledger) {
+  for (; ledger.at() < waiting.size(); ++ledger.at()) {
+    const auto& [c, ask] = waiting[ledger.at()];
+    Answers& answers = ledger.answers()[ledger.at()];
+    const auto asked = [&](const AskOurs& how) { return ask_ours(c.pair, c.X_WA, c.X_WB, how); };
+    answers.lazy = asked({Refinement::kDecided, ask.swapped});
+    if (ask.other_order) answers.swapped = asked({Refinement::kDecided, !ask.swapped});
+    if (ask.full) answers.full = asked({Refinement::kFull, ask.swapped, kFullWorkCap});
+  }
+}
+
+void OracleRun::add(OracleCase c, const OracleAsk& ask) {
+  constexpr std::size_t kTogether = 32;
+  waiting_.push_back({std::move(c), ask});
+  if (waiting_.size() >= kTogether) finish();
+}
+
+void OracleRun::finish() {
+  Ledger ledger(waiting_.size());
+  std::fflush(nullptr);
+  while (ledger.at() < waiting_.size()) {
+    const pid_t child = fork();
+    MORTISE_CHECK(child >= 0, "no child process for the engine");
+    if (child == 0) {
+      work(waiting_, ledger);
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (ledger.at() >= waiting_.size()) break;
+    ++crashes_;
+    std::printf("check failed: --case %s; %s\n", waiting_[ledger.at()].c.name.c_str(),
+                waiting_[ledger.at()].c.text.c_str());
+    ++ledger.at();
+  }
+  for (std::size_t i = 0; i < waiting_.size(); ++i) judge(waiting_[i], ledger.answers()[i]);
+  waiting_.clear();
+}
+
+void OracleRun::note(const Waiting& asked, const Word& word, bool full, bool swapped) {
+  const OracleCase& c = asked.c;
+  std::optional<double> depth_mm;
+  if (word.witness_W) depth_mm = c.least_depth_mm(*word.witness_W);
+  OracleTruth truth = c.truth;
+  if (truth.searched && depth_mm) {
+    truth.certain_mm = std::max(truth.certain_mm, 2.0 * *depth_mm);
+    truth.possible_mm = std::max(truth.possible_mm, truth.certain_mm);
+  }
+  const std::vector<Fault> wrong = faults_of(truth, word, depth_mm);
+  const std::string way = asked.ask.way + (full ? ", full" : "");
+  const bool missed = ways_[way].add(truth, word, wrong);
+  std::string what;
+  for (const Fault fault : wrong) what += std::string(what.empty() ? "" : ", ") + name_of(fault);
+  if (wrong.empty()) what = missed ? "missed" : asked.ask.tell_all ? "answer" : "";
+  if (what.empty()) return;
+  const std::string witness =
+      depth_mm ? "; depth at the witness " + std::to_string(*depth_mm) : std::string();
+  tell_oracle(what + ": --case " + c.name + ", " + way + (swapped ? ", B before A" : ""), truth,
+              word, c.text + witness);
+}
+
+void OracleRun::judge(const Waiting& asked, const Answers& answers) {
+  const auto& [c, ask] = asked;
+  ++pairs_;
+  const auto changes = [&](const char* what, const Word& other) {
+    std::printf("%s changes the class: --case %s, %s: %s, %s\n", what, c.name.c_str(),
+                ask.way.c_str(), word_of(answers.lazy->collision_class),
+                word_of(other.collision_class));
+  };
+  if (answers.lazy) note(asked, *answers.lazy, false, ask.swapped);
+  if (answers.swapped) {
+    ++asked_swapped_;
+    note(asked, *answers.swapped, false, !ask.swapped);
+    const bool changed =
+        column_of(answers.swapped->collision_class) != column_of(answers.lazy->collision_class);
+    order_changes_ += changed;
+    if (changed) changes("order", *answers.swapped);
+  }
+  if (!answers.full) return;
+  ++asked_again_;
+  note(asked, *answers.full, true, ask.swapped);
+  const bool changed = !refines(answers.lazy->collision_class, answers.full->collision_class);
+  class_changes_ += changed;
+  if (changed) changes("full", *answers.full);
+}
+
 long long OracleRun::contradictions() const {
   long long all = 0;
-  for (const auto& [name, score] : ways) all += score.contradictions();
+  for (const auto& [name, score] : ways_) all += score.contradictions();
   return all;
 }
 
@@ -147,7 +267,7 @@ void OracleRun::add_table(Report& report, const std::string& title) const {
   for (const char* more : {"decided truths", "found %", "us median", "us p99", "at the cap"})
     columns.emplace_back(more);
   report.table(title, columns);
-  for (const auto& [name, s] : ways) {
+  for (const auto& [name, s] : ways_) {
     std::vector<Cell> cells = {name, s.cases};
     for (const auto& is : s.confusion)
       for (const long long count : is) cells.emplace_back(count);
@@ -159,70 +279,28 @@ void OracleRun::add_table(Report& report, const std::string& title) const {
     cells.emplace_back(s.capped);
     report.row(cells);
   }
+  report.note(std::to_string(asked_swapped_) + " pairs were asked in both orders, " +
+              std::to_string(asked_again_) + " in full as well");
 }
 
 void OracleRun::add_bars(Report& report, const std::string& section, long long least_pairs,
                          double least_found_percent) const {
   long long false_numbers = 0;
-  for (const auto& [name, score] : ways) false_numbers += score.false_numbers();
+  for (const auto& [name, score] : ways_) false_numbers += score.false_numbers();
   const auto none = [&](const char* what, long long count) {
     report.bar(section + ": " + what, static_cast<double>(count), 0.0, BoundKind::kAtMost);
   };
-  report.bar(section + ": pairs", static_cast<double>(pairs), static_cast<double>(least_pairs),
+  report.bar(section + ": pairs", static_cast<double>(pairs_), static_cast<double>(least_pairs),
              BoundKind::kAtLeast);
   none("contradictions of the truth", contradictions());
   none("delta outside its bracket, certain above, possible below the truth by > 0.2 um",
        false_numbers);
-  none("lazy and full differ, but for potential that is decided", class_changes);
-  none("words that change with the order of the parts", order_changes);
-  for (const auto& [name, score] : ways)
+  none("checks of the engine that fail", crashes_);
+  none("lazy and full differ, but for potential that is decided", class_changes_);
+  none("words that change with the order of the parts", order_changes_);
+  for (const auto& [name, score] : ways_)
     report.bar(section + ", " + name + ": decided truths found, margin > 0.5 um, %",
                score.found_percent(), least_found_percent, BoundKind::kAtLeast);
-}
-
-void ask_oracle(const OracleCase& c, const OracleAsk& ask, OracleRun& run) {
-  const auto judge = [&](bool full, bool swapped) {
-    const AskOurs how = full ? AskOurs{Refinement::kFull, swapped, kFullWorkCap}
-                             : AskOurs{Refinement::kDecided, swapped};
-    const Word word = ask_ours(c.pair, c.X_WA, c.X_WB, how);
-    std::optional<double> depth_mm;
-    if (word.witness_W) depth_mm = c.least_depth_mm(*word.witness_W);
-    OracleTruth truth = c.truth;
-    if (truth.searched && depth_mm) {
-      truth.certain_mm = std::max(truth.certain_mm, 2.0 * *depth_mm);
-      truth.possible_mm = std::max(truth.possible_mm, truth.certain_mm);
-    }
-    const std::vector<Fault> wrong = faults_of(truth, word, depth_mm);
-    const std::string way = ask.way + (full ? ", full" : "");
-    const bool missed = run.ways[way].add(truth, word, wrong);
-    std::string what;
-    for (const Fault fault : wrong) what += std::string(what.empty() ? "" : ", ") + name_of(fault);
-    if (wrong.empty() && missed) what = "missed";
-    if (!what.empty() || ask.tell_all)
-      tell_oracle((what.empty() ? "answer" : what) + ": --case " + c.name + ", " + way +
-                      (swapped ? ", B before A" : ""),
-                  truth, word,
-                  c.text + (depth_mm ? "; depth at the witness " + std::to_string(*depth_mm) : ""));
-    return word.collision_class;
-  };
-  ++run.pairs;
-  const CollisionClass lazy = judge(false, ask.swapped);
-  if (ask.other_order) {
-    ++run.asked_swapped;
-    const CollisionClass other = judge(false, !ask.swapped);
-    const bool changed = column_of(other) != column_of(lazy);
-    run.order_changes += changed;
-    if (changed)
-      std::printf("order changes the class: --case %s, %s: %s, %s\n", c.name.c_str(),
-                  ask.way.c_str(), word_of(lazy), word_of(other));
-  }
-  if (!ask.full) return;
-  ++run.asked_again;
-  const CollisionClass full = judge(true, ask.swapped);
-  run.class_changes += !refines(lazy, full);
-  if (!refines(lazy, full))
-    std::printf("full changes the class: --case %s, %s: %s, %s\n", c.name.c_str(), ask.way.c_str(),
-                word_of(lazy), word_of(full));
 }
 
 }  // namespace mortise::bench

@@ -75,20 +75,6 @@ struct OracleScore {
 void tell_oracle(const std::string& what, const OracleTruth& truth, const Word& word,
                  const std::string& text);
 
-/// All ways of asking about the pairs of a section, and its table and bars.
-struct OracleRun {
-  std::map<std::string, OracleScore> ways;
-  long long pairs = 0;
-  long long asked_again = 0, class_changes = 0;  ///< lazy to full, other than potential to decided
-  long long asked_swapped = 0, order_changes = 0;
-
-  long long contradictions() const;
-  void add_table(Report& report, const std::string& title) const;
-  /// least_found_percent: of the decided truths, in every way of asking.
-  void add_bars(Report& report, const std::string& section, long long least_pairs,
-                double least_found_percent) const;
-};
-
 /// One pair as a run asks for it: its truth, and how deep a point lies in both least parts.
 struct OracleCase {
   std::string name;  ///< "convex:12"
@@ -99,12 +85,46 @@ struct OracleCase {
   std::function<double(const Vec3& p_W)> least_depth_mm;
 };
 
-/// How a pair is asked: in one order, lazily; the others as wanted. Prints what is wrong.
+/// How a pair is asked: in one order, lazily; in the other order and in full as wanted.
 struct OracleAsk {
   std::string way;
   bool swapped = false, other_order = false, full = false;
   bool tell_all = false;  ///< prints every answer
 };
-void ask_oracle(const OracleCase& c, const OracleAsk& ask, OracleRun& run);
+
+/// All ways of asking about the pairs of a section, and its table and bars. Prints what is wrong.
+class OracleRun {
+ public:
+  /// Pairs are asked some at a time, in a process of their own: a check of the engine that fails
+  /// ends it, and is counted.
+  void add(OracleCase c, const OracleAsk& ask);
+  /// Asks what is left; before any figure is read.
+  void finish();
+
+  long long contradictions() const;
+  long long class_changes() const { return class_changes_; }
+  const OracleScore& score(const std::string& way) const { return ways_.at(way); }
+  void add_table(Report& report, const std::string& title) const;
+  /// least_found_percent: of the decided truths, in every way of asking.
+  void add_bars(Report& report, const std::string& section, long long least_pairs,
+                double least_found_percent) const;
+
+ private:
+  struct Waiting {
+    OracleCase c;
+    OracleAsk ask;
+  };
+  struct Answers;
+  class Ledger;
+  static void work(const std::vector<Waiting>& waiting, Ledger& ledger);
+  void judge(const Waiting& asked, const Answers& answers);
+  void note(const Waiting& asked, const Word& word, bool full, bool swapped);
+
+  std::vector<Waiting> waiting_;
+  std::map<std::string, OracleScore> ways_;
+  long long pairs_ = 0, crashes_ = 0;
+  long long asked_again_ = 0, class_changes_ = 0;  ///< lazy to full but potential to decided
+  long long asked_swapped_ = 0, order_changes_ = 0;
+};
 
 }  // namespace mortise::bench

@@ -111,18 +111,20 @@ TEST(JudgementOracle, TheDeepestPointOfTwoBallsIsFound) {
 TEST(JudgementOracle, ConvexPairsAreJudgedRight) {
   OracleRun run;
   for (std::uint64_t seed = 0; seed < 120; ++seed)
-    ask_oracle(draw_convex(seed), {"convex", seed % 2 == 1, false, seed % 50 == 0}, run);
+    run.add(draw_convex(seed), {"convex", seed % 2 == 1, false, seed % 50 == 0});
+  run.finish();
   EXPECT_EQ(run.contradictions(), 0);
-  EXPECT_EQ(run.class_changes, 0);
-  EXPECT_GE(run.ways["convex"].found_percent(), 97.0);
+  EXPECT_EQ(run.class_changes(), 0);
+  EXPECT_GE(run.score("convex").found_percent(), 97.0);
 }
 
 TEST(JudgementOracle, CsgPairsAreJudgedRight) {
   OracleRun run;
   for (std::uint64_t seed = 0; seed < 8; ++seed)
-    ask_oracle(draw_csg(seed).asked(seed, false), {"csg", seed % 2 == 1}, run);
+    run.add(draw_csg(seed).asked(seed, false), {"csg", seed % 2 == 1});
+  run.finish();
   EXPECT_EQ(run.contradictions(), 0);
-  EXPECT_GE(run.ways["csg"].found_percent(), 80.0);
+  EXPECT_GE(run.score("csg").found_percent(), 80.0);
 }
 
 }  // namespace
