@@ -51,7 +51,9 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, Overla
     // What the surfaces themselves say is known better; parts that do not meet meet nowhere inside.
     if (region.closed_form || (!pair.trivial && known.hi <= 0.0)) return known;
     if (pair.trivial) return Interval{delta.lo + by_mm, delta.hi + by_mm};
-    return Interval{std::max(known.lo, delta.lo - reach_mm), delta.hi + reach_mm};
+    // An edge or corner travels farther than its faces are offset: what was found there stays.
+    const double lo_mm = std::max(known.lo, delta.lo - reach_mm);
+    return Interval{lo_mm, std::max(lo_mm, delta.hi + reach_mm)};
   };
   region.certain_mm = widened(region.certain_mm, Layer::kLower);
   region.possible_mm = widened(region.possible_mm, Layer::kUpper);
