@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   add_bench_options(app, options, judgement_sections());
   app.add_option("--plot", options.plot_file, "draw time against error to this SVG file");
   app.add_option("--cases", options.cases, "random cases of the sections truth, convex and csg");
+  app.add_option("--from", options.from, "first seed of the sections convex and csg");
   app.add_option("--case", options.one_case, "FAMILY:SEED as the run named it: only this, in full");
   try {
     app.parse(argc, argv);

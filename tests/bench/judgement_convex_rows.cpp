@@ -14,7 +14,7 @@ void section_convex(Report& report, const JudgementOptions& options) {
   const long long count = options.cases > 0 ? options.cases : wanted;
   OracleRun run;
   constexpr int kOrderStride = 5, kFullStride = 4;
-  for (long long i = 0; i < count; ++i)
+  for (long long i = options.from; i < options.from + count; ++i)
     run.add(draw_convex(static_cast<std::uint64_t>(i)),
             {kWay, i % 2 == 1, i % kOrderStride == 0, i % kFullStride == 0});
   run.finish();

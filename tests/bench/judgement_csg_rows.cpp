@@ -14,7 +14,7 @@ void section_csg(Report& report, const JudgementOptions& options) {
   const long long wanted = options.quick ? 500 : 20'000;
   const long long count = options.cases > 0 ? options.cases : wanted;
   OracleRun declared, recognized;
-  for (long long i = 0; i < count; ++i) {
+  for (long long i = options.from; i < options.from + count; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
     const CsgCase c = draw_csg(seed);
     const bool full = i % kFullStride == 0;

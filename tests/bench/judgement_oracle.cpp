@@ -190,8 +190,8 @@ void OracleRun::finish() {
     waitpid(child, &status, 0);
     if (ledger.at() >= waiting_.size()) break;
     ++crashes_;
-    std::printf("check failed: --case %s; %s\n", waiting_[ledger.at()].c.name.c_str(),
-                waiting_[ledger.at()].c.text.c_str());
+    const OracleCase& c = waiting_[ledger.at()].c;
+    tell_oracle("check failed: --case " + c.name, c.truth, {}, c.text);
     ++ledger.at();
   }
   for (std::size_t i = 0; i < waiting_.size(); ++i) judge(waiting_[i], ledger.answers()[i]);

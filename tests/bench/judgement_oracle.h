@@ -102,6 +102,7 @@ class OracleRun {
   void finish();
 
   long long contradictions() const;
+  long long crashes() const { return crashes_; }  ///< checks of the engine that failed
   long long class_changes() const { return class_changes_; }
   const OracleScore& score(const std::string& way) const { return ways_.at(way); }
   void add_table(Report& report, const std::string& title) const;

@@ -113,9 +113,21 @@ TEST(JudgementOracle, ConvexPairsAreJudgedRight) {
   for (std::uint64_t seed = 0; seed < 120; ++seed)
     run.add(draw_convex(seed), {"convex", seed % 2 == 1, false, seed % 50 == 0});
   run.finish();
+  EXPECT_EQ(run.crashes(), 0);
   EXPECT_EQ(run.contradictions(), 0);
   EXPECT_EQ(run.class_changes(), 0);
   EXPECT_GE(run.score("convex").found_percent(), 97.0);
+}
+
+// Corners that travel farther than the inner overlap and the offsets of the faces together.
+TEST(JudgementOracle, TipsDeeperThanTheInnerOverlapHaveABracket) {
+  for (const std::uint64_t seed : {3600u, 5580u, 17501u}) {
+    OracleRun run;
+    run.add(draw_convex(seed), {"convex", false, true, true});
+    run.finish();
+    EXPECT_EQ(run.crashes(), 0) << seed;
+    EXPECT_EQ(run.contradictions(), 0) << seed;
+  }
 }
 
 TEST(JudgementOracle, CsgPairsAreJudgedRight) {

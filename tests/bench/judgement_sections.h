@@ -10,6 +10,7 @@ namespace mortise::bench {
 struct JudgementOptions : BenchOptions {
   std::string plot_file;  ///< empty: not drawn
   long long cases = 0;    ///< 0: as many as the run has by itself
+  long long from = 0;     ///< first seed of the sections convex and csg
   std::string one_case;   ///< "cylinder:123": this one, told in full
 };
 
