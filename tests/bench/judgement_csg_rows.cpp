@@ -11,7 +11,7 @@ constexpr int kOrderStride = 5, kFullStride = 10, kRecognizedStride = 4;
 }  // namespace
 
 void section_csg(Report& report, const JudgementOptions& options) {
-  const long long wanted = options.quick ? 500 : 20'000;
+  const long long wanted = options.quick ? 300 : 20'000;
   const long long count = options.cases > 0 ? options.cases : wanted;
   OracleRun declared, recognized;
   for (long long i = options.from; i < options.from + count; ++i) {
