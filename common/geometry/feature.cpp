@@ -6,82 +6,14 @@
 #include <limits>
 
 #include "common/base/check.h"
+#include "common/geometry/surface_at.h"
 
 namespace mortise {
 namespace {
 
-// The half plane through the axis and x: height z along the axis, distance r from it, and the unit
-// direction of r (any fixed perpendicular when x lies on the axis).
-struct AxisView {
-  double z_mm = 0.0;
-  double r_mm = 0.0;
-  Vec3 radial = Vec3::UnitX();
-};
+double outside_distance(const Surface& s, const Vec3& x) { return SurfaceAt(s).outside_mm(x); }
 
-AxisView view_from_axis(const Surface& s, const Vec3& x) {
-  AxisView view;
-  const Vec3 d = x - s.point;
-  view.z_mm = d.dot(s.axis);
-  const Vec3 across = d - view.z_mm * s.axis;
-  view.r_mm = across.norm();
-  view.radial = view.r_mm > 0.0 ? Vec3(across / view.r_mm) : s.axis.unitOrthogonal();
-  return view;
-}
-
-// Foot of x on the cone's generator line, counted from the apex; negative: the apex is nearest.
-double along_generator(const Surface& s, const AxisView& v) {
-  return v.z_mm * std::cos(s.half_angle_rad) + v.r_mm * std::sin(s.half_angle_rad);
-}
-
-// Distance as if the material lay inside the radius.
-double outside_distance(const Surface& s, const Vec3& x) {
-  switch (s.kind) {
-    case SurfaceKind::kPlane:
-      return (x - s.point).dot(s.axis);
-    case SurfaceKind::kCylinder:
-      return view_from_axis(s, x).r_mm - s.radius_mm;
-    case SurfaceKind::kCone: {
-      const AxisView v = view_from_axis(s, x);
-      if (along_generator(s, v) < 0.0) return std::hypot(v.z_mm, v.r_mm);
-      return v.r_mm * std::cos(s.half_angle_rad) - v.z_mm * std::sin(s.half_angle_rad);
-    }
-    case SurfaceKind::kSphere:
-      return (x - s.point).norm() - s.radius_mm;
-    case SurfaceKind::kTorus: {
-      const AxisView v = view_from_axis(s, x);
-      return std::hypot(v.r_mm - s.radius_mm, v.z_mm) - s.tube_radius_mm;
-    }
-    case SurfaceKind::kUnknown:
-      break;
-  }
-  return 0.0;
-}
-
-Vec3 outside_normal(const Surface& s, const Vec3& x) {
-  const auto unit_or = [](const Vec3& v, const Vec3& otherwise) -> Vec3 {
-    const double length = v.norm();
-    return length > 0.0 ? Vec3(v / length) : otherwise;
-  };
-  switch (s.kind) {
-    case SurfaceKind::kCylinder:
-      return view_from_axis(s, x).radial;
-    case SurfaceKind::kCone: {
-      const AxisView v = view_from_axis(s, x);
-      if (along_generator(s, v) < 0.0) return unit_or(x - s.point, -s.axis);
-      return std::cos(s.half_angle_rad) * v.radial - std::sin(s.half_angle_rad) * s.axis;
-    }
-    case SurfaceKind::kSphere:
-      return unit_or(x - s.point, s.axis);
-    case SurfaceKind::kTorus: {
-      const AxisView v = view_from_axis(s, x);
-      return unit_or((v.r_mm - s.radius_mm) * v.radial + v.z_mm * s.axis, v.radial);
-    }
-    case SurfaceKind::kPlane:
-    case SurfaceKind::kUnknown:
-      break;
-  }
-  return s.axis;
-}
+Vec3 outside_normal(const Surface& s, const Vec3& x) { return SurfaceAt(s).outside_normal(x); }
 
 // How closely the least distance to a torus is found, as a share of how deep a triangle is.
 constexpr double kTorusShare = 1e-2;
@@ -170,14 +102,10 @@ bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int dept
 }  // namespace
 
 double Surface::signed_distance_mm(const Vec3& x) const {
-  const double outside = outside_distance(*this, x);
-  return inward && kind != SurfaceKind::kPlane ? -outside : outside;
+  return SurfaceAt(*this).signed_distance_mm(x);
 }
 
-Vec3 Surface::outward_normal(const Vec3& x) const {
-  const Vec3 normal = outside_normal(*this, x);
-  return inward && kind != SurfaceKind::kPlane ? Vec3(-normal) : normal;
-}
+Vec3 Surface::outward_normal(const Vec3& x) const { return SurfaceAt(*this).outward_normal(x); }
 
 double Surface::curvature_bound(const Vec3& x) const {
   switch (kind) {
@@ -186,7 +114,9 @@ double Surface::curvature_bound(const Vec3& x) const {
       return 1.0 / radius_mm;
     case SurfaceKind::kCone: {
       // Meusnier at the foot of x: the circle of radius r there is tilted by the half angle.
-      const double along = along_generator(*this, view_from_axis(*this, x));
+      const SurfaceAt at(*this);
+      const SurfaceAt::View view = at.view_from_axis(x);
+      const double along = at.along_generator(view.z_mm, view.r_mm);
       const double r = along * std::sin(half_angle_rad);
       return r > 0.0 ? std::cos(half_angle_rad) / r : std::numeric_limits<double>::infinity();
     }
@@ -207,7 +137,7 @@ double Surface::curvature_bound(const Vec3& x) const {
 double Surface::concave_bend_mm(const Vec3& middle, std::span<const Vec3> points,
                                 double more_mm) const {
   if (kind != SurfaceKind::kTorus) return 0.0;
-  const AxisView view = view_from_axis(*this, middle);
+  const SurfaceAt::View view = SurfaceAt(*this).view_from_axis(middle);
   const Vec3 t = axis.cross(view.radial);
   double reach_mm = more_mm, around_mm = more_mm;
   for (const Vec3& x : points) {
