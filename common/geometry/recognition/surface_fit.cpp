@@ -1,17 +1,14 @@
 #include "common/geometry/recognition/surface_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+
+#include "common/geometry/surface_at.h"
 
 namespace mortise {
 namespace {
-
-constexpr int kMaxParameters = 7;  // of a torus: point, axis, two radii
-using Vec7 = Eigen::Matrix<double, kMaxParameters, 1>;
-using Mat7 = Eigen::Matrix<double, kMaxParameters, kMaxParameters>;
 
 // From a fair guess a few are enough, as each wins decades; what still goes on then has no minimum.
 constexpr int kIterations = 25;
@@ -24,28 +21,30 @@ constexpr double kFlatRadius = 1e4;
 // Below this half angle a cone is a cylinder, and above its complement a plane. rad
 constexpr double kLeastHalfAngle_rad = 1e-4;
 
+// Points are taken four at a time. Each lane has its own sums, which are added in one order: the
+// result does not depend on how wide the registers of the machine are.
+using Lanes = Eigen::Array4d;
+constexpr std::size_t kLanes = 4;
+
+// Point, axis, sizes.
+constexpr int parameters_of(SurfaceKind kind) {
+  if (kind == SurfaceKind::kSphere) return 4;
+  if (kind == SurfaceKind::kCylinder) return 5;
+  return kind == SurfaceKind::kCone ? 6 : 7;
+}
+
+template <SurfaceKind kind>
+using Step = Eigen::Matrix<double, parameters_of(kind), 1>;
+
 // The surface about a frame near the points, in units of their extent: a cone has no apex here,
 // which may be far away. Parameters: shifts along u, v (sphere, torus: a too), tilts of the axis to
 // u and v, then sizes.
 struct Model {
-  SurfaceKind kind = SurfaceKind::kUnknown;
   Vec3 p = Vec3::Zero(), a = Vec3::UnitZ(), u = Vec3::UnitX(), v = Vec3::UnitY();
   double size = 0.0;   // cylinder, sphere: radius; cone: radius at p; torus: of the centre circle
   double other = 0.0;  // cone: half angle; torus: tube radius
   double cosine = 1.0, sine = 0.0;  // of `other`
 
-  int parameters() const {
-    switch (kind) {
-      case SurfaceKind::kSphere:
-        return 4;
-      case SurfaceKind::kCylinder:
-        return 5;
-      case SurfaceKind::kCone:
-        return 6;
-      default:
-        return 7;
-    }
-  }
   void set_angle(double angle) {
     other = angle;
     cosine = std::cos(angle);
@@ -58,96 +57,154 @@ struct Model {
   }
 };
 
-struct Row {
-  double residual = 0.0;
-  Vec7 slope = Vec7::Zero();
-};
-
-double residual_at(const Model& m, const Vec3& x) {
-  const Vec3 d = x - m.p;
-  if (m.kind == SurfaceKind::kSphere) return d.norm() - m.size;
-  const double z = d.dot(m.a), rho = (d - z * m.a).norm();
-  if (m.kind == SurfaceKind::kCylinder) return rho - m.size;
-  if (m.kind == SurfaceKind::kTorus) return std::hypot(rho - m.size, z) - m.other;
-  return (rho - m.size) * m.cosine - z * m.sine;
-}
-
-Row row_of(const Model& m, const Vec3& x) {
-  Row row;
-  const Vec3 d = x - m.p;
-  if (m.kind == SurfaceKind::kSphere) {
-    const double length = d.norm();
-    row.residual = length - m.size;
-    if (length > 0.0) row.slope.head<3>() = -d / length;
-    row.slope[3] = -1.0;
-    return row;
-  }
-  const double z = d.dot(m.a);
-  const Vec3 across = d - z * m.a;
-  const double rho = across.norm();
-  const Vec3 w = rho > 0.0 ? Vec3(across / rho) : m.u;
-  const double wu = w.dot(m.u), wv = w.dot(m.v);
-  double to_rho = 1.0, to_z = 0.0;  // derivatives of the residual
-  if (m.kind == SurfaceKind::kCylinder) {
-    row.residual = rho - m.size;
-    row.slope[4] = -1.0;
-  } else if (m.kind == SurfaceKind::kCone) {
-    to_rho = m.cosine;
-    to_z = -m.sine;
-    row.residual = (rho - m.size) * to_rho + z * to_z;
-    row.slope[4] = -to_rho;
-    row.slope[5] = (rho - m.size) * to_z - z * to_rho;
-  } else {
-    const double q = rho - m.size, tube = std::hypot(q, z);
-    to_rho = tube > 0.0 ? q / tube : 1.0;
-    to_z = tube > 0.0 ? z / tube : 0.0;
-    row.residual = tube - m.other;
-    row.slope[4] = -to_z;  // shift along the axis
-    row.slope[5] = -to_rho;
-    row.slope[6] = -1.0;
-  }
-  row.slope[0] = -to_rho * wu;
-  row.slope[1] = -to_rho * wv;
-  row.slope[2] = (-to_rho * z + to_z * rho) * wu;
-  row.slope[3] = (-to_rho * z + to_z * rho) * wv;
-  return row;
-}
-
-Model moved(const Model& m, const Vec7& step) {
-  Model next = m;
-  if (m.kind == SurfaceKind::kSphere) {
-    next.p += step.head<3>();
-    next.size += step[3];
-    return next;
-  }
-  next.p += step[0] * m.u + step[1] * m.v;
-  next.set_axis(m.a + step[2] * m.u + step[3] * m.v);
-  if (m.kind == SurfaceKind::kTorus) {
-    next.p += step[4] * m.a;
-    next.size += step[5];
-    next.other += step[6];
-  } else {
-    next.size += step[4];
-    if (m.kind == SurfaceKind::kCone) next.set_angle(m.other + step[5]);
-  }
-  return next;
-}
-
-double cost_of(const Model& m, std::span<const Vec3> points) {
-  double cost = 0.0;
-  for (const Vec3& x : points) {
-    const double residual = residual_at(m, x);
-    cost += residual * residual;
-  }
-  return cost;
-}
-
-// Points about the origin with unit extent.
+// Points about the origin with unit extent, by coordinate; places behind the last are zero.
 struct Scaled {
   Vec3 middle = Vec3::Zero();
   double extent = 1.0;
-  std::vector<Vec3> points;
+  std::size_t count = 0, blocks = 0;
+  std::vector<std::array<Lanes, 3>> xyz;
 };
+
+// Residuals and their derivatives by the parameters, of one block.
+template <SurfaceKind kind>
+struct Rows {
+  Lanes residual;
+  std::array<Lanes, parameters_of(kind)> slope;
+};
+
+Lanes inverse_or_zero(const Lanes& length) {
+  return (length > 0.0).select(length.inverse(), Lanes::Zero());
+}
+
+template <SurfaceKind kind>
+void set_rows(const Model& m, const std::array<Lanes, 3>& at, Rows<kind>& rows) {
+  const Lanes dx = at[0] - m.p.x(), dy = at[1] - m.p.y(), dz = at[2] - m.p.z();
+  if constexpr (kind == SurfaceKind::kSphere) {
+    const Lanes length = (dx * dx + dy * dy + dz * dz).sqrt(), inverse = inverse_or_zero(length);
+    rows.residual = length - m.size;
+    rows.slope = {-dx * inverse, -dy * inverse, -dz * inverse, Lanes::Constant(-1.0)};
+    return;
+  }
+  const Lanes along = dx * m.a.x() + dy * m.a.y() + dz * m.a.z();
+  const Lanes x = dx * m.u.x() + dy * m.u.y() + dz * m.u.z();
+  const Lanes y = dx * m.v.x() + dy * m.v.y() + dz * m.v.z();
+  const Lanes rho = (x * x + y * y).sqrt(), inverse = inverse_or_zero(rho);
+  const Lanes wu = x * inverse, wv = y * inverse;
+  if constexpr (kind == SurfaceKind::kCylinder) {
+    rows.residual = rho - m.size;
+    rows.slope = {-wu, -wv, -along * wu, -along * wv, Lanes::Constant(-1.0)};
+  } else if constexpr (kind == SurfaceKind::kCone) {
+    const Lanes q = rho - m.size;
+    const Lanes tilt = -m.cosine * along - m.sine * rho;
+    rows.residual = q * m.cosine - along * m.sine;
+    rows.slope = {-m.cosine * wu,
+                  -m.cosine * wv,
+                  tilt * wu,
+                  tilt * wv,
+                  Lanes::Constant(-m.cosine),
+                  -m.sine * q - m.cosine * along};
+  } else if constexpr (kind == SurfaceKind::kTorus) {
+    const Lanes q = rho - m.size;
+    const Lanes tube = (q * q + along * along).sqrt(), one = inverse_or_zero(tube);
+    const Lanes to_rho = q * one, to_z = along * one;  // derivatives of the residual
+    const Lanes tilt = to_z * rho - to_rho * along;
+    rows.residual = tube - m.other;
+    rows.slope = {-to_rho * wu, -to_rho * wv,         tilt * wu, tilt * wv, -to_z,
+                  -to_rho,      Lanes::Constant(-1.0)};
+  }
+}
+
+double sum_of(const Lanes& l) { return (l[0] + l[1]) + (l[2] + l[3]); }
+
+// What one pass over the points tells: the cost, and the normal equations of the next step.
+template <SurfaceKind kind>
+struct Sums {
+  static constexpr int n = parameters_of(kind);
+  double cost = 0.0;
+  Eigen::Matrix<double, n, n> normal;  // lower half
+  Step<kind> gradient;
+};
+
+// Stops where the cost so far is not below limit: it only grows.
+template <SurfaceKind kind>
+Sums<kind> sums_of(const Model& m, const Scaled& points, double limit) {
+  constexpr std::size_t kLookEvery = 8;  // blocks
+  constexpr int n = parameters_of(kind);
+  Lanes cost = Lanes::Zero();
+  std::array<Lanes, n> gradient;
+  std::array<Lanes, n*(n + 1) / 2> normal;
+  gradient.fill(Lanes::Zero());
+  normal.fill(Lanes::Zero());
+  Rows<kind> rows;
+  for (std::size_t b = 0; b < points.blocks; ++b) {
+    set_rows<kind>(m, points.xyz[b], rows);
+    if ((b + 1) * kLanes > points.count)
+      for (std::size_t lane = points.count - b * kLanes; lane < kLanes; ++lane) {
+        rows.residual[static_cast<Eigen::Index>(lane)] = 0.0;
+        for (Lanes& slope : rows.slope) slope[static_cast<Eigen::Index>(lane)] = 0.0;
+      }
+    cost += rows.residual * rows.residual;
+    if (b % kLookEvery == 0 && sum_of(cost) >= limit) break;
+    std::size_t entry = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      gradient[i] += rows.residual * rows.slope[i];
+      for (std::size_t j = 0; j <= i; ++j) normal[entry++] += rows.slope[i] * rows.slope[j];
+    }
+  }
+  Sums<kind> sums;
+  sums.cost = sum_of(cost);
+  std::size_t entry = 0;
+  for (int i = 0; i < n; ++i) {
+    sums.gradient[i] = sum_of(gradient[static_cast<std::size_t>(i)]);
+    for (int j = 0; j <= i; ++j) sums.normal(i, j) = sum_of(normal[entry++]);
+  }
+  return sums;
+}
+
+// Solves A x = b by L D L^T, A symmetric, its lower half given; a direction without weight stays.
+template <int n>
+Eigen::Matrix<double, n, 1> solved(Eigen::Matrix<double, n, n> a, Eigen::Matrix<double, n, 1> x) {
+  std::array<double, n> inverse;
+  for (int j = 0; j < n; ++j) {
+    double pivot = a(j, j);
+    for (int k = 0; k < j; ++k) pivot -= a(j, k) * a(j, k) * a(k, k);
+    a(j, j) = pivot;
+    inverse[static_cast<std::size_t>(j)] = pivot != 0.0 ? 1.0 / pivot : 0.0;
+    for (int i = j + 1; i < n; ++i) {
+      double entry = a(i, j);
+      for (int k = 0; k < j; ++k) entry -= a(i, k) * a(j, k) * a(k, k);
+      a(i, j) = entry * inverse[static_cast<std::size_t>(j)];
+    }
+  }
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < i; ++k) x[i] -= a(i, k) * x[k];
+  for (int i = 0; i < n; ++i) x[i] *= inverse[static_cast<std::size_t>(i)];
+  for (int i = n - 1; i >= 0; --i)
+    for (int k = i + 1; k < n; ++k) x[i] -= a(k, i) * x[k];
+  return x;
+}
+
+template <SurfaceKind kind>
+Model moved(const Model& m, const Step<kind>& step) {
+  Model next = m;
+  if constexpr (kind == SurfaceKind::kSphere) {
+    next.p += step.template head<3>();
+    next.size += step[3];
+    return next;
+  } else {
+    next.p += step[0] * m.u + step[1] * m.v;
+    next.set_axis(m.a + step[2] * m.u + step[3] * m.v);
+    if constexpr (kind == SurfaceKind::kTorus) {
+      next.p += step[4] * m.a;
+      next.size += step[5];
+      next.other += step[6];
+    } else {
+      next.size += step[4];
+      if constexpr (kind == SurfaceKind::kCone) next.set_angle(m.other + step[5]);
+    }
+    return next;
+  }
+}
 
 Scaled scaled(std::span<const Vec3> points) {
   Scaled out;
@@ -157,14 +214,19 @@ Scaled scaled(std::span<const Vec3> points) {
   for (const Vec3& x : points) extent2 = std::max(extent2, (x - out.middle).squaredNorm());
   out.extent = std::sqrt(extent2);
   if (!(out.extent > 0.0)) return out;
-  out.points.reserve(points.size());
-  for (const Vec3& x : points) out.points.push_back((x - out.middle) / out.extent);
+  out.count = points.size();
+  out.blocks = (points.size() + kLanes - 1) / kLanes;
+  out.xyz.assign(out.blocks, {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 at = (points[i] - out.middle) / out.extent;
+    const auto lane = static_cast<Eigen::Index>(i % kLanes);
+    for (int k = 0; k < 3; ++k) out.xyz[i / kLanes][static_cast<std::size_t>(k)][lane] = at[k];
+  }
   return out;
 }
 
 Model model_of(const Surface& s, const Scaled& frame) {
   Model m;
-  m.kind = s.kind;
   m.p = (s.point - frame.middle) / frame.extent;
   m.set_axis(s.axis);
   if (s.kind == SurfaceKind::kCylinder || s.kind == SurfaceKind::kCone) {
@@ -180,30 +242,74 @@ Model model_of(const Surface& s, const Scaled& frame) {
   return m;
 }
 
-bool sound(const Model& m) {
+bool sound(SurfaceKind kind, const Model& m) {
   if (!m.p.allFinite() || !m.a.allFinite() || !std::isfinite(m.size + m.other)) return false;
-  if (m.kind == SurfaceKind::kCone)
+  if (kind == SurfaceKind::kCone)
     return std::fabs(m.other) > kLeastHalfAngle_rad &&
            std::fabs(m.other) < 1.57079632679489662 - kLeastHalfAngle_rad;
   if (!(m.size > 0.0) || m.size > kFlatRadius) return false;
-  return m.kind != SurfaceKind::kTorus || (m.other > 0.0 && m.other < m.size);
+  return kind != SurfaceKind::kTorus || (m.other > 0.0 && m.other < m.size);
 }
 
-Surface surface_of(const Model& m, const Scaled& frame, bool inward) {
+Surface surface_of(SurfaceKind kind, const Model& m, const Scaled& frame, bool inward) {
   Surface s;
-  s.kind = m.kind;
+  s.kind = kind;
   s.inward = inward;
   s.axis = m.a;
   s.point = frame.middle + frame.extent * m.p;
-  if (m.kind == SurfaceKind::kCone) {
+  if (kind == SurfaceKind::kCone) {
     s.half_angle_rad = std::fabs(m.other);
     s.point -= frame.extent * m.size / std::tan(m.other) * m.a;
     if (m.other < 0.0) s.axis = -m.a;
     return s;
   }
   s.radius_mm = frame.extent * m.size;
-  if (m.kind == SurfaceKind::kTorus) s.tube_radius_mm = frame.extent * m.other;
+  if (kind == SurfaceKind::kTorus) s.tube_radius_mm = frame.extent * m.other;
   return s;
+}
+
+// Takes the largest step that lowers the cost, damping it as far as needed. Gives its length, or
+// nothing when there is none.
+template <SurfaceKind kind>
+std::optional<double> take_step(const Scaled& frame, Model& m, Sums<kind>& sums, double& damping) {
+  constexpr int kTries = 6;
+  for (int tries = 0; tries < kTries; ++tries) {
+    auto damped = sums.normal;
+    for (int k = 0; k < damped.rows(); ++k)
+      damped(k, k) = sums.normal(k, k) * (1.0 + damping) + 1e-300;
+    const Step<kind> step = -solved(damped, sums.gradient);
+    if (!step.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    const Model next = moved<kind>(m, step);
+    const Sums<kind> then = sums_of<kind>(next, frame, sums.cost);
+    if (then.cost < sums.cost) {
+      m = next;
+      sums = then;
+      damping = std::max(1e-14, 0.05 * damping);
+      return step.norm();
+    }
+    damping = std::min(1e6, 20.0 * damping);
+  }
+  return std::nullopt;
+}
+
+template <SurfaceKind kind>
+std::optional<Surface> fitted(const Surface& start, const Scaled& frame, double worth_going_on,
+                              double hopeless_mm) {
+  Model m = model_of(start, frame);
+  Sums<kind> sums = sums_of<kind>(m, frame, std::numeric_limits<double>::infinity());
+  double damping = 1e-6;
+  const auto count = static_cast<double>(frame.count);
+  const double exact = kExact * kExact * count;
+  const double hopeless = std::pow(hopeless_mm / frame.extent, 2) * count;
+  for (int i = 0; i < kIterations && sums.cost > exact && std::isfinite(sums.cost); ++i) {
+    if (i >= kPatience && sums.cost > hopeless) return std::nullopt;
+    const double cost_before = sums.cost;
+    const auto step_size = take_step<kind>(frame, m, sums, damping);
+    if (step_size && std::isnan(*step_size)) return std::nullopt;
+    if (!step_size || *step_size < 1e-15 || sums.cost > (1.0 - worth_going_on) * cost_before) break;
+  }
+  if (!sound(kind, m)) return std::nullopt;
+  return surface_of(kind, m, frame, start.inward);
 }
 
 }  // namespace
@@ -213,51 +319,24 @@ std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3
   if (points.size() < 4) return std::nullopt;
   const Scaled frame = scaled(points);
   if (!(frame.extent > 0.0)) return std::nullopt;
-  Model m = model_of(start, frame);
-  const int n = m.parameters();
-  double cost = cost_of(m, frame.points), damping = 1e-6;
-  const double exact = std::pow(kExact, 2) * static_cast<double>(frame.points.size());
-  const double hopeless =
-      std::pow(hopeless_mm / frame.extent, 2) * static_cast<double>(points.size());
-  for (int i = 0; i < kIterations && cost > exact && std::isfinite(cost); ++i) {
-    Mat7 normal = Mat7::Zero();
-    Vec7 gradient = Vec7::Zero();
-    for (const Vec3& x : frame.points) {
-      const Row row = row_of(m, x);
-      normal.noalias() += row.slope * row.slope.transpose();
-      gradient += row.residual * row.slope;
-    }
-    if (i >= kPatience && cost > hopeless) return std::nullopt;
-    bool better = false;
-    double step_size = 0.0;
-    const double cost_before = cost;
-    for (int tries = 0; tries < 6 && !better; ++tries) {
-      Mat7 damped = normal;
-      for (int k = 0; k < kMaxParameters; ++k)
-        damped(k, k) = k < n ? normal(k, k) * (1.0 + damping) + 1e-300 : 1.0;
-      const Vec7 step = -Vec7(damped.ldlt().solve(gradient));
-      if (!step.allFinite()) return std::nullopt;
-      const Model next = moved(m, step);
-      const double next_cost = cost_of(next, frame.points);
-      step_size = step.norm();
-      better = next_cost < cost;
-      if (better) {
-        m = next;
-        cost = next_cost;
-        damping = std::max(1e-14, 0.05 * damping);
-      } else {
-        damping = std::min(1e6, 20.0 * damping);
-      }
-    }
-    if (!better || step_size < 1e-15 || cost > (1.0 - worth_going_on) * cost_before) break;
+  switch (start.kind) {
+    case SurfaceKind::kSphere:
+      return fitted<SurfaceKind::kSphere>(start, frame, worth_going_on, hopeless_mm);
+    case SurfaceKind::kCylinder:
+      return fitted<SurfaceKind::kCylinder>(start, frame, worth_going_on, hopeless_mm);
+    case SurfaceKind::kCone:
+      return fitted<SurfaceKind::kCone>(start, frame, worth_going_on, hopeless_mm);
+    case SurfaceKind::kTorus:
+      return fitted<SurfaceKind::kTorus>(start, frame, worth_going_on, hopeless_mm);
+    default:
+      return std::nullopt;
   }
-  if (!sound(m)) return std::nullopt;
-  return surface_of(m, frame, start.inward);
 }
 
 double residual_of(const Surface& surface, std::span<const Vec3> points) {
   double most = 0.0;
-  for (const Vec3& x : points) most = std::max(most, std::fabs(surface.signed_distance_mm(x)));
+  const SurfaceAt at(surface);
+  for (const Vec3& x : points) most = std::max(most, std::fabs(at.outside_mm(x)));
   return most;
 }
 

@@ -2,15 +2,16 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
-
 
 namespace mortise {
 namespace {
 
 // Facets of a cylinder or cone stand at one angle to the axis; a spread above this is another kind.
 constexpr double kInclinationSpread = 0.1;
+
+// Points spread less than this across a line or plane, as a share squared, lie in it.
+constexpr double kSingular = 1e-14;
 
 Vec3 middle_of(std::span<const Vec3> points) {
   Vec3 middle = Vec3::Zero();
@@ -30,19 +31,22 @@ std::optional<Circle> circle_through(std::span<const Eigen::Vector2d> points) {
   for (const auto& p : points) extent2 = std::max(extent2, (p - middle).squaredNorm());
   if (!(extent2 > 0.0)) return std::nullopt;
   const double extent = std::sqrt(extent2);
-  Eigen::MatrixXd a(points.size(), 3);
-  Eigen::VectorXd b(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d q = (points[i] - middle) / extent;
-    a.row(static_cast<Eigen::Index>(i)) << 2.0 * q.x(), 2.0 * q.y(), 1.0;
-    b[static_cast<Eigen::Index>(i)] = q.squaredNorm();
+  // About the middle the constant does not depend on the place of the centre.
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d skew = Eigen::Vector2d::Zero();
+  double mean = 0.0;
+  for (const auto& p : points) {
+    const Eigen::Vector2d q = (p - middle) / extent;
+    spread += q * q.transpose();
+    skew += 0.5 * q.squaredNorm() * q;
+    mean += q.squaredNorm() / static_cast<double>(points.size());
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-  if (qr.rank() < 3) return std::nullopt;
-  const Eigen::Vector3d s = qr.solve(b);
-  const double radius2 = s[2] + s[0] * s[0] + s[1] * s[1];
+  const double det = spread.determinant();
+  if (!(det > kSingular * spread(0, 0) * spread(1, 1))) return std::nullopt;
+  const Eigen::Vector2d s = spread.inverse() * skew;
+  const double radius2 = mean + s.squaredNorm();
   if (!(radius2 > 0.0)) return std::nullopt;
-  return Circle{middle.x() + extent * s[0], middle.y() + extent * s[1],
+  return Circle{middle.x() + extent * s.x(), middle.y() + extent * s.y(),
                 extent * std::sqrt(radius2)};
 }
 
@@ -116,21 +120,24 @@ std::optional<Surface> guess_sphere(std::span<const Vec3> points) {
   for (const Vec3& x : points) extent2 = std::max(extent2, (x - middle).squaredNorm());
   if (!(extent2 > 0.0)) return std::nullopt;
   const double extent = std::sqrt(extent2);
-  Eigen::MatrixXd a(points.size(), 4);
-  Eigen::VectorXd b(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 q = (points[i] - middle) / extent;
-    a.row(static_cast<Eigen::Index>(i)) << 2.0 * q.x(), 2.0 * q.y(), 2.0 * q.z(), 1.0;
-    b[static_cast<Eigen::Index>(i)] = q.squaredNorm();
+  // About the middle the constant does not depend on the place of the centre.
+  Mat3 spread = Mat3::Zero();
+  Vec3 skew = Vec3::Zero();
+  double mean = 0.0;
+  for (const Vec3& x : points) {
+    const Vec3 q = (x - middle) / extent;
+    spread += q * q.transpose();
+    skew += 0.5 * q.squaredNorm() * q;
+    mean += q.squaredNorm() / static_cast<double>(points.size());
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-  if (qr.rank() < 4) return std::nullopt;
-  const Eigen::Vector4d s = qr.solve(b);
-  const double radius2 = s[3] + s.head<3>().squaredNorm();
+  const double det = spread.determinant();
+  if (!(det > kSingular * spread(0, 0) * spread(1, 1) * spread(2, 2))) return std::nullopt;
+  const Vec3 s = spread.inverse() * skew;
+  const double radius2 = mean + s.squaredNorm();
   if (!(radius2 > 0.0)) return std::nullopt;
   Surface sphere;
   sphere.kind = SurfaceKind::kSphere;
-  sphere.point = middle + extent * s.head<3>();
+  sphere.point = middle + extent * s;
   sphere.radius_mm = extent * std::sqrt(radius2);
   return sphere;
 }
