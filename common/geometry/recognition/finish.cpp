@@ -107,8 +107,8 @@ class Finisher {
     if (!alike(into.surface, piece.surface, share)) return false;
     if (into.surface.kind == SurfaceKind::kCylinder || into.surface.kind == SurfaceKind::kCone) {
       // About the same stretch of the axis, else they are two features that happen to be alike.
-      const Interval a = measure_region(mesh_, into.surface, into.triangles).along_mm;
-      const Interval b = measure_region(mesh_, into.surface, piece.triangles).along_mm;
+      const Interval a = extent_along_mm(mesh_, into.surface, into.triangles);
+      const Interval b = extent_along_mm(mesh_, into.surface, piece.triangles);
       if (std::min(a.hi, b.hi) - std::max(a.lo, b.lo) <= 0.1 * std::min(a.width(), b.width()))
         return false;
     }

@@ -1,7 +1,9 @@
 #include "common/geometry/recognition/measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -34,7 +36,7 @@ double covered_rad(std::vector<std::pair<double, double>> arcs) {
 }
 
 // The same as depth_at_middles_mm on a grid of points of the triangle.
-double depth_at_grid(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
+double depth_at_grid(const TriangleMesh& mesh, const SurfaceAt& surface, std::uint32_t t) {
   constexpr int kSteps = 6;  // 28 points: a sagitta is met within 3 %
   double most = 0.0;
   for (int i = 0; i <= kSteps; ++i)
@@ -47,6 +49,50 @@ double depth_at_grid(const TriangleMesh& mesh, const Surface& surface, std::uint
   return most;
 }
 
+// Where a corner lies as seen from the axis.
+struct CornerView {
+  double z = 0.0, angle = 0.0, meridian = 0.0;
+  bool at_axis = false;  // an apex has no angle
+};
+
+// Corners are shared by about six triangles, which follow each other closely: a view is kept until
+// another corner of the same place is asked for.
+class CornerViews {
+ public:
+  CornerViews(const TriangleMesh& mesh, const Surface& s)
+      : mesh_(mesh), s_(s), u_(s.axis.unitOrthogonal()), v_(s.axis.cross(u_)) {
+    corner_.fill(kNone);
+  }
+
+  // Calls fresh(view) for a corner that is not kept.
+  template <class Fresh>
+  const CornerView& of(std::uint32_t corner, Fresh&& fresh) {
+    const std::size_t place = corner % kPlaces;
+    CornerView& view = view_[place];
+    if (corner_[place] == corner) return view;
+    corner_[place] = corner;
+    const Vec3 d = mesh_.points_mm[corner] - s_.point;
+    const double x = d.dot(u_), y = d.dot(v_), rho = std::hypot(x, y);
+    view.z = d.dot(s_.axis);
+    if (s_.kind == SurfaceKind::kTorus) view.meridian = std::atan2(view.z, rho - s_.radius_mm);
+    view.at_axis = rho <= 1e-9 * (std::fabs(view.z) + s_.radius_mm);
+    view.angle = view.at_axis ? 0.0 : std::atan2(y, x);
+    fresh(view);
+    return view;
+  }
+
+ private:
+  static constexpr std::size_t kPlaces = 1024;
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+
+  const TriangleMesh& mesh_;
+  const Surface& s_;
+  const Vec3 u_, v_;
+  std::array<std::uint32_t, kPlaces> corner_;
+  std::array<CornerView, kPlaces> view_;
+};
+
+// Each corner at least once.
 struct AxisAngles {
   std::vector<double> corners, meridian, heights;
   std::vector<std::pair<double, double>> arcs;
@@ -56,21 +102,22 @@ AxisAngles angles_of(const TriangleMesh& mesh, const Surface& s,
                      std::span<const std::uint32_t> triangles) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   AxisAngles out;
-  const Vec3 u = s.axis.unitOrthogonal(), v = s.axis.cross(u);
+  CornerViews views(mesh, s);
+  const auto fresh = [&](const CornerView& view) {
+    out.heights.push_back(view.z);
+    if (s.kind == SurfaceKind::kTorus) out.meridian.push_back(view.meridian);
+    if (!view.at_axis) out.corners.push_back(view.angle);
+  };
   for (const std::uint32_t t : triangles) {
     double first = 0.0, lo = 0.0, hi = 0.0;
     bool any = false;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 d = mesh.corner(t, k) - s.point;
-      const double x = d.dot(u), y = d.dot(v), z = d.dot(s.axis), rho = std::hypot(x, y);
-      out.heights.push_back(z);
-      if (s.kind == SurfaceKind::kTorus) out.meridian.push_back(std::atan2(z, rho - s.radius_mm));
-      if (rho <= 1e-9 * (std::fabs(z) + s.radius_mm)) continue;  // an apex has no angle
-      const double angle = std::atan2(y, x);
-      out.corners.push_back(angle);
-      if (!any) first = angle;
+    for (const std::uint32_t corner : mesh.triangles[t]) {
+      const CornerView& view = views.of(corner, fresh);
+      if (view.at_axis) continue;
+      if (!any) first = view.angle;
       any = true;
-      const double turn = std::remainder(angle - first, kTurn);
+      double turn = view.angle - first;
+      if (std::fabs(turn) > std::numbers::pi) turn = std::remainder(turn, kTurn);
       lo = std::min(lo, turn);
       hi = std::max(hi, turn);
     }
@@ -91,7 +138,7 @@ double distance_from_axis_mm(const Surface& s, const Vec3& x) {
   return (d - d.dot(s.axis) * s.axis).norm();
 }
 
-double depth_at_middles_mm(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t) {
+double depth_at_middles_mm(const TriangleMesh& mesh, const SurfaceAt& surface, std::uint32_t t) {
   const Vec3 &a = mesh.corner(t, 0), &b = mesh.corner(t, 1), &c = mesh.corner(t, 2);
   double most = 0.0;
   for (const Vec3& x :
@@ -108,6 +155,14 @@ double size_mm(const Surface& surface, const TriangleMesh& mesh,
   for (const std::uint32_t t : triangles)
     for (int k = 0; k < 3; ++k)
       most = std::max(most, distance_from_axis_mm(surface, mesh.corner(t, k)));
+  return most;
+}
+
+double size_mm(const Surface& surface, std::span<const Vec3> corners) {
+  if (surface.kind == SurfaceKind::kTorus) return surface.tube_radius_mm;
+  if (surface.kind != SurfaceKind::kCone) return surface.radius_mm;
+  double most = 0.0;
+  for (const Vec3& x : corners) most = std::max(most, distance_from_axis_mm(surface, x));
   return most;
 }
 
@@ -132,14 +187,28 @@ RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
   return m;
 }
 
+Interval extent_along_mm(const TriangleMesh& mesh, const Surface& surface,
+                         std::span<const std::uint32_t> triangles) {
+  if (triangles.empty()) return {};
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Interval along{kFar, -kFar};
+  for (const std::uint32_t t : triangles)
+    for (int k = 0; k < 3; ++k) {
+      const double z = (mesh.corner(t, k) - surface.point).dot(surface.axis);
+      along = {std::min(along.lo, z), std::max(along.hi, z)};
+    }
+  return along;
+}
+
 double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
                       std::span<const std::uint32_t> triangles) {
   double deepest = 0.0;
+  const SurfaceAt at(surface);
   for (const std::uint32_t t : triangles) {
-    const double middles = depth_at_middles_mm(mesh, surface, t);
+    const double middles = depth_at_middles_mm(mesh, at, t);
     // Only where a triangle bends both ways does another point lie deeper, and not by much.
     if (middles < 0.5 * deepest) continue;
-    deepest = std::max({deepest, middles, depth_at_grid(mesh, surface, t)});
+    deepest = std::max({deepest, middles, depth_at_grid(mesh, at, t)});
   }
   return deepest;
 }

@@ -5,6 +5,7 @@
 
 #include "common/geometry/feature.h"
 #include "common/geometry/mesh.h"
+#include "common/geometry/surface_at.h"
 
 /// What triangles show of a surface.
 namespace mortise {
@@ -22,9 +23,15 @@ struct RegionMeasure {
 /// cone: the largest radius of the triangles.
 double size_mm(const Surface& surface, const TriangleMesh& mesh,
                std::span<const std::uint32_t> triangles);
+/// The same of the corners of the triangles.
+double size_mm(const Surface& surface, std::span<const Vec3> corners);
 
 RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
                              std::span<const std::uint32_t> triangles);
+
+/// RegionMeasure::along_mm alone.
+Interval extent_along_mm(const TriangleMesh& mesh, const Surface& surface,
+                         std::span<const std::uint32_t> triangles);
 
 /// Largest distance of a facet from the surface, mm; sampled, within a few percent from below.
 double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
@@ -33,6 +40,6 @@ double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
 double distance_from_axis_mm(const Surface& surface, const Vec3& x);
 
 /// Distance of a triangle from the surface at its middles, where it is largest or nearly so.
-double depth_at_middles_mm(const TriangleMesh& mesh, const Surface& surface, std::uint32_t t);
+double depth_at_middles_mm(const TriangleMesh& mesh, const SurfaceAt& surface, std::uint32_t t);
 
 }  // namespace mortise

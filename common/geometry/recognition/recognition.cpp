@@ -32,6 +32,15 @@ constexpr double kWorthGoingOn = 0.05;
 
 constexpr std::int32_t kNobody = -1;
 
+// Simpler kinds first.
+constexpr std::array kKinds{SurfaceKind::kCylinder, SurfaceKind::kCone, SurfaceKind::kSphere,
+                            SurfaceKind::kTorus};
+using ByKind = std::array<double, kKinds.size()>;
+
+std::size_t index_of(SurfaceKind kind) {
+  return static_cast<std::size_t>(std::find(kKinds.begin(), kKinds.end(), kind) - kKinds.begin());
+}
+
 class Recognizer {
  public:
   Recognizer(const Solid& solid, const RecognitionOptions& options)
@@ -44,7 +53,7 @@ class Recognizer {
         owner_(solid.mesh().triangles.size(), kNobody) {}
 
   Recognition run() {
-    given_up_.assign(facets_.count(), 0.0);
+    given_up_.assign(facets_.count(), {});
     // Sparse seeds first: large regions are found from a few, and their fringes need none.
     for (const double share : kShares)
       for (const std::uint32_t stride : {64U, 8U, 1U})
@@ -57,30 +66,44 @@ class Recognizer {
   struct Search {
     std::uint32_t facet = 0;
     double share = 0.0;
-    double least_share = std::numeric_limits<double>::infinity();  // of any fit to any seeds
+    ByKind least_share{};  // of any fit to any seeds
   };
 
+  bool given_up(std::uint32_t f, std::size_t kind, double share) const {
+    return given_up_[f][kind] >= share;
+  }
+
+  void give_up(std::uint32_t f, std::size_t kind, double share) {
+    given_up_[f][kind] = std::max(given_up_[f][kind], share);
+  }
+
   void try_facet(std::uint32_t f, double share) {
-    if (given_up_[f] >= share || owner_[facets_.triangles(f).front()] != kNobody ||
-        !seeds_.bends_smoothly(f))
+    bool worth = false;
+    for (std::size_t k = 0; k < kKinds.size(); ++k) worth = worth || !given_up(f, k, share);
+    if (!worth || owner_[facets_.triangles(f).front()] != kNobody || !seeds_.bends_smoothly(f))
       return;
-    Search search{f, share};
-    if (auto region = best_about(search)) claim(std::move(*region));
-    // Its seeds fit nothing better than that: no use in trying again below it.
-    given_up_[f] = std::max({given_up_[f], share, std::nextafter(search.least_share, 0.0)});
+    Search search{f, share, {}};
+    search.least_share.fill(std::numeric_limits<double>::infinity());
+    auto region = best_about(search);
+    // Where nothing was found all seeds were tried, and fit nothing better than that: no use in
+    // trying again below it.
+    for (std::size_t k = 0; k < kKinds.size(); ++k)
+      if (!given_up(f, k, share))
+        give_up(f, k, region ? share : std::max(share, std::nextafter(search.least_share[k], 0.0)));
+    if (region) claim(std::move(*region));
   }
 
   // The region that explains most about a facet; simpler kinds win where they do nearly as well.
   std::optional<Region> best_about(Search& search) {
-    const SeedSets sets = seeds_.about(search.facet);
+    SeedSets sets = seeds_.about(search.facet);
     std::optional<Region> best;
-    for (const SurfaceKind kind :
-         {SurfaceKind::kCylinder, SurfaceKind::kCone, SurfaceKind::kSphere, SurfaceKind::kTorus}) {
+    for (const SurfaceKind kind : kKinds) {
       std::optional<Region> found;
-      if (kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone)
+      const bool may = !given_up(search.facet, index_of(kind), search.share);
+      if (may && (kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone))
         found = first_of(kind, sets.ribbons, search);
       if (kind == SurfaceKind::kTorus && best) found = torus_of(*best, sets, search);
-      if (!found) found = first_of(kind, sets.patches, search);
+      if (may && !found) found = first_of(kind, sets.patches, search);
       if (!found) continue;
       const auto worth = [](const Region& r) { return static_cast<double>(r.triangles.size()); };
       if (!best || worth(*found) > kWorthMore * worth(*best)) best = std::move(found);
@@ -88,43 +111,47 @@ class Recognizer {
     return best;
   }
 
-  std::optional<Region> first_of(SurfaceKind kind,
-                                 const std::vector<std::vector<std::uint32_t>>& sets,
-                                 Search& search) {
-    for (const auto& seeds : sets) {
-      const std::vector<Vec3> points = grower_.points_of(seeds);
-      const std::vector<OrientedPoint> normals = grower_.normals_of(seeds);
-      const auto guess = guess_of(kind, points, normals);
+  std::optional<Region> first_of(SurfaceKind kind, std::vector<SeedSet>& sets, Search& search) {
+    for (SeedSet& seeds : sets) {
+      fill(seeds);
+      const auto guess = guess_of(kind, seeds.points, seeds.normals);
       if (!guess) continue;
-      if (auto region = from_guess(*guess, points, seeds, search)) return region;
+      if (auto region = from_guess(*guess, seeds, search)) return region;
     }
     return std::nullopt;
   }
 
-  std::optional<Region> from_guess(const Surface& guess, std::span<const Vec3> points,
-                                   std::span<const std::uint32_t> seeds, Search& search) {
-    const double extent_mm = extent_of(points);
-    if (residual_of(guess, points) > kFarOff * extent_mm) return std::nullopt;
-    const double size = size_mm(guess, solid_.mesh(), seeds);
+  void fill(SeedSet& seeds) {
+    if (!seeds.points.empty()) return;
+    seeds.points = grower_.points_of(seeds.triangles);
+    seeds.normals = grower_.normals_of(seeds.triangles);
+  }
+
+  std::optional<Region> from_guess(const Surface& guess, const SeedSet& seeds, Search& search) {
+    const double extent_mm = extent_of(seeds.points);
+    if (residual_of(guess, seeds.points) > kFarOff * extent_mm) return std::nullopt;
+    const double size = size_mm(guess, seeds.points);
     const double hopeless_mm = kHopeless * (kShares.back() * size + grower_.rounding_mm());
-    const auto fit = fitted_surface(guess, points, kWorthGoingOn, hopeless_mm);
+    const auto fit = fitted_surface(guess, seeds.points, kWorthGoingOn, hopeless_mm);
     if (!fit) return std::nullopt;
-    const double fit_size = size_mm(*fit, solid_.mesh(), seeds);
-    const double off_mm = residual_of(*fit, points) - grower_.rounding_mm();
-    search.least_share = std::min(search.least_share, off_mm / fit_size);
+    const double fit_size = size_mm(*fit, seeds.points);
+    const double residual_mm = residual_of(*fit, seeds.points);
+    double& least_share = search.least_share[index_of(fit->kind)];
+    least_share = std::min(least_share, (residual_mm - grower_.rounding_mm()) / fit_size);
+    if (residual_mm > search.share * fit_size + grower_.rounding_mm()) return std::nullopt;
     const double bulge_mm = extent_mm * extent_mm / (8.0 * fit_size);
     if (bulge_mm < kLeastBulge * search.share * fit_size) return std::nullopt;
-    return grower_.grow(*fit, seeds, search.share);
+    return grower_.grow(*fit, seeds.triangles, search.share);
   }
 
   // A strip may be one of a torus: its axis is that of the torus.
-  std::optional<Region> torus_of(const Region& strip, const SeedSets& sets, Search& search) {
+  std::optional<Region> torus_of(const Region& strip, SeedSets& sets, Search& search) {
     if (!measure_region(solid_.mesh(), strip.surface, strip.triangles).one_row) return std::nullopt;
-    for (const auto& seeds : sets.patches) {
-      const std::vector<Vec3> points = grower_.points_of(seeds);
-      const auto guess = guess_torus_about(strip.surface, points);
+    for (SeedSet& seeds : sets.patches) {
+      fill(seeds);
+      const auto guess = guess_torus_about(strip.surface, seeds.points);
       if (!guess) continue;
-      if (auto region = from_guess(*guess, points, seeds, search)) return region;
+      if (auto region = from_guess(*guess, seeds, search)) return region;
     }
     return std::nullopt;
   }
@@ -169,8 +196,8 @@ class Recognizer {
     if (region.triangles.size() < before && !grower_.settle(region)) {
       // What is left over beside others would be found again from each of its facets.
       for (const std::uint32_t t : region.triangles) {
-        double& given_up = given_up_[facets_.of_triangle[t]];
-        given_up = std::max(given_up, region.share);
+        for (std::size_t k = 0; k < kKinds.size(); ++k)
+          give_up(facets_.of_triangle[t], k, region.share);
       }
       return;
     }
@@ -183,11 +210,11 @@ class Recognizer {
   double quantum_mm_ = 0.0;
   const Facets facets_;
   RegionGrower grower_;
-  const SeedFinder seeds_;
+  SeedFinder seeds_;
   RecognitionOptions options_;
   std::vector<std::int32_t> owner_;
   std::vector<Region> regions_;
-  std::vector<double> given_up_;  // by facet: up to this share it need not be tried
+  std::vector<ByKind> given_up_;  // by facet: up to this share it need not be tried
 };
 
 }  // namespace

@@ -16,6 +16,8 @@ namespace {
 constexpr double kLooksAlong = 0.906;
 // A facet spans no more of the surface than this (50 degrees: the diagonal of a quad of 30 by 30).
 constexpr double kSpanCosine = 0.643;
+// A chord of this share of a radius, squared, spans 41 degrees.
+constexpr double kNarrow = 0.5;
 // Over an edge as sharp as this (50 degrees) a ball still goes on: that all corners beyond lie on
 // it is no chance. The cap at the pole meets its neighbours more sharply than other rows meet.
 constexpr double kBallEdge_rad = 0.8727;
@@ -31,7 +33,7 @@ constexpr std::size_t kCornersOfCylinder = 8, kCornersOfCone = 10, kCornersOfSph
 constexpr std::size_t kLeastMeridianCircles = 5;
 constexpr double kEqualSteps = 0.02;
 // While a region grows, so many of its corners are enough for a fit.
-constexpr std::size_t kCornersOnTheWay = 1000;
+constexpr std::size_t kCornersOnTheWay = 1000, kAllCorners = 100'000;
 // A guess this many times as far off as corners may be from all that an earlier one reached would
 // reach the same: a fit on the way brings it there.
 constexpr double kSameGrowth = 30.0;
@@ -52,11 +54,14 @@ RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quan
       facets_(facets),
       rounding_mm_(2.0 * quantum_mm + kRoundingShare * solid.sphere().radius_mm),
       triangle_mark_(mesh_.triangles.size(), 0),
-      point_mark_(mesh_.points_mm.size(), 0) {}
+      point_mark_(mesh_.points_mm.size(), 0) {
+  tell_edges();
+}
 
 std::vector<Vec3> RegionGrower::points_of(std::span<const std::uint32_t> triangles) {
   ++mark_;
   std::vector<Vec3> points;
+  points.reserve(triangles.size() + 2);
   for (const std::uint32_t t : triangles)
     for (const std::uint32_t i : mesh_.triangles[t])
       if (point_mark_[i] != mark_) {
@@ -69,6 +74,7 @@ std::vector<Vec3> RegionGrower::points_of(std::span<const std::uint32_t> triangl
 std::vector<OrientedPoint> RegionGrower::normals_of(
     std::span<const std::uint32_t> triangles) const {
   std::vector<OrientedPoint> normals;
+  normals.reserve(triangles.size());
   for (const std::uint32_t t : triangles) {
     const std::uint32_t f = facets_.of_triangle[t];
     if (!facets_.reliable[f]) continue;
@@ -78,73 +84,90 @@ std::vector<OrientedPoint> RegionGrower::normals_of(
   return normals;
 }
 
-bool RegionGrower::smooth(std::uint32_t facet_a, std::uint32_t facet_b) const {
-  return facets_.angle_rad(facet_a, facet_b) <= kSmoothEdge_rad;
+void RegionGrower::tell_edges() {
+  edges_.assign(mesh_.triangles.size(), {});
+  for (std::uint32_t t = 0; t < edges_.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t other = topology_.neighbor[t][k];
+      if (other == Topology::kNone || topology_.edge_kind[t][k] == EdgeKind::kNonManifold) continue;
+      const double angle = facets_.angle_rad(facets_.of_triangle[t], facets_.of_triangle[other]);
+      if (angle <= kSmoothEdge_rad) edges_[t][k] |= kSmooth;
+      if (angle <= kBallEdge_rad) edges_[t][k] |= kSmoothOfBall;
+    }
 }
 
-bool RegionGrower::goes_on(const Surface& surface, std::uint32_t t, std::uint32_t other) const {
-  const std::uint32_t f = facets_.of_triangle[t], g = facets_.of_triangle[other];
-  return surface.kind == SurfaceKind::kSphere ? facets_.angle_rad(f, g) <= kBallEdge_rad
-                                              : smooth(f, g);
-}
-
-bool RegionGrower::belongs(std::uint32_t t, const Surface& surface, double allowed_mm) const {
-  for (int k = 0; k < 3; ++k)
-    if (!(std::fabs(surface.signed_distance_mm(mesh_.corner(t, k))) <= allowed_mm)) return false;
-  if (surface.is_cap(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2), allowed_mm))
-    return false;
-  const std::uint32_t f = facets_.of_triangle[t];
-  if (!facets_.reliable[f]) return true;
-  const Vec3 middle = (mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2)) / 3.0;
-  if (facets_.normal[f].dot(surface.outward_normal(middle)) < kLooksAlong) return false;
-  std::array<Vec3, 3> outward;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3& x = mesh_.corner(t, k);
-    const bool apex = surface.kind == SurfaceKind::kCone &&
-                      distance_from_axis_mm(surface, x) <= 1e-6 * (x - middle).norm();
-    outward[k] = surface.outward_normal(apex ? middle : x);
+bool RegionGrower::belongs(std::uint32_t t, const SurfaceAt& at, double allowed_mm) const {
+  const Surface& surface = at.surface();
+  const Vec3 &a = mesh_.corner(t, 0), &b = mesh_.corner(t, 1), &c = mesh_.corner(t, 2);
+  for (const Vec3* x : {&a, &b, &c})
+    if (!(std::fabs(at.outside_mm(*x)) <= allowed_mm)) return false;
+  if (const std::uint32_t f = facets_.of_triangle[t]; facets_.reliable[f]) {
+    const Vec3 middle = (a + b + c) / 3.0;
+    if (facets_.normal[f].dot(at.outward_normal(middle)) < kLooksAlong) return false;
+    // Where edges are shorter than the radius, normals turn by less than 50 degrees along them.
+    const double longest2 =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    const double radius = surface.radius_mm - allowed_mm;
+    const bool narrow =
+        (surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kSphere) &&
+        radius > 0.0 && longest2 < kNarrow * radius * radius;
+    std::array<Vec3, 3> outward;
+    for (int k = 0; k < 3 && !narrow; ++k) {
+      const Vec3& x = mesh_.corner(t, k);
+      const bool apex = surface.kind == SurfaceKind::kCone &&
+                        distance_from_axis_mm(surface, x) <= 1e-6 * (x - middle).norm();
+      outward[k] = at.outside_normal(apex ? middle : x);
+    }
+    if (!narrow &&
+        !(outward[0].dot(outward[1]) > kSpanCosine && outward[1].dot(outward[2]) > kSpanCosine &&
+          outward[2].dot(outward[0]) > kSpanCosine))
+      return false;
   }
-  return outward[0].dot(outward[1]) > kSpanCosine && outward[1].dot(outward[2]) > kSpanCosine &&
-         outward[2].dot(outward[0]) > kSpanCosine;
+  return !surface.is_cap(a, b, c, allowed_mm);
 }
 
 void RegionGrower::spread(const Surface& surface, double allowed_mm, std::size_t limit,
                           std::vector<std::uint32_t>& triangles) {
   ++mark_;
   for (const std::uint32_t t : triangles) triangle_mark_[t] = mark_;
+  const SurfaceAt at(surface);
+  const std::uint8_t way = surface.kind == SurfaceKind::kSphere ? kSmoothOfBall : kSmooth;
   for (std::size_t next = 0; next < triangles.size() && triangles.size() < limit; ++next) {
     const std::uint32_t t = triangles[next];
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((edges_[t][k] & way) == 0) continue;
       const std::uint32_t other = topology_.neighbor[t][k];
-      if (other == Topology::kNone || triangle_mark_[other] == mark_ ||
-          topology_.edge_kind[t][k] == EdgeKind::kNonManifold || !goes_on(surface, t, other))
-        continue;
-      if (!belongs(other, surface, allowed_mm)) continue;
+      if (triangle_mark_[other] == mark_ || !belongs(other, at, allowed_mm)) continue;
       triangle_mark_[other] = mark_;
       triangles.push_back(other);
     }
   }
 }
 
-bool RegionGrower::refit(Region& region, std::size_t most) {
-  const std::vector<Vec3> points = points_of(region.triangles);
-  const std::size_t stride = 1 + points.size() / most;
+// To all corners of the region where there are no more than `most`, else to every so-manyth.
+bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const {
+  const std::size_t stride = 1 + corners.size() / most;
   std::vector<Vec3> some;
   if (stride > 1)
-    for (std::size_t i = 0; i < points.size(); i += stride) some.push_back(points[i]);
-  const auto fitted = fitted_surface(region.surface, stride > 1 ? some : points);
+    for (std::size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
+  const auto fitted = fitted_surface(region.surface, stride > 1 ? some : corners);
   if (!fitted) return false;
   region.surface = *fitted;
-  region.residual_mm = residual_of(region.surface, points);
-  region.allowed_mm =
-      region.share * size_mm(region.surface, mesh_, region.triangles) + rounding_mm_;
+  region.allowed_mm = region.share * size_mm(region.surface, corners) + rounding_mm_;
+  return true;
+}
+
+bool RegionGrower::fit_all(Region& region) {
+  const std::vector<Vec3> corners = points_of(region.triangles);
+  if (!refit(region, corners, kAllCorners)) return false;
+  region.residual_mm = residual_of(region.surface, corners);
   return true;
 }
 
 void RegionGrower::drop_deep_facets(Region& region) const {
   std::vector<double> depth;
-  for (const std::uint32_t t : region.triangles)
-    depth.push_back(depth_at_middles_mm(mesh_, region.surface, t));
+  const SurfaceAt at(region.surface);
+  for (const std::uint32_t t : region.triangles) depth.push_back(depth_at_middles_mm(mesh_, at, t));
   std::vector<double> sorted = depth;
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
   const double most = kDeepFacet * sorted[sorted.size() / 2] + region.allowed_mm;
@@ -212,7 +235,7 @@ bool RegionGrower::shows_enough_of_torus(const Region& region, const RegionMeasu
 }
 
 bool RegionGrower::settle(Region& region) {
-  return refit(region) && region.residual_mm <= region.allowed_mm && shows_enough(region);
+  return fit_all(region) && region.residual_mm <= region.allowed_mm && shows_enough(region);
 }
 
 // Can the surface begin here? Says on which side its material is.
@@ -220,12 +243,12 @@ bool RegionGrower::starts(Region& region, std::span<const std::uint32_t> seeds) 
   region.residual_mm = residual_of(region.surface, points_of(seeds));
   if (region.residual_mm > region.allowed_mm) return false;
   double outward = 0.0;
+  const SurfaceAt at(region.surface);
   for (const OrientedPoint& f : normals_of(seeds))
-    outward += f.normal.dot(region.surface.outward_normal(f.point)) > 0.0 ? 1.0 : -1.0;
+    outward += f.normal.dot(at.outward_normal(f.point)) > 0.0 ? 1.0 : -1.0;
   if (outward < 0.0) region.surface.inward = !region.surface.inward;
-  return std::all_of(seeds.begin(), seeds.end(), [&](std::uint32_t t) {
-    return belongs(t, region.surface, region.allowed_mm);
-  });
+  return std::all_of(seeds.begin(), seeds.end(),
+                     [&](std::uint32_t t) { return belongs(t, at, region.allowed_mm); });
 }
 
 // What does not belong to the settled surface goes, until it is settled.
@@ -233,9 +256,10 @@ std::optional<Region> RegionGrower::settled(Region region, std::size_t least) {
   constexpr int kRounds = 4;  // what goes on losing facets is no surface
   for (int round = 0; round < kRounds; ++round) {
     drop_deep_facets(region);
+    const SurfaceAt at(region.surface);
     std::erase_if(region.triangles,
-                  [&](std::uint32_t t) { return !belongs(t, region.surface, region.allowed_mm); });
-    if (region.triangles.size() < least || !refit(region)) return std::nullopt;
+                  [&](std::uint32_t t) { return !belongs(t, at, region.allowed_mm); });
+    if (region.triangles.size() < least || !fit_all(region)) return std::nullopt;
     if (region.residual_mm <= region.allowed_mm) break;
   }
   if (region.residual_mm > region.allowed_mm || !shows_enough(region)) return std::nullopt;
@@ -257,8 +281,9 @@ const RegionGrower::Attempt* RegionGrower::grown_before(const Surface& guess,
   const Attempt& attempt = attempts_[id - 1];
   if (attempt.share != region.share) return nullptr;
   const double near_mm = kSameGrowth * region.allowed_mm;
+  const SurfaceAt at(guess);
   for (const Vec3& x : attempt.reached)
-    if (!(std::fabs(guess.signed_distance_mm(x)) <= near_mm)) return nullptr;
+    if (!(std::fabs(at.signed_distance_mm(x)) <= near_mm)) return nullptr;
   return &attempt;
 }
 
@@ -290,7 +315,7 @@ std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const s
     const std::size_t before = region.triangles.size();
     spread(region.surface, region.allowed_mm, limit, region.triangles);
     if (region.triangles.size() == before) break;
-    if (!refit(region, kCornersOnTheWay)) return std::nullopt;
+    if (!refit(region, points_of(region.triangles), kCornersOnTheWay)) return std::nullopt;
   }
   const std::vector<std::uint32_t> reached = region.triangles;
   std::optional<Region> outcome = settled(std::move(region), seeds.size());

@@ -41,11 +41,16 @@ class RegionGrower {
 
   /// Rounding of coordinates: corners may be off by this beside any share of the size.
   double rounding_mm() const { return rounding_mm_; }
-  bool smooth(std::uint32_t facet_a, std::uint32_t facet_b) const;
+  /// Does the mesh go on across edge k of a triangle, and smoothly?
+  bool smooth(std::uint32_t t, int k) const {
+    return (edges_[t][static_cast<std::size_t>(k)] & kSmooth) != 0;
+  }
 
  private:
-  bool goes_on(const Surface& surface, std::uint32_t t, std::uint32_t other) const;
-  bool belongs(std::uint32_t t, const Surface& surface, double allowed_mm) const;
+  // How the mesh goes on across an edge; none of both: not at all, or sharply.
+  static constexpr std::uint8_t kSmooth = 1, kSmoothOfBall = 2;
+  void tell_edges();
+  bool belongs(std::uint32_t t, const SurfaceAt& surface, double allowed_mm) const;
   void spread(const Surface& surface, double allowed_mm, std::size_t limit,
               std::vector<std::uint32_t>& triangles);
   // What a growth reached and how it ended.
@@ -60,7 +65,8 @@ class RegionGrower {
             const std::optional<Region>& outcome);
   bool starts(Region& region, std::span<const std::uint32_t> seeds);
   std::optional<Region> settled(Region region, std::size_t least);
-  bool refit(Region& region, std::size_t most = 100'000);
+  bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
+  bool fit_all(Region& region);
   void drop_deep_facets(Region& region) const;
   bool shows_enough(const Region& region);
   bool shows_enough_of_sphere(const Region& region) const;
@@ -70,6 +76,7 @@ class RegionGrower {
   const Topology& topology_;
   const Facets& facets_;
   double rounding_mm_ = 0.0;
+  std::vector<std::array<std::uint8_t, 3>> edges_;
   std::vector<std::uint32_t> triangle_mark_, point_mark_;
   std::uint32_t mark_ = 0;
   std::vector<Attempt> attempts_;

@@ -18,7 +18,11 @@ constexpr double kOpposite = 0.85;
 }  // namespace
 
 SeedFinder::SeedFinder(const Solid& solid, const Facets& facets, const RegionGrower& grower)
-    : mesh_(solid.mesh()), topology_(solid.topology()), facets_(facets), grower_(grower) {
+    : mesh_(solid.mesh()),
+      topology_(solid.topology()),
+      facets_(facets),
+      grower_(grower),
+      mark_(mesh_.triangles.size(), 0) {
   for (std::uint32_t f = 0; f < facets_.count(); ++f) {
     if (facets_.reliable[f] && facets_.triangles(f).size() <= kLargestFacet) add_crossings_of(f);
     begin_.push_back(crossings_.size());
@@ -31,9 +35,9 @@ void SeedFinder::add_crossings_of(std::uint32_t facet) {
   for (const std::uint32_t t : facets_.triangles(facet))
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t other = topology_.neighbor[t][k];
-      if (other == Topology::kNone || topology_.edge_kind[t][k] == EdgeKind::kNonManifold) continue;
+      if (!grower_.smooth(t, k)) continue;
       const std::uint32_t g = facets_.of_triangle[other];
-      if (g == facet || !facets_.reliable[g] || !grower_.smooth(facet, g)) continue;
+      if (g == facet || !facets_.reliable[g]) continue;
       const Vec3 edge = mesh_.corner(t, (k + 1) % 3) - mesh_.corner(t, k);
       const double length = edge.norm();
       if (length > 0.0) all.push_back({g, edge / length, length});
@@ -113,23 +117,23 @@ void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
       add_triangles(seed, ribbon);
       for (std::size_t i = 0; i < m; ++i) add_triangles(ahead[i], ribbon);
       for (std::size_t i = 0; i < n; ++i) add_triangles(behind[i], ribbon);
-      sets.ribbons.push_back(std::move(ribbon));
+      sets.ribbons.emplace_back().triangles = std::move(ribbon);
     }
   }
 }
 
-void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets) const {
+void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets) {
   std::vector<std::uint32_t> patch;
   add_triangles(seed, patch);
   if (patch.size() > kPatch[0]) patch.resize(kPatch[0]);
+  ++stamp_;
+  for (const std::uint32_t t : patch) mark_[t] = stamp_;
   for (std::size_t next = 0; next < patch.size() && patch.size() < kPatch[0]; ++next)
     for (int k = 0; k < 3; ++k) {
+      if (!grower_.smooth(patch[next], k)) continue;
       const std::uint32_t other = topology_.neighbor[patch[next]][k];
-      if (other == Topology::kNone ||
-          topology_.edge_kind[patch[next]][k] == EdgeKind::kNonManifold ||
-          !grower_.smooth(facets_.of_triangle[patch[next]], facets_.of_triangle[other]) ||
-          std::find(patch.begin(), patch.end(), other) != patch.end())
-        continue;
+      if (mark_[other] == stamp_) continue;
+      mark_[other] = stamp_;
       patch.push_back(other);
     }
   std::size_t last = 0;
@@ -137,16 +141,18 @@ void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets) const {
     const std::size_t n = std::min(size, patch.size());
     if (n < 6 || n == last) continue;
     last = n;
-    sets.patches.emplace_back(patch.begin(), patch.begin() + static_cast<std::ptrdiff_t>(n));
+    sets.patches.emplace_back().triangles.assign(patch.begin(),
+                                                 patch.begin() + static_cast<std::ptrdiff_t>(n));
   }
   // The facet and those beside it: whatever else is near belongs to others.
   std::vector<std::uint32_t> cross;
   add_triangles(seed, cross);
   for (const Crossing& way : crossings(seed)) add_triangles(way.facet, cross);
-  if (cross.size() >= 4 && cross.size() <= kPatch[0]) sets.patches.push_back(std::move(cross));
+  if (cross.size() >= 4 && cross.size() <= kPatch[0])
+    sets.patches.emplace_back().triangles = std::move(cross);
 }
 
-SeedSets SeedFinder::about(std::uint32_t facet) const {
+SeedSets SeedFinder::about(std::uint32_t facet) {
   SeedSets sets;
   add_ribbons(facet, sets);
   add_patches(facet, sets);

@@ -6,11 +6,19 @@
 /// Private to recognition: from which few triangles a surface may be guessed.
 namespace mortise {
 
-/// Sets of triangles about a facet that may belong to one surface. ribbons: facets in a row across
-/// opposite edges, because each facet of a cylinder may touch a fillet at both ends; patches: all
-/// neighbours, near ones first. Longer sets come first, because they average noise.
+/// Triangles about a facet that may belong to one surface; points and normals are of the triangles,
+/// filled when first asked for.
+struct SeedSet {
+  std::vector<std::uint32_t> triangles;
+  std::vector<Vec3> points;
+  std::vector<OrientedPoint> normals;
+};
+
+/// ribbons: facets in a row across opposite edges, because each facet of a cylinder may touch a
+/// fillet at both ends; patches: all neighbours, near ones first. Longer sets come first, because
+/// they average noise.
 struct SeedSets {
-  std::vector<std::vector<std::uint32_t>> ribbons, patches;
+  std::vector<SeedSet> ribbons, patches;
 };
 
 class SeedFinder {
@@ -20,7 +28,7 @@ class SeedFinder {
 
   /// Does any edge of the facet bend smoothly?
   bool bends_smoothly(std::uint32_t facet) const;
-  SeedSets about(std::uint32_t facet) const;
+  SeedSets about(std::uint32_t facet);
 
  private:
   // The longest smooth edge between two facets.
@@ -38,7 +46,7 @@ class SeedFinder {
   std::vector<std::uint32_t> walk(std::uint32_t seed, Crossing step, std::uint32_t not_into) const;
   void add_triangles(std::uint32_t facet, std::vector<std::uint32_t>& out) const;
   void add_ribbons(std::uint32_t seed, SeedSets& sets) const;
-  void add_patches(std::uint32_t seed, SeedSets& sets) const;
+  void add_patches(std::uint32_t seed, SeedSets& sets);
 
   const TriangleMesh& mesh_;
   const Topology& topology_;
@@ -46,6 +54,8 @@ class SeedFinder {
   const RegionGrower& grower_;
   std::vector<std::size_t> begin_{0};
   std::vector<Crossing> crossings_;
+  std::vector<std::uint32_t> mark_;  // by triangle
+  std::uint32_t stamp_ = 0;
 };
 
 }  // namespace mortise
