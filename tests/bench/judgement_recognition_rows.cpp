@@ -1,20 +1,26 @@
-// Are the surfaces that a mesh was made from found in it again?
+// Are the surfaces that a mesh was made from found in it again, and what does that cost?
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <numbers>
 
 #include "common/generators/generators.h"
+#include "common/io/mesh/mesh_import.h"
 #include "common/math/rotation.h"
 #include "tests/bench/judgement_cases.h"
 #include "tests/bench/judgement_recognition.h"
 #include "tests/bench/judgement_sections.h"
 #include "tests/bench/statistics.h"
+#include "tests/support/test_folder.h"
+#include "tests/unit/ccd/workload.h"
 
 namespace mortise::bench {
 namespace {
 
 constexpr double kFoundBar = 99.0;
+// Recognition beside the import of the same file, wall time.
+constexpr double kImportsBar = 2.0;
 constexpr std::uint64_t kSeed = 3'000'000;
 
 /// A mesh and the curved features that it has, in one frame.
@@ -106,6 +112,78 @@ const char* kind_of(SurfaceKind kind) {
   }
 }
 
+// All digits, so that recognition sees what was made.
+std::string obj_text(const TriangleMesh& mesh) {
+  std::string text;
+  char line[128];
+  for (const Vec3& x : mesh.points_mm) {
+    std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", x.x(), x.y(), x.z());
+    text += line;
+  }
+  for (const auto& t : mesh.triangles) {
+    std::snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    text += line;
+  }
+  return text;
+}
+
+/// Files of large parts: made here, and published ones where they are.
+std::map<std::string, std::string> large_files(const test::TestFolder& folder, Report& report,
+                                               bool quick) {
+  const double more = quick ? 1.0 : 8.0;
+  const std::map<std::string, std::pair<std::string, Values>> made{
+      {"gear of 200 teeth",
+       {"gear", {{"teeth", 200}, {"flank_points", 8 * more}, {"facets", 128 * more}}}},
+      {"housing", {"housing", {{"facets", 512 * more}}}},
+      {"bolt", {"bolt", {{"turns", 20}, {"facets", 64 * more}}}}};
+  std::map<std::string, std::string> files;
+  for (const auto& [name, kind] : made)
+    if (const auto part = generate(kind.first, kind.second))
+      files[name] = folder.write(kind.first + ".obj", obj_text(part->mesh));
+  for (const char* published :
+       {"large/nist_ctc_02_defl_0.02mm.ply", "multires/nist_ftc_10_defl_0.02mm.stl"}) {
+    const std::string file = testing::data_folder() + "/" + published;
+    if (std::filesystem::exists(file))
+      files[published] = file;
+    else
+      report.note("Not measured: " + file + " is not there; set MORTISE_DATA.");
+  }
+  return files;
+}
+
+void cost_rows(Report& report, bool quick) {
+  const auto least_wall_s = [](auto&& call) {
+    double least = 1e300;
+    for (int i = 0; i < 3; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      call();
+      least = std::min(
+          least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return least;
+  };
+  const test::TestFolder folder;
+  double most = 0.0;
+  report.table("Recognition beside the import of the file, wall time, least of three",
+               {"part", "triangles", "import, s", "recognition, s", "ratio", "features"});
+  for (const auto& [name, file] : large_files(folder, report, quick)) {
+    const auto imported = import_mesh(file, 1.0);
+    if (!imported) continue;
+    const Solid solid(imported->mesh);
+    solid.topology();
+    Recognition found;
+    const double import_s = least_wall_s([&] { (void)import_mesh(file, 1.0); });
+    const double recognition_s = least_wall_s(
+        [&] { found = recognize_features(solid, {.quantum_mm = imported->report.quantum_mm}); });
+    most = std::max(most, recognition_s / import_s);
+    report.row({name, static_cast<long long>(solid.mesh().triangles.size()), import_s,
+                recognition_s, recognition_s / import_s,
+                static_cast<long long>(found.features.size())});
+  }
+  report.bar("recognition of a large part, in imports of its file", most, kImportsBar,
+             BoundKind::kAtMost);
+}
+
 }  // namespace
 
 void section_recognition(Report& report, const JudgementOptions& options) {
@@ -141,6 +219,7 @@ void section_recognition(Report& report, const JudgementOptions& options) {
   }
   report.note("recognition: median " + std::to_string(median(us_per_triangle)) +
               " us a triangle, p99 " + std::to_string(quantile(us_per_triangle, 0.99)));
+  cost_rows(report, options.quick);
 }
 
 }  // namespace mortise::bench
