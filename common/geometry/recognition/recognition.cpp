@@ -20,26 +20,19 @@ constexpr double kWorthMore = 1.2;
 // What a later region takes over whole is smaller by at least this.
 constexpr double kTakesOver = 2.0;
 
-// A first guess this far off, as a share of the extent of its points, is of another kind.
+// A first guess this far off, as a share of the extent of its points, is of
+// another kind.
 constexpr double kFarOff = 0.05;
-// A fit to seeds that is so many times farther off than the loosest share after a few steps will
-// not come near.
+// A fit to seeds that is so many times farther off than the loosest share after
+// a few steps will not come near.
 constexpr double kHopeless = 30.0;
-// Seeds that bulge by less than this part of what corners may be off show no curve.
+// Seeds that bulge by less than this part of what corners may be off show no
+// curve.
 constexpr double kLeastBulge = 0.1;
 // Fits to seeds stop where a step wins less: exact points win decades a step.
 constexpr double kWorthGoingOn = 0.05;
 
 constexpr std::int32_t kNobody = -1;
-
-// Simpler kinds first.
-constexpr std::array kKinds{SurfaceKind::kCylinder, SurfaceKind::kCone, SurfaceKind::kSphere,
-                            SurfaceKind::kTorus};
-using ByKind = std::array<double, kKinds.size()>;
-
-std::size_t index_of(SurfaceKind kind) {
-  return static_cast<std::size_t>(std::find(kKinds.begin(), kKinds.end(), kind) - kKinds.begin());
-}
 
 class Recognizer {
  public:
@@ -53,8 +46,10 @@ class Recognizer {
         owner_(solid.mesh().triangles.size(), kNobody) {}
 
   Recognition run() {
-    given_up_.assign(facets_.count(), {});
-    // Sparse seeds first: large regions are found from a few, and their fringes need none.
+    given_up_.assign(facets_.count(), 0.0);
+    known_off_.assign(facets_.count(), {});
+    // Sparse seeds first: large regions are found from a few, and their fringes
+    // need none.
     for (const double share : kShares)
       for (const std::uint32_t stride : {64U, 8U, 1U})
         for (std::uint32_t f = 0; f < facets_.count(); f += stride) try_facet(f, share);
@@ -63,47 +58,54 @@ class Recognizer {
   }
 
  private:
-  struct Search {
-    std::uint32_t facet = 0;
-    double share = 0.0;
-    ByKind least_share{};  // of any fit to any seeds
-  };
-
-  bool given_up(std::uint32_t f, std::size_t kind, double share) const {
-    return given_up_[f][kind] >= share;
-  }
-
-  void give_up(std::uint32_t f, std::size_t kind, double share) {
-    given_up_[f][kind] = std::max(given_up_[f][kind], share);
-  }
-
   void try_facet(std::uint32_t f, double share) {
-    bool worth = false;
-    for (std::size_t k = 0; k < kKinds.size(); ++k) worth = worth || !given_up(f, k, share);
-    if (!worth || owner_[facets_.triangles(f).front()] != kNobody || !seeds_.bends_smoothly(f))
+    if (given_up_[f] >= share || owner_[facets_.triangles(f).front()] != kNobody ||
+        !seeds_.bends_smoothly(f))
       return;
-    Search search{f, share, {}};
-    search.least_share.fill(std::numeric_limits<double>::infinity());
-    auto region = best_about(search);
-    // Where nothing was found all seeds were tried, and fit nothing better than that: no use in
-    // trying again below it.
-    for (std::size_t k = 0; k < kKinds.size(); ++k)
-      if (!given_up(f, k, share))
-        give_up(f, k, region ? share : std::max(share, std::nextafter(search.least_share[k], 0.0)));
-    if (region) claim(std::move(*region));
+    SeedSets sets = seeds_.about(f);
+    recall(f, sets);
+    auto region = best_about(sets, share);
+    given_up_[f] = std::max(given_up_[f], share);
+    if (region) return claim(std::move(*region));
+    // All seeds were tried, and fit nothing better than that: no use in trying
+    // again below it.
+    given_up_[f] = std::max(given_up_[f], std::nextafter(remember(f, sets), 0.0));
   }
 
-  // The region that explains most about a facet; simpler kinds win where they do nearly as well.
-  std::optional<Region> best_about(Search& search) {
-    SeedSets sets = seeds_.about(search.facet);
+  void recall(std::uint32_t f, SeedSets& sets) const {
+    auto known = known_off_[f].begin();
+    if (known == known_off_[f].end()) return;
+    for (auto* of : {&sets.ribbons, &sets.patches})
+      for (SeedSet& seeds : *of) seeds.off_share = *known++;
+  }
+
+  // Gives the least.
+  double remember(std::uint32_t f, const SeedSets& sets) {
+    known_off_[f].clear();
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto* of : {&sets.ribbons, &sets.patches})
+      for (const SeedSet& seeds : *of) {
+        known_off_[f].push_back(seeds.off_share);
+        for (std::size_t k = 0; k < kCurvedKinds.size(); ++k)
+          if (of == &sets.patches || grows_in_ribbons(kCurvedKinds[k]))
+            least = std::min(least, seeds.off_share[k]);
+      }
+    return least;
+  }
+
+  static bool grows_in_ribbons(SurfaceKind kind) {
+    return kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone;
+  }
+
+  // The region that explains most about a facet; simpler kinds win where they
+  // do nearly as well.
+  std::optional<Region> best_about(SeedSets& sets, double share) {
     std::optional<Region> best;
-    for (const SurfaceKind kind : kKinds) {
+    for (std::size_t k = 0; k < kCurvedKinds.size(); ++k) {
       std::optional<Region> found;
-      const bool may = !given_up(search.facet, index_of(kind), search.share);
-      if (may && (kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone))
-        found = first_of(kind, sets.ribbons, search);
-      if (kind == SurfaceKind::kTorus && best) found = torus_of(*best, sets, search);
-      if (may && !found) found = first_of(kind, sets.patches, search);
+      if (grows_in_ribbons(kCurvedKinds[k])) found = first_of(k, sets.ribbons, share);
+      if (kCurvedKinds[k] == SurfaceKind::kTorus && best) found = torus_of(*best, sets, share);
+      if (!found) found = first_of(k, sets.patches, share);
       if (!found) continue;
       const auto worth = [](const Region& r) { return static_cast<double>(r.triangles.size()); };
       if (!best || worth(*found) > kWorthMore * worth(*best)) best = std::move(found);
@@ -111,12 +113,15 @@ class Recognizer {
     return best;
   }
 
-  std::optional<Region> first_of(SurfaceKind kind, std::vector<SeedSet>& sets, Search& search) {
+  std::optional<Region> first_of(std::size_t kind, std::vector<SeedSet>& sets, double share) {
     for (SeedSet& seeds : sets) {
+      double& off_share = seeds.off_share[kind];
+      if (off_share > share) continue;
       fill(seeds);
-      const auto guess = guess_of(kind, seeds.points, seeds.normals);
+      off_share = std::numeric_limits<double>::infinity();
+      const auto guess = guess_of(kCurvedKinds[kind], seeds.points, seeds.normals);
       if (!guess) continue;
-      if (auto region = from_guess(*guess, seeds, search)) return region;
+      if (auto region = from_guess(*guess, seeds, share, off_share)) return region;
     }
     return std::nullopt;
   }
@@ -127,7 +132,8 @@ class Recognizer {
     seeds.normals = grower_.normals_of(seeds.triangles);
   }
 
-  std::optional<Region> from_guess(const Surface& guess, const SeedSet& seeds, Search& search) {
+  std::optional<Region> from_guess(const Surface& guess, const SeedSet& seeds, double share,
+                                   double& off_share) {
     const double extent_mm = extent_of(seeds.points);
     if (residual_of(guess, seeds.points) > kFarOff * extent_mm) return std::nullopt;
     const double size = size_mm(guess, seeds.points);
@@ -136,22 +142,22 @@ class Recognizer {
     if (!fit) return std::nullopt;
     const double fit_size = size_mm(*fit, seeds.points);
     const double residual_mm = residual_of(*fit, seeds.points);
-    double& least_share = search.least_share[index_of(fit->kind)];
-    least_share = std::min(least_share, (residual_mm - grower_.rounding_mm()) / fit_size);
-    if (residual_mm > search.share * fit_size + grower_.rounding_mm()) return std::nullopt;
+    off_share = (residual_mm - grower_.rounding_mm()) / fit_size;
+    if (residual_mm > share * fit_size + grower_.rounding_mm()) return std::nullopt;
     const double bulge_mm = extent_mm * extent_mm / (8.0 * fit_size);
-    if (bulge_mm < kLeastBulge * search.share * fit_size) return std::nullopt;
-    return grower_.grow(*fit, seeds.triangles, search.share);
+    if (bulge_mm < kLeastBulge * share * fit_size) return std::nullopt;
+    return grower_.grow(*fit, seeds.triangles, share);
   }
 
   // A strip may be one of a torus: its axis is that of the torus.
-  std::optional<Region> torus_of(const Region& strip, SeedSets& sets, Search& search) {
+  std::optional<Region> torus_of(const Region& strip, SeedSets& sets, double share) {
     if (!measure_region(solid_.mesh(), strip.surface, strip.triangles).one_row) return std::nullopt;
     for (SeedSet& seeds : sets.patches) {
       fill(seeds);
       const auto guess = guess_torus_about(strip.surface, seeds.points);
       if (!guess) continue;
-      if (auto region = from_guess(*guess, seeds, search)) return region;
+      double off_share = 0.0;
+      if (auto region = from_guess(*guess, seeds, share, off_share)) return region;
     }
     return std::nullopt;
   }
@@ -176,8 +182,8 @@ class Recognizer {
     }
   }
 
-  // Triangles belong to who came first, except that a larger region takes over smaller ones whole:
-  // the strips of a sphere may have been found as cones.
+  // Triangles belong to who came first, except that a larger region takes over
+  // smaller ones whole: the strips of a sphere may have been found as cones.
   void claim(Region region) {
     std::map<std::int32_t, std::size_t> overlap;
     for (const std::uint32_t t : region.triangles)
@@ -194,10 +200,11 @@ class Recognizer {
     std::erase_if(region.triangles, [&](std::uint32_t t) { return owner_[t] != kNobody; });
     if (region.triangles.empty()) return;
     if (region.triangles.size() < before && !grower_.settle(region)) {
-      // What is left over beside others would be found again from each of its facets.
+      // What is left over beside others would be found again from each of its
+      // facets.
       for (const std::uint32_t t : region.triangles) {
-        for (std::size_t k = 0; k < kKinds.size(); ++k)
-          give_up(facets_.of_triangle[t], k, region.share);
+        double& given_up = given_up_[facets_.of_triangle[t]];
+        given_up = std::max(given_up, region.share);
       }
       return;
     }
@@ -214,7 +221,8 @@ class Recognizer {
   RecognitionOptions options_;
   std::vector<std::int32_t> owner_;
   std::vector<Region> regions_;
-  std::vector<ByKind> given_up_;  // by facet: up to this share it need not be tried
+  std::vector<double> given_up_;                // by facet: up to this share it need not be tried
+  std::vector<std::vector<ByKind>> known_off_;  // by facet: of its seeds, as they come
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "common/geometry/recognition/region.h"
@@ -6,17 +7,25 @@
 /// Private to recognition: from which few triangles a surface may be guessed.
 namespace mortise {
 
-/// Triangles about a facet that may belong to one surface; points and normals are of the triangles,
-/// filled when first asked for.
+/// Surfaces that are looked for, simpler kinds first.
+inline constexpr std::array kCurvedKinds{SurfaceKind::kCylinder, SurfaceKind::kCone,
+                                         SurfaceKind::kSphere, SurfaceKind::kTorus};
+using ByKind = std::array<double, kCurvedKinds.size()>;  ///< one value for each of them
+
+/// Triangles about a facet that may belong to one surface; points and normals
+/// are of the triangles, filled when first asked for.
 struct SeedSet {
   std::vector<std::uint32_t> triangles;
+  /// How far the fit of each kind leaves corners off, as a share of its size;
+  /// 0: not known.
+  ByKind off_share{};
   std::vector<Vec3> points;
   std::vector<OrientedPoint> normals;
 };
 
-/// ribbons: facets in a row across opposite edges, because each facet of a cylinder may touch a
-/// fillet at both ends; patches: all neighbours, near ones first. Longer sets come first, because
-/// they average noise.
+/// ribbons: facets in a row across opposite edges, because each facet of a
+/// cylinder may touch a fillet at both ends; patches: all neighbours, near ones
+/// first. Longer sets come first, because they average noise.
 struct SeedSets {
   std::vector<SeedSet> ribbons, patches;
 };
