@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/depth/cells/plane_pair.h"
+#include "common/depth/convex_edge.h"
 
 namespace mortise {
 namespace {
@@ -161,9 +162,12 @@ std::optional<Vec3> find_inside(const PairFrame& pair, const Sample& least,
   Climb climb(pair, role, p, evaluations);
   const auto found_at = [&](const Vec3& to_K) {
     if (!climb.better(to_K)) return false;
-    const bool good =
-        is_borne_out(pair.k(role), climb.at_K(), pair.rounding_mm) &&
-        is_borne_out(pair.s(role), pair.X_KS[1 - role] * climb.at_K(), pair.rounding_mm);
+    const auto is_in = [&](const Body& body, const Vec3& x) {
+      return is_borne_out(body, x, pair.rounding_mm) &&
+             !is_past_convex_edge(body, x, pair.rounding_mm);
+    };
+    const bool good = is_in(pair.k(role), climb.at_K()) &&
+                      is_in(pair.s(role), pair.X_KS[1 - role] * climb.at_K());
     if (!good && refused != nullptr) ++*refused;
     return good;
   };

@@ -93,6 +93,31 @@ TEST_P(SeatedChamfer, TouchesTheFaceItStandsOn) {
 INSTANTIATE_TEST_SUITE_P(Grades, SeatedChamfer,
                          testing::Values(Known::kDeclared, Known::kExact, Known::kRecognized));
 
+// The flat end is 0.1 mm short of its model, and with it ends the chamfer: nothing of the part is
+// left below, however flat the chamfer is.
+TEST(MovedEnd, CutsItsChamferShort) {
+  const auto plate = std::make_shared<const Solid>(box(Vec3(30, 30, 5), Vec3(0, 0, -5)));
+  constexpr double kShort_mm = 0.1;
+  for (const double degrees : {5.0, 10.0, 30.0, 45.0, 80.0})
+    for (const double sunk_mm : {0.5, 0.8, 0.95, 1.05, 1.5, 3.0})
+      for (const Refinement refinement : {Refinement::kDecided, Refinement::kFull}) {
+        const Disc disc = disc_of(degrees, 48);
+        OverlapCase c{plate, disc.solid};
+        c.band_b = band_of(disc, Known::kDeclared);
+        c.band_b.faces[0].tolerance_mm = {-kShort_mm, -kShort_mm};
+        c.band_b.largest_offset_mm = std::max(c.band_b.largest_offset_mm, kShort_mm);
+        c.band_b.trivial = false;
+        c.X_WB = Pose{rotation_exp(Vec3(0, 0, 0.7)), Vec3(3, -2, -sunk_mm * kShort_mm)};
+        c.refinement = refinement;
+        const CollisionClass said = worst_class(overlap_of(c));
+        SCOPED_TRACE(testing::Message() << degrees << " degrees, sunk " << sunk_mm << " of 0.1 mm");
+        if (sunk_mm < 1.0)
+          EXPECT_NE(said, CollisionClass::kReal);
+        else
+          EXPECT_EQ(said, CollisionClass::kReal);
+      }
+}
+
 // No part of the flat end is a part of the chamfer.
 TEST(FlatEnd, IsNotOfTheChamferThatEndsThere) {
   for (const double degrees : {5.0, 10.0, 15.0, 20.0})
