@@ -177,14 +177,14 @@ class Overlap {
 
   Found search_layers() {
     const bool lazy = query_.refinement == Refinement::kDecided;
-    const bool shape_only = lazy && !pair_.trivial;
-    // Where no layer has to be searched, the meshes may cost more.
     Found found;
     auto& [mesh, upper, lower, lower_lazily] = found;
-    mesh = lazy && told_by_planes()
-               ? search(Layer::kMesh, false, std::min(kMeshAlone, work_left()))
-               : search(Layer::kMesh, lazy,
-                        shape_only ? std::min(glance(), work_left()) : work_left());
+    // Where no layer has to be searched, the meshes may cost more; else they wait for the class.
+    if (told_by_planes() || (pair_.trivial && !lazy))
+      mesh = search(Layer::kMesh, false, lazy ? std::min(kMeshAlone, work_left()) : work_left());
+    else
+      mesh =
+          search(Layer::kMesh, true, pair_.trivial ? work_left() : std::min(glance(), work_left()));
     // The sign of the depth is not enough where rounding may cover it.
     const auto in_rounding = [&](const Bracket& d) {
       return d.best.depth_mm > 0.0 && d.best.depth_mm <= pair_.reach_mm(Layer::kLower) &&
@@ -199,7 +199,6 @@ class Overlap {
       lower = {planes_.told(mesh.front(), Layer::kLower)};
     } else if (!pair_.trivial && (any_open || !lazy)) {
       upper = search(Layer::kUpper, true, work_left());
-      if (!lazy) upper = better_of(search(Layer::kUpper, false, work_left()), upper);
       bool may_be_certain = false;
       for (const Bracket& p : upper) may_be_certain |= p.hi_mm > pair_.touch_mm;
       // What is not seen to be certain is potential: that none of it is needs no proof.
@@ -207,9 +206,16 @@ class Overlap {
         lower = lower_lazily =
             search(Layer::kLower, true,
                    query_.prove_not_certain ? work_left() : std::min(glance(), work_left()));
-      if (!lazy) lower = better_of(search(Layer::kLower, false, work_left()), lower_lazily);
+      if (!lazy) refine(found);
     }
     return found;
+  }
+
+  // After the lazy answer, which a refined one must not leave for want of work.
+  void refine(Found& found) {
+    found.mesh = better_of(search(Layer::kMesh, false, work_left() / 3), found.mesh);
+    found.upper = better_of(search(Layer::kUpper, false, work_left() / 2), found.upper);
+    found.lower = better_of(search(Layer::kLower, false, work_left()), found.lower_lazily);
   }
 
   void search_regions() {
