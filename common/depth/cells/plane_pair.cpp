@@ -112,7 +112,7 @@ void PlanePair::tell_least(OverlapRegion& region) const {
   const SharpDepth& least = decision_.least;
   if (const auto bracket = bracket_mm(Layer::kLower)) region.certain_mm = *bracket;
   if (!certain()) return;
-  region.certain_mm.lo = std::max(least.overlap_mm.lo, region.certain_mm.lo);
+  region.certain_mm.lo = least.overlap_mm.lo;  // by triangles it may be beyond a moved neighbour
   region.certain_mm.hi = std::max(region.certain_mm.lo, region.certain_mm.hi);
   region.possible_mm.hi = std::max(region.possible_mm.hi, region.certain_mm.hi);
   region.possible_mm.lo = std::max(region.possible_mm.lo, region.certain_mm.lo);
