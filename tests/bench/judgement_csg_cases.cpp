@@ -14,10 +14,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kFarthest_mm = 500.0;  ///< of the random pose of everything
+constexpr double kFarthestPose_mm = 500.0;  ///< of the random pose of everything
 constexpr int kRoughStarts = 5, kStarts = 14;
 
-Interval zone(Dice& dice, double size_mm) {
+Interval csg_zone(Dice& dice, double size_mm) {
   const double width = size_mm * dice.spread(1e-5, 2e-3);
   const double middle = width * dice.between(-1.0, 1.0),
                half = 0.5 * width * dice.between(0.1, 1.0);
@@ -25,8 +25,8 @@ Interval zone(Dice& dice, double size_mm) {
 }
 
 void draw_bands(Dice& dice, bool by_face, CsgPart& part) {
-  const Interval common = dice.between(0.0, 1.0) < 0.15 ? Interval{} : zone(dice, part.size_mm);
-  for (CsgFace& face : part.faces) face.offset_mm = by_face ? zone(dice, part.size_mm) : common;
+  const Interval common = dice.between(0.0, 1.0) < 0.15 ? Interval{} : csg_zone(dice, part.size_mm);
+  for (CsgFace& face : part.faces) face.offset_mm = by_face ? csg_zone(dice, part.size_mm) : common;
 }
 
 CsgDrawn draw_any(Dice& dice, double size_mm) {
@@ -42,7 +42,7 @@ double some(Dice& dice, double most_mm) {
   return u < 0.75 ? dice.between(0.0, most_mm) : dice.spread(1e-3 * most_mm, most_mm);
 }
 
-double draw_margin(Dice& dice, double size_mm) {
+double draw_csg_margin(Dice& dice, double size_mm) {
   if (dice.between(0.0, 1.0) < 0.08) return size_mm * dice.spread(1e-3, 0.05);
   return dice.sign() * dice.spread(1e-4, 0.1);
 }
@@ -94,7 +94,7 @@ void draw_touch(Dice& dice, double size, CsgCase& c) {
           : Vec3(dice.sign() * Vec3::Unit(static_cast<int>(dice.between(0.0, 2.999))));
   const Vec3 aside = 0.3 * size * dice.direction();
   const CsgLayer layer = static_cast<CsgLayer>(static_cast<int>(dice.between(0.0, 2.999)));
-  const double wanted = 0.5 * draw_margin(dice, size);
+  const double wanted = 0.5 * draw_csg_margin(dice, size);
   const CsgPair pair{&c.a, &c.b, c.X_BA};
   const auto depth_at = [&](double shift) {
     CsgPair moved = pair;
@@ -123,7 +123,7 @@ CsgCase draw_csg(std::uint64_t seed) {
   else
     draw_touch(dice, size, c);
   c.X_WB = {dice.orientation(),
-            kFarthest_mm * Vec3(dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1))};
+            kFarthestPose_mm * Vec3(dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1))};
   const CsgPair pair{&c.a, &c.b, c.X_BA};
   c.truth.searched = true;
   c.truth.certain_mm = 2.0 * deepest_point(pair, CsgLayer::kLeast, kStarts).depth_mm;

@@ -9,7 +9,7 @@ namespace mortise::bench {
 namespace {
 
 using std::numbers::pi;
-constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+constexpr double kNoOverlap = -std::numeric_limits<double>::infinity();
 
 // The largest value over (angle, height in -1 .. 1): a grid, then finer ones about its best local
 // bests; where the hole ends the best lies beside places that have no value.
@@ -31,14 +31,14 @@ double largest_over(F&& f) {
   for (int j = 0; j <= kHeights; ++j)
     for (int i = 0; i < kAngles; ++i) {
       const double value = at(i, j);
-      if (value == kNowhere || value < at(i - 1, j) || value < at(i + 1, j)) continue;
+      if (value == kNoOverlap || value < at(i - 1, j) || value < at(i + 1, j)) continue;
       if ((j > 0 && value < at(i, j - 1)) || (j < kHeights && value < at(i, j + 1))) continue;
       starts.push_back({value, 2.0 * pi * i / kAngles, -1.0 + 2.0 * j / kHeights});
     }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Place& x, const Place& y) { return x.value > y.value; });
   if (starts.size() > kStarts) starts.resize(kStarts);
-  double largest = kNowhere;
+  double largest = kNoOverlap;
   for (Place best : starts) {
     double angle_step = 2.0 * pi / kAngles, height_step = 2.0 / kHeights;
     for (int round = 0; round < 9; ++round) {
@@ -91,9 +91,9 @@ double sampled_round(const RoundFit& fit, const Realization& drawn, bool to_ends
       hole_z = {least, most};
     }
     const double from = std::max(z0, hole_z.lo), to = std::min(z1, hole_z.hi);
-    if (to_ends && !(from <= to)) return kNowhere;
+    if (to_ends && !(from <= to)) return kNoOverlap;
     const Vec3 p = point_at(angle, 0.5 * (from + to) + 0.5 * height * (to - from));
-    if (!to_ends && (p.z() < lower || p.z() > upper)) return kNowhere;
+    if (!to_ends && (p.z() < lower || p.z() > upper)) return kNoOverlap;
     const double hole = fit.hole.r0_mm + slope * (p.z() - fit.hole.z0_mm);
     return (std::hypot(p.x(), p.y()) - hole) * cosine +
            drawn.b.offset_mm(std::atan2(p.y(), p.x()), height_of(fit.hole, p.z()));
@@ -106,7 +106,7 @@ double sampled_ball(const BallFit& fit, const Realization& drawn) {
     const double polar = 0.5 * pi * (height + 1.0);
     const Vec3 p =
         fit.center + radius * shapes::on_circle(std::sin(polar), angle, -std::cos(polar));
-    if (p.z() > fit.rim_z_mm + drawn.b.rest_mm) return kNowhere;
+    if (p.z() > fit.rim_z_mm + drawn.b.rest_mm) return kNoOverlap;
     const double apart = p.norm();
     return apart - fit.socket_mm +
            drawn.b.offset_mm(std::atan2(p.y(), p.x()), p.z() / std::max(apart, 1e-300));

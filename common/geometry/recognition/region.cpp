@@ -46,6 +46,36 @@ double arc_height(double radius, double arc_rad) {
   return radius * (1.0 - std::cos(0.5 * std::min(arc_rad, std::numbers::pi)));
 }
 
+void drop_deep_facets(const TriangleMesh& mesh, Region& region) {
+  std::vector<double> depth;
+  const SurfaceAt at(region.surface);
+  for (const std::uint32_t t : region.triangles) depth.push_back(depth_at_middles_mm(mesh, at, t));
+  std::vector<double> sorted = depth;
+  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+  const double most = kDeepFacet * sorted[sorted.size() / 2] + region.allowed_mm;
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    if (depth[i] <= most) kept.push_back(region.triangles[i]);
+  region.triangles = std::move(kept);
+}
+
+bool shows_enough_of_torus(const Region& region, const RegionMeasure& m) {
+  const Surface& s = region.surface;
+  const auto& around = m.meridian_rad;
+  if (m.steps < 3 || around.size() < 4) return false;
+  const double tube_arc = around.back() - around.front();
+  if (region.residual_mm > kShareOfArcHeight * arc_height(s.tube_radius_mm, tube_arc) ||
+      region.residual_mm > kShareOfArcHeight * arc_height(s.radius_mm, m.arc_rad))
+    return false;
+  if (around.size() >= kLeastMeridianCircles) return true;
+  double least = around[1] - around[0], most = least;
+  for (std::size_t i = 2; i < around.size(); ++i) {
+    least = std::min(least, around[i] - around[i - 1]);
+    most = std::max(most, around[i] - around[i - 1]);
+  }
+  return most <= (1.0 + kEqualSteps) * least;
+}
+
 }  // namespace
 
 RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm)
@@ -164,19 +194,6 @@ bool RegionGrower::fit_all(Region& region) {
   return true;
 }
 
-void RegionGrower::drop_deep_facets(Region& region) const {
-  std::vector<double> depth;
-  const SurfaceAt at(region.surface);
-  for (const std::uint32_t t : region.triangles) depth.push_back(depth_at_middles_mm(mesh_, at, t));
-  std::vector<double> sorted = depth;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double most = kDeepFacet * sorted[sorted.size() / 2] + region.allowed_mm;
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < depth.size(); ++i)
-    if (depth[i] <= most) kept.push_back(region.triangles[i]);
-  region.triangles = std::move(kept);
-}
-
 bool RegionGrower::shows_enough(const Region& region) {
   const Surface& s = region.surface;
   const std::size_t corners = points_of(region.triangles).size();
@@ -217,23 +234,6 @@ bool RegionGrower::shows_enough_of_sphere(const Region& region) const {
   return !measure_region(mesh_, about, region.triangles).one_row;
 }
 
-bool RegionGrower::shows_enough_of_torus(const Region& region, const RegionMeasure& m) const {
-  const Surface& s = region.surface;
-  const auto& around = m.meridian_rad;
-  if (m.steps < 3 || around.size() < 4) return false;
-  const double tube_arc = around.back() - around.front();
-  if (region.residual_mm > kShareOfArcHeight * arc_height(s.tube_radius_mm, tube_arc) ||
-      region.residual_mm > kShareOfArcHeight * arc_height(s.radius_mm, m.arc_rad))
-    return false;
-  if (around.size() >= kLeastMeridianCircles) return true;
-  double least = around[1] - around[0], most = least;
-  for (std::size_t i = 2; i < around.size(); ++i) {
-    least = std::min(least, around[i] - around[i - 1]);
-    most = std::max(most, around[i] - around[i - 1]);
-  }
-  return most <= (1.0 + kEqualSteps) * least;
-}
-
 bool RegionGrower::settle(Region& region) {
   return fit_all(region) && region.residual_mm <= region.allowed_mm && shows_enough(region);
 }
@@ -255,7 +255,7 @@ bool RegionGrower::starts(Region& region, std::span<const std::uint32_t> seeds) 
 std::optional<Region> RegionGrower::settled(Region region, std::size_t least) {
   constexpr int kRounds = 4;  // what goes on losing facets is no surface
   for (int round = 0; round < kRounds; ++round) {
-    drop_deep_facets(region);
+    drop_deep_facets(mesh_, region);
     const SurfaceAt at(region.surface);
     std::erase_if(region.triangles,
                   [&](std::uint32_t t) { return !belongs(t, at, region.allowed_mm); });

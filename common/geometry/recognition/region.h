@@ -67,10 +67,8 @@ class RegionGrower {
   std::optional<Region> settled(Region region, std::size_t least);
   bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
   bool fit_all(Region& region);
-  void drop_deep_facets(Region& region) const;
   bool shows_enough(const Region& region);
   bool shows_enough_of_sphere(const Region& region) const;
-  bool shows_enough_of_torus(const Region& region, const RegionMeasure& m) const;
 
   const TriangleMesh& mesh_;
   const Topology& topology_;
