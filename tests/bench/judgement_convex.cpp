@@ -18,6 +18,7 @@ using std::numbers::pi;
 
 // Beyond it a tip is clipped (common/depth/README.md): nothing is promised of such parts.
 constexpr double kMostTravel = 19.9;
+constexpr double kWidestShare = 5e-3;   ///< of a tolerance zone, of the size
 constexpr double kFarthest_mm = 500.0;  ///< of the random pose of everything
 
 std::vector<Vec3> prism_points(const std::vector<Vec3>& outline, double half_height_mm) {
@@ -86,19 +87,12 @@ std::vector<Vec3> shape_points(Dice& dice, int shape) {
 }
 
 // A zone of either sign about the surface, from 1e-5 to 5e-3 of the size.
-Interval zone(Dice& dice, double size_mm) {
-  const double width = size_mm * dice.spread(1e-5, 5e-3);
-  const double middle = width * dice.between(-1.0, 1.0),
-               half = 0.5 * width * dice.between(0.1, 1.0);
-  return {middle - half, middle + half};
-}
-
 void draw_bands(Dice& dice, double size_mm, ConvexPart& part) {
   const double kind = dice.between(0.0, 1.0);
   part.by_face = kind > 0.5;
-  const Interval common = kind < 0.15 ? Interval{} : zone(dice, size_mm);
+  const Interval common = kind < 0.15 ? Interval{} : drawn_zone(dice, size_mm, kWidestShare);
   for (ConvexPart::Face& face : part.faces)
-    face.offset_mm = part.by_face ? zone(dice, size_mm) : common;
+    face.offset_mm = part.by_face ? drawn_zone(dice, size_mm, kWidestShare) : common;
 }
 
 struct Drawn {

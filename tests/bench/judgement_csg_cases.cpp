@@ -14,19 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr double kWidestCsgShare = 2e-3;    ///< of a tolerance zone, of the size
 constexpr double kFarthestPose_mm = 500.0;  ///< of the random pose of everything
 constexpr int kRoughStarts = 5, kStarts = 14;
 
-Interval csg_zone(Dice& dice, double size_mm) {
-  const double width = size_mm * dice.spread(1e-5, 2e-3);
-  const double middle = width * dice.between(-1.0, 1.0),
-               half = 0.5 * width * dice.between(0.1, 1.0);
-  return {middle - half, middle + half};
-}
-
 void draw_bands(Dice& dice, bool by_face, CsgPart& part) {
-  const Interval common = dice.between(0.0, 1.0) < 0.15 ? Interval{} : csg_zone(dice, part.size_mm);
-  for (CsgFace& face : part.faces) face.offset_mm = by_face ? csg_zone(dice, part.size_mm) : common;
+  const Interval common =
+      dice.between(0.0, 1.0) < 0.15 ? Interval{} : drawn_zone(dice, part.size_mm, kWidestCsgShare);
+  for (CsgFace& face : part.faces)
+    face.offset_mm = by_face ? drawn_zone(dice, part.size_mm, kWidestCsgShare) : common;
 }
 
 CsgDrawn draw_any(Dice& dice, double size_mm) {

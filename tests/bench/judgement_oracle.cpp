@@ -35,6 +35,13 @@ std::string told(const std::optional<double>& value) {
 
 }  // namespace
 
+Interval drawn_zone(Dice& dice, double size_mm, double widest_share) {
+  const double width = size_mm * dice.spread(1e-5, widest_share);
+  const double middle = width * dice.between(-1.0, 1.0),
+               half = 0.5 * width * dice.between(0.1, 1.0);
+  return {middle - half, middle + half};
+}
+
 CollisionClass OracleTruth::collision_class() const {
   if (certain_mm > 0.0) return CollisionClass::kReal;
   return possible_mm <= 0.0 ? CollisionClass::kNone : CollisionClass::kPotential;

@@ -8,6 +8,7 @@
 
 #include "tests/bench/judgement_ask.h"
 #include "tests/bench/report.h"
+#include "tests/bench/scenes.h"
 
 /// What an independent oracle knows of one pair, and what it counts against the engine.
 namespace mortise::bench {
@@ -29,6 +30,9 @@ struct OracleTruth {
   CollisionClass collision_class() const;
   double margin_mm() const;  ///< to the nearer threshold
 };
+
+/// A tolerance zone up to that share of a size wide, about anywhere near zero.
+Interval drawn_zone(Dice& dice, double size_mm, double widest_share);
 
 /// What must not be said of a pair.
 enum class Fault {

@@ -46,14 +46,16 @@ struct Planted {
   }
 };
 
+template <class Change>
+void with(Change change) {
+  Planted planted;
+  change(planted);
+  planted.check();
+}
+
 TEST(StageChecks, WhatIsRightPasses) { Planted{}.check(); }
 
 TEST(StageChecks, AWrongPairIsFound) {
-  const auto with = [](auto change) {
-    Planted planted;
-    change(planted);
-    planted.check();
-  };
   EXPECT_DEATH(with([](Planted& p) { p.pair().b = 0; }), "the lower index first");
   EXPECT_DEATH(with([](Planted& p) { p.pair().b = 2; }), "the lower index first");
   EXPECT_DEATH(with([](Planted& p) {
@@ -67,11 +69,6 @@ TEST(StageChecks, AWrongPairIsFound) {
 }
 
 TEST(StageChecks, AWrongContactIsFound) {
-  const auto with = [](auto change) {
-    Planted planted;
-    change(planted);
-    planted.check();
-  };
   EXPECT_DEATH(with([](Planted& p) { p.pair().tau = 1.0; }), "before the tick ends");
   EXPECT_DEATH(with([](Planted& p) { p.pair().t_contact = 1.5; }), "times of the tick");
   EXPECT_DEATH(with([](Planted& p) { p.pair().t_stop = std::nan(""); }), "times of the tick");
@@ -83,11 +80,6 @@ TEST(StageChecks, AWrongContactIsFound) {
 }
 
 TEST(StageChecks, AWrongVerdictIsFound) {
-  const auto with = [](auto change) {
-    Planted planted;
-    change(planted);
-    planted.check();
-  };
   EXPECT_DEATH(with([](Planted& p) { p.pair().seen[0].open = 0; }), "continues an open clash");
   EXPECT_DEATH(with([](Planted& p) { p.verdict().collision_class = CollisionClass::kNone; }),
                "a region has a class");
