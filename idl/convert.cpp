@@ -434,7 +434,11 @@ wire::Verdict to_wire(const Verdict& verdict) {
   out.witness_mm(triple(verdict.witness_W));
   out.separation_translation_mm(triple(verdict.separation_translation_mm));
   out.separation_rotation_rad(triple(verdict.separation_rotation_rad));
+  out.separation_about_mm(triple(verdict.separation_about_W));
+  out.separation_of_b(verdict.separation_of_b);
   out.separation_way(static_cast<std::uint8_t>(verdict.separation_way));
+  out.separation_path(static_cast<std::uint8_t>(verdict.separation_path));
+  out.separation_blocker(verdict.separation_blocker.value);
   out.shape_a(static_cast<std::uint8_t>(verdict.shape_a));
   out.shape_b(static_cast<std::uint8_t>(verdict.shape_b));
   out.grade(static_cast<std::uint8_t>(verdict.grade));
@@ -466,8 +470,11 @@ Result<Verdict> from_wire(const wire::Verdict& in) {
   door.position(in.witness_mm(), "witness_mm");
   door.position(in.separation_translation_mm(), "separation_translation_mm");
   door.vector(in.separation_rotation_rad(), "separation_rotation_rad");
-  door.need(in.separation_way() <= static_cast<std::uint8_t>(SeparationWay::kAxis),
+  door.position(in.separation_about_mm(), "separation_about_mm");
+  door.need(in.separation_way() <= static_cast<std::uint8_t>(SeparationWay::kStraight),
             "separation_way");
+  door.need(in.separation_path() <= static_cast<std::uint8_t>(SeparationPath::kBlocked),
+            "separation_path");
   door.need(in.shape_a() <= kShapes && in.shape_b() <= kShapes, "shape");
   door.need(in.grade() <= static_cast<std::uint8_t>(DeviationGrade::kNominal), "grade");
   door.name(in.face_a(), "face_a");
@@ -491,7 +498,11 @@ Result<Verdict> from_wire(const wire::Verdict& in) {
   verdict.witness_W = vec3(in.witness_mm());
   verdict.separation_translation_mm = vec3(in.separation_translation_mm());
   verdict.separation_rotation_rad = vec3(in.separation_rotation_rad());
+  verdict.separation_about_W = vec3(in.separation_about_mm());
+  verdict.separation_of_b = in.separation_of_b();
   verdict.separation_way = static_cast<SeparationWay>(in.separation_way());
+  verdict.separation_path = static_cast<SeparationPath>(in.separation_path());
+  verdict.separation_blocker = PartId{in.separation_blocker()};
   verdict.shape_a = static_cast<FaceShape>(in.shape_a());
   verdict.shape_b = static_cast<FaceShape>(in.shape_b());
   verdict.grade = static_cast<DeviationGrade>(in.grade());

@@ -49,7 +49,10 @@ void put_verdict(Json& json, const Verdict& verdict) {
   json["witness"] = verdict.has_witness ? json_of(verdict.witness_W) : Json(nullptr);
   json["separation"] = {{"t", json_of(verdict.separation_translation_mm)},
                         {"r", json_of(verdict.separation_rotation_rad)},
-                        {"way", name_of(verdict.separation_way)}};
+                        {"about", json_of(verdict.separation_about_W)},
+                        {"moves", verdict.separation_of_b ? "b" : "a"},
+                        {"way", name_of(verdict.separation_way)},
+                        {"path", name_of(verdict.separation_path)}};
   json["shapes"] = {name_of(verdict.shape_a), name_of(verdict.shape_b)};
   json["faces"] = {verdict.face_a, verdict.face_b};
   json["grade"] = name_of(verdict.grade);

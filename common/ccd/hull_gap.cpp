@@ -6,44 +6,12 @@
 namespace mortise::ccd {
 namespace {
 
-// Float arithmetic of one height of a box: ten operations of 6e-8 each, on sums of three products.
-constexpr double kFloatRounding = 2e-6;
-
 // Overlapping hulls never get a plane; after this many steps there is one, or none exists.
 constexpr int kStepsWithoutPlane = 12;
 // The plane is as good as it gets when nothing of the gap but this share is left.
 constexpr double kGoodPlane = 1e-13;
 // How far a plane may be off, as a share of the gap; where boxes cannot tell more, to spare time.
 constexpr double kSlack = 1e-3;
-
-struct Heights {
-  float value[Bvh::kWidth];
-};
-
-// Upper bound of n . x over each child.
-Heights heights(const Bvh::Node& node, const float* n, float allowance) {
-  Heights h;
-  for (int k = 0; k < Bvh::kWidth; ++k)
-    h.value[k] = n[0] * node.local_center[0][k] + n[1] * node.local_center[1][k] +
-                 n[2] * node.local_center[2][k] +
-                 (std::fabs(n[0]) * node.half[0][k] + std::fabs(n[1]) * node.half[1][k] +
-                  std::fabs(n[2]) * node.half[2][k]) +
-                 allowance;
-  return h;
-}
-
-Vec3 corner(const Bvh& bvh, std::uint32_t i, int k) {
-  const auto& c = bvh.corners[i];
-  return Vec3(c[3 * k], c[3 * k + 1], c[3 * k + 2]) - bvh.origin;
-}
-
-struct Walk {
-  float n[3], allowance;
-  Walk(const Bvh& bvh, const Vec3& direction) {
-    for (int c = 0; c < 3; ++c) n[c] = static_cast<float>(direction[c]);
-    allowance = static_cast<float>(kFloatRounding * bvh.radius_mm);
-  }
-};
 
 // Distance of the hull of up to four points from the origin; keeps the points that carry it.
 struct Simplex {
@@ -113,55 +81,8 @@ struct Simplex {
 
 }  // namespace
 
-Support support(const Bvh& bvh, const Vec3& n, const Support& hint, double slack_mm) {
-  const Walk walk(bvh, n);
-  Support best = hint;
-  best.along_mm = hint.leaf < 0 ? n.dot(hint.point) : -std::numeric_limits<double>::infinity();
-  // Boxes of which all but the rounding is reached are left alone, else a flat face would be
-  // searched through from end to end.
-  const double left_mm = std::min(2.0 * static_cast<double>(walk.allowance), slack_mm);
-  double left_alone = best.along_mm;
-  const auto skip = [&](float height) {
-    if (static_cast<double>(height) > best.along_mm + left_mm) return false;
-    left_alone = std::max(left_alone, static_cast<double>(height));
-    return true;
-  };
-  struct Waiting {
-    std::int32_t child;
-    float height;
-  };
-  Waiting stack[Bvh::kMostWaiting];
-  int top = 0;
-  stack[top++] = {bvh.root, std::numeric_limits<float>::infinity()};
-  while (top > 0) {
-    const Waiting item = stack[--top];
-    if (skip(item.height)) continue;
-    if (item.child < 0) {
-      const Bvh::Leaf& leaf = bvh.leaves[~item.child];
-      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-        for (int k = 0; k < 3; ++k) {
-          const Vec3 x = corner(bvh, i, k);
-          const double along = n.dot(x);
-          if (along > best.along_mm) best = {along, along, x, item.child};
-        }
-      continue;
-    }
-    const Bvh::Node& node = bvh.nodes[item.child];
-    const Heights h = heights(node, walk.n, walk.allowance);
-    const int begin = top;
-    for (int k = 0; k < node.count; ++k) {
-      if (skip(h.value[k])) continue;
-      int at = top++;
-      for (; at > begin && stack[at - 1].height > h.value[k]; --at) stack[at] = stack[at - 1];
-      stack[at] = {node.child[k], h.value[k]};
-    }
-  }
-  best.bound_mm = std::max(best.along_mm, left_alone);
-  return best;
-}
-
 bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list, int most) {
-  const Walk walk(bvh, n);
+  const BvhWalk walk(bvh, n);
   list.count = 0;
   std::int32_t stack[Bvh::kMostWaiting];
   int top = 0;
@@ -172,14 +93,14 @@ bool leaves_above(const Bvh& bvh, const Vec3& n, double floor_mm, LeafList& list
       const Bvh::Leaf& leaf = bvh.leaves[~child];
       double highest = -std::numeric_limits<double>::infinity();
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-        for (int k = 0; k < 3; ++k) highest = std::max(highest, n.dot(corner(bvh, i, k)));
+        for (int k = 0; k < 3; ++k) highest = std::max(highest, n.dot(bvh_corner(bvh, i, k)));
       if (highest <= floor_mm) continue;
       if (list.count >= std::min(most, kMostLeaves)) return false;
       list.leaf[list.count++] = {child, highest};
       continue;
     }
     const Bvh::Node& node = bvh.nodes[child];
-    const Heights h = heights(node, walk.n, walk.allowance);
+    const BvhHeights h = walk.heights(node);
     for (int k = 0; k < node.count; ++k)
       if (static_cast<double>(h.value[k]) > floor_mm) stack[top++] = node.child[k];
   }

@@ -2,22 +2,11 @@
 #include <array>
 
 #include "common/ccd/pair_motion.h"
+#include "common/geometry/bvh/bvh_support.h"
 
 // How far apart the convex hulls of two meshes are, from their trees: where the hulls are apart,
 // the plane between them proves at once what boxes around curved faces prove only piece by piece.
 namespace mortise::ccd {
-
-/// The corner of a mesh that is farthest along a direction, or one that is almost as far.
-struct Support {
-  double along_mm = 0.0;      ///< direction . point
-  double bound_mm = 0.0;      ///< no corner is farther
-  Vec3 point = Vec3::Zero();  ///< from the origin of the tree, axes of the part
-  std::int32_t leaf = 0;      ///< < 0, as in Bvh::Node::child; 0: none yet
-};
-
-/// n: unit, axes of the part. O(log n) typical. `hint`: a corner of the mesh that may be far, or
-/// none. A corner within slack_mm of the farthest is good enough.
-Support support(const Bvh& bvh, const Vec3& n, const Support& hint, double slack_mm);
 
 /// Leaves with a corner above floor_mm along n (unit, axes of the part, from the origin of the
 /// tree).

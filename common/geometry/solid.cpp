@@ -56,6 +56,15 @@ const Cracks& Solid::cracks() const {
   return cracks_;
 }
 
+const Outline& Solid::outline() const {
+  std::call_once(outline_once_, [this] {
+    outline_ = outline_of(mesh_, bvh(), topology());
+    derived_bytes_ += (outline_.corners.capacity() + outline_.main_normals.capacity()) *
+                      sizeof(outline_.corners[0]);
+  });
+  return outline_;
+}
+
 bool Solid::has_inside() const {
   if (topology().balanced()) return topology().closed();
   cracks();

@@ -9,6 +9,7 @@
 #include "common/geometry/bvh/bvh.h"
 #include "common/geometry/cracks.h"
 #include "common/geometry/mesh.h"
+#include "common/geometry/outline.h"
 #include "common/geometry/shells.h"
 #include "common/geometry/topology.h"
 
@@ -32,6 +33,8 @@ class Solid {
   const Topology& topology() const;
   /// The lowest triangle of each connected shell, ascending.
   const std::vector<std::uint32_t>& shells() const;
+  /// What its convex hull shows.
+  const Outline& outline() const;
   /// Where an open mesh is open; nothing for a balanced one.
   const Cracks& cracks() const;
   /// Closed, or open at small cracks only; beside those what is inside is not known. Without an
@@ -47,11 +50,12 @@ class Solid {
   std::string hash_;
   BoundingSphere sphere_;
   Box bounds_;
-  mutable std::once_flag bvh_once_, topology_once_, shells_once_, cracks_once_;
+  mutable std::once_flag bvh_once_, topology_once_, shells_once_, cracks_once_, outline_once_;
   mutable std::unique_ptr<const Bvh> bvh_;
   mutable std::unique_ptr<const Topology> topology_;
   mutable std::vector<std::uint32_t> shells_;
   mutable Cracks cracks_;
+  mutable Outline outline_;
   mutable bool only_cracks_ = false;
   mutable std::atomic<std::size_t> derived_bytes_{0};
 };

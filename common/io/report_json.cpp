@@ -115,7 +115,10 @@ Json json_of(const Verdict& verdict) {
   json["witness_mm"] = verdict.has_witness ? json_of(verdict.witness_W) : Json(nullptr);
   json["separation"] = {{"translation_mm", json_of(verdict.separation_translation_mm)},
                         {"rotation_rad", json_of(verdict.separation_rotation_rad)},
-                        {"way", name_of(verdict.separation_way)}};
+                        {"about_mm", json_of(verdict.separation_about_W)},
+                        {"moves", verdict.separation_of_b ? "b" : "a"},
+                        {"way", name_of(verdict.separation_way)},
+                        {"path", name_of(verdict.separation_path)}};
   json["shape_a"] = name_of(verdict.shape_a);
   json["shape_b"] = name_of(verdict.shape_b);
   json["face_a"] = verdict.face_a;
@@ -198,7 +201,11 @@ Json json_of(const PairVerdicts& pair, const SessionNames& names) {
   json["not_examined"] = pair.not_examined;
   json["distance_mm"] = number(pair.distance_mm);
   json["verdicts"] = Json::array();
-  for (const Verdict& verdict : pair.verdicts) json["verdicts"].push_back(json_of(verdict));
+  for (const Verdict& verdict : pair.verdicts) {
+    json["verdicts"].push_back(json_of(verdict));
+    if (verdict.separation_blocker)
+      json["verdicts"].back()["separation"]["blocker"] = names.part(verdict.separation_blocker);
+  }
   return json;
 }
 

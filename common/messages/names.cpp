@@ -47,6 +47,17 @@ std::string_view name_of(SeparationWay value) {
     case SeparationWay::kNormal: return "along the normal";
     case SeparationWay::kFitted: return "turned and shifted";
     case SeparationWay::kAxis: return "along the axis";
+    case SeparationWay::kStraight: return "along a line";
+  }
+  return "?";
+}
+
+std::string_view name_of(SeparationPath value) {
+  switch (value) {
+    case SeparationPath::kUnknown: return "not asked";
+    case SeparationPath::kFree: return "free";
+    case SeparationPath::kDeeper: return "goes deeper";
+    case SeparationPath::kBlocked: return "blocked";
   }
   return "?";
 }

@@ -12,6 +12,7 @@ std::string_view name_of(CollisionClass value);
 std::string_view name_of(DeviationGrade value);
 std::string_view name_of(FaceShape value);
 std::string_view name_of(SeparationWay value);
+std::string_view name_of(SeparationPath value);
 std::string_view name_of(Refusal value);
 std::string_view name_of(ConstraintKind value);
 std::string_view name_of(CommandKind value);

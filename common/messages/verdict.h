@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/base/ids.h"
 #include "common/math/interval.h"
 #include "common/math/types.h"
 
@@ -39,6 +40,15 @@ enum class SeparationWay : std::uint8_t {
   kNormal = 2,  ///< along the normal of the region
   kFitted = 3,  ///< a small turn and shift, fitted to the contact points
   kAxis = 4,    ///< along the axis of a round face: drawn out of its hole
+  kStraight = 5,  ///< along another straight line
+};
+
+/// What is known of the way of a separating motion, before its end.
+enum class SeparationPath : std::uint8_t {
+  kUnknown = 0,  ///< not asked
+  kFree = 1,     ///< the pair comes out without going deeper, and no other part is met
+  kDeeper = 2,   ///< the pair goes deeper before it comes free, or meets again
+  kBlocked = 3,  ///< another part is in the way
 };
 
 inline constexpr double kProbabilityUnknown = -1.0;
@@ -65,9 +75,13 @@ struct Verdict {
   bool has_witness = false;
   Vec3 witness_W = Vec3::Zero();  ///< a point inside both real parts, for kReal
   Vec3 separation_translation_mm =
-      Vec3::Zero();  ///< the motion of A that reaches gpd_mm.hi and separates
-  Vec3 separation_rotation_rad = Vec3::Zero();
+      Vec3::Zero();  ///< the motion that reaches gpd_mm.hi and separates: of separation_about_W
+  Vec3 separation_rotation_rad = Vec3::Zero();  ///< about that point, with constant speed
+  Vec3 separation_about_W = Vec3::Zero();       ///< a point of the part that moves, as it stands
+  bool separation_of_b = false;                 ///< B moves and A stays, else A moves
   SeparationWay separation_way = SeparationWay::kNone;
+  SeparationPath separation_path = SeparationPath::kUnknown;
+  PartId separation_blocker;  ///< of kBlocked: the first part that is met
   FaceShape shape_a = FaceShape::kUnknown;
   FaceShape shape_b = FaceShape::kUnknown;
   DeviationGrade grade = DeviationGrade::kUnknown;

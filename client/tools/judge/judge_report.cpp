@@ -37,8 +37,7 @@ std::string face_text(const std::string& part, const std::string& face, FaceShap
 
 struct RegionNames {
   std::size_t number = 0;
-  std::string part_a, part_b;
-  bool a_moves = true, b_moves = true;
+  std::string part_a, part_b, blocker;
 };
 
 // "turned 25.9764° about (0, 0, 1)": below a full turn, the shorter way round. Nothing where that
@@ -52,25 +51,35 @@ std::string turn_text(const Vec3& rotation_rad) {
                      vector(rotation_rad / std::copysign(turn_rad, less_rad), 3));
 }
 
-// The motion is that of A. Where A stands fast it is told as the opposite one of B; with a turn its
-// shift is left out, for that depends on the point about which it is told.
+std::string path_text(const Verdict& v, const RegionNames& names) {
+  switch (v.separation_path) {
+    case SeparationPath::kUnknown:
+      return "";
+    case SeparationPath::kFree:
+      return "; nothing is in the way";
+    case SeparationPath::kDeeper:
+      return "; they go deeper on the way";
+    case SeparationPath::kBlocked:
+      return "; " + names.blocker + " is in the way";
+  }
+  return "";
+}
+
 std::string way_out_text(const Verdict& v, const RegionNames& names) {
   const std::string least = length_text(v.gpd_mm.lo);
   const std::string most = length_text(v.gpd_mm.hi);
   const std::string range = least == most ? least : "at least " + least + ", and " + most + " does";
   if (v.separation_way == SeparationWay::kNone)
-    return "at least " + length_text(v.gpd_mm.lo) + "; no motion was found that frees it";
-  const bool of_b = !names.a_moves && names.b_moves;
-  const double sign = of_b ? -1.0 : 1.0;
-  const Vec3 shift = sign * v.separation_translation_mm;
-  const std::string turn = turn_text(sign * v.separation_rotation_rad);
-  const std::string mover = names.a_moves   ? names.part_a + " moved"
-                            : names.b_moves ? names.part_b + " moved"
-                                            : "apart from each other";
-  std::string text = fmt::format("{}: {} {}", range, mover, name_of(v.separation_way));
-  if (const double by = shift.norm(); by > 0.0 && (turn.empty() || !of_b))
+    return "at least " + least + "; no motion was found that frees it";
+  std::string text = fmt::format("{}: {} moved {}", range,
+                                 v.separation_of_b ? names.part_b : names.part_a,
+                                 name_of(v.separation_way));
+  const Vec3& shift = v.separation_translation_mm;
+  if (const double by = shift.norm(); by > 0.0)
     text += fmt::format(", towards {}", vector(shift / by, 3));
-  return turn.empty() ? text : text + ", " + turn;
+  if (const std::string turn = turn_text(v.separation_rotation_rad); !turn.empty())
+    text += fmt::format(", {} at {} mm", turn, vector(v.separation_about_W, 3));
+  return text + path_text(v, names);
 }
 
 std::string region_text(const RegionNames& names, const Verdict& v) {
@@ -130,8 +139,12 @@ std::string places_text(const World& world, const Clash& clash) {
   const Part &a = *world.find(pair.a), &b = *world.find(pair.b);
   const std::size_t shown = std::min(pair.verdicts.size(), kMostRegions);
   std::string text;
-  for (std::size_t i = 0; i < shown; ++i)
-    text += region_text({clash.number + i, a.name, b.name, a.moving, b.moving}, pair.verdicts[i]);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Part* blocker = world.find(pair.verdicts[i].separation_blocker);
+    text += region_text(
+        {clash.number + i, a.name, b.name, blocker != nullptr ? blocker->name : ""},
+        pair.verdicts[i]);
+  }
   if (shown < pair.verdicts.size())
     text += fmt::format("  ... {} more places, none worse; --json lists all\n",
                         pair.verdicts.size() - shown);

@@ -9,7 +9,7 @@ struct JudgeOptions {
   std::string unit, fit;           ///< of meshes; empty: mm, none
   std::string fail_on, picture;
   std::vector<std::size_t> regions;
-  bool json = false, full = false, verbose = false;
+  bool json = false, full = false, verbose = false, apply_way = false;
   int threads = 1;
 };
 

@@ -55,7 +55,11 @@ ordered_json json_of(const ClashEvent& event) {
           {"witness_W", vector(v.witness_W)},
           {"separation_translation_mm", vector(v.separation_translation_mm)},
           {"separation_rotation_rad", vector(v.separation_rotation_rad)},
+          {"separation_about_W", vector(v.separation_about_W)},
+          {"separation_of_b", v.separation_of_b},
           {"separation_way", name_of(v.separation_way)},
+          {"separation_path", name_of(v.separation_path)},
+          {"separation_blocker", v.separation_blocker.value},
           {"shape_a", name_of(v.shape_a)},
           {"shape_b", name_of(v.shape_b)},
           {"grade", name_of(v.grade)},
@@ -278,6 +282,12 @@ bool decode(std::string_view text, ClashEvent& event) {
   in.vector("separation_translation_mm", v.separation_translation_mm);
   in.vector("separation_rotation_rad", v.separation_rotation_rad);
   in.name("separation_way", v.separation_way);
+  if (object.contains("separation_about_W")) {  // older records: of A, about the centre of its sphere
+    in.vector("separation_about_W", v.separation_about_W);
+    in.flag("separation_of_b", v.separation_of_b);
+    in.name("separation_path", v.separation_path);
+    in.integer("separation_blocker", v.separation_blocker.value);
+  }
   in.name("shape_a", v.shape_a);
   in.name("shape_b", v.shape_b);
   in.name("grade", v.grade);

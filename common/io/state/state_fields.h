@@ -57,12 +57,14 @@ template <class A>
 void fields(A& a, Verdict& x) {
   auto& [collision_class, delta_mm, gpd_mm, fake_below_mm, real_above_mm, margin_mm, probability,
          travel_mm, normal_travel_mm, point_W, normal_W, area_mm2, has_witness, witness_W,
-         separation_translation_mm, separation_rotation_rad, separation_way, shape_a, shape_b,
-         grade, face_a, face_b, explanation] = x;
+         separation_translation_mm, separation_rotation_rad, separation_about_W, separation_of_b,
+         separation_way, separation_path, separation_blocker, shape_a, shape_b, grade, face_a,
+         face_b, explanation] = x;
   a(collision_class, delta_mm, gpd_mm, fake_below_mm, real_above_mm, margin_mm, probability,
     travel_mm, normal_travel_mm, point_W, normal_W, area_mm2, has_witness, witness_W,
-    separation_translation_mm, separation_rotation_rad, separation_way, shape_a, shape_b, grade,
-    face_a, face_b, explanation);
+    separation_translation_mm, separation_rotation_rad, separation_about_W, separation_of_b,
+    separation_way, separation_path, separation_blocker, shape_a, shape_b, grade, face_a, face_b,
+    explanation);
 }
 template <class A>
 void fields(A& a, ClashEvent& x) {

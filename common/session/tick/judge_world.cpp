@@ -7,6 +7,7 @@
 #include "common/ccd/start_state.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
+#include "common/session/tick/way_out.h"
 
 namespace mortise {
 namespace {
@@ -53,6 +54,13 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, bool full_b
   return judged;
 }
 
+// All regions of a pair have one way out.
+bool told_alike(const Verdict& x, const Verdict& y) {
+  return x.separation_way == y.separation_way &&
+         x.separation_translation_mm == y.separation_translation_mm &&
+         x.separation_rotation_rad == y.separation_rotation_rad;
+}
+
 }  // namespace
 
 // Unlike a tick, static pairs are judged as well: this is a question about the scene, not about a
@@ -87,6 +95,18 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
     const Part& b = world.parts[candidates[i].b];
     judged[i] = judge_one(a, b, world.rule(a.id, b.id), full_brackets,
                           work.ccd[static_cast<std::size_t>(thread)]);
+  });
+
+  // Somebody looks at what is told here: what stands in the way is told as well.
+  work.pool.for_each(judged.size(), [&](std::size_t i, int thread) {
+    PairVerdicts& pair = judged[i].verdicts;
+    for (Verdict& verdict : pair.verdicts)
+      if (const Verdict& first = pair.verdicts.front(); &verdict != &first && told_alike(verdict, first)) {
+        verdict.separation_path = first.separation_path;
+        verdict.separation_blocker = first.separation_blocker;
+      } else {
+        look_along_way(world, pair.a, pair.b, verdict, work.ccd[static_cast<std::size_t>(thread)]);
+      }
   });
 
   StepCounters& counters = report.counters;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/base/constants.h"
 #include "common/evaluation/clash_line.h"
@@ -17,6 +18,9 @@ namespace {
 
 // A margin that nothing bounds is not a number that the wire can carry.
 double finite_or_zero(double x) { return std::isfinite(x) ? x : 0.0; }
+
+// What a longer search for the generalized depth may cost, as a multiple of the lazy one.
+constexpr std::uint64_t kFullDepthWork = 10;
 
 DeviationGrade worst_of(DeviationGrade a, DeviationGrade b) { return std::max(a, b); }
 
@@ -137,25 +141,71 @@ Verdict judge_region(const JudgementQuery& query, const OverlapRegion& region, b
   return verdict;
 }
 
-void add_generalized_depth(const JudgementQuery& query, const OverlapQuery& overlap,
-                           std::span<const OverlapRegion> regions, const OverlapRegion& region,
-                           CcdScratch& scratch, std::uint64_t& evaluations, Verdict& verdict) {
+// The part that is moved out is the one that moves; else one that is held; else one that may move.
+bool b_is_moved(const JudgementQuery& query) {
+  const auto rank = [](const Motion& motion, const Part& part) {
+    return motion.moves() ? 3 : part.holder ? 2 : part.moving ? 1 : 0;
+  };
+  return rank(query.motion_b, *query.b) > rank(query.motion_a, *query.a);
+}
+
+OverlapResult overlap_of(const OverlapQuery& overlap, CcdScratch& scratch) {
+  OverlapResult result = find_overlap(overlap, scratch);
+  result.regions = merge_regions(result.regions, *overlap.band_a, *overlap.band_b);
+  return result;
+}
+
+// Of the pair: one motion has to free all its regions.
+GeneralizedDepth depth_of_pair(const JudgementQuery& query, const OverlapQuery& overlap,
+                               std::span<const OverlapRegion> regions, CcdScratch& scratch,
+                               std::uint64_t& evaluations) {
   GpdQuery gpd;
   gpd.overlap = overlap;
-  gpd.region = &region;
   gpd.regions = regions;
+  gpd.b_moves = b_is_moved(query);
   gpd.motion_a = query.motion_a;
   gpd.motion_b = query.motion_b;
   gpd.t_contact = query.t_contact;
   gpd.work_cap = std::min(gpd.work_cap, query.whole_cap - std::min(query.whole_cap, evaluations));
-  const GeneralizedDepth depth = generalized_depth(gpd, scratch);
-  evaluations += depth.evaluations;
+  if (overlap.refinement != Refinement::kFull) {
+    const GeneralizedDepth depth = generalized_depth(gpd, scratch);
+    evaluations += depth.evaluations;
+    return depth;
+  }
+  // In full: begins where the lazy search ends, so that it is never the worse.
+  GpdQuery lazy = gpd;
+  lazy.overlap.refinement = Refinement::kDecided;
+  const OverlapResult decided = overlap_of(lazy.overlap, scratch);
+  lazy.regions = decided.regions;
+  const GeneralizedDepth first = generalized_depth(lazy, scratch);
+  gpd.work_cap *= kFullDepthWork;
+  if (first.motion.moves()) gpd.known = &first.motion;
+  GeneralizedDepth depth = generalized_depth(gpd, scratch);
+  evaluations += decided.evaluations + first.evaluations + depth.evaluations;
+  depth.gpd_mm.lo = std::max(depth.gpd_mm.lo, std::min(first.gpd_mm.lo, depth.gpd_mm.hi));
+  return depth;
+}
+
+void tell_depth(const JudgementQuery& query, const GeneralizedDepth& depth,
+                const OverlapRegion& region, Verdict& verdict) {
+  const Travel travel =
+      travel_since_contact(region, query.motion_a, query.motion_b, query.t_contact);
+  verdict.travel_mm = travel.path_mm;
+  verdict.normal_travel_mm = travel.normal_mm;
+  if (region.delta_mm.hi <= 0.0) return;  // only its zones meet: nothing to do
   verdict.gpd_mm = depth.gpd_mm;
-  verdict.travel_mm = depth.travel_mm;
-  verdict.normal_travel_mm = depth.normal_travel_mm;
-  verdict.separation_translation_mm = depth.translation_mm;
-  verdict.separation_rotation_rad = depth.rotation_rad;
+  verdict.separation_translation_mm = depth.motion.translation_mm;
+  verdict.separation_rotation_rad = depth.motion.rotation_rad;
+  verdict.separation_about_W = depth.motion.about_W;
+  verdict.separation_of_b = depth.motion.of_b;
   verdict.separation_way = depth.way;
+}
+
+// Fake ones need no way out, and without an inside there is no depth.
+bool wants_depth(const JudgementQuery& query, const Judgement& judgement,
+                 const OverlapRegion& region, const Verdict& verdict) {
+  return query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
+         !judgement.overlap.no_inside && !region.at_crack;
 }
 
 // Parts of one mesh whose points all lie within this share of its radius of their twins are
@@ -200,16 +250,17 @@ const SurfaceBand& band_b_of(const JudgementQuery& query) {
 Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
   Judgement judgement;
   const OverlapQuery overlap = overlap_query(query);
-  judgement.overlap = find_overlap(overlap, scratch);
-  judgement.overlap.regions =
-      merge_regions(judgement.overlap.regions, *overlap.band_a, *overlap.band_b);
+  judgement.overlap = overlap_of(overlap, scratch);
+  std::optional<GeneralizedDepth> depth;
   for (const OverlapRegion& region : judgement.overlap.regions) {
     Verdict verdict = judge_region(query, region, judgement.overlap.no_inside);
     if (verdict.collision_class == CollisionClass::kNone) continue;
-    if (query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
-        !judgement.overlap.no_inside && !region.at_crack)
-      add_generalized_depth(query, overlap, judgement.overlap.regions, region, scratch,
-                            judgement.overlap.evaluations, verdict);
+    if (wants_depth(query, judgement, region, verdict)) {
+      if (!depth)
+        depth = depth_of_pair(query, overlap, judgement.overlap.regions, scratch,
+                              judgement.overlap.evaluations);
+      tell_depth(query, *depth, region, verdict);
+    }
     judgement.verdicts.push_back(std::move(verdict));
   }
   // Worst first; the regions are sorted by depth already.

@@ -304,7 +304,7 @@ TEST(Convert, EventsAreRefused) {
   EXPECT_FALSE(passes([](E& e) { e.verdict().point_mm({kInf, 0, 0}); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().normal({0, kNan, 0}); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().area_mm2(-1); }));
-  EXPECT_FALSE(passes([](E& e) { e.verdict().separation_way(5); }));
+  EXPECT_FALSE(passes([](E& e) { e.verdict().separation_way(6); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().shape_b(6); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().grade(7); }));
   EXPECT_FALSE(passes([](E& e) { e.verdict().face_a(std::string(129, 'x')); }));

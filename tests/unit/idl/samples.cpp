@@ -58,7 +58,11 @@ ClashEvent some_clash(std::uint64_t seq) {
   verdict.witness_W = Vec3(1, 2, 2.99);
   verdict.separation_translation_mm = Vec3(0, 0, 0.04);
   verdict.separation_rotation_rad = Vec3(0.001, 0, 0);
+  verdict.separation_about_W = Vec3(1, 2, 3);
+  verdict.separation_of_b = true;
   verdict.separation_way = SeparationWay::kFitted;
+  verdict.separation_path = SeparationPath::kBlocked;
+  verdict.separation_blocker = PartId{4};
   verdict.shape_a = FaceShape::kConvex;
   verdict.shape_b = FaceShape::kConcave;
   verdict.grade = DeviationGrade::kRecognizedFeature;
@@ -167,7 +171,11 @@ void expect_same(const ClashEvent& a, const ClashEvent& b) {
   EXPECT_EQ(v.witness_W, w.witness_W);
   EXPECT_EQ(v.separation_translation_mm, w.separation_translation_mm);
   EXPECT_EQ(v.separation_rotation_rad, w.separation_rotation_rad);
+  EXPECT_EQ(v.separation_about_W, w.separation_about_W);
+  EXPECT_EQ(v.separation_of_b, w.separation_of_b);
   EXPECT_EQ(v.separation_way, w.separation_way);
+  EXPECT_EQ(v.separation_path, w.separation_path);
+  EXPECT_EQ(v.separation_blocker, w.separation_blocker);
   EXPECT_EQ(v.shape_a, w.shape_a);
   EXPECT_EQ(v.shape_b, w.shape_b);
   EXPECT_EQ(v.grade, w.grade);

@@ -1,0 +1,233 @@
+#include "common/depth/gpd/holds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/ccd/contact_places.h"
+#include "common/geometry/signed_distance.h"
+
+namespace mortise::gpd {
+namespace {
+
+// Centres tried along a line, from its middle each way: at so much of the radius of the part,
+// shorter by a factor each.
+constexpr int kCenters = 8;
+constexpr double kShorter = 0.55;
+// Rounding that is taken from every overlap of balls, mm, and the least overlap that says anything.
+constexpr double kRounding_mm = 2e-9, kLeastHold_mm = 1e-9, kLeastDistance_mm = 1e-6;
+// Corners, middles of edges and faces looked at in each part; of the deep ones the deepest few and
+// then every so many.
+constexpr std::size_t kMostLooks = 600, kDeepest = 6, kMostDeep = 20;
+constexpr double kPlacesReach = 0.05;
+constexpr std::uint32_t kMostPlacePairs = 256;
+constexpr int kBisections = 18;
+
+// A ball of A around x + t m and one of B, which overlap by e along m.
+struct Hold {
+  double t, sum_mm, e_mm;
+};
+struct Line {
+  Vec3 x, m;
+  std::vector<Hold> holds;
+};
+
+class Holds {
+ public:
+  Holds(const HoldsQuery& query, CcdScratch& scratch, std::uint64_t& work)
+      : query_(query),
+        scratch_(scratch),
+        work_(work),
+        back_A_(query.X_WA.inverse()),
+        back_B_(query.X_WB.inverse()),
+        frame_(*query.a, query.X_WA),
+        corners_(corners_of(query)),
+        program_(frame_, corners_) {
+    for (const Vec3& x : corners_) arm_mm_ = std::max(arm_mm_, (x - frame_.center_W).norm());
+    measure_across();
+    for (const Vec3& x : query.points_W) add_both_ways(x);
+    collect_from_surface(0);
+    collect_from_surface(1);
+    collect_from_places();
+  }
+
+  double bound_mm() {
+    if (lines_.empty() || !(across_mm_ > 0.0)) return 0.0;
+    double lo = 0.0, hi = query_.limit_mm * (1.0 - 1e-6);
+    if (excludes(hi)) return hi;
+    for (int i = 0; i < kBisections; ++i) {
+      const double r = 0.5 * (lo + hi);
+      (excludes(r) ? lo : hi) = r;
+    }
+    return lo;
+  }
+
+ private:
+  static std::vector<Vec3> corners_of(const HoldsQuery& query) {
+    std::vector<Vec3> corners;
+    for (const Vec3& x : query.a->outline().corners) corners.push_back(query.X_WA * x);
+    return corners;
+  }
+
+  // Two long differences of corners. About any axis one of them is at least across_mm_ wide:
+  // angles α, β of the axis to their lines have α + β >= φ, and max(d1 sin α, d2 sin β) is least
+  // where both are d1 d2 sin φ / |d1 + d2|.
+  void measure_across() {
+    Vec3 d1 = Vec3::Zero(), d2 = Vec3::Zero();
+    for (const Vec3& x : corners_)
+      for (const Vec3& y : corners_)
+        if ((x - y).squaredNorm() > d1.squaredNorm()) d1 = x - y;
+    double most = 0.0;
+    for (const Vec3& x : corners_)
+      for (const Vec3& y : corners_)
+        if (const double area = d1.cross(x - y).norm(); area > most) {
+          most = area;
+          d2 = x - y;
+        }
+    if (d1.dot(d2) < 0.0) d2 = -d2;
+    if (most > 0.0) across_mm_ = most / (d1 + d2).norm();
+  }
+
+  // Does every motion that moves no point by more than r leave an overlap?
+  bool excludes(double r) {
+    const double sine = r / across_mm_;
+    if (!(sine < 0.7)) return false;
+    const double theta = 2.0 * sine / std::sqrt(1.0 - sine * sine);  // above 2 asin
+    const double second = 0.5 * theta * theta;
+    std::vector<Row> rows(lines_.size());
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      const Line& line = lines_[i];
+      double most = -1e300;
+      for (const Hold& hold : line.holds) {
+        const double eta = (2.0 * hold.sum_mm * hold.e_mm - hold.e_mm * hold.e_mm - r * r) /
+                           (2.0 * (hold.sum_mm - hold.e_mm));
+        most = std::max(most, eta - second * (line.x + hold.t * line.m - frame_.center_W).norm());
+      }
+      rows[i].g << line.m, (line.x - frame_.center_W).cross(line.m) / frame_.radius_mm;
+      rows[i].h = most;
+    }
+    work_ += 20;
+    const double limit = r + second * arm_mm_;
+    return program_.lower_bound_mm(rows, limit) > limit;
+  }
+
+  SurfacePoint at(int part, const Vec3& x_W) {
+    ++work_;
+    return part == 0 ? nearest_surface(*query_.a, back_A_ * x_W)
+                     : nearest_surface(*query_.b, back_B_ * x_W);
+  }
+  Vec3 normal_W(int part, const SurfacePoint& point) const {
+    return (part == 0 ? query_.X_WA.q : query_.X_WB.q) * point.face_normal;
+  }
+
+  // m: the way out for A.
+  void add(const Vec3& x, const Vec3& way) {
+    if (!(way.norm() > 0.5) || lines_.size() >= query_.most_lines) return;
+    Line line{x, way.normalized(), {}};
+    double along_a[kCenters], along_b[kCenters], in_a[kCenters], in_b[kCenters];
+    double share = 1.0;
+    for (int i = 0; i < kCenters; ++i, share *= kShorter) {
+      along_a[i] = i == 0 ? 0.0 : query_.a->sphere().radius_mm * share;
+      along_b[i] = i == 0 ? 0.0 : query_.b->sphere().radius_mm * share;
+      in_a[i] = at(0, x + along_a[i] * line.m).depth_mm;
+      in_b[i] = at(1, x - along_b[i] * line.m).depth_mm;
+    }
+    for (int i = 0; i < kCenters; ++i)
+      for (int j = 0; j < kCenters; ++j) {
+        // A ball may be a mere point, but one that belongs to the part.
+        if (!(in_a[i] >= 0.0 || (i == 0 && in_a[i] > -kLeastHold_mm)) ||
+            !(in_b[j] >= 0.0 || (j == 0 && in_b[j] > -kLeastHold_mm)))
+          continue;
+        const double sum = std::max(0.0, in_a[i]) + std::max(0.0, in_b[j]);
+        const double e = sum - along_a[i] - along_b[j] - kRounding_mm;
+        if (e > kLeastHold_mm && sum - e > kLeastDistance_mm)
+          line.holds.push_back({along_a[i], sum, e});
+      }
+    if (!line.holds.empty()) lines_.push_back(std::move(line));
+  }
+
+  // Out along the nearest face of either part.
+  void add_both_ways(const Vec3& x) {
+    add(x, normal_W(1, at(1, x)));
+    add(x, -normal_W(0, at(0, x)));
+  }
+
+  struct Look {
+    Vec3 x = Vec3::Zero(), n = Vec3::Zero();  // n: outward normal of its own face; zero at a corner
+    double depth_mm = 0.0;
+  };
+
+  std::vector<Look> looks_of(int part) const {
+    const TriangleMesh& mesh = (part == 0 ? query_.a : query_.b)->mesh();
+    const Pose& X = part == 0 ? query_.X_WA : query_.X_WB;
+    const Pose& back = part == 0 ? back_B_ : back_A_;
+    const Box& other = (part == 0 ? query_.b : query_.a)->bounds();
+    std::vector<Look> looks;
+    const auto look = [&](const Vec3& x_W, const Vec3& n) {
+      const Vec3 y = back * x_W;
+      if ((y.array() >= other.lo.array()).all() && (y.array() <= other.hi.array()).all())
+        looks.push_back({x_W, n, 0.0});
+    };
+    for (const Vec3& p : mesh.points_mm) look(X * p, Vec3::Zero());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Vec3 p = X * mesh.corner(t, 0), q = X * mesh.corner(t, 1), r = X * mesh.corner(t, 2);
+      const Vec3 n = (q - p).cross(r - p).stableNormalized();
+      for (const Vec3& x : {Vec3((p + q + r) / 3.0), Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)),
+                            Vec3(0.5 * (r + p))})
+        look(x, n);
+    }
+    return looks;
+  }
+
+  void collect_from_surface(int part) {
+    std::vector<Look> looks = looks_of(part), deep;
+    const std::size_t every = std::max<std::size_t>(1, looks.size() / kMostLooks);
+    for (std::size_t i = 0; i < looks.size(); i += every) {
+      looks[i].depth_mm = at(1 - part, looks[i].x).depth_mm;
+      if (looks[i].depth_mm > kLeastHold_mm) deep.push_back(looks[i]);
+    }
+    std::stable_sort(deep.begin(), deep.end(),
+                     [](const Look& x, const Look& y) { return x.depth_mm > y.depth_mm; });
+    const std::size_t stride = std::max<std::size_t>(1, deep.size() / kMostDeep);
+    for (std::size_t i = 0; i < deep.size(); i += i < kDeepest ? 1 : stride) {
+      const Look& look = deep[i];
+      const Vec3 theirs = normal_W(1 - part, at(1 - part, look.x));
+      add(look.x, part == 0 ? theirs : Vec3(-theirs));
+      add(look.x, part == 0 ? Vec3(-look.n) : look.n);
+    }
+  }
+
+  void collect_from_places() {
+    ContactPlacesQuery query;
+    query.a = query_.a;
+    query.b = query_.b;
+    query.X_WA = query_.X_WA;
+    query.X_WB = query_.X_WB;
+    query.reach_mm =
+        kPlacesReach * std::min(query_.a->sphere().radius_mm, query_.b->sphere().radius_mm);
+    query.most_pairs = kMostPlacePairs;
+    work_ += 20;
+    for (const ContactPlace& p : contact_places(query, scratch_))
+      if (p.gap_mm < -kLeastHold_mm)
+        for (const double share : {0.0, -0.5, 0.5})
+          add(p.point_W + share * p.gap_mm * p.normal_W, p.normal_W);
+  }
+
+  const HoldsQuery& query_;
+  CcdScratch& scratch_;
+  std::uint64_t& work_;
+  const Pose back_A_, back_B_;
+  const TwistFrame frame_;
+  const std::vector<Vec3> corners_;
+  Minimax program_;
+  double arm_mm_ = 0.0, across_mm_ = 0.0;
+  std::vector<Line> lines_;
+};
+
+}  // namespace
+
+double lower_bound_by_holds_mm(const HoldsQuery& query, CcdScratch& scratch, std::uint64_t& work) {
+  return Holds(query, scratch, work).bound_mm();
+}
+
+}  // namespace mortise::gpd

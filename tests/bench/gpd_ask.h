@@ -1,0 +1,20 @@
+#pragma once
+#include "common/depth/generalized_depth.h"
+#include "tests/bench/gpd_pairs.h"
+
+namespace mortise::bench {
+
+struct GpdWord {
+  OverlapResult overlap;
+  GeneralizedDepth depth;
+  bool apart = false;   ///< the motion as told, applied: the meshes are apart
+  double time_s = 0.0;  ///< of the generalized depth alone
+};
+
+GpdWord ask_gpd(const GpdPair& pair, Refinement refinement);
+
+/// The shortest motion that a search finds with `effort` times as many starts: random twists, each
+/// pushed out and descended from. No longer than what was told. mm.
+double search_longer(const GpdPair& pair, const GpdWord& word, int effort);
+
+}  // namespace mortise::bench
