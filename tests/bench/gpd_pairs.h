@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "common/geometry/solid.h"
+#include "common/math/interval.h"
 #include "common/math/pose.h"
 
 /// Random pairs that overlap, and the exact depth of the convex ones.

@@ -29,7 +29,7 @@ constexpr double kLeastReachShare = 1e-5, kLeastReach_mm = 1e-8;
 // A step must gain the first share; three steps in a row below the second end the descent.
 constexpr double kGain = 1e-7, kIdleGain = 1e-4;
 constexpr int kIdleSteps = 3;
-// Starts no worse than this times the best are descended from, so many that differ by a share.
+// Starts no worse than this times the best are descended from, so many whose directions differ.
 constexpr double kWorthDescent = 2.5, kAlike = 0.05;
 constexpr std::size_t kDescents = 3, kThoroughDescents = 8;
 constexpr std::uint32_t kMostPlacePairs = 1024;
@@ -71,8 +71,9 @@ class Search {
         scale_mm_(std::max({query.least_mm, 1e-6 * size_mm_, 1e-6})) {}
 
   Separation run() {
+    // Of several along one line the first that is free says it all.
     for (const Vec6& start : query_.starts)
-      if (is_free(start)) offer(start);
+      if (length(start) < best_.length_mm && is_free(start)) offer(start);
     push_and_descend();
     if (!done()) sweep_back();
     if (!done() && query_.thorough) try_turns();
@@ -199,7 +200,7 @@ class Search {
   void push_and_descend() {
     for (const double times : kPushReach) {
       Vec6 xi = Vec6::Zero();
-      if (push(xi, times * scale_mm_ + 1e-5, kPushPrograms, best_.length_mm)) {
+      if (push(xi, times * scale_mm_ + 1e-5, kPushPrograms, kWorthDescent * best_.length_mm)) {
         offer(xi);
         if (!done()) offer(descend(xi, kShortDescent), true);
       }
@@ -319,7 +320,8 @@ class Search {
     for (const Found& found : found_) {
       if (found.length_mm > kWorthDescent * best_.length_mm) break;
       if (!found.descended && std::none_of(starts.begin(), starts.end(), [&](const Found& other) {
-            return length(found.xi - other.xi) < kAlike * other.length_mm;
+            const Vec6 as_long = other.xi * (found.length_mm / other.length_mm);
+            return length(found.xi - as_long) < kAlike * found.length_mm;
           }))
         starts.push_back(found);
       if (starts.size() == (query_.thorough ? kThoroughDescents : kDescents)) break;
