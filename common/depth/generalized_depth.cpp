@@ -27,7 +27,8 @@ constexpr double kHullAccuracy_mm = 1e-8, kStartAccuracyShare = 1e-3;
 constexpr int kStartSupports = 60;
 // A bracket this close is closed: no more is looked for. kFull: as far as rounding allows.
 constexpr double kCloseShare = 1.01, kCloseFullShare = 1.0001, kClose_mm = 2e-6;
-// Lines of holds.
+// What part of the work is kept for the holds; lines of them.
+constexpr std::uint64_t kHoldsShare = 4;
 constexpr std::size_t kHoldLines = 32, kHoldLinesFull = 96;
 // Two directions are one when they differ by no more (cosine), two motions by their longest path.
 constexpr double kAlong = 1.0 - 1e-8, kAlike = 1e-3;
@@ -114,7 +115,9 @@ class PairDepth {
     query.least_mm = delta_mm_;
     query.enough_mm = (full_ ? kCloseFullShare : kCloseShare) * lo_mm_ + kClose_mm;
     query.thorough = full_;
-    query.work_cap = query_.work_cap - std::min(query_.work_cap, evaluations_);
+    // Some is left for the lower end.
+    const std::uint64_t cap = query_.work_cap - query_.work_cap / kHoldsShare;
+    query.work_cap = cap - std::min(cap, evaluations_);
     const gpd::Separation found = gpd::find_separation(query, scratch_);
     evaluations_ += found.work;
     if (found.found) offer(found.xi, found.length_mm);

@@ -20,6 +20,7 @@ GpdWord ask_gpd(const GpdPair& pair, Refinement refinement) {
   query.overlap.X_WA = pair.X_WA;
   query.overlap.X_WB = pair.X_WB;
   query.overlap.refinement = refinement;
+  if (refinement == Refinement::kFull) query.work_cap *= 10;
   query.motion_a = still_motion(pair.X_WA);
   query.motion_b = still_motion(pair.X_WB);
   GpdWord word;

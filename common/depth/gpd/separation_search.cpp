@@ -32,14 +32,14 @@ constexpr int kIdleSteps = 3;
 // Starts no worse than this times the best are descended from, so many whose directions differ.
 constexpr double kWorthDescent = 2.5, kAlike = 0.05;
 constexpr std::size_t kDescents = 3, kThoroughDescents = 8;
-constexpr std::uint32_t kMostPlacePairs = 1024;
+constexpr std::uint32_t kMostPlacePairs = 512;
 // No more of a turn is looked at, rad.
 constexpr double kMostTurn_rad = 3.0;
 // Lengths tried along a twist grow by this factor.
 constexpr double kScanGrowth = 1.7;
 constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
-constexpr std::uint64_t kFreeWork = 4, kPlacesWork = 20, kProgramWork = 20;
+constexpr std::uint64_t kFreeWork = 4, kPlacesWork = 20, kProgramWork = 10;
 constexpr std::uint64_t kTestsAWorkUnit = 8;
 
 // Uniform numbers from a fixed seed (Knuth's 64-bit linear congruence).
@@ -157,7 +157,7 @@ class Search {
     query.reach_mm = reach_mm;
     query.most_pairs = kMostPlacePairs;
     const std::vector<ContactPlace> places = contact_places(query, scratch_);
-    work_ += kPlacesWork + places.size() / 4;
+    work_ += kPlacesWork + places.size();
     // How the centre moves and A turns for a small change of each coordinate of the twist.
     Vec3 shift[6], turn[6];
     const double step = 1e-6 * frame_.radius_mm;
@@ -179,7 +179,7 @@ class Search {
   }
 
   bool solve(const std::vector<Row>& rows, Vec6& to) {
-    work_ += kProgramWork + rows.size() / 4;
+    work_ += kProgramWork + rows.size() / 2;
     return program_.solve(rows, to);
   }
 
