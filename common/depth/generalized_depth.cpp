@@ -64,9 +64,7 @@ class PairDepth {
   bool closed() const {
     return hi_mm_ <= (full_ ? kCloseFullShare : kCloseShare) * lo_mm_ + kClose_mm;
   }
-  double length(const Vec6& xi) const {
-    return gpd::longest_path_mm(mover_, X_mover_, frame_, xi);
-  }
+  double length(const Vec6& xi) const { return gpd::longest_path_mm(mover_, X_mover_, frame_, xi); }
   void offer(const Vec6& xi, double length_mm) {
     if (!(length_mm < hi_mm_)) return;
     hi_mm_ = length_mm;
@@ -238,9 +236,9 @@ GeneralizedDepth generalized_depth(const GpdQuery& query, CcdScratch& scratch) {
   return depth;
 }
 
-Travel travel_since_contact(const OverlapRegion& region, const Motion& a, const Motion& b,
-                            double t_contact) {
-  Travel travel;
+TravelSinceContact travel_since_contact(const OverlapRegion& region, const Motion& a,
+                                        const Motion& b, double t_contact) {
+  TravelSinceContact travel;
   if (!a.moves() && !b.moves()) return travel;
   const Pose back_b = b.X_W1 * b.pose_at(t_contact).inverse();
   const Pose back = back_b * a.pose_at(t_contact) * a.X_W1.inverse();

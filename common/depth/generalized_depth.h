@@ -8,9 +8,9 @@ namespace mortise {
 /// A motion of one part of a pair, the other stays. World frame. The part turns about `about_W`
 /// with a constant rotation while that point moves on, along a screw: exp(s ξ), s from 0 to 1.
 struct SeparatingMotion {
-  bool of_b = false;                     ///< B is moved, not A
-  Vec3 translation_mm = Vec3::Zero();    ///< from about_W to where that point ends
-  Vec3 rotation_rad = Vec3::Zero();      ///< no more than half a turn
+  bool of_b = false;                   ///< B is moved, not A
+  Vec3 translation_mm = Vec3::Zero();  ///< from about_W to where that point ends
+  Vec3 rotation_rad = Vec3::Zero();    ///< no more than half a turn
   Vec3 about_W = Vec3::Zero();
 
   /// What it does to points of the world that are fixed to the part, at its end.
@@ -26,11 +26,11 @@ struct SeparatingMotion {
 double longest_path_mm(const Solid& part, const Pose& X_W, const SeparatingMotion& motion);
 
 struct GpdQuery {
-  OverlapQuery overlap;  ///< parts, bands, target poses; kFull: a longer search
+  OverlapQuery overlap;                    ///< parts, bands, target poses; kFull: a longer search
   std::span<const OverlapRegion> regions;  ///< all of the pair: a motion has to free them all
-  bool b_moves = false;     ///< the part that is held is the one that is moved out
-  Motion motion_a, motion_b;  ///< of the tick; still when judged without a motion
-  double t_contact = 1.0;     ///< of the pair
+  bool b_moves = false;                    ///< the part that is held is the one that is moved out
+  Motion motion_a, motion_b;               ///< of the tick; still when judged without a motion
+  double t_contact = 1.0;                  ///< of the pair
   /// Known from before: it may part them. Then the answer is no longer than this motion.
   const SeparatingMotion* known = nullptr;
   std::uint64_t work_cap = 6'000;  ///< evaluations; where it ends, the bracket stays wider
@@ -53,11 +53,11 @@ struct GeneralizedDepth {
 GeneralizedDepth generalized_depth(const GpdQuery& query, CcdScratch& scratch);
 
 /// How far a region has come in since the contact: the motion of A seen from B, mm.
-struct Travel {
+struct TravelSinceContact {
   double path_mm = 0.0;    ///< path from contact to target, largest over the region's points
   double normal_mm = 0.0;  ///< its part along the normal, likewise
 };
-Travel travel_since_contact(const OverlapRegion& region, const Motion& motion_a,
-                            const Motion& motion_b, double t_contact);
+TravelSinceContact travel_since_contact(const OverlapRegion& region, const Motion& motion_a,
+                                        const Motion& motion_b, double t_contact);
 
 }  // namespace mortise

@@ -20,6 +20,10 @@ constexpr std::size_t kMainNormals = 4;
 constexpr double kSameLine = 0.03;
 // A mesh counts as nearly convex while it falls short of its hull by this share of its size.
 constexpr double kMostSlackShare = 1e-3;
+// Larger meshes are only asked whether they are convex to rounding, a share of the coordinates; the
+// slack then stands for it.
+constexpr std::size_t kManyTriangles = 4000;
+constexpr double kRoundingShare = 1e-14, kLargeSlackShare = 1e-10;
 // An edge that is hollow by this share of the size ends the question at once.
 constexpr double kHollowShare = 1e-4;
 
@@ -99,15 +103,38 @@ void add_main_normals(const TriangleMesh& mesh, Outline& outline) {
   for (const Cell& cell : cells) {
     if (normals.size() == kMainNormals) break;
     const Vec3 normal = cell.sum.stableNormalized();
-    if (std::none_of(normals.begin(), normals.end(), [&](const Vec3& other) {
-          return other.cross(normal).norm() < kSameLine;
-        }))
+    if (std::none_of(normals.begin(), normals.end(),
+                     [&](const Vec3& other) { return other.cross(normal).norm() < kSameLine; }))
       normals.push_back(normal);
   }
 }
 
+// By how much a corner beside a corner lies above a facet there, over all facets, mm.
+double above_beside(const TriangleMesh& mesh, const std::vector<Vec3>& normals) {
+  std::vector<std::uint32_t> first(mesh.points_mm.size() + 1, 0), around;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t p : triangle) ++first[p + 1];
+  for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
+  around.resize(first.back());
+  std::vector<std::uint32_t> at(first.begin(), first.end() - 1);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t p : mesh.triangles[t]) around[at[p]++] = t;
+  double above_mm = 0.0;
+  for (std::size_t p = 0; p + 1 < first.size(); ++p)
+    for (std::uint32_t i = first[p]; i < first[p + 1]; ++i)
+      for (std::uint32_t j = first[p]; j < first[p + 1]; ++j)
+        for (int c = 0; c < 3; ++c)
+          above_mm = std::max(
+              above_mm, normals[around[i]].dot(mesh.corner(around[j], c) - mesh.points_mm[p]));
+  return above_mm;
+}
+
 // 1. Some edge is plainly hollow: not convex.
-// 2. No corner of the mesh is more than `above` over the plane of any facet. So all of the hull,
+// 2. A large mesh that is convex around each of its corners, to rounding, is convex: what is
+// closed,
+//    connected and locally convex bounds a convex body (van Heijenoort 1952).
+// 3. Else: no corner of the mesh is more than `above` over the plane of any facet. So all of the
+// hull,
 //    shrunk towards a point that lies `inside_mm` below all planes by inside / (inside + above),
 //    lies below all planes; and what is below all planes of a mesh belongs to it.
 double convex_slack(const TriangleMesh& mesh, const Bvh& bvh, const Topology& topology,
@@ -126,6 +153,10 @@ double convex_slack(const TriangleMesh& mesh, const Bvh& bvh, const Topology& to
       for (int c = 0; c < 3; ++c)
         if (normals[t].dot(mesh.corner(other, c) - mesh.corner(t, 0)) > hollow_mm) return kNo;
     }
+  if (mesh.triangles.size() > kManyTriangles) {
+    const double rounding_mm = kRoundingShare * (bvh.radius_mm + bvh.extent_mm);
+    return above_beside(mesh, normals) <= rounding_mm ? kLargeSlackShare * bvh.radius_mm : kNo;
+  }
   Vec3 middle = Vec3::Zero();
   for (const Vec3& x : outline.corners) middle += x / static_cast<double>(outline.corners.size());
   double above_mm = 0.0, inside_mm = kNo, radius_mm = 0.0;

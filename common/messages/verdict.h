@@ -35,11 +35,11 @@ enum class FaceShape : std::uint8_t { kUnknown = 0, kPlanar, kConvex, kConcave, 
 
 /// How the shortest verified motion separates part A from part B.
 enum class SeparationWay : std::uint8_t {
-  kNone = 0,    ///< none was found
-  kBack = 1,    ///< back along the tick's motion
-  kNormal = 2,  ///< along the normal of the region
-  kFitted = 3,  ///< a small turn and shift, fitted to the contact points
-  kAxis = 4,    ///< along the axis of a round face: drawn out of its hole
+  kNone = 0,      ///< none was found
+  kBack = 1,      ///< back along the tick's motion
+  kNormal = 2,    ///< along the normal of the region
+  kFitted = 3,    ///< a small turn and shift, fitted to the contact points
+  kAxis = 4,      ///< along the axis of a round face: drawn out of its hole
   kStraight = 5,  ///< along another straight line
 };
 

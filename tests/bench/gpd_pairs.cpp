@@ -40,8 +40,7 @@ TriangleMesh random_hull(Random& random) {
         const Vec3 across = (p[j] - p[i]).cross(p[k] - p[i]);
         bool above = false, below = false;
         for (std::uint32_t l = 0; l < n; ++l)
-          if (l != i && l != j && l != k)
-            (across.dot(p[l] - p[i]) > 0.0 ? above : below) = true;
+          if (l != i && l != j && l != k) (across.dot(p[l] - p[i]) > 0.0 ? above : below) = true;
         if (above && !below) mesh.triangles.push_back({i, k, j});
         if (below && !above) mesh.triangles.push_back({i, j, k});
       }
@@ -49,9 +48,9 @@ TriangleMesh random_hull(Random& random) {
 }
 
 TriangleMesh hook(double s) {
-  return shapes::prism({{0, 0}, {30 * s, 0}, {30 * s, 20 * s}, {20 * s, 20 * s}, {20 * s, 8 * s},
-                        {0, 8 * s}},
-                       {{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}}, 0.0, 12.0);
+  return shapes::prism(
+      {{0, 0}, {30 * s, 0}, {30 * s, 20 * s}, {20 * s, 20 * s}, {20 * s, 8 * s}, {0, 8 * s}},
+      {{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}}, 0.0, 12.0);
 }
 
 TriangleMesh random_shape(Random& random, bool hollow) {
@@ -62,9 +61,8 @@ TriangleMesh random_shape(Random& random, bool hollow) {
     case 1:
       return shapes::u_slot(10.0 * s, 4.0 * s, 8.0 * s, 5.0, 0.0, 20.0);
     case 2:
-      return shapes::ring({8.0 * s, 0.0, 10.0, 12 + 4 * static_cast<int>(4.0 * uniform(random)), 1,
-                           0.3},
-                          16.0 * s);
+      return shapes::ring(
+          {8.0 * s, 0.0, 10.0, 12 + 4 * static_cast<int>(4.0 * uniform(random)), 1, 0.3}, 16.0 * s);
     case 3:
       return shapes::peg({6.0 * s, 0.0, 25.0, 16, 1, 0.1});
     case 4:

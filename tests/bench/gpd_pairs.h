@@ -18,9 +18,9 @@ GpdPair draw_convex_pair(std::uint64_t seed);
 /// Hooks, slots, plates with bores, keys and pins; at least one is not convex.
 GpdPair draw_hollow_pair(std::uint64_t seed);
 
-/// The shortest translation that parts two convex meshes: least over all facets that their Minkowski
-/// difference can have, the normals of faces and the crosses of all pairs of edges, of how far they
-/// overlap along it. Shares nothing with the engine but the meshes.
+/// The shortest translation that parts two convex meshes: least over all facets that their
+/// Minkowski difference can have, the normals of faces and the crosses of all pairs of edges, of
+/// how far they overlap along it. Shares nothing with the engine but the meshes.
 double minkowski_depth_mm(const GpdPair& pair);
 
 }  // namespace mortise::bench

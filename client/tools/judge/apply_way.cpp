@@ -12,11 +12,11 @@ Result<std::string> apply_way(World& world, const JudgeReport& report, std::size
   const NumberedRegion* chosen = nullptr;
   const std::vector<NumberedRegion> regions = numbered_regions(report);
   for (const NumberedRegion& region : regions) {
-    const bool wanted =
-        number > 0 ? region.number == number
-                   : region.verdict->separation_way != SeparationWay::kNone &&
-                         (chosen == nullptr || region.verdict->collision_class >
-                                                   chosen->verdict->collision_class);
+    const bool wanted = number > 0
+                            ? region.number == number
+                            : region.verdict->separation_way != SeparationWay::kNone &&
+                                  (chosen == nullptr || region.verdict->collision_class >
+                                                            chosen->verdict->collision_class);
     if (wanted) chosen = &region;
   }
   if (chosen == nullptr || chosen->verdict->separation_way == SeparationWay::kNone)

@@ -71,9 +71,9 @@ std::string way_out_text(const Verdict& v, const RegionNames& names) {
   const std::string range = least == most ? least : "at least " + least + ", and " + most + " does";
   if (v.separation_way == SeparationWay::kNone)
     return "at least " + least + "; no motion was found that frees it";
-  std::string text = fmt::format("{}: {} moved {}", range,
-                                 v.separation_of_b ? names.part_b : names.part_a,
-                                 name_of(v.separation_way));
+  std::string text =
+      fmt::format("{}: {} moved {}", range, v.separation_of_b ? names.part_b : names.part_a,
+                  name_of(v.separation_way));
   const Vec3& shift = v.separation_translation_mm;
   if (const double by = shift.norm(); by > 0.0)
     text += fmt::format(", towards {}", vector(shift / by, 3));
@@ -141,9 +141,8 @@ std::string places_text(const World& world, const Clash& clash) {
   std::string text;
   for (std::size_t i = 0; i < shown; ++i) {
     const Part* blocker = world.find(pair.verdicts[i].separation_blocker);
-    text += region_text(
-        {clash.number + i, a.name, b.name, blocker != nullptr ? blocker->name : ""},
-        pair.verdicts[i]);
+    text += region_text({clash.number + i, a.name, b.name, blocker != nullptr ? blocker->name : ""},
+                        pair.verdicts[i]);
   }
   if (shown < pair.verdicts.size())
     text += fmt::format("  ... {} more places, none worse; --json lists all\n",

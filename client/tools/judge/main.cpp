@@ -57,8 +57,8 @@ int main(int argc, char** argv) {
     }
   mortise::JudgeReport last = report;
   if (o.apply_way) {
-    const auto moved = mortise::apply_way(opened->scene.world, report,
-                                          o.regions.empty() ? 0 : o.regions.front());
+    const auto moved =
+        mortise::apply_way(opened->scene.world, report, o.regions.empty() ? 0 : o.regions.front());
     if (!moved) {
       std::fprintf(stderr, "mortise-judge: %s\n", moved.error().text.c_str());
       return mortise::exit_code_of(moved.error().code);
@@ -69,5 +69,5 @@ int main(int argc, char** argv) {
   const auto at_least = o.fail_on == "potential" ? mortise::CollisionClass::kPotential
                                                  : mortise::CollisionClass::kReal;
   return !o.fail_on.empty() && mortise::finds(last, at_least) ? mortise::kExitFindings
-                                                                : mortise::kExitOk;
+                                                              : mortise::kExitOk;
 }

@@ -31,8 +31,9 @@ JudgeCommandLine read_judge_command_line(int argc, char** argv) {
   app.add_option("--picture", o.picture,
                  "draw the worst region in section, as .svg or .png; implies --full");
   app.add_option("--region", o.regions, "draw this region instead; several are drawn side by side");
-  app.add_flag("--apply-way", o.apply_way,
-               "move the part of the worst region, or of --region, out by its way, and judge again");
+  app.add_flag(
+      "--apply-way", o.apply_way,
+      "move the part of the worst region, or of --region, out by its way, and judge again");
   app.add_option("--threads", o.threads, "threads; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   app.footer("Exit codes: 0 ok, 2 usage, 3 a file has errors, 6 --fail-on found something.");

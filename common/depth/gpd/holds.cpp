@@ -116,12 +116,19 @@ class Holds {
     return part == 0 ? nearest_surface(*query_.a, back_A_ * x_W)
                      : nearest_surface(*query_.b, back_B_ * x_W);
   }
-  Vec3 normal_W(int part, const SurfacePoint& point) const {
-    return (part == 0 ? query_.X_WA.q : query_.X_WB.q) * point.face_normal;
+  // Outward normal of the face of the part that is nearest.
+  Vec3 normal_W(int part, const Vec3& x_W) {
+    ++work_;
+    const Solid& solid = part == 0 ? *query_.a : *query_.b;
+    const std::uint32_t t = nearest_point(solid, (part == 0 ? back_A_ : back_B_) * x_W).triangle;
+    const TriangleMesh& mesh = solid.mesh();
+    const Vec3 across =
+        (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+    return (part == 0 ? query_.X_WA.q : query_.X_WB.q) * across.stableNormalized();
   }
 
-  // m: the way out for A.
-  void add(const Vec3& x, const Vec3& way) {
+  // way: out for A. owner: the part whose surface x is on, -1: not known.
+  void add(const Vec3& x, const Vec3& way, int owner) {
     if (!(way.norm() > 0.5) || lines_.size() >= query_.most_lines) return;
     Line line{x, way.normalized(), {}};
     double along_a[kCenters], along_b[kCenters], in_a[kCenters], in_b[kCenters];
@@ -129,8 +136,8 @@ class Holds {
     for (int i = 0; i < kCenters; ++i, share *= kShorter) {
       along_a[i] = i == 0 ? 0.0 : query_.a->sphere().radius_mm * share;
       along_b[i] = i == 0 ? 0.0 : query_.b->sphere().radius_mm * share;
-      in_a[i] = at(0, x + along_a[i] * line.m).depth_mm;
-      in_b[i] = at(1, x - along_b[i] * line.m).depth_mm;
+      in_a[i] = i == 0 && owner == 0 ? 0.0 : at(0, x + along_a[i] * line.m).depth_mm;
+      in_b[i] = i == 0 && owner == 1 ? 0.0 : at(1, x - along_b[i] * line.m).depth_mm;
     }
     for (int i = 0; i < kCenters; ++i)
       for (int j = 0; j < kCenters; ++j) {
@@ -148,8 +155,8 @@ class Holds {
 
   // Out along the nearest face of either part.
   void add_both_ways(const Vec3& x) {
-    add(x, normal_W(1, at(1, x)));
-    add(x, -normal_W(0, at(0, x)));
+    add(x, normal_W(1, x), -1);
+    add(x, -normal_W(0, x), -1);
   }
 
   struct Look {
@@ -172,8 +179,8 @@ class Holds {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const Vec3 p = X * mesh.corner(t, 0), q = X * mesh.corner(t, 1), r = X * mesh.corner(t, 2);
       const Vec3 n = (q - p).cross(r - p).stableNormalized();
-      for (const Vec3& x : {Vec3((p + q + r) / 3.0), Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)),
-                            Vec3(0.5 * (r + p))})
+      for (const Vec3& x :
+           {Vec3((p + q + r) / 3.0), Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)), Vec3(0.5 * (r + p))})
         look(x, n);
     }
     return looks;
@@ -191,9 +198,9 @@ class Holds {
     const std::size_t stride = std::max<std::size_t>(1, deep.size() / kMostDeep);
     for (std::size_t i = 0; i < deep.size(); i += i < kDeepest ? 1 : stride) {
       const Look& look = deep[i];
-      const Vec3 theirs = normal_W(1 - part, at(1 - part, look.x));
-      add(look.x, part == 0 ? theirs : Vec3(-theirs));
-      add(look.x, part == 0 ? Vec3(-look.n) : look.n);
+      const Vec3 theirs = normal_W(1 - part, look.x);
+      add(look.x, part == 0 ? theirs : Vec3(-theirs), part);
+      add(look.x, part == 0 ? Vec3(-look.n) : look.n, part);
     }
   }
 
@@ -210,7 +217,7 @@ class Holds {
     for (const ContactPlace& p : contact_places(query, scratch_))
       if (p.gap_mm < -kLeastHold_mm)
         for (const double share : {0.0, -0.5, 0.5})
-          add(p.point_W + share * p.gap_mm * p.normal_W, p.normal_W);
+          add(p.point_W + share * p.gap_mm * p.normal_W, p.normal_W, -1);
   }
 
   const HoldsQuery& query_;

@@ -27,8 +27,7 @@ class Difference {
   };
   Point farthest(const Vec3& n_W) {
     ++asked;
-    const Vec3 on_a =
-        X_A_ * farthest_corner(a_.bvh(), a_.outline(), -(X_A_.q.conjugate() * n_W));
+    const Vec3 on_a = X_A_ * farthest_corner(a_.bvh(), a_.outline(), -(X_A_.q.conjugate() * n_W));
     const Vec3 on_b = X_B_ * farthest_corner(b_.bvh(), b_.outline(), X_B_.q.conjugate() * n_W);
     const Vec3 x = on_b - on_a;
     return {x, n_W.dot(x)};
@@ -54,9 +53,8 @@ class Polytope {
  public:
   Polytope(const std::array<Vec3, 4>& corners, double rounding_mm) : rounding_mm_(rounding_mm) {
     points_.assign(corners.begin(), corners.end());
-    const bool turned = (points_[1] - points_[0])
-                            .cross(points_[2] - points_[0])
-                            .dot(points_[3] - points_[0]) > 0.0;
+    const bool turned =
+        (points_[1] - points_[0]).cross(points_[2] - points_[0]).dot(points_[3] - points_[0]) > 0.0;
     if (turned) std::swap(points_[1], points_[2]);
     for (const std::array<int, 3>& c :
          {std::array<int, 3>{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}})
@@ -112,7 +110,8 @@ class Polytope {
   // Did every new facet find its neighbours? Else the border of what was seen was no simple ring.
   bool closed() const {
     return std::all_of(facets_.begin(), facets_.end(), [](const Facet& f) {
-      return !f.alive || std::all_of(f.across.begin(), f.across.end(), [](int k) { return k >= 0; });
+      return !f.alive ||
+             std::all_of(f.across.begin(), f.across.end(), [](int k) { return k >= 0; });
     });
   }
 
@@ -194,9 +193,9 @@ HullDepth hull_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pos
                      double accuracy_mm, int most_supports) {
   const double size_mm = a.sphere().radius_mm + b.sphere().radius_mm;
   const Vec3 apart = X_WA * a.sphere().center_mm - X_WB * b.sphere().center_mm;
-  const double rounding_mm = kRoundingFactor * kUnitRoundoff *
-                             (2.0 * size_mm + X_WA.p.norm() + X_WB.p.norm() +
-                              a.bvh().extent_mm + b.bvh().extent_mm);
+  const double rounding_mm =
+      kRoundingFactor * kUnitRoundoff *
+      (2.0 * size_mm + X_WA.p.norm() + X_WB.p.norm() + a.bvh().extent_mm + b.bvh().extent_mm);
   Difference difference(a, X_WA, b, X_WB);
   HullDepth result;
   result.normal_W = apart.norm() > 0.0 ? Vec3(apart.normalized()) : Vec3(Vec3::UnitZ());

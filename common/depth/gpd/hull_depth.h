@@ -7,9 +7,9 @@ namespace mortise::gpd {
 
 /// The least translation that parts the convex hulls of two meshes. World frame.
 struct HullDepth {
-  Interval depth_mm;             ///< of that translation; [0, 0] where the hulls are apart
+  Interval depth_mm;              ///< of that translation; [0, 0] where the hulls are apart
   Vec3 normal_W = Vec3::UnitZ();  ///< A moved along it by depth_mm.hi touches at most
-  std::uint64_t supports = 0;    ///< directions asked
+  std::uint64_t supports = 0;     ///< directions asked
 };
 
 /// Expands a polytope within the Minkowski difference of the hulls where it is nearest to the

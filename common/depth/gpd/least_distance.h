@@ -12,14 +12,14 @@ struct Row {
 };
 
 struct LeastDistance {
-  bool solved = false;      ///< false: no z satisfies the rows, or rounding did not let it be found
-  Vec6 z = Vec6::Zero();    ///< the shortest z that does
-  double bound = 0.0;       ///< no z that satisfies the rows is shorter, whether solved or not
+  bool solved = false;    ///< false: no z satisfies the rows, or rounding did not let it be found
+  Vec6 z = Vec6::Zero();  ///< the shortest z that does
+  double bound = 0.0;     ///< no z that satisfies the rows is shorter, whether solved or not
 };
 
 /// The shortest z with g · z >= h for all rows: least distance programming by non-negative least
-/// squares (Lawson and Hanson 1974, chapter 23), seven equations, no allocation. `bound` is certified
-/// by the multipliers y >= 0, whatever they are: h·y <= (Σ y g)·z <= |Σ y g| |z|.
+/// squares (Lawson and Hanson 1974, chapter 23), seven equations, no allocation. `bound` is
+/// certified by the multipliers y >= 0, whatever they are: h·y <= (Σ y g)·z <= |Σ y g| |z|.
 LeastDistance least_distance(const std::vector<Row>& rows);
 
 /// The rows of a program that matter are few: rows join as they turn out to be broken. Keeps them

@@ -58,8 +58,8 @@ struct Minimax::Metric {
 
 // |ξ|² <= excess (longest path)²: by the least eigenvalue of the metric of even weights.
 double Minimax::ridge_excess() const {
-  const Metric even(arms_, std::vector<double>(arms_.size(), 1.0 / static_cast<double>(arms_.size())),
-                    0.0);
+  const Metric even(
+      arms_, std::vector<double>(arms_.size(), 1.0 / static_cast<double>(arms_.size())), 0.0);
   const Mat6 m = even.lower * even.lower.transpose();
   const double least = Eigen::SelfAdjointEigenSolver<Mat6>(m).eigenvalues()[0];
   return least > 0.0 ? 1.0 / least : std::numeric_limits<double>::infinity();

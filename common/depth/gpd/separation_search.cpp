@@ -105,8 +105,7 @@ class Search {
 
   bool is_free(const Vec6& xi) {
     work_ += kFreeWork;
-    return !turns_too_far(xi) &&
-           is_apart(*query_.a, pose_of(xi), *query_.b, query_.X_WB, scratch_);
+    return !turns_too_far(xi) && is_apart(*query_.a, pose_of(xi), *query_.b, query_.X_WB, scratch_);
   }
 
   void offer(const Vec6& xi, bool descended = false) {
@@ -118,7 +117,8 @@ class Search {
     best_.xi = xi;
   }
 
-  // Where on the way exp(s xi) the parts last meet, from its free end; below zero: that is not free.
+  // Where on the way exp(s xi) the parts last meet, from its free end; below zero: that is not
+  // free.
   double last_exit(const Vec6& xi) {
     ContactQuery sweep;
     sweep.a = query_.a;
@@ -257,7 +257,8 @@ class Search {
   // Translations: from where it would pay at most, back to the first contact.
   void sweep_back() {
     std::vector<Vec3> all = lines();
-    for (int i = 0; i < 13; ++i) all.push_back(Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).normalized());
+    for (int i = 0; i < 13; ++i)
+      all.push_back(Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).normalized());
     for (const Vec3& line : all)
       for (const double sign : {1.0, -1.0}) {
         if (out_of_work()) return;
@@ -290,7 +291,8 @@ class Search {
   void try_turns() {
     const Vec3 center_b = query_.X_WB * query_.b->sphere().center_mm;
     for (const Vec3& axis : lines())
-      for (const Vec3& about : {frame_.center_W, center_b, Vec3(0.5 * (frame_.center_W + center_b))})
+      for (const Vec3& about :
+           {frame_.center_W, center_b, Vec3(0.5 * (frame_.center_W + center_b))})
         for (const double sign : {1.0, -1.0}) {
           Vec6 twist;
           twist << sign * axis.cross(frame_.center_W - about), sign * frame_.radius_mm * axis;

@@ -16,7 +16,7 @@ struct SeparationQuery {
   Pose X_WA, X_WB;
   std::span<const Vec3> directions;  ///< tried first, both ways: normals and axes of what overlaps
   std::span<const Vec6> starts;      ///< twists that may part them, about TwistFrame(a, X_WA)
-  double least_mm = 0.0;   ///< no motion that parts them is known to be shorter; scale of the search
+  double least_mm = 0.0;  ///< no motion that parts them is known to be shorter; scale of the search
   double enough_mm = 0.0;  ///< a motion of this length ends the search
   bool thorough = false;   ///< turns and random twists as well
   std::uint64_t work_cap = std::numeric_limits<std::uint64_t>::max();
@@ -27,7 +27,7 @@ struct SeparationQuery {
 struct Separation {
   bool found = false;
   double length_mm = std::numeric_limits<double>::infinity();  ///< longest path of any point of A
-  Vec6 xi = Vec6::Zero();  ///< about TwistFrame(a, X_WA)
+  Vec6 xi = Vec6::Zero();                                      ///< about TwistFrame(a, X_WA)
   std::uint64_t work = 0;  ///< in units of about an evaluation of the overlap search
 };
 

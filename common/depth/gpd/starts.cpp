@@ -32,7 +32,7 @@ class Pair {
       contacts_.resize((contacts_.size() + 1) / 2);
     }
     for (Contact& contact : contacts_)
-      contact.on_mover = at(1, contact.x_W, Pose()).depth_mm >= at(0, contact.x_W, Pose()).depth_mm;
+      contact.on_mover = distance(0, contact.x_W) <= distance(1, contact.x_W);
   }
 
   void add_normal(std::vector<Vec6>& twists) const {
@@ -94,9 +94,7 @@ class Pair {
   };
 
   bool is_a(int part) const { return (part == 0) != query_.b_moves; }
-  const Solid& solid(int part) const {
-    return is_a(part) ? *query_.overlap.a : *query_.overlap.b;
-  }
+  const Solid& solid(int part) const { return is_a(part) ? *query_.overlap.a : *query_.overlap.b; }
   const Pose& pose(int part) const {
     return is_a(part) ? query_.overlap.X_WA : query_.overlap.X_WB;
   }
@@ -108,6 +106,11 @@ class Pair {
     ++evaluations_;
     const Pose X_WP = part == 0 ? X * pose(0) : pose(1);
     return nearest_surface(solid(part), X_WP.inverse() * x_W);
+  }
+
+  double distance(int part, const Vec3& x_W) const {
+    ++evaluations_;
+    return nearest_point(solid(part), pose(part).inverse() * x_W).distance_mm;
   }
 
   Push push_of(const Contact& contact, const Pose& X) const {

@@ -89,8 +89,7 @@ double longest_path_mm(const Solid& part, const Pose& X_W, const TwistFrame& fra
     if (child < 0) {
       const Bvh::Leaf& leaf = bvh.leaves[~child];
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-        for (int k = 0; k < 3; ++k)
-          most = std::max(most, field.at(bvh_corner(bvh, i, k)).norm());
+        for (int k = 0; k < 3; ++k) most = std::max(most, field.at(bvh_corner(bvh, i, k)).norm());
       continue;
     }
     const Bvh::Node& node = bvh.nodes[child];

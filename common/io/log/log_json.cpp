@@ -282,7 +282,8 @@ bool decode(std::string_view text, ClashEvent& event) {
   in.vector("separation_translation_mm", v.separation_translation_mm);
   in.vector("separation_rotation_rad", v.separation_rotation_rad);
   in.name("separation_way", v.separation_way);
-  if (object.contains("separation_about_W")) {  // older records: of A, about the centre of its sphere
+  if (object.contains(
+          "separation_about_W")) {  // older records: of A, about the centre of its sphere
     in.vector("separation_about_W", v.separation_about_W);
     in.flag("separation_of_b", v.separation_of_b);
     in.name("separation_path", v.separation_path);

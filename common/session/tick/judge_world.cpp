@@ -101,7 +101,8 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
   work.pool.for_each(judged.size(), [&](std::size_t i, int thread) {
     PairVerdicts& pair = judged[i].verdicts;
     for (Verdict& verdict : pair.verdicts)
-      if (const Verdict& first = pair.verdicts.front(); &verdict != &first && told_alike(verdict, first)) {
+      if (const Verdict& first = pair.verdicts.front();
+          &verdict != &first && told_alike(verdict, first)) {
         verdict.separation_path = first.separation_path;
         verdict.separation_blocker = first.separation_blocker;
       } else {

@@ -188,7 +188,7 @@ GeneralizedDepth depth_of_pair(const JudgementQuery& query, const OverlapQuery& 
 
 void tell_depth(const JudgementQuery& query, const GeneralizedDepth& depth,
                 const OverlapRegion& region, Verdict& verdict) {
-  const Travel travel =
+  const TravelSinceContact travel =
       travel_since_contact(region, query.motion_a, query.motion_b, query.t_contact);
   verdict.travel_mm = travel.path_mm;
   verdict.normal_travel_mm = travel.normal_mm;

@@ -14,8 +14,7 @@ SeparatingMotion way_out(const Verdict& verdict) {
   return motion;
 }
 
-void look_along_way(const World& world, PartId a, PartId b, Verdict& verdict,
-                    CcdScratch& scratch) {
+void look_along_way(const World& world, PartId a, PartId b, Verdict& verdict, CcdScratch& scratch) {
   verdict.separation_path = SeparationPath::kUnknown;
   verdict.separation_blocker = PartId{};
   const SeparatingMotion motion = way_out(verdict);
@@ -31,7 +30,8 @@ void look_along_way(const World& world, PartId a, PartId b, Verdict& verdict,
     if (rule != nullptr && rule->excluded) continue;
     const BodyBounds body{other.solid->bounds(), other.solid->sphere()};
     if (!swept.overlaps(swept_box(body, still_motion(other.X_WP)))) continue;
-    const auto met = met_on_way(*mover.solid, mover.X_WP, motion, *other.solid, other.X_WP, scratch);
+    const auto met =
+        met_on_way(*mover.solid, mover.X_WP, motion, *other.solid, other.X_WP, scratch);
     if (!met || !(*met < first)) continue;
     first = *met;
     verdict.separation_path = SeparationPath::kBlocked;
@@ -43,8 +43,8 @@ void look_along_way(const World& world, PartId a, PartId b, Verdict& verdict,
   start.b = world.find(b)->solid.get();
   start.X_WA = world.find(a)->X_WP;
   start.X_WB = world.find(b)->X_WP;
-  verdict.separation_path = way_goes_deeper(start, motion, scratch) ? SeparationPath::kDeeper
-                                                                    : SeparationPath::kFree;
+  verdict.separation_path =
+      way_goes_deeper(start, motion, scratch) ? SeparationPath::kDeeper : SeparationPath::kFree;
 }
 
 }  // namespace mortise

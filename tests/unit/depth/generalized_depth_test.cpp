@@ -26,7 +26,7 @@ struct MovedPair {
 
 struct Told {
   GeneralizedDepth depth;
-  Travel travel;
+  TravelSinceContact travel;
 };
 
 Told tell(const MovedPair& s, OverlapResult* overlap = nullptr) {
@@ -47,9 +47,8 @@ Told tell(const MovedPair& s, OverlapResult* overlap = nullptr) {
   if (result.regions.empty()) return {};
   query.regions = result.regions;
   query.b_moves = s.b_moves;
-  return {
-      generalized_depth(query, scratch),
-      travel_since_contact(result.regions[0], query.motion_a, query.motion_b, query.t_contact)};
+  return {generalized_depth(query, scratch),
+          travel_since_contact(result.regions[0], query.motion_a, query.motion_b, query.t_contact)};
 }
 
 GeneralizedDepth depth_of(const MovedPair& s, OverlapResult* overlap = nullptr) {
@@ -64,9 +63,8 @@ void expect_parts(const MovedPair& s, const GeneralizedDepth& depth) {
   const Solid& mover = motion.of_b ? *s.b : *s.a;
   const Pose X = motion.of_b ? s.motion_b.X_W1 : s.motion_a.X_W1;
   const Pose X_end = motion.displacement() * X;
-  EXPECT_TRUE(motion.of_b
-                  ? gpd::is_apart(*s.a, s.motion_a.X_W1, *s.b, X_end, scratch)
-                  : gpd::is_apart(*s.a, X_end, *s.b, s.motion_b.X_W1, scratch));
+  EXPECT_TRUE(motion.of_b ? gpd::is_apart(*s.a, s.motion_a.X_W1, *s.b, X_end, scratch)
+                          : gpd::is_apart(*s.a, X_end, *s.b, s.motion_b.X_W1, scratch));
   const Motion screw = motion.rotation_rad.isZero(0.0)
                            ? linear_motion(X, X_end, mover.sphere().center_mm)
                            : screw_motion(X, X_end, mover.sphere().center_mm);

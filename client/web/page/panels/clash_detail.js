@@ -45,7 +45,7 @@ export function makeClashDetail(desk) {
       ['Margin', `${small(clash.margin)} ${margin}`],
       ['Interference', clash.class === 'potential' && clash.probability !== null ? percent(clash.probability) : ''],
       ['Faces', faces],
-      ['Comes free', clash.separation.way === 'none' ? '' : `${small(Math.hypot(...clash.separation.t))} ${clash.separation.way}`],
+      ['Comes free', clash.separation.way === 'none' ? '' : `${bracket(clash.gpd)} ${clash.separation.way}`],
       ['Worst so far', worst],
       ['Since', `${Math.max(0, (session.tick - clash.begin_tick) / session.tickRate).toFixed(1)} s${moved}`],
     ].filter(([, text]) => text);
