@@ -219,6 +219,31 @@ void draw_witness(Canvas& canvas, const Frame& frame, const DetailView& view) {
       color);
 }
 
+// Which way the part that is moved out sets off at the deciding point, and how far it goes at most:
+// an arrow of a fixed size, for the scales along and across differ.
+void draw_way_out(Canvas& canvas, const Frame& frame, const DetailView& view,
+                  const Verdict& verdict) {
+  if (verdict.separation_way == SeparationWay::kNone) return;
+  const Vec3 way = verdict.separation_translation_mm +
+                   verdict.separation_rotation_rad.cross(verdict.point_W -
+                                                         verdict.separation_about_W);
+  const Vec2 seen(way.dot(view.plane.right_W), way.dot(view.plane.up_W));
+  const Color color{0.1, 0.5, 0.25, 1.0};
+  const std::string label = (verdict.separation_of_b ? view.parts[1] : view.parts[0]).name +
+                            " free after " + length_text(verdict.gpd_mm.hi);
+  const Vec2 from = frame(view.point) + Vec2(-46.0, 0.0);
+  if (!(seen.norm() > 0.2 * way.norm())) {  // out of the plane of the picture
+    canvas.circle(from, 5.0, {color, 1.6});
+    canvas.circle(from, 1.0, {color, 1.6});
+    return draw_label(canvas, from - Vec2(8.0, 0.0), label, true, color);
+  }
+  const Vec2 d = Vec2(seen.x(), -seen.y()) / seen.norm(), side(-d.y(), d.x());
+  const Vec2 tip = from + 34.0 * d;
+  canvas.line({from, tip - 7.0 * d}, {color, 2.0});
+  canvas.fill({{tip, tip - 10.0 * d + 4.0 * side, tip - 10.0 * d - 4.0 * side}}, color);
+  draw_label(canvas, tip + 6.0 * d - Vec2(8.0, 0.0), label, true, color);
+}
+
 std::string scales_text(const Frame& frame, const DetailView& view) {
   const double along = frame.box.width / view.s_mm.width();
   const double up = frame.box.height / view.h_mm.width();
@@ -287,6 +312,7 @@ void draw_detail(Canvas& canvas, const Box2& box, const DetailView& view, const 
                           frame({0.0, view.overlap_h_mm.hi}).y(),
                           "meshes " + told_overlap_text(verdict), true});
   draw_witness(canvas, frame, view);
+  draw_way_out(canvas, frame, view, verdict);
   draw_scale_bar(canvas, frame, 0.22);
   canvas.unclip();
   const Box2& f = frame.box;

@@ -23,7 +23,7 @@ constexpr double kMostSlackShare = 1e-3;
 // Larger meshes are only asked whether they are convex to rounding, a share of the coordinates; the
 // slack then stands for it.
 constexpr std::size_t kManyTriangles = 4000;
-constexpr double kRoundingShare = 1e-14, kLargeSlackShare = 1e-10;
+constexpr double kConvexRounding = 1e-14, kLargeSlackShare = 1e-10;
 // An edge that is hollow by this share of the size ends the question at once.
 constexpr double kHollowShare = 1e-4;
 
@@ -154,7 +154,7 @@ double convex_slack(const TriangleMesh& mesh, const Bvh& bvh, const Topology& to
         if (normals[t].dot(mesh.corner(other, c) - mesh.corner(t, 0)) > hollow_mm) return kNo;
     }
   if (mesh.triangles.size() > kManyTriangles) {
-    const double rounding_mm = kRoundingShare * (bvh.radius_mm + bvh.extent_mm);
+    const double rounding_mm = kConvexRounding * (bvh.radius_mm + bvh.extent_mm);
     return above_beside(mesh, normals) <= rounding_mm ? kLargeSlackShare * bvh.radius_mm : kNo;
   }
   Vec3 middle = Vec3::Zero();

@@ -12,6 +12,7 @@ const std::vector<JudgementSection>& judgement_sections() {
       {"speed", "judging beside first contact, decided beside full", section_speed},
       {"convex", "convex polyhedra with bands against linear programs", section_convex},
       {"csg", "unions and differences of simple solids against their membership", section_csg},
+      {"gpd", "random pairs against their exact depth, and against a longer search", section_gpd},
       {"insertion", "a shaft through its bore, tick by tick", section_insertion},
   };
   return all;

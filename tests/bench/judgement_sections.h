@@ -23,6 +23,7 @@ void section_speed(Report& report, const JudgementOptions& options);
 void section_insertion(Report& report, const JudgementOptions& options);
 void section_convex(Report& report, const JudgementOptions& options);
 void section_csg(Report& report, const JudgementOptions& options);
+void section_gpd(Report& report, const JudgementOptions& options);
 
 using JudgementSection = BenchSection<JudgementOptions>;
 const std::vector<JudgementSection>& judgement_sections();
