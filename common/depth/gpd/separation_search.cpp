@@ -28,7 +28,7 @@ constexpr double kFirstReach = 0.2, kShrink = 0.35, kGrow = 1.5, kMostReach = 0.
 constexpr double kLeastReachShare = 1e-5, kLeastReach_mm = 1e-8;
 // A step must gain the first share; three steps in a row below the second end the descent.
 constexpr double kGain = 1e-7, kIdleGain = 1e-4;
-constexpr int kIdleSteps = 3;
+constexpr int kIdleSteps = 2;
 // Starts no worse than this times the best are descended from, so many whose directions differ.
 constexpr double kWorthDescent = 2.5, kAlike = 0.05;
 constexpr std::size_t kDescents = 3, kThoroughDescents = 8;

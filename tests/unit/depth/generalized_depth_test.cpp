@@ -175,7 +175,9 @@ TEST(GeneralizedDepth, APegComesOutAlongItsAxis) {
     EXPECT_EQ(gpd.way, SeparationWay::kAxis) << declared;
     EXPECT_NEAR(gpd.gpd_mm.hi, 15.0, 2e-4) << declared;
     EXPECT_NEAR(gpd.motion.translation_mm.z(), 15.0, 2e-4) << declared;
-    EXPECT_NEAR(gpd.gpd_mm.lo, 0.01, 1e-4) << declared;
+    // Walls that press from all sides hold it far tighter than they are deep.
+    EXPECT_GT(gpd.gpd_mm.lo, 7 * 0.01) << declared;
+    expect_parts(s, gpd);
   }
 }
 
