@@ -32,6 +32,8 @@ constexpr std::uint64_t kHoldsShare = 4;
 constexpr std::size_t kHoldLines = 32, kHoldLinesFull = 96;
 // Two directions are one when they differ by no more (cosine), two motions by their longest path.
 constexpr double kAlong = 1.0 - 1e-8, kAlike = 1e-3;
+// A turn whose path is this share of the whole is rounding.
+constexpr double kNoTurn = 1e-6;
 
 class PairDepth {
  public:
@@ -52,6 +54,7 @@ class PairDepth {
     const Vec6 apart = part_hulls();
     if (!closed()) search(apart);
     if (!closed()) hold();
+    straighten();
     GeneralizedDepth depth;
     depth.gpd_mm = {std::min(lo_mm_, hi_mm_), hi_mm_};
     depth.motion = motion_of(xi_);
@@ -119,6 +122,18 @@ class PairDepth {
     const gpd::Separation found = gpd::find_separation(query, scratch_);
     evaluations_ += found.work;
     if (found.found) offer(found.xi, found.length_mm);
+  }
+
+  // A turn that is none but for rounding is left away.
+  void straighten() {
+    if (xi_.tail<3>().isZero(0.0) || xi_.tail<3>().norm() > kNoTurn * hi_mm_) return;
+    const Vec6 straight = gpd::translation_twist(xi_.head<3>());
+    const double length_mm = straight.head<3>().norm();
+    if (length_mm > hi_mm_ * (1.0 + kNoTurn) ||
+        !gpd::is_apart(mover_, frame_.pose_of(straight) * X_mover_, other_, X_other_, scratch_))
+      return;
+    hi_mm_ = std::max(length_mm, lo_mm_);
+    xi_ = straight;
   }
 
   void hold() {

@@ -8,26 +8,34 @@ namespace {
 // Places of the way at which the overlap is looked at.
 constexpr int kPlaces = 12;
 
-// Depth of the meshes, no less than it is known to be, or no more.
-struct Depth {
-  double least_mm = 0.0, most_mm = 0.0;
-};
-Depth depth_at(const OverlapQuery& query, CcdScratch& scratch) {
-  Depth depth;
-  for (const OverlapRegion& region : find_overlap(query, scratch).regions) {
-    depth.least_mm = std::max(depth.least_mm, region.delta_mm.lo);
-    depth.most_mm = std::max(depth.most_mm, region.delta_mm.hi);
-  }
+// Work of one look.
+constexpr std::uint64_t kLookWork = 2'000;
+
+// What the meshes are known to overlap by at least, or at most.
+Interval depth_at(const OverlapQuery& query, CcdScratch& scratch) {
+  Interval depth;
+  for (const OverlapRegion& region : find_overlap(query, scratch).regions)
+    depth = {std::max(depth.lo, region.delta_mm.lo), std::max(depth.hi, region.delta_mm.hi)};
   return depth;
+}
+
+// Somewhere on the path of one of the two parts, up to t_end.
+bool deeper_along(OverlapQuery query, const Motion& path, bool of_b, double t_end, double most_mm,
+                  CcdScratch& scratch) {
+  const SurfaceBand nominal = nominal_band();
+  query.band_a = query.band_b = &nominal;
+  query.work_cap = kLookWork;
+  for (int i = 1; i <= kPlaces; ++i) {
+    (of_b ? query.X_WB : query.X_WA) = path.pose_at(t_end * i / kPlaces);
+    if (depth_at(query, scratch).lo > most_mm + query.accuracy_mm) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-bool way_goes_deeper(const OverlapQuery& start, const SeparatingMotion& motion,
+bool way_goes_deeper(const OverlapQuery& start, double depth_mm, const SeparatingMotion& motion,
                      CcdScratch& scratch) {
-  const SurfaceBand nominal = nominal_band();
-  OverlapQuery query = start;
-  query.band_a = query.band_b = &nominal;
   const Solid& mover = motion.of_b ? *start.b : *start.a;
   const Motion path = motion.path(motion.of_b ? start.X_WB : start.X_WA, mover);
   // 1. back from the end to the last contact: beyond it the way is free
@@ -39,13 +47,7 @@ bool way_goes_deeper(const OverlapQuery& start, const SeparatingMotion& motion,
   const FirstContact last = first_contact(back, scratch);
   const double t_last = last.state == ContactState::kFree ? 0.0 : 1.0 - last.t_clear;
   // 2. until then it may not get deeper
-  const double most_mm = depth_at(query, scratch).most_mm + query.accuracy_mm;
-  for (int i = 1; i < kPlaces; ++i) {
-    const Pose X = path.pose_at(t_last * i / kPlaces);
-    (motion.of_b ? query.X_WB : query.X_WA) = X;
-    if (depth_at(query, scratch).least_mm > most_mm) return true;
-  }
-  return false;
+  return deeper_along(start, path, motion.of_b, t_last, depth_mm, scratch);
 }
 
 std::optional<double> met_on_way(const Solid& part, const Pose& X_WP,
@@ -73,10 +75,9 @@ std::optional<double> met_on_way(const Solid& part, const Pose& X_WP,
   overlap.band_a = overlap.band_b = &nominal;
   overlap.X_WA = X_WP;
   overlap.X_WB = X_WO;
-  const Depth before = depth_at(overlap, scratch);
-  overlap.X_WA = query.motion_a.X_W1;
-  const Depth after = depth_at(overlap, scratch);
-  if (after.least_mm > before.most_mm + overlap.accuracy_mm) return 0.0;
+  overlap.work_cap = kLookWork;
+  const double most_mm = depth_at(overlap, scratch).hi;
+  if (deeper_along(overlap, query.motion_a, false, 1.0, most_mm, scratch)) return 0.0;
   return std::nullopt;
 }
 

@@ -54,11 +54,20 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, bool full_b
   return judged;
 }
 
-// All regions of a pair have one way out.
-bool told_alike(const Verdict& x, const Verdict& y) {
-  return x.separation_way == y.separation_way &&
-         x.separation_translation_mm == y.separation_translation_mm &&
-         x.separation_rotation_rad == y.separation_rotation_rad;
+// All regions of a pair have one way out, but for those of which only the zones meet.
+void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd) {
+  double depth_mm = 0.0;
+  for (const Verdict& verdict : pair.verdicts) depth_mm = std::max(depth_mm, verdict.delta_mm.hi);
+  const Verdict* looked = nullptr;
+  for (Verdict& verdict : pair.verdicts) {
+    if (verdict.separation_way == SeparationWay::kNone) continue;
+    if (looked == nullptr) {
+      look_along_way(world, pair.a, pair.b, depth_mm, verdict, ccd);
+      looked = &verdict;
+    }
+    verdict.separation_path = looked->separation_path;
+    verdict.separation_blocker = looked->separation_blocker;
+  }
 }
 
 }  // namespace
@@ -99,15 +108,7 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
 
   // Somebody looks at what is told here: what stands in the way is told as well.
   work.pool.for_each(judged.size(), [&](std::size_t i, int thread) {
-    PairVerdicts& pair = judged[i].verdicts;
-    for (Verdict& verdict : pair.verdicts)
-      if (const Verdict& first = pair.verdicts.front();
-          &verdict != &first && told_alike(verdict, first)) {
-        verdict.separation_path = first.separation_path;
-        verdict.separation_blocker = first.separation_blocker;
-      } else {
-        look_along_way(world, pair.a, pair.b, verdict, work.ccd[static_cast<std::size_t>(thread)]);
-      }
+    look_along_ways(world, judged[i].verdicts, work.ccd[static_cast<std::size_t>(thread)]);
   });
 
   StepCounters& counters = report.counters;

@@ -14,7 +14,8 @@ SeparatingMotion way_out(const Verdict& verdict) {
   return motion;
 }
 
-void look_along_way(const World& world, PartId a, PartId b, Verdict& verdict, CcdScratch& scratch) {
+void look_along_way(const World& world, PartId a, PartId b, double depth_mm, Verdict& verdict,
+                    CcdScratch& scratch) {
   verdict.separation_path = SeparationPath::kUnknown;
   verdict.separation_blocker = PartId{};
   const SeparatingMotion motion = way_out(verdict);
@@ -43,8 +44,9 @@ void look_along_way(const World& world, PartId a, PartId b, Verdict& verdict, Cc
   start.b = world.find(b)->solid.get();
   start.X_WA = world.find(a)->X_WP;
   start.X_WB = world.find(b)->X_WP;
-  verdict.separation_path =
-      way_goes_deeper(start, motion, scratch) ? SeparationPath::kDeeper : SeparationPath::kFree;
+  verdict.separation_path = way_goes_deeper(start, depth_mm, motion, scratch)
+                                ? SeparationPath::kDeeper
+                                : SeparationPath::kFree;
 }
 
 }  // namespace mortise
