@@ -471,10 +471,9 @@ Result<Verdict> from_wire(const wire::Verdict& in) {
   door.position(in.separation_translation_mm(), "separation_translation_mm");
   door.vector(in.separation_rotation_rad(), "separation_rotation_rad");
   door.position(in.separation_about_mm(), "separation_about_mm");
-  door.need(in.separation_way() <= static_cast<std::uint8_t>(SeparationWay::kStraight),
-            "separation_way");
-  door.need(in.separation_path() <= static_cast<std::uint8_t>(SeparationPath::kBlocked),
-            "separation_path");
+  door.need(in.separation_way() <= static_cast<std::uint8_t>(SeparationWay::kStraight) &&
+                in.separation_path() <= static_cast<std::uint8_t>(SeparationPath::kBlocked),
+            "separation");
   door.need(in.shape_a() <= kShapes && in.shape_b() <= kShapes, "shape");
   door.need(in.grade() <= static_cast<std::uint8_t>(DeviationGrade::kNominal), "grade");
   door.name(in.face_a(), "face_a");

@@ -244,9 +244,12 @@ Columns clash_columns() {
                                       "way_out_z_mm",
                                       "way_out_turn_x_rad",
                                       "way_out_turn_y_rad",
-                                      "way_out_turn_z_rad"}));
-  append(all, columns(Type::kText, {"way_out", "shape_a", "shape_b", "mesh_error", "mesh_a",
-                                    "mesh_b", "explanation"}));
+                                      "way_out_turn_z_rad",
+                                      "way_out_about_x_mm",
+                                      "way_out_about_y_mm",
+                                      "way_out_about_z_mm"}));
+  append(all, columns(Type::kText, {"way_out_moves", "way_out", "shape_a", "shape_b", "mesh_error",
+                                    "mesh_a", "mesh_b", "explanation"}));
   return all;
 }
 
@@ -303,7 +306,9 @@ std::vector<Json> Session::clash_row(ClashId id, const SessionStatistics::ClashR
   add_vector(row, v.normal_W);
   add_vector(row, v.separation_translation_mm);
   add_vector(row, v.separation_rotation_rad);
-  for (const Json& text : {word(v.separation_way), word(v.shape_a), word(v.shape_b), word(v.grade),
+  add_vector(row, v.separation_about_W);
+  for (const Json& text : {Json(names_.part(v.separation_of_b ? clash.b : clash.a)),
+                           word(v.separation_way), word(v.shape_a), word(v.shape_b), word(v.grade),
                            Json(mesh_of(clash.a)), Json(mesh_of(clash.b)), Json(v.explanation)})
     row.push_back(text);
   return row;

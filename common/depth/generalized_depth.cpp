@@ -51,6 +51,9 @@ class PairDepth {
     for (const OverlapRegion& region : query_.regions)
       delta_mm_ = std::max(delta_mm_, region.delta_mm.lo);
     lo_mm_ = delta_mm_;
+    // What the surfaces left open: they are apart as they are.
+    if (!(delta_mm_ > 0.0) && gpd::is_apart(mover_, X_mover_, other_, X_other_, scratch_))
+      return {};
     const Vec6 apart = part_hulls();
     if (!closed()) search(apart);
     if (!closed()) hold();

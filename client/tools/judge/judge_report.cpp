@@ -1,11 +1,14 @@
 #include "client/tools/judge/judge_report.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
+#include "common/base/json_text.h"
 #include "common/evaluation/clash_line.h"
 #include "common/messages/length_text.h"
 #include "common/messages/names.h"
@@ -228,6 +231,17 @@ Json judge_json(const OpenedScene& opened, const JudgeReport& report) {
   }
   json["counters"] = json_of(report.counters);
   return json;
+}
+
+std::string judged(const OpenedScene& opened, const JudgeReport& report,
+                   const JudgeOptions& options, const std::string& moved) {
+  if (options.json) {
+    Json json = judge_json(opened, report);
+    if (!moved.empty()) json["moved"] = moved;
+    return json_text(json) + "\n";
+  }
+  const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  return (moved.empty() ? "" : moved + "\n") + judge_text(opened, report, {color, options.verbose});
 }
 
 }  // namespace mortise

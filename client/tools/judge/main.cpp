@@ -1,34 +1,10 @@
-#include <unistd.h>
-
 #include <cstdio>
-#include <cstdlib>
 
 #include "client/picture/picture.h"
 #include "client/tools/judge/apply_way.h"
 #include "client/tools/judge/judge_report.h"
 #include "client/tools/judge/options.h"
-#include "common/base/json_text.h"
 #include "common/io/mesh/mesh_import.h"
-
-namespace {
-
-// Of the scene as it is, or after a motion that is told with it.
-void show(const mortise::OpenedScene& opened, const mortise::JudgeReport& report,
-          const mortise::JudgeOptions& o, const std::string& moved) {
-  const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-  std::string text;
-  if (o.json) {
-    mortise::Json json = mortise::judge_json(opened, report);
-    if (!moved.empty()) json["moved"] = moved;
-    text = mortise::json_text(json) + "\n";
-  } else {
-    text = (moved.empty() ? "" : moved + "\n") +
-           mortise::judge_text(opened, report, {color, o.verbose});
-  }
-  std::fputs(text.c_str(), stdout);
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   const mortise::JudgeCommandLine line = mortise::read_judge_command_line(argc, argv);
@@ -48,7 +24,7 @@ int main(int argc, char** argv) {
   mortise::Scratch scratch(o.threads);
   const mortise::JudgeReport report =
       judge_world(opened->scene.world, scratch, o.full || !o.picture.empty());
-  if (!o.apply_way || !o.json) show(*opened, report, o, "");
+  if (!o.apply_way || !o.json) std::fputs(mortise::judged(*opened, report, o).c_str(), stdout);
   if (!o.picture.empty())
     if (const auto drawn = mortise::draw_regions(opened->scene.world, report, o.regions, o.picture);
         !drawn) {
@@ -64,7 +40,7 @@ int main(int argc, char** argv) {
       return mortise::exit_code_of(moved.error().code);
     }
     last = mortise::judge_world(opened->scene.world, scratch, o.full);
-    show(*opened, last, o, *moved);
+    std::fputs(mortise::judged(*opened, last, o, *moved).c_str(), stdout);
   }
   const auto at_least = o.fail_on == "potential" ? mortise::CollisionClass::kPotential
                                                  : mortise::CollisionClass::kReal;

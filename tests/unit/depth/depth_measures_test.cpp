@@ -1,5 +1,5 @@
 // The overlap, the generalized depth and the volume of the least and of the largest bodies give one
-// class (README, section 7).
+// class (common/depth/README.md, section 7).
 #include <gtest/gtest.h>
 
 #include <cmath>
