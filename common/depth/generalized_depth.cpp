@@ -132,7 +132,7 @@ class PairDepth {
     if (xi_.tail<3>().isZero(0.0) || xi_.tail<3>().norm() > kNoTurn * hi_mm_) return;
     const Vec6 straight = gpd::translation_twist(xi_.head<3>());
     const double length_mm = straight.head<3>().norm();
-    if (length_mm > hi_mm_ * (1.0 + kNoTurn) ||
+    if (length_mm > hi_mm_ ||
         !gpd::is_apart(mover_, frame_.pose_of(straight) * X_mover_, other_, X_other_, scratch_))
       return;
     hi_mm_ = std::max(length_mm, lo_mm_);

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "common/depth/gpd/holds.h"
 #include "common/depth/gpd/separation_search.h"
 #include "tests/bench/statistics.h"
 
@@ -34,6 +35,21 @@ GpdWord ask_gpd(const GpdPair& pair, Refinement refinement) {
   word.apart = gpd::is_apart(*pair.a, word.depth.motion.displacement() * pair.X_WA, *pair.b,
                              pair.X_WB, scratch);
   return word;
+}
+
+double holds_beyond_mm(const GpdPair& pair, const GpdWord& word) {
+  std::vector<Vec3> points;
+  for (const OverlapRegion& region : word.overlap.regions) points.push_back(region.point_W);
+  gpd::HoldsQuery query;
+  query.a = pair.a.get();
+  query.b = pair.b.get();
+  query.X_WA = pair.X_WA;
+  query.X_WB = pair.X_WB;
+  query.points_W = points;
+  query.limit_mm = 2.0 * word.depth.gpd_mm.hi;
+  CcdScratch scratch;
+  std::uint64_t work = 0;
+  return gpd::lower_bound_by_holds_mm(query, scratch, work);
 }
 
 double search_longer(const GpdPair& pair, const GpdWord& word, int effort) {

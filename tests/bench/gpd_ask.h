@@ -13,6 +13,10 @@ struct GpdWord {
 
 GpdWord ask_gpd(const GpdPair& pair, Refinement refinement);
 
+/// What holds show when they are asked beyond the motion that is known, mm: were they wrong, it
+/// would be more than that motion is long.
+double holds_beyond_mm(const GpdPair& pair, const GpdWord& word);
+
 /// The shortest motion that a search finds with `effort` times as many starts: random twists, each
 /// pushed out and descended from. No longer than what was told. mm.
 double search_longer(const GpdPair& pair, const GpdWord& word, int effort);

@@ -31,6 +31,17 @@ TEST(GpdOracle, ConvexPairsAreClosed) {
   }
 }
 
+// Asked beyond the motion that is known, holds show no more than it.
+TEST(GpdOracle, HoldsAreTrueBeyondWhatIsKnown) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const bool convex = seed % 2 == 0;
+    const GpdPair pair = convex ? draw_convex_pair(seed) : draw_hollow_pair(seed);
+    const GpdWord word = ask_gpd(pair, Refinement::kDecided);
+    if (word.overlap.regions.empty()) continue;
+    EXPECT_LE(holds_beyond_mm(pair, word), word.depth.gpd_mm.hi + 1e-9) << seed;
+  }
+}
+
 TEST(GpdOracle, HollowPairsComeFree) {
   int closed = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
