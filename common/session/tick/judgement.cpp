@@ -166,7 +166,9 @@ GeneralizedDepth depth_of_pair(const JudgementQuery& query, const OverlapQuery& 
   gpd.motion_a = query.motion_a;
   gpd.motion_b = query.motion_b;
   gpd.t_contact = query.t_contact;
-  gpd.work_cap = std::min(gpd.work_cap, query.whole_cap - std::min(query.whole_cap, evaluations));
+  const auto left = [&] { return query.whole_cap - std::min(query.whole_cap, evaluations); };
+  const std::uint64_t full_cap = kFullDepthWork * gpd.work_cap;
+  gpd.work_cap = std::min(gpd.work_cap, left());
   if (overlap.refinement != Refinement::kFull) {
     const GeneralizedDepth depth = generalized_depth(gpd, scratch);
     evaluations += depth.evaluations;
@@ -175,13 +177,15 @@ GeneralizedDepth depth_of_pair(const JudgementQuery& query, const OverlapQuery& 
   // In full: begins where the lazy search ends, so that it is never the worse.
   GpdQuery lazy = gpd;
   lazy.overlap.refinement = Refinement::kDecided;
+  lazy.overlap.work_cap = std::min(lazy.overlap.work_cap, left());
   const OverlapResult decided = overlap_of(lazy.overlap, scratch);
   lazy.regions = decided.regions;
   const GeneralizedDepth first = generalized_depth(lazy, scratch);
-  gpd.work_cap *= kFullDepthWork;
+  evaluations += decided.evaluations + first.evaluations;
+  gpd.work_cap = std::min(full_cap, left());
   if (first.motion.moves()) gpd.known = &first.motion;
   GeneralizedDepth depth = generalized_depth(gpd, scratch);
-  evaluations += decided.evaluations + first.evaluations + depth.evaluations;
+  evaluations += depth.evaluations;
   depth.gpd_mm.lo = std::max(depth.gpd_mm.lo, std::min(first.gpd_mm.lo, depth.gpd_mm.hi));
   return depth;
 }
