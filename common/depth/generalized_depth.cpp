@@ -49,7 +49,7 @@ class PairDepth {
 
   GeneralizedDepth run() {
     for (const OverlapRegion& region : query_.regions)
-      delta_mm_ = std::max(delta_mm_, region.delta_mm.lo);
+      if (!region.at_crack) delta_mm_ = std::max(delta_mm_, region.delta_mm.lo);
     lo_mm_ = delta_mm_;
     // What the surfaces left open: they are apart as they are.
     if (!(delta_mm_ > 0.0) && gpd::is_apart(mover_, X_mover_, other_, X_other_, scratch_))
@@ -140,6 +140,8 @@ class PairDepth {
   }
 
   void hold() {
+    // In a crack the depth of a ball is a guess.
+    if (!mover_.inside_known() || !other_.inside_known()) return;
     std::vector<Vec3> points;
     for (const OverlapRegion& region : query_.regions)
       if (region.delta_mm.hi > 0.0) points.push_back(region.point_W);
