@@ -21,7 +21,7 @@ constexpr double kRounding_mm = 2e-9, kLeastHold_mm = 1e-9, kLeastDistance_mm = 
 constexpr std::size_t kMostLooks = 600, kDeepest = 6, kMostDeep = 20;
 constexpr double kPlacesReach = 0.05;
 constexpr std::uint32_t kMostPlacePairs = 256;
-constexpr int kBisections = 18;
+constexpr int kBisections = 12;
 
 // A ball of A around x + t m and one of B, which overlap by e along m.
 struct Hold {

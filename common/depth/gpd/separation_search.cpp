@@ -25,14 +25,14 @@ constexpr double kStepOverReach = 4.0;
 // Descent: programs, repairs of a step that collides, and how the reach changes.
 constexpr int kShortDescent = 20, kLongDescent = 40, kRepairs = 3;
 constexpr double kFirstReach = 0.2, kShrink = 0.35, kGrow = 1.5, kMostReach = 0.5;
-constexpr double kLeastReachShare = 1e-5, kLeastReach_mm = 1e-8;
+constexpr double kLeastReachShare = 1e-3, kLeastReachThorough = 1e-5, kLeastReach_mm = 1e-8;
 // A step must gain the first share; three steps in a row below the second end the descent.
 constexpr double kGain = 1e-7, kIdleGain = 1e-4;
 constexpr int kIdleSteps = 2;
 // Starts no worse than this times the best are descended from, so many whose directions differ.
 constexpr double kWorthDescent = 2.5, kAlike = 0.05;
 constexpr std::size_t kDescents = 3, kThoroughDescents = 8;
-constexpr std::uint32_t kMostPlacePairs = 512;
+constexpr std::uint32_t kMostPlacePairs = 1024;
 // No more of a turn is looked at, rad.
 constexpr double kMostTurn_rad = 3.0;
 // Lengths tried along a twist grow by this factor.
@@ -211,9 +211,10 @@ class Search {
   // From a free twist to a shorter one, within a trust region that is the reach of the places.
   Vec6 descend(Vec6 xi, int programs) {
     double best = length(xi), reach_mm = kFirstReach * best;
+    const double least_share = query_.thorough ? kLeastReachThorough : kLeastReachShare;
     int idle = 0;
     for (int i = 0; i < programs && idle < kIdleSteps && !out_of_work(); ++i) {
-      if (!(reach_mm > kLeastReachShare * best + kLeastReach_mm)) break;
+      if (!(reach_mm > least_share * best + kLeastReach_mm)) break;
       Vec6 to;
       if (!solve(rows_at(xi, reach_mm), to)) {
         reach_mm *= kShrink;
