@@ -73,6 +73,25 @@ TEST_F(ScenarioTools, JudgeGivesTheClassesOfTheProfileZones) {
   }
 }
 
+// What it moves out is no longer real: its mesh touches at most.
+TEST_F(ScenarioTools, JudgeMovesAPartOutByItsWay) {
+  const std::string deep = file("deep.yaml", blocks("9.8"));
+  const Outcome moved = run("mortise-judge", deep + " --apply-way --fail-on real");
+  EXPECT_EQ(moved.exit_code, 0) << moved.out;
+  EXPECT_NE(moved.out.find("region 1: high was moved out"), std::string::npos) << moved.out;
+  const auto json = nlohmann::json::parse(run("mortise-judge", deep + " --apply-way --json").out);
+  EXPECT_TRUE(json.at("moved").is_string());
+  EXPECT_LE(json.at("pairs").at(0).at("verdicts").at(0).at("delta_mm").at(0).get<double>(), 0.0);
+  const auto told = nlohmann::json::parse(run("mortise-judge", deep + " --json").out);
+  const auto& verdict = told.at("pairs").at(0).at("verdicts").at(0);
+  EXPECT_NEAR(verdict.at("gpd_mm").at(0).get<double>(), 0.2, 1e-6);
+  EXPECT_NEAR(verdict.at("gpd_mm").at(1).get<double>(), 0.2, 1e-6);
+  EXPECT_EQ(verdict.at("separation").at("moves"), "b");
+  EXPECT_EQ(verdict.at("separation").at("path"), "free");
+  const std::string apart = file("apart.yaml", blocks("10.2"));
+  EXPECT_NE(run("mortise-judge", apart + " --apply-way").exit_code, 0);
+}
+
 TEST_F(ScenarioTools, JudgeRefusesABadScenarioAndABadOption) {
   EXPECT_EQ(run("mortise-judge", file("bad.yaml", "name: a\n")).exit_code, 3);
   EXPECT_EQ(run("mortise-judge", file("a.yaml", blocks("10")) + " --fail-on fake").exit_code, 2);
