@@ -33,7 +33,7 @@ struct GpdQuery {
   double t_contact = 1.0;                  ///< of the pair
   /// Known from before: it may part them. Then the answer is no longer than this motion.
   const SeparatingMotion* known = nullptr;
-  std::uint64_t work_cap = 6'000;  ///< evaluations; where it ends, the bracket stays wider
+  std::uint64_t work_cap = 12'000;  ///< evaluations; where it ends, the bracket stays wider
 };
 
 /// Generalized penetration depth of a pair (README, section 7), for the part that is moved.

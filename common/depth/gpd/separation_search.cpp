@@ -37,6 +37,8 @@ constexpr std::uint32_t kMostPlacePairs = 1024;
 constexpr double kMostTurn_rad = 3.0;
 // Lengths tried along a twist grow by this factor.
 constexpr double kScanGrowth = 1.7;
+// A motion this many times as long as the overlap is deep is doubted: turns are tried.
+constexpr double kFar = 20.0;
 constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
 constexpr std::uint64_t kFreeWork = 4, kPlacesWork = 20, kProgramWork = 10;
@@ -76,7 +78,7 @@ class Search {
       if (length(start) < best_.length_mm && is_free(start)) offer(start);
     push_and_descend();
     if (!done()) sweep_back();
-    if (!done() && query_.thorough) try_turns();
+    if (!done() && (query_.thorough || best_.length_mm > kFar * scale_mm_)) try_turns();
     if (!done()) descend_from_best();
     best_.work = work_;
     return best_;
