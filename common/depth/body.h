@@ -44,6 +44,8 @@ struct Body {
 
   /// The plane faces of the part, merged.
   const PlaneFaces& plane_faces() const;
+  /// Edges and corners of the largest part that its faces' own offsets do not account for.
+  const std::vector<Tip>& tips() const;
 
   /// Does the face's mesh stand for its declared surface at the point of it nearest to x, or does
   /// the surface end before?

@@ -9,6 +9,7 @@
 #include "common/geometry/plane_faces.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
+#include "common/geometry/tips.h"
 #include "common/math/interval.h"
 
 namespace mortise {
@@ -46,6 +47,7 @@ struct BodyIndex {
   std::vector<FaceEnds> ends;                                        ///< by face, see Body::ends_of
   std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;  ///< see Body::face_of_child
   std::unique_ptr<const PlaneFaces> plane_faces;                     ///< see Body::plane_faces
+  std::unique_ptr<const std::vector<Tip>> tips;                      ///< see Body::tips
 };
 
 /// The index of a part with a band: one that this thread has made of an equal part and band, else a

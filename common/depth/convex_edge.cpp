@@ -44,18 +44,16 @@ double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
   return (x - a - share * d).norm();
 }
 
-}  // namespace
-
-bool is_past_convex_edge(const Body& body, const Vec3& x, double rounding_mm) {
-  if (body.band->trivial) return false;
+// Calls visit(height above the higher of both moved faces) for the edges that x may be past.
+template <class Visit>
+void for_each_edge_near(const Body& body, const Vec3& x, double rounding_mm, Visit&& visit) {
   const Topology& topology = body.solid->topology();
   const double reach_mm =
       2.0 * kMostTravel * body.largest_offset_mm[static_cast<int>(Layer::kLower)];
-  bool past = false;
   for_each_triangle_in(
       body.solid->bvh(), Box{x.array() - reach_mm, x.array() + reach_mm},
       [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
-        for (int k = 0; k < 3 && !past; ++k) {
+        for (int k = 0; k < 3; ++k) {
           const std::uint32_t other = topology.neighbor[t][k];
           if (topology.edge_kind[t][k] != EdgeKind::kConvex || other < t ||
               body.face_index(other) == body.face_index(t))
@@ -67,10 +65,27 @@ bool is_past_convex_edge(const Body& body, const Vec3& x, double rounding_mm) {
           if (sine * kMostTravel < 1.0 ||
               distance_to_segment(x, from, to) * sine > travel_mm + rounding_mm)
             continue;
-          past = one.above_mm(x) > rounding_mm || two.above_mm(x) > rounding_mm;
+          visit(std::max(one.above_mm(x), two.above_mm(x)));
         }
       });
+}
+
+}  // namespace
+
+bool is_past_convex_edge(const Body& body, const Vec3& x, double rounding_mm) {
+  if (body.band->trivial) return false;
+  bool past = false;
+  for_each_edge_near(body, x, rounding_mm,
+                     [&](double above_mm) { past |= above_mm > rounding_mm; });
   return past;
+}
+
+double depth_below_convex_edges(const Body& body, const Vec3& x) {
+  double depth_mm = body.depth_in(x, nearest_surface(*body.solid, x), Layer::kLower);
+  if (!body.band->trivial)
+    for_each_edge_near(body, x, 0.0,
+                       [&](double above_mm) { depth_mm = std::min(depth_mm, -above_mm); });
+  return depth_mm;
 }
 
 }  // namespace mortise

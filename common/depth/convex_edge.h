@@ -10,4 +10,8 @@ namespace mortise {
 /// a single convex edge cuts off. Costs a question to the triangles around the point.
 bool is_past_convex_edge(const Body& body, const Vec3& x, double rounding_mm);
 
+/// Lower bound of the depth of such a point in the least part, positive inside: of the faces near
+/// it, those across convex edges included.
+double depth_below_convex_edges(const Body& body, const Vec3& x);
+
 }  // namespace mortise

@@ -8,12 +8,14 @@
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
 #include "common/depth/cells/plane_pair.h"
+#include "common/depth/convex_edge.h"
 #include "common/depth/crack_regions.h"
 #include "common/depth/declared_region.h"
 #include "common/depth/deep_region.h"
 #include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
+#include "common/depth/tip_reach.h"
 
 namespace mortise {
 namespace {
@@ -45,6 +47,22 @@ OverlapRegion region_without_depth(const PairFrame& pair, const Candidates& cand
   }
   region.deciding_triangle_a = region.triangle_a;
   region.deciding_triangle_b = region.triangle_b;
+  region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
+  set_shapes(pair, region);
+  region.points_W = {region.point_W};
+  return region;
+}
+
+OverlapRegion region_of(const PairFrame& pair, const TipReach& reach) {
+  OverlapRegion region;
+  region.delta_mm = {-reach.gap_mm, -reach.gap_mm};
+  region.possible_mm = reach.possible_mm;
+  region.certain_mm = {-reach.gap_mm - pair.reach_mm(Layer::kLower), 0.0};
+  region.triangle_a = reach.role == 0 ? reach.triangle : reach.other_triangle;
+  region.triangle_b = reach.role == 0 ? reach.other_triangle : reach.triangle;
+  region.deciding_triangle_a = region.triangle_a;
+  region.deciding_triangle_b = region.triangle_b;
+  region.point_W = reach.point_W;
   region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
   set_shapes(pair, region);
   region.points_W = {region.point_W};
@@ -122,6 +140,7 @@ class Overlap {
         result_.regions.push_back(region_of(pair_, *shared));
     if (result_.no_inside) add_without_depth(candidates);
     planes_.tell(query_.only_certain, result_.regions);
+    if (!query_.only_certain && !planes_.decided()) add_tip();
     mark_cracks(pair_, !query_.only_certain, result_);
     for (const OverlapRegion& region : result_.regions)
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
@@ -253,6 +272,7 @@ class Overlap {
       try_witness(c.best, region);
       if (!found.lower_lazily.empty()) try_witness(found.lower_lazily[i].best, region);
       for (const Sample& sample : c.samples) try_witness(sample, region);
+      cap_certain(c.best, region);
     }
     set_grade(pair_, regions_, i, {&deciding, &c.best}, region);
     return region;
@@ -299,11 +319,36 @@ class Overlap {
                 from, region);
   }
 
+  // Where a face was found deep beyond the edge that cuts it short, certain is what the witness
+  // shows.
+  void cap_certain(const Sample& deepest, OverlapRegion& region) {
+    if (!region.has_witness) return;
+    const Vec3 at_W = pair_.in_world(deepest.role, deepest.point_K);
+    bool past = false;
+    for (const int i : {0, 1})
+      past |=
+          is_past_convex_edge(pair_.bodies[i], pair_.X_W[i].inverse() * at_W, pair_.rounding_mm);
+    if (!past) return;
+    double sum_mm = 0.0;
+    for (const int i : {0, 1})
+      sum_mm += std::max(0.0, depth_below_convex_edges(pair_.bodies[i],
+                                                       pair_.X_W[i].inverse() * region.witness_W));
+    region.certain_mm.lo = std::min(region.certain_mm.lo, sum_mm);
+  }
+
   void add_declared(const KnownFacePair& known, Candidates& candidates) {
     DeclaredRegion found =
         find_declared_region(pair_, query_, known, scratch_, result_.evaluations);
     if (found.left_to_search) leave_to_search(known, candidates, known_);
     if (found.region) result_.regions.push_back(std::move(*found.region));
+  }
+
+  // Where the faces' own offsets keep the parts apart.
+  void add_tip() {
+    for (const OverlapRegion& region : result_.regions)
+      if (region.possible_mm.hi > 0.0) return;
+    if (const auto reach = find_tip_reach(pair_, result_.evaluations))
+      result_.regions.push_back(region_of(pair_, *reach));
   }
 
   void add_without_depth(const Candidates& candidates) {

@@ -9,7 +9,7 @@
 #include "common/evaluation/deviation.h"
 #include "common/evaluation/estimate.h"
 #include "common/evaluation/roundness.h"
-#include "common/geometry/plane_faces.h"
+#include "common/geometry/tips.h"
 
 namespace mortise {
 namespace {
@@ -45,7 +45,6 @@ void summarize(SurfaceBand& band, const Solid& solid) {
   for (const std::uint16_t face : band.face_of_triangle) used[face] = true;
   band.largest_offset_mm = 0.0;
   band.trivial = true;
-  bool grown_planes = false;
   for (std::size_t i = 0; i < band.faces.size(); ++i) {
     const SurfaceBand::Face& face = band.faces[i];
     if (!used[i]) continue;
@@ -54,11 +53,11 @@ void summarize(SurfaceBand& band, const Solid& solid) {
     band.largest_offset_mm =
         std::max(band.largest_offset_mm,
                  face.deviation_mm.hi + std::max(0.0, face.unsure_mm.hi) + face.tolerance_mm.hi);
-    grown_planes |= is_plane_band(band, face) && face.tolerance_mm.hi > 0.0;
   }
-  band.largest_travel_mm = grown_planes && solid.topology().closed()
-                               ? find_plane_faces(solid, band).most_travel.outward_mm
-                               : 0.0;
+  band.largest_travel_mm = 0.0;
+  if (band.trivial || !(band.largest_offset_mm > 0.0) || !solid.topology().closed()) return;
+  for (const Tip& tip : find_tips(solid, band))
+    band.largest_travel_mm = std::max(band.largest_travel_mm, tip.travel_mm);
 }
 
 void state(SurfaceBand::Face& face, const FaceStatement& statement) {

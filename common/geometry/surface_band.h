@@ -59,8 +59,8 @@ struct SurfaceBand {
   double largest_offset_mm = 0.0;
   /// Rounding of the coordinates of the part's file: part of every deviation above.
   double quantum_mm = 0.0;
-  /// Edges and corners between plane faces travel farther than their faces (sharp zones, see
-  /// plane_faces.h): how far out of the mesh, mm. 0: none does.
+  /// Convex edges and corners travel farther than their faces (sharp zones, see tips.h): how far out
+  /// of the mesh, mm. 0: none does.
   double largest_travel_mm = 0.0;
   /// How far outside of the mesh the real surface may be, anywhere.
   double farthest_mm() const { return std::max({0.0, largest_offset_mm, largest_travel_mm}); }

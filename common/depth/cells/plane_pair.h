@@ -14,6 +14,8 @@ class PlanePair {
   /// Costs nothing where a part has no plane faces, and little where others are near the overlap.
   explicit PlanePair(const PairFrame& pair);
 
+  /// Whether the least bodies interfere, and whether the largest do, is known.
+  bool decided() const { return decided_; }
   /// Both layers are known as brackets: no search is needed for them.
   bool has_brackets() const {
     return decided_ && bracket_mm(Layer::kLower) && bracket_mm(Layer::kUpper);
