@@ -1,10 +1,14 @@
 #include "common/session/tick/judge_world.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 
 #include "common/broadphase/pair_filter.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/start_state.h"
+#include "common/evaluation/clash_line.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/tick_work.h"
 
@@ -53,11 +57,71 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, bool full_b
   return judged;
 }
 
+// Which kinds the parts of a pair are, and how the second stands to the first, in steps of a
+// nanometre over the part.
+using Standing = std::array<long long, 9>;
+
+Standing standing_of(const Part& a, const Part& b) {
+  constexpr double kStep_mm = 1e-6;
+  const Pose X_AB = a.X_WP.inverse() * b.X_WP;
+  const double reach_mm = std::max(1.0, b.solid->sphere().radius_mm);
+  Standing key{a.kind, b.kind};
+  const double sign = X_AB.q.w() < 0.0 ? -1.0 : 1.0;
+  for (int i = 0; i < 3; ++i) {
+    key[static_cast<std::size_t>(2 + i)] = std::llround(X_AB.p[i] / kStep_mm);
+    key[static_cast<std::size_t>(5 + i)] =
+        std::llround(sign * X_AB.q.vec()[i] * reach_mm / kStep_mm);
+  }
+  key[8] = std::llround(sign * X_AB.q.w() * reach_mm / kStep_mm);
+  return key;
+}
+
+// The candidate that stands for each: itself, or an earlier one that it is like.
+std::vector<std::size_t> leaders_of(const World& world, const std::vector<IndexPair>& candidates,
+                                    bool alike_once) {
+  std::vector<std::size_t> leaders(candidates.size());
+  std::map<Standing, std::size_t> known;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Part &a = world.parts[candidates[i].a], &b = world.parts[candidates[i].b];
+    leaders[i] = i;
+    if (alike_once && world.rule(a.id, b.id) == nullptr)
+      leaders[i] = known.try_emplace(standing_of(a, b), i).first->second;
+  }
+  return leaders;
+}
+
+void rename(std::string& text, const std::string& from, const std::string& to) {
+  if (const std::size_t at = text.find(from); at != std::string::npos && !from.empty())
+    text.replace(at, from.size(), to);
+}
+
+// The verdicts of a pair that is like another one, where it stands.
+PairVerdicts moved(const PairVerdicts& of, const World& world, const Part& a, const Part& b) {
+  const Part& from = *world.find(of.a);
+  PairVerdicts at = of;
+  at.a = a.id;
+  at.b = b.id;
+  at.like_a = of.a;
+  at.like_b = of.b;
+  const Pose X = a.X_WP * from.X_WP.inverse();
+  for (Verdict& v : at.verdicts) {
+    v.point_W = X * v.point_W;
+    v.normal_W = X.q * v.normal_W;
+    v.witness_W = X * v.witness_W;
+    v.separation_translation_mm = X.q * v.separation_translation_mm;
+    v.separation_rotation_rad = X.q * v.separation_rotation_rad;
+    if (v.explanation.find(kWhollyInside) == std::string::npos) continue;
+    rename(v.explanation, from.name, a.name);
+    rename(v.explanation, world.find(of.b)->name, b.name);
+  }
+  return at;
+}
+
 }  // namespace
 
 // Unlike a tick, static pairs are judged as well: this is a question about the scene, not about a
 // change.
-JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
+JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets, bool alike_once) {
   Scratch::Impl& work = scratch.impl();
   SessionState& state = session_state(world, work.switches.brute_force_pairs);
   JudgeReport report;
@@ -81,13 +145,23 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
     return true;
   });
 
+  const std::vector<std::size_t> leaders = leaders_of(world, candidates, alike_once);
   std::vector<Judged> judged(candidates.size());
   work.pool.for_each(candidates.size(), [&](std::size_t i, int thread) {
+    if (leaders[i] != i) return;
     const Part& a = world.parts[candidates[i].a];
     const Part& b = world.parts[candidates[i].b];
     judged[i] = judge_one(a, b, world.rule(a.id, b.id), full_brackets,
                           work.ccd[static_cast<std::size_t>(thread)]);
   });
+
+  for (std::size_t i = 0; i < judged.size(); ++i)
+    if (leaders[i] != i) {
+      const Judged& of = judged[leaders[i]];
+      judged[i].counts = of.counts;
+      judged[i].verdicts =
+          moved(of.verdicts, world, world.parts[candidates[i].a], world.parts[candidates[i].b]);
+    }
 
   StepCounters& counters = report.counters;
   std::vector<char> without_inside(n, 0);
