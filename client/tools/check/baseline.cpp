@@ -74,9 +74,9 @@ Result<std::string> compare_with_baseline(const std::string& file, Json& report)
   for (const auto& [names, state] : before)
     if (!now.contains(names)) say("gone", names, state.text());
   changes["unchanged"] = unchanged;
-  const std::string head = fmt::format(
-      "\nAgainst {}: {} new, {} gone, {} changed, {} unchanged\n", file, changes["new"].size(),
-      changes["gone"].size(), changes["changed"].size(), unchanged);
+  const std::string head = fmt::format("\nAgainst {}: {} new, {} gone, {} changed, {} unchanged\n",
+                                       file, changes["new"].size(), changes["gone"].size(),
+                                       changes["changed"].size(), unchanged);
   report["baseline"] = std::move(changes);
   return head + lines;
 } catch (const Json::exception& error) {
@@ -90,8 +90,7 @@ bool fails_on(const std::string& what, const Json& report) {
   if (what == "real") return count("unexplained_real") > 0;
   if (what == "potential") return count("unexplained_real") + count("potential") > 0;
   if (what == "near") return count("unexplained_real") + count("near") > 0;
-  if (what == "new")
-    return report.contains("baseline") && !report.at("baseline").at("new").empty();
+  if (what == "new") return report.contains("baseline") && !report.at("baseline").at("new").empty();
   return false;
 }
 

@@ -15,6 +15,11 @@ namespace {
 
 using PairIds = std::pair<PartId, PartId>;
 
+// Of one overlap: what the meshes cannot decide with it the exact solids do.
+constexpr std::uint64_t kWorkCap = 30'000;
+// Exact volumes of clashes for which nothing depends on them: of the deepest.
+constexpr std::size_t kMostVolumes = 20;
+
 // The sub-assembly that holds both paths: "arm/servo_1" of "arm/servo_1/horn" and
 // "arm/servo_1/case"; with the product of it.
 std::string inside_of(const Scenario::PartSpec& a, const Scenario::PartSpec& b) {
@@ -56,12 +61,13 @@ class Checker {
 
   CheckReport run() {
     Scratch scratch(options_.threads);
-    const JudgeReport judged = judge_world(world_, scratch, false, true);
-    report_.candidate_pairs = judged.counters.pairs.out;
-    gather(judged);
+    const AssemblyJudgement judged = judge_assembly(world_, scratch, kWorkCap);
+    report_.candidate_pairs = judged.report.counters.pairs.out;
+    gather(judged.report);
+    gather_touching(judged.without_verdict);
     report_.judged_pairs = report_.pairs.size();
     for (CheckedPair& pair : report_.pairs) relate(pair);
-    explain_all();
+    ask_exact_solids();
     find_near();
     say_bodies();
     report_.parts = world_.parts.size();
@@ -99,11 +105,7 @@ class Checker {
     }
     for (CheckedPair& pair : report_.pairs) {
       if (!pair.verdicts.empty()) pair.collision_class = pair.verdicts.front().collision_class;
-      pair.inside = common_product(pair);
-      pair.muted = !pair.inside.empty() &&
-                   std::all_of(pair.all.begin(), pair.all.end(), [&](const PairIds& ids) {
-                     return spec(ids.first).bought && spec(ids.second).bought;
-                   });
+      name_inside(pair);
     }
   }
 
@@ -112,6 +114,57 @@ class Checker {
     for (const PairIds& ids : pair.all)
       if (inside_of(spec(ids.first), spec(ids.second)) != product) return {};
     return product;
+  }
+
+  // Pairs that have no verdict and yet touch: the surfaces are nearer than the file is accurate to.
+  void gather_touching(const std::vector<IndexPair>& candidates) {
+    struct Known {
+      bool touches = false;
+      std::size_t row = 0;
+    };
+    std::map<PairStanding, Known> known;
+    CcdScratch scratch;
+    for (const IndexPair& ids : candidates) {
+      const Part &a = world_.parts[ids.a], &b = world_.parts[ids.b];
+      const auto [entry, fresh] = known.try_emplace(standing_of(a, b));
+      if (fresh) {
+        entry->second.touches =
+            distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, accuracy_of(a, b)).within_limit ||
+            has_same_size(a, b);
+        if (entry->second.touches) {
+          entry->second.row = report_.pairs.size();
+          report_.pairs.emplace_back();
+          CheckedPair& pair = report_.pairs.back();
+          pair.a = a.id;
+          pair.b = b.id;
+          pair.collision_class = CollisionClass::kFake;
+          pair.is_contact = true;
+        }
+      }
+      if (entry->second.touches) report_.pairs[entry->second.row].all.emplace_back(a.id, b.id);
+    }
+    for (CheckedPair& pair : report_.pairs)
+      if (pair.is_contact) name_inside(pair);
+  }
+
+  // A hole and a shaft of one size on one axis touch, whether their facets do or not.
+  bool has_same_size(const Part& a, const Part& b) const {
+    const Mating mating = finder_.find(a, b);
+    return std::any_of(mating.pairs.begin(), mating.pairs.end(), [](const CoaxialPair& pair) {
+      return relation_of_sizes(pair.hole_mm, pair.shaft_mm).relation == MatingKind::kFitNotStated;
+    });
+  }
+
+  static double accuracy_of(const Part& a, const Part& b) {
+    return std::min(kMostContact_mm, kLeastContact_mm + residual_of(a) + residual_of(b));
+  }
+
+  void name_inside(CheckedPair& pair) const {
+    pair.inside = common_product(pair);
+    pair.muted = !pair.inside.empty() &&
+                 std::all_of(pair.all.begin(), pair.all.end(), [&](const PairIds& ids) {
+                   return spec(ids.first).bought && spec(ids.second).bought;
+                 });
   }
 
   // 2. contacts, and what the parts are to each other
@@ -142,47 +195,96 @@ class Checker {
 
   void relate(CheckedPair& pair) {
     pair.mating = finder_.find(part(pair.a), part(pair.b));
-    pair.accuracy_mm = std::min(
-        kMostContact_mm, kLeastContact_mm + residual_of(part(pair.a)) + residual_of(part(pair.b)));
+    pair.accuracy_mm = accuracy_of(part(pair.a), part(pair.b));
+    if (pair.is_contact && pair.mating.relation == MatingKind::kUnknown)
+      pair.mating.relation = MatingKind::kTouching;
     if (pair.verdicts.empty()) return;
     if (!std::all_of(pair.verdicts.begin(), pair.verdicts.end(),
                      [&](const Verdict& v) { return touches(pair, v); }))
       return;
     pair.collision_class = CollisionClass::kFake;
-    pair.is_contact =
-        std::any_of(pair.verdicts.begin(), pair.verdicts.end(), [&](const Verdict& v) {
-          return v.delta_mm.hi - v.fake_below_mm >= -pair.accuracy_mm;
-        });
+    pair.is_contact = std::any_of(
+        pair.verdicts.begin(), pair.verdicts.end(),
+        [&](const Verdict& v) { return v.delta_mm.hi - v.fake_below_mm >= -pair.accuracy_mm; });
     if (pair.mating.relation == MatingKind::kUnknown) pair.mating.relation = MatingKind::kTouching;
   }
 
-  // 3. an overlap is explained when its exact volume is
+  // 3. what the exact solids say: of what may be explained, of what the meshes leave open, and of
+  // the deepest others
 
   bool may_explain(const CheckedPair& pair) const {
-    return pair.collision_class >= CollisionClass::kPotential &&
-           pair.mating.explained_mm3 > 0.0 &&
+    return pair.collision_class >= CollisionClass::kPotential && pair.mating.explained_mm3 > 0.0 &&
            !options_.unexplained.contains(std::string(name_of(pair.mating.relation)));
   }
 
-  void explain_all() {
-    std::vector<StepCommonQuery> queries;
-    std::vector<CheckedPair*> asked;
+  bool is_exact(const CheckedPair& pair) const {
+    return !step_.empty() && options_.exact_volumes && spec(pair.a).mesh.given &&
+           spec(pair.b).mesh.given;
+  }
+
+  void ask_exact_solids() {
+    std::vector<CheckedPair*> asked, others;
     for (CheckedPair& pair : report_.pairs) {
-      if (explained_by_fit(pair)) continue;
-      if (!may_explain(pair)) continue;
-      if (step_.empty() || !options_.exact_volumes || !spec(pair.a).mesh.given ||
-          !spec(pair.b).mesh.given) {
-        pair.reason = "its exact volume is not known: not explained";
+      if (pair.collision_class < CollisionClass::kPotential || explained_by_fit(pair)) continue;
+      if (!is_exact(pair)) {
+        if (may_explain(pair)) pair.reason = "its exact volume is not known: not explained";
         continue;
       }
-      queries.push_back({spec(pair.a).mesh.given_number, spec(pair.b).mesh.given_number,
-                         part(pair.a).X_WP.inverse() * part(pair.b).X_WP});
-      asked.push_back(&pair);
+      const bool needed = may_explain(pair) || pair.collision_class == CollisionClass::kPotential;
+      (needed ? asked : others).push_back(&pair);
     }
+    std::stable_sort(others.begin(), others.end(), [](const auto* x, const auto* y) {
+      return x->verdicts.front().delta_mm.lo > y->verdicts.front().delta_mm.lo;
+    });
+    others.resize(std::min(others.size(), kMostVolumes));
+    asked.insert(asked.end(), others.begin(), others.end());
+    std::vector<StepCommonQuery> queries;
+    for (const CheckedPair* pair : asked)
+      queries.push_back({spec(pair->a).mesh.given_number, spec(pair->b).mesh.given_number,
+                         part(pair->a).X_WP.inverse() * part(pair->b).X_WP});
     const auto commons = step_commons(step_, queries);
     if (!commons) report_.notes.push_back("exact volumes: " + commons.error().text);
     for (std::size_t i = 0; i < asked.size(); ++i)
-      judge_explanation(*asked[i], commons ? (*commons)[i] : StepCommon{});
+      hear(*asked[i], commons ? (*commons)[i] : StepCommon{});
+  }
+
+  void hear(CheckedPair& pair, const StepCommon& common) {
+    if (common.volume_mm3 < 0.0) {
+      if (may_explain(pair)) pair.reason = "its exact volume could not be computed: not explained";
+      return;
+    }
+    pair.common_mm3 = common.volume_mm3;
+    pair.thickness_mm = common.area_mm2 > 0.0 ? 2.0 * common.volume_mm3 / common.area_mm2 : 0.0;
+    if (pair.collision_class == CollisionClass::kPotential) decide(pair);
+    if (may_explain(pair)) judge_explanation(pair);
+  }
+
+  // Where nothing is stated of the faces that meet, the exact solids decide what facets cannot.
+  void decide(CheckedPair& pair) const {
+    const PairRule* rule = world_.rule(pair.a, pair.b);
+    const bool stated =
+        std::any_of(pair.verdicts.begin(), pair.verdicts.end(), [&](const Verdict& v) {
+          return v.collision_class == CollisionClass::kPotential &&
+                 (states_tolerance(part(pair.a), v.face_a, rule, true) ||
+                  states_tolerance(part(pair.b), v.face_b, rule, false));
+        });
+    if (stated) return;
+    if (pair.thickness_mm <= pair.accuracy_mm) {
+      pair.collision_class = CollisionClass::kFake;
+      pair.is_contact = true;
+      pair.reason = pair.common_mm3 > 0.0
+                        ? fmt::format(
+                              "the exact solids have {:.3g} mm³ in common, {} thick: less "
+                              "than the file is accurate to",
+                              pair.common_mm3, length_text(pair.thickness_mm))
+                        : "the exact solids have nothing in common";
+      if (pair.mating.relation == MatingKind::kUnknown)
+        pair.mating.relation = MatingKind::kTouching;
+    } else if (pair.thickness_mm > kMostContact_mm) {
+      pair.collision_class = CollisionClass::kReal;
+      pair.reason = fmt::format("the exact solids have {:.3f} mm³ in common, {} thick",
+                                pair.common_mm3, length_text(pair.thickness_mm));
+    }
   }
 
   bool explained_by_fit(CheckedPair& pair) const {
@@ -200,21 +302,15 @@ class Checker {
     return true;
   }
 
-  static void judge_explanation(CheckedPair& pair, const StepCommon& common) {
-    if (common.volume_mm3 < 0.0) {
-      pair.reason = "its exact volume could not be computed: not explained";
-      return;
-    }
-    pair.common_mm3 = common.volume_mm3;
-    pair.thickness_mm = common.area_mm2 > 0.0 ? 2.0 * common.volume_mm3 / common.area_mm2 : 0.0;
+  static void judge_explanation(CheckedPair& pair) {
     const double most = (1.0 + kExplainedShare) * pair.mating.explained_mm3 + kExplainedSlack_mm3;
-    pair.explained = common.volume_mm3 <= most;
+    pair.explained = pair.common_mm3 <= most;
     pair.reason = fmt::format("{}: {}; exact volume {:.3f} mm³, hole and shaft explain {:.3f} mm³",
-                              name_of(pair.mating.relation), pair.mating.text, common.volume_mm3,
+                              name_of(pair.mating.relation), pair.mating.text, pair.common_mm3,
                               pair.mating.explained_mm3);
     if (!pair.explained)
-      pair.reason += fmt::format(": {:.3f} mm³ are a clash",
-                                 common.volume_mm3 - pair.mating.explained_mm3);
+      pair.reason +=
+          fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
   }
 
   // 4. clearances
@@ -237,8 +333,7 @@ class Checker {
     for (std::size_t i = 0; i < boxes.size(); ++i)
       for (std::size_t j = i + 1; j < boxes.size(); ++j) {
         const Part &a = world_.parts[i], &b = world_.parts[j];
-        const double reach =
-            report_.min_gap_mm + a.band.farthest_mm() + b.band.farthest_mm();
+        const double reach = report_.min_gap_mm + a.band.farthest_mm() + b.band.farthest_mm();
         if (((boxes[i].lo - boxes[j].hi).array() > reach).any() ||
             ((boxes[j].lo - boxes[i].hi).array() > reach).any() || met.contains({a.id, b.id}))
           continue;
@@ -259,9 +354,8 @@ class Checker {
   void near_pair(const Part& a, const Part& b, double reach, CcdScratch& scratch) {
     const DistanceResult found = distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, reach);
     if (!found.within_limit) return;
-    const Interval gap{
-        found.distance_mm - a.band.farthest_mm() - b.band.farthest_mm(),
-        found.distance_mm + inward_mm(a.band) + inward_mm(b.band)};
+    const Interval gap{found.distance_mm - a.band.farthest_mm() - b.band.farthest_mm(),
+                       found.distance_mm + inward_mm(a.band) + inward_mm(b.band)};
     if (gap.lo < report_.min_gap_mm) report_.near.push_back({a.id, b.id, gap});
   }
 
@@ -279,7 +373,8 @@ class Checker {
       if (pair.not_examined && pair.verdicts.empty())
         report_.not_judged.push_back(part(pair.a).name + " × " + part(pair.b).name +
                                      ": one may lie inside the other, which is open");
-    std::erase_if(report_.pairs, [](const CheckedPair& p) { return p.verdicts.empty(); });
+    std::erase_if(report_.pairs,
+                  [](const CheckedPair& p) { return p.verdicts.empty() && !p.is_contact; });
   }
 
   OpenedScene& opened_;

@@ -11,15 +11,15 @@
 namespace mortise {
 
 struct CheckOptions {
-  double min_gap_mm = 0.0;           ///< 0: as the scenario says
-  std::set<std::string> unexplained; ///< names of relations that explain nothing
+  double min_gap_mm = 0.0;            ///< 0: as the scenario says
+  std::set<std::string> unexplained;  ///< names of relations that explain nothing
   int threads = 2;
-  bool exact_volumes = true;         ///< ask for exact volumes where an explanation needs them
+  bool exact_volumes = true;  ///< ask for exact volumes where an explanation needs them
 };
 
 /// Pairs of parts that stand to each other in the same way, judged once.
 struct CheckedPair {
-  PartId a, b;                  ///< the first of them
+  PartId a, b;  ///< the first of them
   std::vector<std::pair<PartId, PartId>> all;
   CollisionClass collision_class = CollisionClass::kNone;  ///< of the worst place
   std::vector<Verdict> verdicts;                           ///< worst first
@@ -28,12 +28,12 @@ struct CheckedPair {
   bool is_contact = false;
   double accuracy_mm = 0.0;  ///< of the surfaces that meet; what a contact may be off
   bool explained = false;
-  std::string reason;        ///< why it is explained, or why an explanation does not hold
-  double common_mm3 = -1.0;  ///< exact volume in common; negative: not asked, or not known
-  double thickness_mm = 0.0; ///< of the common solid, 2 V / A
+  std::string reason;         ///< why it is explained, or why an explanation does not hold
+  double common_mm3 = -1.0;   ///< exact volume in common; negative: not asked, or not known
+  double thickness_mm = 0.0;  ///< of the common solid, 2 V / A
   bool not_examined = false;
-  bool muted = false;        ///< inside of a sub-assembly that is bought
-  std::string inside;        ///< the product that all of them lie in, or empty
+  bool muted = false;  ///< inside of a sub-assembly that is bought
+  std::string inside;  ///< the product that all of them lie in, or empty
 };
 
 /// A pair that is nearer than asked.

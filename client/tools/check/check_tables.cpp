@@ -47,7 +47,7 @@ Table clash_table(const OpenedScene& opened, const CheckReport& report) {
                {"explanation"}},
               {}};
   for (const CheckedPair& pair : report.pairs) {
-    const Verdict& v = pair.verdicts.front();
+    const Verdict v = pair.verdicts.empty() ? Verdict() : pair.verdicts.front();
     const bool has_volume = pair.common_mm3 >= 0.0;
     table.rows.push_back({names.part(pair.a),
                           names.part(pair.b),
@@ -75,8 +75,8 @@ Table clash_table(const OpenedScene& opened, const CheckReport& report) {
 }
 
 std::string picture_of(const OpenedScene& opened, const CheckedPair& pair) {
-  const auto drawn = region_picture(
-      {&opened.scene.world, pair.a, pair.b, &pair.verdicts.front()}, Canvas::Format::kSvg);
+  const auto drawn = region_picture({&opened.scene.world, pair.a, pair.b, &pair.verdicts.front()},
+                                    Canvas::Format::kSvg);
   return drawn ? *drawn : "";
 }
 
@@ -98,8 +98,8 @@ std::string clash_section(const OpenedScene& opened, const CheckReport& report) 
     html += "</figure>";
   }
   if (pictures > kMostPictures)
-    html += fmt::format("<p class=\"dim\">{} more without a picture.</p>",
-                        pictures - kMostPictures);
+    html +=
+        fmt::format("<p class=\"dim\">{} more without a picture.</p>", pictures - kMostPictures);
   return html.empty() ? "<p>None.</p>" : html;
 }
 
@@ -113,8 +113,7 @@ std::vector<Table> check_tables(const OpenedScene& opened, const CheckReport& re
              {{"part_a"}, {"part_b"}, {"gap_lo_mm", Type::kNumber}, {"gap_hi_mm", Type::kNumber}},
              {}};
   for (const NearPair& pair : report.near)
-    near.rows.push_back(
-        {names.part(pair.a), names.part(pair.b), pair.gap_mm.lo, pair.gap_mm.hi});
+    near.rows.push_back({names.part(pair.a), names.part(pair.b), pair.gap_mm.lo, pair.gap_mm.hi});
   Table bodies{"not_judged", "what could not be judged, and why", {{"what"}}, {}};
   for (const std::string& what : report.not_judged) bodies.rows.push_back({what});
   Table statements{"statements",

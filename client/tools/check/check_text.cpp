@@ -145,10 +145,9 @@ class TextWriter {
     for (const CheckedPair& pair : report_.pairs) {
       if (pair.collision_class != CollisionClass::kFake || pair.muted) continue;
       const std::string what =
-          pair.is_contact
-              ? fmt::format("{}{}", name_of(pair.mating.relation),
-                            pair.mating.text.empty() ? "" : ": " + pair.mating.text)
-              : std::string("meshes overlap, the surfaces are apart");
+          pair.is_contact ? fmt::format("{}{}", name_of(pair.mating.relation),
+                                        pair.mating.text.empty() ? "" : ": " + pair.mating.text)
+                          : std::string("meshes overlap, the surfaces are apart");
       counts[what] += pair.all.size();
       if (style_.verbose)
         list += fmt::format("      {} × {}{}: {}\n", name(pair.a), name(pair.b), times(pair), what);
@@ -174,7 +173,8 @@ class TextWriter {
     constexpr std::size_t kMost = 10;
     for (std::size_t i = 0; i < report_.not_judged.size(); ++i) {
       if (!style_.verbose && i == kMost) {
-        text_ += fmt::format("  ... and {} more; -v lists all\n", report_.not_judged.size() - kMost);
+        text_ +=
+            fmt::format("  ... and {} more; -v lists all\n", report_.not_judged.size() - kMost);
         break;
       }
       text_ += "  " + report_.not_judged[i] + "\n";
@@ -262,9 +262,8 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   json["min_gap_mm"] = report.min_gap_mm;
   json["near"] = Json::array();
   for (const NearPair& near : report.near)
-    json["near"].push_back({{"a", names.part(near.a)},
-                            {"b", names.part(near.b)},
-                            {"gap_mm", json_of(near.gap_mm)}});
+    json["near"].push_back(
+        {{"a", names.part(near.a)}, {"b", names.part(near.b)}, {"gap_mm", json_of(near.gap_mm)}});
   json["not_judged"] = report.not_judged;
   json["statements"] = Json::array();
   if (opened.scenario.assembly)

@@ -32,8 +32,7 @@ int main(int argc, char** argv) {
   for (const mortise::Finding& finding : subject->opened.findings)
     std::fprintf(stderr, "mortise-check: %s\n", finding.text.c_str());
   if (!subject->opened.usable()) return mortise::kExitBadInput;
-  const mortise::CheckReport report =
-      mortise::check_scene(subject->opened, subject->step, o.check);
+  const mortise::CheckReport report = mortise::check_scene(subject->opened, subject->step, o.check);
   mortise::Json document = mortise::check_json(subject->opened, report);
   std::string changes;
   if (!o.baseline.empty()) {

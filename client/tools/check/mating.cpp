@@ -47,9 +47,9 @@ constexpr std::array<ThreadSize, 24> kThreads = {{{"M1.6", 1.6, 0.35},
 constexpr double kOffAxis_mm = 0.05;  // of hole and shaft that belong together
 constexpr double kOffAngle = 1.5e-3;  // sine
 constexpr double kLeastLength_mm = 0.02;
-constexpr double kSameSize_mm = 2e-3;     // of diameters: one nominal size
-constexpr double kScrewSize = 0.06;       // a screw is drawn up to this share off its size
-constexpr double kInsertLeast_mm = 0.1;   // interference; below it a press fit is possible
+constexpr double kSameSize_mm = 2e-3;       // of diameters: one nominal size
+constexpr double kScrewSize = 0.06;         // a screw is drawn up to this share off its size
+constexpr double kInsertLeast_mm = 0.1;     // interference; below it a press fit is possible
 constexpr double kInsertLargest_mm = 12.0;  // diameter
 constexpr double kMostInterference = 0.35, kMostClearance = 0.2;  // shares that still belong
 
@@ -68,9 +68,9 @@ Placed placed(const Part& part, const Feature& feature) {
   double area = 0.0;
   bool first = true;
   for (const std::uint32_t t : feature.triangles) {
-    area += 0.5 * (mesh.corner(t, 1) - mesh.corner(t, 0))
-                      .cross(mesh.corner(t, 2) - mesh.corner(t, 0))
-                      .norm();
+    area +=
+        0.5 *
+        (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).norm();
     for (int k = 0; k < 3; ++k) {
       const double z = (mesh.corner(t, k) - feature.surface.point).dot(feature.surface.axis);
       p.along_mm = first ? Interval{z, z} : hull(p.along_mm, {z, z});
@@ -165,8 +165,9 @@ std::string text_of(const std::vector<CoaxialPair>& pairs, MatingKind relation) 
 
 std::string_view name_of(MatingKind relation) {
   constexpr std::array<std::string_view, kMatingKindCount> kNames = {
-      "unknown", "touching",  "fit stated",    "fit not stated",
-      "thread",  "insert or self-tapping", "press fit", "clearance hole"};
+      "unknown",        "touching",      "fit stated",
+      "fit not stated", "thread",        "insert or self-tapping",
+      "press fit",      "clearance hole"};
   return kNames[static_cast<std::size_t>(relation)];
 }
 

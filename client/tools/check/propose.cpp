@@ -38,7 +38,8 @@ std::map<std::string, Question> questions_of(const World& world, const CheckRepo
   std::map<std::string, Question> questions;
   for (const CheckedPair& pair : report.pairs)
     for (const CoaxialPair& coaxial : pair.mating.pairs) {
-      if (coaxial.relation != MatingKind::kFitNotStated && coaxial.relation != MatingKind::kPressFit)
+      if (coaxial.relation != MatingKind::kFitNotStated &&
+          coaxial.relation != MatingKind::kPressFit)
         continue;
       for (const auto& [a, b] : pair.all) {
         Question asked;
@@ -77,8 +78,7 @@ std::string proposal_of(const OpenedScene& opened, const CheckReport& report,
 
 Status write_proposal(const OpenedScene& opened, const CheckReport& report,
                       const std::string& step) {
-  const std::filesystem::path file =
-      std::filesystem::path(step).replace_extension(".mortise.yaml");
+  const std::filesystem::path file = std::filesystem::path(step).replace_extension(".mortise.yaml");
   if (std::filesystem::exists(file))
     return fail(Code::kRuntime,
                 file.string() + ": is there already, with your answers; move it away first");

@@ -1,5 +1,5 @@
-#include "common/base/hash.h"
 #include "common/io/log/log_file.h"
+#include "common/base/hash.h"
 
 #include <algorithm>
 #include <cctype>

@@ -50,7 +50,7 @@ struct LogHeader {
   std::vector<ImportReport> imports = {};  ///< by part index; empty when not known
   /// What the importer said of the assembly of the scenario; null: it has none.
   std::shared_ptr<const std::vector<std::byte>> assembly = {};
-  std::optional<LogBegin> begin = {};      ///< none: the session begins as its scene was loaded
+  std::optional<LogBegin> begin = {};  ///< none: the session begins as its scene was loaded
   LogChain chain = {};
 };
 

@@ -153,8 +153,7 @@ std::string reason_of_end(const End& end, const ConfinedChild& child) {
 }  // namespace
 
 MappedBytes::~MappedBytes() {
-  if (bytes_.data() != nullptr)
-    munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+  if (bytes_.data() != nullptr) munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }
 
 fs::path program_beside(const char* variable, const char* name) {
@@ -170,9 +169,8 @@ Result<MappedBytes> run_confined(const ConfinedChild& child) {
   if (!answer || (!child.question.empty() && !question))
     return system_error("cannot make a memory file for the " + child.called);
   for (std::size_t done = 0; done < child.question.size();) {
-    const ssize_t n =
-        pwrite(question.get(), child.question.data() + done, child.question.size() - done,
-               static_cast<off_t>(done));
+    const ssize_t n = pwrite(question.get(), child.question.data() + done,
+                             child.question.size() - done, static_cast<off_t>(done));
     if (n <= 0) return system_error("cannot write to the " + child.called);
     done += static_cast<std::size_t>(n);
   }

@@ -73,8 +73,9 @@ class AssemblyPlacer {
   std::string unique(const std::string& name) {
     std::string numbered = name;
     for (int i = 2; !names_.insert(numbered).second; ++i)
-      numbered = name.substr(0, utf8_prefix(std::string_view(name).substr(0, kMostName_bytes - 7))) +
-                 "_" + std::to_string(i);
+      numbered =
+          name.substr(0, utf8_prefix(std::string_view(name).substr(0, kMostName_bytes - 7))) + "_" +
+          std::to_string(i);
     return numbered;
   }
 
@@ -104,17 +105,15 @@ class AssemblyPlacer {
       if (kind != SurfaceKind::kCylinder && kind != SurfaceKind::kSphere) continue;
       const auto stated = std::find_if(part.features.begin(), part.features.end(),
                                        [&](auto& f) { return f.name == feature.name; });
-      if (stated != part.features.end() &&
-          (stated->tolerance || !stated->iso_class.empty()))
+      if (stated != part.features.end() && (stated->tolerance || !stated->iso_class.empty()))
         continue;
       const double diameter = 2.0 * feature.surface.radius_mm;
       const auto deviation = general_deviation_mm(assembly_.general, diameter);
       if (!deviation) continue;
-      const Scenario::Tolerance tolerance{
-          {-0.5 * *deviation, 0.5 * *deviation},
-          "Ø" + size_text(diameter) + " ±" + size_text(*deviation) + " ISO 2768-" +
-              assembly_.general,
-          assembly_.at};
+      const Scenario::Tolerance tolerance{{-0.5 * *deviation, 0.5 * *deviation},
+                                          "Ø" + size_text(diameter) + " ±" + size_text(*deviation) +
+                                              " ISO 2768-" + assembly_.general,
+                                          assembly_.at};
       if (stated != part.features.end()) {
         stated->tolerance = tolerance;
         continue;
@@ -130,7 +129,8 @@ class AssemblyPlacer {
   static bool agrees(const Scenario::FaceAddress& address, const Surface& s) {
     if (s.kind != address.kind) return false;
     const double size = s.kind == SurfaceKind::kTorus ? s.tube_radius_mm : s.radius_mm;
-    if (address.radius_mm > 0.0 && std::fabs(size - address.radius_mm) > kAgreesSize_mm) return false;
+    if (address.radius_mm > 0.0 && std::fabs(size - address.radius_mm) > kAgreesSize_mm)
+      return false;
     if (address.inward && *address.inward != s.inward) return false;
     if (address.axis) {
       const double along = address.axis->dot(s.axis);
@@ -236,8 +236,7 @@ void add_assembly(ScenarioReading& reading, std::span<const std::byte> sent) {
 
 void add_assembly(ScenarioReading& reading) {
   if (!reading.scenario.assembly || !reading.usable()) return;
-  const std::filesystem::path folder =
-      std::filesystem::path(reading.scenario.file).parent_path();
+  const std::filesystem::path folder = std::filesystem::path(reading.scenario.file).parent_path();
   Result<StepAssembly> assembly = import_step(folder / reading.scenario.assembly->file);
   if (!assembly) {
     fail_with(reading, assembly.error().text);

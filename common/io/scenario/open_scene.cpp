@@ -69,15 +69,15 @@ std::string assembly_yaml(const std::filesystem::path& file, const AssemblyWishe
     for (const std::string& word : words) text += (text.empty() ? "" : ", ") + yaml_word(word);
     return text.empty() ? text : std::string("  ") + key + ": [" + text + "]\n";
   };
-  std::string text = "name: " + yaml_word(part_names({file.string()}).front()) +
-                     "\nunits: mm\npolicy: report\nassembly:\n  file: " +
-                     yaml_word(file.filename().string()) + "\n";
+  std::string text =
+      "name: " + yaml_word(part_names({file.string()}).front()) +
+      "\nunits: mm\npolicy: report\nassembly:\n  file: " + yaml_word(file.filename().string()) +
+      "\n";
   if (!wishes.general.empty()) text += "  general: " + yaml_word(wishes.general) + "\n";
   return text + list("fixed", wishes.fixed) + list("bought", wishes.bought);
 }
 
-Result<OpenedScene> open_assembly(const std::filesystem::path& file,
-                                  const AssemblyWishes& wishes) {
+Result<OpenedScene> open_assembly(const std::filesystem::path& file, const AssemblyWishes& wishes) {
   if (!is_text(file.string()))
     return fail(Code::kInvalidInput,
                 one_line(file.string()) + ": the name of the file is not UTF-8; rename the file");

@@ -98,8 +98,8 @@ class StatementReader {
     });
     if (all.empty()) return "a size of faces that are neither cylinders nor spheres";
     // A size is a diameter, unless its name says radius.
-    const bool radius = s.name.find("radius") != std::string::npos ||
-                        s.name.find("radial") != std::string::npos;
+    const bool radius =
+        s.name.find("radius") != std::string::npos || s.name.find("radial") != std::string::npos;
     const double factor = radius ? 2.0 : 1.0;
     Interval diameter;
     if (limits)
@@ -135,13 +135,11 @@ class StatementReader {
       return {};
     }
     const double modelled = 2.0 * surface.radius_mm;
-    const bool is_size = (stated(s.value) &&
-                          std::fabs(s.value * (modelled / s.value > 1.5 ? 2.0 : 1.0) - modelled) <=
-                              kSameSize_mm) ||
-                         (modelled >= diameter.lo - kSameSize_mm &&
-                          modelled <= diameter.hi + kSameSize_mm);
-    if (!is_size)
-      return "the modelled diameter is " + size_text(modelled) + " mm, another size";
+    const bool is_size =
+        (stated(s.value) &&
+         std::fabs(s.value * (modelled / s.value > 1.5 ? 2.0 : 1.0) - modelled) <= kSameSize_mm) ||
+        (modelled >= diameter.lo - kSameSize_mm && modelled <= diameter.hi + kSameSize_mm);
+    if (!is_size) return "the modelled diameter is " + size_text(modelled) + " mm, another size";
     const double lo = 0.5 * diameter.lo - surface.radius_mm;
     const double hi = 0.5 * diameter.hi - surface.radius_mm;
     // Outward of the material: a larger hole is inward.

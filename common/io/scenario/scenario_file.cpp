@@ -17,7 +17,8 @@
 namespace mortise {
 namespace {
 
-constexpr const char* kBadSceneName = "must be short and printable: up to 128 bytes that one can see";
+constexpr const char* kBadSceneName =
+    "must be short and printable: up to 128 bytes that one can see";
 
 // 1. the head: everything but the lists
 

@@ -234,11 +234,10 @@ class SceneLoader {
                                         : &recognized_.of(*kind.solid, kind.report.quantum_mm);
     if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
     if (recognized != nullptr) add_undeclared(*recognized, kind);
-    kind.band =
-        build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
-                    for_band(kind.stated.rest), for_band(kind.stated.of_feature),
-                    spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm,
-                    mesh->freeform});
+    kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
+                            for_band(kind.stated.rest), for_band(kind.stated.of_feature),
+                            spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm,
+                            mesh->freeform});
     return kind;
   }
 

@@ -65,8 +65,7 @@ class Gatherer {
 
   std::vector<Gathered> run() {
     for (std::uint32_t f = 0; f < part_.faces.size(); ++f)
-      if (part_.faces[f].surface.kind != SurfaceKind::kUnknown && !triangles_of_[f].empty())
-        add(f);
+      if (part_.faces[f].surface.kind != SurfaceKind::kUnknown && !triangles_of_[f].empty()) add(f);
     // Splits may come in any order: join until nothing joins any more.
     for (auto& [bucket, list] : buckets_)
       for (bool joined = true; joined;) joined = join_one(list);
@@ -106,8 +105,7 @@ class Gatherer {
     const double size = face.surface.kind == SurfaceKind::kPlane
                             ? 0.0
                             : face.surface.radius_mm + face.surface.half_angle_rad;
-    buckets_[{static_cast<int>(face.surface.kind), face.surface.inward,
-              std::llround(size * 1e3)}]
+    buckets_[{static_cast<int>(face.surface.kind), face.surface.inward, std::llround(size * 1e3)}]
         .push_back(std::move(gathered));
   }
 
@@ -148,8 +146,8 @@ class Gatherer {
                             ? Vec3(s.axis * s.axis.dot(s.point))
                             : Vec3(s.point + s.axis * gathered.along_mm.middle());
     const auto rounded = [](double x) { return std::llround(x * 1e4); };
-    return {kind_name(s), -s.radius_mm - s.tube_radius_mm, rounded(middle.x()),
-            rounded(middle.y()), rounded(middle.z())};
+    return {kind_name(s), -s.radius_mm - s.tube_radius_mm, rounded(middle.x()), rounded(middle.y()),
+            rounded(middle.z())};
   }
 
  public:

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint32_t kDocument = 0x31535453, kQueries = 0x31515453, kAnswers = 0x31415453;
 constexpr std::size_t kLongestStepText = 4096;
-constexpr double kLargestStepNumber = 1e9;  // of any number that is a length; beyond it a unit is wrong
+constexpr double kLargestStepNumber =
+    1e9;  // of any number that is a length; beyond it a unit is wrong
 
 Error damaged(const std::string& what) {
   return fail(Code::kRuntime, "the STEP importer's answer is damaged (" + what + ")");

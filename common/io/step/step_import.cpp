@@ -22,8 +22,8 @@ std::string step_objection(const fs::path& file) {
   return {};
 }
 
-Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what, const ImportLimits& limits,
-                        std::span<const std::byte> question) {
+Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
+                                 const ImportLimits& limits, std::span<const std::byte> question) {
   std::error_code ignored;
   ConfinedChild child;
   child.called = "STEP importer";
@@ -31,9 +31,9 @@ Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what, 
       "build the target mortise-import-step (it needs the packages of packages-step.txt), install "
       "mortise-step, or set MORTISE_STEP_IMPORTER";
   child.program = program_beside("MORTISE_STEP_IMPORTER", "mortise-import-step");
-  child.arguments = {
-      what, fs::absolute(file, ignored).string(), std::to_string(limits.memory_bytes),
-      std::to_string(std::llround(std::ceil(std::clamp(limits.seconds, 0.0, 1e6))))};
+  child.arguments = {what, fs::absolute(file, ignored).string(),
+                     std::to_string(limits.memory_bytes),
+                     std::to_string(std::llround(std::ceil(std::clamp(limits.seconds, 0.0, 1e6))))};
   child.limits = limits;
   child.question = question;
   return run_confined(child);

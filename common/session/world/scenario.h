@@ -107,31 +107,31 @@ struct Scenario {
     std::optional<Vec3> axis;   ///< of either direction; of a plane its outward normal
     std::optional<Vec3> point;  ///< on the plane or the axis; the centre; the apex
   };
-  /// A STEP assembly, whose instances are parts beside those of `parts`; a part is named by its path
-  /// in the tree, "arm/servo_1/horn".
+  /// A STEP assembly, whose instances are parts beside those of `parts`; a part is named by its
+  /// path in the tree, "arm/servo_1/horn".
   struct AssemblySpec {
     struct Statement {
-      std::string part;                   ///< a path, '*' allowed
-      std::optional<FaceAddress> face;    ///< none: the whole part
-      FeatureSpec says;                   ///< class, tolerance, position
+      std::string part;                 ///< a path, '*' allowed
+      std::optional<FaceAddress> face;  ///< none: the whole part
+      FeatureSpec says;                 ///< class, tolerance, position
       SourceLine at = {};
     };
     /// What became of one statement of the file itself (PMI).
     struct Listed {
-      std::string text;    ///< "Ø20 +0.015/+0.002 on plate.bore_1"
+      std::string text;  ///< "Ø20 +0.015/+0.002 on plate.bore_1"
       bool used = false;
       std::string reason;  ///< why not
     };
-    std::string file;                   ///< relative to the scenario
-    std::string general;                ///< class of ISO 2768-1, "m"; empty: none
-    std::vector<std::string> fixed;     ///< paths of what does not move
-    std::vector<std::string> bought;    ///< paths or products whose inside is not reported
+    std::string file;                 ///< relative to the scenario
+    std::string general;              ///< class of ISO 2768-1, "m"; empty: none
+    std::vector<std::string> fixed;   ///< paths of what does not move
+    std::vector<std::string> bought;  ///< paths or products whose inside is not reported
     std::vector<Statement> statements;
     SourceLine at = {};
     // Once it is read:
     std::shared_ptr<const std::vector<std::byte>> sent;  ///< what the importer said of the file
     std::vector<Listed> listed;
-    std::vector<std::string> not_solid;                  ///< paths of what has no solid
+    std::vector<std::string> not_solid;  ///< paths of what has no solid
   };
   struct FitSpec {
     std::string part_a, feature_a, part_b, feature_b;  ///< names, '*' allowed

@@ -1,7 +1,7 @@
 #include "common/io/step/importer/answer.h"
 
-#include <Standard_Failure.hxx>
 #include <unistd.h>
+#include <Standard_Failure.hxx>
 
 #include <array>
 #include <new>

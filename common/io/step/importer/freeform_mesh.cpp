@@ -83,8 +83,7 @@ bool split(FreeformMesh& mesh, std::size_t triangle, const Sample& at) {
   const auto t = mesh.triangles[triangle];
   const Vec3 whole = area_vector(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 piece =
-        area_vector(mesh.points[t[k]], mesh.points[t[(k + 1) % 3]], at.on_surface);
+    const Vec3 piece = area_vector(mesh.points[t[k]], mesh.points[t[(k + 1) % 3]], at.on_surface);
     if (!(piece.dot(whole) > 1e-6 * whole.squaredNorm())) return false;
   }
   const auto point = static_cast<std::uint32_t>(mesh.points.size());

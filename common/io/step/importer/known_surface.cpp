@@ -67,9 +67,8 @@ std::optional<Surface> stated_surface(const BRepAdaptor_Surface& adaptor, const 
       const gp_Cone cone = adaptor.Cone();
       double radius = 0.0;
       for (const Vec3& x : corners)
-        radius += cone.RefRadius() +
-                  (x - vec(cone.Location())).dot(vec(cone.Axis().Direction())) *
-                      std::tan(cone.SemiAngle());
+        radius += cone.RefRadius() + (x - vec(cone.Location())).dot(vec(cone.Axis().Direction())) *
+                                         std::tan(cone.SemiAngle());
       if (radius < 0.0) direct = !direct;
       break;
     }
@@ -140,8 +139,8 @@ class Fitter {
   }
 
   std::optional<RecognizedSurface> run(double curvature_a, double curvature_b) {
-    for (const auto& found : {plane(), cylinder(), sphere(), cone(), torus(curvature_a),
-                              torus(curvature_b)})
+    for (const auto& found :
+         {plane(), cylinder(), sphere(), cone(), torus(curvature_a), torus(curvature_b)})
       if (found) return found;
     return std::nullopt;
   }
@@ -153,8 +152,7 @@ class Fitter {
     if (!s.point.allFinite() || !(s.radius_mm < 1e5)) return std::nullopt;
     RecognizedSurface found{s, 0.0};
     for (std::size_t i = 0; i < fine_.points.size(); ++i) {
-      found.gap_mm =
-          std::max(found.gap_mm, std::fabs(s.signed_distance_mm(fine_.points[i])));
+      found.gap_mm = std::max(found.gap_mm, std::fabs(s.signed_distance_mm(fine_.points[i])));
       if (!(s.outward_normal(fine_.points[i]).dot(fine_.normals[i]) > 0.99)) return std::nullopt;
     }
     if (found.gap_mm > allowed_mm_) return std::nullopt;

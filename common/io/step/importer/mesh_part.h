@@ -11,9 +11,9 @@ struct MeshOptions {
 };
 
 /// The solids of a shape as one part: triangles joined by the topology of the shape (never by
-/// place), surfaces of the faces, exact volume, and what could not be had. The order of its faces is
-/// that of `faces_of`. Freeform faces are refined until the measured deviation is within the target,
-/// or as far as refining inside of triangles helps.
+/// place), surfaces of the faces, exact volume, and what could not be had. The order of its faces
+/// is that of `faces_of`. Freeform faces are refined until the measured deviation is within the
+/// target, or as far as refining inside of triangles helps.
 StepPart mesh_part(const TopoDS_Shape& solids, const MeshOptions& options);
 
 /// The faces of all solids of a shape, in the order of StepPart::faces.

@@ -51,7 +51,7 @@ namespace {
 
 using Entity = Handle(Standard_Transient);
 
-std::string text_of(const Handle(TCollection_HAsciiString)& text) {
+std::string text_of(const Handle(TCollection_HAsciiString) & text) {
   return text.IsNull() ? std::string() : std::string(text->ToCString());
 }
 
@@ -72,8 +72,8 @@ class PmiReader {
     for (std::size_t p = 0; p < tree.solids.size(); ++p) {
       const std::vector<TopoDS_Shape> faces = faces_of(tree.solids[p]);
       for (std::size_t f = 0; f < faces.size(); ++f)
-        face_of_.emplace(faces[f].TShape().get(), StepFaceRef{static_cast<std::uint32_t>(p),
-                                                              static_cast<std::uint32_t>(f)});
+        face_of_.emplace(faces[f].TShape().get(),
+                         StepFaceRef{static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(f)});
     }
   }
 
@@ -121,7 +121,7 @@ class PmiReader {
 
   // 1. numbers
 
-  static bool read_measure(const Handle(StepBasic_MeasureWithUnit)& measure, Measured& out) {
+  static bool read_measure(const Handle(StepBasic_MeasureWithUnit) & measure, Measured& out) {
     if (measure.IsNull()) return false;
     out.value = measure->ValueComponent();
     StepBasic_Unit unit = measure->UnitComponent();
@@ -139,7 +139,7 @@ class PmiReader {
 
   static bool read_item(const Entity& item, Measured& out) {
     auto measure = Handle(StepBasic_MeasureWithUnit)::DownCast(item);
-    const auto named = [&](const auto& of, const Handle(StepBasic_MeasureWithUnit)& its) {
+    const auto named = [&](const auto& of, const Handle(StepBasic_MeasureWithUnit) & its) {
       if (of.IsNull()) return;
       measure = its;
       out.name = text_of(of->Name());

@@ -107,8 +107,7 @@ class TreeReader {
     const std::string own = name_of(label), of_product = name_of(product);
     const std::string path = joined(above, says_nothing(own) ? of_product : own);
     std::string numbered = path;
-    for (int i = 2; !paths_.insert(numbered).second; ++i)
-      numbered = path + "_" + std::to_string(i);
+    for (int i = 2; !paths_.insert(numbered).second; ++i) numbered = path + "_" + std::to_string(i);
     return numbered;
   }
 
@@ -231,10 +230,11 @@ void read_step_tree(const std::filesystem::path& file, StepTree& tree) {
   }
   TreeReader(tree).run();
   if (tree.refusal.empty() && tree.parts.empty())
-    tree.refusal = tree.not_solid.empty()
-                       ? "it holds no shapes (tessellated only, or no geometry); export exact solids"
-                       : "none of its " + std::to_string(tree.not_solid.size()) +
-                             " bodies is a solid (surfaces or wires only); export exact solids";
+    tree.refusal =
+        tree.not_solid.empty()
+            ? "it holds no shapes (tessellated only, or no geometry); export exact solids"
+            : "none of its " + std::to_string(tree.not_solid.size()) +
+                  " bodies is a solid (surfaces or wires only); export exact solids";
 }
 
 }  // namespace mortise
