@@ -16,10 +16,40 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+// The last pieces of each path that no other part ends with.
+std::vector<std::string> short_names(const World& world) {
+  std::map<std::string, std::size_t> ends;
+  const auto for_ends = [](const std::string& path, auto visit) {
+    for (std::size_t at = path.rfind('/'); at != std::string::npos && at > 0;
+         at = path.rfind('/', at - 1))
+      if (!visit(path.substr(at + 1))) return;
+    visit(path);
+  };
+  for (const Part& part : world.parts)
+    for_ends(part.name, [&](const std::string& end) {
+      ++ends[end];
+      return true;
+    });
+  std::vector<std::string> names;
+  for (const Part& part : world.parts) {
+    names.push_back(part.name);
+    for_ends(part.name, [&](const std::string& end) {
+      if (ends[end] > 1) return true;
+      names.back() = end;
+      return false;
+    });
+  }
+  return names;
+}
+
 class TextWriter {
  public:
   TextWriter(const OpenedScene& opened, const CheckReport& report, CheckTextStyle style)
-      : opened_(opened), world_(opened.scene.world), report_(report), style_(style) {}
+      : opened_(opened),
+        world_(opened.scene.world),
+        report_(report),
+        style_(style),
+        names_(short_names(world_)) {}
 
   std::string run() {
     head();
@@ -39,7 +69,7 @@ class TextWriter {
   }
 
  private:
-  const std::string& name(PartId id) const { return world_.find(id)->name; }
+  const std::string& name(PartId id) const { return names_[id.value - 1]; }
 
   std::string title(const std::string& text, int code) const {
     return style_.color ? fmt::format("\n\033[{};1m{}\033[0m\n", code, text) : "\n" + text + "\n";
@@ -154,7 +184,8 @@ class TextWriter {
     }
     if (counts.empty()) return;
     text_ += title("Contacts and false alarms", 34);
-    for (const auto& [what, count] : counts) text_ += fmt::format("  {:>5} × {}\n", count, what);
+    for (const auto& [what, count] : counts)
+      text_ += fmt::format("  {}: {}\n", counted(count, "pair", "pairs"), what);
     text_ += list;
   }
 
@@ -202,6 +233,7 @@ class TextWriter {
   const World& world_;
   const CheckReport& report_;
   CheckTextStyle style_;
+  std::vector<std::string> names_;
   std::string text_;
 };
 

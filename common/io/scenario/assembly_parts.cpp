@@ -49,9 +49,9 @@ class AssemblyPlacer {
 
  private:
   void say(bool is_error, SourceLine at, const std::string& text) {
-    const std::string line = at.line > 0 ? ":" + std::to_string(at.line) : "";
-    reading_.findings.push_back(
-        {is_error, scenario_.file + line + ": assembly " + assembly_.file + ": " + text});
+    const std::string place =
+        at.line > 0 ? scenario_.file + ":" + std::to_string(at.line) + ": " : "";
+    reading_.findings.push_back({is_error, place + assembly_.file + ": " + text});
   }
 
   void add(const StepInstance& instance, const std::vector<PartStatements>& stated) {
@@ -202,10 +202,12 @@ class AssemblyPlacer {
   std::set<std::string> names_;
 };
 
+// The text names the STEP file, which may be all that there is.
 void fail_with(ScenarioReading& reading, const std::string& text) {
   const int line = reading.scenario.assembly->at.line;
-  reading.findings.push_back(
-      {true, reading.scenario.file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + text});
+  const std::string place =
+      line > 0 ? reading.scenario.file + ":" + std::to_string(line) + ": " : "";
+  reading.findings.push_back({true, place + text});
 }
 
 }  // namespace

@@ -62,6 +62,9 @@ class TreeReader {
       else
         visit(root, TopLoc_Location(), "", "", kNoColour, 1);
     }
+    if (without_shape_ > 0)
+      tree_.notes.push_back(std::to_string(without_shape_) +
+                            " places in the tree have no faces and were left out");
   }
 
  private:
@@ -133,10 +136,9 @@ class TreeReader {
     }
     const gp_Trsf placed = location.Transformation();
     const int part = part_of(product, placed);
-    if (part < 0) {
-      tree_.not_solid.push_back(path);
-      return;
-    }
+    if (part == kNothing) ++without_shape_;
+    if (part == kNoSolid) tree_.not_solid.push_back(path);
+    if (part < 0) return;
     StepInstance instance;
     instance.path = path;
     instance.products = products;
@@ -170,7 +172,9 @@ class TreeReader {
     return X;
   }
 
-  // The number of the product's part; -1: it has no solid.
+  // The number of the product's part. A product without faces (of an annotation, or a name alone)
+  // is no body.
+  static constexpr int kNoSolid = -1, kNothing = -2;
   int part_of(const TDF_Label& product, const gp_Trsf& placed) {
     TCollection_AsciiString entry;
     TDF_Tool::Entry(product, entry);
@@ -179,10 +183,11 @@ class TreeReader {
     if (bakes)
       key += (placed.IsNegative() ? " mirrored " : " scaled ") +
              std::to_string(std::lround(1e9 * std::fabs(placed.ScaleFactor())));
-    const auto [known, fresh] = part_of_.try_emplace(key, -1);
+    const auto [known, fresh] = part_of_.try_emplace(key, kNothing);
     if (!fresh) return known->second;
     TopoDS_Shape shape = shapes_->GetShape(product);
-    if (shape.IsNull()) return -1;
+    if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) return kNothing;
+    known->second = kNoSolid;
     shape.Location(TopLoc_Location());
     StepPart part;
     part.name = name_of(product);
@@ -195,7 +200,7 @@ class TreeReader {
     }
     for (TopExp_Explorer x(shape, TopAbs_FACE, TopAbs_SOLID); x.More(); x.Next())
       ++part.loose_faces;
-    if (part.solids == 0) return -1;
+    if (part.solids == 0) return kNoSolid;
     part.mirrored = placed.IsNegative();
     TopoDS_Shape own = solids;
     if (bakes) own = BRepBuilderAPI_Transform(solids, baked(placed), true).Shape();
@@ -210,6 +215,7 @@ class TreeReader {
   Handle(XCAFDoc_ColorTool) colours_;
   std::map<std::string, int> part_of_;
   std::set<std::string> paths_;
+  std::size_t without_shape_ = 0;
 };
 
 }  // namespace
