@@ -9,6 +9,7 @@
 
 #include "common/io/log/log_file.h"
 #include "common/io/log/replay.h"
+#include "common/io/scenario/assembly_parts.h"
 #include "server/restore.h"
 
 namespace mortise {
@@ -50,6 +51,7 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
   }
   auto reading = read_scenario_text(start.scenario_yaml, options.scenario);
   if (!reading) return reading.error();
+  add_assembly(*reading);
   if (const auto still = nothing_moves(reading->scenario); still && reading->usable())
     reading->findings.push_back(*still);
   if (Status status = say_findings(reading->findings, reading->usable(), options.scenario);

@@ -163,7 +163,7 @@ Result<std::vector<std::string>> variants_of(std::string_view text) {
 
 Status change_log(SessionLog& log, const Change& change) {
   if (change.kind != Change::Kind::kMesh) return ok();
-  const auto reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
+  const auto reading = scenario_of(log);
   if (!reading) return reading.error();
   const auto& parts = reading->scenario.parts;
   const auto part = std::find_if(parts.begin(), parts.end(),

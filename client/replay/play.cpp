@@ -281,7 +281,7 @@ class Player {
 
 Result<PlayOutcome> play_log(const SessionLog& log, Client& client, const PlayOptions& options,
                              const std::function<void(double)>& progress) {
-  const auto reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
+  const auto reading = scenario_of(log);
   if (!reading) return reading.error();
   return Player(log, reading->scenario, client, options).run(progress);
 }

@@ -376,7 +376,7 @@ Table coverage_table(const SessionLog& log, const std::optional<StepCounters>& c
 
 Result<std::vector<Table>> tables_of(const SessionLog& log,
                                      const std::optional<StepCounters>& coverage) {
-  const auto reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
+  const auto reading = scenario_of(log);
   if (!reading) return reading.error();
   const Session session(log, reading->scenario);
   const SessionNames& names = session.names();

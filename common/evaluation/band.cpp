@@ -173,6 +173,18 @@ void split_rest_by_estimate(SurfaceBand& band, const Solid& solid,
   }
 }
 
+// Triangles whose deviation somebody measured: a face for each face of the file.
+void split_off_freeform(SurfaceBand& band, std::span<const FreeformFace> freeform) {
+  for (const FreeformFace& measured : freeform) {
+    const auto index = static_cast<std::uint16_t>(band.faces.size());
+    for (const std::uint32_t t : measured.triangles) band.face_of_triangle[t] = index;
+    SurfaceBand::Face face;
+    face.deviation_mm = measured.deviation_mm;
+    face.grade = DeviationGrade::kEstimated;
+    band.faces.push_back(std::move(face));
+  }
+}
+
 std::size_t feature_count(const SurfaceBand& band) {
   std::int32_t last = -1;
   for (const SurfaceBand::Face& face : band.faces) last = std::max(last, face.feature);
@@ -183,13 +195,14 @@ std::size_t feature_count(const SurfaceBand& band) {
 
 SurfaceBand build_band(const BandInput& input) {
   MORTISE_CHECK(input.solid != nullptr, "a band belongs to a solid");
-  MORTISE_CHECK(input.features.size() < 60000, "face indices are 16 bit: fewer features a part");
+  MORTISE_CHECK(input.features.size() + input.freeform.size() < 60000,
+                "face indices are 16 bit: fewer features a part");
   SurfaceBand band = nominal_band();
   band.faces[0].grade = DeviationGrade::kNominal;
   const TriangleMesh& mesh = input.solid->mesh();
   const bool chord = input.chord_error_mm.value_or(0.0) > 0.0;
   const bool estimate = input.estimate && !chord;
-  if (!input.features.empty() || chord || estimate)
+  if (!input.features.empty() || !input.freeform.empty() || chord || estimate)
     band.face_of_triangle.assign(mesh.triangles.size(), 0);
   for (std::size_t i = 0; i < input.features.size(); ++i) {
     const auto face = static_cast<std::uint16_t>(band.faces.size());
@@ -198,6 +211,7 @@ SurfaceBand build_band(const BandInput& input) {
   }
   for (std::size_t i = 0; i < input.features.size(); ++i)
     split_off_doubtful(band, input.features[i], i, mesh);
+  split_off_freeform(band, input.freeform);
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
   if (estimate) split_rest_by_estimate(band, *input.solid, input.features, input.quantum_mm);
   add_rounding(band, input.quantum_mm, input.features);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/evaluation/tolerance.h"
+#include "common/geometry/given_part.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
 
@@ -18,6 +19,8 @@ struct BandInput {
   std::vector<FaceStatement> of_feature;  ///< by feature
   bool estimate = false;  ///< the rest by estimate (grade kEstimated); a chord error goes before it
   double quantum_mm = 0.0;  ///< rounding of the file's coordinates (README, section 1)
+  /// Of the rest: triangles whose deviation was measured (grade kEstimated); of no feature.
+  std::span<const FreeformFace> freeform = {};
 };
 
 /// faces[0] is the rest of the part, faces[1 + i] feature i. With a declared chord error the rest

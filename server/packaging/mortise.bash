@@ -22,4 +22,4 @@ _mortise() {
   if [ "$cword" -eq 1 ]; then choices=$(sed -n "/^Subcommands:/,/^\$/s/^  \([a-z-]*\) .*/\1/p; s/^  ${program##*/} \([a-z]*\) .*/\1/p" <<<"$help"); fi
   mapfile -t COMPREPLY < <(compgen -W "${choices:-}" -- "$cur"; compgen -f -- "$cur")
 }
-complete -o filenames -F _mortise mortise-server mortise-bot mortise-discovery mortise-directory mortise-replay mortise-judge mortise-lint mortise-inspect mortise-first-contact mortise-generate mortise-web mortise-keys
+complete -o filenames -F _mortise mortise-server mortise-bot mortise-discovery mortise-directory mortise-replay mortise-judge mortise-check mortise-lint mortise-inspect mortise-first-contact mortise-generate mortise-web mortise-keys

@@ -52,9 +52,10 @@ const std::vector<Room> kRooms = {
     {"client/report/", {"client/picture/", "common/io/"}},
     {"client/replay/", {"client/", "client/report/", "common/io/"}},
     {"client/tools/", {"client/", "client/picture/", "common/io/"}},
+    {"client/tools/check/", {"client/tools/", "client/report/"}},
     {"tests/",
      {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/replay/",
-      "client/report/", "client/picture/", "client/tools/", "tests/"}},
+      "client/report/", "client/picture/", "client/tools/", "client/tools/check/", "tests/"}},
 };
 
 // A library that is named in some places only. Tests may use what they test against.
@@ -70,6 +71,7 @@ const std::vector<NamedHere>& named_here() {
       {"assimp",
        std::regex("assimp/.*"),
        {"common/io/mesh/mesh_import", "common/io/mesh/importer/"}},
+      {"OpenCASCADE", std::regex(".*\\.hxx"), {"common/io/step/importer/"}},
       {"yaml-cpp", std::regex("yaml-cpp/.*"), {"common/io/scenario/"}},
       {"Fast DDS",
        std::regex("(fastdds|fastrtps|fastcdr)/.*"),

@@ -114,6 +114,7 @@ TEST_F(PlantedTree, LibrariesInTheirRooms) {
       {"fcl/fcl.h", "FCL"},
       {"BulletCollision/CollisionShapes/btBoxShape.h", "Bullet"},
       {"assimp/Importer.hpp", "assimp"},
+      {"TopoDS_Shape.hxx", "OpenCASCADE"},
       {"yaml-cpp/yaml.h", "yaml-cpp"},
       {"fastdds/dds.hpp", "Fast DDS"},
       {"fastrtps/utils.h", "Fast DDS"},

@@ -1,4 +1,5 @@
 #include "common/io/log/log_file.h"
+#include "common/base/hash.h"
 
 #include <algorithm>
 #include <cctype>
@@ -107,6 +108,9 @@ void LogFile::write_head(const LogHeader& header) {
   for (const auto& [hash, mesh] : header.meshes)
     mcap_->add_attachment(kMeshPrefix + hash, "application/x-mortise-mesh",
                           log_records::encode(*mesh), 0);
+  if (header.assembly)
+    mcap_->add_attachment(kAssemblyPrefix + content_hash(*header.assembly),
+                          "application/x-mortise-assembly", *header.assembly, 0);
   for (std::size_t i = 0; i < header.imports.size(); ++i) {
     const std::string json = log_json::encode(header.imports[i]);
     mcap_->add_attachment(kImportPrefix + std::to_string(i + 1), "application/json",

@@ -14,8 +14,9 @@ inline constexpr const char* kRecoveryMetadata = "mortise.recovery";
 inline constexpr const char* kChainMetadata = "mortise.chain";
 
 inline constexpr const char* kScenarioAttachment = "scenario.yaml";
-inline constexpr const char* kMeshPrefix = "mesh/";      ///< and the hash of the mesh
-inline constexpr const char* kImportPrefix = "import/";  ///< and the id of the part
+inline constexpr const char* kMeshPrefix = "mesh/";          ///< and the hash of the mesh
+inline constexpr const char* kAssemblyPrefix = "assembly/";  ///< and the hash of its bytes
+inline constexpr const char* kImportPrefix = "import/";      ///< and the id of the part
 
 inline constexpr const char* kBinary = "x-mortise";
 inline constexpr const char* kJson = "json";

@@ -112,7 +112,7 @@ std::string compare_hash(const StepReport& logged, const StepReport& computed, c
 }  // namespace
 
 Result<LoadedScene> bare_scene_of(const SessionLog& log) {
-  auto reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
+  auto reading = scenario_of(log);
   if (!reading) return reading.error();
   for (const Finding& finding : reading->findings)
     if (finding.is_error) return fail(Code::kInvalidInput, "scenario of the log: " + finding.text);
@@ -125,6 +125,8 @@ Result<LoadedScene> bare_scene_of(const SessionLog& log) {
     for (const auto& [hash, mesh] : log.meshes)
       if (hash == log.mesh_of_part[index])
         return ImportedMesh{mesh, index < log.imports.size() ? log.imports[index] : ImportReport{}};
+    if (part.mesh.given && mesh_hash(part.mesh.given->mesh) == log.mesh_of_part[index])
+      return default_meshes()(scenario, part);
     // What a generator made it makes again, bit for bit, or the hash tells.
     if (!part.mesh.generator.empty())
       if (auto again = default_meshes()(scenario, part);

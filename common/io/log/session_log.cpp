@@ -355,7 +355,8 @@ LogHeader log_header(const LoadedScene& scene, std::string session, std::string 
                    .scenario_yaml = std::move(scenario_yaml),
                    .meshes = {},
                    .mesh_of_part = {},
-                   .imports = scene.imports};
+                   .imports = scene.imports,
+                   .assembly = scene.assembly};
   std::map<std::string, const TriangleMesh*> meshes;
   for (const Part& part : scene.world.parts) {
     meshes.emplace(part.solid->hash(), &part.solid->mesh());

@@ -48,7 +48,9 @@ struct LogHeader {
   std::vector<std::pair<std::string, const TriangleMesh*>> meshes;  ///< distinct meshes by hash
   std::vector<std::string> mesh_of_part;                            ///< hash, by part index
   std::vector<ImportReport> imports = {};  ///< by part index; empty when not known
-  std::optional<LogBegin> begin = {};      ///< none: the session begins as its scene was loaded
+  /// What the importer said of the assembly of the scenario; null: it has none.
+  std::shared_ptr<const std::vector<std::byte>> assembly = {};
+  std::optional<LogBegin> begin = {};  ///< none: the session begins as its scene was loaded
   LogChain chain = {};
 };
 

@@ -4,12 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/base/hash.h"
 #include "common/base/in_quotes.h"
 #include "common/io/log/log_checkpoint.h"
 #include "common/io/log/log_json.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/log_records.h"
 #include "common/io/log/mcap_reader.h"
+#include "common/io/scenario/assembly_parts.h"
 
 namespace mortise {
 namespace {
@@ -218,6 +220,12 @@ void LogAssembler::attachment(const McapAttachment& attachment) {
       note("mesh " + hash + " is damaged and left out");
     else
       log_.meshes.emplace_back(hash, std::move(mesh));
+  } else if (name.starts_with(kAssemblyPrefix)) {
+    const std::string hash = name.substr(std::string_view(kAssemblyPrefix).size());
+    if (content_hash(attachment.data) != hash)
+      note("the assembly is damaged and left out");
+    else
+      log_.assembly.assign(attachment.data.begin(), attachment.data.end());
   } else if (name.starts_with(kImportPrefix)) {
     const std::uint64_t part =
         std::strtoull(name.c_str() + std::string_view(kImportPrefix).size(), nullptr, 10);
@@ -284,6 +292,15 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
 }
 
 }  // namespace
+
+Result<ScenarioReading> scenario_of(const SessionLog& log) {
+  Result<ScenarioReading> reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
+  if (!reading || !reading->scenario.assembly) return reading;
+  if (log.assembly.empty())
+    return fail(Code::kInvalidInput, "the assembly of the scenario is missing from the log");
+  add_assembly(*reading, log.assembly);
+  return reading;
+}
 
 Result<SessionLog> read_session_log(const std::filesystem::path& file, const LogReading& reading) {
   LogAssembler assembler(reading);

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "common/io/log/session_log.h"
+#include "common/io/scenario/scenario_file.h"
 
 namespace mortise {
 
@@ -24,6 +25,7 @@ struct SessionLog {
   std::vector<std::pair<std::string, TriangleMesh>> meshes;
   std::vector<std::string> mesh_of_part;
   std::vector<ImportReport> imports;  ///< by part index; may be empty
+  std::vector<std::byte> assembly;    ///< what the importer said of a STEP file; may be empty
   std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
   std::optional<LogBegin> begin;      ///< set: the file continues another one
   LogChain chain;
@@ -45,6 +47,9 @@ struct LogReading {
   /// Called with the number of files read so far, the current one in part.
   std::function<void(double files)> on_progress = {};
 };
+/// The scenario as it was played, with the parts of its assembly.
+Result<ScenarioReading> scenario_of(const SessionLog& log);
+
 Result<SessionLog> read_session_log(const std::filesystem::path& file,
                                     const LogReading& reading = {});
 

@@ -56,8 +56,11 @@ std::string objection(const fs::path& file, const std::string& extension, double
   if (extension == ".yaml" || extension == ".yml") return "is a scenario, and a mesh is expected";
   if (extension == ".3mf")
     return "3MF is not read (its reader crashes on valid files); export STL, OBJ, PLY, glTF or DAE";
-  if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs")
-    return "STEP and IGES hold exact surfaces, no triangles; tessellate it in CAD (e.g. to STL)";
+  if (extension == ".step" || extension == ".stp")
+    return "STEP is no mesh: it is read whole, as the assembly of a scenario (assembly: " +
+           file.filename().string() + "), or by mortise check";
+  if (extension == ".iges" || extension == ".igs")
+    return "IGES holds exact surfaces, no triangles; export STEP, or tessellate it (e.g. to STL)";
   if (std::find(kReadable.begin(), kReadable.end(), extension) == kReadable.end())
     return (extension.empty() ? "has no ending that says its format"
                               : "unknown format " + in_quotes(extension)) +

@@ -20,7 +20,7 @@ struct ImportReport {
   std::uint64_t raw_vertices = 0, points = 0, raw_triangles = 0, triangles = 0;
   std::uint64_t degenerate_dropped = 0, duplicate_triangles = 0, points_and_lines_dropped = 0;
   std::uint64_t duplicates_dropped = 0;  ///< of the duplicate ones
-  std::uint64_t triangles_split = 0;  ///< split so that no dropped triangle left an open edge
+  std::uint64_t triangles_split = 0;     ///< split so that no dropped triangle left an open edge
   std::uint64_t boundary_edges = 0, non_manifold_edges = 0, misoriented_edges = 0, components = 0;
   double volume_mm3 = 0.0;
   bool closed = false;   ///< every edge balances, positive volume

@@ -4,6 +4,8 @@
 
 #include "common/base/length_unit.h"
 #include "common/base/plain_text.h"
+#include "common/io/scenario/assembly_parts.h"
+#include "common/io/scenario/general_tolerance.h"
 #include "common/io/scenario/mesh_scenario.h"
 
 namespace mortise {
@@ -29,10 +31,60 @@ bool OpenedScene::usable() const {
                       [](const Finding& finding) { return finding.is_error; });
 }
 
-Result<OpenedScene> open_scene(const std::filesystem::path& file) {
-  Result<ScenarioReading> reading = read_scenario(file);
+namespace {
+
+Status grant(const AssemblyWishes& wishes, ScenarioReading& reading) {
+  if (!reading.scenario.assembly) return ok();
+  Scenario::AssemblySpec& assembly = *reading.scenario.assembly;
+  if (!wishes.general.empty()) {
+    const auto letter = general_class(wishes.general);
+    if (!letter)
+      return fail(Code::kInvalidInput, "general tolerance '" + one_line(wishes.general) +
+                                           "' is not known; write ISO 2768-f, -m, -c or -v");
+    assembly.general = *letter;
+  }
+  assembly.bought.insert(assembly.bought.end(), wishes.bought.begin(), wishes.bought.end());
+  assembly.fixed.insert(assembly.fixed.end(), wishes.fixed.begin(), wishes.fixed.end());
+  return ok();
+}
+
+Result<OpenedScene> opened_with(Result<ScenarioReading> reading, const AssemblyWishes& wishes) {
   if (!reading) return reading.error();
+  if (const Status granted = grant(wishes, *reading); !granted) return granted.error();
+  add_assembly(*reading);
   return opened_of(std::move(reading).value());
+}
+
+}  // namespace
+
+Result<OpenedScene> open_scene(const std::filesystem::path& file, const AssemblyWishes& wishes) {
+  const Result<std::string> text = scenario_text(file);
+  if (!text) return text.error();
+  return opened_with(read_scenario_text(*text, file.string()), wishes);
+}
+
+std::string assembly_yaml(const std::filesystem::path& file, const AssemblyWishes& wishes) {
+  const auto list = [](const char* key, const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + yaml_word(word);
+    return text.empty() ? text : std::string("  ") + key + ": [" + text + "]\n";
+  };
+  std::string text =
+      "name: " + yaml_word(part_names({file.string()}).front()) +
+      "\nunits: mm\npolicy: report\nassembly:\n  file: " + yaml_word(file.filename().string()) +
+      "\n";
+  if (!wishes.general.empty()) text += "  general: " + yaml_word(wishes.general) + "\n";
+  return text + list("fixed", wishes.fixed) + list("bought", wishes.bought);
+}
+
+Result<OpenedScene> open_assembly(const std::filesystem::path& file, const AssemblyWishes& wishes) {
+  if (!is_text(file.string()))
+    return fail(Code::kInvalidInput,
+                one_line(file.string()) + ": the name of the file is not UTF-8; rename the file");
+  // The scenario has the name of the STEP file for messages; its lines mean nothing.
+  Result<ScenarioReading> reading = read_scenario_text(assembly_yaml(file, {}), file.string());
+  if (reading && reading->scenario.assembly) reading->scenario.assembly->at = {};
+  return opened_with(std::move(reading), wishes);
 }
 
 Result<OpenedScene> open_meshes(const std::vector<std::string>& files, const std::string& unit,

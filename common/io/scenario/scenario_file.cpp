@@ -8,6 +8,8 @@
 #include "common/base/length_unit.h"
 #include "common/base/plain_text.h"
 #include "common/io/mesh/mesh_import.h"
+#include "common/io/scenario/assembly_parts.h"
+#include "common/io/scenario/scenario_assembly.h"
 #include "common/io/scenario/scenario_parts.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/io/scenario/scenario_yaml.h"
@@ -15,7 +17,8 @@
 namespace mortise {
 namespace {
 
-constexpr const char* kBadSceneName = "must be short and printable: up to 128 bytes that one can see";
+constexpr const char* kBadSceneName =
+    "must be short and printable: up to 128 bytes that one can see";
 
 // 1. the head: everything but the lists
 
@@ -58,6 +61,7 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
   }
   if (const auto undeclared = read_deviation(top)) scenario.undeclared = *undeclared;
   if (const auto jump = top.positive_length_mm("max_jump")) scenario.max_jump_mm = *jump;
+  if (const auto gap = top.positive_length_mm("min_gap")) scenario.min_gap_mm = *gap;
   if (const auto lease = top.number("lease_s")) {
     if (*lease >= 0.1 && *lease <= 86400.0)
       scenario.lease_s = *lease;
@@ -188,14 +192,16 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
   context.file = name;
   const YamlMap top(context, document, "scenario",
                     {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation",
-                     "parts", "fits", "exclusions", "users"});
+                     "min_gap", "assembly", "parts", "fits", "exclusions", "users"});
   if (top.usable()) {
     read_head(context, top, reading.scenario);
     read_list(context, top, "parts", reading.scenario, read_part);
     read_list(context, top, "fits", reading.scenario, read_fit);
     read_list(context, top, "exclusions", reading.scenario, read_exclusion);
     read_list(context, top, "users", reading.scenario, read_user);
-    if (!top.has("parts")) top.error("parts is missing: a scenario needs at least one part");
+    if (top.has("assembly")) read_assembly(context, top.find("assembly"), reading.scenario);
+    if (!top.has("parts") && !top.has("assembly"))
+      top.error("parts is missing: a scenario needs at least one part, or an assembly");
     if (top.has("parts") && top.find("parts").IsSequence() && top.find("parts").size() == 0)
       top.error("parts", "is empty; a scenario needs at least one part");
     if (reading.scenario.parts.size() > kMaxParts)
@@ -246,7 +252,9 @@ Result<std::string> scenario_text(const std::filesystem::path& file) {
 Result<ScenarioReading> read_scenario(const std::filesystem::path& file) {
   const Result<std::string> text = scenario_text(file);
   if (!text) return text.error();
-  return read_scenario_text(*text, file.string());
+  Result<ScenarioReading> reading = read_scenario_text(*text, file.string());
+  if (reading) add_assembly(*reading);
+  return reading;
 }
 
 Result<ScenarioReading> read_scenario_text(std::string_view yaml, const std::string& name) {

@@ -31,7 +31,9 @@ Result<std::string> scenario_text(const std::filesystem::path& file);
 std::optional<Finding> nothing_moves(const Scenario& scenario);
 
 /// Strict: unknown keys, missing units, wrong types are errors with file and line. Result fails
-/// only when the file cannot be read or is not YAML at all.
+/// only when the file cannot be read or is not YAML at all. With an assembly: read_scenario reads
+/// its STEP file and has its instances among the parts, read_scenario_text leaves that to
+/// add_assembly.
 Result<ScenarioReading> read_scenario(const std::filesystem::path& file);
 Result<ScenarioReading> read_scenario_text(std::string_view yaml, const std::string& name);
 

@@ -42,6 +42,7 @@ AlikeKey key_of(const Scenario::MeshSource& mesh) {
   AlikeKey key;
   key.add(mesh.file).add(mesh.unit_mm).add(mesh.generator).add(static_cast<double>(mesh.mirror));
   for (const auto& [name, value] : mesh.parameters) key.add(name).add(value);
+  key.add(mesh.given ? static_cast<double>(mesh.given_number) : -1.0);
   return key;
 }
 
@@ -63,7 +64,8 @@ AlikeKey key_of(const Scenario::PartSpec& part) {
 struct LoadedMesh {
   SolidPtr solid;
   ImportReport report;
-  std::vector<Feature> generated;  // features that a generator brings
+  std::vector<Feature> generated;  // features that a generator or an assembly brings
+  std::vector<FreeformFace> freeform;
 };
 
 // All parts that are alike: mesh, features, band.
@@ -92,14 +94,17 @@ bool declared_in_file(const Scenario::PartSpec& spec, const std::string& name) {
 
 Result<FeatureMatch> match_of(const Scenario::PartSpec& spec, const Scenario::FeatureSpec& declared,
                               const LoadedMesh& mesh) {
-  const FeatureDeclaration declaration{declared.name, declared.surface, declared.along_mm,
-                                       spec.chord_error_mm.value_or(0.0)};
+  FeatureDeclaration declaration{declared.name, declared.surface, declared.along_mm,
+                                 spec.chord_error_mm.value_or(0.0)};
   const auto own = std::find_if(mesh.generated.begin(), mesh.generated.end(), [&](auto& f) {
     return f.name == declared.name && f.surface.kind == declared.surface.kind;
   });
   if (own == mesh.generated.end() || own->triangles.empty() || declared.along_mm ||
       declared_in_file(spec, declared.name))
     return match_feature(mesh.solid->mesh(), declaration);
+  // The corners of a CAD file lie on its edges, which may be off its surfaces by what it states.
+  if (spec.mesh.given)
+    declaration.chord_error_mm = std::max(declaration.chord_error_mm, 1.001 * own->residual_mm);
   return check_feature(mesh.solid->mesh(), declaration, own->triangles);
 }
 
@@ -132,6 +137,9 @@ std::string known_names(const LoadedMesh& mesh) {
 
 std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
                       const Recognition* recognized) {
+  if (spec.mesh.given)
+    return "the part of " + spec.mesh.given->file + " has no feature of this name; " +
+           known_names(mesh);
   if (spec.mesh.generator.empty() && recognized != nullptr)
     return "no feature of this name was recognized; " + recognized_names(*recognized);
   return "generator " + spec.mesh.generator + " has no feature of this name; " + known_names(mesh);
@@ -159,6 +167,7 @@ class SceneLoader {
       scene_.findings.insert(scene_.findings.end(), rules.findings.begin(), rules.findings.end());
     }
     if (scene_.usable()) world.rules = make_live_rules(scenario_, stated_);
+    if (scenario_.assembly) scene_.assembly = scenario_.assembly->sent;
     world.evaluates = evaluates();
     return std::move(scene_);
   }
@@ -188,6 +197,7 @@ class SceneLoader {
     part.moving = spec.moving;
     part.X_WP = part.X_WP_scenario = spec.X_WP;
     part.notes = notes_of(kind->report);
+    part.kind = static_cast<std::uint32_t>(known->second);
     scene_.imports.push_back(kind->report);
     resolve_for_report(part);
     scene_.world.parts.push_back(std::move(part));
@@ -224,10 +234,10 @@ class SceneLoader {
                                         : &recognized_.of(*kind.solid, kind.report.quantum_mm);
     if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
     if (recognized != nullptr) add_undeclared(*recognized, kind);
-    kind.band =
-        build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
-                    for_band(kind.stated.rest), for_band(kind.stated.of_feature),
-                    spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm});
+    kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
+                            for_band(kind.stated.rest), for_band(kind.stated.of_feature),
+                            spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm,
+                            mesh->freeform});
     return kind;
   }
 
@@ -257,6 +267,10 @@ class SceneLoader {
     for (const std::string& note : mesh.report.notes)
       finding(false, spec.at, "part " + spec.name + ": mesh " + mesh.report.file + ": " + note);
     if (!mesh.report.closed) say_open(spec, mesh);
+    if (spec.mesh.given && mesh_hash(spec.mesh.given->mesh) == mesh.solid->hash()) {
+      mesh.generated = spec.mesh.given->features;
+      mesh.freeform = spec.mesh.given->freeform;
+    }
     if (!spec.mesh.generator.empty()) {
       Result<GeneratedPart> generated = generate(spec.mesh.generator, spec.mesh.parameters);
       if (generated) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct LoadedScene {
     std::vector<std::string> tighter;
   };
   std::vector<ResolvedFit> fits;
+  /// What the importer said of the assembly of the scenario; null: it has none.
+  std::shared_ptr<const std::vector<std::byte>> assembly;
   bool usable() const;
 };
 

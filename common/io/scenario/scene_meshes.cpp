@@ -8,15 +8,12 @@
 namespace mortise {
 namespace {
 
-Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
-  Result<GeneratedPart> generated = generate(part.mesh.generator, part.mesh.parameters);
-  if (!generated) return generated.error();
-  mirror_part(*generated, part.mesh.mirror);
+ImportedMesh with_report(TriangleMesh mesh, std::string file, std::string format) {
   ImportedMesh imported;
-  imported.mesh = std::move(generated->mesh);
+  imported.mesh = std::move(mesh);
   ImportReport& report = imported.report;
-  report.file = "generator " + part.mesh.generator;
-  report.format = "generated";
+  report.file = std::move(file);
+  report.format = std::move(format);
   report.raw_vertices = report.points = imported.mesh.points_mm.size();
   report.raw_triangles = report.triangles = imported.mesh.triangles.size();
   const Topology topology = build_topology(imported.mesh);
@@ -26,6 +23,19 @@ Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
   report.components = topology.components;
   report.volume_mm3 = topology.volume_mm3;
   report.closed = topology.closed();
+  return imported;
+}
+
+Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
+  Result<GeneratedPart> generated = generate(part.mesh.generator, part.mesh.parameters);
+  if (!generated) return generated.error();
+  mirror_part(*generated, part.mesh.mirror);
+  return with_report(std::move(generated->mesh), "generator " + part.mesh.generator, "generated");
+}
+
+ImportedMesh given_mesh(const GivenPart& given) {
+  ImportedMesh imported = with_report(given.mesh, given.file, "STEP");
+  imported.report.notes = given.notes;
   return imported;
 }
 
@@ -45,6 +55,7 @@ void mirror_part(GeneratedPart& part, unsigned axes) {
 
 MeshProvider default_meshes() {
   return [](const Scenario& scenario, const Scenario::PartSpec& part) -> Result<ImportedMesh> {
+    if (part.mesh.given) return given_mesh(*part.mesh.given);
     if (!part.mesh.generator.empty()) return generated_mesh(part);
     const std::filesystem::path folder = std::filesystem::path(scenario.file).parent_path();
     Result<ImportedMesh> imported = import_mesh(folder / part.mesh.file, part.mesh.unit_mm);

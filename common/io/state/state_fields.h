@@ -98,7 +98,7 @@ void fields(A& a, MoveHistory& x) {
 template <class A>
 void fields(A& a, Part& x) {
   auto& [id, name, solid, band, features, moving, X_WP_scenario, X_WP, holder, asked_by, history,
-         notes, group] = x;
+         notes, group, kind] = x;
   a(X_WP, holder, asked_by, history, group);
 }
 template <class A>

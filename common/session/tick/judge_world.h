@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <vector>
 
+#include "common/broadphase/broad_phase.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {
@@ -14,6 +16,8 @@ struct PairVerdicts {
   bool no_inside = false;
   /// One lies where the inside of the other is not known: nobody can say that they are apart.
   bool not_examined = false;
+  /// The pair whose verdicts these are, moved here; none: judged itself.
+  PartId like_a, like_b;
 };
 struct JudgeReport {
   /// Pairs with at least one verdict, those not examined, and excluded ones.
@@ -21,5 +25,21 @@ struct JudgeReport {
   StepCounters counters;
 };
 JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets);
+
+/// The same for a large assembly.
+struct AssemblyJudgement {
+  JudgeReport report;
+  /// Candidates that have no verdict: their boxes meet, they do not. In the order of their numbers.
+  std::vector<IndexPair> without_verdict;
+};
+/// Pairs of parts of the same kinds that stand to each other in the same way (to a nanometre over
+/// the parts) are judged once; their verdicts are moved to the others. Only pairs without a rule of
+/// their own are alike. `work_cap`: of one overlap, see OverlapQuery.
+AssemblyJudgement judge_assembly(World& world, Scratch& scratch, std::uint64_t work_cap);
+
+/// Which kinds the parts of a pair are, and how the second stands to the first, in steps of a
+/// nanometre over the part: equal for pairs that are alike.
+using PairStanding = std::array<long long, 9>;
+PairStanding standing_of(const Part& a, const Part& b);
 
 }  // namespace mortise

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -7,6 +9,7 @@
 
 #include "common/evaluation/tolerance.h"
 #include "common/geometry/feature.h"
+#include "common/geometry/given_part.h"
 #include "common/math/pose.h"
 #include "common/messages/role.h"
 
@@ -63,6 +66,8 @@ struct Scenario {
     unsigned mirror = 0;                       ///< bit 0, 1, 2: x, y, z are negated in the part
     std::string generator;                     ///< e.g. "shaft"; empty when from a file
     std::map<std::string, double> parameters;  ///< of the generator, mm, rad or counts
+    std::shared_ptr<const GivenPart> given;    ///< of an assembly; then nothing above is set
+    std::uint32_t given_number = 0;            ///< of `given` among the parts of the assembly
   };
   struct Tolerance {     ///< outward offset of the surface
     Interval offset_mm;  ///< [-t, +t] for +-t; profile zone: [-t/2, t/2], unequal allowed
@@ -90,6 +95,43 @@ struct Scenario {
     std::optional<Tolerance> tolerance;  ///< of every face without its own
     std::vector<FeatureSpec> features;
     SourceLine at;
+    std::string products;  ///< of an assembly: the products on the way from the root, '/' between
+    bool bought = false;   ///< of an assembly: in a sub-assembly that is bought as it is
+  };
+  /// A face by its geometry, never by a number: so a statement survives another export. In the
+  /// frame of its part; what is not said may be anything.
+  struct FaceAddress {
+    SurfaceKind kind = SurfaceKind::kUnknown;
+    double radius_mm = 0.0;
+    std::optional<bool> inward;
+    std::optional<Vec3> axis;   ///< of either direction; of a plane its outward normal
+    std::optional<Vec3> point;  ///< on the plane or the axis; the centre; the apex
+  };
+  /// A STEP assembly, whose instances are parts beside those of `parts`; a part is named by its
+  /// path in the tree, "arm/servo_1/horn".
+  struct AssemblySpec {
+    struct Statement {
+      std::string part;                 ///< a path, '*' allowed
+      std::optional<FaceAddress> face;  ///< none: the whole part
+      FeatureSpec says;                 ///< class, tolerance, position
+      SourceLine at = {};
+    };
+    /// What became of one statement of the file itself (PMI).
+    struct Listed {
+      std::string text;  ///< "Ø20 +0.015/+0.002 on plate.bore_1"
+      bool used = false;
+      std::string reason;  ///< why not
+    };
+    std::string file;                 ///< relative to the scenario
+    std::string general;              ///< class of ISO 2768-1, "m"; empty: none
+    std::vector<std::string> fixed;   ///< paths of what does not move
+    std::vector<std::string> bought;  ///< paths or products whose inside is not reported
+    std::vector<Statement> statements;
+    SourceLine at = {};
+    // Once it is read:
+    std::shared_ptr<const std::vector<std::byte>> sent;  ///< what the importer said of the file
+    std::vector<Listed> listed;
+    std::vector<std::string> not_solid;  ///< paths of what has no solid
   };
   struct FitSpec {
     std::string part_a, feature_a, part_b, feature_b;  ///< names, '*' allowed
@@ -121,6 +163,8 @@ struct Scenario {
   double lease_s = 5.0;
   UndeclaredSurface undeclared = UndeclaredSurface::kNominal;  ///< of parts without their own
   std::vector<PartSpec> parts;
+  std::optional<AssemblySpec> assembly;
+  double min_gap_mm = 0.0;  ///< clearance that parts must keep; 0: none is asked for
   std::vector<FitSpec> fits;
   std::vector<Exclusion> exclusions;
   std::vector<UserSpec> users;  ///< empty: anyone may hold any moving part

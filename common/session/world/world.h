@@ -35,6 +35,8 @@ struct Part {
   MoveHistory history;
   std::vector<std::string> notes;  ///< of the import of its mesh, for people
   GroupId group;  ///< parts of one group have one holder and move as one body; none: no group
+  /// Parts of one kind were loaded with the same mesh, features and statements.
+  std::uint32_t kind = 0;
 };
 
 /// The rule of a pair of parts: bands that replace the parts' bands, or an exclusion.

@@ -1,0 +1,176 @@
+#include "client/tools/check/check_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "client/picture/picture.h"
+#include "client/report/cells.h"
+#include "client/report/html_page.h"
+#include "client/report/html_sections.h"
+#include "client/tools/check/check_text.h"
+#include "common/messages/names.h"
+
+namespace mortise {
+namespace {
+
+using Type = Table::Type;
+
+constexpr std::size_t kMostPictures = 20;
+
+Json known(double x, bool is_known) { return is_known ? Json(x) : Json(nullptr); }
+
+Table clash_table(const OpenedScene& opened, const CheckReport& report) {
+  const SessionNames names = names_of(opened.scene.world);
+  Table table{"clashes",
+              "pairs of parts, in the order in which they are read",
+              {{"part_a"},
+               {"part_b"},
+               {"class"},
+               {"relation"},
+               {"explained"},
+               {"count", Type::kInteger},
+               {"inside"},
+               {"muted"},
+               {"face_a"},
+               {"face_b"},
+               {"depth_lo_mm", Type::kNumber},
+               {"depth_hi_mm", Type::kNumber},
+               {"common_mm3", Type::kNumber},
+               {"explained_mm3", Type::kNumber},
+               {"thickness_mm", Type::kNumber},
+               {"x_mm", Type::kNumber},
+               {"y_mm", Type::kNumber},
+               {"z_mm", Type::kNumber},
+               {"relation_text"},
+               {"reason"},
+               {"explanation"}},
+              {}};
+  for (const CheckedPair& pair : report.pairs) {
+    const Verdict v = pair.verdicts.empty() ? Verdict() : pair.verdicts.front();
+    const bool has_volume = pair.common_mm3 >= 0.0;
+    table.rows.push_back({names.part(pair.a),
+                          names.part(pair.b),
+                          class_word(pair),
+                          name_of(pair.mating.relation),
+                          pair.explained ? "yes" : "no",
+                          pair.all.size(),
+                          pair.inside,
+                          pair.muted ? "yes" : "no",
+                          v.face_a,
+                          v.face_b,
+                          v.delta_mm.lo,
+                          v.delta_mm.hi,
+                          known(pair.common_mm3, has_volume),
+                          pair.mating.explained_mm3,
+                          known(pair.thickness_mm, has_volume),
+                          v.point_W.x(),
+                          v.point_W.y(),
+                          v.point_W.z(),
+                          pair.mating.text,
+                          pair.reason,
+                          v.explanation});
+  }
+  return table;
+}
+
+std::string picture_of(const OpenedScene& opened, const CheckedPair& pair) {
+  const auto drawn = region_picture({&opened.scene.world, pair.a, pair.b, &pair.verdicts.front()},
+                                    Canvas::Format::kSvg);
+  return drawn ? *drawn : "";
+}
+
+std::string clash_section(const OpenedScene& opened, const CheckReport& report) {
+  const SessionNames names = names_of(opened.scene.world);
+  std::string html;
+  std::size_t pictures = 0;
+  for (const CheckedPair& pair : report.pairs) {
+    if (pair.explained || pair.muted || pair.collision_class < CollisionClass::kPotential) continue;
+    const Verdict& v = pair.verdicts.front();
+    const std::string klass = class_word(pair);
+    html += fmt::format(
+        "<figure><figcaption><b class=\"{0}\">{0}</b> {1} × {2}{3}<br>{4}<br>relation: {5} {6} "
+        "{7}</figcaption>",
+        klass, escaped(names.part(pair.a)), escaped(names.part(pair.b)),
+        pair.all.size() > 1 ? fmt::format(" ×{}", pair.all.size()) : "", escaped(v.explanation),
+        name_of(pair.mating.relation), escaped(pair.mating.text), escaped(pair.reason));
+    if (pictures++ < kMostPictures) html += picture_of(opened, pair);
+    html += "</figure>";
+  }
+  if (pictures > kMostPictures)
+    html +=
+        fmt::format("<p class=\"dim\">{} more without a picture.</p>", pictures - kMostPictures);
+  return html.empty() ? "<p>None.</p>" : html;
+}
+
+}  // namespace
+
+std::vector<Table> check_tables(const OpenedScene& opened, const CheckReport& report) {
+  const SessionNames names = names_of(opened.scene.world);
+  std::vector<Table> tables{clash_table(opened, report)};
+  Table near{"near",
+             "pairs that are nearer than asked",
+             {{"part_a"}, {"part_b"}, {"gap_lo_mm", Type::kNumber}, {"gap_hi_mm", Type::kNumber}},
+             {}};
+  for (const NearPair& pair : report.near)
+    near.rows.push_back({names.part(pair.a), names.part(pair.b), pair.gap_mm.lo, pair.gap_mm.hi});
+  Table bodies{"not_judged", "what could not be judged, and why", {{"what"}}, {}};
+  for (const std::string& what : report.not_judged) bodies.rows.push_back({what});
+  Table statements{"statements",
+                   "tolerances that the file itself states",
+                   {{"statement"}, {"used"}, {"reason"}},
+                   {}};
+  if (opened.scenario.assembly)
+    for (const auto& listed : opened.scenario.assembly->listed)
+      statements.rows.push_back({listed.text, listed.used ? "yes" : "no", listed.reason});
+  Table counts{"counts", "pairs by what they are", {{"what"}, {"count", Type::kInteger}}, {}};
+  const Json summary = check_json(opened, report).at("counts");
+  for (const auto& [what, count] : summary.items()) counts.rows.push_back({what, count});
+  for (Table* table : {&near, &bodies, &statements, &counts}) tables.push_back(std::move(*table));
+  return tables;
+}
+
+std::string check_page(const OpenedScene& opened, const CheckReport& report) {
+  const std::vector<Table> tables = check_tables(opened, report);
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>"
+      "{1}</style></head><body><h1>{0}</h1><p class=\"dim\">{2} parts of {3} distinct products; "
+      "{4} pairs near each other</p><div class=\"cards\">",
+      escaped(opened.scenario.file), report_style(), report.parts, report.products,
+      report.candidate_pairs);
+  for (const auto& row : table_named(tables, "counts").rows)
+    html += fmt::format("<div class=\"card\"><b>{}</b>{}</div>", row[1].get<std::size_t>(),
+                        escaped(row[0].get<std::string>()));
+  html += "</div><h2>Clashes that nothing explains</h2>" + clash_section(opened, report);
+  html += plain_table(table_named(tables, "clashes"), "All pairs");
+  html += plain_table(table_named(tables, "near"), "Nearer than asked");
+  html += plain_table(table_named(tables, "not_judged"), "Not judged");
+  html += plain_table(table_named(tables, "statements"), "Tolerances that the file states");
+  return html + "</body></html>\n";
+}
+
+std::string check_junit(const OpenedScene& opened, const CheckReport& report) {
+  const SessionNames names = names_of(opened.scene.world);
+  std::string cases;
+  std::size_t tests = 1, failures = 0;
+  for (const CheckedPair& pair : report.pairs) {
+    if (pair.muted || pair.collision_class < CollisionClass::kPotential) continue;
+    ++tests;
+    const bool failed = pair.collision_class == CollisionClass::kReal && !pair.explained;
+    failures += failed;
+    cases += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escaped(opened.scenario.name),
+                         escaped(names.pair(pair.a, pair.b)));
+    const std::string said = escaped(pair.verdicts.front().explanation);
+    if (failed)
+      cases += fmt::format("><failure message=\"real clash\">{}</failure></testcase>\n", said);
+    else
+      cases += fmt::format("><system-out>{}</system-out></testcase>\n", said);
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{0}\" tests=\"{1}\" "
+      "failures=\"{2}\">\n  <testcase classname=\"{0}\" name=\"the assembly was judged\"/>\n{3}"
+      "</testsuite>\n",
+      escaped(opened.scenario.name), tests, failures, cases);
+}
+
+}  // namespace mortise

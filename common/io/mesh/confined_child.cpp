@@ -1,0 +1,193 @@
+#include "common/io/mesh/confined_child.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+extern char** environ;
+
+namespace mortise {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Closes a file descriptor at the end of its scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+Error system_error(const std::string& what) {
+  return fail(Code::kRuntime, what + ": " + std::strerror(errno));
+}
+
+/// posix_spawn, not fork: a server with many threads may not run code between fork and exec. The
+/// child sees nothing of ours but the memory files for its questions (-1: none) and its answer.
+Result<pid_t> spawn(const ConfinedChild& child, int question, int answer) {
+  std::vector<std::string> words{child.program.string()};
+  words.insert(words.end(), child.arguments.begin(), child.arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (question < 0)
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  else
+    posix_spawn_file_actions_adddup2(&actions, question, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, answer, STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addclosefrom_np(&actions, 3);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t all, none;
+  sigfillset(&all);
+  sigemptyset(&none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  pid_t pid = 0;
+  const int error =
+      posix_spawn(&pid, child.program.c_str(), &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)
+    return fail(Code::kRuntime, "cannot start the " + child.called + " " + child.program.string() +
+                                    ": " + std::strerror(error) + "; " + child.where_from);
+  return pid;
+}
+
+/// Waits at most `seconds`; kills what is still running then. Gives the wait status; -1: not known.
+struct End {
+  bool timed_out = false;
+  int status = -1;
+};
+
+End wait_for(pid_t pid, double seconds) {
+  End end;
+  const Descriptor process(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
+  for (;;) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) break;
+    // Without a pidfd (old kernel) look again every few milliseconds.
+    pollfd event{process.get(), POLLIN, 0};
+    const int timeout = static_cast<int>(std::min<long long>(left, process ? 60'000 : 5));
+    const int ready = poll(&event, process ? 1 : 0, timeout);
+    siginfo_t info{};
+    const bool look = ready > 0 || !process;
+    if (look && (waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+                 info.si_pid == pid)) {
+      pid_t reaped;
+      while ((reaped = waitpid(pid, &end.status, 0)) < 0 && errno == EINTR) {
+      }
+      if (reaped < 0) end.status = -1;
+      return end;
+    }
+  }
+  end.timed_out = true;
+  kill(pid, SIGKILL);
+  while (waitpid(pid, &end.status, 0) < 0 && errno == EINTR) {
+  }
+  return end;
+}
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20U) + " MB"; }
+
+std::string seconds_text(double seconds) {
+  const std::string text = std::to_string(seconds);
+  return text.substr(0, text.find('.') + 2) + " s";
+}
+
+/// What the end of the process means when it said nothing usable.
+std::string reason_of_end(const End& end, const ConfinedChild& child) {
+  const ImportLimits& limits = child.limits;
+  if (end.timed_out)
+    return "reading took longer than " + seconds_text(limits.seconds) +
+           " and was ended; simplify the file, or raise the time limit of the import";
+  if (end.status == -1) return "the importer's end could not be observed; try again";
+  if (WIFSIGNALED(end.status)) {
+    const int signal_number = WTERMSIG(end.status);
+    if (signal_number == SIGXCPU)
+      return "reading took too much processor time and was ended; simplify the file";
+    if (signal_number == SIGXFSZ)
+      return "what is in it needs more than " + megabytes(limits.memory_bytes) +
+             "; simplify the file, or raise the memory limit of the import";
+    if (signal_number == SIGKILL)
+      return "the importer was killed from outside (out of memory?); simplify the file";
+    const char* name = sigabbrev_np(signal_number);
+    return "the importer crashed on it (SIG" + std::string(name != nullptr ? name : "?") +
+           "): the file is damaged or hostile; export it again from CAD";
+  }
+  return "the importer ended with code " + std::to_string(WEXITSTATUS(end.status)) +
+         " and no answer; is " + child.program.string() + " the " + child.called + "?";
+}
+
+}  // namespace
+
+MappedBytes::~MappedBytes() {
+  if (bytes_.data() != nullptr) munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+fs::path program_beside(const char* variable, const char* name) {
+  if (const char* named = std::getenv(variable); named != nullptr && *named != '\0') return named;
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / name;
+}
+
+Result<MappedBytes> run_confined(const ConfinedChild& child) {
+  const Descriptor answer(memfd_create("mortise-answer", MFD_CLOEXEC));
+  const Descriptor question(child.question.empty() ? -1
+                                                   : memfd_create("mortise-question", MFD_CLOEXEC));
+  if (!answer || (!child.question.empty() && !question))
+    return system_error("cannot make a memory file for the " + child.called);
+  for (std::size_t done = 0; done < child.question.size();) {
+    const ssize_t n = pwrite(question.get(), child.question.data() + done,
+                             child.question.size() - done, static_cast<off_t>(done));
+    if (n <= 0) return system_error("cannot write to the " + child.called);
+    done += static_cast<std::size_t>(n);
+  }
+  Result<pid_t> pid = spawn(child, question.get(), answer.get());
+  if (!pid) return pid.error();
+  const End end = wait_for(*pid, std::clamp(child.limits.seconds, 0.0, 1e6));
+  const bool well =
+      !end.timed_out && end.status != -1 && WIFEXITED(end.status) && WEXITSTATUS(end.status) == 0;
+  if (!well) return fail(Code::kInvalidInput, reason_of_end(end, child));
+
+  struct stat info {};
+  if (fstat(answer.get(), &info) != 0) return system_error("cannot read the importer's answer");
+  const auto size = static_cast<std::size_t>(info.st_size);
+  if (size == 0) return fail(Code::kRuntime, reason_of_end(end, child));
+  void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, answer.get(), 0);
+  if (bytes == MAP_FAILED) return system_error("cannot map the importer's answer");
+  return MappedBytes({static_cast<const std::byte*>(bytes), size});
+}
+
+}  // namespace mortise

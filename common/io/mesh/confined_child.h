@@ -1,0 +1,46 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/io/mesh/mesh_import.h"
+
+namespace mortise {
+
+/// A program that reads what strangers wrote, alone and with limits: it gets its limits as the last
+/// two of its arguments by whoever calls it, questions on stdin, and answers on stdout.
+struct ConfinedChild {
+  std::string called;      ///< "mesh importer", for messages
+  std::string where_from;  ///< what to do when it cannot be started
+  std::filesystem::path program;
+  std::vector<std::string> arguments;
+  ImportLimits limits;
+  std::span<const std::byte> question = {};
+};
+
+/// An answer, as long as it is needed.
+class MappedBytes {
+ public:
+  explicit MappedBytes(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  ~MappedBytes();
+  MappedBytes(MappedBytes&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+  MappedBytes& operator=(MappedBytes&&) = delete;
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/// The program that an environment variable names, else the one of this name beside the running
+/// program.
+std::filesystem::path program_beside(const char* variable, const char* name);
+
+/// Runs it and returns its answer. Every failure of it (crash, hang, limits, no answer) becomes one
+/// line. The process has ended when this returns.
+Result<MappedBytes> run_confined(const ConfinedChild& child);
+
+}  // namespace mortise

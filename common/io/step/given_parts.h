@@ -1,0 +1,23 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/geometry/given_part.h"
+#include "common/io/step/step_document.h"
+
+namespace mortise {
+
+/// A part of a STEP file as the scene takes it, and where its faces went.
+struct StepPartGiven {
+  std::shared_ptr<const GivenPart> part;
+  std::vector<std::int32_t> feature_of_face;  ///< by face of the file; -1: freeform or no triangles
+};
+
+/// Faces of one surface (round faces come split in up to four) become one feature: with the same
+/// axis, size and side, and lengths along the axis that meet. Features are named as recognized ones
+/// are (bore_1, shaft_1, cone_1, ...), in an order that comes from their geometry alone, so that
+/// faces renumbered by another export keep their names.
+StepPartGiven given_part(const StepPart& part, const std::string& file);
+
+}  // namespace mortise

@@ -1,0 +1,100 @@
+#include "common/io/step/importer/common_volume.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <BRepAlgoAPI_Common.hxx>
+#include <BRepGProp.hxx>
+#include <GProp_GProps.hxx>
+#include <gp_Quaternion.hxx>
+
+#include <algorithm>
+#include <deque>
+
+namespace mortise {
+namespace {
+
+constexpr std::size_t kTogether = 2;  // processes
+
+TopLoc_Location location_of(const Pose& X) {
+  gp_Trsf placed;
+  placed.SetRotation(gp_Quaternion(X.q.x(), X.q.y(), X.q.z(), X.q.w()));
+  placed.SetTranslationPart(gp_Vec(X.p.x(), X.p.y(), X.p.z()));
+  return TopLoc_Location(placed);
+}
+
+StepCommon common_of(const TopoDS_Shape& a, const TopoDS_Shape& b, const Pose& X_AB) {
+  StepCommon common;
+  BRepAlgoAPI_Common operation(a, b.Moved(location_of(X_AB)));
+  if (!operation.IsDone() || operation.HasErrors()) return common;
+  GProp_GProps volume, surface;
+  BRepGProp::VolumeProperties(operation.Shape(), volume, 1e-4, true);
+  BRepGProp::SurfaceProperties(operation.Shape(), surface);
+  common.volume_mm3 = std::max(0.0, volume.Mass());
+  common.area_mm2 = surface.Mass();
+  return common;
+}
+
+// A process with one query, and where it answers.
+struct Running {
+  pid_t child = -1;
+  int answers = -1;
+  std::size_t query = 0;
+};
+
+Running start(const StepTree& tree, const StepCommonQuery& query, unsigned seconds) {
+  Running running;
+  int ends[2];
+  if (pipe(ends) != 0) return running;
+  running.child = fork();
+  if (running.child == 0) {
+    close(ends[0]);
+    const rlimit limit{seconds, seconds};
+    setrlimit(RLIMIT_CPU, &limit);
+    StepCommon common;
+    try {
+      common = common_of(tree.solids[query.part_a], tree.solids[query.part_b], query.X_AB);
+    } catch (...) {
+      common = {};
+    }
+    const ssize_t written = write(ends[1], &common, sizeof common);
+    _exit(written == sizeof common ? 0 : 1);
+  }
+  close(ends[1]);
+  running.answers = ends[0];
+  return running;
+}
+
+StepCommon finish(const Running& running) {
+  StepCommon answer;
+  if (running.answers < 0) return answer;
+  if (running.child < 0 || read(running.answers, &answer, sizeof answer) != sizeof answer)
+    answer = {};
+  close(running.answers);
+  if (running.child > 0) waitpid(running.child, nullptr, 0);
+  return answer;
+}
+
+}  // namespace
+
+std::vector<StepCommon> common_volumes(const StepTree& tree,
+                                       const std::vector<StepCommonQuery>& queries,
+                                       unsigned seconds_each) {
+  std::vector<StepCommon> answers(queries.size());
+  std::deque<Running> running;
+  const auto end_first = [&] {
+    answers[running.front().query] = finish(running.front());
+    running.pop_front();
+  };
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (queries[i].part_a >= tree.solids.size() || queries[i].part_b >= tree.solids.size())
+      continue;
+    if (running.size() == kTogether) end_first();
+    running.push_back(start(tree, queries[i], seconds_each));
+    running.back().query = i;
+  }
+  while (!running.empty()) end_first();
+  return answers;
+}
+
+}  // namespace mortise

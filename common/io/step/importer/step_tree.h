@@ -1,0 +1,28 @@
+#pragma once
+#include <STEPCAFControl_Reader.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopoDS_Shape.hxx>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/io/step/step_document.h"
+
+namespace mortise {
+
+/// A STEP file read and transferred: its distinct products that have solids, and where they are.
+/// The same file gives the same parts under the same numbers.
+struct StepTree {
+  std::string refusal;               ///< not empty: nothing else is set
+  std::vector<TopoDS_Shape> solids;  ///< of each part, in its own frame
+  std::vector<StepPart> parts;       ///< names and counts; no mesh
+  std::vector<StepInstance> instances;
+  std::vector<std::string> not_solid, notes;
+  Handle(TDocStd_Document) document;
+  STEPCAFControl_Reader reader;
+};
+
+/// May crash, hang or eat memory on hostile files: only called in a process of its own.
+void read_step_tree(const std::filesystem::path& file, StepTree& tree);
+
+}  // namespace mortise
