@@ -223,10 +223,6 @@ std::span<const std::uint32_t> Body::sharp_neighbours(std::uint32_t triangle) co
   return {index_->sharp.data() + range.first, range.count};
 }
 
-std::uint32_t Body::sharp_left_out(std::uint32_t triangle) const {
-  return sharp_range(triangle).left_out;
-}
-
 const BodyIndex::Range& Body::sharp_range(std::uint32_t triangle) const {
   std::vector<BodyIndex::Range>& ranges = index_->sharp_range;
   if (ranges.empty()) ranges.resize(mesh->triangles.size());

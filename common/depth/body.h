@@ -42,23 +42,22 @@ struct Body {
   static constexpr std::int32_t kMixed = -1;
   const std::vector<std::array<std::int32_t, Bvh::kWidth>>& face_of_child() const;
 
-  /// The plane faces of the part, merged.
+  /// Faces in one plane, merged; of the largest part what find_tips() finds.
   const PlaneFaces& plane_faces() const;
-  /// Edges and corners of the largest part that its faces' own offsets do not account for.
   const std::vector<Tip>& tips() const;
 
-  /// Does the face's mesh stand for its declared surface at the point of it nearest to x, or does
-  /// the surface end before?
+  /// Does the face's mesh stand for its declared surface at the point nearest to x?
   bool stands_for(std::uint16_t face, const Vec3& x) const;
 
   /// Triangles around the corners of one that meet its plane at a sharp convex angle and have all
   /// of it on their material side: where they move inward they cut it, where outward they extend
   /// it. One of each declared surface or plane.
-  /// At most kMostSharp of them; see sharp_left_out().
   std::span<const std::uint32_t> sharp_neighbours(std::uint32_t triangle) const;
   /// Upper bound of how many more there are. Those that cut the triangle may be left out, as more
   /// of it is kept; those that extend it may not.
-  std::uint32_t sharp_left_out(std::uint32_t triangle) const;
+  std::uint32_t sharp_left_out(std::uint32_t triangle) const {
+    return sharp_range(triangle).left_out;
+  }
   static constexpr std::size_t kMostSharp = 8;  ///< a corner of a machine part has two or three
 
   /// The declared surface that stands for a face in a layer; null: its triangles do.

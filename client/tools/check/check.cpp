@@ -50,6 +50,40 @@ double residual_of(const Part& part) {
   return most;
 }
 
+// Least outward offset of a band: how far inside of the mesh the real surface may be.
+double inward_mm(const SurfaceBand& band) {
+  double least = 0.0;
+  for (const SurfaceBand::Face& face : band.faces)
+    least = std::min(least, face.deviation_mm.lo + face.tolerance_mm.lo);
+  return -least;
+}
+
+// Pairs nearer than a gap, the nearest first, but for those that met.
+std::vector<NearPair> near_pairs(const World& world, double min_gap_mm,
+                                 const std::set<PairIds>& met) {
+  std::vector<Box> boxes(world.parts.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const Vec3& x : world.parts[i].solid->mesh().points_mm)
+      boxes[i].add(world.parts[i].X_WP * x);
+  std::vector<NearPair> near;
+  CcdScratch scratch;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+      const Part &a = world.parts[i], &b = world.parts[j];
+      const double outward_mm = a.band.farthest_mm() + b.band.farthest_mm();
+      const double reach_mm = min_gap_mm + outward_mm;
+      if (!boxes[i].grown(reach_mm).overlaps(boxes[j]) || met.contains({a.id, b.id})) continue;
+      const DistanceResult found = distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, reach_mm);
+      if (!found.within_limit) continue;
+      const Interval gap{found.distance_mm - outward_mm,
+                         found.distance_mm + inward_mm(a.band) + inward_mm(b.band)};
+      if (gap.lo < min_gap_mm) near.push_back({a.id, b.id, gap});
+    }
+  std::sort(near.begin(), near.end(),
+            [](const NearPair& x, const NearPair& y) { return x.gap_mm.lo < y.gap_mm.lo; });
+  return near;
+}
+
 class Checker {
  public:
   Checker(OpenedScene& opened, const std::filesystem::path& step, const CheckOptions& options)
@@ -70,10 +104,9 @@ class Checker {
     ask_exact_solids();
     find_near();
     say_bodies();
-    report_.parts = world_.parts.size();
     std::set<const Solid*> solids;
     for (const Part& part : world_.parts) solids.insert(part.solid.get());
-    report_.products = solids.size();
+    report_.parts = world_.parts.size(), report_.products = solids.size();
     order_and_count(report_);
     return std::move(report_);
   }
@@ -316,47 +349,14 @@ class Checker {
   // 4. clearances
 
   void find_near() {
-    report_.min_gap_mm =
-        options_.min_gap_mm > 0.0 ? options_.min_gap_mm : opened_.scenario.min_gap_mm;
-    if (!(report_.min_gap_mm > 0.0)) return;
+    double& gap_mm = report_.min_gap_mm = options_.min_gap_mm;
+    if (!(gap_mm > 0.0)) gap_mm = opened_.scenario.min_gap_mm;
+    if (!(gap_mm > 0.0)) return;
     std::set<PairIds> met;
     for (const CheckedPair& pair : report_.pairs)
       for (const PairIds& ids : pair.all)
         if (pair.collision_class != CollisionClass::kNone) met.insert(ids);
-    std::vector<Box> boxes;
-    for (const Part& p : world_.parts) {
-      Box box;
-      for (const Vec3& x : p.solid->mesh().points_mm) box.add(p.X_WP * x);
-      boxes.push_back(box);
-    }
-    CcdScratch scratch;
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-        const Part &a = world_.parts[i], &b = world_.parts[j];
-        const double reach = report_.min_gap_mm + a.band.farthest_mm() + b.band.farthest_mm();
-        if (((boxes[i].lo - boxes[j].hi).array() > reach).any() ||
-            ((boxes[j].lo - boxes[i].hi).array() > reach).any() || met.contains({a.id, b.id}))
-          continue;
-        near_pair(a, b, reach, scratch);
-      }
-    std::sort(report_.near.begin(), report_.near.end(),
-              [](const NearPair& x, const NearPair& y) { return x.gap_mm.lo < y.gap_mm.lo; });
-  }
-
-  // Least outward offset of a band: how far inside of the mesh the real surface may be.
-  static double inward_mm(const SurfaceBand& band) {
-    double least = 0.0;
-    for (const SurfaceBand::Face& face : band.faces)
-      least = std::min(least, face.deviation_mm.lo + face.tolerance_mm.lo);
-    return -least;
-  }
-
-  void near_pair(const Part& a, const Part& b, double reach, CcdScratch& scratch) {
-    const DistanceResult found = distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, reach);
-    if (!found.within_limit) return;
-    const Interval gap{found.distance_mm - a.band.farthest_mm() - b.band.farthest_mm(),
-                       found.distance_mm + inward_mm(a.band) + inward_mm(b.band)};
-    if (gap.lo < report_.min_gap_mm) report_.near.push_back({a.id, b.id, gap});
+    report_.near = near_pairs(world_, gap_mm, met);
   }
 
   // 5. what could not be judged

@@ -40,8 +40,8 @@ Surface cone_of(const gp_Cone& cone, const std::vector<Vec3>& corners) {
 std::optional<Surface> stated_surface(const BRepAdaptor_Surface& adaptor, const TopoDS_Face& face,
                                       const std::vector<Vec3>& corners) {
   const bool reversed = face.Orientation() == TopAbs_REVERSED;
-  Surface s;
   bool direct = true;
+  Surface s;
   switch (adaptor.GetType()) {
     case GeomAbs_Plane: {
       const gp_Pln plane = adaptor.Plane();
@@ -61,21 +61,20 @@ std::optional<Surface> stated_surface(const BRepAdaptor_Surface& adaptor, const 
       break;
     }
     case GeomAbs_Cone: {
-      s = cone_of(adaptor.Cone(), corners);
-      direct = adaptor.Cone().Direct() != 0;
-      // On the far nappe the normal of the parametrization points to the axis.
       const gp_Cone cone = adaptor.Cone();
-      double radius = 0.0;
+      s = cone_of(cone, corners);
+      direct = cone.Direct() != 0;
+      // On the far nappe the normal of the parametrization points to the axis.
+      double radius = 0.0;  // of all corners
       for (const Vec3& x : corners)
         radius += cone.RefRadius() + (x - vec(cone.Location())).dot(vec(cone.Axis().Direction())) *
                                          std::tan(cone.SemiAngle());
-      if (radius < 0.0) direct = !direct;
+      direct = direct != (radius < 0.0);
       break;
     }
     case GeomAbs_Sphere: {
       const gp_Sphere sphere = adaptor.Sphere();
-      s.kind = SurfaceKind::kSphere;
-      s.point = vec(sphere.Location());
+      s = {.kind = SurfaceKind::kSphere, .point = vec(sphere.Location())};
       s.axis = vec(sphere.Position().Direction());
       s.radius_mm = sphere.Radius();
       direct = sphere.Direct() != 0;
@@ -83,7 +82,7 @@ std::optional<Surface> stated_surface(const BRepAdaptor_Surface& adaptor, const 
     }
     case GeomAbs_Torus: {
       const gp_Torus torus = adaptor.Torus();
-      if (!(torus.MajorRadius() > torus.MinorRadius())) return std::nullopt;
+      if (torus.MajorRadius() <= torus.MinorRadius()) return {};
       s.kind = SurfaceKind::kTorus;
       s.point = vec(torus.Location());
       s.axis = vec(torus.Axis().Direction());
