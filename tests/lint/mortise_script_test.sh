@@ -106,7 +106,7 @@ while read -r typed meant; do
   grep -q "no such command: $typed; did you mean $meant?" said || fail "$typed: $(cat said)"
   [ "$(wc -l <said)" -eq 1 ] || fail "$typed: more than one line"
 done <<'TXT'
-check judge
+clash judge
 judg judge
 lnit lint
 sevrer server
