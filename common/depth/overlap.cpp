@@ -272,7 +272,7 @@ class Overlap {
       try_witness(c.best, region);
       if (!found.lower_lazily.empty()) try_witness(found.lower_lazily[i].best, region);
       for (const Sample& sample : c.samples) try_witness(sample, region);
-      cap_certain(c.best, region);
+      cap_certain(c, region);
     }
     set_grade(pair_, regions_, i, {&deciding, &c.best}, region);
     return region;
@@ -320,20 +320,24 @@ class Overlap {
   }
 
   // Where a face was found deep beyond the edge that cuts it short, certain is what the witness
-  // shows.
-  void cap_certain(const Sample& deepest, OverlapRegion& region) {
-    if (!region.has_witness) return;
-    const Vec3 at_W = pair_.in_world(deepest.role, deepest.point_K);
-    bool past = false;
+  // shows, or another point of the face.
+  void cap_certain(const Bracket& certain, OverlapRegion& region) {
+    if (!region.has_witness || !is_past_edge(certain.best)) return;
+    double most_mm = 0.0;
     for (const int i : {0, 1})
-      past |=
-          is_past_convex_edge(pair_.bodies[i], pair_.X_W[i].inverse() * at_W, pair_.rounding_mm);
-    if (!past) return;
-    double sum_mm = 0.0;
+      most_mm += std::max(0.0, depth_below_convex_edges(pair_.bodies[i],
+                                                        pair_.X_W[i].inverse() * region.witness_W));
+    for (const Sample& sample : certain.samples)
+      if (sample.depth_mm > most_mm && !is_past_edge(sample)) most_mm = sample.depth_mm;
+    region.certain_mm.lo = std::min(region.certain_mm.lo, most_mm);
+  }
+
+  bool is_past_edge(const Sample& sample) const {
+    const Vec3 at_W = pair_.in_world(sample.role, sample.point_K);
     for (const int i : {0, 1})
-      sum_mm += std::max(0.0, depth_below_convex_edges(pair_.bodies[i],
-                                                       pair_.X_W[i].inverse() * region.witness_W));
-    region.certain_mm.lo = std::min(region.certain_mm.lo, sum_mm);
+      if (is_past_convex_edge(pair_.bodies[i], pair_.X_W[i].inverse() * at_W, pair_.rounding_mm))
+        return true;
+    return false;
   }
 
   void add_declared(const KnownFacePair& known, Candidates& candidates) {

@@ -46,15 +46,16 @@ TEST(Mating, AnInsertIsExplainedByItsRing) {
   const Mating mating = mating_of(ring_and_pin("diameter: 3.6, length: 3"));
   EXPECT_EQ(mating.relation, MatingKind::kInsert);
   ASSERT_EQ(mating.pairs.size(), 1U);
-  const double exact = 0.25 * std::numbers::pi * (3.6 * 3.6 - 3.3 * 3.3) * 3.0;
+  // Its journal is shorter by a chamfer of 0.5 mm at either end.
+  const double exact = 0.25 * std::numbers::pi * (3.6 * 3.6 - 3.3 * 3.3) * 2.0;
   EXPECT_NEAR(mating.explained_mm3, exact, 0.02 * exact);
 }
 
 TEST(Mating, TheLengthIsThatOfBoth) {
-  // The pin begins 1 mm inside and is longer than the ring: 4 mm are common.
+  // The pin begins 1 mm inside, its journal 0.5 mm later; both go on beyond the ring's end.
   const Mating mating = mating_of(ring_and_pin("diameter: 3.6, length: 30"));
   ASSERT_EQ(mating.pairs.size(), 1U);
-  EXPECT_NEAR(mating.pairs[0].length_mm, 4.0, 1e-9);
+  EXPECT_NEAR(mating.pairs[0].length_mm, 3.5, 1e-9);
 }
 
 TEST(Mating, PartsBesideEachOtherAreNothingToEachOther) {

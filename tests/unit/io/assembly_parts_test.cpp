@@ -61,7 +61,7 @@ TEST(AssemblyParts, FitsNamePathsWithGlobs) {
       read_with(test::ring_and_pins(),
                 "}\nfits:\n  - {between: [\"*/ring\", \"base/pin*\"], code: Ø20 H7/g6}\n"));
   ASSERT_EQ(scene.fits.size(), 1U);
-  EXPECT_EQ(scene.fits[0].code, "H7/g6");
+  EXPECT_EQ(scene.fits[0].code, "Ø20 H7/g6");
 }
 
 TEST(AssemblyParts, AFaceIsAddressedByItsGeometry) {

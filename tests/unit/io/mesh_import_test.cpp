@@ -173,7 +173,7 @@ TEST_F(MeshImport, GltfComesThrough) {
 
 TEST_F(MeshImport, RefusalsSayWhy) {
   expect_says(one_line_error(write("a.3mf", "PK")), "3MF is not read");
-  expect_says(one_line_error(write("a.step", "ISO-10303-21;")), "tessellate");
+  expect_says(one_line_error(write("a.step", "ISO-10303-21;")), "mortise check");
   expect_says(one_line_error(write("a.txt", "hello")), "known are .stl");
   expect_says(one_line_error(write("noextension", "hello")), "known are .stl");
   expect_says(one_line_error(folder_ / "missing.stl"), "no such file");
