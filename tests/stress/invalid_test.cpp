@@ -49,14 +49,14 @@ TEST(InvalidDeathTest, Motions) {
   for (const Pose& X : bad_poses()) {
     EXPECT_FALSE(valid(X));
     EXPECT_DEATH(still_motion(X), "check failed.*finite");
-    EXPECT_DEATH(linear_motion(X, {}, {}), "check failed.*finite");
-    EXPECT_DEATH(linear_motion({}, X, {}), "check failed.*finite");
-    EXPECT_DEATH(screw_motion({}, X, {}), "check failed.*finite");
+    EXPECT_DEATH(linear_motion(X, Pose(), Vec3::Zero()), "check failed.*finite");
+    EXPECT_DEATH(linear_motion({}, X, Vec3::Zero()), "check failed.*finite");
+    EXPECT_DEATH(screw_motion({}, X, Vec3::Zero()), "check failed.*finite");
     EXPECT_DEATH(seen_from(Motion{}, X), "check failed.*finite");
   }
   EXPECT_DEATH(linear_motion({}, {}, {0, kNan, 0}), "reference point");
   EXPECT_DEATH(screw_motion({}, {}, {kInf, 0, 0}), "reference point");
-  const Motion good = linear_motion({}, turn({0, 0, 1}, {1, 2, 3}), {});
+  const Motion good = linear_motion({}, turn({0, 0, 1}, {1, 2, 3}), Vec3::Zero());
   EXPECT_TRUE(valid(good));
   EXPECT_DEATH(good.pose_at(kNan), "a time");
   EXPECT_DEATH(until(good, kNan), "a time");
@@ -72,7 +72,7 @@ TEST(InvalidDeathTest, Motions) {
 }
 
 TEST(Invalid, MotionsMadeByHand) {
-  const Motion good = linear_motion({}, turn({0, 0, 1}, {1, 2, 3}), {});
+  const Motion good = linear_motion({}, turn({0, 0, 1}, {1, 2, 3}), Vec3::Zero());
   const auto spoiled = [&](auto change) {
     Motion m = good;
     change(m);

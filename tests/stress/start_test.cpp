@@ -105,8 +105,9 @@ TEST(Start, ContainedIsSeen) {
     if (hollow) append(outer, inside_out(transformed(box_mesh({8, 8, 8}), turn({0.1, 0.2, 0.3}))));
     c.b = solid(outer);
     const Pose at{rotation_exp(random_turn(random, kPi)), random_vector(random, 0.8)};
-    c.motion_a = i % 2 == 0 ? still_motion(at)
-                            : linear_motion(at, {at.q, at.p + random_vector(random, 0.3)}, {});
+    c.motion_a = i % 2 == 0
+                     ? still_motion(at)
+                     : linear_motion(at, {at.q, at.p + random_vector(random, 0.3)}, Vec3::Zero());
     const Pose G{rotation_exp(random_turn(random, kPi)), random_vector(random, 100.0)};
     c.motion_b = still_motion({});
     c = moved(c, G);

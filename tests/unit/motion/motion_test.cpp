@@ -151,7 +151,7 @@ TEST(Motion, CutShortItIsTheSamePathAndEndsExactly) {
         EXPECT_LT(difference(cut.pose_at(t), m.pose_at(0.3 * t)), 1e-12);
     }
   }
-  EXPECT_FALSE(until(linear_motion({}, Pose::translation({1, 0, 0}), {}), 0.0).moves());
+  EXPECT_FALSE(until(linear_motion({}, Pose::translation({1, 0, 0}), Vec3::Zero()), 0.0).moves());
 }
 
 TEST(Motion, AlmostStraightScrewKeepsItsDigits) {
