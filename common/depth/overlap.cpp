@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
@@ -25,6 +26,16 @@ constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;
 
+// Of a region with one point: its two triangles decide it.
+OverlapRegion decided_there(const PairFrame& pair, OverlapRegion region) {
+  region.deciding_triangle_a = region.triangle_a;
+  region.deciding_triangle_b = region.triangle_b;
+  region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
+  set_shapes(pair, region);
+  region.points_W = {region.point_W};
+  return region;
+}
+
 // Without an inside there is no depth: the crossing itself, or that the parts are near, is the
 // finding.
 OverlapRegion region_without_depth(const PairFrame& pair, const Candidates& candidates) {
@@ -45,12 +56,7 @@ OverlapRegion region_without_depth(const PairFrame& pair, const Candidates& cand
     region.triangle_b = candidates.triangles[1].front();
     region.point_W = pair.X_W[0] * pair.bodies[0].mesh->corner(region.triangle_a, 0);
   }
-  region.deciding_triangle_a = region.triangle_a;
-  region.deciding_triangle_b = region.triangle_b;
-  region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
-  set_shapes(pair, region);
-  region.points_W = {region.point_W};
-  return region;
+  return decided_there(pair, std::move(region));
 }
 
 OverlapRegion region_of(const PairFrame& pair, const TipReach& reach) {
@@ -60,13 +66,8 @@ OverlapRegion region_of(const PairFrame& pair, const TipReach& reach) {
   region.certain_mm = {-reach.gap_mm - pair.reach_mm(Layer::kLower), 0.0};
   region.triangle_a = reach.role == 0 ? reach.triangle : reach.other_triangle;
   region.triangle_b = reach.role == 0 ? reach.other_triangle : reach.triangle;
-  region.deciding_triangle_a = region.triangle_a;
-  region.deciding_triangle_b = region.triangle_b;
   region.point_W = reach.point_W;
-  region.normal_W = pair.X_W[1].q * pair.bodies[1].normal(region.triangle_b);
-  set_shapes(pair, region);
-  region.points_W = {region.point_W};
-  return region;
+  return decided_there(pair, std::move(region));
 }
 
 Bracket moved(Bracket bracket, double by_mm) {
