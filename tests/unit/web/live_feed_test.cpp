@@ -193,7 +193,8 @@ TEST_F(PagesOnASession, WhoGoesBeforeTheServerAnswersIsNoGhost) {
   feed->turn(now_s);  // the question goes out
   feed->leave(ann);
   turn(5);
-  for (const Json& user : bob.last("users")["users"])
+  const Json told = bob.last("users");
+  for (const Json& user : told["users"])
     EXPECT_EQ(user["present"], user["name"] == "bob") << user;
 }
 
