@@ -303,12 +303,6 @@ const PlaneFaces& Body::plane_faces() const {
   return *index_->plane_faces;
 }
 
-const std::vector<Tip>& Body::tips() const {
-  if (!index_->tips)
-    index_->tips = std::make_unique<const std::vector<Tip>>(find_tips(*solid, *band));
-  return *index_->tips;
-}
-
 std::int32_t Body::find_faces_of_children(std::int32_t child) const {
   const Bvh& bvh = solid->bvh();
   if (child < 0) {

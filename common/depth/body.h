@@ -42,9 +42,8 @@ struct Body {
   static constexpr std::int32_t kMixed = -1;
   const std::vector<std::array<std::int32_t, Bvh::kWidth>>& face_of_child() const;
 
-  /// Faces in one plane, merged; of the largest part what find_tips() finds.
+  /// Faces in one plane, merged.
   const PlaneFaces& plane_faces() const;
-  const std::vector<Tip>& tips() const;
 
   /// Does the face's mesh stand for its declared surface at the point nearest to x?
   bool stands_for(std::uint16_t face, const Vec3& x) const;
@@ -73,6 +72,8 @@ struct Body {
   /// is positive. Over a declared face the distance from its surface counts, exact however coarse
   /// the mesh; elsewhere the triangles with their offsets.
   double depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const;
+
+  BodyIndex& index() const { return *index_; }
 
  private:
   double depth_by_triangle(const Vec3& x, std::uint32_t triangle,

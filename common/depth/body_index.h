@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/depth/cells/cover.h"
 #include "common/geometry/plane_faces.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
@@ -48,6 +49,7 @@ struct BodyIndex {
   std::vector<std::array<std::int32_t, Bvh::kWidth>> face_of_child;  ///< see Body::face_of_child
   std::unique_ptr<const PlaneFaces> plane_faces;                     ///< see Body::plane_faces
   std::unique_ptr<const std::vector<Tip>> tips;                      ///< see Body::tips
+  std::unique_ptr<const Cover> cover;                                ///< see Body::cover
 };
 
 /// The index of a part with a band: one that this thread has made of an equal part and band, else a

@@ -11,6 +11,13 @@
 namespace mortise {
 namespace {
 
+// Of the largest part; found once.
+const std::vector<Tip>& tips_of(const Body& body) {
+  std::unique_ptr<const std::vector<Tip>>& tips = body.index().tips;
+  if (!tips) tips = std::make_unique<const std::vector<Tip>>(find_tips(*body.solid, *body.band));
+  return *tips;
+}
+
 // Pieces of all tips of a pair that are looked at.
 constexpr std::uint64_t kMostLooks = 4000;
 // A piece smaller than this that is not excluded is told, mm.
@@ -299,7 +306,7 @@ class TipSearch {
   std::optional<TipReach> run() {
     const double far_mm = k_.band->farthest_mm() + pair_.touch_mm;
     const Box near = k_.solid->bounds().grown(far_mm);
-    for (const Tip& tip : s_.tips()) {
+    for (const Tip& tip : tips_of(s_)) {
       const Vec3 from = pair_.X_KS[role_] * tip.from, to = pair_.X_KS[role_] * tip.to;
       Box box;
       box.add(from);
@@ -380,7 +387,7 @@ class TipSearch {
   bool meets_other_tip(const Piece& piece) const {
     const Vec3 middle = piece.middle();
     const double radius_mm = piece.radius_mm(middle);
-    for (const Tip& tip : k_.tips()) {
+    for (const Tip& tip : tips_of(k_)) {
       const double half_mm = 0.5 * (tip.to - tip.from).norm();
       if ((0.5 * (tip.from + tip.to) - middle).norm() > radius_mm + half_mm + tip.travel_mm)
         continue;

@@ -1,0 +1,183 @@
+#include "common/depth/cells/convex_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mortise {
+namespace {
+
+// Corners closer than this share of the size of a cell are one; a corner is on every plane that it
+// is so close to. Far below what counts as touching.
+constexpr double kSameShare = 1e-10;
+// Three planes whose normals span less have no corner of their own.
+constexpr double kLeastSpan = 1e-9;
+// Rounds of projections onto the planes of a polytope.
+constexpr int kRounds = 4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+double ConvexCell::support_mm(const Vec3& n) const {
+  double most = -kInfinity;
+  if (!round) {
+    for (const Vec3& x : corners) most = std::max(most, n.dot(x));
+    return most;
+  }
+  const double along = n.dot(axis), off = (n - along * axis).norm();
+  for (const Circle& circle : circles)
+    most = std::max(most, along * circle.z_mm + off * circle.r_mm);
+  return most + n.dot(point);
+}
+
+Vec3 ConvexCell::farthest(const Vec3& n) const {
+  double most = -kInfinity;
+  if (!round) {
+    const Vec3* at = &middle;
+    for (const Vec3& x : corners)
+      if (const double s = n.dot(x); s > most) {
+        most = s;
+        at = &x;
+      }
+    return *at;
+  }
+  const double along = n.dot(axis);
+  const Vec3 across_axis = n - along * axis;
+  const double off = across_axis.norm();
+  const Vec3 u = off > 0.0 ? Vec3(across_axis / off) : across[0];
+  Vec3 at = middle;
+  for (const Circle& circle : circles)
+    if (const double s = along * circle.z_mm + off * circle.r_mm; s > most) {
+      most = s;
+      at = point + circle.z_mm * axis + circle.r_mm * u;
+    }
+  return at;
+}
+
+Vec3 ConvexCell::nearest_of_round(const Vec3& x) const {
+  const Vec3 d = x - point;
+  const double z = d.dot(axis);
+  const Vec3 off = d - z * axis;
+  const double r = off.norm();
+  const Vec3 u = r > 0.0 ? Vec3(off / r) : across[0];
+  // Borders of the half plane beside the axis: both ends, and what is between the circles.
+  double least = kInfinity, at_z = z, at_r = r;
+  const auto take = [&](const Circle& p, const Circle& q) {
+    const double dz = q.z_mm - p.z_mm, dr = q.r_mm - p.r_mm, square = dz * dz + dr * dr;
+    const double s =
+        square > 0.0 ? std::clamp(((z - p.z_mm) * dz + (r - p.r_mm) * dr) / square, 0.0, 1.0) : 0.0;
+    const double near_z = p.z_mm + s * dz, near_r = p.r_mm + s * dr;
+    const double away = (near_z - z) * (near_z - z) + (near_r - r) * (near_r - r);
+    if (away >= least) return;
+    least = away;
+    at_z = near_z;
+    at_r = near_r;
+  };
+  bool inside = circles.front().z_mm <= z && z <= circles.back().z_mm;
+  for (std::size_t i = 0; i + 1 < circles.size(); ++i) {
+    const Circle &p = circles[i], &q = circles[i + 1];
+    inside &= (r - p.r_mm) * (q.z_mm - p.z_mm) <= (q.r_mm - p.r_mm) * (z - p.z_mm);
+    take(p, q);
+  }
+  if (inside) return x;
+  take({circles.front().z_mm, 0.0}, circles.front());
+  take({circles.back().z_mm, 0.0}, circles.back());
+  return point + at_z * axis + at_r * u;
+}
+
+Vec3 ConvexCell::near(const Vec3& x) const {
+  if (round) return nearest_of_round(x);
+  Vec3 at = x;
+  for (int i = 0; i < kRounds; ++i)
+    for (const Vec3& n : normals)
+      if (const double beyond = n.dot(at) - support_mm(n); beyond > 0.0) at -= beyond * n;
+  return at;
+}
+
+std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
+                                     std::span<const MeridianLine> lines) {
+  double size = 0.0;
+  for (const MeridianLine& line : lines) size = std::max(size, std::fabs(line.c_mm));
+  // Two lines at most 45 degrees apart may meet that much farther out; what is bounded is within.
+  const double far = 1e3 * (size + 1.0);
+  using Point = ConvexCell::Circle;
+  std::vector<Point> polygon = {{-far, 0.0}, {far, 0.0}, {far, far}, {-far, far}}, cut;
+  for (const MeridianLine& line : lines) {
+    cut.clear();
+    const auto beyond = [&](const Point& p) {
+      return line.along * p.z_mm + line.off * p.r_mm - line.c_mm;
+    };
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+      const double at_p = beyond(p), at_q = beyond(q);
+      if (at_p <= 0.0) cut.push_back(p);
+      if ((at_p < 0.0 && at_q > 0.0) || (at_p > 0.0 && at_q < 0.0)) {
+        const double s = at_p / (at_p - at_q);
+        cut.push_back({p.z_mm + s * (q.z_mm - p.z_mm), p.r_mm + s * (q.r_mm - p.r_mm)});
+      }
+    }
+    polygon.swap(cut);
+    if (polygon.empty()) return std::nullopt;
+  }
+  ConvexCell cell;
+  cell.round = true;
+  cell.point = point;
+  cell.axis = axis;
+  cell.across[0] = axis.unitOrthogonal();
+  cell.across[1] = axis.cross(cell.across[0]);
+  std::sort(polygon.begin(), polygon.end(), [](const Point& p, const Point& q) {
+    return p.z_mm < q.z_mm || (p.z_mm == q.z_mm && p.r_mm > q.r_mm);
+  });
+  // What is left of a border along the axis is inside the hull of the rest.
+  for (const Point& p : polygon)
+    if (cell.circles.empty() || p.z_mm - cell.circles.back().z_mm > kSameShare * (size + 1.0))
+      cell.circles.push_back(p);
+    else
+      cell.circles.back().r_mm = std::max(cell.circles.back().r_mm, p.r_mm);
+  if (!(cell.circles.back().z_mm > cell.circles.front().z_mm)) return std::nullopt;
+  cell.normals = {axis, -axis};
+  cell.middle = point + 0.5 * (cell.circles.front().z_mm + cell.circles.back().z_mm) * axis;
+  return cell;
+}
+
+std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
+  double size = 0.0;
+  for (const HalfSpace& plane : planes) size = std::max(size, std::fabs(plane.c_mm));
+  const double same = kSameShare * size;
+  ConvexCell cell;
+  std::vector<std::vector<std::uint16_t>> planes_of;
+  const auto add = [&](const Vec3& x) {
+    for (const HalfSpace& plane : planes)
+      if (plane.n.dot(x) > plane.c_mm + same) return;
+    for (const Vec3& known : cell.corners)
+      if ((known - x).norm() <= same) return;
+    cell.corners.push_back(x);
+    planes_of.emplace_back();
+    for (std::uint16_t p = 0; p < planes.size(); ++p)
+      if (planes[p].n.dot(x) >= planes[p].c_mm - 4.0 * same) planes_of.back().push_back(p);
+  };
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      const Vec3 line = planes[i].n.cross(planes[j].n);
+      for (std::size_t k = j + 1; k < planes.size(); ++k) {
+        const double span = line.dot(planes[k].n);
+        if (std::fabs(span) < kLeastSpan) continue;
+        add((planes[i].c_mm * planes[j].n.cross(planes[k].n) +
+             planes[j].c_mm * planes[k].n.cross(planes[i].n) + planes[k].c_mm * line) /
+            span);
+      }
+    }
+  if (cell.corners.size() < 4) return std::nullopt;
+  for (std::uint16_t a = 0; a < cell.corners.size(); ++a)
+    for (std::uint16_t b = a + 1; b < cell.corners.size(); ++b) {
+      std::size_t shared = 0;
+      for (const std::uint16_t p : planes_of[a])
+        shared += std::count(planes_of[b].begin(), planes_of[b].end(), p);
+      if (shared >= 2) cell.edges.push_back({a, b});
+    }
+  for (const HalfSpace& plane : planes) cell.normals.push_back(plane.n);
+  for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
+  return cell;
+}
+
+}  // namespace mortise

@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/math/types.h"
+
+namespace mortise {
+
+/// {x : n · x <= c}, n a unit vector. mm.
+struct HalfSpace {
+  Vec3 n = Vec3::UnitZ();
+  double c_mm = 0.0;
+};
+
+/// A convex body in the frame of its part, mm: one of revolution, or a polytope.
+struct ConvexCell {
+  /// A circle about the axis, `z_mm` along it from `point`.
+  struct Circle {
+    double z_mm = 0.0, r_mm = 0.0;
+  };
+  bool round = false;
+  Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
+  Vec3 across[2] = {Vec3::UnitX(), Vec3::UnitY()};  ///< unit, at right angles to the axis
+  std::vector<Circle> circles;  ///< round: the body is their hull; z ascends, r is concave over z
+
+  std::vector<Vec3> corners;  ///< polytope: the body is their hull
+  /// Its edges, by corner. There may be more, none is missing.
+  std::vector<std::array<std::uint16_t, 2>> edges;
+
+  std::vector<Vec3> normals;   ///< of its plane faces, outward
+  Vec3 middle = Vec3::Zero();  ///< a point inside
+
+  /// Largest n · x over the body; of a point where it is reached. n need not be a unit vector.
+  double support_mm(const Vec3& n) const;
+  Vec3 farthest(const Vec3& n) const;
+  /// A point of the body near x; of one of revolution the nearest, of a polytope about that.
+  Vec3 near(const Vec3& x) const;
+
+ private:
+  Vec3 nearest_of_round(const Vec3& x) const;
+};
+
+/// A straight line in the half plane beside an axis: what lies below it is along * z + off * r <=
+/// c. (along, off) is a unit vector, off >= 0.
+struct MeridianLine {
+  double along = 0.0, off = 1.0, c_mm = 0.0;
+};
+
+/// The body of revolution below all lines; nullopt: it is empty. The lines must bound it.
+std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
+                                     std::span<const MeridianLine> lines);
+
+/// The polytope within all half-spaces, which must bound it; nullopt: it is empty. O(n⁴).
+std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes);
+
+}  // namespace mortise

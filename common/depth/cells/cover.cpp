@@ -1,0 +1,65 @@
+#include "common/depth/cells/cover.h"
+
+#include <algorithm>
+
+#include "common/depth/cells/cover_faces.h"
+#include "common/depth/cells/cover_outside.h"
+#include "common/depth/cells/cover_voids.h"
+
+namespace mortise {
+namespace {
+
+// A turned cover is taken that has less than this share of the volume of the box.
+constexpr double kSmaller = 0.95;
+
+void set_heights(CoverLayer& layer) {
+  for (const ConvexCell& cell : layer.cells)
+    for (const Void& v : layer.voids) {
+      Interval along;
+      if (v.wall) {
+        const double zero = v.wall->axis.dot(v.wall->point);
+        along = {std::max(v.wall->along_mm.lo, -cell.support_mm(-v.wall->axis) - zero),
+                 std::min(v.wall->along_mm.hi, cell.support_mm(v.wall->axis) - zero)};
+      }
+      layer.heights_mm.push_back(along);
+    }
+}
+
+}  // namespace
+
+Cover find_cover(const Body& body) {
+  Cover cover;
+  if (body.mesh->triangles.empty()) {
+    cover.why_not = "it has no triangles";
+    return cover;
+  }
+  if (!body.solid->inside_known()) {
+    cover.why_not = "its mesh is open: what is inside is not known";
+    return cover;
+  }
+  const CoverFaces faces(body);
+  Outside outside = turned_outside(faces);
+  Outside box = polytope_outside(faces);
+  if (outside.cells[1].empty() || outside.volume_mm3 >= kSmaller * box.volume_mm3)
+    outside = std::move(box);
+  if (outside.cells[1].empty()) {
+    cover.why_not = "it is too thin";
+    return cover;
+  }
+  const std::vector<LayerVoids> voids = find_voids(faces);
+  for (int i = 0; i < 2; ++i) {
+    CoverLayer& layer = i == 0 ? cover.least : cover.largest;
+    layer.cells = std::move(outside.cells[i]);
+    for (const LayerVoids& v : voids) layer.voids.push_back(v.of[i]);
+    set_heights(layer);
+  }
+  return cover;
+}
+
+const Cover& cover_of(const Body& body) {
+  std::unique_ptr<const Cover>& cover = body.index().cover;
+  if (!cover) cover = std::make_unique<const Cover>(find_cover(body));
+  return *cover;
+}
+
+}  // namespace mortise

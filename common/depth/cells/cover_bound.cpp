@@ -1,0 +1,263 @@
+#include "common/depth/cells/cover_bound.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace mortise {
+namespace {
+
+// Sectors looked at before what is known so far has to do; each halving quarters their error.
+constexpr int kMostSectors = 200;
+// A bracket this narrow is good enough, mm.
+constexpr double kNarrow_mm = 2e-5;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double beyond(const VoidWall& wall, const Vec3& x) {
+  const Vec3 d = x - wall.point;
+  const double z = d.dot(wall.axis);
+  return wall.cosine * ((d - z * wall.axis).norm() - wall.r_mm - wall.slope * z);
+}
+
+// A round cell beside a wall. Directions off its axis are u = c across[0] + s across[1]; over a
+// sector of a circle they are within the triangle of both ends and where their tangents meet.
+class RoundInWall {
+ public:
+  RoundInWall(const ConvexCell& s, const Chord& chord, const VoidWall& wall, const Interval& along,
+              std::uint64_t& work)
+      : s_(s), chord_(chord), wall_(wall), along_(along), work_(work) {
+    for (int e = 0; e < chord.ends; ++e) {
+      const Pose& X = chord.X_KS[e];
+      point_[e] = X * s.point;
+      axis_[e] = X.q * s.axis;
+      for (int k = 0; k < 2; ++k) across_[e][k] = X.q * s.across[k];
+      rise_[e] = std::hypot(across_[e][0].dot(wall.axis), across_[e][1].dot(wall.axis));
+    }
+  }
+
+  double run(double limit_mm, double useless_mm) {
+    const double whole = whole_circle();
+    if (whole <= limit_mm || whole == -kInfinity) return whole;
+    for (int i = 0; i < 4; ++i) add(kQuarters[i], kQuarters[(i + 1) % 4], whole);
+    while (!heap_.empty() && work_here_ < kMostSectors) {
+      const double most = heap_.front().hi;
+      if (most <= limit_mm || most <= best_ + chord_.spread_mm + kNarrow_mm) break;
+      if (best_ - chord_.spread_mm > useless_mm) return kInfinity;
+      std::pop_heap(heap_.begin(), heap_.end());
+      const Sector sector = heap_.back();
+      heap_.pop_back();
+      const Direction middle = between(sector.from, sector.to);
+      add(sector.from, middle, sector.hi);
+      add(middle, sector.to, sector.hi);
+    }
+    return heap_.empty() ? -kInfinity : heap_.front().hi;
+  }
+
+  /// The point of S that came farthest, of those seen.
+  const std::optional<Vec3>& at_S() const { return at_S_; }
+
+ private:
+  struct Direction {
+    double c, s;
+  };
+  struct Sector {
+    Direction from, to;
+    double hi;
+    bool operator<(const Sector& other) const { return hi < other.hi; }
+  };
+  struct Rises {
+    std::array<double, 2> least, most;  // by end of the chord
+  };
+  static constexpr Direction kQuarters[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+
+  static Direction between(const Direction& a, const Direction& b) {
+    const double c = a.c + b.c, s = a.s + b.s, length = std::sqrt(c * c + s * s);
+    return {c / length, s / length};
+  }
+
+  // Of the generator between two circles: where some point of it, with a rise among those given,
+  // may be between the heights of the wall at some time of the span. False: nowhere.
+  bool clip(std::size_t segment, const Rises& rises, double& from, double& to) const {
+    const auto &p = s_.circles[segment], &q = s_.circles[segment + 1];
+    const double slope = (q.r_mm - p.r_mm) / (q.z_mm - p.z_mm);
+    from = kInfinity;
+    to = -kInfinity;
+    for (int i = 0; i < chord_.ends; ++i)
+      for (int j = 0; j < chord_.ends; ++j) {
+        double lo = p.z_mm, hi = q.z_mm;
+        // height = at + by * z <= most, or the same with all signs turned
+        const auto keep = [&](int e, double rise, double most, double sign) {
+          const double at =
+              sign * ((point_[e] - wall_.point).dot(wall_.axis) + rise * (p.r_mm - slope * p.z_mm));
+          const double by = sign * (axis_[e].dot(wall_.axis) + rise * slope);
+          const double left = most - at;
+          if (std::fabs(by) < 1e-12) {
+            if (left < -1e-9 - 1e-12 * (std::fabs(p.z_mm) + std::fabs(q.z_mm))) lo = kInfinity;
+          } else if (by > 0.0) {
+            hi = std::min(hi, left / by);
+          } else {
+            lo = std::max(lo, left / by);
+          }
+        };
+        if (along_.hi < kInfinity) keep(i, rises.least[i], along_.hi + chord_.spread_mm, 1.0);
+        if (along_.lo > -kInfinity) keep(j, rises.most[j], -(along_.lo - chord_.spread_mm), -1.0);
+        if (lo > hi) continue;
+        from = std::min(from, lo);
+        to = std::max(to, hi);
+      }
+    return from <= to;
+  }
+
+  double radius(std::size_t segment, double z) const {
+    const auto &p = s_.circles[segment], &q = s_.circles[segment + 1];
+    return p.r_mm + (q.r_mm - p.r_mm) * (z - p.z_mm) / (q.z_mm - p.z_mm);
+  }
+
+  // All around at once: the centre of the circle, and its radius.
+  double whole_circle() {
+    ++work_;
+    double most = -kInfinity;
+    Rises rises;
+    for (int e = 0; e < chord_.ends; ++e) {
+      rises.least[e] = -rise_[e];
+      rises.most[e] = rise_[e];
+    }
+    for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
+      double from, to;
+      if (!clip(k, rises, from, to)) continue;
+      for (int e = 0; e < chord_.ends; ++e)
+        for (const double z : {from, to}) {
+          const double r = radius(k, z);
+          most = std::max(most, beyond(wall_, point_[e] + z * axis_[e]) +
+                                    wall_.cosine * r * (1.0 + std::fabs(wall_.slope) * rise_[e]));
+        }
+    }
+    return most + chord_.spread_mm;
+  }
+
+  void add(const Direction& from, const Direction& to, double known) {
+    ++work_;
+    ++work_here_;
+    const Direction middle = between(from, to);
+    const double out = 1.0 / (from.c * middle.c + from.s * middle.s);
+    const Direction corners[3] = {from, to, {out * middle.c, out * middle.s}};
+    std::array<std::array<Vec3, 3>, 2> u;
+    Rises rises, at_middle;
+    for (int e = 0; e < chord_.ends; ++e) {
+      rises.least[e] = kInfinity;
+      rises.most[e] = -kInfinity;
+      for (int k = 0; k < 3; ++k) {
+        u[e][k] = corners[k].c * across_[e][0] + corners[k].s * across_[e][1];
+        const double rise = u[e][k].dot(wall_.axis);
+        rises.least[e] = std::min(rises.least[e], rise);
+        rises.most[e] = std::max(rises.most[e], rise);
+      }
+      at_middle.least[e] = at_middle.most[e] = u[e][2].dot(wall_.axis) / out;
+    }
+    double most = -kInfinity;
+    for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
+      double a, b;
+      if (!clip(k, rises, a, b)) continue;
+      for (int e = 0; e < chord_.ends; ++e)
+        for (const double z : {a, b})
+          for (int c = 0; c < 3; ++c)
+            most = std::max(most, beyond(wall_, point_[e] + z * axis_[e] + radius(k, z) * u[e][c]));
+      if (!clip(k, at_middle, a, b)) continue;
+      for (int e = 0; e < chord_.ends; ++e)
+        for (const double z : {a, b}) {
+          const double r = radius(k, z);
+          const double at = beyond(wall_, point_[e] + z * axis_[e] + r / out * u[e][2]);
+          if (at <= best_) continue;
+          best_ = at;
+          at_S_ = s_.point + z * s_.axis + r * (middle.c * s_.across[0] + middle.s * s_.across[1]);
+        }
+    }
+    if (most == -kInfinity) return;
+    heap_.push_back({from, to, std::min(known, most + chord_.spread_mm)});
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+
+  const ConvexCell& s_;
+  const Chord& chord_;
+  const VoidWall& wall_;
+  const Interval along_;
+  std::uint64_t& work_;
+  Vec3 point_[2], axis_[2], across_[2][2];
+  double rise_[2] = {0.0, 0.0};
+  int work_here_ = 0;
+  double best_ = -kInfinity;  // of points seen, at an end of the chord
+  std::optional<Vec3> at_S_;
+  std::vector<Sector> heap_;
+};
+
+// f is convex, so it is largest at corners of what is between the heights: corners of the cell, and
+// where its edges pass a height. Heights are those at an end of the chord, widened by how much any
+// height changes.
+double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
+                        const Interval& along, std::uint64_t& work, std::optional<Vec3>& at_S) {
+  ++work;
+  const std::size_t count = s.corners.size();
+  std::vector<Vec3> x(count * static_cast<std::size_t>(chord.ends));
+  std::vector<double> z(x.size());
+  double change = 0.0;
+  for (std::size_t c = 0; c < count; ++c) {
+    for (int e = 0; e < chord.ends; ++e) {
+      const std::size_t i = e * count + c;
+      x[i] = chord.X_KS[e] * s.corners[c];
+      z[i] = (x[i] - wall.point).dot(wall.axis);
+    }
+    if (chord.ends == 2) change = std::max(change, std::fabs(z[count + c] - z[c]));
+  }
+  change += chord.spread_mm;
+  const double lo = along.lo - change, hi = along.hi + change;
+  double most = -kInfinity;
+  const auto take = [&](double far, const Vec3& x_S) {
+    if (far <= most) return;
+    most = far;
+    at_S = x_S;
+  };
+  for (int e = 0; e < chord.ends; ++e) {
+    const std::size_t first = e * count;
+    for (std::size_t c = 0; c < count; ++c)
+      if (lo <= z[first + c] && z[first + c] <= hi) take(beyond(wall, x[first + c]), s.corners[c]);
+    for (const auto& [a, b] : s.edges)
+      for (const double level : {lo, hi}) {
+        const double za = z[first + a] - level, zb = z[first + b] - level;
+        if (!(za * zb < 0.0)) continue;
+        const double share = za / (za - zb);
+        take(beyond(wall, x[first + a] + share * (x[first + b] - x[first + a])),
+             s.corners[a] + share * (s.corners[b] - s.corners[a]));
+      }
+  }
+  return most + chord.spread_mm;
+}
+
+}  // namespace
+
+double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace& material) {
+  double least = kInfinity;
+  for (int e = 0; e < chord.ends; ++e) {
+    const Pose& X = chord.X_KS[e];
+    least = std::min(least, material.n.dot(X.p) - s.support_mm(-(X.q.conjugate() * material.n)));
+  }
+  return material.c_mm - least + chord.spread_mm;
+}
+
+double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
+                      const Interval& along, double limit_mm, double useless_mm,
+                      std::uint64_t& work, std::optional<Vec3>& at_S) {
+  if (!(along.lo <= along.hi)) return -kInfinity;
+  double most = -kInfinity;
+  if (s.round) {
+    RoundInWall in_wall(s, chord, wall, along, work);
+    most = in_wall.run(limit_mm, useless_mm);
+    at_S = in_wall.at_S();
+  } else {
+    most = polytope_in_wall(s, chord, wall, along, work, at_S);
+  }
+  // A depth is measured at right angles to the wall, the way along one radius is longer.
+  return most > 0.0 ? most / wall.cosine : most;
+}
+
+}  // namespace mortise

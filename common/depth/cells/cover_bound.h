@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "common/depth/cells/cover.h"
+#include "common/math/pose.h"
+
+namespace mortise {
+
+/// How a cell S is seen from the frame K of the other part, over a span of time: every point of it
+/// stays within spread_mm of the straight way from its place by X_KS[0] to that by X_KS[1].
+struct Chord {
+  Pose X_KS[2];
+  int ends = 1;  ///< 1: a fixed pose
+  double spread_mm = 0.0;
+};
+
+/// No point of S comes farther than this beyond the border of a half-space of material. mm.
+double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace& material);
+
+/// No point of S comes farther than this beyond the wall of a hole, where its height along the axis
+/// is in `along_mm`; minus infinity: none gets there. Looks no closer once it is not above
+/// limit_mm; infinity where it is seen to be above useless_mm. Adds what it has looked at to
+/// `work`. at_S: a point of S that comes about so far, where one is seen.
+double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
+                      const Interval& along_mm, double limit_mm, double useless_mm,
+                      std::uint64_t& work, std::optional<Vec3>& at_S);
+
+}  // namespace mortise

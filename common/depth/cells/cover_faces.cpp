@@ -1,0 +1,101 @@
+#include "common/depth/cells/cover_faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mortise {
+namespace {
+
+// Planes whose normals differ by less are parallel.
+constexpr double kParallel = 1e-9;
+// Edges of round faces are not sharper than 60 degrees; what is drawn outwards by both faces of
+// one comes twice as far.
+constexpr double kTravelOfRound = 2.0;
+constexpr double kSameShare = 1e-9;
+
+}  // namespace
+
+CoverFaces::CoverFaces(const Body& body_of) : body(body_of), planes(body_of.plane_faces()) {
+  same_mm = std::max(2.0 * planes.noise_mm, kSameShare * body.solid->bvh().extent_mm);
+  double most = 0.0;
+  for (const SurfaceBand::Face& face : body.band->faces) {
+    reach_of_face_.push_back(std::max(0.0, Body::offset_range_of(face, Layer::kUpper).hi));
+    most = std::max(most, reach_of_face_.back());
+  }
+  travel_mm = std::max(kTravelOfRound * most, planes.most_travel.outward_mm);
+}
+
+LayerOffsets CoverFaces::offsets(std::uint32_t t) const {
+  return {Body::offset_of(body.face(t), Layer::kLower),
+          Body::offset_of(body.face(t), Layer::kUpper)};
+}
+
+double CoverFaces::bulge_mm(std::uint32_t t) const {
+  return std::max(0.0, body.face(t).deviation_mm.hi);
+}
+
+double CoverFaces::chord_mm(std::uint32_t t) const {
+  const Interval& deviation = body.face(t).deviation_mm;
+  return std::max(std::fabs(deviation.lo), std::fabs(deviation.hi));
+}
+
+double CoverFaces::reach_mm(std::uint32_t t, const Vec3& n) const {
+  const double reach = reach_mm(t);
+  if (reach == 0.0) return 0.0;
+  const Surface* s = surface(t);
+  if (s == nullptr) return reach * std::max(0.0, body.normal(t).dot(n));
+  // Normals between those at the corners differ from them by no more than these do.
+  double most = -1.0, apart = 0.0;
+  const Vec3 first = s->outward_normal(mesh().corner(t, 0));
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 normal = s->outward_normal(mesh().corner(t, k));
+    most = std::max(most, normal.dot(n));
+    apart = std::max(apart, (normal - first).norm());
+  }
+  return reach * std::clamp(most + apart, 0.0, 1.0);
+}
+
+CoverFaces::Border CoverFaces::border(const Vec3& n, double c_mm) const {
+  Border border;
+  border.has_face.assign(planes.faces.size(), false);
+  bool found = false;
+  for (std::size_t i = 0; i < planes.faces.size(); ++i) {
+    const PlaneFace& face = planes.faces[i];
+    if (n.dot(face.n) < 0.5 || n.cross(face.n).norm() > kParallel ||
+        std::fabs(n.dot(mesh().corner(face.triangle, 0)) - c_mm) > same_mm)
+      continue;
+    const LayerOffsets offsets{face.offset_mm.lo, face.offset_mm.hi};
+    border.offsets = found ? larger(border.offsets, offsets) : offsets;
+    found = border.has_face[i] = true;
+  }
+  border.has_point.assign(mesh().points_mm.size(), false);
+  if (!found) {
+    border.offsets = {travel_mm, travel_mm};
+    return border;
+  }
+  for (std::uint32_t t = 0; t < count(); ++t) {
+    const std::uint32_t face = planes.face_of_triangle[t];
+    if (face >= planes.faces.size() || !border.has_face[face]) continue;
+    for (const std::uint32_t p : mesh().triangles[t]) border.has_point[p] = true;
+  }
+  for (std::uint32_t t = 0; t < count(); ++t) {
+    const std::uint32_t face = planes.face_of_triangle[t];
+    if (face < planes.faces.size() && border.has_face[face]) continue;
+    const double reach = reach_mm(t, n);
+    if (reach == 0.0) continue;
+    for (const std::uint32_t p : mesh().triangles[t]) {
+      const double out = n.dot(mesh().points_mm[p]) - c_mm;
+      if (out > same_mm || (border.has_point[p] && out > -same_mm)) continue;
+      for (double& offset : border.offsets) offset = std::max(offset, out + reach);
+    }
+  }
+  return border;
+}
+
+bool CoverFaces::touches(std::uint32_t t, const std::vector<bool>& points) const {
+  for (const std::uint32_t p : mesh().triangles[t])
+    if (points[p]) return true;
+  return false;
+}
+
+}  // namespace mortise

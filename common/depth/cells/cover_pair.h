@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "common/depth/cells/cover.h"
+#include "common/depth/cells/cover_bound.h"
+#include "common/depth/pair_path.h"
+
+namespace mortise {
+
+/// Up to when a layer of two parts is proven apart.
+struct CoverFree {
+  double t_free = 1.0;  ///< no point is in both deeper than the limit at any t <= t_free
+  bool all = false;     ///< nor in the whole tick
+  std::uint64_t work = 0;
+};
+
+/// A bound costs about this share of asking one point of the mesh.
+constexpr std::uint64_t kBoundsPerEvaluation = 32;
+constexpr std::uint64_t evaluations_of_bounds(std::uint64_t work) {
+  return (work + kBoundsPerEvaluation - 1) / kBoundsPerEvaluation;
+}
+
+/// How deep the overlap of a layer of two parts may be.
+struct CoverOverlap {
+  /// No point is deeper in both. Infinity: nothing is known.
+  double most_mm = std::numeric_limits<double>::infinity();
+  /// A point of S = part `role` that may be that deep in the other part, in its own frame; to be
+  /// verified.
+  std::optional<Vec3> at_S;
+  int role = 0;
+};
+
+/// Upper bounds of the overlap of one layer of two parts A and B by their covers (README, section
+/// 11). True whatever the covers are larger by. Deterministic, without memory of other queries.
+class CoverPair {
+ public:
+  CoverPair(const CoverLayer& a, const CoverLayer& b) : parts_{&a, &b} {}
+
+  /// The time is looked for as closely as no point moves farther than accuracy_mm.
+  CoverFree free_until(const PairPath& path, double limit_mm, double accuracy_mm) const;
+
+  /// Overlaps below least_mm count as that.
+  CoverOverlap overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const;
+
+ private:
+  /// How each part is seen from the other over a span.
+  struct Views {
+    Chord chord[2];
+  };
+  /// A cell of A and one of B, and what kept them apart last: a direction fixed in part 1 - role,
+  /// or a void of it.
+  struct Cells {
+    std::size_t cell[2];
+    int role = -1;
+    std::size_t v = 0;
+    bool by_void = false;
+    Vec3 n = Vec3::Zero();
+    std::optional<Vec3> at_S;  // by_void: of the part that is seen, what comes farthest
+  };
+  class Bound;
+
+  static Views views_of(const PairPath& path, const Span& span);
+  std::vector<Cells> all_cells() const;
+  /// A point of part cells.role where what kept its cell from the other one last is least far.
+  Vec3 deepest_of(const Cells& cells, const Views& views) const;
+
+  const CoverLayer* parts_[2];
+};
+
+}  // namespace mortise

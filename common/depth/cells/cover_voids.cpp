@@ -1,0 +1,330 @@
+#include "common/depth/cells/cover_voids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/geometry/signed_distance.h"
+
+namespace mortise {
+namespace {
+
+constexpr std::size_t kMostVoids = 48, kMostPockets = 12;
+// A facet between two corners on a rim is no farther inside of it than a chord, and this.
+constexpr double kChordMargin = 1.1;
+// Halvings of a triangle that is seen against a wall.
+constexpr int kHalvings = 6;
+// Pockets are looked for at so many plane faces, those with most hollow edges first.
+constexpr std::size_t kMostFloors = 24, kMostWalls = 8;
+// Two faces meet at a hollow edge where one rises so steeply from the other.
+constexpr double kHollow = 1e-6;
+// A point this share of the part's size above a floor is in its pocket.
+constexpr double kAboveShare = 1e-6;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(const TriangleMesh& mesh, std::uint32_t t) {
+  return {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+}
+
+bool is_outside(const CoverFaces& f, const Vec3& x) {
+  return nearest_surface(*f.body.solid, x).depth_mm < -0.0;
+}
+
+bool same_wall(const Surface& a, const Surface& b) {
+  return a.kind == b.kind && a.inward == b.inward && a.point == b.point && a.axis == b.axis &&
+         a.radius_mm == b.radius_mm && a.half_angle_rad == b.half_angle_rad;
+}
+
+// The hole of one round inner face: along its axis up to what stands in it.
+class Bore {
+ public:
+  Bore(const CoverFaces& faces, const Surface& surface) : f_(faces), s_(surface) {
+    wall_.point = s_.point;
+    wall_.axis = s_.axis;
+    wall_.r_mm = s_.radius_mm;
+    if (s_.kind != SurfaceKind::kCone) return;
+    wall_.r_mm = 0.0;
+    wall_.cosine = std::cos(s_.half_angle_rad);
+    wall_.slope = std::sin(s_.half_angle_rad) / wall_.cosine;
+  }
+
+  std::optional<LayerVoids> run() {
+    find_own();
+    const double from = std::max(own_.lo, s_.kind == SurfaceKind::kCone ? 0.0 : -kInfinity);
+    if (!(from < own_.hi)) return std::nullopt;
+    for (std::uint32_t t = 0; t < f_.count(); ++t)
+      if (!is_own(t) && !see(t)) return std::nullopt;
+    if (!(free_.lo < free_.hi)) return std::nullopt;
+    const double lo = std::max(from, free_.lo), hi = std::min(own_.hi, free_.hi);
+    if (!(lo < hi) || !is_outside(f_, s_.point + 0.5 * (lo + hi) * s_.axis)) return std::nullopt;
+    LayerVoids voids;
+    for (int layer = 0; layer < 2; ++layer) {
+      Void& v = voids.of[layer];
+      v.wall = wall_;
+      v.wall->r_mm -= offsets_[layer] / wall_.cosine;
+    }
+    close(free_.lo, 1.0, voids);
+    close(free_.hi, -1.0, voids);
+    return voids;
+  }
+
+ private:
+  double height(const Vec3& x) const { return (x - s_.point).dot(s_.axis); }
+  bool is_own(std::uint32_t t) const {
+    const Surface* s = f_.surface(t);
+    return s != nullptr && same_wall(*s, s_);
+  }
+
+  void find_own() {
+    own_point_.assign(f_.mesh().points_mm.size(), false);
+    bool first = true;
+    for (std::uint32_t t = 0; t < f_.count(); ++t) {
+      if (!is_own(t)) continue;
+      offsets_ = first ? f_.offsets(t) : larger(offsets_, f_.offsets(t));
+      first = false;
+      chord_mm_ = std::max(chord_mm_, f_.chord_mm(t));
+      for (const std::uint32_t p : f_.mesh().triangles[t]) {
+        own_point_[p] = true;
+        const double z = height(f_.mesh().points_mm[p]);
+        own_ = hull(own_, {z, z});
+      }
+    }
+  }
+
+  // How far the nearest point of a triangle is outside of the wall, from below.
+  double clearance(const Corners& c) const {
+    const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+    double radius = 0.0;
+    for (const Vec3& x : c) radius = std::max(radius, (x - middle).norm());
+    const Vec3 d = middle - s_.point;
+    const double z = d.dot(s_.axis);
+    return wall_.cosine * ((d - z * s_.axis).norm() - wall_.r_mm - wall_.slope * z) - radius;
+  }
+
+  static std::array<Corners, 4> quarters(const Corners& c) {
+    const Vec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
+    return {Corners{c[0], ab, ca}, Corners{ab, c[1], bc}, Corners{ca, bc, c[2]},
+            Corners{ab, bc, ca}};
+  }
+
+  // For a cylinder the distance of the axis from the triangle seen along it.
+  double least_clearance(const Corners& c) const {
+    if (s_.kind == SurfaceKind::kCone) return refined(c, kHalvings);
+    Corners flat;
+    for (int k = 0; k < 3; ++k) flat[k] = c[k] - height(c[k]) * s_.axis;
+    return (nearest_on_triangle(s_.point, flat[0], flat[1], flat[2]) - s_.point).norm() -
+           wall_.r_mm;
+  }
+  double refined(const Corners& c, int depth) const {
+    const double bound = clearance(c);
+    if (depth == 0 || bound >= f_.travel_mm) return bound;
+    double least = kInfinity;
+    for (const Corners& q : quarters(c)) least = std::min(least, refined(q, depth - 1));
+    return least;
+  }
+
+  // False: something stands in the hole between the ends of its own face.
+  bool see(std::uint32_t t) {
+    const bool touches = f_.touches(t, own_point_);
+    const double allowed =
+        f_.same_mm + (touches ? kChordMargin * chord_mm_ : -(f_.surface(t) ? f_.bulge_mm(t) : 0.0));
+    const Corners c = corners_of(f_.mesh(), t);
+    const double clear = least_clearance(c);
+    if (clear >= -allowed) {
+      if (!touches && clear < f_.reach_mm(t))
+        for (double& offset : offsets_) offset = std::max(offset, f_.reach_mm(t) - clear);
+      return true;
+    }
+    return limit(c, allowed, kHalvings);
+  }
+
+  bool limit(const Corners& c, double allowed, int depth) {
+    Interval z{kInfinity, -kInfinity};
+    for (const Vec3& x : c) z = hull(z, {height(x), height(x)});
+    if (z.lo >= own_.hi - f_.same_mm) {
+      free_.hi = std::min(free_.hi, z.lo);
+      return true;
+    }
+    if (z.hi <= own_.lo + f_.same_mm) {
+      free_.lo = std::max(free_.lo, z.hi);
+      return true;
+    }
+    if (clearance(c) >= -allowed) return true;
+    if (depth == 0) return false;
+    for (const Corners& q : quarters(c))
+      if (!limit(q, allowed, depth - 1)) return false;
+    return true;
+  }
+
+  // A floor at height z: material below it for sign 1, above for -1.
+  void close(double z, double sign, LayerVoids& voids) const {
+    if (!std::isfinite(z)) return;
+    const Vec3 n = sign * s_.axis;
+    const double c_mm = n.dot(s_.point) + sign * z;
+    const LayerOffsets offsets = f_.border(n, c_mm).offsets;
+    for (int layer = 0; layer < 2; ++layer) {
+      voids.of[layer].planes.push_back({n, c_mm + offsets[layer]});
+      Interval& along = voids.of[layer].wall->along_mm;
+      double& end = sign > 0.0 ? along.lo : along.hi;
+      end = z + sign * offsets[layer];
+    }
+  }
+
+  const CoverFaces& f_;
+  const Surface& s_;
+  VoidWall wall_;
+  std::vector<bool> own_point_;
+  LayerOffsets offsets_{};
+  double chord_mm_ = 0.0;
+  Interval own_{kInfinity, -kInfinity};
+  Interval free_{-kInfinity, kInfinity};  // heights without material
+};
+
+// Above a floor and beside all faces that rise from it.
+class Pocket {
+ public:
+  Pocket(const CoverFaces& faces, std::vector<std::uint32_t> of) : f_(faces), of_(std::move(of)) {}
+
+  std::optional<LayerVoids> run() {
+    const PlaneFace& floor = f_.planes.faces[of_.front()];
+    for (const std::uint32_t face : of_) {
+      const PlaneFace& plane = f_.planes.faces[face];
+      borders_.push_back(f_.border(plane.n, plane.c));
+    }
+    own_point_.assign(f_.mesh().points_mm.size(), false);
+    for (const auto& border : borders_)
+      for (std::size_t p = 0; p < own_point_.size(); ++p)
+        own_point_[p] = own_point_[p] || border.has_point[p];
+    const double above = kAboveShare * f_.body.solid->bvh().extent_mm;
+    const Corners seed = corners_of(f_.mesh(), floor.triangle);
+    const Vec3 inside = (seed[0] + seed[1] + seed[2]) / 3.0 + above * floor.n;
+    for (const std::uint32_t face : of_)
+      if (f_.planes.faces[face].n.dot(inside) <= f_.planes.faces[face].c) return std::nullopt;
+    if (!is_outside(f_, inside)) return std::nullopt;
+    for (std::uint32_t t = 0; t < f_.count(); ++t)
+      if (!is_own(t)) see(t);
+    if (top_mm_ - f_.travel_mm <= floor.c + 2.0 * above) return std::nullopt;
+    LayerVoids voids;
+    for (int layer = 0; layer < 2; ++layer) {
+      for (std::size_t i = 0; i < of_.size(); ++i) {
+        const PlaneFace& plane = f_.planes.faces[of_[i]];
+        voids.of[layer].planes.push_back({plane.n, plane.c + borders_[i].offsets[layer]});
+      }
+      if (std::isfinite(top_mm_))
+        voids.of[layer].planes.push_back({-floor.n, -(top_mm_ - f_.travel_mm)});
+    }
+    return voids;
+  }
+
+ private:
+  bool is_own(std::uint32_t t) const {
+    const std::uint32_t face = f_.planes.face_of_triangle[t];
+    if (face >= f_.planes.faces.size()) return face == PlaneFaces::kWithoutArea;
+    return std::any_of(borders_.begin(), borders_.end(),
+                       [&](const auto& border) { return border.has_face[face]; });
+  }
+
+  double bulge_mm(std::uint32_t t) const {
+    return f_.planes.face_of_triangle[t] == PlaneFaces::kNone ? f_.bulge_mm(t) : 0.0;
+  }
+
+  // Cuts a triangle down to what is in the pocket. What is left ends it.
+  void see(std::uint32_t t) {
+    const bool touches = f_.touches(t, own_point_);
+    const Corners c = corners_of(f_.mesh(), t);
+    polygon_.assign(c.begin(), c.end());
+    for (const std::uint32_t face : of_) {
+      const PlaneFace& plane = f_.planes.faces[face];
+      // Of those that end on its faces the nominal place counts, of others the largest.
+      const double more = touches ? bulge_mm(t) : f_.reach_mm(t, plane.n);
+      cut(plane.n, plane.c + f_.same_mm - more);
+      if (polygon_.empty()) return;
+    }
+    const PlaneFace& floor = f_.planes.faces[of_.front()];
+    for (const Vec3& x : polygon_) top_mm_ = std::min(top_mm_, floor.n.dot(x));
+  }
+
+  void cut(const Vec3& n, double c_mm) {
+    cut_.clear();
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const Vec3 &p = polygon_[i], &q = polygon_[(i + 1) % polygon_.size()];
+      const double at_p = n.dot(p) - c_mm, at_q = n.dot(q) - c_mm;
+      if (at_p > 0.0) cut_.push_back(p);
+      if ((at_p > 0.0) != (at_q > 0.0)) cut_.push_back(p + at_p / (at_p - at_q) * (q - p));
+    }
+    polygon_.swap(cut_);
+  }
+
+  const CoverFaces& f_;
+  std::vector<std::uint32_t> of_;  // plane faces, the floor first
+  std::vector<CoverFaces::Border> borders_;
+  std::vector<bool> own_point_;
+  double top_mm_ = kInfinity;
+  std::vector<Vec3> polygon_, cut_;
+};
+
+// Plane faces that rise from each one, over their common edge.
+std::vector<std::vector<std::uint32_t>> hollow_neighbours(const CoverFaces& f) {
+  std::vector<std::vector<std::uint32_t>> hollow(f.planes.faces.size());
+  const Topology& topology = f.body.solid->topology();
+  for (std::uint32_t t = 0; t < f.count(); ++t) {
+    const std::uint32_t own = f.planes.face_of_triangle[t];
+    if (own >= hollow.size()) continue;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t next = topology.neighbor[t][k];
+      if (next == Topology::kNone) continue;
+      const std::uint32_t other = f.planes.face_of_triangle[next];
+      if (other >= hollow.size() || other == own) continue;
+      const PlaneFace& plane = f.planes.faces[own];
+      double rises = -kInfinity;
+      for (int c = 0; c < 3; ++c)
+        rises = std::max(rises, plane.n.dot(f.mesh().corner(next, c)) - plane.c);
+      if (rises <= f.same_mm + kHollow * f.body.solid->bvh().extent_mm) continue;
+      if (std::find(hollow[own].begin(), hollow[own].end(), other) == hollow[own].end())
+        hollow[own].push_back(other);
+    }
+  }
+  return hollow;
+}
+
+void add_pockets(const CoverFaces& f, std::vector<LayerVoids>& voids) {
+  const auto hollow = hollow_neighbours(f);
+  std::vector<std::uint32_t> floors;
+  for (std::uint32_t i = 0; i < hollow.size(); ++i)
+    if (!hollow[i].empty() && hollow[i].size() <= kMostWalls) floors.push_back(i);
+  std::stable_sort(floors.begin(), floors.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return hollow[a].size() > hollow[b].size();
+  });
+  if (floors.size() > kMostFloors) floors.resize(kMostFloors);
+  const std::size_t most = std::min(kMostVoids, voids.size() + kMostPockets);
+  for (const std::uint32_t floor : floors) {
+    if (voids.size() >= most) return;
+    std::vector<std::uint32_t> of{floor};
+    of.insert(of.end(), hollow[floor].begin(), hollow[floor].end());
+    if (auto pocket = Pocket(f, std::move(of)).run()) voids.push_back(std::move(*pocket));
+  }
+}
+
+}  // namespace
+
+std::vector<LayerVoids> find_voids(const CoverFaces& f) {
+  std::vector<LayerVoids> voids;
+  std::vector<const Surface*> done;
+  for (const SurfaceBand::Face& face : f.body.band->faces) {
+    const Surface* s = Body::surface_of(face, Layer::kUpper);
+    if (s == nullptr || !s->inward ||
+        (s->kind != SurfaceKind::kCylinder && s->kind != SurfaceKind::kCone) ||
+        std::any_of(done.begin(), done.end(),
+                    [&](const Surface* known) { return same_wall(*known, *s); }))
+      continue;
+    done.push_back(s);
+    if (voids.size() < kMostVoids)
+      if (auto bore = Bore(f, *s).run()) voids.push_back(std::move(*bore));
+  }
+  add_pockets(f, voids);
+  return voids;
+}
+
+}  // namespace mortise
