@@ -7,6 +7,7 @@
 
 #include "common/base/check.h"
 #include "common/depth/candidates.h"
+#include "common/depth/cells/cover_pair.h"
 #include "common/depth/exclusion.h"
 #include "common/depth/pair_path.h"
 #include "common/depth/region_report.h"
@@ -143,6 +144,19 @@ const OverlapRegion* interfering_region(const OverlapResult& result, Layer layer
                                : region.certain_mm.lo > 0.0 && region.has_witness)
       return &region;
   return nullptr;
+}
+
+// By the search at fixed poses, whose word is what a verdict rests on, or by covers.
+std::optional<CertainPlace> interferes_at(const OverlapQuery& query, Layer layer,
+                                          std::uint64_t& evaluations) {
+  if (const auto place = interferes_by_covers(query, layer == Layer::kLower, evaluations))
+    return place;
+  CcdScratch scratch;
+  const OverlapResult result = find_overlap(query, scratch);
+  evaluations += result.evaluations;
+  const OverlapRegion* region = interfering_region(result, layer);
+  if (region == nullptr) return std::nullopt;
+  return region->certain_place;
 }
 
 double longest_edge(const Piece& piece) {
@@ -288,7 +302,6 @@ class InterferenceSearch {
     return true;
   }
 
-  // By the search at fixed poses, whose word is what a verdict rests on.
   bool is_real_at(double t, std::uint64_t work_cap) {
     OverlapQuery query = query_.at_target;
     query.work_cap = work_cap;
@@ -296,12 +309,9 @@ class InterferenceSearch {
     query.X_WB = path_.motions[1].pose_at(t);
     query.refinement = Refinement::kDecided;
     query.prove_not_certain = true;
-    CcdScratch scratch;
-    const OverlapResult result = find_overlap(query, scratch);
-    answer_.evaluations += result.evaluations;
-    const OverlapRegion* region = interfering_region(result, layer_);
-    if (region != nullptr) answer_.certain_place = region->certain_place;
-    return region != nullptr;
+    const auto place = interferes_at(query, layer_, answer_.evaluations);
+    if (place) answer_.certain_place = *place;
+    return place.has_value();
   }
 
   // Triangles that the path may bring near the other part, and shells that start inside it.
@@ -467,6 +477,9 @@ constexpr int kLooks = 3;
 // Work of one look; at the brink of interfering it is not worth more.
 constexpr std::uint64_t kPossibleLookWorkCap = 600;
 
+// The same where the covers of the least parts cease to keep apart.
+constexpr std::uint64_t kCertainLookWorkCap = 2'000;
+
 // What first contact may do before the search, for each evaluation of that: a test is the cheaper.
 constexpr std::uint64_t kTestsPerEvaluation = 8;
 
@@ -496,22 +509,112 @@ bool is_possible_at(const SweptQuery& query, double t, std::uint64_t& evaluation
                      [](const OverlapRegion& region) { return region.possible_mm.lo > 0.0; });
 }
 
-// First time at which the least (kLower) or the largest (kUpper) surfaces interfere. "Real" reads
-// "interferes in that layer".
-InterferenceTime first_interference(const SweptQuery& query, Layer layer) {
+void check(const SweptQuery& query) {
   MORTISE_CHECK(valid(query.motion_a) && valid(query.motion_b),
                 "poses must be finite and unit, rotations at most half a turn");
   MORTISE_CHECK(query.accuracy_mm > 0.0, "how closely a time is known must be a length");
+}
+
+// First time at which the least (kLower) or the largest (kUpper) surfaces interfere. "Real" reads
+// "interferes in that layer".
+InterferenceTime first_interference(const SweptQuery& query, Layer layer) {
   const InterferenceTime answer = InterferenceSearch(query, layer).run();
   MORTISE_CHECK(0.0 <= answer.t_free && answer.t_free <= answer.t_real && answer.t_real <= 1.0,
                 "times of a tick are ordered");
   return answer;
 }
 
+// The rest of both paths after t.
+SweptQuery rest_of(const SweptQuery& query, double t) {
+  SweptQuery rest = query;
+  rest.motion_a = rest_of(query.motion_a, t);
+  rest.motion_b = rest_of(query.motion_b, t);
+  return rest;
+}
+
+// A time of the path that is left after t0, in the whole one.
+double in_whole(double t0, double t) { return t >= 1.0 ? 1.0 : t0 + (1.0 - t0) * t; }
+
+CoverFree free_by_covers(const SweptQuery& query, Layer layer) {
+  const OverlapQuery& at = query.at_target;
+  CoverFree nothing{0.0, false, 0};
+  if (!at.use_covers || (at.band_a->trivial && at.band_b->trivial)) return nothing;
+  const Body a(*at.a, *at.band_a), b(*at.b, *at.band_b);
+  if (!cover_of(a).found() || !cover_of(b).found()) return nothing;
+  const bool least = layer == Layer::kLower;
+  const CoverPair pair(cover_of(a).of(least), cover_of(b).of(least));
+  const PairPath path(query.motion_a, *at.a, query.motion_b, *at.b);
+  // What is no deeper than touching is not in both; the rest of the accuracy is that of the time.
+  CoverFree free = pair.free_until(path, kAccuracyDefault_mm, kSmallestShare * query.accuracy_mm);
+  free.work = evaluations_of_bounds(free.work);
+  return free;
+}
+
+// Up to t the covers of a layer keep both parts apart. Shortly behind that the parts often
+// interfere: then no search is needed.
+struct SoonAfter {
+  bool interferes = false;
+  double t = 0.0;
+  CertainPlace certain_place;
+};
+
+SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,
+                          std::uint64_t& evaluations) {
+  const PairPath path(query.motion_a, *query.at_target.a, query.motion_b, *query.at_target.b);
+  OverlapQuery at = query.at_target;
+  at.refinement = Refinement::kDecided;
+  at.want_delta = false;
+  at.work_cap =
+      std::min(at.work_cap, layer == Layer::kLower ? kCertainLookWorkCap : kPossibleLookWorkCap);
+  for (const bool search : {false, true}) {
+    double step = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
+    for (int i = 0; i < kLooks && t + step <= 1.0; ++i, step *= 2.0) {
+      at.X_WA = query.motion_a.pose_at(t + step);
+      at.X_WB = query.motion_b.pose_at(t + step);
+      const auto place = search ? interferes_at(at, layer, evaluations)
+                                : interferes_by_covers(at, layer == Layer::kLower, evaluations);
+      if (place) return {true, t + step, *place};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
+double certain_free_until(const SweptQuery& query, std::uint64_t& evaluations) {
+  check(query);
+  const CoverFree free = free_by_covers(query, Layer::kLower);
+  evaluations += free.work;
+  return free.all ? 1.0 : free.t_free;
+}
+
+// 1. As long as the covers of both least parts are apart nothing is certain.
+// 2. Often something is certain shortly behind that.
+// 3. Else the rest of the path is searched; all of it where they are not even apart at its start.
 InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
-  return first_interference(query, Layer::kLower);
+  check(query);
+  const CoverFree free = free_by_covers(query, Layer::kLower);
+  InterferenceTime answer;
+  if (!free.all && free.t_free <= 0.0) {
+    answer = first_interference(query, Layer::kLower);
+  } else if (!free.all) {
+    const SoonAfter soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
+    if (soon.interferes) {
+      answer.becomes_real = true;
+      answer.t_free = free.t_free;
+      answer.t_real = soon.t;
+      answer.certain_place = soon.certain_place;
+    } else {
+      const std::uint64_t looked = answer.evaluations;
+      answer = first_interference(rest_of(query, free.t_free), Layer::kLower);
+      answer.t_free = in_whole(free.t_free, answer.t_free);
+      answer.t_real = in_whole(free.t_free, answer.t_real);
+      answer.real_at_start = false;
+      answer.evaluations += looked;
+    }
+  }
+  answer.evaluations += free.work;
+  return answer;
 }
 
 namespace {
@@ -564,14 +667,10 @@ PossibleTime find_faces_time(const SweptQuery& query, CcdScratch& scratch) {
     if (!begins) break;
   }
 
-  SweptQuery rest = query;
-  rest.motion_a = rest_of(query.motion_a, t0);
-  rest.motion_b = rest_of(query.motion_b, t0);
-  const InterferenceTime found = first_interference(rest, Layer::kUpper);
-  const auto in_tick = [&](double t) { return t >= 1.0 ? 1.0 : t0 + (1.0 - t0) * t; };
+  const InterferenceTime found = first_interference(rest_of(query, t0), Layer::kUpper);
   answer.becomes_possible = found.becomes_real;
-  answer.t_clear = in_tick(found.t_free);
-  answer.t_possible = in_tick(found.t_real);
+  answer.t_clear = in_whole(t0, found.t_free);
+  answer.t_possible = in_whole(t0, found.t_real);
   answer.capped = found.capped;
   answer.evaluations += found.evaluations;
   return answer;
@@ -599,15 +698,39 @@ void look_at_edges(const SweptQuery& query, PossibleTime& answer, CcdScratch& sc
   answer.t_possible = known;
 }
 
-}  // namespace
-
-PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
+PossibleTime search_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   PossibleTime answer = find_faces_time(query, scratch);
   const auto has_edges = [](const SurfaceBand& band) {
     return band.farthest_mm() > std::max(0.0, band.largest_offset_mm);
   };
   if (has_edges(*query.at_target.band_a) || has_edges(*query.at_target.band_b))
     look_at_edges(query, answer, scratch);
+  return answer;
+}
+
+}  // namespace
+
+PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
+  check(query);
+  const CoverFree free = free_by_covers(query, Layer::kUpper);
+  PossibleTime answer;
+  if (!free.all && free.t_free <= 0.0) {
+    answer = search_possible_time(query, scratch);
+  } else if (!free.all) {
+    const SoonAfter soon = look_soon_after(query, free.t_free, Layer::kUpper, answer.evaluations);
+    if (soon.interferes) {
+      answer.becomes_possible = true;
+      answer.t_clear = free.t_free;
+      answer.t_possible = soon.t;
+    } else {
+      const std::uint64_t looked = answer.evaluations;
+      answer = search_possible_time(rest_of(query, free.t_free), scratch);
+      answer.t_clear = in_whole(free.t_free, answer.t_clear);
+      answer.t_possible = in_whole(free.t_free, answer.t_possible);
+      answer.evaluations += looked;
+    }
+  }
+  answer.evaluations += free.work;
   return answer;
 }
 

@@ -13,6 +13,7 @@
 #include "common/depth/crack_regions.h"
 #include "common/depth/declared_region.h"
 #include "common/depth/deep_region.h"
+#include "common/depth/pair_covers.h"
 #include "common/depth/pair_order.h"
 #include "common/depth/region_report.h"
 #include "common/depth/regions.h"
@@ -116,9 +117,14 @@ std::vector<Bracket> better_of(std::vector<Bracket> refined, const std::vector<B
 
 class Overlap {
  public:
-  explicit Overlap(const OverlapQuery& query) : query_(query), pair_(query), planes_(pair_) {}
+  explicit Overlap(const OverlapQuery& query)
+      : query_(query),
+        pair_(query),
+        covers_(pair_, query.use_covers, result_.evaluations),
+        planes_(pair_) {}
 
   OverlapResult run() {
+    if (query_.only_certain && told_by_covers()) return std::move(result_);
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
@@ -127,7 +133,8 @@ class Overlap {
     for (const KnownFacePair& known : candidates.known)
       if (!told_by_another(known, candidates)) add_declared(known, candidates);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
-                             query_.refinement == Refinement::kDecided},
+                             query_.refinement == Refinement::kDecided,
+                             !query_.only_certain && covers_.apart(Layer::kUpper)},
                             scratch_, result_.evaluations);
     if (regions_.count > 0) {
       if (query_.only_certain)
@@ -141,7 +148,8 @@ class Overlap {
         result_.regions.push_back(region_of(pair_, *shared));
     if (result_.no_inside) add_without_depth(candidates);
     planes_.tell(query_.only_certain, result_.regions);
-    if (!query_.only_certain && !planes_.decided()) add_tip();
+    if (!query_.only_certain && !planes_.decided() && !covers_.apart(Layer::kUpper)) add_tip();
+    if (!query_.only_certain) covers_.tell(result_.regions);
     mark_cracks(pair_, !query_.only_certain, result_);
     for (const OverlapRegion& region : result_.regions)
       result_.meshes_cross |= region.delta_mm.lo > pair_.touch_mm;
@@ -158,6 +166,17 @@ class Overlap {
   }
 
  private:
+  // The least parts are apart; or, where only the class is asked for, the covers name a point that
+  // is verified to be in both.
+  bool told_by_covers() {
+    if (covers_.apart(Layer::kLower)) return true;
+    if (query_.refinement != Refinement::kDecided) return false;
+    auto region = covers_.certain_region();
+    if (!region || !(region->certain_mm.lo > query_.ignore_below_mm)) return false;
+    result_.regions.push_back(std::move(*region));
+    return true;
+  }
+
   // One region whose brackets in both layers are those of the sharp bodies.
   bool told_by_planes() const { return regions_.count == 1 && planes_.has_brackets(); }
 
@@ -170,6 +189,9 @@ class Overlap {
 
   std::vector<Bracket> search(Layer layer, bool sign_only, std::uint64_t work_cap,
                               double ignore_below_mm = -std::numeric_limits<double>::infinity()) {
+    if (regions_.count == 1)
+      if (auto bracket = covers_.bracket(layer, query_.accuracy_mm, sign_only))
+        return {std::move(*bracket)};
     SearchQuery search;
     search.pair = &pair_;
     search.layer = layer;
@@ -180,6 +202,8 @@ class Overlap {
     search.primary = regions_.primary;
     search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
     search.ignore_below_mm = ignore_below_mm;
+    if (layer != Layer::kMesh && !pair_.trivial)
+      search.most_mm = covers_.most_mm(layer) + pair_.rounding_mm;
     search.sign_only = sign_only;
     search.work_cap = std::max<std::uint64_t>(work_cap, regions_.roots.size());
     std::vector<Bracket> brackets = search_depth(search, scratch_, result_.evaluations);
@@ -217,12 +241,12 @@ class Overlap {
     if (told_by_planes()) {
       upper = {planes_.told(mesh.front(), Layer::kUpper)};
       lower = {planes_.told(mesh.front(), Layer::kLower)};
-    } else if (!pair_.trivial && (any_open || !lazy)) {
+    } else if (!pair_.trivial && ((any_open && !covers_.apart(Layer::kUpper)) || !lazy)) {
       upper = search(Layer::kUpper, true, work_left());
       bool may_be_certain = false;
       for (const Bracket& p : upper) may_be_certain |= p.hi_mm > pair_.touch_mm;
       // What is not seen to be certain is potential: that none of it is needs no proof.
-      if (may_be_certain || !lazy)
+      if ((may_be_certain && !covers_.apart(Layer::kLower)) || !lazy)
         lower = lower_lazily =
             search(Layer::kLower, true,
                    query_.prove_not_certain ? work_left() : std::min(glance(), work_left()));
@@ -280,18 +304,15 @@ class Overlap {
   }
 
   void search_certain() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Layer layer = pair_.trivial ? Layer::kMesh : Layer::kLower;
     const bool lazy = query_.refinement == Refinement::kDecided;
     for (const Bracket& found : search(layer, lazy, work_left(), query_.ignore_below_mm)) {
       const Bracket c = pair_.trivial ? moved(found, -pair_.reach_mm(Layer::kLower)) : found;
       if (c.hi_mm <= pair_.touch_mm + query_.certain_from_mm) continue;
-      OverlapRegion region;
+      OverlapRegion region = region_of_certain(pair_, c.best, c.hi_mm);
       region.certain_mm = bracket_of(c);
-      region.possible_mm = {region.certain_mm.lo, kInfinity};
-      region.delta_mm = {-kInfinity, kInfinity};
+      region.possible_mm.lo = region.certain_mm.lo;
       region.capped = regions_.capped || c.undecided;
-      describe(pair_, c.best, c.best, region);
       result_.regions.push_back(std::move(region));
     }
   }
@@ -365,13 +386,14 @@ class Overlap {
     result_.regions.push_back(region_without_depth(pair_, candidates));
   }
 
+  OverlapResult result_;
   const OverlapQuery& query_;
   const PairFrame pair_;
+  PairCovers covers_;
   const PlanePair planes_;
   SearchScratch scratch_;
   KnownOverlaps known_;
   Regions regions_;
-  OverlapResult result_;
 };
 
 void check(const OverlapQuery& query) {
@@ -412,6 +434,22 @@ OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
       b_comes_first(query) ? mirrored(Overlap(mirrored(query)).run()) : Overlap(query).run();
   check(query, result);
   return result;
+}
+
+std::optional<CertainPlace> interferes_by_covers(const OverlapQuery& query, bool least,
+                                                 std::uint64_t& evaluations) {
+  check(query);
+  if (b_comes_first(query)) {
+    std::optional<CertainPlace> place = interferes_by_covers(mirrored(query), least, evaluations);
+    if (place) place->role = 1 - place->role;
+    return place;
+  }
+  const PairFrame pair(query);
+  PairCovers covers(pair, query.use_covers, evaluations);
+  const std::optional<Sample> deepest = covers.deepest(least ? Layer::kLower : Layer::kUpper);
+  if (!deepest || (least && !find_witness(pair, *deepest, evaluations))) return std::nullopt;
+  return CertainPlace{deepest->role, deepest->triangle,
+                      pair.X_KS[1 - deepest->role] * deepest->point_K};
 }
 
 bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/base/constants.h"
@@ -35,6 +36,7 @@ struct OverlapQuery {
   /// True: where nothing is certain, that is proven as far as work_cap allows. Otherwise, under
   /// kDecided, the search may stop early, and the class is potential.
   bool prove_not_certain = false;
+  bool use_covers = true;  ///< false: as if no part had cells (README, section 11)
   std::uint64_t work_cap =
       200'000;  ///< branch-and-bound evaluations; on the cap brackets stay wide, never wrong
 };
@@ -98,6 +100,12 @@ struct OverlapResult {
 /// Overlap of two parts at fixed poses, per region. Near pairs that do not cross yield regions only
 /// within the band (sum of the largest offsets). Two movers, any poses; deterministic.
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
+
+/// Where the covers of both parts (README, section 11) name a point that is in both least parts, or
+/// in both largest ones, and it is verified: that place. nullopt: they name none. Some
+/// microseconds.
+std::optional<CertainPlace> interferes_by_covers(const OverlapQuery& query, bool least,
+                                                 std::uint64_t& evaluations);
 
 /// True implies: the overlap is certain at the poses of the query, because this place is inside.
 /// False implies nothing. Adds to `evaluations` one for the nearest point and those of

@@ -222,6 +222,16 @@ std::optional<SharedInside> find_shared_inside(const PairFrame& pair,
   return std::nullopt;
 }
 
+OverlapRegion region_of_certain(const PairFrame& pair, const Sample& deepest, double most_mm) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  OverlapRegion region;
+  region.certain_mm = {deepest.depth_mm, std::max(deepest.depth_mm, most_mm)};
+  region.possible_mm = {region.certain_mm.lo, kInfinity};
+  region.delta_mm = {-kInfinity, kInfinity};
+  describe(pair, deepest, deepest, region);
+  return region;
+}
+
 void set_shapes(const PairFrame& pair, OverlapRegion& region) {
   region.shape_a =
       face_shape(pair.bodies[0], region.triangle_a, pair.X_W[0].inverse() * region.point_W);

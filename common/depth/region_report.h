@@ -40,6 +40,10 @@ std::optional<SharedInside> find_shared_inside(const PairFrame& pair, const Cand
 void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,
               OverlapRegion& region);
 
+/// A region of which only is known that its least surfaces are so deep at a point, and at most
+/// most_mm; nothing of the meshes.
+OverlapRegion region_of_certain(const PairFrame& pair, const Sample& deepest, double most_mm);
+
 /// The shapes of the faces at its place.
 void set_shapes(const PairFrame& pair, OverlapRegion& region);
 

@@ -138,7 +138,7 @@ class Grouping {
     if (!query_.known->rows.empty())
       for (const std::uint32_t n : pair_.s(role).sharp_neighbours(t))
         limit = std::max(limit, limit_[pair_.s(role).face_index(n)]);
-    if (asked(role, t, widest(), limit)) {
+    if (!query_.apart && asked(role, t, widest(), limit)) {
       asked_[role][t].may_interfere = true;
       return true;
     }

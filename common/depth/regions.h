@@ -25,6 +25,7 @@ struct RegionsQuery {
   std::uint64_t work_cap = 0;
   /// Where no real surfaces can interfere, spend little on whether the meshes overlap.
   bool brief = false;
+  bool apart = false;  ///< the largest parts do not interfere: only the meshes may
 };
 
 /// Decides for every candidate triangle whether it stays out of the other part, spreads over the

@@ -22,9 +22,6 @@ constexpr int kClimbs = 10;
 // A step that gains less than this is the last one.
 constexpr double kWorthwhile = 1.05;
 
-// How much of a depth the bracket may leave open when only the class was asked for.
-constexpr double kLooseShare = 0.2;
-
 // Contact points kept for the fitted separating motion.
 constexpr std::size_t kMostSamples = 48;
 
@@ -128,10 +125,10 @@ class Search {
       Bracket& bracket = brackets_[item.region];
       const bool open = found              ? false
                         : query_.sign_only ? bracket.best.depth_mm <= pair_.touch_mm &&
-                                                 item.bound_mm > pair_.touch_mm
-                                           : item.bound_mm > tight_limit(bracket);
+                                                 bound_of(item) > pair_.touch_mm
+                                           : bound_of(item) > tight_limit(bracket);
       bracket.undecided |= open;
-      bracket.hi_mm = std::max(bracket.hi_mm, item.bound_mm);
+      bracket.hi_mm = std::max(bracket.hi_mm, bound_of(item));
     }
     for (Bracket& bracket : brackets_)
       bracket.hi_mm = std::max(bracket.hi_mm, bracket.best.depth_mm);
@@ -252,12 +249,14 @@ class Search {
     return lo + std::max(query_.accuracy_mm, kLooseShare * lo);
   }
 
+  double bound_of(const Item& item) const { return std::min(item.bound_mm, query_.most_mm); }
+
   void treat(const Item& item) {
     started_ = true;
     Bracket& bracket = brackets_[item.region];
     const double tight = tight_limit(bracket);
-    if (item.bound_mm <= tight) {
-      bracket.hi_mm = std::max(bracket.hi_mm, item.bound_mm);
+    if (bound_of(item) <= tight) {
+      bracket.hi_mm = std::max(bracket.hi_mm, bound_of(item));
       return;
     }
     const Patch patch =

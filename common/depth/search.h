@@ -48,11 +48,15 @@ struct SearchQuery {
   const FlatMap<std::uint32_t>* region_of_triangle = nullptr;
   int primary = 0;
   double accuracy_mm = 1e-4;
+  double most_mm = std::numeric_limits<double>::infinity();  ///< no region is deeper, proven
   /// Depths up to this are ignored; one deeper point ends the search.
   double ignore_below_mm = -std::numeric_limits<double>::infinity();
   bool sign_only = false;      ///< stop when it is known for every region whether it exceeds touch
   std::uint64_t work_cap = 0;  ///< evaluations of this search
 };
+
+/// How much of a depth the bracket may leave open when only the class was asked for.
+inline constexpr double kLooseShare = 0.2;
 
 struct SearchScratch {
   ProofScratch proof;

@@ -266,21 +266,30 @@ SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
   return pair.held_again ? SearchedTime{0.0, true} : SearchedTime{t_start, false};
 }
 
+SweptQuery swept_query(const PairWork& pair) {
+  SweptQuery query;
+  query.at_target = overlap_query(pair);
+  query.motion_a = pair.motion_a;
+  query.motion_b = pair.motion_b;
+  query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
+  return query;
+}
+
 double free_time(PairWork& pair, CcdScratch& ccd) {
-  const double t_start = pair.t_stop_start;
+  SweptQuery query = swept_query(pair);
+  // What slides or stays apart needs no look at its depth.
+  const double t_start = std::max(
+      pair.t_stop_start, certain_free_until(query, pair.counts.depth_evaluations));
   // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
   const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
-  const Advance advance =
-      may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
+  const Advance advance = t_start >= 1.0 ? Advance{Advanced::kDone, 1.0}
+                          : may_touch    ? Advance{Advanced::kUnsure, t_start}
+                                         : advance_to_real(pair, t_start, ccd);
   if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
   const double allowed_mm = pair.memo->allowed_depth_mm;
   if (std::isfinite(allowed_mm)) pair.memo.change().allowed_depth_mm = kInfinity;
   if (advance.state == Advanced::kDone) return advance.t_free;
 
-  SweptQuery query;
-  query.at_target = overlap_query(pair);
-  query.motion_a = pair.motion_a;
-  query.motion_b = pair.motion_b;
   query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
   const InterferenceTime real = find_interference_time(query, ccd);
   ++pair.counts.depth_queries;

@@ -13,12 +13,11 @@ namespace mortise {
 namespace {
 
 using polyhedra::Body;
-using polyhedra::HalfSpace;
 using polyhedra::Polyhedron;
 
-std::vector<HalfSpace> body_of(const Polyhedron& part, const Pose& X, Body body) {
-  std::vector<HalfSpace> all;
-  for (const HalfSpace& h : part.half_spaces) {
+std::vector<polyhedra::HalfSpace> body_of(const Polyhedron& part, const Pose& X, Body body) {
+  std::vector<polyhedra::HalfSpace> all;
+  for (const polyhedra::HalfSpace& h : part.half_spaces) {
     const Eigen::Vector4d row = polyhedra::row_of(h, X, body);
     all.push_back({row.head<3>(), row[3], {}});
   }
@@ -26,7 +25,7 @@ std::vector<HalfSpace> body_of(const Polyhedron& part, const Pose& X, Body body)
 }
 
 // What a face no longer reaches falls away.
-SolidPtr solid_of(std::vector<HalfSpace> half_spaces) {
+SolidPtr solid_of(std::vector<polyhedra::HalfSpace> half_spaces) {
   for (std::size_t i = 0; i < half_spaces.size();) {
     int corners = 0;
     for (const Vec3& x : polyhedra::corners_of(half_spaces))
@@ -44,7 +43,7 @@ SolidPtr solid_of(std::vector<HalfSpace> half_spaces) {
 }
 
 // Do the two bodies have a common volume? By the corners of their intersection.
-bool share_volume(std::vector<HalfSpace> a, const std::vector<HalfSpace>& b) {
+bool share_volume(std::vector<polyhedra::HalfSpace> a, const std::vector<polyhedra::HalfSpace>& b) {
   a.insert(a.end(), b.begin(), b.end());
   const std::vector<Vec3> corners = polyhedra::corners_of(a);
   if (corners.size() < 4) return false;

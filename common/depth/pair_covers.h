@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/depth/cells/cover_pair.h"
+#include "common/depth/overlap.h"
+#include "common/depth/search.h"
+
+namespace mortise {
+
+/// What the covers of both parts say of their overlap at one pose (README, section 11). Each answer
+/// is found when it is asked for first; a few microseconds for parts that are apart or slide.
+class PairCovers {
+ public:
+  /// use: false: as if a part had none. Adds what is spent to `evaluations`.
+  PairCovers(const PairFrame& pair, bool use, std::uint64_t& evaluations);
+
+  /// No overlap of kLower or kUpper is deeper. Infinity: nothing is known.
+  double most_mm(Layer layer) { return overlap_of(layer).most_mm; }
+  /// No point is in both parts of the layer deeper than touching.
+  bool apart(Layer layer) { return most_mm(layer) <= pair_.touch_mm; }
+  /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
+  /// the covers name none that is deeper than touching.
+  std::optional<Sample> deepest(Layer layer);
+  /// The bracket of a layer of a pair with one region, where a point of it is known that is about
+  /// as deep as any can be: but for accuracy_mm, or a share of it where the sign is enough.
+  std::optional<Bracket> bracket(Layer layer, double accuracy_mm, bool sign_only);
+  /// A region with a witness, of which only what is certain is known.
+  std::optional<OverlapRegion> certain_region();
+  /// Gives a witness to the nearest region where none has one, and caps certain and possible. A
+  /// witness of parts whose least covers are apart is refused and counted: one of both is wrong.
+  void tell(std::vector<OverlapRegion>& regions);
+
+ private:
+  void give_witness(std::vector<OverlapRegion>& regions);
+  void cap(Interval& bracket, Layer layer);
+  const CoverOverlap& overlap_of(Layer layer);
+
+  const PairFrame& pair_;
+  bool found_;
+  std::uint64_t& evaluations_;
+  std::optional<CoverOverlap> overlap_[2];  // least, largest
+};
+
+}  // namespace mortise

@@ -1,0 +1,330 @@
+// Covers against what the parts are drawn as (cover_parts.h): no bound is below a point found in
+// both, at poses and over motions; and the search with and without them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "common/ccd/distance.h"
+#include "common/depth/body.h"
+#include "common/depth/cells/cover_pair.h"
+#include "common/depth/interference_time.h"
+#include "common/math/rotation.h"
+#include "tests/unit/depth/cover_parts.h"
+
+namespace mortise {
+namespace {
+
+using namespace cover_parts;
+
+constexpr double kNothing_mm = 1e-6;
+
+struct DrawnPair {
+  DrawnPart a, b;
+  Pose X_BA;
+};
+
+Vec3 any_direction(Random& random) {
+  for (;;) {
+    const Vec3 v(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    if (v.norm() > 0.1 && v.norm() < 1.0) return v.normalized();
+  }
+}
+
+double gap_mm(const DrawnPair& pair, const Pose& X_BA) {
+  CcdScratch scratch;
+  return distance(*pair.a.solid, X_BA, *pair.b.solid, Pose(), scratch).distance_mm;
+}
+
+// A round somewhere along a bore of about its size, or any turn, moved up to the other part.
+DrawnPair any_pair(Random& random) {
+  DrawnPair pair;
+  const double r = uniform(random, 3.0, 12.0);
+  pair.a = any_part(random, r);
+  pair.b = any_part(random, r + uniform(random, -0.05, 0.1));
+  const bool fits = pair.a.round_mm > 0.0 && pair.b.round_mm > 0.0 && below(random, 3) != 0;
+  if (fits) {
+    const Vec3 turn = below(random, 2) * uniform(random, 0.0, 2e-3) * any_direction(random) +
+                      uniform(random, -3.0, 3.0) * Vec3::UnitZ();
+    const double off = uniform(random, 0.0, 0.06);
+    const Vec3 aside = off * any_direction(random);
+    pair.X_BA.q = rotation_exp(turn);
+    pair.X_BA.p = pair.b.axis_point - pair.X_BA.q * pair.a.axis_point +
+                  Vec3(aside.x(), aside.y(),
+                       uniform(random, -1.1 * pair.a.length_mm, 1.1 * pair.b.length_mm));
+    return pair;
+  }
+  pair.X_BA.q = rotation_exp(uniform(random, 0.0, 3.1) * any_direction(random));
+  if (below(random, 2) == 0) {
+    const Vec3 axis = Vec3::Unit(below(random, 3));
+    pair.X_BA.q = rotation_exp(0.5 * std::numbers::pi * below(random, 4) * axis +
+                               below(random, 2) * 1e-3 * any_direction(random));
+  }
+  const Vec3 from = any_direction(random);
+  double out = 150.0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose X{pair.X_BA.q, out * from};
+    const double gap = gap_mm(pair, X);
+    if (gap < 1e-3) break;
+    out -= 0.98 * gap;
+    if (out < -150.0) break;
+  }
+  pair.X_BA.p = (out + uniform(random, -0.08, 0.15)) * from;
+  return pair;
+}
+
+// How deep the deepest point that is found lies in both, the lesser depth of the two. Starts from
+// points of the meshes and climbs.
+class Deepest {
+ public:
+  Deepest(const DrawnPair& pair, const Pose& X_BA, bool largest)
+      : pair_(pair), X_BA_(X_BA), X_AB_(X_BA.inverse()), largest_(largest) {}
+
+  double find(Random& random, int starts) {
+    struct Start {
+      double depth;
+      Vec3 x;
+    };
+    std::vector<Start> all;
+    for (int i = 0; i < starts; ++i) {
+      const bool of_a = below(random, 2) == 0;
+      const TriangleMesh& mesh = (of_a ? pair_.a : pair_.b).solid->mesh();
+      const auto t = static_cast<std::uint32_t>(below(random, int(mesh.triangles.size())));
+      double u = uniform(random, 0, 1), v = uniform(random, 0, 1);
+      if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+      Vec3 x = mesh.corner(t, 0) + u * (mesh.corner(t, 1) - mesh.corner(t, 0)) +
+               v * (mesh.corner(t, 2) - mesh.corner(t, 0));
+      if (of_a) x = X_BA_ * x;
+      all.push_back({depth(x), x});
+    }
+    std::sort(all.begin(), all.end(),
+              [](const Start& p, const Start& q) { return p.depth > q.depth; });
+    double most = -1e9;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, all.size()); ++i)
+      most = std::max(most, climb(random, all[i].x, all[i].depth));
+    return most;
+  }
+
+ private:
+  double depth(const Vec3& x) const {
+    return std::min(pair_.a.depth_in(X_AB_ * x, largest_), pair_.b.depth_in(x, largest_));
+  }
+  double climb(Random& random, Vec3 x, double at) const {
+    double step = std::max(0.02, 2.0 * std::fabs(at));
+    for (int i = 0; i < 160; ++i) {
+      const Vec3 next = x + step * any_direction(random);
+      if (const double d = depth(next); d > at) {
+        at = d;
+        x = next;
+        step *= 1.5;
+      } else {
+        step *= 0.93;
+      }
+    }
+    return at;
+  }
+
+  const DrawnPair& pair_;
+  Pose X_BA_, X_AB_;
+  bool largest_;
+};
+
+const CoverLayer& layer_of(const DrawnPart& part, bool largest) {
+  const Body body(*part.solid, part.band);
+  const Cover& cover = cover_of(body);
+  EXPECT_TRUE(cover.found()) << cover.why_not;
+  return largest ? cover.largest : cover.least;
+}
+
+struct Tally {
+  int poses = 0, overlap = 0, apart = 0, tight = 0, below = 0;
+};
+
+Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
+  Random random(seed);
+  Tally tally;
+  for (int i = 0; i < count; ++i) {
+    const DrawnPair pair = any_pair(random);
+    for (const bool largest : {false, true}) {
+      CoverLayer a = layer_of(pair.a, largest), b = layer_of(pair.b, largest);
+      spoil(a);
+      spoil(b);
+      std::uint64_t work = 0;
+      const double most = CoverPair(a, b).overlap(pair.X_BA, kNothing_mm, work).most_mm;
+      const double other = CoverPair(b, a).overlap(pair.X_BA.inverse(), kNothing_mm, work).most_mm;
+      const double found = Deepest(pair, pair.X_BA, largest).find(random, 400);
+      ++tally.poses;
+      tally.overlap += found > 0.0;
+      tally.apart += most <= kNothing_mm;
+      tally.tight += found > 0.0 && most < 2.0 * found + 5e-3;
+      if (2.0 * found <= std::min(most, other) + 1e-9) continue;
+      if (++tally.below <= 30)
+        std::printf("pair %d (%s, %s) layer %d: %.9f in both, bounds %.9f %.9f\n", i,
+                    pair.a.what.c_str(), pair.b.what.c_str(), int(largest), 2.0 * found, most,
+                    other);
+    }
+  }
+  return tally;
+}
+
+TEST(Cover, NoBoundIsBelowAPointInBoth) {
+  const Tally tally = judge_poses(7001, 1600, [](CoverLayer&) {});
+  std::printf("%d poses: %d overlap, %d proven apart, %d within 5 um\n", tally.poses, tally.overlap,
+              tally.apart, tally.tight);
+  EXPECT_EQ(tally.below, 0);
+  EXPECT_GT(tally.overlap, 700);
+  EXPECT_GT(tally.apart, 900);
+}
+
+// The test sees a wall that is 20 um off, and planes that are.
+TEST(Cover, PlantedFaultsAreSeen) {
+  const Tally walls = judge_poses(7002, 250, [](CoverLayer& layer) {
+    for (Void& v : layer.voids)
+      if (v.wall) v.wall->r_mm += 0.02;
+  });
+  EXPECT_GT(walls.below, 0);
+  const Tally shafts = judge_poses(7003, 250, [](CoverLayer& layer) {
+    for (ConvexCell& cell : layer.cells) {
+      for (auto& circle : cell.circles) circle.r_mm -= 0.02;
+      for (Vec3& corner : cell.corners) corner += 0.02 * (cell.middle - corner).normalized();
+    }
+  });
+  EXPECT_GT(shafts.below, 0);
+}
+
+Motion any_motion(Random& random, const Pose& X_W, const Vec3& reference, bool along) {
+  const double far = below(random, 2) == 0 ? 0.3 : 5.0;
+  Vec3 way = uniform(random, 0.0, far) * any_direction(random);
+  Vec3 turn = below(random, 2) * uniform(random, 0.0, 0.02) * any_direction(random);
+  if (along) {
+    way = X_W.q * Vec3(0.0, 0.0, uniform(random, -far, far));
+    turn = below(random, 2) * uniform(random, -1.0, 1.0) * (X_W.q * Vec3::UnitZ());
+  }
+  const Pose turned{(rotation_exp(turn) * X_W.q).normalized(),
+                    X_W.p + way + (X_W.q * reference) - rotation_exp(turn) * (X_W.q * reference)};
+  if (below(random, 3) == 0) return screw_motion(X_W, turned, reference);
+  return linear_motion(X_W, turned, reference);
+}
+
+// One or two movers, straight and by screws, in a frame of their own.
+SweptQuery any_sweep(Random& random, const DrawnPair& pair) {
+  SweptQuery query;
+  query.at_target.a = pair.a.solid.get();
+  query.at_target.b = pair.b.solid.get();
+  query.at_target.band_a = &pair.a.band;
+  query.at_target.band_b = &pair.b.band;
+  query.at_target.work_cap = 3000;
+  const Pose X_WB{rotation_exp(uniform(random, 0.0, 3.0) * any_direction(random)),
+                  50.0 * any_direction(random)};
+  const bool along = below(random, 2) == 0;
+  query.motion_a = any_motion(random, X_WB * pair.X_BA, pair.a.axis_point, along);
+  query.motion_b = below(random, 3) == 0 ? any_motion(random, X_WB, pair.b.axis_point, along)
+                                         : still_motion(X_WB);
+  return query;
+}
+
+TEST(Cover, NothingIsInBothBeforeTheTimeThatIsProvenFree) {
+  Random random(7004);
+  int free = 0, later = 0, never = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const DrawnPair pair = any_pair(random);
+    const SweptQuery query = any_sweep(random, pair);
+    const PairPath path(query.motion_a, *pair.a.solid, query.motion_b, *pair.b.solid);
+    for (const bool largest : {false, true}) {
+      const CoverPair cells(layer_of(pair.a, largest), layer_of(pair.b, largest));
+      const CoverFree proven = cells.free_until(path, kNothing_mm, 2.5e-5);
+      const double end = proven.all ? 1.0 : proven.t_free;
+      free += proven.all;
+      later += !proven.all && end > 0.0;
+      never += end <= 0.0;
+      for (int k = 0; k < 4; ++k) {
+        const double t = end * (k == 0 ? 1.0 : uniform(random, 0.0, 1.0));
+        if (!proven.all && end <= 0.0) break;
+        const double found = Deepest(pair, path.pose(0, t), largest).find(random, 150);
+        EXPECT_LE(2.0 * found, 2.0 * kNothing_mm)
+            << "pair " << i << " (" << pair.a.what << ", " << pair.b.what << ") at " << t;
+      }
+    }
+  }
+  std::printf("%d free, %d later, %d not at all\n", free, later, never);
+  EXPECT_GT(free, 500);
+  EXPECT_GT(later, 300);
+}
+
+// With covers and without them: the search may know less of what is free, never the opposite.
+TEST(Cover, SearchesAgreeWithThoseWithoutCovers) {
+  Random random(7005);
+  int settled = 0, both_real = 0, less = 0, opposite = 0;
+  for (int i = 0; i < 300; ++i) {
+    const DrawnPair pair = any_pair(random);
+    SweptQuery query = any_sweep(random, pair);
+    CcdScratch scratch;
+    const InterferenceTime with = find_interference_time(query, scratch);
+    std::uint64_t work = 0;
+    const double proven = certain_free_until(query, work);
+    settled += proven >= 1.0;
+    query.at_target.use_covers = false;
+    const InterferenceTime without = find_interference_time(query, scratch);
+    both_real += with.becomes_real && without.becomes_real;
+    EXPECT_EQ(work > 0, true);
+    const PairPath path(query.motion_a, *pair.a.solid, query.motion_b, *pair.b.solid);
+    const double speed = path.speed_upper_bound();
+    // A time at which it is real comes after what the other way has proven free.
+    if (with.becomes_real && (with.t_real - without.t_free) * speed < -1e-3) ++opposite;
+    if (without.becomes_real && (without.t_real - with.t_free) * speed < -1e-3) ++opposite;
+    if ((with.t_free - without.t_free) * speed < -0.03 && !with.capped) ++less;
+  }
+  std::printf("%d settled by covers, %d real in both, %d proven for less long, %d opposite\n",
+              settled, both_real, less, opposite);
+  EXPECT_GT(settled, 50);
+  EXPECT_GT(both_real, 20);
+  EXPECT_EQ(opposite, 0);
+}
+
+CollisionClass class_of(const OverlapResult& result) {
+  CollisionClass word = CollisionClass::kNone;
+  for (const OverlapRegion& region : result.regions) {
+    const bool real = region.certain_mm.lo > 0.0 && region.has_witness;
+    word = std::max(word, real                          ? CollisionClass::kReal
+                          : region.possible_mm.hi > 0.0 ? CollisionClass::kPotential
+                                                        : CollisionClass::kFake);
+  }
+  return word;
+}
+
+// What one way decides the other one does not deny, and no witness is refused.
+TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
+  Random random(7006);
+  int decided = 0, more = 0, less = 0, opposite = 0, refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    const DrawnPair pair = any_pair(random);
+    OverlapQuery query;
+    query.a = pair.a.solid.get();
+    query.b = pair.b.solid.get();
+    query.band_a = &pair.a.band;
+    query.band_b = &pair.b.band;
+    query.X_WA = pair.X_BA;
+    query.work_cap = 5000;
+    query.refinement = Refinement::kDecided;
+    CcdScratch scratch;
+    const OverlapResult with = find_overlap(query, scratch);
+    query.use_covers = false;
+    const CollisionClass word = class_of(with), other = class_of(find_overlap(query, scratch));
+    for (const OverlapRegion& region : with.regions)
+      refused += static_cast<int>(region.witnesses_refused);
+    const bool open = other == CollisionClass::kPotential;
+    decided += !open;
+    more += open && word != other;
+    less += !open && word == CollisionClass::kPotential;
+    opposite += (word == CollisionClass::kReal) != (other == CollisionClass::kReal) && !open &&
+                word != CollisionClass::kPotential;
+  }
+  std::printf("%d decided without covers, %d more with them, %d less\n", decided, more, less);
+  EXPECT_EQ(opposite, 0);
+  EXPECT_EQ(less, 0);
+  EXPECT_EQ(refused, 0);
+  EXPECT_GT(more, 0);
+}
+
+}  // namespace
+}  // namespace mortise
