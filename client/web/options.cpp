@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "common/io/build_info.h"
@@ -25,51 +24,48 @@ std::string default_page() {
   return page.string();
 }
 
-void add_what_is_shown(CLI::App& app, WebOptions& o) {
-  app.add_option("--replay", o.replay,
-                 "Show this session log (MCAP) with a timeline, without a server")
-      ->group(kLogGroup)
-      ->excludes("--session");
-  app.add_option("--log", o.log,
-                 "Log that the server of the session writes, where this machine can read it: pages "
-                 "can download a report of the session so far")
-      ->group(kLogGroup)
-      ->excludes("--replay");
+void add_what_is_shown(ProgramOptions& app, WebOptions& o) {
+  app.add("--replay", o.replay, "Show this session log (MCAP) with a timeline, without a server")
+      .group(kLogGroup)
+      .excludes("--session");
+  app.add("--log", o.log,
+          "Log that the server of the session writes, where this machine can read it: pages "
+          "can download a report of the session so far")
+      .group(kLogGroup)
+      .excludes("--replay");
 }
 
-void add_http(CLI::App& app, GatewayOptions& o) {
+void add_http(ProgramOptions& app, GatewayOptions& o) {
   const auto add = [&](const char* name, auto& value, const char* text) {
-    return app.add_option(name, value, text)->group("Browsers");
+    return app.add(name, value, text).group("Browsers");
   };
   add("--http-address", o.address, "IPv4 address to listen on; 0.0.0.0: every interface")
-      ->capture_default_str();
-  add("--http-port", o.port, "Port to listen on; 0: a free one")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str();
+      .shows_default();
+  add("--http-port", o.port, "Port to listen on; 0: a free one").in_range(0, 65535).shows_default();
   add("--name", o.names,
       "Host name that browsers may ask for, beside numbers and localhost; again for more");
   add("--origin", o.origins,
       "Origin (https://host:port) of another page that may connect; again for more");
-  auto* certificate =
+  const auto certificate =
       add("--certificate", o.certificate, "Speak TLS with this certificate chain (PEM)");
-  auto* key = add("--key", o.key, "Its private key (PEM)");
-  certificate->needs(key);
-  key->needs(certificate);
-  app.add_option("--browsers", o.limits.browsers, "Browsers at one time")
-      ->group(kLimitsGroup)
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
-  app.add_option("--max-messages", o.limits.messages_per_s, "Messages a second of one browser")
-      ->group(kLimitsGroup)
-      ->check(CLI::Range(1.0, 1e6))
-      ->capture_default_str();
+  const auto key = add("--key", o.key, "Its private key (PEM)");
+  certificate.needs(key);
+  key.needs(certificate);
+  app.add("--browsers", o.limits.browsers, "Browsers at one time")
+      .group(kLimitsGroup)
+      .in_range(1, 4096)
+      .shows_default();
+  app.add("--max-messages", o.limits.messages_per_s, "Messages a second of one browser")
+      .group(kLimitsGroup)
+      .in_range(1.0, 1e6)
+      .shows_default();
 }
 
-void add_page(CLI::App& app, WebOptions& o) {
+void add_page(ProgramOptions& app, WebOptions& o) {
   const auto add = [&](const char* name, auto& value, const char* text) {
-    return app.add_option(name, value, text)->group("Browsers");
+    return app.add(name, value, text).group("Browsers");
   };
-  add("--page", o.page, "Folder of the page")->capture_default_str();
+  add("--page", o.page, "Folder of the page").shows_default();
   add("--tokens", o.tokens,
       "File of two lines, the tokens of designers and of observers (made when it is not there), "
       "or a line ROLE NAME TOKEN for each person (mortise keys token). Default: two new "
@@ -82,12 +78,11 @@ void add_page(CLI::App& app, WebOptions& o) {
 /// What options ask of each other.
 void check_together(const WebOptions& o) {
   if (o.gateway.certificate.empty() && !o.gateway.address.starts_with("127."))
-    throw CLI::ValidationError(
-        "--http-address " + o.gateway.address +
-        " opens the gateway to other hosts: give --certificate and --key, or "
-        "stay on 127.0.0.1 behind a proxy that speaks TLS");
+    throw UsageError("--http-address " + o.gateway.address +
+                     " opens the gateway to other hosts: give --certificate and --key, or "
+                     "stay on 127.0.0.1 behind a proxy that speaks TLS");
   if (o.addresses.empty() && o.tokens.empty() && ::isatty(STDOUT_FILENO) == 0)
-    throw CLI::ValidationError(
+    throw UsageError(
         "stdout is no terminal, so that nobody would learn the tokens of this run: give "
         "--addresses FILE (or - for stdout all the same), or --tokens FILE");
 }
@@ -98,8 +93,8 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
   WebCommandLine line;
   WebOptions& o = line.options;
   o.page = default_page();
-  CLI::App app{"mortise-web: lets browsers take part in a session, or look at a log of one"};
-  app.set_version_flag("--version", mortise::version_line("mortise-web"));
+  ProgramOptions app("mortise-web: lets browsers take part in a session, or look at a log of one",
+                     mortise::version_line("mortise-web"));
   add_client_network_options(app, o.network);
   add_what_is_shown(app, o);
   add_http(app, o.gateway);
@@ -110,12 +105,7 @@ WebCommandLine read_web_command_line(int argc, char** argv) {
       "person; whoever has one may come in.\nExit codes: 0 ok, 1 runtime error (port in use), 2 "
       "usage, 3 bad file (page, "
       "tokens, certificate, log).");
-  try {
-    app.parse(argc, argv);
-    check_together(o);
-  } catch (const CLI::ParseError& error) {
-    line.exit_code = exit_of_usage(app, error);
-  }
+  line.exit_code = app.read(argc, argv, [&] { check_together(o); });
   return line;
 }
 

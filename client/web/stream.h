@@ -3,20 +3,79 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/compose.hpp>
 #include <boost/asio/error.hpp>
-#include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/stream.hpp>
+#include <boost/asio/ssl/stream_base.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
+
+namespace boost::asio::ssl {
+class context;
+}
 
 namespace mortise::web {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
+
+/// What is called once an operation has ended. Behind it any handler that Boost.Asio takes; the
+/// operations below are compiled for this one alone, not for each that waits for them.
+class WhenDone {
+ public:
+  template <class Handler>
+  static WhenDone of(Handler&& handler) {
+    WhenDone done;
+    done.held_ = std::make_unique<Held<std::decay_t<Handler>>>(std::forward<Handler>(handler));
+    return done;
+  }
+  void operator()(beast::error_code error, std::size_t bytes = 0) {
+    // It may begin the next operation on the same stream.
+    const std::unique_ptr<Any> held = std::move(held_);
+    held->call(error, bytes);
+  }
+
+ private:
+  struct Any {
+    virtual ~Any() = default;
+    virtual void call(beast::error_code error, std::size_t bytes) = 0;
+  };
+  template <class Handler>
+  struct Held final : Any {
+    template <class From>
+    explicit Held(From&& from) : handler(std::forward<From>(from)) {}
+    void call(beast::error_code error, std::size_t bytes) override {
+      if constexpr (std::is_invocable_v<Handler&, beast::error_code, std::size_t>)
+        handler(error, bytes);
+      else
+        handler(error);
+    }
+    Handler handler;
+  };
+  std::unique_ptr<Any> held_;
+};
+
+/// The first few buffers of a sequence that are not empty: what an operation that moves *some*
+/// bytes may be content with. A buffer sequence of Boost.Asio itself, of one type for all.
+template <class Buffer>
+class FewBuffers {
+ public:
+  template <class Buffers>
+  explicit FewBuffers(const Buffers& all) {
+    const auto end = asio::buffer_sequence_end(all);
+    for (auto at = asio::buffer_sequence_begin(all); at != end && count_ < few_.size(); ++at)
+      if (const Buffer buffer(*at); buffer.size() > 0) few_[count_++] = buffer;
+  }
+  const Buffer* begin() const { return few_.data(); }
+  const Buffer* end() const { return few_.data() + count_; }
+
+ private:
+  std::array<Buffer, 16> few_;
+  std::size_t count_ = 0;
+};
 
 /// A TCP connection with or without TLS, which is settled when it is made: what is written on it is
 /// written and compiled once. An AsyncReadStream and AsyncWriteStream of Boost.Asio.
@@ -26,10 +85,10 @@ class Stream {
   using next_layer_type = beast::tcp_stream;
 
   /// Without a context: no TLS.
-  Stream(asio::ip::tcp::socket socket, asio::ssl::context* tls)
-      : tcp_(std::make_unique<beast::tcp_stream>(std::move(socket))) {
-    if (tls != nullptr) tls_ = std::make_unique<Tls>(*tcp_, *tls);
-  }
+  Stream(asio::ip::tcp::socket socket, asio::ssl::context* tls);
+  Stream(Stream&&) noexcept;
+  Stream& operator=(Stream&&) noexcept;
+  ~Stream();
 
   executor_type get_executor() noexcept { return tcp_->get_executor(); }
   next_layer_type& next_layer() noexcept { return *tcp_; }
@@ -39,33 +98,27 @@ class Stream {
   template <class Handler>
   void async_handshake(Handler&& handler,
                        asio::ssl::stream_base::handshake_type as = asio::ssl::stream_base::server) {
-    tls_->async_handshake(as, std::forward<Handler>(handler));
+    shake_hands(WhenDone::of(std::forward<Handler>(handler)), as);
   }
   template <class Buffers, class Handler>
   void async_read_some(const Buffers& buffers, Handler&& handler) {
-    if (tls_)
-      tls_->async_read_some(buffers, std::forward<Handler>(handler));
-    else
-      tcp_->async_read_some(buffers, std::forward<Handler>(handler));
+    read_some(FewBuffers<asio::mutable_buffer>(buffers),
+              WhenDone::of(std::forward<Handler>(handler)));
   }
   template <class Buffers, class Handler>
   void async_write_some(const Buffers& buffers, Handler&& handler) {
-    if (tls_)
-      tls_->async_write_some(buffers, std::forward<Handler>(handler));
-    else
-      tcp_->async_write_some(buffers, std::forward<Handler>(handler));
+    write_some(FewBuffers<asio::const_buffer>(buffers),
+               WhenDone::of(std::forward<Handler>(handler)));
   }
 
   /// For messages: the other end's address and port.
-  std::string peer() const {
-    boost::system::error_code error;
-    const auto end = tcp_->socket().remote_endpoint(error);
-    return error ? "a closed connection"
-                 : end.address().to_string() + ":" + std::to_string(end.port());
-  }
+  std::string peer() const;
 
  private:
-  using Tls = asio::ssl::stream<beast::tcp_stream&>;
+  struct Tls;
+  void shake_hands(WhenDone done, asio::ssl::stream_base::handshake_type as);
+  void read_some(const FewBuffers<asio::mutable_buffer>& buffers, WhenDone done);
+  void write_some(const FewBuffers<asio::const_buffer>& buffers, WhenDone done);
   // Behind pointers: the stream is moved while the TLS layer refers to the one below.
   std::unique_ptr<beast::tcp_stream> tcp_;
   std::unique_ptr<Tls> tls_;

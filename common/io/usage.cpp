@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,18 +49,126 @@ std::string unknown_word(const CLI::App& app) {
   return in_quotes(words.front()) + " is one argument too many; --help says what is expected";
 }
 
-}  // namespace
-
-int exit_of_usage(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-    app.exit(error);
-    return kExitOk;
-  }
+int exit_of_usage(const CLI::App& app, const std::string& what) {
   std::string wrong = unknown_word(app);
-  if (wrong.empty()) wrong = std::string(error.what()) + "; --help says what is expected";
+  if (wrong.empty()) wrong = what + "; --help says what is expected";
   std::fprintf(stderr, "%s: %s\n",
                std::filesystem::path(app.get_name()).filename().string().c_str(), wrong.c_str());
   return kExitUsage;
+}
+
+}  // namespace
+
+ProgramOption ProgramOption::group(const std::string& heading) const {
+  return ProgramOption(option_->group(heading));
+}
+ProgramOption ProgramOption::required() const { return ProgramOption(option_->required()); }
+ProgramOption ProgramOption::shows_default() const {
+  return ProgramOption(option_->capture_default_str());
+}
+ProgramOption ProgramOption::in_range(int lo, int hi) const {
+  return ProgramOption(option_->check(CLI::Range(lo, hi)));
+}
+ProgramOption ProgramOption::in_range(double lo, double hi) const {
+  return ProgramOption(option_->check(CLI::Range(lo, hi)));
+}
+ProgramOption ProgramOption::in_range(std::uint64_t lo, std::uint64_t hi) const {
+  return ProgramOption(option_->check(CLI::Range(lo, hi)));
+}
+ProgramOption ProgramOption::positive() const {
+  return ProgramOption(option_->check(CLI::PositiveNumber));
+}
+ProgramOption ProgramOption::not_negative() const {
+  return ProgramOption(option_->check(CLI::NonNegativeNumber));
+}
+ProgramOption ProgramOption::one_of(const std::vector<std::string>& words) const {
+  return ProgramOption(option_->check(CLI::IsMember(words)));
+}
+ProgramOption ProgramOption::check(
+    const std::function<std::string(const std::string&)>& wrong) const {
+  return ProgramOption(option_->check(wrong, ""));
+}
+ProgramOption ProgramOption::comma_separated() const {
+  return ProgramOption(option_->delimiter(','));
+}
+ProgramOption ProgramOption::one_at_a_time() const {
+  return ProgramOption(option_->allow_extra_args(false));
+}
+ProgramOption ProgramOption::needs(const ProgramOption& other) const {
+  return ProgramOption(option_->needs(other.option_));
+}
+ProgramOption ProgramOption::excludes(const ProgramOption& other) const {
+  return ProgramOption(option_->excludes(other.option_));
+}
+ProgramOption ProgramOption::excludes(const std::string& other) const {
+  return ProgramOption(option_->excludes(other));
+}
+
+ProgramOptions::ProgramOptions(const std::string& title, const std::string& version)
+    : owned_(std::make_shared<CLI::App>(title)), app_(owned_.get()) {
+  app_->set_version_flag("--version", version);
+}
+
+template <class T>
+ProgramOption ProgramOptions::add(const std::string& name, T& value, const std::string& text) {
+  return ProgramOption(app_->add_option(name, value, text));
+}
+template ProgramOption ProgramOptions::add(const std::string&, std::string&, const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, int&, const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, unsigned&, const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, double&, const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, std::uint64_t&, const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, std::filesystem::path&,
+                                           const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, std::optional<int>&,
+                                           const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, std::vector<std::string>&,
+                                           const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, std::vector<std::uint64_t>&,
+                                           const std::string&);
+template ProgramOption ProgramOptions::add(const std::string&, std::vector<std::filesystem::path>&,
+                                           const std::string&);
+
+ProgramOption ProgramOptions::add_flag(const std::string& name, bool& value,
+                                       const std::string& text) {
+  return ProgramOption(app_->add_flag(name, value, text));
+}
+
+ProgramOption ProgramOptions::add_number(const std::string& name,
+                                         const std::function<void(double)>& take,
+                                         const std::string& text) {
+  return ProgramOption(app_->add_option_function<double>(name, take, text));
+}
+
+ProgramOption ProgramOptions::add_word(const std::string& name,
+                                       const std::function<void(const std::string&)>& take,
+                                       const std::string& text) {
+  return ProgramOption(app_->add_option_function<std::string>(name, take, text));
+}
+
+ProgramOptions ProgramOptions::add_command(const std::string& name, const std::string& text,
+                                           const std::function<void()>& run) {
+  app_->require_subcommand(1);
+  CLI::App* const command = app_->add_subcommand(name, text);
+  command->callback(run);
+  return ProgramOptions(command);
+}
+
+void ProgramOptions::footer(const std::string& text) { app_->footer(text); }
+
+int ProgramOptions::read(int argc, char** argv, const std::function<void()>& then) {
+  try {
+    app_->parse(argc, argv);
+    if (then) then();
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
+      return exit_of_usage(*app_, error.what());
+    app_->exit(error);
+    return kExitOk;
+  } catch (const UsageError& error) {
+    return exit_of_usage(*app_, error.what());
+  }
+  return -1;
 }
 
 }  // namespace mortise

@@ -40,8 +40,9 @@ const std::vector<Room> kRooms = {
      {"common/io/build_info", "common/io/usage", "common/io/scenario/play_file", "common/session/",
       "common/generators/"}},
     {"idl/", {"common/messages/"}},
-    {"server/", {"common/io/", "idl/"}},
-    {"client/", {"common/messages/", "common/io/build_info", "common/io/usage", "idl/"}},
+    {"idl/network_options", {"idl/", "common/io/usage"}},
+    {"server/", {"common/io/", "idl/network_options"}},
+    {"client/", {"common/messages/", "common/io/build_info", "idl/network_options"}},
     {"client/bot/", {"client/", "common/io/scenario/play_file"}},
     {"client/web/", {"client/"}},
     {"client/web/recording", {"client/web/", "common/io/"}},
@@ -91,7 +92,7 @@ const std::vector<NamedHere>& named_here() {
       {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
       {"CLI11",
        std::regex("CLI/.*"),
-       {"common/io/usage.", "idl/network_options.", "server/", "client/", "tests/"}},
+       {"common/io/usage.", "tests/bench/"}},
   };
   return rules;
 }

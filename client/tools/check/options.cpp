@@ -1,7 +1,5 @@
 #include "client/tools/check/options.h"
 
-#include <CLI/CLI.hpp>
-
 #include "common/base/length_unit.h"
 #include "common/io/build_info.h"
 #include "common/io/mesh/mesh_import.h"
@@ -11,47 +9,45 @@
 namespace mortise {
 namespace {
 
-void add_files(CLI::App& app, CheckCommand& o) {
-  app.add_option("files", o.files,
-                 "a STEP assembly, a scenario (.yaml), or two or more meshes, as they lie")
-      ->required();
-  app.add_option("--unit", o.unit, "of the numbers in meshes: mm (default), cm, m, in, um")
-      ->check(CLI::IsMember(length_unit_names()));
-  app.add_option("--fit", o.fit, "of meshes: the fit of their hole and shaft, H7/g6");
-  app.add_option("--general", o.general,
-                 "of a STEP assembly: the general tolerance of its title block, ISO 2768-m");
-  app.add_option("--bought", o.bought,
-                 "of a STEP assembly: a path or product whose inside is not reported; '*' allowed");
+void add_files(ProgramOptions& app, CheckCommand& o) {
+  app.add("files", o.files,
+          "a STEP assembly, a scenario (.yaml), or two or more meshes, as they lie")
+      .required();
+  app.add("--unit", o.unit, "of the numbers in meshes: mm (default), cm, m, in, um")
+      .one_of(length_unit_names());
+  app.add("--fit", o.fit, "of meshes: the fit of their hole and shaft, H7/g6");
+  app.add("--general", o.general,
+          "of a STEP assembly: the general tolerance of its title block, ISO 2768-m");
+  app.add("--bought", o.bought,
+          "of a STEP assembly: a path or product whose inside is not reported; '*' allowed");
 }
 
-void add_judgement(CLI::App& app, CheckCommand& o, std::vector<std::string>& unexplained) {
-  app.add_option("--min-gap", o.check.min_gap_mm, "list pairs that are nearer than this, mm")
-      ->check(CLI::PositiveNumber);
+void add_judgement(ProgramOptions& app, CheckCommand& o, std::vector<std::string>& unexplained) {
+  app.add("--min-gap", o.check.min_gap_mm, "list pairs that are nearer than this, mm").positive();
   std::vector<std::string> relations;
   for (std::size_t i = 0; i < kMatingKindCount; ++i)
     if (is_meant_to_overlap(static_cast<MatingKind>(i)))
       relations.emplace_back(name_of(static_cast<MatingKind>(i)));
-  app.add_option("--no-explain", unexplained, "let this relation explain no overlap")
-      ->check(CLI::IsMember(relations));
-  app.add_option("--threads", o.check.threads, "threads; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+  app.add("--no-explain", unexplained, "let this relation explain no overlap").one_of(relations);
+  app.add("--threads", o.check.threads, "threads; the result does not depend on it")
+      .in_range(1, 256)
+      .shows_default();
 }
 
-void add_output(CLI::App& app, CheckCommand& o) {
+void add_output(ProgramOptions& app, CheckCommand& o) {
   app.add_flag("--json", o.json, "one JSON document on stdout");
   app.add_flag("-v,--verbose", o.verbose, "every contact and every statement of the file");
-  app.add_option("--csv", o.csv, "write the pairs to this file");
-  app.add_option("--html", o.html, "write a page with pictures of the worst to this file");
-  app.add_option("--junit", o.junit, "write a test report for CI to this file");
-  app.add_option("--sqlite", o.sqlite, "write a database to this file, which must not exist");
-  app.add_option("--baseline", o.baseline,
-                 "a JSON report of before: say what is new, gone, changed and unchanged");
-  app.add_option("--fail-on", o.fail_on,
-                 "exit 6 when there is: real, a real clash that nothing explains; potential, also "
-                 "a potential one; near, also a gap below --min-gap; new, one that the baseline "
-                 "has not")
-      ->check(CLI::IsMember({"real", "potential", "near", "new"}));
+  app.add("--csv", o.csv, "write the pairs to this file");
+  app.add("--html", o.html, "write a page with pictures of the worst to this file");
+  app.add("--junit", o.junit, "write a test report for CI to this file");
+  app.add("--sqlite", o.sqlite, "write a database to this file, which must not exist");
+  app.add("--baseline", o.baseline,
+          "a JSON report of before: say what is new, gone, changed and unchanged");
+  app.add("--fail-on", o.fail_on,
+          "exit 6 when there is: real, a real clash that nothing explains; potential, also "
+          "a potential one; near, also a gap below --min-gap; new, one that the baseline "
+          "has not")
+      .one_of({"real", "potential", "near", "new"});
   app.add_flag("--propose", o.propose,
                "write NAME.mortise.yaml beside the STEP file, with the fits to be filled in; it is "
                "read the next time");
@@ -62,28 +58,25 @@ void add_output(CLI::App& app, CheckCommand& o) {
 CheckCommandLine read_check_command_line(int argc, char** argv) {
   CheckCommandLine line;
   CheckCommand& o = line.options;
-  CLI::App app("mortise-check: what really clashes in an assembly as it stands");
-  app.set_version_flag("--version", version_line("mortise-check"));
+  ProgramOptions app("mortise-check: what really clashes in an assembly as it stands",
+                     version_line("mortise-check"));
   std::vector<std::string> unexplained;
   add_files(app, o);
   add_judgement(app, o, unexplained);
   add_output(app, o);
   app.footer("Exit codes: 0 ok, 2 usage, 3 a file has errors, 6 --fail-on found something.");
-  try {
-    app.parse(argc, argv);
+  line.exit_code = app.read(argc, argv, [&] {
     const bool meshes = is_mesh_name(o.files.front()) && !is_step_name(o.files.front());
     if (!meshes && o.files.size() > 1)
-      throw CLI::ValidationError("one assembly, one scenario, or two or more meshes: not " +
-                                 o.files[0] + " and " + o.files[1]);
+      throw UsageError("one assembly, one scenario, or two or more meshes: not " + o.files[0] +
+                       " and " + o.files[1]);
     if (!meshes && (!o.fit.empty() || !o.unit.empty()))
-      throw CLI::ValidationError("--fit and --unit are of meshes; a scenario says them itself");
+      throw UsageError("--fit and --unit are of meshes; a scenario says them itself");
     if (!is_step_name(o.files.front()) && (o.propose || !o.general.empty() || !o.bought.empty()))
-      throw CLI::ValidationError("--propose, --general and --bought are of a STEP assembly");
+      throw UsageError("--propose, --general and --bought are of a STEP assembly");
     if (o.fail_on == "new" && o.baseline.empty())
-      throw CLI::ValidationError("--fail-on new needs --baseline OLD.json");
-  } catch (const CLI::ParseError& error) {
-    line.exit_code = exit_of_usage(app, error);
-  }
+      throw UsageError("--fail-on new needs --baseline OLD.json");
+  });
   o.check.unexplained.insert(unexplained.begin(), unexplained.end());
   return line;
 }

@@ -1,6 +1,5 @@
 #include "client/tools/directory/options.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <set>
 #include <sstream>
@@ -29,9 +28,9 @@ std::vector<int> read_numbers(const std::string& text, int lo, int hi) {
     if (read.ec == std::errc() && read.ptr != end && *read.ptr == '-')
       read = std::from_chars(read.ptr + 1, end, last);
     if (read.ec != std::errc() || read.ptr != end || first < lo || last > hi || last < first)
-      throw CLI::ValidationError("'" + word + "' is neither a number nor a range of numbers in " +
-                                 std::to_string(lo) + ".." + std::to_string(hi) +
-                                 "; write for example 0,3,5-8");
+      throw UsageError("'" + word + "' is neither a number nor a range of numbers in " +
+                       std::to_string(lo) + ".." + std::to_string(hi) +
+                       "; write for example 0,3,5-8");
     for (int number = first; number <= last; ++number) numbers.insert(number);
   }
   return {numbers.begin(), numbers.end()};
@@ -42,43 +41,39 @@ DirectoryCommand read_directory_command(int argc, char** argv) {
   DdsOptions where;
   where.session = kEverySession;
   std::string domains = "0", ports = "0";
-  CLI::App app("mortise-directory: which sessions there are, and which servers lead or stand by");
-  app.set_version_flag("--version", version_line("mortise-directory"));
-  app.add_option("--session", where.session, "This session only; *: all")
-      ->group(kSessionGroup)
-      ->capture_default_str();
-  app.add_option("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
-      ->group(kNetworkGroup)
-      ->capture_default_str();
-  app.add_option("--server-port", ports,
-                 "First UDP ports of servers, likewise; 0: 7402 + 250 * domain")
-      ->group(kNetworkGroup)
-      ->capture_default_str();
+  ProgramOptions app(
+      "mortise-directory: which sessions there are, and which servers lead or stand by",
+      version_line("mortise-directory"));
+  app.add("--session", where.session, "This session only; *: all")
+      .group(kSessionGroup)
+      .shows_default();
+  app.add("--domain", domains, "DDS domains to look in, e.g. 0,3,5-8")
+      .group(kNetworkGroup)
+      .shows_default();
+  app.add("--server-port", ports, "First UDP ports of servers, likewise; 0: 7402 + 250 * domain")
+      .group(kNetworkGroup)
+      .shows_default();
   add_search_network_options(app, where);
-  app.add_option("--wait", command.wait_s, "Listen for so many seconds")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+  app.add("--wait", command.wait_s, "Listen for so many seconds")
+      .in_range(0.1, 600.0)
+      .shows_default();
   app.add_flag("--json", command.json, "One JSON document on stdout");
   app.footer(
       "Exit codes: 0 ok, 1 no server was found or the network failed, 2 usage, 3 an address, "
       "session "
       "or folder of keys that cannot be.");
-  try {
-    app.parse(argc, argv);
+  command.exit_code = app.read(argc, argv, [&] {
     for (const int domain : read_numbers(domains, 0, kMaxDomain))
       for (const int port : read_numbers(ports, 0, kMaxPort)) {
         where.domain = domain;
         where.discovery_port = port;
         command.places.push_back(where);
         if (command.places.size() > kMostPlaces)
-          throw CLI::ValidationError("more than " + std::to_string(kMostPlaces) +
-                                     " domains times ports at one time; ask for fewer");
+          throw UsageError("more than " + std::to_string(kMostPlaces) +
+                           " domains times ports at one time; ask for fewer");
       }
-    if (command.places.empty())
-      throw CLI::ValidationError("--domain and --server-port need a number");
-  } catch (const CLI::ParseError& error) {
-    command.exit_code = exit_of_usage(app, error);
-  }
+    if (command.places.empty()) throw UsageError("--domain and --server-port need a number");
+  });
   return command;
 }
 

@@ -16,7 +16,7 @@ struct DirectoryCommand {
 
 DirectoryCommand read_directory_command(int argc, char** argv);
 
-/// "3" or "5-8" or both with commas between, each once, rising; throws CLI::ValidationError, which
+/// "3" or "5-8" or both with commas between, each once, rising; throws UsageError, which
 /// says what is wrong, for anything else and for numbers outside of lo..hi.
 std::vector<int> read_numbers(const std::string& text, int lo, int hi);
 

@@ -1,6 +1,5 @@
 #include "client/tools/generate/options.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <vector>
 
@@ -13,26 +12,23 @@ namespace mortise {
 GenerateCommandLine read_generate_command_line(int argc, char** argv) {
   GenerateCommandLine line;
   GenerateOptions& o = line.options;
-  CLI::App app{
-      "mortise-generate: writes a generated part, or the parts of a scenario, as a mesh, in mm"};
-  app.set_version_flag("--version", version_line("mortise-generate"));
+  ProgramOptions app(
+      "mortise-generate: writes a generated part, or the parts of a scenario, as a mesh, in mm",
+      version_line("mortise-generate"));
   app.add_flag("--list", o.list, "Say which kinds there are and what parameters they have");
-  app.add_option("kind", o.kind, "Kind of part, e.g. shaft");
+  app.add("kind", o.kind, "Kind of part, e.g. shaft");
   std::vector<std::string> words;
-  app.add_option("parameters", words, "name=value, e.g. d1_mm=20 facets=48 phase_rad=0.1");
-  app.add_option("--scene", o.scene,
-                 "Scenario file: all its parts at their poses, as .obj and .mtl");
-  app.add_option("-o,--out", o.out, "File to write: .obj (all digits) or .stl (floats)");
+  app.add("parameters", words, "name=value, e.g. d1_mm=20 facets=48 phase_rad=0.1");
+  app.add("--scene", o.scene, "Scenario file: all its parts at their poses, as .obj and .mtl");
+  app.add("-o,--out", o.out, "File to write: .obj (all digits) or .stl (floats)");
   app.footer("Exit codes: 0 ok, 1 cannot write, 2 usage, 3 the part cannot be made.");
   const auto wrong = [&](const std::string& text) {
     std::fprintf(stderr, "mortise-generate: %s; see mortise-generate --help\n", text.c_str());
     line.exit_code = kExitUsage;
     return line;
   };
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    line.exit_code = exit_of_usage(app, error);
+  if (const int exit_code = app.read(argc, argv); exit_code >= 0) {
+    line.exit_code = exit_code;
     return line;
   }
   for (const std::string& word : words) {

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "client/tools/inspect/inspect.h"
@@ -12,23 +11,19 @@ int main(int argc, char** argv) {
   std::vector<std::string> files;
   std::string unit = "mm";
   bool json = false;
-  CLI::App app(
+  mortise::ProgramOptions app(
       "mortise-inspect: planes, cylinders, cones, spheres and tori of meshes on stderr, and a "
-      "scenario of them on stdout");
-  app.set_version_flag("--version", mortise::version_line("mortise-inspect"));
-  app.add_option("files", files, "mesh files, or one scenario (.yaml)")->required();
-  app.add_option("--unit", unit, "of the numbers in mesh files: mm, cm, m, in, um")
-      ->check(CLI::IsMember(mortise::length_unit_names()))
-      ->capture_default_str();
+      "scenario of them on stdout",
+      mortise::version_line("mortise-inspect"));
+  app.add("files", files, "mesh files, or one scenario (.yaml)").required();
+  app.add("--unit", unit, "of the numbers in mesh files: mm, cm, m, in, um")
+      .one_of(mortise::length_unit_names())
+      .shows_default();
   app.add_flag("--json", json, "one JSON document on stdout");
   app.footer(
       "mortise-inspect a.stl b.stl > scene.yaml writes a scenario that can be judged as it stands."
       "\nExit codes: 0 ok, 2 usage, 3 a file cannot be used.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return mortise::exit_of_usage(app, error);
-  }
+  if (const int exit_code = app.read(argc, argv); exit_code >= 0) return exit_code;
   const auto parts = mortise::inspect_files(files, *mortise::length_unit_mm(unit));
   if (!parts) {
     std::fprintf(stderr, "mortise-inspect: %s\n", parts.error().text.c_str());

@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 
@@ -12,16 +11,13 @@
 int main(int argc, char** argv) {
   std::string file;
   bool json = false;
-  CLI::App app("mortise-lint: checks a scenario and prints its tolerances in micrometres");
-  app.set_version_flag("--version", mortise::version_line("mortise-lint"));
-  app.add_option("scenario", file, "scenario file (.yaml)")->required();
+  mortise::ProgramOptions app(
+      "mortise-lint: checks a scenario and prints its tolerances in micrometres",
+      mortise::version_line("mortise-lint"));
+  app.add("scenario", file, "scenario file (.yaml)").required();
   app.add_flag("--json", json, "one JSON document on stdout");
   app.footer("Exit codes: 0 ok (warnings allowed), 2 usage, 3 the scenario has errors.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return mortise::exit_of_usage(app, error);
-  }
+  if (const int exit_code = app.read(argc, argv); exit_code >= 0) return exit_code;
   auto opened = mortise::open_scene(file);
   if (!opened) {
     std::fprintf(stderr, "mortise-lint: %s\n", opened.error().text.c_str());

@@ -9,7 +9,6 @@
 #include <tuple>
 
 namespace mortise {
-namespace {
 
 const char* stem_of(const Surface& s) {
   switch (s.kind) {
@@ -25,6 +24,8 @@ const char* stem_of(const Surface& s) {
       return "plane";
   }
 }
+
+namespace {
 
 int rank_of(const Surface& s) {
   constexpr std::array<int, 6> kRank{9, 6, 1, 3, 4, 5};  // by SurfaceKind

@@ -1,10 +1,14 @@
 #pragma once
 #include "common/geometry/recognition/recognition.h"
 
-/// Private to recognition.
 namespace mortise {
 
-/// Sorts features and measures into the order that Recognition promises, and names them.
+/// The word that names of features of this surface begin with: "bore", "shaft", "cone", "sphere",
+/// "torus" or "plane".
+const char* stem_of(const Surface& surface);
+
+/// Private to recognition: sorts features and measures into the order that Recognition promises,
+/// and names them.
 void name_features(Recognition& recognition);
 
 }  // namespace mortise

@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "common/geometry/recognition/names.h"
+
 namespace mortise {
 namespace {
 
@@ -146,24 +148,8 @@ class Gatherer {
                             ? Vec3(s.axis * s.axis.dot(s.point))
                             : Vec3(s.point + s.axis * gathered.along_mm.middle());
     const auto rounded = [](double x) { return std::llround(x * 1e4); };
-    return {kind_name(s), -s.radius_mm - s.tube_radius_mm, rounded(middle.x()), rounded(middle.y()),
+    return {stem_of(s), -s.radius_mm - s.tube_radius_mm, rounded(middle.x()), rounded(middle.y()),
             rounded(middle.z())};
-  }
-
- public:
-  static std::string kind_name(const Surface& s) {
-    switch (s.kind) {
-      case SurfaceKind::kCylinder:
-        return s.inward ? "bore" : "shaft";
-      case SurfaceKind::kCone:
-        return "cone";
-      case SurfaceKind::kSphere:
-        return "sphere";
-      case SurfaceKind::kTorus:
-        return "torus";
-      default:
-        return "plane";
-    }
   }
 
  private:
@@ -227,7 +213,7 @@ StepPartGiven given_part(const StepPart& part, const std::string& file) {
   Gatherer gatherer(part);
   std::map<std::string, int> numbers;
   for (Gathered& gathered : gatherer.run()) {
-    const std::string kind = Gatherer::kind_name(gathered.feature.surface);
+    const std::string kind = stem_of(gathered.feature.surface);
     gathered.feature.name = kind + "_" + std::to_string(++numbers[kind]);
     std::sort(gathered.feature.triangles.begin(), gathered.feature.triangles.end());
     for (const std::uint32_t f : gathered.faces)

@@ -33,7 +33,7 @@ constexpr std::size_t kTicks = 200, kEvery = 20;
 class LogChain : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    session_ = new RandomSession(11);
+    session_ = new RandomSession(10);
     for (std::size_t i = 1; i <= kTicks; ++i) {
       session_->tick();
       if (i % kEvery != 0) continue;
