@@ -1,28 +1,17 @@
 // mortise-import: reads one mesh file for another program of the house and writes its triangles to
 // stdout. Not meant for people. It runs alone, with limits, because a hostile file can crash the
 // reader.
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 
 #include "common/io/mesh/importer/read_with_assimp.h"
+#include "common/io/mesh/sandbox.h"
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kLimitsMemory = false;  // sanitizers reserve terabytes of address space
-#else
-constexpr bool kLimitsMemory = true;
-#endif
-
-void limit(int what, rlim_t most) {
-  const rlimit both{most, most};
-  setrlimit(static_cast<__rlimit_resource_t>(what), &both);
-}
 
 bool write_all(const std::vector<std::byte>& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
@@ -33,22 +22,28 @@ bool write_all(const std::vector<std::byte>& bytes) {
   return true;
 }
 
+mortise::RawSoup too_much_memory() {
+  mortise::RawSoup soup;
+  soup.refusal = "reading it needs more than " +
+                 std::to_string(mortise::granted_memory_bytes() >> 20U) +
+                 " MB of memory; the file is damaged, or holds far more than its size says";
+  return soup;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) return 2;  // file, extension, bytes of memory, seconds
-  const rlim_t bytes = std::strtoull(argv[3], nullptr, 10);
-  if (kLimitsMemory) limit(RLIMIT_AS, bytes);
-  limit(RLIMIT_FSIZE, bytes);
-  limit(RLIMIT_CPU, std::strtoull(argv[4], nullptr, 10) + 1);
-  limit(RLIMIT_CORE, 0);
+  const auto allowed = argc == 4 ? mortise::allowance_of(argv[3]) : std::nullopt;
+  if (!allowed) return 2;  // file, extension, what it may use
+  if (!mortise::enter_sandbox(*allowed, argv[1])) return 1;
   mortise::RawSoup soup;
   try {
     soup = mortise::read_with_assimp(argv[1], argv[2]);
-    return write_all(mortise::encode(soup)) ? 0 : 1;
+    if (soup.refusal.find("bad_alloc") == std::string::npos)
+      return write_all(mortise::encode(soup)) ? 0 : 1;
+    soup = too_much_memory();  // assimp's own words for it
   } catch (const std::bad_alloc&) {
-    soup = {};
-    soup.refusal = "std::bad_alloc";
+    soup = too_much_memory();
   } catch (const std::exception& error) {
     soup = {};
     soup.refusal = error.what();
