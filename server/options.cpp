@@ -35,7 +35,7 @@ void add_session(CLI::App& app, ServerOptions& o) {
 
 void add_log(CLI::App& app, ServerOptions& o) {
   auto* log = app.add_option("--log", o.log,
-                             "Session log (MCAP), or a folder for it; default "
+                             "Session log (NAME.mcap), or a folder for it, which is made; default "
                              "sessions/<session>-<UTC time>.mcap")
                   ->group(kLogGroup);
   app.add_option("--log-rotate", o.log_rotate_mb,
