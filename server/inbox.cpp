@@ -121,8 +121,7 @@ UserId Inbox::first_user_of(const ClientKey& client) const {
 }
 
 std::uint32_t Inbox::seats_for(const ClientKey& client) const {
-  const std::uint32_t kept = limits_.max_users / kKeptForOthers;
-  return first_user_of(client) ? limits_.max_users - kept : limits_.max_users;
+  return limits_.max_users - (first_user_of(client) ? limits_.max_users / kKeptForOthers : 0);
 }
 
 UserId Inbox::user_who_asked(const JoinRequest& request) const {
@@ -190,8 +189,8 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
   for (const User& user : world.users)
     if (user.name == request.name) known = user.id;
   const std::uint32_t seats = seats_for(request.client);
-  const bool is_full = users_present() >= seats;
-  reply.refusal = check_join(request, world, is_present(known), is_full ? seats : 0, reply.text);
+  reply.refusal = check_join(request, world, is_present(known),
+                             users_present() >= seats ? seats : 0, reply.text);
   if (reply.refusal != Refusal::kNone) {
     ++tally_.all().joins_refused;
     intake.join_replies.push_back(std::move(reply));

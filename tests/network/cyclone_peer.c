@@ -310,14 +310,42 @@ static bool go_on_elsewhere(struct peer* peer, const char* part_name, int64_t en
   return true;
 }
 
+// One sample of a tick under the highest of all terms, by somebody who leads nothing.
+static int tell_absurd_tick(struct peer* peer, const char* session) {
+  char partition[160], nobody[] = "";
+  uint8_t bytes[8] = {0};
+  snprintf(partition, sizeof partition, "session/%s", session);
+  dds_qos_t* leads = qos_of(true, false, 4096, partition);
+  dds_qset_liveliness(leads, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(100));
+  const dds_entity_t ticks = writer(peer, &mortise_wire_ServerTick_desc, "mortise_tick", leads);
+  dds_publication_matched_status_t matched = {0};
+  for (int i = 0; i < 2000 && matched.current_count == 0; ++i) {
+    dds_get_publication_matched_status(ticks, &matched);
+    dds_sleepfor(DDS_MSECS(4));
+  }
+  mortise_wire_ServerTick sample = {.tick = 1, .term = UINT64_MAX, .count = 1, .follower = nobody};
+  sample.bytes._buffer = bytes;
+  sample.bytes._length = sample.bytes._maximum = sizeof bytes;
+  for (int i = 0; i < 10; ++i) {
+    dds_write(ticks, &sample);
+    dds_sleepfor(DDS_MSECS(20));
+  }
+  dds_sleepfor(DDS_MSECS(500));
+  printf("told matched %u\n", matched.current_count);
+  dds_delete(peer->participant);
+  return matched.current_count > 0 ? 0 : 6;
+}
+
 int main(int count, char** words) {
   if (count != 6 && count != 7) {
-    fprintf(stderr, "usage: cyclone_peer DOMAIN SESSION PART STEPS Z_MM_PER_STEP [takeover]\n");
+    fprintf(stderr,
+            "usage: cyclone_peer DOMAIN SESSION PART STEPS Z_MM_PER_STEP [takeover|absurd]\n");
     return 2;
   }
   struct peer peer;
   memset(&peer, 0, sizeof peer);
   open_peer(&peer, (uint32_t)atoi(words[1]), words[2]);
+  if (count == 7 && strcmp(words[6], "absurd") == 0) return tell_absurd_tick(&peer, words[2]);
   const char* part_name = words[3];
   uint64_t steps = (uint64_t)atoll(words[4]);
   const double by_mm[3] = {0.0, 0.0, atof(words[5])};

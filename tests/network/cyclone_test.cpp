@@ -111,5 +111,23 @@ TEST(Cyclone, GoesOnWhereAnotherServerTakesOver) {
   ASSERT_EQ(second.wait(kPatience_s), 0) << second.errors();
 }
 
+TEST(Cyclone, OneAbsurdTickEndsNobody) {
+#ifndef MORTISE_HAS_CYCLONE
+  GTEST_SKIP() << "program absent: Cyclone DDS (cyclonedds-dev, cyclonedds-tools)";
+#endif
+  TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
+  Program server(folder.path(), "mortise-server",
+                 {folder.write("blocks.yaml", blocks_yaml({.blue = ""})), "--domain", domain,
+                  "--no-log", "--json"});
+  Program rogue(folder.path(), "cyclone_peer", {domain, "default", "red", "0", "0", "absurd"});
+  ASSERT_EQ(rogue.wait(kPatience_s), 0) << rogue.out() << rogue.errors() << server.errors();
+  EXPECT_TRUE(server.running()) << server.errors();
+  Program peer(folder.path(), "cyclone_peer", {domain, "default", "red", "10", "-0.2"});
+  EXPECT_EQ(peer.wait(kPatience_s), 0) << peer.out() << peer.errors();
+  server.signal(SIGTERM);
+  EXPECT_EQ(server.wait(kPatience_s), 0) << server.errors();
+}
+
 }  // namespace
 }  // namespace mortise::test

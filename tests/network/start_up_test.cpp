@@ -30,9 +30,10 @@ class StartUp : public ::testing::Test {
  protected:
   /// A program below limits of the shell ("ulimit -n 8"), to its end; what it says on stderr.
   Started run(const std::string& limits, const std::string& program, const std::string& arguments) {
-    const std::string command = limits + "; cd '" + folder_.path().string() + "'; exec '" +
-                                program_path(program).string() + "' " + arguments +
-                                " 2>&1 >/dev/null";
+    // The shell needs files of its own for what it redirects.
+    const std::string command = "exec 2>&1 >/dev/null; cd '" + folder_.path().string() + "'; " +
+                                limits + "; exec '" + program_path(program).string() + "' " +
+                                arguments;
     Started started;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 512> text{};

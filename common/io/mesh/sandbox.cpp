@@ -120,51 +120,32 @@ class SystemCalls {
   std::vector<sock_filter> code_;
 };
 
-/// Reads files that it can open, computes, and writes to what is open.
+/// What a program does that reads open files, computes, and writes to what is open.
+// clang-format off
+constexpr long kComputes[] = {
+    SYS_read, SYS_pread64, SYS_readv, SYS_write, SYS_writev, SYS_lseek, SYS_close, SYS_fstat,
+    SYS_newfstatat, SYS_statx, SYS_readlinkat, SYS_faccessat, SYS_faccessat2, SYS_getcwd,
+    SYS_fcntl, SYS_dup, SYS_munmap, SYS_mremap, SYS_madvise, SYS_brk, SYS_rt_sigaction,
+    SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_sigaltstack, SYS_futex, SYS_getpid, SYS_gettid,
+    SYS_clock_gettime, SYS_clock_nanosleep, SYS_getrandom, SYS_sched_yield, SYS_sched_getaffinity,
+    SYS_set_robust_list, SYS_rseq, SYS_uname, SYS_sysinfo, SYS_getrusage, SYS_exit,
+    SYS_exit_group};
+#if defined(__x86_64__)
+constexpr long kOfThisMachine[] = {SYS_stat, SYS_lstat, SYS_readlink, SYS_access};
+constexpr long kForHelpers[] = {SYS_clone, SYS_wait4, SYS_pipe2, SYS_pipe};
+#else
+constexpr long kOfThisMachine[] = {SYS_newfstatat};
+constexpr long kForHelpers[] = {SYS_clone, SYS_wait4, SYS_pipe2};
+#endif
+// clang-format on
+
+/// Files are opened for reading; no memory can be run.
 void keep_to_computing(bool helpers) {
   constexpr auto kWrites = static_cast<std::uint32_t>(O_WRONLY | O_RDWR | O_CREAT | O_TRUNC);
   SystemCalls calls;
-  for (const long call : {SYS_read,
-                          SYS_pread64,
-                          SYS_readv,
-                          SYS_write,
-                          SYS_writev,
-                          SYS_lseek,
-                          SYS_close,
-                          SYS_fstat,
-                          SYS_newfstatat,
-                          SYS_statx,
-                          SYS_readlinkat,
-                          SYS_faccessat,
-                          SYS_getcwd,
-                          SYS_fcntl,
-                          SYS_dup,
-                          SYS_munmap,
-                          SYS_mremap,
-                          SYS_madvise,
-                          SYS_brk,
-                          SYS_rt_sigaction,
-                          SYS_rt_sigprocmask,
-                          SYS_rt_sigreturn,
-                          SYS_sigaltstack,
-                          SYS_futex,
-                          SYS_getpid,
-                          SYS_gettid,
-                          SYS_clock_gettime,
-                          SYS_clock_nanosleep,
-                          SYS_getrandom,
-                          SYS_sched_yield,
-                          SYS_sched_getaffinity,
-                          SYS_set_robust_list,
-                          SYS_rseq,
-                          SYS_uname,
-                          SYS_sysinfo,
-                          SYS_getrusage,
-                          SYS_exit,
-                          SYS_exit_group})
-    calls.allow(call);
+  for (const long call : kComputes) calls.allow(call);
+  for (const long call : kOfThisMachine) calls.allow(call);
 #if defined(__x86_64__)
-  for (const long call : {SYS_stat, SYS_lstat, SYS_readlink, SYS_access}) calls.allow(call);
   calls.allow_without(SYS_open, 1, kWrites);
 #endif
   calls.allow_without(SYS_openat, 2, kWrites);
@@ -173,14 +154,9 @@ void keep_to_computing(bool helpers) {
   calls.allow_equal(SYS_prlimit64, 0, 0);
   calls.allow_equal(SYS_tgkill, 0, static_cast<std::uint32_t>(getpid()));  // abort()
   calls.refuse(SYS_clone3, ENOSYS);  // its flags cannot be seen; clone() is tried then
-  if (helpers) {
-    for (const long call : {SYS_clone, SYS_pipe2, SYS_wait4}) calls.allow(call);
-#if defined(__x86_64__)
-    calls.allow(SYS_pipe);
-#endif
-  } else {
-    calls.allow_with(SYS_clone, 0, CLONE_THREAD);
-  }
+  for (const long call : kForHelpers)
+    if (helpers) calls.allow(call);
+  if (!helpers) calls.allow_with(SYS_clone, 0, CLONE_THREAD);
   calls.hold();
 }
 

@@ -50,7 +50,7 @@ TEST_F(Endpoint, AnswersNothingElse) {
   post.send("POST /metrics HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 0\r\n\r\n");
   EXPECT_EQ(post.rest().rfind("HTTP/1.1 405", 0), 0U);
   const Connection head(endpoint_->port());
-  head.send("HEAD /metrics HTTP/1.1\r\nConnection: close\r\n\r\n");
+  head.send("HEAD /metrics HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
   const std::string answer = head.rest();
   EXPECT_EQ(answer.rfind("HTTP/1.1 200", 0), 0U);
   EXPECT_EQ(answer.find("mortise_tick"), std::string::npos) << "a HEAD has no body";
