@@ -15,6 +15,7 @@
 #include "idl/server_readers.h"
 #include "idl/server_watch.h"
 #include "idl/server_writers.h"
+#include "idl/terms.h"
 #include "mortisePubSubTypes.h"
 
 namespace mortise {
@@ -61,8 +62,13 @@ class DdsServerChannel final : public StandbyChannel {
 
   bool has_follower() const override { return servers_.has_follower(); }
   void publish_tick(const ToldTick& told) override;
-  TakenTicks taken_up_to() override { return follower_.take(*follows_, term_, identities()); }
+  TakenTicks taken_up_to() override {
+    return follower_.take(*follows_, term_, servers_, identities());
+  }
   void await_taken(std::int64_t at_most_ns) override { takings_.await(at_most_ns); }
+  void note_progress(double next_within_s) override {
+    if (beat_) beat_->progress(next_within_s);
+  }
   void lead_anew() override;
   std::uint64_t term_ms() const override { return term_; }
   std::string barred() const override;
@@ -81,8 +87,9 @@ class DdsServerChannel final : public StandbyChannel {
   Status listen_to_servers();
   Status open_endpoints();
   const PeerIdentities* identities() const { return readers_.identities(); }
-  /// What other servers tell; says whether one of them leads instead of us.
-  bool take_told(std::vector<ToldTick>* ticks);
+  /// What other servers tell, of those that lead. `input`, which may be null, hears whether one of
+  /// them leads instead of us.
+  std::vector<ToldTick> take_told(ServerInput* input);
   template <class Sample>
   void write(dds::DataWriter* writer, Sample sample) {
     if (!writer->write(&sample)) ++readers_.counters().send_failed;
@@ -112,7 +119,7 @@ Status DdsServerChannel::open(const DdsOptions& options) {
     const Clock::time_point end = Clock::now() + kLookForLeader;
     while (leader_.leader().empty() && Clock::now() < end) {
       servers_.await_told(ns_until(end));
-      take_told(nullptr);
+      (void)take_told(nullptr);
     }
     if (!leader_.leader().empty())
       return fail(Code::kRuntime, "another server leads session '" + options.session +
@@ -149,6 +156,7 @@ std::string DdsServerChannel::barred() const {
 }
 
 Status DdsServerChannel::meet(const DdsOptions& options, Participant::Side side) {
+  readers_.doorman().leaders().look_for(options.session);
   if (!options.keys.empty()) {
     const KeyFiles files(options.keys);
     readers_.know(std::make_unique<PeerIdentities>(files.authority, files.revocations));
@@ -156,7 +164,7 @@ Status DdsServerChannel::meet(const DdsOptions& options, Participant::Side side)
   auto participant = Participant::open(options, side, &readers_.doorman());
   if (!participant) return participant.error();
   participant_ = std::move(participant.value());
-  led_until_ms_ = options.led_until_ms;
+  led_until_ms_ = std::min(options.led_until_ms, kLatestTerm_ms);
   servers_.know_own(participant_->key());
   return ok();
 }
@@ -184,7 +192,7 @@ ServerInput DdsServerChannel::take() {
   ServerInput input;
   readers_.turn_away(*participant_, input);
   input.follower_came = servers_.take_came();
-  input.superseded = take_told(nullptr);
+  (void)take_told(&input);
   readers_.take(input);
   return input;
 }
@@ -215,9 +223,7 @@ void DdsServerChannel::publish_tick(const ToldTick& told) {
 std::vector<ToldTick> DdsServerChannel::follow() {
   ServerInput nobody;
   readers_.turn_away(*participant_, nobody);  // the one that leads may be revoked, too
-  std::vector<ToldTick> ticks;
-  take_told(&ticks);
-  return ticks;
+  return take_told(nullptr);
 }
 
 void DdsServerChannel::confirm(const TakenTicks& taken) {
@@ -228,19 +234,29 @@ void DdsServerChannel::confirm(const TakenTicks& taken) {
   write(taken_, sample);
 }
 
-bool DdsServerChannel::take_told(std::vector<ToldTick>* ticks) {
-  bool superseded = false;
-  take_all<wire::ServerTick>(*told_, [&](const wire::ServerTick& sample,
-                                         const eprosima::fastrtps::rtps::GUID_t& writer) {
-    ++readers_.counters().received;
-    const ClientKey key = client_key(writer);
-    if (identities() != nullptr && identities()->is_revoked(key) && !leader_.may_be_ending(key)) {
-      ++readers_.counters().foreign;
-      return;
-    }
-    superseded |= leader_.hear(sample, key, {term_, participant_->key()}, ticks);
-  });
-  return superseded;
+std::vector<ToldTick> DdsServerChannel::take_told(ServerInput* input) {
+  std::vector<ToldTick> ticks;
+  const LeadersMet& leaders = readers_.doorman().leaders();
+  take_all<wire::ServerTick>(
+      *told_, [&](const wire::ServerTick& sample, const eprosima::fastrtps::rtps::GUID_t& writer) {
+        ++readers_.counters().received;
+        const ClientKey key = client_key(writer);
+        const bool is_revoked =
+            identities() != nullptr && identities()->is_revoked(key) && !leader_.may_be_ending(key);
+        if (is_revoked || !leaders.contains(key) || sample.term() > kLatestTerm_ms) {
+          if (key != participant_->key()) ++readers_.counters().foreign;
+          return;
+        }
+        LeaderTold::Heard heard = leader_.hear(sample, key, {term_, participant_->key()});
+        if (!heard.tick) return;
+        if (heard.superseding && input != nullptr) {
+          input->superseded = true;
+          input->superseded_by = leaders.where(key);
+          input->superseding = *heard.tick;
+        }
+        ticks.push_back(std::move(*heard.tick));
+      });
+  return ticks;
 }
 
 // ---- the end of a client

@@ -37,6 +37,7 @@ void Doorman::onParticipantAuthentication(dds::DomainParticipant*,
 }
 
 void Doorman::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+  leaders_.note(info);
   if (!identities_ || info.status != rtps::WriterDiscoveryInfo::DISCOVERED_WRITER ||
       info.info.topicName().to_string() != row_of(Topic::kIncrement).topic)
     return;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/leaders_met.h"
 #include "idl/participant.h"
 
 namespace mortise {
@@ -18,6 +19,7 @@ class Doorman final : public dds::DomainParticipantListener {
   /// Before any thread of Fast DDS calls; null: nobody proves anything.
   void know(PeerIdentities* identities) { identities_ = identities; }
 
+  LeadersMet& leaders() { return leaders_; }
   std::vector<ClientKey> take();
   /// Who was not let in since, and why, in words. Also those of whom nothing was proven in time:
   /// where the other end is to begin the handshake and does not like our certificate, nobody tells
@@ -47,6 +49,7 @@ class Doorman final : public dds::DomainParticipantListener {
   void add(const eprosima::fastrtps::rtps::GUID_t& guid);
   void turn_away(const ClientKey& client, const Unproven& unproven);
 
+  LeadersMet leaders_;
   std::mutex mutex_;
   std::vector<ClientKey> gone_;
   std::vector<std::string> turned_away_;

@@ -1,5 +1,7 @@
 #include "idl/following.h"
 
+#include <pthread.h>
+
 #include <stop_token>
 
 namespace mortise {
@@ -10,6 +12,12 @@ namespace {
 
 ClientKey key_of(const rtps::InstanceHandle_t& handle) {
   return client_key(rtps::iHandle2GUID(handle));
+}
+
+double seconds_of(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 }  // namespace
@@ -72,18 +80,14 @@ void PeerServers::on_publication_matched(dds::DataWriter*,
   came_ = came_ || status.current_count_change > 0;
 }
 
-bool LeaderTold::hear(const wire::ServerTick& sample, const ClientKey& key,
-                      const std::pair<std::uint64_t, ClientKey>& own,
-                      std::vector<ToldTick>* ticks) {
+LeaderTold::Heard LeaderTold::hear(const wire::ServerTick& sample, const ClientKey& key,
+                                   const std::pair<std::uint64_t, ClientKey>& own) {
   const std::pair rank(sample.term(), key);
-  if (key == own.second || rank < std::pair(term_, leader_)) return false;
+  if (key == own.second || rank < std::pair(term_, leader_)) return {};
   term_ = sample.term();
   leader_ = key;
   counts_on_ = sample.follower();
-  const bool superseded = own.first != 0 && rank > own;
-  if (ticks == nullptr) return superseded;
-  if (auto tick = collector_.add(sample)) ticks->push_back(std::move(*tick));
-  return superseded;
+  return {collector_.add(sample), own.first != 0 && rank > own};
 }
 
 bool LeaderTold::may_be_ending(const ClientKey& revoked) {
@@ -95,7 +99,7 @@ bool LeaderTold::may_be_ending(const ClientKey& revoked) {
 }
 
 TakenTicks FollowerTold::take(dds::DataReader& reader, std::uint64_t term,
-                              const PeerIdentities* identities) {
+                              const PeerServers& servers, const PeerIdentities* identities) {
   TakenTicks taken;
   take_all<wire::ServerTaken>(reader,
                               [&](const wire::ServerTaken& sample, const rtps::GUID_t& writer) {
@@ -105,7 +109,7 @@ TakenTicks FollowerTold::take(dds::DataReader& reader, std::uint64_t term,
                                   if (key == follower_) follower_.clear();
                                   return;
                                 }
-                                if (follower_.empty()) follower_ = key;
+                                if (follower_.empty() && servers.follows(key)) follower_ = key;
                                 if (key != follower_ || sample.tick() < taken.received) return;
                                 taken = {sample.tick(), sample.computed()};
                               });
@@ -122,9 +126,20 @@ Heartbeat::Heartbeat(dds::DataWriter& writer)
         constexpr std::chrono::duration<double> kPeriod(kLeaderAssert_s);
         std::unique_lock lock(mutex_);
         while (!stop.stop_requested()) {
-          writer.assert_liveliness();
+          if (ticks_go_on()) writer.assert_liveliness();
           stopped_.wait_for(lock, stop, kPeriod, [] { return false; });
         }
       }) {}
+
+void Heartbeat::progress(double next_within_s) {
+  const std::lock_guard lock(watched_);
+  if (!has_clock_) has_clock_ = pthread_getcpuclockid(pthread_self(), &cpu_clock_) == 0;
+  watch_.progress(seconds_of(CLOCK_MONOTONIC), next_within_s);
+}
+
+bool Heartbeat::ticks_go_on() {
+  const std::lock_guard lock(watched_);
+  return watch_.advances(seconds_of(CLOCK_MONOTONIC), has_clock_ ? seconds_of(cpu_clock_) : 0.0);
+}
 
 }  // namespace mortise

@@ -1,8 +1,11 @@
 #pragma once
+#include <time.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -11,6 +14,7 @@
 #include "common/messages/channel.h"
 #include "idl/chunks.h"
 #include "idl/participant.h"
+#include "idl/tick_watch.h"
 
 /// What the servers of a session tell each other, and which of them counts.
 namespace mortise {
@@ -70,10 +74,13 @@ class PeerServers final : public dds::DataReaderListener, public dds::DataWriter
 /// term, of equal ones the highest key.
 class LeaderTold {
  public:
-  /// Says whether that one leads instead of `own`, a term (0: it does not lead) and a key. Pieces
-  /// come in order. `ticks` may be null.
-  bool hear(const wire::ServerTick& sample, const ClientKey& key,
-            const std::pair<std::uint64_t, ClientKey>& own, std::vector<ToldTick>* ticks);
+  struct Heard {
+    std::optional<ToldTick> tick;  ///< once it is whole; pieces come in order
+    bool superseding = false;      ///< that one leads instead of `own`
+  };
+  /// `own`: a term (0: it does not lead) and a key.
+  Heard hear(const wire::ServerTick& sample, const ClientKey& key,
+             const std::pair<std::uint64_t, ClientKey>& own);
   /// A leader that is revoked ends once it has the list, too. What it tells until then is heard,
   /// for some seconds since it was first asked for: who works with it holds that for safe.
   bool may_be_ending(const ClientKey& revoked);
@@ -90,11 +97,13 @@ class LeaderTold {
   TickCollector collector_;
 };
 
-/// The one that stands by and counts: the first that says what it has, until it is gone or revoked.
+/// The one that stands by and counts: the first that says what it has and listens to our ticks,
+/// until it is gone or revoked.
 class FollowerTold {
  public:
   /// What was said since the last call. `identities` may be null: no security.
-  TakenTicks take(dds::DataReader& reader, std::uint64_t term, const PeerIdentities* identities);
+  TakenTicks take(dds::DataReader& reader, std::uint64_t term, const PeerServers& servers,
+                  const PeerIdentities* identities);
   /// Empty: none.
   const ClientKey& follower(const PeerServers& servers);
 
@@ -102,14 +111,22 @@ class FollowerTold {
   ClientKey follower_;
 };
 
-/// Says that the one that leads lives, however long its tick takes.
+/// Says that the one that leads lives, while its ticks go on (TickWatch). Fast DDS goes on saying
+/// it by itself for the lease, and no longer.
 class Heartbeat {
  public:
   explicit Heartbeat(dds::DataWriter& writer);
+  /// Of the thread that ticks, always the same one.
+  void progress(double next_within_s);
 
  private:
-  std::mutex mutex_;
+  bool ticks_go_on();
+
+  std::mutex mutex_, watched_;  ///< the second is held for a moment only: a tick waits for it
   std::condition_variable_any stopped_;
+  TickWatch watch_;
+  clockid_t cpu_clock_ = 0;
+  bool has_clock_ = false;
   std::jthread thread_;  ///< last: it uses the others
 };
 

@@ -1,9 +1,14 @@
 #include "idl/participant.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
@@ -92,6 +97,25 @@ Status check(const DdsOptions& options, Participant::Side side) {
     }
   }
   return ok();
+}
+
+/// Sockets of a participant, with some to spare for what comes later. Fast DDS lives without them,
+/// and nobody reaches it.
+constexpr int kFiles = 32;
+
+Status room_for_sockets() {
+  std::vector<int> held;
+  while (held.size() < kFiles) {
+    const int file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (file < 0) break;
+    held.push_back(file);
+  }
+  const std::string why = std::strerror(errno);
+  for (const int file : held) ::close(file);
+  if (held.size() == kFiles) return ok();
+  return broken("only " + std::to_string(held.size()) + " of the " + std::to_string(kFiles) +
+                " files and sockets of a participant can be opened (" + why +
+                "): raise the limit, e.g. ulimit -n 1024, or close other programs");
 }
 
 Locator_t locator(const std::string& address, int port) {
@@ -240,6 +264,7 @@ ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
 
 Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options, Side side,
                                                        dds::DomainParticipantListener* listener) {
+  if (Status room = room_for_sockets(); !room) return room.error();
   if (Status checked = check(options, side); !checked) return checked.error();
   const auto addresses = addresses_of(options, !serves(side));
   if (!addresses) return addresses.error();

@@ -18,7 +18,7 @@ std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_d
   std::uint64_t term = 0;
   if (!text.starts_with(kTermPrefix)) return 0;
   std::from_chars(text.data() + kTermPrefix.size(), text.data() + text.size(), term);
-  return term;
+  return term <= kLatestTerm_ms ? term : 0;
 }
 
 std::uint64_t next_term(std::uint64_t after) {

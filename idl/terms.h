@@ -10,6 +10,9 @@ namespace mortise {
 /// Who led a session later has the higher term: ms since 1970 of its beginning, told with the
 /// server's writers; 0: one that tells none.
 std::uint64_t term_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);
+/// The last one that is a time, the year 2116: what is later is a mistake or a lie, and counts for
+/// nothing. There is room for one more for each that was ever taken.
+inline constexpr std::uint64_t kLatestTerm_ms = (std::uint64_t{1} << 62U) / 1'000'000;
 /// The one of now, or where the clock says less, the next.
 std::uint64_t next_term(std::uint64_t after);
 /// The term that a server of the session tells with this writer; 0: it is no such writer, or goes.

@@ -26,8 +26,17 @@ void HeldChannel::await(const std::vector<SeatRecord>& seats) {
   waited_s_ = 0.0;
 }
 
-ServerInput HeldChannel::take() {
+ServerInput HeldChannel::heard() {
   ServerInput input = inner_.take();
+  if (const auto& told = input.superseding) {
+    FollowedTick tick;
+    input.superseded = decode(told->bytes, tick) && tick.tick == told->tick;
+  }
+  return input;
+}
+
+ServerInput HeldChannel::take() {
+  ServerInput input = heard();
   note_heard(input);
   if (!input.superseded) let_go();
   return input;
@@ -147,11 +156,12 @@ bool HeldChannel::hand_over(const std::function<bool()>& goes_on) {
     // Not given up as let_go() does: who raises its term now would lead against the other.
     const std::uint64_t taken = inner_.taken_up_to().received;
     if (taken != kTakenAll) say_up_to(taken);
-    if (inner_.take().superseded) {
+    if (heard().superseded) {
       say_up_to(kTakenAll);
       return true;
     }
     if (!inner_.has_follower() || !goes_on()) break;
+    inner_.note_progress(0.0);
     inner_.await_taken(kLook_ns);
   }
   kept_.clear();

@@ -66,6 +66,7 @@ class HeldChannel final : public ServerChannel {
   bool has_readers() const override { return inner_.has_readers(); }
   bool has_follower() const override { return waited_for_ || inner_.has_follower(); }
   ChannelCounters counters() const override { return inner_.counters(); }
+  void note_progress(double next_within_s) override { inner_.note_progress(next_within_s); }
 
  private:
   struct Kept {
@@ -76,6 +77,8 @@ class HeldChannel final : public ServerChannel {
     double at_s = 0.0;   ///< of waited_s_
     bool steady = true;  ///< never silent for long
   };
+  /// What came in; one that says to lead and tells what is no tick leads nobody.
+  ServerInput heard();
   bool keeps() const { return waited_for_ || !awaited_.empty() || !kept_.empty(); }
   /// Says it, now or later.
   void say(std::function<void()> what);

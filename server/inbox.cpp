@@ -75,6 +75,7 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   intake.turned_away = std::move(input.turned_away);
   intake.follower_came = input.follower_came;
   intake.superseded = input.superseded;
+  intake.superseded_by = std::move(input.superseded_by);
   leases_.begin_drain(world, now_ns);
   tally_.begin_drain();
 
@@ -117,6 +118,10 @@ UserId Inbox::first_user_of(const ClientKey& client) const {
   for (std::uint32_t i = 0; i < seats_.size(); ++i)
     if (seats_[i].present && seats_[i].client == client) return UserId{i + 1};
   return UserId{};
+}
+
+std::uint32_t Inbox::seats_for(const ClientKey& client) const {
+  return limits_.max_users - (first_user_of(client) ? limits_.max_users / kKeptForOthers : 0);
 }
 
 UserId Inbox::user_who_asked(const JoinRequest& request) const {
@@ -183,9 +188,9 @@ void Inbox::admit_join(const JoinRequest& request, World& world, std::int64_t no
   UserId known;  // a user of that name who left: the same user again
   for (const User& user : world.users)
     if (user.name == request.name) known = user.id;
-  const bool is_full = users_present() >= limits_.max_users;
-  reply.refusal =
-      check_join(request, world, is_present(known), is_full ? limits_.max_users : 0, reply.text);
+  const std::uint32_t seats = seats_for(request.client);
+  reply.refusal = check_join(request, world, is_present(known),
+                             users_present() >= seats ? seats : 0, reply.text);
   if (reply.refusal != Refusal::kNone) {
     ++tally_.all().joins_refused;
     intake.join_replies.push_back(std::move(reply));

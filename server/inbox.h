@@ -20,6 +20,10 @@ namespace mortise {
 /// the tick thread only. Has no clock: the time is passed in.
 class Inbox {
  public:
+  /// This part of the seats goes to participants that have none yet: one that takes all it gets
+  /// keeps nobody else out.
+  static constexpr std::uint32_t kKeptForOthers = 16;
+
   explicit Inbox(const InboxLimits& limits) : limits_(limits) {}
   Inbox(const Inbox&) = delete;
   Inbox& operator=(const Inbox&) = delete;
@@ -63,6 +67,8 @@ class Inbox {
   /// Is this a present user of the client? Counts users of other clients.
   bool speaks_for(const ClientKey& client, UserId user);
   UserId first_user_of(const ClientKey& client) const;
+  /// Users in the session beyond which this participant gets no further one.
+  std::uint32_t seats_for(const ClientKey& client) const;
   UserId user_who_asked(const JoinRequest& request) const;
   /// The id of the user who has been absent longest; none: all are present.
   UserId longest_gone(const World& world) const;

@@ -17,6 +17,7 @@ void Intake::clear() {
   acks.clear();
   turned_away.clear();
   follower_came = superseded = false;
+  superseded_by.clear();
   joined = false;
 }
 

@@ -75,7 +75,8 @@ struct Intake {
   std::vector<Ack> acks;                           ///< one per user that sent increments, by user
   std::vector<std::string> turned_away;            ///< by the transport, in words
   bool follower_came = false, superseded = false;  ///< see ServerInput
-  bool joined = false;                             ///< a user has joined: a snapshot is due
+  std::string superseded_by;
+  bool joined = false;  ///< a user has joined: a snapshot is due
 
   void clear();
 };

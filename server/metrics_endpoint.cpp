@@ -74,7 +74,11 @@ class Endpoint final : public MetricsEndpoint {
     Response response{http::status::ok, request.version()};
     response.keep_alive(request.keep_alive());
     response.set(http::field::content_type, kText);
-    if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    const std::size_t hosts = request.count(http::field::host);
+    if (hosts > 1 || (hosts == 0 && request.version() >= 11)) {  // RFC 9112, section 3.2
+      response.result(http::status::bad_request);
+      response.body() = "one Host field is expected\n";
+    } else if (request.method() != http::verb::get && request.method() != http::verb::head) {
       response.result(http::status::method_not_allowed);
       response.set(http::field::allow, "GET, HEAD");
       response.body() = "only GET and HEAD\n";

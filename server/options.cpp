@@ -31,7 +31,7 @@ void add_session(ProgramOptions& app, ServerOptions& o) {
 
 void add_log(ProgramOptions& app, ServerOptions& o) {
   const auto log = app.add("--log", o.log,
-                           "Session log (MCAP), or a folder for it; default "
+                           "Session log (NAME.mcap), or a folder for it, which is made; default "
                            "sessions/<session>-<UTC time>.mcap")
                        .group(kLogGroup);
   app.add("--log-rotate", o.log_rotate_mb,

@@ -98,13 +98,18 @@ LogBegin begin_of(World& world, const SessionStatistics& statistics, std::int64_
 
 }  // namespace
 
-Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bool all_depart) {
+Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bool all_depart,
+                            const std::function<bool()>& stop) {
   Resumed resumed;
   const std::uint64_t from_tick = world.tick;
   resumed.statistics = told_statistics(log, from_tick);
-  auto report = replay(world, log, threads,
-                       [&](const ReplayedTick& tick) { resumed.statistics.add(tick.computed); });
+  auto report = replay(
+      world, log, threads, [&](const ReplayedTick& tick) { resumed.statistics.add(tick.computed); },
+      Agreement::kBitForBit, stop);
   if (!report) return report.error();
+  if (report->stopped)
+    return fail(Code::kRuntime,
+                "stopped while it was played again, at tick " + std::to_string(world.tick));
   if (report->difference) {
     return fail(Code::kMismatch,
                 "at tick " + std::to_string(report->difference->tick) +

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,8 +37,9 @@ std::vector<std::filesystem::path> logs_to_restore(const std::filesystem::path& 
 /// compares each tick with its logged events and state hash. Afterwards parts, clashes with their
 /// ids, event numbers and the undo history are those after the last tick of the log. Costs the
 /// engine's work since the checkpoint. all_depart false: users stay present, for the log of a
-/// server that still leads. Fails (kMismatch) where the log and this engine disagree.
+/// server that still leads. Fails (kMismatch) where the log and this engine disagree, and
+/// (kRuntime) where `stop`, asked after each tick, said so.
 Result<Resumed> resume_from(const SessionLog& log, World& world, int threads,
-                            bool all_depart = true);
+                            bool all_depart = true, const std::function<bool()>& stop = {});
 
 }  // namespace mortise

@@ -21,6 +21,7 @@
 #include "server/metrics_endpoint.h"
 #include "server/restore.h"
 #include "server/scheduling.h"
+#include "server/service_manager.h"
 #include "server/standby.h"
 #include "server/start.h"
 
@@ -46,8 +47,8 @@ Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& 
   if (!start.log) return resumed;
   const auto begun = std::chrono::steady_clock::now();
   const std::uint64_t from_tick = start.scene.world.tick;
-  auto played =
-      resume_from(*start.log, start.scene.world, options.threads, options.standby_of.empty());
+  auto played = resume_from(*start.log, start.scene.world, options.threads,
+                            options.standby_of.empty(), [] { return stop_asked || drain_asked; });
   if (!played) return fail(played.error().code, start.source + ": " + played.error().text);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   spdlog::info("restored from {}: {} ticks{}; {} played again in {:.2f} s, each as it was logged",
@@ -106,6 +107,10 @@ class Service {
   bool stands_by() const { return !options_.standby_of.empty(); }
   // One that stands by has nothing to hand over.
   static bool is_to_stop() { return stop_asked || drain_asked; }
+  bool beats_until_stop() {
+    manager_.beat();
+    return is_to_stop();
+  }
   std::int64_t term_ns() const {
     return static_cast<std::int64_t>(channel_->term_ms() * 1'000'000);
   }
@@ -122,6 +127,7 @@ class Service {
   void say_goodbye();
 
   const ServerOptions& options_;
+  ServiceManager manager_;
   std::optional<SessionStart> start_;
   std::unique_ptr<StandbyChannel> standby_;  ///< until it is the channel
   std::deque<ToldTick> told_;                ///< by the leader, while the log was not read yet
@@ -148,13 +154,18 @@ Result<bool> Service::begin() {
   if (!start) return start.error();
   start_ = std::move(*start);
   if (Status opened = open_channel(); !opened) return opened.error();
-  if (Status opened = open_log(); !opened) return opened.error();
+  if (Status opened = open_log(); !opened) {
+    if (!is_to_stop()) return opened.error();
+    spdlog::info("{}", opened.error().text);
+    return false;
+  }
   if (stands_by()) {
     const Result<bool> leads = follow_leader();
     if (!leads || !*leads) return leads;
   }
   open_loop();
   if (Status opened = open_metrics(); !opened) return opened.error();
+  manager_.ready("leading session " + options_.network.session);
   return true;
 }
 
@@ -164,7 +175,10 @@ Result<bool> Service::find_leader() {
   if (!opened) return opened.error();
   standby_ = std::move(*opened);
   spdlog::info("standing by: waiting for the server of session '{}'", options_.network.session);
-  return await_leader(*standby_, told_, is_to_stop);
+  manager_.ready("standing by for session " + options_.network.session);
+  auto found = await_leader(*standby_, told_, [this] { return beats_until_stop(); });
+  manager_.busy();  // the log is read
+  return found;
 }
 
 // 2. the channel
@@ -218,8 +232,9 @@ Result<bool> Service::follow_leader() {
   World& world = start_->scene.world;
   Follower follower(world, resumed_->statistics, log_.writer.get(), options_.threads);
   auto& line = static_cast<StandbyChannel&>(*channel_);
-  auto ended = follow(line, std::move(told_), follower, is_to_stop,
-                      [](const std::string& note) { spdlog::info("standing by: {}", note); });
+  auto ended = follow(
+      line, std::move(told_), follower, [this] { return beats_until_stop(); },
+      [](const std::string& note) { spdlog::info("standing by: {}", note); });
   if (!ended || !*ended) return ended;
   seats_ = follower.seats();
   followed_ns_ = follower.time_ns();
@@ -297,6 +312,7 @@ void Service::play() {
 void Service::after_tick(Announcer& announcer) {
   announcer.after_tick(*loop_);
   for (const std::string& note : held_->take_notes()) spdlog::warn("{}", note);
+  manager_.beat();
   if (!metrics_) return;
   metrics_->beat();
   if (loop_->seconds() - shown_at_s_ < kShowFiguresEvery_s) return;
@@ -306,6 +322,7 @@ void Service::after_tick(Announcer& announcer) {
 }
 
 int Service::end() {
+  manager_.ends();
   const bool was_barred = barred();
   if (drain_->begun() && !stop_asked && !loop_->superseded() && !was_barred) {
     drain_->finish([&] {
@@ -314,8 +331,10 @@ int Service::end() {
     });
   }
   if (loop_->superseded()) {
-    spdlog::error("another server leads session '{}' since; start this one with --standby-of {}",
-                  options_.network.session, options_.network.session);
+    const std::string& by = loop_->superseded_by();
+    spdlog::error("another server leads session '{}' since{}; start this one with --standby-of {}",
+                  options_.network.session, by.empty() ? "" : ", the one at " + by,
+                  options_.network.session);
   } else if (was_barred) {
     spdlog::error("{}", channel_->barred());
     // One that stands by goes on with the session, and takes nothing more from this one.

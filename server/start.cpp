@@ -91,6 +91,8 @@ Result<SessionStart> read_from_log(const fs::path& file) {
   return start;
 }
 
+constexpr const char* kLogExtension = ".mcap";
+
 // Later than the log that it goes on from, also by its name: so the last one is found.
 std::string default_log_file(const fs::path& folder, const std::string& session,
                              const std::optional<LogBegin>& begin) {
@@ -101,19 +103,19 @@ std::string default_log_file(const fs::path& folder, const std::string& session,
   char stamp[32];
   std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &utc);
   const std::string stem = session + "-" + stamp;
-  fs::path file = folder / (stem + ".mcap");
+  fs::path file = folder / (stem + kLogExtension);
   // Two starts within a second: names must differ, and sort in the order of the starts.
   for (int again = 1; fs::exists(file) || LogFile::is_begun(file); ++again) {
-    file = folder / fmt::format("{}_{}.mcap", stem, again);
+    file = folder / fmt::format("{}_{}{}", stem, again, kLogExtension);
   }
   return file.string();
 }
 
 std::string log_file(const ServerOptions& options, const std::optional<LogBegin>& begin) {
-  if (options.log.empty()) return default_log_file("sessions", options.network.session, begin);
-  if (fs::is_directory(options.log))
-    return default_log_file(options.log, options.network.session, begin);
-  return options.log;
+  const fs::path place = options.log.empty() ? "sessions" : options.log;
+  const bool is_folder =
+      fs::is_directory(place) || (!fs::exists(place) && place.extension() != kLogExtension);
+  return is_folder ? default_log_file(place, options.network.session, begin) : place.string();
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ void TickLoop::tick() {
 
   // 7. out
   begin_record(step_ns);
+  if (intake_.superseded && !superseded_) superseded_by_ = intake_.superseded_by;
   superseded_ = superseded_ || intake_.superseded;
   if (channel_.has_follower()) tell_follower();
   publisher_.publish(intake_, report_, now_ns_);
@@ -143,6 +144,7 @@ void TickLoop::run(const std::function<bool()>& stop, const std::function<void()
     const std::int64_t start_ns = clock_.now_ns();
     if (start_ns < deadline_ns) continue;  // woken by a signal
     metrics_.lateness.add(start_ns - deadline_ns);
+    channel_.note_progress(0.0);
     tick();
     if (after_tick) after_tick();
     hand_over_record();
@@ -154,6 +156,7 @@ void TickLoop::run(const std::function<bool()>& stop, const std::function<void()
       metrics_.missed_deadlines += static_cast<std::uint64_t>(passed_over);
       deadline_ns += passed_over * period_ns;
     }
+    channel_.note_progress(static_cast<double>(deadline_ns - clock_.now_ns()) * 1e-9);
   }
 }
 

@@ -43,6 +43,8 @@ class TickLoop {
 
   /// Another server leads the session now: this one must end.
   bool superseded() const { return superseded_; }
+  /// Its address, as far as it is known.
+  const std::string& superseded_by() const { return superseded_by_; }
 
   /// Publishes the meshes, once per distinct hash, and the first snapshot.
   void open();
@@ -99,6 +101,7 @@ class TickLoop {
   std::vector<Decision> departures_;           ///< of before a restore, not yet logged
   std::int64_t opened_ns_ = 0, now_ns_ = 0, pulse_ns_ = 0;
   bool superseded_ = false;
+  std::string superseded_by_;
   bool draining_ = false, last_ = false, hands_over_ = false;
 };
 

@@ -98,6 +98,11 @@ void HttpConnection::failed(beast::error_code error) {
 
 void HttpConnection::take() {
   const Request& request = parser_->get();
+  const std::size_t hosts = request.count(http::field::host);
+  if (hosts > 1 || (hosts == 0 && request.version() >= 11)) {  // RFC 9112, section 3.2
+    note(Incident::kBadRequest, "a request with no Host field, or with several");
+    return write(sentence(http::status::bad_request, "one Host field is expected"));
+  }
   if (asks_for_report(request)) return make_report();
   if (!beast::websocket::is_upgrade(request))
     return write(answer_to(state_, request, stream_.has_tls(), peer_));

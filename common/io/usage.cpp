@@ -1,10 +1,16 @@
 #include "common/io/usage.h"
 
+#include <errno.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "common/base/in_quotes.h"
@@ -13,6 +19,42 @@
 
 namespace mortise {
 namespace {
+
+// What the system may refuse anywhere, in a thread of a library too. Null: a fault of our own.
+const char* what_is_missing() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    return "no memory is left: raise its limit (ulimit -v), or give it less to do";
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::resource_unavailable_try_again)
+      return "no further thread can be started: raise the limits of memory (ulimit -v) and "
+             "processes (ulimit -u)";
+  } catch (...) {
+  }
+  return nullptr;
+}
+
+std::terminate_handler& handler_before() {
+  static std::terminate_handler before = nullptr;
+  return before;
+}
+
+// Nothing here asks for memory.
+[[noreturn]] void end_with_one_line() {
+  if (const char* missing = what_is_missing()) {
+    std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, missing);
+    std::_Exit(kExitRuntime);
+  }
+  if (handler_before() != nullptr) handler_before()();
+  std::abort();
+}
+
+// Of every program that reads a command line, before it does.
+[[maybe_unused]] const bool kEndsWithOneLine = [] {
+  handler_before() = std::set_terminate(end_with_one_line);
+  return true;
+}();
 
 std::vector<std::string> options_of(const CLI::App& app) {
   std::vector<std::string> names;

@@ -12,7 +12,8 @@ class Option;
 }  // namespace CLI
 
 /// Command lines of programs. Behind it stands CLI11, whose templates cost each unit that includes
-/// them ten seconds of compiling.
+/// them ten seconds of compiling. Who links this also ends with one line, not a core, where the
+/// system has no memory or thread left.
 namespace mortise {
 
 /// What is wrong with a command line: "--part x: there is none". Thrown by what reads or checks it.

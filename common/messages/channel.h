@@ -106,6 +106,8 @@ struct ServerInput {
   std::vector<std::string> turned_away;      ///< participants that the transport refused, in words
   bool follower_came = false;                ///< a new standby has appeared
   bool superseded = false;                   ///< another server has taken over: this one must end
+  std::string superseded_by;                 ///< its address; may be empty
+  std::optional<ToldTick> superseding;       ///< what it told last
 };
 
 struct Ack {
@@ -165,6 +167,9 @@ class ServerChannel {
   virtual TakenTicks taken_up_to() { return {}; }
   /// Returns when the standby has reported since the last call, or after the given time.
   virtual void await_taken(std::int64_t /*at_most_ns*/) {}
+  /// The tick thread goes on, and will again within so long. One that does not, and does not
+  /// compute either, is no leader for other servers any more, whatever its other threads do.
+  virtual void note_progress(double /*next_within_s*/) {}
   /// The standby may have taken over elsewhere: takes a new term, higher than the standby's.
   virtual void lead_anew() {}
   /// The term under which this server leads, ms since 1970 or later; 0: the transport knows no
@@ -188,7 +193,7 @@ class StandbyChannel : public ServerChannel {
   /// Tells the leader which ticks are here. The leader publishes a tick to clients only after its
   /// standby has received it.
   virtual void confirm(const TakenTicks& taken) = 0;
-  /// Is the leader alive? Known within 0.15 s.
+  /// Is the leader alive, and do its ticks go on? Known within 0.15 s, and within 1.15 s.
   virtual bool leader_present() const = 0;
   /// Does the leader count on another standby? Only that one may take over.
   virtual bool another_stands_by() const = 0;

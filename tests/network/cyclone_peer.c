@@ -1,6 +1,7 @@
 // A participant of a session that shares nothing with mortise but its IDL: C, with Cyclone DDS.
 // Joins, grabs a part, moves it in small steps, and listens to poses and clashes. One line of
-// result on stdout for each thing seen.
+// result on stdout for each thing seen. With a further word it waits until another server leads,
+// joins that one, and goes on.
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -20,8 +21,11 @@ struct peer {
   uint64_t acknowledged, command_acknowledged;
   double p_mm[3];
   uint64_t pose_samples, event_count, first_event, last_event, events_missed;
-  int clash_class;  // of the last event
-  bool open;        // the last event was no end
+  int clash_class;               // of the last event
+  bool open;                     // the last event was no end
+  dds_instance_handle_t leader;  // its writer of answers; 0: none
+  uint64_t term;
+  char key[25];  // own, as JoinReply has it
 };
 
 static int64_t now_ns(void) { return dds_time(); }
@@ -68,19 +72,22 @@ static dds_entity_t writer(struct peer* peer, const dds_topic_descriptor_t* type
 
 static void open_peer(struct peer* peer, uint32_t domain, const char* session) {
   char config[1024], partition[160];
+  const uint32_t port = 7402 + 250 * domain;
   // No multicast: the server listens at a fixed port and nobody else needs to be known.
-  snprintf(
-      config, sizeof config,
-      "<Domain id=\"any\"><General><Interfaces><NetworkInterface "
-      "address=\"127.0.0.1\"/></Interfaces>"
-      "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>none</"
-      "ParticipantIndex>"
-      "<Peers><Peer "
-      "address=\"127.0.0.1:%u\"/></Peers><SPDPInterval>0.5s</SPDPInterval></Discovery></Domain>",
-      7402 + 250 * domain);
+  snprintf(config, sizeof config,
+           "<Domain id=\"any\"><General><Interfaces><NetworkInterface "
+           "address=\"127.0.0.1\"/></Interfaces>"
+           "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>none</"
+           "ParticipantIndex>"
+           "<Peers><Peer address=\"127.0.0.1:%u\"/><Peer address=\"127.0.0.1:%u\"/></Peers>"
+           "<SPDPInterval>0.5s</SPDPInterval></Discovery></Domain>",
+           port, port + 2);
   snprintf(partition, sizeof partition, "session/%s", session);
   checked(dds_create_domain(domain, config), "domain");
   peer->participant = checked(dds_create_participant(domain, NULL, NULL), "participant");
+  dds_guid_t guid;
+  dds_get_guid(peer->participant, &guid);
+  for (int i = 0; i < 12; ++i) snprintf(peer->key + 2 * i, 3, "%02x", guid.v[i]);
   peer->answers = reader(peer, &mortise_wire_Answers_desc, "mortise_answers",
                          qos_of(true, false, 1024, partition));
   peer->poses = reader(peer, &mortise_wire_PoseBatch_desc, "mortise_pose",
@@ -96,6 +103,44 @@ static void open_peer(struct peer* peer, uint32_t domain, const char* session) {
   dds_qos_t* present = qos_of(true, false, 1, partition);
   dds_qset_liveliness(present, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(800));
   peer->presence = writer(peer, &mortise_wire_Presence_desc, "mortise_presence", present);
+}
+
+// The term that a writer of a server says in its user data; 0: none.
+static uint64_t term_of(const dds_builtintopic_endpoint_t* writer) {
+  void* data = NULL;
+  size_t size = 0;
+  uint64_t term = 0;
+  char text[64];
+  if (!dds_qget_userdata(writer->qos, &data, &size) || data == NULL) return 0;
+  const size_t kept = size < sizeof text ? size : sizeof text - 1;
+  memcpy(text, data, kept);
+  text[kept] = 0;
+  dds_free(data);
+  return sscanf(text, "term=%" SCNu64, &term) == 1 ? term : 0;
+}
+
+// Of the writers of answers the one with the highest term. Another one than before: its users of
+// ours are to join again.
+static void find_leader(struct peer* peer) {
+  dds_instance_handle_t writers[16];
+  const dds_return_t found = dds_get_matched_publications(peer->answers, writers, 16);
+  dds_instance_handle_t best = 0;
+  uint64_t highest = peer->term;
+  for (dds_return_t i = 0; i < found && i < 16; ++i) {
+    dds_builtintopic_endpoint_t* writer =
+        dds_get_matched_publication_data(peer->answers, writers[i]);
+    if (writer == NULL) continue;
+    const uint64_t term = term_of(writer);
+    if (term != 0 && term >= highest) {
+      highest = term;
+      best = writers[i];
+    }
+    dds_builtintopic_free_endpoint(writer);
+  }
+  if (best == peer->leader) return;
+  peer->leader = best;
+  peer->term = highest;
+  peer->user = 0;
 }
 
 static void join(struct peer* peer) {
@@ -167,7 +212,9 @@ static void hear_answers(struct peer* peer) {
   TAKE_EACH(peer->answers, mortise_wire_Answers, sample) {
     for (uint32_t i = 0; i < sample->joins._length; ++i) {
       const mortise_wire_JoinReply* reply = &sample->joins._buffer[i];
-      if (reply->nonce == kNonce && reply->refusal == 0) peer->user = reply->user;
+      const bool ours = reply->nonce == kNonce && strcmp(reply->client, peer->key) == 0;
+      if (ours && reply->refusal == 0 && info.publication_handle == peer->leader)
+        peer->user = reply->user;
     }
     for (uint32_t i = 0; i < sample->replies._length; ++i) {
       const mortise_wire_Reply* reply = &sample->replies._buffer[i];
@@ -217,6 +264,7 @@ static void hear_events(struct peer* peer) {
 }
 
 static void turn(struct peer* peer, const char* part_name) {
+  find_leader(peer);
   hear_answers(peer);
   hear_snapshots(peer, part_name);
   hear_poses(peer);
@@ -225,38 +273,98 @@ static void turn(struct peer* peer, const char* part_name) {
   dds_sleepfor(DDS_MSECS(4));
 }
 
+// Until it has a user, and knows the part.
+static bool come_in(struct peer* peer, const char* part_name, int64_t end_ns) {
+  int64_t asked_ns = 0;
+  while ((peer->user == 0 || peer->part == 0) && now_ns() < end_ns) {
+    if (peer->user == 0 && peer->leader != 0 && now_ns() - asked_ns > DDS_MSECS(500)) {
+      asked_ns = now_ns();
+      join(peer);
+    }
+    turn(peer, part_name);
+  }
+  return peer->user != 0 && peer->part != 0;
+}
+
+// Sequences go on where they were.
+static void move_on(struct peer* peer, const char* part_name, uint64_t from, uint64_t steps,
+                    const double by_mm[3], int64_t end_ns) {
+  for (uint64_t seq = from + 1; seq <= from + steps && now_ns() < end_ns; ++seq) {
+    move(peer, seq, by_mm);
+    for (int i = 0; i < 4; ++i) turn(peer, part_name);  // about 60 a second
+  }
+  while (peer->acknowledged < from + steps && now_ns() < end_ns) turn(peer, part_name);
+}
+
+// The same user with what it held, at another server.
+static bool go_on_elsewhere(struct peer* peer, const char* part_name, int64_t end_ns) {
+  const uint32_t user = peer->user, holder = peer->holder;
+  const uint64_t term = peer->term;
+  printf("waits\n");
+  fflush(stdout);
+  while (peer->term == term && now_ns() < end_ns) turn(peer, part_name);
+  peer->holder = 0;
+  if (!come_in(peer, part_name, end_ns)) return false;
+  printf("rejoined same_user %d higher_term %d held_before %d\n", peer->user == user,
+         peer->term > term, holder == user);
+  return true;
+}
+
+// One sample of a tick under the highest of all terms, by somebody who leads nothing.
+static int tell_absurd_tick(struct peer* peer, const char* session) {
+  char partition[160], nobody[] = "";
+  uint8_t bytes[8] = {0};
+  snprintf(partition, sizeof partition, "session/%s", session);
+  dds_qos_t* leads = qos_of(true, false, 4096, partition);
+  dds_qset_liveliness(leads, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(100));
+  const dds_entity_t ticks = writer(peer, &mortise_wire_ServerTick_desc, "mortise_tick", leads);
+  dds_publication_matched_status_t matched = {0};
+  for (int i = 0; i < 2000 && matched.current_count == 0; ++i) {
+    dds_get_publication_matched_status(ticks, &matched);
+    dds_sleepfor(DDS_MSECS(4));
+  }
+  mortise_wire_ServerTick sample = {.tick = 1, .term = UINT64_MAX, .count = 1, .follower = nobody};
+  sample.bytes._buffer = bytes;
+  sample.bytes._length = sample.bytes._maximum = sizeof bytes;
+  for (int i = 0; i < 10; ++i) {
+    dds_write(ticks, &sample);
+    dds_sleepfor(DDS_MSECS(20));
+  }
+  dds_sleepfor(DDS_MSECS(500));
+  printf("told matched %u\n", matched.current_count);
+  dds_delete(peer->participant);
+  return matched.current_count > 0 ? 0 : 6;
+}
+
 int main(int count, char** words) {
-  if (count != 6) {
-    fprintf(stderr, "usage: cyclone_peer DOMAIN SESSION PART STEPS Z_MM_PER_STEP\n");
+  if (count != 6 && count != 7) {
+    fprintf(stderr,
+            "usage: cyclone_peer DOMAIN SESSION PART STEPS Z_MM_PER_STEP [takeover|absurd]\n");
     return 2;
   }
   struct peer peer;
   memset(&peer, 0, sizeof peer);
   open_peer(&peer, (uint32_t)atoi(words[1]), words[2]);
+  if (count == 7 && strcmp(words[6], "absurd") == 0) return tell_absurd_tick(&peer, words[2]);
   const char* part_name = words[3];
-  const uint64_t steps = (uint64_t)atoll(words[4]);
+  uint64_t steps = (uint64_t)atoll(words[4]);
   const double by_mm[3] = {0.0, 0.0, atof(words[5])};
-  const int64_t start_ns = now_ns(), end_ns = start_ns + DDS_SECS(20);
+  const int64_t start_ns = now_ns(), end_ns = start_ns + DDS_SECS(count == 7 ? 60 : 20);
 
-  int64_t asked_ns = 0;
-  while ((peer.user == 0 || peer.part == 0) && now_ns() < end_ns) {
-    if (peer.user == 0 && now_ns() - asked_ns > DDS_MSECS(500)) {
-      asked_ns = now_ns();
-      join(&peer);
-    }
-    turn(&peer, part_name);
-  }
+  const bool in = come_in(&peer, part_name, end_ns);
   printf("joined user %u part %u after_ms %" PRId64 "\n", peer.user, peer.part,
          (now_ns() - start_ns) / 1000000);
-  if (peer.user == 0 || peer.part == 0) return 4;
+  if (!in) return 4;
   command(&peer, kGrab, 1);
   while (peer.holder != peer.user && now_ns() < end_ns) turn(&peer, part_name);
   printf("grabbed holder %u\n", peer.holder);
-  for (uint64_t seq = 1; seq <= steps && now_ns() < end_ns; ++seq) {
-    move(&peer, seq, by_mm);
-    for (int i = 0; i < 4; ++i) turn(&peer, part_name);  // about 60 a second
+  move_on(&peer, part_name, 0, steps, by_mm, end_ns);
+  if (count == 7) {
+    if (!go_on_elsewhere(&peer, part_name, end_ns)) return 5;
+    move_on(&peer, part_name, steps, steps, by_mm, end_ns);
+    steps *= 2;
+    printf("went on holder_is_self %d\n", peer.holder == peer.user);
   }
-  while (peer.acknowledged < steps && now_ns() < end_ns) turn(&peer, part_name);
   command(&peer, kRelease, 2);
   while (peer.command_acknowledged < 2 && now_ns() < end_ns) turn(&peer, part_name);
   for (int i = 0; i < 100; ++i) turn(&peer, part_name);  // what is still under way

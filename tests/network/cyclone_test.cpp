@@ -74,5 +74,60 @@ TEST(Cyclone, JoinsGrabsMovesAndSeesPosesAndClashes) {
   EXPECT_NE(server.errors().find("cyclone left"), std::string::npos) << server.errors();
 }
 
+/// By what idl/README.md says and nothing else: it keeps its user and its part where another server
+/// leads.
+TEST(Cyclone, GoesOnWhereAnotherServerTakesOver) {
+#ifndef MORTISE_HAS_CYCLONE
+  GTEST_SKIP() << "program absent: Cyclone DDS (cyclonedds-dev, cyclonedds-tools)";
+#endif
+  TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
+  const std::string logs = folder.path().string() + "/logs";
+  Program first(folder.path(), "mortise-server",
+                {folder.write("blocks.yaml", blocks_yaml({.blue = ""})), "--domain", domain,
+                 "--log", logs, "--json"});
+  Program peer(folder.path(), "cyclone_peer", {domain, "default", "red", "20", "-0.2", "takeover"});
+  const auto until = [](const auto& done) {
+    for (int i = 0; i < 5000 && !done(); ++i) usleep(10'000);
+    return done();
+  };
+  ASSERT_TRUE(until([&] { return peer.out().find("waits") != std::string::npos; }))
+      << peer.out() << peer.errors() << first.errors();
+  Program second(
+      folder.path(), "mortise-server",
+      {"--standby-of", "default", "--restore", logs, "--log", logs, "--domain", domain, "--json"});
+  ASSERT_TRUE(until([&] { return second.errors().find("in step") != std::string::npos; }))
+      << second.errors();
+  first.signal(SIGKILL);
+  EXPECT_EQ(peer.wait(kPatience_s), 0) << peer.out() << peer.errors();
+  const std::string out = peer.out();
+  std::printf("%s", out.c_str());
+  EXPECT_EQ(said(out, "rejoined", "same_user"), 1.0);
+  EXPECT_EQ(said(out, "rejoined", "higher_term"), 1.0);
+  EXPECT_EQ(said(out, "moved", "acknowledged"), 40.0);
+  EXPECT_NEAR(said(out, "moved", "z_mm"), 20.0 - 40 * 0.2, 1e-9);
+  EXPECT_EQ(said(out, "events", "missed"), 0.0);
+  second.signal(SIGTERM);
+  ASSERT_EQ(second.wait(kPatience_s), 0) << second.errors();
+}
+
+TEST(Cyclone, OneAbsurdTickEndsNobody) {
+#ifndef MORTISE_HAS_CYCLONE
+  GTEST_SKIP() << "program absent: Cyclone DDS (cyclonedds-dev, cyclonedds-tools)";
+#endif
+  TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
+  Program server(folder.path(), "mortise-server",
+                 {folder.write("blocks.yaml", blocks_yaml({.blue = ""})), "--domain", domain,
+                  "--no-log", "--json"});
+  Program rogue(folder.path(), "cyclone_peer", {domain, "default", "red", "0", "0", "absurd"});
+  ASSERT_EQ(rogue.wait(kPatience_s), 0) << rogue.out() << rogue.errors() << server.errors();
+  EXPECT_TRUE(server.running()) << server.errors();
+  Program peer(folder.path(), "cyclone_peer", {domain, "default", "red", "10", "-0.2"});
+  EXPECT_EQ(peer.wait(kPatience_s), 0) << peer.out() << peer.errors();
+  server.signal(SIGTERM);
+  EXPECT_EQ(server.wait(kPatience_s), 0) << server.errors();
+}
+
 }  // namespace
 }  // namespace mortise::test

@@ -31,6 +31,24 @@ TEST_F(GatewayFixture, StrangersAreTurnedAwayAtTheDoor) {
   good.expect_to_go_on();
 }
 
+TEST_F(GatewayFixture, ARequestNamesOneHost) {
+  serve();
+  const std::string host = "Host: 127.0.0.1:" + std::to_string(port) + "\r\n";
+  const auto first_line = [&](const std::string& hosts) {
+    RawConnection raw(port);
+    raw.send("GET / HTTP/1.1\r\n" + hosts + "Connection: close\r\n\r\n");
+    bool closed = false;
+    const std::string text = raw.read(10.0, closed);
+    return text.substr(0, text.find("\r\n"));
+  };
+  EXPECT_EQ(first_line(host), "HTTP/1.1 200 OK");
+  EXPECT_EQ(first_line(host + "Host: evil.example\r\n"), "HTTP/1.1 400 Bad Request");
+  EXPECT_EQ(first_line("host: evil.example\r\n" + host), "HTTP/1.1 400 Bad Request");
+  EXPECT_EQ(first_line(host + host), "HTTP/1.1 400 Bad Request");
+  EXPECT_EQ(first_line(""), "HTTP/1.1 400 Bad Request");
+  EXPECT_EQ(incidents("bad_request"), 4);
+}
+
 TEST_F(GatewayFixture, BadMessagesCloseTheirPageOnly) {
   serve();
   GoodPages good(*this);

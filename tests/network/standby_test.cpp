@@ -11,12 +11,14 @@
 
 #include "tests/network/second_server.h"
 #include "tests/network/stalls.h"
+#include "tests/network/stopped_thread.h"
 #include "tests/support/effort.h"
 
 namespace mortise::test {
 namespace {
 
 constexpr double kTakeOver_s = 0.25;  // as every client sees it
+constexpr double kHangs_s = 2.0;      // where the first lives, and its ticks do not go on
 constexpr double kComesBack_s = 1.2;  // whatever the machine does
 static_assert(kComesBack_s < SecondServer::kWatched_s);
 // A machine that stands still for so long tells nothing of the time: that kill is made once more.
@@ -217,6 +219,41 @@ TEST_F(Standby, OneThatComesBackDoesNotFight) {
             std::string::npos)
       << again->errors();
   EXPECT_EQ(losses_, losses);
+  EXPECT_EQ(lost_of_acknowledged(*second), 0u);
+}
+
+/// Only the thread that ticks stands still: all others go on and say that the server is there.
+TEST_F(Standby, TakesOverWhereTheTicksOfTheFirstHang) {
+  auto [first, second] = both();
+  ASSERT_FALSE(HasFailure());
+  const UserId ben = ben_->client->user_id(0);
+  StoppedThread main_thread(first->pid());
+  if (!main_thread.held()) GTEST_SKIP() << "not root: ptrace of another process";
+  const double begun_s = steady_s();
+  const auto comes_back = [&] {
+    return second->errors().find("taken over at tick") != std::string::npos;
+  };
+  moves_ = true;
+  ASSERT_TRUE(wait_until(comes_back)) << first->errors();
+  const double taken_s = steady_s() - begun_s;
+  ASSERT_TRUE(all_in());
+  const std::size_t acknowledged = acknowledged_.size();
+  EXPECT_TRUE(wait_until([&] { return acknowledged_.size() > acknowledged; }));
+  std::printf("ticks of the first hang: taken over after %.0f ms, users go on after %.0f ms\n",
+              taken_s * 1e3, (steady_s() - begun_s) * 1e3);
+  if (timed()) {
+    EXPECT_LT(steady_s() - begun_s, kHangs_s);
+  }
+  EXPECT_EQ(ben_->holder("blue"), ben);
+  const int losses = losses_;
+  turn(1.0);
+  main_thread.release();
+  turn(3.0);
+  EXPECT_EQ(first->wait(kPatience_s), 1) << "no two lead";
+  EXPECT_NE(first->errors().find("another server leads session 'default' since"), std::string::npos)
+      << first->errors();
+  EXPECT_EQ(losses_, losses) << "nobody has changed servers";
+  EXPECT_GT(acknowledged_.size(), 30u);
   EXPECT_EQ(lost_of_acknowledged(*second), 0u);
 }
 

@@ -242,7 +242,8 @@ std::string difference_within_accuracy(const ReplayedTick& tick, double& largest
 }  // namespace
 
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
-                            const OnReplayedTick& on_tick, Agreement agreement) {
+                            const OnReplayedTick& on_tick, Agreement agreement,
+                            const std::function<bool()>& stop) {
   ReplayReport report;
   report.bit_for_bit = agreement == Agreement::kBitForBit;
   report.ticks_logged = log.ticks.size();
@@ -276,7 +277,8 @@ Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
       return false;
     }
     if (tick.logged != nullptr) report.verified_to_tick = tick.computed.tick;
-    return true;
+    report.stopped = stop && stop();
+    return !report.stopped;
   });
   if (!end) return end.error();
   report.not_verifiable = *end;

@@ -46,6 +46,7 @@ struct ReplayReport {
   bool same_build = false;     ///< bit for bit agreement is promised
   bool bit_for_bit = true;     ///< how it was compared; false: within accuracy
   double largest_pose_off_mm = 0.0;  ///< of a moved part from the log, when within accuracy
+  bool stopped = false;              ///< before its end, because it was asked to
 };
 
 /// A tick as it was computed again. `logged` is null for an idle one.
@@ -68,10 +69,12 @@ inline constexpr double kOtherBuild_mm = 1e-3;
 /// Computes a logged session again tick by tick in `world`, as scene_of(log) made it, and compares
 /// refusals, events, state hashes and, on the build that wrote them, checkpoints. Ticks that the
 /// world has already computed are skipped. Stops at the first difference and at the first gap,
-/// because ticks after a gap cannot be computed. Fails when the log cannot be replayed at all.
+/// because ticks after a gap cannot be computed, and where `stop`, asked after each tick, says so:
+/// a log may name ticks without number. Fails when the log cannot be replayed at all.
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
                             const OnReplayedTick& on_tick = {},
-                            Agreement agreement = Agreement::kBitForBit);
+                            Agreement agreement = Agreement::kBitForBit,
+                            const std::function<bool()>& stop = {});
 
 /// The same without comparing: applies the log's decisions and increments to a changed world
 /// (another policy, tolerance, mesh). Stops at the first gap and reports that.

@@ -17,6 +17,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "common/io/mesh/sandbox.h"
+
 extern char** environ;
 
 namespace mortise {
@@ -45,11 +47,43 @@ Error system_error(const std::string& what) {
   return fail(Code::kRuntime, what + ": " + std::strerror(errno));
 }
 
+/// Wall time for processor time: what takes longer waits for something, or the machine does much
+/// else.
+constexpr double kWallOfCpu = 1.4;
+
+std::uint64_t size_of(const fs::path& file) {
+  std::error_code error;
+  const std::uint64_t size = fs::file_size(file, error);
+  return error ? 0 : size;
+}
+
+/// More time for a larger file: what is small and takes much is hostile.
+double cpu_limit_s(const ConfinedChild& child) {
+  const double asked_s =
+      child.cpu.least_s + child.cpu.s_for_MB * 1e-6 * static_cast<double>(size_of(child.file));
+  return std::clamp(asked_s, 1.0, std::clamp(child.limits.seconds, 1.0, 1e6));
+}
+
+double wall_limit_s(const ConfinedChild& child) {
+  return std::clamp(child.limits.seconds, 0.0, kWallOfCpu * cpu_limit_s(child));
+}
+
+std::string allowance_word(const ConfinedChild& child) {
+  Allowance allowance;
+  allowance.memory_bytes = memory_for(size_of(child.file), child.limits.memory_bytes);
+  allowance.most_memory_bytes = child.limits.memory_bytes;
+  allowance.cpu_s = static_cast<std::uint64_t>(std::ceil(cpu_limit_s(child)));
+  allowance.parent = getpid();
+  return word_of(allowance);
+}
+
 /// posix_spawn, not fork: a server with many threads may not run code between fork and exec. The
-/// child sees nothing of ours but the memory files for its questions (-1: none) and its answer.
+/// child sees nothing of ours but the memory files for its questions (-1: none) and its answer. It
+/// begins a group of processes, which ends with it.
 Result<pid_t> spawn(const ConfinedChild& child, int question, int answer) {
   std::vector<std::string> words{child.program.string()};
   words.insert(words.end(), child.arguments.begin(), child.arguments.end());
+  words.push_back(allowance_word(child));
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -69,7 +103,9 @@ Result<pid_t> spawn(const ConfinedChild& child, int question, int answer) {
   sigemptyset(&none);
   posix_spawnattr_setsigdefault(&attributes, &all);
   posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   pid_t pid = 0;
   const int error =
       posix_spawn(&pid, child.program.c_str(), &actions, &attributes, argv.data(), environ);
@@ -105,6 +141,7 @@ End wait_for(pid_t pid, double seconds) {
     const bool look = ready > 0 || !process;
     if (look && (waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
                  info.si_pid == pid)) {
+      kill(-pid, SIGKILL);  // helpers that it left
       pid_t reaped;
       while ((reaped = waitpid(pid, &end.status, 0)) < 0 && errno == EINTR) {
       }
@@ -113,7 +150,7 @@ End wait_for(pid_t pid, double seconds) {
     }
   }
   end.timed_out = true;
-  kill(pid, SIGKILL);
+  kill(-pid, SIGKILL);
   while (waitpid(pid, &end.status, 0) < 0 && errno == EINTR) {
   }
   return end;
@@ -130,7 +167,7 @@ std::string seconds_text(double seconds) {
 std::string reason_of_end(const End& end, const ConfinedChild& child) {
   const ImportLimits& limits = child.limits;
   if (end.timed_out)
-    return "reading took longer than " + seconds_text(limits.seconds) +
+    return "reading took longer than " + seconds_text(wall_limit_s(child)) +
            " and was ended; simplify the file, or raise the time limit of the import";
   if (end.status == -1) return "the importer's end could not be observed; try again";
   if (WIFSIGNALED(end.status)) {
@@ -176,7 +213,7 @@ Result<MappedBytes> run_confined(const ConfinedChild& child) {
   }
   Result<pid_t> pid = spawn(child, question.get(), answer.get());
   if (!pid) return pid.error();
-  const End end = wait_for(*pid, std::clamp(child.limits.seconds, 0.0, 1e6));
+  const End end = wait_for(*pid, wall_limit_s(child));
   const bool well =
       !end.timed_out && end.status != -1 && WIFEXITED(end.status) && WEXITSTATUS(end.status) == 0;
   if (!well) return fail(Code::kInvalidInput, reason_of_end(end, child));

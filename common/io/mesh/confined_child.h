@@ -11,14 +11,21 @@
 
 namespace mortise {
 
-/// A program that reads what strangers wrote, alone and with limits: it gets its limits as the last
-/// two of its arguments by whoever calls it, questions on stdin, and answers on stdout.
+/// Processor time that a file of so many bytes may take, besides the limit of wall time.
+struct CpuLimit {
+  double least_s = 0.0, s_for_MB = 0.0;
+};
+
+/// A program that reads what strangers wrote, alone and with limits: it gets what it may use (see
+/// sandbox.h) as its last argument, questions on stdin, and answers on stdout.
 struct ConfinedChild {
   std::string called;      ///< "mesh importer", for messages
   std::string where_from;  ///< what to do when it cannot be started
   std::filesystem::path program;
-  std::vector<std::string> arguments;
+  std::filesystem::path file;          ///< that it reads; one of the arguments names it
+  std::vector<std::string> arguments;  ///< before the last
   ImportLimits limits;
+  CpuLimit cpu;
   std::span<const std::byte> question = {};
 };
 

@@ -1,8 +1,5 @@
 #include "common/io/mesh/importer_process.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "common/io/mesh/confined_child.h"
 
 namespace mortise {
@@ -18,11 +15,10 @@ Result<RawSoup> run_importer(const std::filesystem::path& file, const std::strin
   child.called = "mesh importer";
   child.where_from = "build the target mortise-import, or set MORTISE_IMPORTER";
   child.program = importer_program();
-  const double seconds = std::clamp(limits.seconds, 0.0, 1e6);
-  child.arguments = {std::filesystem::absolute(file, ignored).string(), extension,
-                     std::to_string(limits.memory_bytes),
-                     std::to_string(std::llround(std::ceil(seconds)))};
+  child.file = file;
+  child.arguments = {std::filesystem::absolute(file, ignored).string(), extension};
   child.limits = limits;
+  child.cpu = {10.0, 0.1};
   const Result<MappedBytes> answer = run_confined(child);
   if (!answer) return answer.error();
   return decode(answer->bytes());

@@ -75,10 +75,7 @@ std::string objection(const fs::path& file, const std::string& extension, double
 }
 
 /// The importer's own words for what it could not read, with advice.
-std::string refusal_text(const std::string& words, const ImportLimits& limits) {
-  if (words.find("bad_alloc") != std::string::npos)
-    return "reading it needs more than " + std::to_string(limits.memory_bytes >> 20U) +
-           " MB of memory; the file is damaged, or raise the memory limit of the import";
+std::string refusal_text(const std::string& words) {
   return words.find(';') != std::string::npos ? words
                                               : words + "; export the file again, or repair it";
 }
@@ -202,7 +199,7 @@ Result<ImportedMesh> import_mesh(const fs::path& file, double unit_mm,
   Result<RawSoup> soup = run_importer(file, extension, limits);
   if (!soup) return fail(soup.error().code, file.string() + ": " + soup.error().text);
   if (!soup->refusal.empty())
-    return fail(Code::kInvalidInput, file.string() + ": " + refusal_text(soup->refusal, limits));
+    return fail(Code::kInvalidInput, file.string() + ": " + refusal_text(soup->refusal));
   return made_of(*soup, file.string(), unit_mm);
 } catch (const std::exception& error) {  // memory of our own, names that are no paths
   return fail(Code::kRuntime, file.string() + ": cannot be imported: " + error.what());

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 
 #include "common/io/mesh/confined_child.h"
+#include "common/io/mesh/sandbox.h"
 
 namespace mortise {
 namespace {
@@ -31,10 +31,10 @@ Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
       "build the target mortise-import-step (it needs the packages of packages-step.txt), install "
       "mortise-step, or set MORTISE_STEP_IMPORTER";
   child.program = program_beside("MORTISE_STEP_IMPORTER", "mortise-import-step");
-  child.arguments = {what, fs::absolute(file, ignored).string(),
-                     std::to_string(limits.memory_bytes),
-                     std::to_string(std::llround(std::ceil(std::clamp(limits.seconds, 0.0, 1e6))))};
+  child.file = file;
+  child.arguments = {what, fs::absolute(file, ignored).string()};
   child.limits = limits;
+  child.cpu = {question.empty() ? 10.0 : limits.seconds, 20.0};
   child.question = question;
   return run_confined(child);
 }
@@ -57,10 +57,13 @@ Result<StepAssembly> import_step(const fs::path& file, const ImportLimits& limit
   if (!answer) return fail(answer.error().code, file.string() + ": " + answer.error().text);
   Result<StepDocument> document = decode_step(answer->bytes());
   if (!document) return fail(document.error().code, file.string() + ": " + document.error().text);
+  std::error_code ignored;
   if (document->refusal.find("bad_alloc") != std::string::npos)
-    return fail(Code::kInvalidInput, file.string() + ": reading it needs more than " +
-                                         std::to_string(limits.memory_bytes >> 20U) +
-                                         " MB of memory; the file is damaged, or too large");
+    return fail(
+        Code::kInvalidInput,
+        file.string() + ": reading it needs more than " +
+            std::to_string(memory_for(fs::file_size(file, ignored), limits.memory_bytes) >> 20U) +
+            " MB of memory; the file is damaged, or too large");
   if (!document->refusal.empty())
     return fail(Code::kInvalidInput, file.string() + ": " + document->refusal);
   const auto bytes = answer->bytes();

@@ -7,6 +7,7 @@
 
 #include "common/session/memory/session_state.h"
 #include "tests/support/ball_bed.h"
+#include "tests/support/effort.h"
 #include "tests/unit/io/random_session.h"
 #include "tests/unit/session/report_digest.h"
 
@@ -244,6 +245,42 @@ TEST(Checkpoint, BytesThatAreNoStateOfTheSceneAreRefused) {
     for (int tick = 0; tick < 2; ++tick) step(world, {}, scratch);
   }
   EXPECT_GT(refused, 300U);
+}
+
+// A hostile state may have a good hash. Whatever numbers it names, it is refused or computed with.
+TEST(Checkpoint, NumbersWithoutSenseAreRefusedOrComputedWith) {
+  const Played played = play(5, 120, 60);
+  const std::uint64_t patterns[] = {
+      0x7ff8000000000000, 0x7ff0000000000000, 0xfff0000000000000,  // no number, infinities
+      0x7fe1ccf385ebc8a0, 0x0000000000000001, 0xbff0000000000000,  // 1e308, the least, -1
+      0x42a6bcc41e900000, 0xffffffffffffffff, 0x7fffffffffffffff, 0x00000000ffffffff};
+  std::mt19937_64 random(7);
+  int computed = 0;
+  auto loaded = random_scene();
+  for (int i = 0; i < test::effort(400); ++i) {
+    std::vector<std::byte> bytes = played.saved[random() % played.saved.size()].bytes;
+    for (int places = 0; places < 2; ++places) {
+      const std::uint64_t pattern = patterns[random() % std::size(patterns)];
+      const std::size_t size = std::size_t{1} << random() % 4;
+      std::memcpy(bytes.data() + random() % (bytes.size() - 8), &pattern, size);
+    }
+    if (i % 20 == 0) loaded = random_scene();
+    ASSERT_TRUE(loaded);
+    World world = loaded->world;
+    if (!restore_state(world, bytes)) continue;
+    ++computed;
+    Scratch scratch;
+    for (std::uint64_t tick = 1; tick <= 3; ++tick) {
+      std::vector<Increment> increments;
+      for (const Part& part : world.parts)
+        if (part.moving && part.holder)
+          increments.push_back({part.holder, part.id, (std::uint64_t{1} << 40) + tick,
+                                Vec3(0.3, -0.2, -0.5), Vec3(0.01, 0, 0.02)});
+      (void)step(world, increments, scratch);
+    }
+    (void)encode_state(world);
+  }
+  EXPECT_GT(computed, 20);
 }
 
 }  // namespace

@@ -160,6 +160,22 @@ TEST_F(Held, NothingIsSaidOfWhatWasKeptWhenAnotherLeads) {
   EXPECT_EQ(wire_.said, Ticks{1});
 }
 
+TEST_F(Held, OneThatTellsNoTickLeadsNobody) {
+  FollowedTick tick;
+  tick.tick = 7;
+  const ToldTick good{7, encode(tick)};
+  const auto superseded_by = [&](const ToldTick& told) {
+    wire_.input.superseded = true;
+    wire_.input.superseding = told;
+    return held_.take().superseded;
+  };
+  EXPECT_TRUE(superseded_by(good));
+  EXPECT_FALSE(superseded_by({7, {}}));
+  EXPECT_FALSE(superseded_by({0, {}}));
+  EXPECT_FALSE(superseded_by({8, good.bytes})) << "it says another number outside than inside";
+  EXPECT_FALSE(superseded_by({7, std::vector<std::byte>(good.bytes.size(), std::byte{0x5a})}));
+}
+
 TEST_F(Held, WhatIsHandedOverIsSaidOnceTheOtherHasIt) {
   tick(1);
   taken(1);

@@ -310,6 +310,28 @@ TEST(Inbox, AFullSessionSaysSo) {
   EXPECT_FALSE(intake.join_replies[1].user);
 }
 
+TEST(Inbox, OneParticipantDoesNotTakeEverySeat) {
+  World world = small_world();
+  Inbox inbox({.max_users = 32});
+  Intake intake;
+  const auto joins = [&](const ClientKey& client, std::uint64_t nonce) {
+    ServerInput input;
+    input.joins.push_back({client, nonce, client + std::to_string(nonce), "designer"});
+    inbox.admit(std::move(input), world, 0, intake);
+    return intake.join_replies.at(0);
+  };
+  std::uint32_t got = 0;
+  for (std::uint64_t nonce = 1; nonce <= 40; ++nonce) got += bool(joins("many", nonce).user);
+  EXPECT_EQ(got, 30U);
+  EXPECT_EQ(joins("many", 41).refusal, Refusal::kSessionFull);
+  EXPECT_TRUE(joins("many", 1).user) << "who is in, and asks again, stays";
+  EXPECT_TRUE(joins("anna", 1).user);
+  EXPECT_EQ(joins("anna", 2).refusal, Refusal::kSessionFull) << "she has her seat";
+  EXPECT_TRUE(joins("ben", 1).user);
+  EXPECT_EQ(joins("cid", 1).refusal, Refusal::kSessionFull) << "32 are 32";
+  EXPECT_EQ(inbox.users_present(), 32U);
+}
+
 TEST(Inbox, AFloodOfOneUserIsCutAndTheOthersGoOn) {
   World world = small_world();
   Inbox inbox({.messages_per_s = 100.0, .increments_per_tick = 1000});

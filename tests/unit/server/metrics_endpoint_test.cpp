@@ -47,10 +47,10 @@ TEST_F(Endpoint, ServesTheFiguresThatWereShownLast) {
 TEST_F(Endpoint, AnswersNothingElse) {
   EXPECT_EQ(get("/").rfind("HTTP/1.1 404", 0), 0U);
   const Connection post(endpoint_->port());
-  post.send("POST /metrics HTTP/1.1\r\nConnection: close\r\nContent-Length: 0\r\n\r\n");
+  post.send("POST /metrics HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 0\r\n\r\n");
   EXPECT_EQ(post.rest().rfind("HTTP/1.1 405", 0), 0U);
   const Connection head(endpoint_->port());
-  head.send("HEAD /metrics HTTP/1.1\r\nConnection: close\r\n\r\n");
+  head.send("HEAD /metrics HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
   const std::string answer = head.rest();
   EXPECT_EQ(answer.rfind("HTTP/1.1 200", 0), 0U);
   EXPECT_EQ(answer.find("mortise_tick"), std::string::npos) << "a HEAD has no body";
@@ -58,6 +58,15 @@ TEST_F(Endpoint, AnswersNothingElse) {
   nonsense.send("\x01\x02 nonsense\r\n\r\n");
   nonsense.rest();
   EXPECT_EQ(get("/healthz").rfind("HTTP/1.1 200", 0), 0U) << "it lives on";
+}
+
+TEST_F(Endpoint, ARequestNamesOneHost) {
+  for (const char* hosts : {"", "Host: x\r\nHost: y\r\n", "Host: x\r\nhost: x\r\n"}) {
+    const Connection connection(endpoint_->port());
+    connection.send(std::string("GET /metrics HTTP/1.1\r\n") + hosts +
+                    "Connection: close\r\n\r\n");
+    EXPECT_EQ(connection.rest().rfind("HTTP/1.1 400", 0), 0U) << hosts;
+  }
 }
 
 TEST_F(Endpoint, IsUnhealthyWhenNoTickCame) {

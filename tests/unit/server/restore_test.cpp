@@ -249,6 +249,23 @@ TEST_F(Restore, ATickFarAheadIsDamageAndNoPause) {
   EXPECT_EQ(scene->world.tick, log->ticks.back().tick);
 }
 
+// A night of ticks without a record may be true: whoever does not want to wait may stop it.
+TEST_F(Restore, IsStoppedWithinTicksThatNobodyLogged) {
+  const auto file = folder_.path() / "night.mcap";
+  session_->ticks.back().report.tick = session_->ticks.back().tick += 80'000'000;
+  ASSERT_TRUE(write_log(*session_, file));
+  const auto log = read_session_log(file);
+  ASSERT_TRUE(log) << log.error().text;
+  EXPECT_TRUE(log->gaps.empty());
+  auto scene = scene_of(*log);
+  ASSERT_TRUE(scene);
+  int asked = 0;
+  const auto resumed = resume_from(*log, scene->world, 1, true, [&] { return ++asked == 1000; });
+  ASSERT_FALSE(resumed);
+  EXPECT_NE(resumed.error().text.find("stopped while it was played again"), std::string::npos);
+  EXPECT_EQ(asked, 1000);
+}
+
 // What a log tells of ticks without a record is what computing them tells.
 TEST_F(Restore, IdleTicksCountAllAtOnce) {
   SessionStatistics one_by_one, at_once;

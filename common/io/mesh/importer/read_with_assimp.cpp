@@ -17,6 +17,9 @@
 #include <sstream>
 #include <vector>
 
+#include "common/base/in_quotes.h"
+#include "common/io/mesh/importer/folder_files.h"
+#include "common/io/mesh/importer/ply_header.h"
 #include "common/io/mesh/importer/stl_dialect.h"
 #include "common/io/mesh/importer/written_digits.h"
 
@@ -211,6 +214,8 @@ RawSoup refuse(const std::string& why) {
 RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& extension) {
   // 1. Read, with nothing done to it: assimp's own steps trust the indices of the file.
   Assimp::Importer importer;
+  auto* const files = new FolderFiles(file);
+  importer.SetIOHandler(files);  // which owns it
   keep_reader_of(extension, importer);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   std::string note;
@@ -220,9 +225,14 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
     importer.ReadFileFromMemory(stl->bytes.data(), stl->bytes.size(), 0, "stl");
     note = std::move(stl->note);
   } else {
+    const std::string wrong = extension == ".ply" ? wrong_with_ply(bytes_of(file)) : "";
+    if (!wrong.empty()) return refuse(wrong);
     importer.ReadFile(file.string(), 0);
   }
   const aiScene* scene = importer.GetScene();
+  if (scene == nullptr && !files->refused().empty())
+    return refuse("names " + in_quotes(files->refused()) +
+                  ", which lies outside of its folder; put it beside the mesh");
   if (scene == nullptr) return refuse(importer.GetErrorString());
   for (unsigned i = 0; i < scene->mNumMeshes; ++i)
     if (const std::string wrong = check(scene->mMeshes[i]); !wrong.empty()) return refuse(wrong);
