@@ -68,11 +68,12 @@ struct StepStatement {
   enum class Kind : std::uint8_t { kUnknown = 0, kSize, kDistance, kAngle, kGeometric, kDatum };
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Kind kind = Kind::kUnknown;
-  std::uint32_t entity = 0;  ///< the number of its line in the file
+  std::uint32_t entity = 0;  ///< its number in the file, the 12 of "#12="
   std::string name;          ///< "diameter", "position", ...
   double value = kNone;
   double upper = kNone, lower = kNone;              ///< deviations, as signed in the file
   double limit_upper = kNone, limit_lower = kNone;  ///< limits of size
+  double outside = kNone;                           ///< of a profile: what of it is outside (U)
   std::string code;                                 ///< ISO class, "H7"; empty: none
   std::string modifiers;                            ///< "maximum_material_requirement", ...
   std::vector<StepFaceRef> faces, other_faces;      ///< of which it speaks; of a distance both ends
