@@ -102,6 +102,7 @@ class Checker {
     report_.judged_pairs = report_.pairs.size();
     for (CheckedPair& pair : report_.pairs) relate(pair);
     ask_exact_solids();
+    look_along();
     find_near();
     say_bodies();
     std::set<const Solid*> solids;
@@ -287,7 +288,7 @@ class Checker {
       return;
     }
     pair.common_mm3 = common.volume_mm3;
-    pair.thickness_mm = common.area_mm2 > 0.0 ? 2.0 * common.volume_mm3 / common.area_mm2 : 0.0;
+    pair.thickness_mm = common.thickness_mm;
     if (pair.collision_class == CollisionClass::kPotential) decide(pair);
     if (may_explain(pair)) judge_explanation(pair);
   }
@@ -344,6 +345,21 @@ class Checker {
     if (!pair.explained)
       pair.reason +=
           fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
+  }
+
+  // What is told as a clash has a way out, and what stands in it.
+  void look_along() {
+    CcdScratch scratch;
+    for (CheckedPair& pair : report_.pairs) {
+      if (pair.explained || pair.muted || pair.collision_class < CollisionClass::kPotential)
+        continue;
+      PairVerdicts verdicts;
+      verdicts.a = pair.a;
+      verdicts.b = pair.b;
+      verdicts.verdicts = std::move(pair.verdicts);
+      look_along_ways(world_, verdicts, scratch);
+      pair.verdicts = std::move(verdicts.verdicts);
+    }
   }
 
   // 4. clearances

@@ -30,7 +30,7 @@ struct CheckedPair {
   bool explained = false;
   std::string reason;         ///< why it is explained, or why an explanation does not hold
   double common_mm3 = -1.0;   ///< exact volume in common; negative: not asked, or not known
-  double thickness_mm = 0.0;  ///< of the common solid, 2 V / A
+  double thickness_mm = 0.0;  ///< of the thickest piece of it, 2 V / F
   bool not_examined = false;
   bool muted = false;  ///< inside of a sub-assembly that is bought
   std::string inside;  ///< the product that all of them lie in, or empty

@@ -44,6 +44,9 @@ void add_output(CLI::App& app, CheckCommand& o) {
   app.add_option("--csv", o.csv, "write the pairs to this file");
   app.add_option("--html", o.html, "write a page with pictures of the worst to this file");
   app.add_option("--junit", o.junit, "write a test report for CI to this file");
+  app.add_option("--bcf", o.bcf,
+                 "write an issue for each clash that nothing explains to this BCF 3.0 file, which "
+                 "must not exist");
   app.add_option("--sqlite", o.sqlite, "write a database to this file, which must not exist");
   app.add_option("--baseline", o.baseline,
                  "a JSON report of before: say what is new, gone, changed and unchanged");

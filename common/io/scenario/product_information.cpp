@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -15,6 +16,7 @@ using Kind = StepStatement::Kind;
 // A stated size that is off the modelled one by more than this is of another state of the part.
 constexpr double kSameSize_mm = 1e-3;
 constexpr double kOneDirection = 1e-9;  // 1 less the cosine of planes that are parallel
+constexpr const char* kComposite = "composite: a wider zone of the same features holds";
 constexpr double kLeastZone_mm = 1e-9;  // 0 would be no position at all
 
 bool stated(double x) { return !std::isnan(x); }
@@ -57,20 +59,32 @@ class StatementReader {
 
   std::vector<PartStatements> run(std::vector<Scenario::AssemblySpec::Listed>& listed) {
     std::vector<Scenario::AssemblySpec::Listed> entries(document_.statements.size());
-    // Sizes first: a position at a material condition counts from them.
-    for (const bool geometric : {false, true})
-      for (std::size_t i = 0; i < entries.size(); ++i) {
-        const StepStatement& s = document_.statements[i];
-        if ((s.kind == Kind::kGeometric) != geometric) continue;
-        entries[i].text = "#" + std::to_string(s.entity) + " " + words_of(s);
-        entries[i].reason = use(s, entries[i].text);
-        entries[i].used = entries[i].reason.empty();
-      }
+    for (const std::size_t i : order()) {
+      const StepStatement& s = document_.statements[i];
+      entries[i].text = "#" + std::to_string(s.entity) + " " + words_of(s);
+      entries[i].reason = use(s, entries[i].text);
+      entries[i].used = entries[i].reason.empty();
+    }
     listed.insert(listed.end(), entries.begin(), entries.end());
     return std::move(stated_);
   }
 
  private:
+  // Sizes first, because a position at a material condition counts from them; then the widest zone
+  // of a composite tolerance.
+  std::vector<std::size_t> order() const {
+    std::vector<std::size_t> order(document_.statements.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto zone = [&](std::size_t i) {
+      const StepStatement& s = document_.statements[i];
+      if (s.kind != Kind::kGeometric) return -std::numeric_limits<double>::infinity();
+      return stated(s.value) ? -s.value : 0.0;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return zone(a) < zone(b); });
+    return order;
+  }
+
   // Empty when it was used, else why not.
   std::string use(const StepStatement& s, std::string& text) {
     switch (s.kind) {
@@ -182,6 +196,8 @@ class StatementReader {
     if (!limits_of(s))
       return stated(s.value) ? "a distance without a tolerance" : "the file gives no value";
     std::vector<Target> all = targets(s.faces), others = targets(s.other_faces);
+    if (s.faces_lost == 0 && (s.faces.empty() || s.other_faces.empty()))
+      return "it does not name two faces";
     if (all.empty() || others.empty()) return no_face(s);
     all.insert(all.end(), others.begin(), others.end());
     if (!std::all_of(all.begin(), all.end(), is_plane))
@@ -253,7 +269,9 @@ class StatementReader {
     std::vector<Target> all = targets(s.faces);
     if (all.empty()) return no_face(s);
     if (profile) {
-      for (const Target& target : all) state_profile(s, target);
+      bool said = false;
+      for (const Target& target : all) said |= state_profile(s, target);
+      if (!said) return kComposite;
       text += " on " + std::to_string(all.size()) + " features of " +
               given_[all.front().part].part->product;
       return {};
@@ -269,7 +287,7 @@ class StatementReader {
         used = true;
         name_target(target, text);
       }
-    return used ? "" : "composite: a wider zone of the same features holds";
+    return used ? "" : kComposite;
   }
 
   bool state_position(const StepStatement& s, const Target& target, MaterialCondition condition) {
@@ -283,7 +301,7 @@ class StatementReader {
     return true;
   }
 
-  void state_profile(const StepStatement& s, const Target& target) {
+  bool state_profile(const StepStatement& s, const Target& target) {
     Scenario::FeatureSpec& spec = spec_of(target);
     const bool unequal = stated(s.outside) && s.outside >= 0.0 && s.outside <= s.value;
     const Interval zone = unequal ? Interval{s.outside - s.value, s.outside}
@@ -291,14 +309,18 @@ class StatementReader {
     const std::string words = "profile " + size_text(s.value) + " mm" +
                               (unequal ? " UZ " + size_text(s.outside) : "") + " (PMI)";
     if (spec.iso_class.empty()) {
-      widen(spec, zone, words);
-      return;
+      const bool wider = spec.tolerance && spec.tolerance->offset_mm.lo <= zone.lo &&
+                         spec.tolerance->offset_mm.hi >= zone.hi &&
+                         spec.tolerance->text.find("profile") != std::string::npos;
+      if (!wider) widen(spec, zone, words);
+      return !wider;
     }
     // A size by its class: the profile says where it may be.
     const double reach_mm = 2.0 * std::max(-zone.lo, zone.hi);
-    if (spec.position.zone_mm >= reach_mm) return;
+    if (spec.position.zone_mm >= reach_mm) return false;
     spec.position.zone_mm = reach_mm;
     spec.position.condition = MaterialCondition::kRegardless;
+    return true;
   }
 
   Scenario::FeatureSpec& spec_of(const Target& target) {

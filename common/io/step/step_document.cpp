@@ -272,8 +272,8 @@ class StepReader {
     if (in_.u32() != kAnswers) return damaged("it is not one of ours");
     const std::uint32_t n = count(16);
     for (std::uint32_t i = 0; good() && i < n; ++i) {
-      const double volume = number(1e27), area = number(1e18);
-      answers.push_back({volume, area});
+      const double volume = number(1e27), thickness = number();
+      answers.push_back({volume, thickness});
     }
     if (!wrong_.empty()) return damaged(wrong_);
     if (!in_.at_end()) return damaged("its length is not what it states");
@@ -337,7 +337,7 @@ std::vector<std::byte> encode(std::span<const StepCommon> answers) {
   out.u32(static_cast<std::uint32_t>(answers.size()));
   for (const StepCommon& answer : answers) {
     out.f64(answer.volume_mm3);
-    out.f64(answer.area_mm2);
+    out.f64(answer.thickness_mm);
   }
   return out.take();
 }

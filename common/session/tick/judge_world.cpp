@@ -66,22 +66,6 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Close
   return judged;
 }
 
-// All regions of a pair have one way out, but for those of which only the zones meet.
-void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd) {
-  double depth_mm = 0.0;
-  for (const Verdict& verdict : pair.verdicts) depth_mm = std::max(depth_mm, verdict.delta_mm.hi);
-  const Verdict* looked = nullptr;
-  for (Verdict& verdict : pair.verdicts) {
-    if (verdict.separation_way == SeparationWay::kNone) continue;
-    if (looked == nullptr) {
-      look_along_way(world, pair.a, pair.b, depth_mm, verdict, ccd);
-      looked = &verdict;
-    }
-    verdict.separation_path = looked->separation_path;
-    verdict.separation_blocker = looked->separation_blocker;
-  }
-}
-
 // The candidate that stands for each: itself, or an earlier one that it is like.
 std::vector<std::size_t> leaders_of(const World& world, const std::vector<IndexPair>& candidates,
                                     bool alike_once) {
@@ -170,6 +154,7 @@ std::vector<Judged> judge_all(const World& world, Scratch::Impl& work,
       judged[i].verdicts =
           moved(of.verdicts, world, world.parts[candidates[i].a], world.parts[candidates[i].b]);
     }
+  if (closeness.alike_once) return judged;
   // Somebody looks at what is told here: what stands in the way is told as well.
   work.pool.for_each(judged.size(), [&](std::size_t i, int thread) {
     look_along_ways(world, judged[i].verdicts, work.ccd[static_cast<std::size_t>(thread)]);
@@ -208,6 +193,22 @@ AssemblyJudgement judge(World& world, Scratch& scratch, const Closeness& closene
 }
 
 }  // namespace
+
+// All regions of a pair have one way out, but for those of which only the zones meet.
+void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd) {
+  double depth_mm = 0.0;
+  for (const Verdict& verdict : pair.verdicts) depth_mm = std::max(depth_mm, verdict.delta_mm.hi);
+  const Verdict* looked = nullptr;
+  for (Verdict& verdict : pair.verdicts) {
+    if (verdict.separation_way == SeparationWay::kNone) continue;
+    if (looked == nullptr) {
+      look_along_way(world, pair.a, pair.b, depth_mm, verdict, ccd);
+      looked = &verdict;
+    }
+    verdict.separation_path = looked->separation_path;
+    verdict.separation_blocker = looked->separation_blocker;
+  }
+}
 
 PairStanding standing_of(const Part& a, const Part& b) {
   constexpr double kStep_mm = 1e-6;

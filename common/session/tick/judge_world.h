@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/broadphase/broad_phase.h"
+#include "common/ccd/ccd_scratch.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {
@@ -34,8 +35,13 @@ struct AssemblyJudgement {
 };
 /// Pairs of parts of the same kinds that stand to each other in the same way (to a nanometre over
 /// the parts) are judged once; their verdicts are moved to the others. Only pairs without a rule of
-/// their own are alike. `work_cap`: of one overlap, see OverlapQuery.
+/// their own are alike. Nothing is looked up along the ways out, which takes as long as all the
+/// rest: look_along_ways is for those that somebody reads. `work_cap`: of one overlap, see
+/// OverlapQuery.
 AssemblyJudgement judge_assembly(World& world, Scratch& scratch, std::uint64_t work_cap);
+
+/// Notes in the verdicts of a pair what its way out meets first.
+void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd);
 
 /// Which kinds the parts of a pair are, and how the second stands to the first, in steps of a
 /// nanometre over the part: equal for pairs that are alike.
