@@ -24,7 +24,7 @@ class ProductTree {
   /// Position of the axis of that cylinder.
   void state_position(const TDF_Label& part, double diameter_mm, double zone_mm);
 
-  /// AP242; the same bytes each time. False when the library fails.
+  /// AP242, without the hour of writing. False when the library fails.
   bool write(const std::string& file);
 
  private:
