@@ -106,6 +106,21 @@ TEST(StepMutants, NoneReachesTheHost) {
   end_of(refused, judged);
 }
 
+// A face without a place cannot be tessellated, and leaves its part open. One of the thousand below
+// ended the host with it.
+TEST(StepMutants, AnOpenPartIsToldAndJudged) {
+  test::use_built_importer();
+  std::string text =
+      bytes_of(std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios/tensioner.step");
+  const std::string line = "#1006 = AXIS2_PLACEMENT_3D";
+  ASSERT_NE(text.find(line), std::string::npos);
+  text.replace(text.find(line), line.size(), "#758006 = AXIS2_PLACEMENT_3D");
+  const test::TestFolder folder;
+  const test::Checked c = test::checked(folder.write("open.step", text));
+  ASSERT_EQ(c.report.not_judged.size(), 1U);
+  EXPECT_TRUE(c.report.not_judged[0].starts_with("base: open")) << c.report.not_judged[0];
+}
+
 // 1,000 of one small file.
 TEST(SoakStepMutants, AThousandOfASmallFile) {
   test::use_built_importer();

@@ -15,10 +15,10 @@ namespace {
 
 using PairIds = std::pair<PartId, PartId>;
 
-// Of one overlap: what the meshes cannot decide with it the exact solids do.
-constexpr std::uint64_t kWorkCap = 30'000;
 // Exact volumes of clashes for which nothing depends on them: of the deepest.
 constexpr std::size_t kMostVolumes = 20;
+// Clashes of which the way out is told.
+constexpr std::size_t kMostWays = 60;
 
 // The sub-assembly that holds both paths: "arm/servo_1" of "arm/servo_1/horn" and
 // "arm/servo_1/case"; with the product of it.
@@ -95,14 +95,15 @@ class Checker {
 
   CheckReport run() {
     Scratch scratch(options_.threads);
-    const AssemblyJudgement judged = judge_assembly(world_, scratch, kWorkCap);
+    const AssemblyJudgement judged =
+        judge_assembly(world_, scratch, step_.empty() ? kTellWork : kFirstWork);
     report_.candidate_pairs = judged.report.counters.pairs.out;
     gather(judged.report);
     gather_touching(judged.without_verdict);
     report_.judged_pairs = report_.pairs.size();
     for (CheckedPair& pair : report_.pairs) relate(pair);
     ask_exact_solids();
-    look_along();
+    tell_clashes(scratch);
     find_near();
     say_bodies();
     std::set<const Solid*> solids;
@@ -347,19 +348,32 @@ class Checker {
           fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
   }
 
-  // What is told as a clash has a way out, and what stands in it.
-  void look_along() {
-    CcdScratch scratch;
+  // What is told as a clash is judged with more work, which may decide it, and has a way out.
+  void tell_clashes(Scratch& scratch) {
+    std::size_t told = 0, left_out = 0;
     for (CheckedPair& pair : report_.pairs) {
       if (pair.explained || pair.muted || pair.collision_class < CollisionClass::kPotential)
         continue;
-      PairVerdicts verdicts;
-      verdicts.a = pair.a;
-      verdicts.b = pair.b;
-      verdicts.verdicts = std::move(pair.verdicts);
-      look_along_ways(world_, verdicts, scratch);
-      pair.verdicts = std::move(verdicts.verdicts);
+      const bool is_open = pair.collision_class == CollisionClass::kPotential;
+      if (!is_open && ++told > kMostWays) {
+        ++left_out;
+        continue;
+      }
+      PairVerdicts again = tell_pair(world_, pair.a, pair.b, kTellWork, scratch);
+      if (again.verdicts.empty()) continue;
+      const CollisionClass now = again.verdicts.front().collision_class;
+      // What the exact solids said stays.
+      if (!is_open && now != pair.verdicts.front().collision_class && now != CollisionClass::kReal)
+        continue;
+      pair.verdicts = std::move(again.verdicts);
+      if (!is_open || now == CollisionClass::kPotential) continue;
+      pair.collision_class = now;
+      relate(pair);
+      if (pair.common_mm3 >= 0.0 && may_explain(pair)) judge_explanation(pair);
     }
+    if (left_out > 0)
+      report_.notes.push_back("ways out are told of " + std::to_string(kMostWays) +
+                              " clashes, not of " + std::to_string(left_out) + " more");
   }
 
   // 4. clearances

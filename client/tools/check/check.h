@@ -70,6 +70,11 @@ inline constexpr double kExplainedShare = 0.1, kExplainedSlack_mm3 = 1e-3;
 /// kMostContact_mm.
 inline constexpr double kLeastContact_mm = 1e-3, kMostContact_mm = 0.02;
 
+/// Work of one overlap (see OverlapQuery): of all pairs, and of those that this and the exact
+/// solids leave open, and that are told. The first is little where exact solids decide what it
+/// leaves open.
+inline constexpr std::uint64_t kFirstWork = 3'000, kTellWork = 30'000;
+
 /// Sorts and counts; called by check_scene.
 void order_and_count(CheckReport& report);
 

@@ -2,10 +2,12 @@
 #include <cstdio>
 
 #include "client/tools/inspect/inspect.h"
+#include "client/tools/inspect/inspect_step.h"
 #include "client/tools/inspect/propose.h"
 #include "common/base/json_text.h"
 #include "common/base/length_unit.h"
 #include "common/io/build_info.h"
+#include "common/io/step/step_import.h"
 #include "common/io/usage.h"
 
 int main(int argc, char** argv) {
@@ -16,7 +18,8 @@ int main(int argc, char** argv) {
       "mortise-inspect: planes, cylinders, cones, spheres and tori of meshes on stderr, and a "
       "scenario of them on stdout");
   app.set_version_flag("--version", mortise::version_line("mortise-inspect"));
-  app.add_option("files", files, "mesh files, or one scenario (.yaml)")->required();
+  app.add_option("files", files, "mesh files, one scenario (.yaml), or one STEP assembly")
+      ->required();
   app.add_option("--unit", unit, "of the numbers in mesh files: mm, cm, m, in, um")
       ->check(CLI::IsMember(mortise::length_unit_names()))
       ->capture_default_str();
@@ -29,6 +32,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return mortise::exit_of_usage(app, error);
   }
+  if (files.size() == 1 && mortise::is_step_name(files.front()))
+    return mortise::inspect_step(files.front(), json);
   const auto parts = mortise::inspect_files(files, *mortise::length_unit_mm(unit));
   if (!parts) {
     std::fprintf(stderr, "mortise-inspect: %s\n", parts.error().text.c_str());

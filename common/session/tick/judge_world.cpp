@@ -25,7 +25,7 @@ struct Judged {
 struct Closeness {
   Refinement refinement = Refinement::kDecided;
   std::uint64_t work_cap = JudgementQuery().work_cap;
-  bool alike_once = false;
+  bool alike_once = false, want_gpd = true;
 };
 
 Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Closeness& closeness,
@@ -39,6 +39,7 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Close
   query.motion_b = still_motion(b.X_WP);
   query.refinement = closeness.refinement;
   query.work_cap = closeness.work_cap;
+  query.want_gpd = closeness.want_gpd;
   Judgement judgement = judge_pair(query, ccd);
   StepCounters& counts = judged.counts;
   count(query, judgement, counts);
@@ -64,6 +65,22 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Close
     judged.verdicts.distance_mm = distance(*a.solid, a.X_WP, *b.solid, b.X_WP, ccd).distance_mm;
   }
   return judged;
+}
+
+// All regions of a pair have one way out, but for those of which only the zones meet.
+void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd) {
+  double depth_mm = 0.0;
+  for (const Verdict& verdict : pair.verdicts) depth_mm = std::max(depth_mm, verdict.delta_mm.hi);
+  const Verdict* looked = nullptr;
+  for (Verdict& verdict : pair.verdicts) {
+    if (verdict.separation_way == SeparationWay::kNone) continue;
+    if (looked == nullptr) {
+      look_along_way(world, pair.a, pair.b, depth_mm, verdict, ccd);
+      looked = &verdict;
+    }
+    verdict.separation_path = looked->separation_path;
+    verdict.separation_blocker = looked->separation_blocker;
+  }
 }
 
 // The candidate that stands for each: itself, or an earlier one that it is like.
@@ -154,7 +171,7 @@ std::vector<Judged> judge_all(const World& world, Scratch::Impl& work,
       judged[i].verdicts =
           moved(of.verdicts, world, world.parts[candidates[i].a], world.parts[candidates[i].b]);
     }
-  if (closeness.alike_once) return judged;
+  if (!closeness.want_gpd) return judged;
   // Somebody looks at what is told here: what stands in the way is told as well.
   work.pool.for_each(judged.size(), [&](std::size_t i, int thread) {
     look_along_ways(world, judged[i].verdicts, work.ccd[static_cast<std::size_t>(thread)]);
@@ -194,22 +211,6 @@ AssemblyJudgement judge(World& world, Scratch& scratch, const Closeness& closene
 
 }  // namespace
 
-// All regions of a pair have one way out, but for those of which only the zones meet.
-void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd) {
-  double depth_mm = 0.0;
-  for (const Verdict& verdict : pair.verdicts) depth_mm = std::max(depth_mm, verdict.delta_mm.hi);
-  const Verdict* looked = nullptr;
-  for (Verdict& verdict : pair.verdicts) {
-    if (verdict.separation_way == SeparationWay::kNone) continue;
-    if (looked == nullptr) {
-      look_along_way(world, pair.a, pair.b, depth_mm, verdict, ccd);
-      looked = &verdict;
-    }
-    verdict.separation_path = looked->separation_path;
-    verdict.separation_blocker = looked->separation_blocker;
-  }
-}
-
 PairStanding standing_of(const Part& a, const Part& b) {
   constexpr double kStep_mm = 1e-6;
   const Pose X_AB = a.X_WP.inverse() * b.X_WP;
@@ -231,8 +232,18 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
   return judge(world, scratch, closeness).report;
 }
 
+PairVerdicts tell_pair(const World& world, PartId a, PartId b, std::uint64_t work_cap,
+                       Scratch& scratch) {
+  CcdScratch& ccd = scratch.impl().ccd.front();
+  PairVerdicts told = judge_one(*world.find(a), *world.find(b), world.rule(a, b),
+                                {Refinement::kDecided, work_cap}, ccd)
+                          .verdicts;
+  look_along_ways(world, told, ccd);
+  return told;
+}
+
 AssemblyJudgement judge_assembly(World& world, Scratch& scratch, std::uint64_t work_cap) {
-  return judge(world, scratch, {Refinement::kDecided, work_cap, true});
+  return judge(world, scratch, {Refinement::kDecided, work_cap, true, false});
 }
 
 }  // namespace mortise
