@@ -84,6 +84,47 @@ std::vector<NearPair> near_pairs(const World& world, double min_gap_mm,
   return near;
 }
 
+bool states_tolerance(const Part& of, const std::string& face, const PairRule* rule, bool is_a) {
+  const SurfaceBand* band = &of.band;
+  if (rule != nullptr && (is_a ? rule->band_a : rule->band_b))
+    band = (is_a ? rule->band_a : rule->band_b).get();
+  return std::any_of(band->faces.begin(), band->faces.end(), [&](const SurfaceBand::Face& f) {
+    return f.name == face && !(f.tolerance_mm == Interval{});
+  });
+}
+
+double accuracy_of(const Part& a, const Part& b) {
+  return std::min(kMostContact_mm, kLeastContact_mm + residual_of(a) + residual_of(b));
+}
+
+void judge_explanation(CheckedPair& pair) {
+  const double most = (1.0 + kExplainedShare) * pair.mating.explained_mm3 + kExplainedSlack_mm3;
+  pair.explained = pair.common_mm3 <= most;
+  pair.reason = fmt::format("{}: {}; exact volume {:.3f} mm³, hole and shaft explain {:.3f} mm³",
+                            name_of(pair.mating.relation), pair.mating.text, pair.common_mm3,
+                            pair.mating.explained_mm3);
+  if (!pair.explained)
+    pair.reason +=
+        fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
+}
+
+// What could not be judged.
+void say_bodies(const OpenedScene& opened, CheckReport& report) {
+  const World& world = opened.scene.world;
+  if (opened.scenario.assembly)
+    for (const std::string& path : opened.scenario.assembly->not_solid)
+      report.not_judged.push_back(path + ": not a solid (surfaces or wires only)");
+  for (const Part& p : world.parts)
+    if (!p.solid->has_inside())
+      report.not_judged.push_back(p.name + ": open, so that nothing of it is more than potential");
+  for (const CheckedPair& pair : report.pairs)
+    if (pair.not_examined && pair.verdicts.empty())
+      report.not_judged.push_back(world.find(pair.a)->name + " × " + world.find(pair.b)->name +
+                                  ": one may lie inside the other, which is open");
+  std::erase_if(report.pairs,
+                [](const CheckedPair& p) { return p.verdicts.empty() && !p.is_contact; });
+}
+
 class Checker {
  public:
   Checker(OpenedScene& opened, const std::filesystem::path& step, const CheckOptions& options)
@@ -105,7 +146,7 @@ class Checker {
     ask_exact_solids();
     tell_clashes(scratch);
     find_near();
-    say_bodies();
+    say_bodies(opened_, report_);
     std::set<const Solid*> solids;
     for (const Part& part : world_.parts) solids.insert(part.solid.get());
     report_.parts = world_.parts.size(), report_.products = solids.size();
@@ -190,10 +231,6 @@ class Checker {
     });
   }
 
-  static double accuracy_of(const Part& a, const Part& b) {
-    return std::min(kMostContact_mm, kLeastContact_mm + residual_of(a) + residual_of(b));
-  }
-
   void name_inside(CheckedPair& pair) const {
     pair.inside = common_product(pair);
     pair.muted = !pair.inside.empty() &&
@@ -203,16 +240,6 @@ class Checker {
   }
 
   // 2. contacts, and what the parts are to each other
-
-  bool states_tolerance(const Part& of, const std::string& face, const PairRule* rule,
-                        bool is_a) const {
-    const SurfaceBand* band = &of.band;
-    if (rule != nullptr && (is_a ? rule->band_a : rule->band_b))
-      band = (is_a ? rule->band_a : rule->band_b).get();
-    return std::any_of(band->faces.begin(), band->faces.end(), [&](const SurfaceBand::Face& f) {
-      return f.name == face && !(f.tolerance_mm == Interval{});
-    });
-  }
 
   // Do the surfaces overlap by no more than the file can tell?
   bool touches(const CheckedPair& pair, const Verdict& v) const {
@@ -337,17 +364,6 @@ class Checker {
     return true;
   }
 
-  static void judge_explanation(CheckedPair& pair) {
-    const double most = (1.0 + kExplainedShare) * pair.mating.explained_mm3 + kExplainedSlack_mm3;
-    pair.explained = pair.common_mm3 <= most;
-    pair.reason = fmt::format("{}: {}; exact volume {:.3f} mm³, hole and shaft explain {:.3f} mm³",
-                              name_of(pair.mating.relation), pair.mating.text, pair.common_mm3,
-                              pair.mating.explained_mm3);
-    if (!pair.explained)
-      pair.reason +=
-          fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
-  }
-
   // What is told as a clash is judged with more work, which may decide it, and has a way out.
   void tell_clashes(Scratch& scratch) {
     std::size_t told = 0, left_out = 0;
@@ -387,24 +403,6 @@ class Checker {
       for (const PairIds& ids : pair.all)
         if (pair.collision_class != CollisionClass::kNone) met.insert(ids);
     report_.near = near_pairs(world_, gap_mm, met);
-  }
-
-  // 5. what could not be judged
-
-  void say_bodies() {
-    if (opened_.scenario.assembly)
-      for (const std::string& path : opened_.scenario.assembly->not_solid)
-        report_.not_judged.push_back(path + ": not a solid (surfaces or wires only)");
-    for (const Part& p : world_.parts)
-      if (!p.solid->has_inside())
-        report_.not_judged.push_back(p.name +
-                                     ": open, so that nothing of it is more than potential");
-    for (const CheckedPair& pair : report_.pairs)
-      if (pair.not_examined && pair.verdicts.empty())
-        report_.not_judged.push_back(part(pair.a).name + " × " + part(pair.b).name +
-                                     ": one may lie inside the other, which is open");
-    std::erase_if(report_.pairs,
-                  [](const CheckedPair& p) { return p.verdicts.empty() && !p.is_contact; });
   }
 
   OpenedScene& opened_;

@@ -65,6 +65,7 @@ class Names {
   const std::vector<Part>& parts_;
 };
 
+// What an assembly has no longer after another export (unmatched) is told, and the rest is used.
 class RuleBook {
  public:
   explicit RuleBook(const RuleInput& input)
@@ -94,17 +95,11 @@ class RuleBook {
     SourceLine at;
   };
 
-  void error(SourceLine at, const std::string& text) {
-    out_.findings.push_back({true, place_of(scenario_, at) + text});
+  void error(SourceLine at, const std::string& text) { say(true, at, text); }
+  void say(bool is_error, SourceLine at, const std::string& text) {
+    out_.findings.push_back({is_error, place_of(scenario_, at) + text});
   }
-
-  // What names nothing is a slip of the pen, but of an assembly it may be what another export has
-  // no longer: then it is told, and the rest is used.
-  void unmatched(SourceLine at, const std::string& text) {
-    if (!scenario_.assembly) return error(at, text);
-    out_.findings.push_back({false, place_of(scenario_, at) + "not used: " + text});
-  }
-
+  void unmatched(SourceLine at, const std::string& text) { say(!scenario_.assembly, at, text); }
   const Part& part(PartId id) const { return names_.part(id); }
 
   // 1. fits
