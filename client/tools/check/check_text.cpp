@@ -243,6 +243,16 @@ class TextWriter {
   std::string text_;
 };
 
+Json tree_json(const OpenedScene& opened, const CheckReport& report) {
+  Json tree = Json::array();
+  for (const TreeRow& row : tree_of(opened, report))
+    tree.push_back({{"part", row.path},
+                    {"product", row.product},
+                    {"colour", row.colour.empty() ? Json(nullptr) : Json(row.colour)},
+                    {"worst", name_of(row.worst)}});
+  return tree;
+}
+
 Json number_or_null(double x, bool known) { return known ? Json(x) : Json(nullptr); }
 
 }  // namespace
@@ -272,12 +282,7 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   json["parts"] = report.parts;
   json["products"] = report.products;
   json["candidate_pairs"] = report.candidate_pairs;
-  json["tree"] = Json::array();
-  for (const TreeRow& row : tree_of(opened, report))
-    json["tree"].push_back({{"part", row.path},
-                            {"product", row.product},
-                            {"colour", row.colour.empty() ? Json(nullptr) : Json(row.colour)},
-                            {"worst", name_of(row.worst)}});
+  json["tree"] = tree_json(opened, report);
   json["pairs"] = Json::array();
   for (const CheckedPair& pair : report.pairs) {
     Json entry;

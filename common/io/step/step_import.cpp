@@ -22,6 +22,13 @@ std::string step_objection(const fs::path& file) {
   return {};
 }
 
+// Ten times the processor that reading takes: a small file that hangs the reader ends soon.
+double processor_seconds(const fs::path& file, const ImportLimits& limits) {
+  std::error_code error;
+  const double megabytes = static_cast<double>(fs::file_size(file, error)) / (1 << 20);
+  return std::clamp(error ? 0.0 : 15.0 + 5.0 * megabytes, 0.0, limits.seconds);
+}
+
 Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
                                  const ImportLimits& limits, std::span<const std::byte> question) {
   std::error_code ignored;
@@ -33,7 +40,7 @@ Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
   child.program = program_beside("MORTISE_STEP_IMPORTER", "mortise-import-step");
   child.arguments = {what, fs::absolute(file, ignored).string(),
                      std::to_string(limits.memory_bytes),
-                     std::to_string(std::llround(std::ceil(std::clamp(limits.seconds, 0.0, 1e6))))};
+                     std::to_string(std::llround(std::ceil(processor_seconds(file, limits))))};
   child.limits = limits;
   child.question = question;
   return run_confined(child);
