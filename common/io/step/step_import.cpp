@@ -26,7 +26,7 @@ std::string step_objection(const fs::path& file) {
 double processor_seconds(const fs::path& file, const ImportLimits& limits) {
   std::error_code error;
   const double megabytes = static_cast<double>(fs::file_size(file, error)) / (1 << 20);
-  return std::clamp(error ? 0.0 : 15.0 + 5.0 * megabytes, 0.0, limits.seconds);
+  return std::min(error ? 15.0 : 15.0 + 5.0 * megabytes, std::clamp(limits.seconds, 0.0, 1e6));
 }
 
 Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
