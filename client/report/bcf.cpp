@@ -107,18 +107,17 @@ class Archive {
 
 class BcfWriter {
  public:
-  BcfWriter(const SessionReport& report, const SessionLog& log) : report_(report), log_(log) {}
+  explicit BcfWriter(const BcfProject& project) : project_(project) {}
 
   Status write(const std::filesystem::path& file) {
-    pugi::xml_document version, project;
+    pugi::xml_document version, about;
     version.append_child("Version").append_attribute("VersionId") = "3.0";
-    pugi::xml_node info = project.append_child("ProjectInfo").append_child("Project");
-    info.append_attribute("ProjectId") = guid_of(log_.session + log_.scenario_name).c_str();
-    add_text(info, "Name", shown(log_.session, "session"));
+    pugi::xml_node info = about.append_child("ProjectInfo").append_child("Project");
+    info.append_attribute("ProjectId") = guid_of(project_.id).c_str();
+    add_text(info, "Name", shown(project_.name, "session"));
     entries_.emplace_back("bcf.version", text_of(version));
-    entries_.emplace_back("project.bcfp", text_of(project));
-    const Table& clashes = table_named(report_.tables, "clashes");
-    for (const PairGroup& group : pair_groups(clashes)) topic(clashes, group);
+    entries_.emplace_back("project.bcfp", text_of(about));
+    for (const BcfTopic& of : project_.topics) topic(of);
     entries_.emplace_back("extensions.xml", extensions());
     Archive archive;
     Status status = archive.open(file);
@@ -136,21 +135,11 @@ class BcfWriter {
       for (const std::string& value : values) add_text(node, one, value);
     };
     list("TopicTypes", "TopicType", std::vector<std::string>{"Clash"});
-    std::vector<std::string> statuses;
-    for (std::uint8_t i = 0; i < kReviewStatusCount; ++i)
-      statuses.emplace_back(name_of(static_cast<ReviewStatus>(i)));
-    list("TopicStatuses", "TopicStatus", statuses);
-    list("Priorities", "Priority", kPriorities);
-    list("TopicLabels", "TopicLabel", std::vector<std::string>{"real", "potential", "fake"});
+    list("TopicStatuses", "TopicStatus", project_.statuses);
+    list("Priorities", "Priority", std::vector<std::string>{"high", "normal", "low"});
+    list("TopicLabels", "TopicLabel", project_.labels);
     list("Users", "User", users_);
     return text_of(document);
-  }
-
-  std::int64_t time_of(std::uint64_t tick) const {
-    const auto at =
-        std::lower_bound(log_.ticks.begin(), log_.ticks.end(), tick,
-                         [](const TickRecord& record, std::uint64_t t) { return record.tick < t; });
-    return at == log_.ticks.end() ? 0 : at->time_ns;
   }
 
   std::string author(const std::string& user) {
@@ -159,95 +148,64 @@ class BcfWriter {
     return name;
   }
 
-  std::string name_of_clash(std::uint64_t number) const {
-    return log_.session + "/" + std::to_string(time_of(0)) + "/" + log_.scenario_name + "/" +
-           std::to_string(number);
-  }
-
-  void comment_of(const Cells& clash, const std::string& view, pugi::xml_node topic) {
-    if (clash.raw("comment").empty()) return;
+  void add_comment(const BcfComment& of, const std::string& view, pugi::xml_node topic) {
     pugi::xml_node comments = topic.child("Comments");
     if (!comments) comments = topic.append_child("Comments");
     pugi::xml_node comment = comments.append_child("Comment");
-    comment.append_attribute("Guid") =
-        guid_of(name_of_clash(clash["clash"].get<std::uint64_t>()) + "/comment").c_str();
-    add_text(comment, "Date", date_of(time_of(clash["begin_tick"].get<std::uint64_t>())));
-    add_text(comment, "Author", author(clash.raw("status_by")));
-    add_text(comment, "Comment", shown(clash.raw("comment"), "–"));
+    comment.append_attribute("Guid") = guid_of(of.name).c_str();
+    add_text(comment, "Date", of.date);
+    add_text(comment, "Author", author(of.author));
+    add_text(comment, "Comment", shown(of.text, "–"));
     comment.append_child("Viewpoint").append_attribute("Guid") = view.c_str();
   }
 
-  // A pair of parts: what its worst place is, and how many more there are.
-  void topic(const Table& clashes, const PairGroup& group) {
-    const Cells clash(clashes, clashes.rows[group.lead]);
-    const auto number = clash["clash"].get<std::uint64_t>();
-    // The first clash of the pair names the topic, so that it stays the same when another gets
-    // worse.
-    std::uint64_t first = number;
-    for (const std::size_t row : group.others)
-      first = std::min(first, Cells(clashes, clashes.rows[row])["clash"].get<std::uint64_t>());
-    const std::string name = name_of_clash(first);
-    const std::string guid = guid_of(name), view = guid_of(name + "/view");
-    const std::string klass = shown(clash.raw("class"), "none"), also = also_text(group);
+  void topic(const BcfTopic& of) {
+    const std::string guid = guid_of(of.name), view = guid_of(of.name + "/view");
     pugi::xml_document document;
     pugi::xml_node topic = document.append_child("Markup").append_child("Topic");
     topic.append_attribute("Guid") = guid.c_str();
-    topic.append_attribute("ServerAssignedId") = std::to_string(number).c_str();
+    topic.append_attribute("ServerAssignedId") = of.number.c_str();
     topic.append_attribute("TopicType") = "Clash";
-    topic.append_attribute("TopicStatus") = shown(clash.raw("status"), "new").c_str();
-    add_text(topic, "Title",
-             shown(klass + ": " + clash.raw("part_a") + " × " + clash.raw("part_b") +
-                       (also.empty() ? "" : " (" + also + ")"),
-                   "clash"));
-    add_text(topic, "Priority", kPriorities[klass == "real" ? 0 : klass == "potential" ? 1 : 2]);
-    add_text(topic.append_child("Labels"), "Label", klass);
-    const std::string begun = date_of(time_of(clash["begin_tick"].get<std::uint64_t>()));
-    add_text(topic, "CreationDate", begun);
-    add_text(topic, "CreationAuthor", author(clash.raw("user")));
-    add_text(topic, "Description", shown(clash.raw("explanation"), "no explanation"));
-    comment_of(clash, view, topic);
-    for (const std::size_t row : group.others)
-      comment_of(Cells(clashes, clashes.rows[row]), view, topic);
+    topic.append_attribute("TopicStatus") = shown(of.status, "new").c_str();
+    add_text(topic, "Title", shown(of.title, "clash"));
+    add_text(topic, "Priority", of.priority);
+    add_text(topic.append_child("Labels"), "Label", of.label);
+    add_text(topic, "CreationDate", of.date);
+    add_text(topic, "CreationAuthor", author(of.author));
+    add_text(topic, "Description", shown(of.description, "no explanation"));
+    for (const BcfComment& comment : of.comments) add_comment(comment, view, topic);
     pugi::xml_node viewpoint = topic.append_child("Viewpoints").append_child("ViewPoint");
     viewpoint.append_attribute("Guid") = view.c_str();
     add_text(viewpoint, "Viewpoint", "viewpoint.bcfv");
-    const auto picture = report_.pictures.png_of_clash.find(number);
-    if (picture != report_.pictures.png_of_clash.end()) {
+    if (!of.png.empty()) {
       add_text(viewpoint, "Snapshot", "snapshot.png");
-      entries_.emplace_back(guid + "/snapshot.png", picture->second);
+      entries_.emplace_back(guid + "/snapshot.png", of.png);
     }
     entries_.emplace_back(guid + "/markup.bcf", text_of(document));
-    entries_.emplace_back(guid + "/viewpoint.bcfv", viewpoint_of(clash, view));
+    entries_.emplace_back(guid + "/viewpoint.bcfv", viewpoint_of(of, view));
   }
 
-  std::string viewpoint_of(const Cells& clash, const std::string& guid) const {
+  static std::string viewpoint_of(const BcfTopic& of, const std::string& guid) {
     pugi::xml_document document;
     pugi::xml_node info = document.append_child("VisualizationInfo");
     info.append_attribute("Guid") = guid.c_str();
     pugi::xml_node components = info.append_child("Components");
     pugi::xml_node selection = components.append_child("Selection");
-    for (const char* part : {"part_a", "part_b"}) {
+    for (const std::string& part : of.parts) {
       pugi::xml_node component = selection.append_child("Component");
       add_text(component, "OriginatingSystem", kSystem);
-      add_text(component, "AuthoringToolId", shown(clash.raw(part), "part"));
+      add_text(component, "AuthoringToolId", shown(part, "part"));
     }
     components.append_child("Visibility").append_attribute("DefaultVisibility") = "true";
-    const auto vector = [&](const char* x, const char* y, const char* z) {
-      const Vec3 v(clash.number(x), clash.number(y), clash.number(z));
-      return v.allFinite() ? v : Vec3(Vec3::Zero());
-    };
-    const Vec3 point = vector("x_mm", "y_mm", "z_mm"),
-               n = vector("normal_x", "normal_y", "normal_z");
     // From beside the place where the two meet, so that neither hides it.
+    const Vec3& n = of.normal_W;
     Vec3 side = n.cross(std::fabs(n.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitX()) + 0.5 * n;
     side = side.norm() > 1e-6 ? Vec3(side.normalized()) : Vec3(1.0, 0.0, 0.0);
     Vec3 up = std::fabs(side.z()) < 0.95 ? Vec3::UnitZ() : Vec3::UnitY();
     up = (up - up.dot(side) * side).normalized();
-    const auto touch = report_.pictures.touches.find(clash["clash"].get<std::uint64_t>());
-    const double size_mm = touch == report_.pictures.touches.end() ? 0.0 : touch->second.size_mm;
-    const double distance_mm = std::max(kLeastDistance_mm, 3.0 * size_mm);
+    const double distance_mm = std::max(kLeastDistance_mm, 3.0 * of.size_mm);
     pugi::xml_node camera = info.append_child("PerspectiveCamera");
-    add_vector(camera, "CameraViewPoint", kMetresPerMm * (point + distance_mm * side));
+    add_vector(camera, "CameraViewPoint", kMetresPerMm * (of.point_W + distance_mm * side));
     add_vector(camera, "CameraDirection", -side);
     add_vector(camera, "CameraUpVector", up);
     camera.append_child("FieldOfView").text().set(kFieldOfView_deg);
@@ -255,18 +213,104 @@ class BcfWriter {
     return text_of(document);
   }
 
-  static inline const std::vector<std::string> kPriorities = {"high", "normal", "low"};
-  const SessionReport& report_;
-  const SessionLog& log_;
+  const BcfProject& project_;
   std::vector<std::pair<std::string, std::string>> entries_;  // name in the archive, bytes
   std::set<std::string> users_ = {kSystem};
 };
 
+// The clashes of a session as topics.
+class SessionTopics {
+ public:
+  SessionTopics(const SessionReport& report, const SessionLog& log) : report_(report), log_(log) {}
+
+  BcfProject run() {
+    BcfProject project;
+    project.id = log_.session + log_.scenario_name;
+    project.name = log_.session;
+    for (std::uint8_t i = 0; i < kReviewStatusCount; ++i)
+      project.statuses.emplace_back(name_of(static_cast<ReviewStatus>(i)));
+    project.labels = {"real", "potential", "fake"};
+    const Table& clashes = table_named(report_.tables, "clashes");
+    for (const PairGroup& group : pair_groups(clashes))
+      project.topics.push_back(topic(clashes, group));
+    return project;
+  }
+
+ private:
+  std::int64_t time_of(std::uint64_t tick) const {
+    const auto at =
+        std::lower_bound(log_.ticks.begin(), log_.ticks.end(), tick,
+                         [](const TickRecord& record, std::uint64_t t) { return record.tick < t; });
+    return at == log_.ticks.end() ? 0 : at->time_ns;
+  }
+
+  std::string name_of_clash(std::uint64_t number) const {
+    return log_.session + "/" + std::to_string(time_of(0)) + "/" + log_.scenario_name + "/" +
+           std::to_string(number);
+  }
+
+  void add_comment(const Cells& clash, BcfTopic& topic) const {
+    if (clash.raw("comment").empty()) return;
+    topic.comments.push_back({name_of_clash(clash["clash"].get<std::uint64_t>()) + "/comment",
+                              date_of(time_of(clash["begin_tick"].get<std::uint64_t>())),
+                              clash.raw("status_by"), clash.raw("comment")});
+  }
+
+  // A pair of parts: what its worst place is, and how many more there are.
+  BcfTopic topic(const Table& clashes, const PairGroup& group) const {
+    const Cells clash(clashes, clashes.rows[group.lead]);
+    const auto number = clash["clash"].get<std::uint64_t>();
+    // The first clash of the pair names the topic, so that it stays the same when another gets
+    // worse.
+    std::uint64_t first = number;
+    for (const std::size_t row : group.others)
+      first = std::min(first, Cells(clashes, clashes.rows[row])["clash"].get<std::uint64_t>());
+    const std::string klass = shown(clash.raw("class"), "none"), also = also_text(group);
+    BcfTopic topic;
+    topic.name = name_of_clash(first);
+    topic.number = std::to_string(number);
+    topic.status = clash.raw("status");
+    topic.title = klass + ": " + clash.raw("part_a") + " × " + clash.raw("part_b") +
+                  (also.empty() ? "" : " (" + also + ")");
+    topic.priority = bcf_priority(klass);
+    topic.label = klass;
+    topic.date = date_of(time_of(clash["begin_tick"].get<std::uint64_t>()));
+    topic.author = clash.raw("user");
+    topic.description = clash.raw("explanation");
+    topic.parts = {clash.raw("part_a"), clash.raw("part_b")};
+    add_comment(clash, topic);
+    for (const std::size_t row : group.others)
+      add_comment(Cells(clashes, clashes.rows[row]), topic);
+    const auto picture = report_.pictures.png_of_clash.find(number);
+    if (picture != report_.pictures.png_of_clash.end()) topic.png = picture->second;
+    const auto vector = [&](const char* x, const char* y, const char* z) {
+      const Vec3 v(clash.number(x), clash.number(y), clash.number(z));
+      return v.allFinite() ? v : Vec3(Vec3::Zero());
+    };
+    topic.point_W = vector("x_mm", "y_mm", "z_mm");
+    topic.normal_W = vector("normal_x", "normal_y", "normal_z");
+    const auto touch = report_.pictures.touches.find(number);
+    if (touch != report_.pictures.touches.end()) topic.size_mm = touch->second.size_mm;
+    return topic;
+  }
+
+  const SessionReport& report_;
+  const SessionLog& log_;
+};
+
 }  // namespace
+
+std::string bcf_priority(const std::string& klass) {
+  return klass == "real" ? "high" : klass == "potential" ? "normal" : "low";
+}
+
+Status write_bcf(const BcfProject& project, const std::filesystem::path& file) {
+  return BcfWriter(project).write(file);
+}
 
 Status write_bcf(const SessionReport& report, const SessionLog& log,
                  const std::filesystem::path& file) {
-  return BcfWriter(report, log).write(file);
+  return write_bcf(SessionTopics(report, log).run(), file);
 }
 
 }  // namespace mortise

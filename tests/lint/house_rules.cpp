@@ -72,7 +72,7 @@ const std::vector<NamedHere>& named_here() {
       {"assimp",
        std::regex("assimp/.*"),
        {"common/io/mesh/mesh_import", "common/io/mesh/importer/"}},
-      {"OpenCASCADE", std::regex(".*\\.hxx"), {"common/io/step/importer/"}},
+      {"OpenCASCADE", std::regex(".*\\.hxx"), {"common/io/step/importer/", "tests/assemblies/"}},
       {"yaml-cpp", std::regex("yaml-cpp/.*"), {"common/io/scenario/"}},
       {"Fast DDS",
        std::regex("(fastdds|fastrtps|fastcdr)/.*"),

@@ -15,10 +15,10 @@ namespace {
 
 using PairIds = std::pair<PartId, PartId>;
 
-// Of one overlap: what the meshes cannot decide with it the exact solids do.
-constexpr std::uint64_t kWorkCap = 30'000;
 // Exact volumes of clashes for which nothing depends on them: of the deepest.
 constexpr std::size_t kMostVolumes = 20;
+// Clashes of which the way out is told.
+constexpr std::size_t kMostWays = 60;
 
 // The sub-assembly that holds both paths: "arm/servo_1" of "arm/servo_1/horn" and
 // "arm/servo_1/case"; with the product of it.
@@ -84,6 +84,47 @@ std::vector<NearPair> near_pairs(const World& world, double min_gap_mm,
   return near;
 }
 
+bool states_tolerance(const Part& of, const std::string& face, const PairRule* rule, bool is_a) {
+  const SurfaceBand* band = &of.band;
+  if (rule != nullptr && (is_a ? rule->band_a : rule->band_b))
+    band = (is_a ? rule->band_a : rule->band_b).get();
+  return std::any_of(band->faces.begin(), band->faces.end(), [&](const SurfaceBand::Face& f) {
+    return f.name == face && !(f.tolerance_mm == Interval{});
+  });
+}
+
+double accuracy_of(const Part& a, const Part& b) {
+  return std::min(kMostContact_mm, kLeastContact_mm + residual_of(a) + residual_of(b));
+}
+
+void judge_explanation(CheckedPair& pair) {
+  const double most = (1.0 + kExplainedShare) * pair.mating.explained_mm3 + kExplainedSlack_mm3;
+  pair.explained = pair.common_mm3 <= most;
+  pair.reason = fmt::format("{}: {}; exact volume {:.3f} mm³, hole and shaft explain {:.3f} mm³",
+                            name_of(pair.mating.relation), pair.mating.text, pair.common_mm3,
+                            pair.mating.explained_mm3);
+  if (!pair.explained)
+    pair.reason +=
+        fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
+}
+
+// What could not be judged.
+void say_bodies(const OpenedScene& opened, CheckReport& report) {
+  const World& world = opened.scene.world;
+  if (opened.scenario.assembly)
+    for (const std::string& path : opened.scenario.assembly->not_solid)
+      report.not_judged.push_back(path + ": not a solid (surfaces or wires only)");
+  for (const Part& p : world.parts)
+    if (!p.solid->has_inside())
+      report.not_judged.push_back(p.name + ": open, so that nothing of it is more than potential");
+  for (const CheckedPair& pair : report.pairs)
+    if (pair.not_examined && pair.verdicts.empty())
+      report.not_judged.push_back(world.find(pair.a)->name + " × " + world.find(pair.b)->name +
+                                  ": one may lie inside the other, which is open");
+  std::erase_if(report.pairs,
+                [](const CheckedPair& p) { return p.verdicts.empty() && !p.is_contact; });
+}
+
 class Checker {
  public:
   Checker(OpenedScene& opened, const std::filesystem::path& step, const CheckOptions& options)
@@ -95,15 +136,17 @@ class Checker {
 
   CheckReport run() {
     Scratch scratch(options_.threads);
-    const AssemblyJudgement judged = judge_assembly(world_, scratch, kWorkCap);
+    const AssemblyJudgement judged =
+        judge_assembly(world_, scratch, step_.empty() ? kTellWork : kFirstWork);
     report_.candidate_pairs = judged.report.counters.pairs.out;
     gather(judged.report);
     gather_touching(judged.without_verdict);
     report_.judged_pairs = report_.pairs.size();
     for (CheckedPair& pair : report_.pairs) relate(pair);
     ask_exact_solids();
+    tell_clashes(scratch);
     find_near();
-    say_bodies();
+    say_bodies(opened_, report_);
     std::set<const Solid*> solids;
     for (const Part& part : world_.parts) solids.insert(part.solid.get());
     report_.parts = world_.parts.size(), report_.products = solids.size();
@@ -188,10 +231,6 @@ class Checker {
     });
   }
 
-  static double accuracy_of(const Part& a, const Part& b) {
-    return std::min(kMostContact_mm, kLeastContact_mm + residual_of(a) + residual_of(b));
-  }
-
   void name_inside(CheckedPair& pair) const {
     pair.inside = common_product(pair);
     pair.muted = !pair.inside.empty() &&
@@ -201,16 +240,6 @@ class Checker {
   }
 
   // 2. contacts, and what the parts are to each other
-
-  bool states_tolerance(const Part& of, const std::string& face, const PairRule* rule,
-                        bool is_a) const {
-    const SurfaceBand* band = &of.band;
-    if (rule != nullptr && (is_a ? rule->band_a : rule->band_b))
-      band = (is_a ? rule->band_a : rule->band_b).get();
-    return std::any_of(band->faces.begin(), band->faces.end(), [&](const SurfaceBand::Face& f) {
-      return f.name == face && !(f.tolerance_mm == Interval{});
-    });
-  }
 
   // Do the surfaces overlap by no more than the file can tell?
   bool touches(const CheckedPair& pair, const Verdict& v) const {
@@ -287,7 +316,7 @@ class Checker {
       return;
     }
     pair.common_mm3 = common.volume_mm3;
-    pair.thickness_mm = common.area_mm2 > 0.0 ? 2.0 * common.volume_mm3 / common.area_mm2 : 0.0;
+    pair.thickness_mm = common.thickness_mm;
     if (pair.collision_class == CollisionClass::kPotential) decide(pair);
     if (may_explain(pair)) judge_explanation(pair);
   }
@@ -335,15 +364,32 @@ class Checker {
     return true;
   }
 
-  static void judge_explanation(CheckedPair& pair) {
-    const double most = (1.0 + kExplainedShare) * pair.mating.explained_mm3 + kExplainedSlack_mm3;
-    pair.explained = pair.common_mm3 <= most;
-    pair.reason = fmt::format("{}: {}; exact volume {:.3f} mm³, hole and shaft explain {:.3f} mm³",
-                              name_of(pair.mating.relation), pair.mating.text, pair.common_mm3,
-                              pair.mating.explained_mm3);
-    if (!pair.explained)
-      pair.reason +=
-          fmt::format(": {:.3f} mm³ are a clash", pair.common_mm3 - pair.mating.explained_mm3);
+  // What is told as a clash is judged with more work, which may decide it, and has a way out.
+  void tell_clashes(Scratch& scratch) {
+    std::size_t told = 0, left_out = 0;
+    for (CheckedPair& pair : report_.pairs) {
+      if (pair.explained || pair.muted || pair.collision_class < CollisionClass::kPotential)
+        continue;
+      const bool is_open = pair.collision_class == CollisionClass::kPotential;
+      if (!is_open && ++told > kMostWays) {
+        ++left_out;
+        continue;
+      }
+      PairVerdicts again = tell_pair(world_, pair.a, pair.b, kTellWork, scratch);
+      if (again.verdicts.empty()) continue;
+      const CollisionClass now = again.verdicts.front().collision_class;
+      // What the exact solids said stays.
+      if (!is_open && now != pair.verdicts.front().collision_class && now != CollisionClass::kReal)
+        continue;
+      pair.verdicts = std::move(again.verdicts);
+      if (!is_open || now == CollisionClass::kPotential) continue;
+      pair.collision_class = now;
+      relate(pair);
+      if (pair.common_mm3 >= 0.0 && may_explain(pair)) judge_explanation(pair);
+    }
+    if (left_out > 0)
+      report_.notes.push_back("ways out are told of " + std::to_string(kMostWays) +
+                              " clashes, not of " + std::to_string(left_out) + " more");
   }
 
   // 4. clearances
@@ -357,24 +403,6 @@ class Checker {
       for (const PairIds& ids : pair.all)
         if (pair.collision_class != CollisionClass::kNone) met.insert(ids);
     report_.near = near_pairs(world_, gap_mm, met);
-  }
-
-  // 5. what could not be judged
-
-  void say_bodies() {
-    if (opened_.scenario.assembly)
-      for (const std::string& path : opened_.scenario.assembly->not_solid)
-        report_.not_judged.push_back(path + ": not a solid (surfaces or wires only)");
-    for (const Part& p : world_.parts)
-      if (!p.solid->has_inside())
-        report_.not_judged.push_back(p.name +
-                                     ": open, so that nothing of it is more than potential");
-    for (const CheckedPair& pair : report_.pairs)
-      if (pair.not_examined && pair.verdicts.empty())
-        report_.not_judged.push_back(part(pair.a).name + " × " + part(pair.b).name +
-                                     ": one may lie inside the other, which is open");
-    std::erase_if(report_.pairs,
-                  [](const CheckedPair& p) { return p.verdicts.empty() && !p.is_contact; });
   }
 
   OpenedScene& opened_;

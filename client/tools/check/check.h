@@ -30,7 +30,7 @@ struct CheckedPair {
   bool explained = false;
   std::string reason;         ///< why it is explained, or why an explanation does not hold
   double common_mm3 = -1.0;   ///< exact volume in common; negative: not asked, or not known
-  double thickness_mm = 0.0;  ///< of the common solid, 2 V / A
+  double thickness_mm = 0.0;  ///< of the thickest piece of it, 2 V / F
   bool not_examined = false;
   bool muted = false;  ///< inside of a sub-assembly that is bought
   std::string inside;  ///< the product that all of them lie in, or empty
@@ -69,6 +69,11 @@ inline constexpr double kExplainedShare = 0.1, kExplainedSlack_mm3 = 1e-3;
 /// A contact may be off by what the corners of the file are off its surfaces, and this; at most
 /// kMostContact_mm.
 inline constexpr double kLeastContact_mm = 1e-3, kMostContact_mm = 0.02;
+
+/// Work of one overlap (see OverlapQuery): of all pairs, and of those that this and the exact
+/// solids leave open, and that are told. The first is little where exact solids decide what it
+/// leaves open.
+inline constexpr std::uint64_t kFirstWork = 3'000, kTellWork = 30'000;
 
 /// Sorts and counts; called by check_scene.
 void order_and_count(CheckReport& report);

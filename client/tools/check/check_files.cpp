@@ -1,5 +1,6 @@
 #include "client/tools/check/check_files.h"
 
+#include <ctime>
 #include <fstream>
 
 #include "client/report/export_files.h"
@@ -16,6 +17,15 @@ Status write(const std::string& file, const std::string& text) {
   return out ? ok() : Status(fail(Code::kRuntime, file + ": cannot be written; check the path"));
 }
 
+std::string now() {
+  const std::time_t seconds = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
 }  // namespace
 
 Status write_check_files(const OpenedScene& opened, const CheckReport& report,
@@ -29,6 +39,8 @@ Status write_check_files(const OpenedScene& opened, const CheckReport& report,
   put(command.html, [&] { return check_page(opened, report); });
   put(command.junit, [&] { return check_junit(opened, report); });
   if (status && !command.sqlite.empty()) status = write_sqlite(tables, command.sqlite);
+  if (status && !command.bcf.empty())
+    status = write_bcf(check_bcf(opened, report, now()), command.bcf);
   return status;
 }
 

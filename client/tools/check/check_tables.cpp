@@ -9,6 +9,7 @@
 #include "client/report/html_page.h"
 #include "client/report/html_sections.h"
 #include "client/tools/check/check_text.h"
+#include "client/tools/check/check_tree.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -126,7 +127,9 @@ std::vector<Table> check_tables(const OpenedScene& opened, const CheckReport& re
   Table counts{"counts", "pairs by what they are", {{"what"}, {"count", Type::kInteger}}, {}};
   const Json summary = check_json(opened, report).at("counts");
   for (const auto& [what, count] : summary.items()) counts.rows.push_back({what, count});
-  for (Table* table : {&near, &bodies, &statements, &counts}) tables.push_back(std::move(*table));
+  Table tree = tree_table(tree_of(opened, report));
+  for (Table* table : {&near, &bodies, &statements, &counts, &tree})
+    tables.push_back(std::move(*table));
   return tables;
 }
 
@@ -142,11 +145,49 @@ std::string check_page(const OpenedScene& opened, const CheckReport& report) {
     html += fmt::format("<div class=\"card\"><b>{}</b>{}</div>", row[1].get<std::size_t>(),
                         escaped(row[0].get<std::string>()));
   html += "</div><h2>Clashes that nothing explains</h2>" + clash_section(opened, report);
+  html += tree_section(tree_of(opened, report));
   html += plain_table(table_named(tables, "clashes"), "All pairs");
   html += plain_table(table_named(tables, "near"), "Nearer than asked");
   html += plain_table(table_named(tables, "not_judged"), "Not judged");
   html += plain_table(table_named(tables, "statements"), "Tolerances that the file states");
   return html + "</body></html>\n";
+}
+
+BcfProject check_bcf(const OpenedScene& opened, const CheckReport& report,
+                     const std::string& date) {
+  const SessionNames names = names_of(opened.scene.world);
+  BcfProject project;
+  project.id = "check " + opened.scenario.name;
+  project.name = opened.scenario.name;
+  project.statuses = {"new"};
+  project.labels = {"real", "potential"};
+  for (const CheckedPair& pair : report.pairs) {
+    if (pair.explained || pair.muted || pair.collision_class < CollisionClass::kPotential) continue;
+    const Verdict& v = pair.verdicts.front();
+    const std::string klass(name_of(pair.collision_class));
+    BcfTopic topic;
+    topic.parts = {names.part(pair.a), names.part(pair.b)};
+    topic.name = project.id + "/" + topic.parts[0] + "/" + topic.parts[1];
+    topic.number = std::to_string(project.topics.size() + 1);
+    topic.status = "new";
+    topic.title = klass + ": " + topic.parts[0] + " × " + topic.parts[1] +
+                  (pair.all.size() > 1 ? fmt::format(" (×{})", pair.all.size()) : "");
+    topic.priority = bcf_priority(klass);
+    topic.label = klass;
+    topic.date = date;
+    topic.description = v.explanation + (pair.reason.empty() ? "" : "; " + pair.reason);
+    topic.point_W = v.point_W;
+    topic.normal_W = v.normal_W;
+    topic.size_mm = std::min(opened.scene.world.find(pair.a)->solid->sphere().radius_mm,
+                             opened.scene.world.find(pair.b)->solid->sphere().radius_mm);
+    if (project.topics.size() < kMostPictures) {
+      const auto drawn =
+          region_picture({&opened.scene.world, pair.a, pair.b, &v}, Canvas::Format::kPng);
+      if (drawn) topic.png = *drawn;
+    }
+    project.topics.push_back(std::move(topic));
+  }
+  return project;
 }
 
 std::string check_junit(const OpenedScene& opened, const CheckReport& report) {

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <map>
 
+#include "client/tools/check/check_tree.h"
 #include "common/evaluation/tolerance.h"
 #include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
 namespace {
+
+constexpr double kTellsDepth = 2.0;  // an upper end beyond so many times the lower says nothing
 
 std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
@@ -119,7 +122,10 @@ class TextWriter {
   void pair_lines(const CheckedPair& pair) {
     const Verdict& v = pair.verdicts.front();
     text_ += fmt::format("  {} × {}{}\n", name(pair.a), name(pair.b), times(pair));
-    if (v.delta_mm.lo > 0.0)
+    // Once the class is decided the upper end is left as it is.
+    if (v.delta_mm.lo > 0.0 && v.delta_mm.hi > kTellsDepth * v.delta_mm.lo)
+      text_ += fmt::format("      at least {} deep", length_text(v.delta_mm.lo));
+    else if (v.delta_mm.lo > 0.0)
       text_ += fmt::format("      {} deep", range_text(v.delta_mm));
     else
       text_ += fmt::format("      {} apart", length_text(std::max(0.0, -v.delta_mm.hi)));
@@ -237,6 +243,16 @@ class TextWriter {
   std::string text_;
 };
 
+Json tree_json(const OpenedScene& opened, const CheckReport& report) {
+  Json tree = Json::array();
+  for (const TreeRow& row : tree_of(opened, report))
+    tree.push_back({{"part", row.path},
+                    {"product", row.product},
+                    {"colour", row.colour.empty() ? Json(nullptr) : Json(row.colour)},
+                    {"worst", name_of(row.worst)}});
+  return tree;
+}
+
 Json number_or_null(double x, bool known) { return known ? Json(x) : Json(nullptr); }
 
 }  // namespace
@@ -266,6 +282,7 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   json["parts"] = report.parts;
   json["products"] = report.products;
   json["candidate_pairs"] = report.candidate_pairs;
+  json["tree"] = tree_json(opened, report);
   json["pairs"] = Json::array();
   for (const CheckedPair& pair : report.pairs) {
     Json entry;

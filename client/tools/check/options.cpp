@@ -40,6 +40,9 @@ void add_output(ProgramOptions& app, CheckCommand& o) {
   app.add("--csv", o.csv, "write the pairs to this file");
   app.add("--html", o.html, "write a page with pictures of the worst to this file");
   app.add("--junit", o.junit, "write a test report for CI to this file");
+  app.add("--bcf", o.bcf,
+          "write an issue for each clash that nothing explains to this BCF 3.0 file, which must not "
+          "exist");
   app.add("--sqlite", o.sqlite, "write a database to this file, which must not exist");
   app.add("--baseline", o.baseline,
           "a JSON report of before: say what is new, gone, changed and unchanged");

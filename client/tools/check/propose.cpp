@@ -30,7 +30,7 @@ std::string pattern_of(const std::string& path) {
 }
 
 struct Question {
-  std::string a, b, size;
+  std::string a, b, size, shaft;
   std::size_t count = 0;
 };
 
@@ -46,7 +46,8 @@ std::map<std::string, Question> questions_of(const World& world, const CheckRepo
         asked.a = pattern_of(world.find(a)->name);
         asked.b = pattern_of(world.find(b)->name);
         asked.size = size_text(coaxial.hole_mm);
-        const std::string key = asked.a + "|" + asked.b + "|" + asked.size;
+        asked.shaft = size_text(coaxial.shaft_mm);
+        const std::string key = asked.a + "|" + asked.b + "|" + asked.size + "|" + asked.shaft;
         Question& question = questions.try_emplace(key, asked).first->second;
         ++question.count;
       }
@@ -70,9 +71,9 @@ std::string proposal_of(const OpenedScene& opened, const CheckReport& report,
   text += "fits: []   # take away the [] with the first answer\n";
   for (const auto& [key, q] : questions)
     text += fmt::format(
-        "  # {0} × Ø{1} in Ø{1}, coaxial: fit not stated; H7/g6? H7/k6? H7/p6?\n"
+        "  # {0} × Ø{4} in Ø{1}, coaxial: fit not stated; H7/g6? H7/k6? H7/p6?\n"
         "  # - {{between: [{2}, {3}], code: \"Ø{1} H7/??\"}}\n",
-        q.count, q.size, yaml_word(q.a), yaml_word(q.b));
+        q.count, q.size, yaml_word(q.a), yaml_word(q.b), q.shaft);
   return text;
 }
 

@@ -1,10 +1,12 @@
 #include <cstdio>
 
 #include "client/tools/inspect/inspect.h"
+#include "client/tools/inspect/inspect_step.h"
 #include "client/tools/inspect/propose.h"
 #include "common/base/json_text.h"
 #include "common/base/length_unit.h"
 #include "common/io/build_info.h"
+#include "common/io/step/step_import.h"
 #include "common/io/usage.h"
 
 int main(int argc, char** argv) {
@@ -15,7 +17,7 @@ int main(int argc, char** argv) {
       "mortise-inspect: planes, cylinders, cones, spheres and tori of meshes on stderr, and a "
       "scenario of them on stdout",
       mortise::version_line("mortise-inspect"));
-  app.add("files", files, "mesh files, or one scenario (.yaml)").required();
+  app.add("files", files, "mesh files, one scenario (.yaml), or one STEP assembly").required();
   app.add("--unit", unit, "of the numbers in mesh files: mm, cm, m, in, um")
       .one_of(mortise::length_unit_names())
       .shows_default();
@@ -24,6 +26,8 @@ int main(int argc, char** argv) {
       "mortise-inspect a.stl b.stl > scene.yaml writes a scenario that can be judged as it stands."
       "\nExit codes: 0 ok, 2 usage, 3 a file cannot be used.");
   if (const int exit_code = app.read(argc, argv); exit_code >= 0) return exit_code;
+  if (files.size() == 1 && mortise::is_step_name(files.front()))
+    return mortise::inspect_step(files.front(), json);
   const auto parts = mortise::inspect_files(files, *mortise::length_unit_mm(unit));
   if (!parts) {
     std::fprintf(stderr, "mortise-inspect: %s\n", parts.error().text.c_str());

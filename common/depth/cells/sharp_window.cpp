@@ -98,7 +98,9 @@ void SharpWindow::need_reach(const Box& core, double depth_mm) {
   for (std::size_t i = 0; i < faces_.size(); ++i)
     for (const std::uint32_t t : triangles_[i])
       for (int k = 0; k < 3; ++k) {
-        const std::uint32_t other = planes_.face_of_triangle[topology.neighbor[t][k]];
+        const std::uint32_t beyond = topology.neighbor[t][k];
+        if (beyond == Topology::kNone) continue;  // the part is open there
+        const std::uint32_t other = planes_.face_of_triangle[beyond];
         if (other < PlaneFaces::kWithoutArea && other > faces_[i])
           take(edge_travel(planes_.faces[faces_[i]], planes_.faces[other]).by_mm(depth_mm));
       }

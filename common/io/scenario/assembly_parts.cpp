@@ -40,7 +40,8 @@ class AssemblyPlacer {
                 " faces, more than " + std::to_string(kMostFaces) + "; split or simplify it");
         return;
       }
-      given_.push_back(given_part(part, assembly_.file));
+      given_.push_back(given_part(part, assembly_.file,
+                                  groups_of_faces(document_, static_cast<std::uint32_t>(i))));
     }
     std::vector<PartStatements> stated = statements_of(document_, given_, assembly_.listed);
     for (const StepInstance& instance : document_.instances) add(instance, stated);

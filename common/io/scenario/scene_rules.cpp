@@ -65,6 +65,7 @@ class Names {
   const std::vector<Part>& parts_;
 };
 
+// What an assembly has no longer after another export (unmatched) is told, and the rest is used.
 class RuleBook {
  public:
   explicit RuleBook(const RuleInput& input)
@@ -94,10 +95,11 @@ class RuleBook {
     SourceLine at;
   };
 
-  void error(SourceLine at, const std::string& text) {
-    out_.findings.push_back({true, place_of(scenario_, at) + text});
+  void error(SourceLine at, const std::string& text) { say(true, at, text); }
+  void say(bool is_error, SourceLine at, const std::string& text) {
+    out_.findings.push_back({is_error, place_of(scenario_, at) + text});
   }
-
+  void unmatched(SourceLine at, const std::string& text) { say(!scenario_.assembly, at, text); }
   const Part& part(PartId id) const { return names_.part(id); }
 
   // 1. fits
@@ -106,7 +108,7 @@ class RuleBook {
       SourceLine at, const std::string& part_pattern, const std::string& feature_pattern) {
     const std::vector<PartId> ids = names_.parts_matching(part_pattern);
     if (ids.empty()) {
-      error(at, "fit: " + names_.no_such_part(part_pattern));
+      unmatched(at, "fit: " + names_.no_such_part(part_pattern));
       return std::nullopt;
     }
     std::vector<std::pair<PartId, std::size_t>> ends;
@@ -114,7 +116,7 @@ class RuleBook {
       for (const std::size_t feature : names_.features_matching(id, feature_pattern))
         ends.emplace_back(id, feature);
     if (ends.empty()) {
-      error(at, "fit: " + part_pattern + ": " + names_.no_such_feature(ids, feature_pattern));
+      unmatched(at, "fit: " + part_pattern + ": " + names_.no_such_feature(ids, feature_pattern));
       return std::nullopt;
     }
     return ends;
@@ -140,13 +142,13 @@ class RuleBook {
         if (!is_asked(a, b)) continue;
         if (!seen.insert({a, fa, b, fb}).second) continue;
         const auto pairs = fitting_features(fit, {part(a), fa}, {part(b), fb});
-        if (!pairs) error(fit.at, pairs.error().text);
+        if (!pairs) unmatched(fit.at, pairs.error().text);
         if (pairs)
           for (const auto& [i, j] : *pairs) applied += state_pair(fit, a, i, b, j) ? 1 : 0;
         if (out_.findings.size() > findings_before + 20) return;  // the same mistake many times
       }
     if (applied == 0 && out_.findings.size() == findings_before && !input_.only)
-      error(fit.at, "fit: matches no pair of a hole and a shaft of two different parts");
+      unmatched(fit.at, "fit: matches no pair of a hole and a shaft of two different parts");
   }
 
   bool is_asked(PartId a, PartId b) const {

@@ -60,7 +60,8 @@ struct Gathered {
 
 class Gatherer {
  public:
-  explicit Gatherer(const StepPart& part) : part_(part), triangles_of_(part.faces.size()) {
+  Gatherer(const StepPart& part, const std::vector<std::uint32_t>& group_of_face)
+      : part_(part), group_of_face_(group_of_face), triangles_of_(part.faces.size()) {
     for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t)
       triangles_of_[part.face_of_triangle[t]].push_back(static_cast<std::uint32_t>(t));
   }
@@ -84,7 +85,7 @@ class Gatherer {
   }
 
  private:
-  using Bucket = std::tuple<int, bool, long long>;
+  using Bucket = std::tuple<int, bool, long long, std::uint32_t>;
 
   void add(std::uint32_t f) {
     const StepFace& face = part_.faces[f];
@@ -107,7 +108,9 @@ class Gatherer {
     const double size = face.surface.kind == SurfaceKind::kPlane
                             ? 0.0
                             : face.surface.radius_mm + face.surface.half_angle_rad;
-    buckets_[{static_cast<int>(face.surface.kind), face.surface.inward, std::llround(size * 1e3)}]
+    const bool apart = face.surface.kind == SurfaceKind::kPlane && f < group_of_face_.size();
+    buckets_[{static_cast<int>(face.surface.kind), face.surface.inward, std::llround(size * 1e3),
+              apart ? group_of_face_[f] : 0}]
         .push_back(std::move(gathered));
   }
 
@@ -154,6 +157,7 @@ class Gatherer {
 
  private:
   const StepPart& part_;
+  const std::vector<std::uint32_t>& group_of_face_;
   std::vector<std::vector<std::uint32_t>> triangles_of_;
   std::map<Bucket, std::vector<Gathered>> buckets_;
 };
@@ -167,8 +171,11 @@ double area_of(const TriangleMesh& mesh, std::uint32_t t) {
 // The mesh encloses what the exact solids do, but for what lies between mesh and surfaces.
 std::string volume_note(const StepPart& part) {
   if (part.open_edges > 0) return {};
+  const double volume = signed_volume_mm3(part.mesh);
+  const double apart =
+      std::fabs(volume - part.volume_mm3) - kVolumeShare * std::fabs(part.volume_mm3);
   double between = 0.0;
-  for (std::uint32_t t = 0; t < part.mesh.triangles.size(); ++t) {
+  for (std::uint32_t t = 0; t < part.mesh.triangles.size() && between < apart; ++t) {
     const StepFace& face = part.faces[part.face_of_triangle[t]];
     Interval off = face.deviation_mm;
     if (face.surface.kind != SurfaceKind::kUnknown)
@@ -176,9 +183,7 @@ std::string volume_note(const StepPart& part) {
                                                   part.mesh.corner(t, 2));
     between += area_of(part.mesh, t) * std::max(std::fabs(off.lo), std::fabs(off.hi));
   }
-  const double volume = signed_volume_mm3(part.mesh);
-  if (std::fabs(volume - part.volume_mm3) <= between + kVolumeShare * std::fabs(part.volume_mm3))
-    return {};
+  if (apart <= between) return {};
   return "its mesh encloses " + six_digits(volume) + " mm³, its exact solids " +
          six_digits(part.volume_mm3) + " mm³: more apart than its faces explain";
 }
@@ -201,7 +206,22 @@ std::vector<std::string> notes_on(const StepPart& part) {
 
 }  // namespace
 
-StepPartGiven given_part(const StepPart& part, const std::string& file) {
+std::vector<std::uint32_t> groups_of_faces(const StepDocument& document, std::uint32_t part) {
+  std::vector<std::vector<std::size_t>> said(document.parts[part].faces.size());
+  for (std::size_t i = 0; i < document.statements.size(); ++i)
+    for (const auto* faces : {&document.statements[i].faces, &document.statements[i].other_faces})
+      for (const StepFaceRef& ref : *faces)
+        if (ref.part == part) said[ref.face].push_back(i);
+  std::map<std::vector<std::size_t>, std::uint32_t> numbers = {{{}, 0}};
+  std::vector<std::uint32_t> groups;
+  for (const auto& statements : said)
+    groups.push_back(
+        numbers.try_emplace(statements, static_cast<std::uint32_t>(numbers.size())).first->second);
+  return groups;
+}
+
+StepPartGiven given_part(const StepPart& part, const std::string& file,
+                         const std::vector<std::uint32_t>& group_of_face) {
   auto given = std::make_shared<GivenPart>();
   given->file = file;
   given->product = part.name;
@@ -210,7 +230,7 @@ StepPartGiven given_part(const StepPart& part, const std::string& file) {
   given->notes = notes_on(part);
   StepPartGiven result;
   result.feature_of_face.assign(part.faces.size(), -1);
-  Gatherer gatherer(part);
+  Gatherer gatherer(part, group_of_face);
   std::map<std::string, int> numbers;
   for (Gathered& gathered : gatherer.run()) {
     const std::string kind = stem_of(gathered.feature.surface);

@@ -18,6 +18,12 @@ struct StepPartGiven {
 /// axis, size and side, and lengths along the axis that meet. Features are named as recognized ones
 /// are (bore_1, shaft_1, cone_1, ...), in an order that comes from their geometry alone, so that
 /// faces renumbered by another export keep their names.
-StepPartGiven given_part(const StepPart& part, const std::string& file);
+/// `group_of_face`: planes of different groups stay apart, because something else is stated of
+/// them; empty: all are of one group.
+StepPartGiven given_part(const StepPart& part, const std::string& file,
+                         const std::vector<std::uint32_t>& group_of_face = {});
+
+/// Faces of a part of which the same statements speak are of one group.
+std::vector<std::uint32_t> groups_of_faces(const StepDocument& document, std::uint32_t part);
 
 }  // namespace mortise

@@ -8,7 +8,7 @@
 namespace mortise {
 namespace {
 
-constexpr std::uint32_t kDocument = 0x31535453, kQueries = 0x31515453, kAnswers = 0x31415453;
+constexpr std::uint32_t kDocument = 0x32535453, kQueries = 0x31515453, kAnswers = 0x31415453;
 constexpr std::size_t kLongestStepText = 4096;
 constexpr double kLargestStepNumber =
     1e9;  // of any number that is a length; beyond it a unit is wrong
@@ -70,7 +70,8 @@ void put(ByteWriter& out, const StepStatement& s) {
   out.u8(static_cast<std::uint8_t>(s.kind));
   out.u32(s.entity);
   put(out, s.name);
-  for (const double x : {s.value, s.upper, s.lower, s.limit_upper, s.limit_lower}) out.f64(x);
+  for (const double x : {s.value, s.upper, s.lower, s.limit_upper, s.limit_lower, s.outside})
+    out.f64(x);
   put(out, s.code);
   put(out, s.modifiers);
   put(out, s.faces);
@@ -243,7 +244,7 @@ class StepReader {
     s.kind = static_cast<StepStatement::Kind>(kind);
     s.entity = in_.u32();
     s.name = text();
-    for (double* x : {&s.value, &s.upper, &s.lower, &s.limit_upper, &s.limit_lower})
+    for (double* x : {&s.value, &s.upper, &s.lower, &s.limit_upper, &s.limit_lower, &s.outside})
       *x = number_or_none();
     s.code = text();
     s.modifiers = text();
@@ -271,8 +272,8 @@ class StepReader {
     if (in_.u32() != kAnswers) return damaged("it is not one of ours");
     const std::uint32_t n = count(16);
     for (std::uint32_t i = 0; good() && i < n; ++i) {
-      const double volume = number(1e27), area = number(1e18);
-      answers.push_back({volume, area});
+      const double volume = number(1e27), thickness = number();
+      answers.push_back({volume, thickness});
     }
     if (!wrong_.empty()) return damaged(wrong_);
     if (!in_.at_end()) return damaged("its length is not what it states");
@@ -336,7 +337,7 @@ std::vector<std::byte> encode(std::span<const StepCommon> answers) {
   out.u32(static_cast<std::uint32_t>(answers.size()));
   for (const StepCommon& answer : answers) {
     out.f64(answer.volume_mm3);
-    out.f64(answer.area_mm2);
+    out.f64(answer.thickness_mm);
   }
   return out.take();
 }

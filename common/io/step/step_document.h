@@ -68,11 +68,12 @@ struct StepStatement {
   enum class Kind : std::uint8_t { kUnknown = 0, kSize, kDistance, kAngle, kGeometric, kDatum };
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Kind kind = Kind::kUnknown;
-  std::uint32_t entity = 0;  ///< the number of its line in the file
+  std::uint32_t entity = 0;  ///< its number in the file, the 12 of "#12="
   std::string name;          ///< "diameter", "position", ...
   double value = kNone;
   double upper = kNone, lower = kNone;              ///< deviations, as signed in the file
   double limit_upper = kNone, limit_lower = kNone;  ///< limits of size
+  double outside = kNone;                           ///< of a profile: what of it is outside (U)
   std::string code;                                 ///< ISO class, "H7"; empty: none
   std::string modifiers;                            ///< "maximum_material_requirement", ...
   std::vector<StepFaceRef> faces, other_faces;      ///< of which it speaks; of a distance both ends
@@ -99,14 +100,14 @@ std::vector<std::byte> encode(const StepDocument& document);
 Result<StepDocument> decode_step(std::span<const std::byte> bytes);
 
 /// What the importer is asked of two of its parts at a relative pose, and its answer: the volume
-/// that their exact solids have in common and its surface. A negative volume: the operation failed
-/// or was ended.
+/// that their exact solids have in common, and how thick it is: 2 V / F of a piece of it with the
+/// surface F, the largest of all pieces. A negative volume: the operation failed or was ended.
 struct StepCommonQuery {
   std::uint32_t part_a = 0, part_b = 0;
   Pose X_AB;
 };
 struct StepCommon {
-  double volume_mm3 = -1.0, area_mm2 = 0.0;
+  double volume_mm3 = -1.0, thickness_mm = 0.0;
 };
 std::vector<std::byte> encode(std::span<const StepCommonQuery> queries);
 Result<std::vector<StepCommonQuery>> decode_step_queries(std::span<const std::byte> bytes);

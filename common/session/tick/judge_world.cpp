@@ -25,7 +25,7 @@ struct Judged {
 struct Closeness {
   Refinement refinement = Refinement::kDecided;
   std::uint64_t work_cap = JudgementQuery().work_cap;
-  bool alike_once = false;
+  bool alike_once = false, want_gpd = true;
 };
 
 Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Closeness& closeness,
@@ -39,6 +39,7 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Close
   query.motion_b = still_motion(b.X_WP);
   query.refinement = closeness.refinement;
   query.work_cap = closeness.work_cap;
+  query.want_gpd = closeness.want_gpd;
   Judgement judgement = judge_pair(query, ccd);
   StepCounters& counts = judged.counts;
   count(query, judgement, counts);
@@ -170,6 +171,7 @@ std::vector<Judged> judge_all(const World& world, Scratch::Impl& work,
       judged[i].verdicts =
           moved(of.verdicts, world, world.parts[candidates[i].a], world.parts[candidates[i].b]);
     }
+  if (!closeness.want_gpd) return judged;
   // Somebody looks at what is told here: what stands in the way is told as well.
   work.pool.for_each(judged.size(), [&](std::size_t i, int thread) {
     look_along_ways(world, judged[i].verdicts, work.ccd[static_cast<std::size_t>(thread)]);
@@ -230,8 +232,18 @@ JudgeReport judge_world(World& world, Scratch& scratch, bool full_brackets) {
   return judge(world, scratch, closeness).report;
 }
 
+PairVerdicts tell_pair(const World& world, PartId a, PartId b, std::uint64_t work_cap,
+                       Scratch& scratch) {
+  CcdScratch& ccd = scratch.impl().ccd.front();
+  PairVerdicts told = judge_one(*world.find(a), *world.find(b), world.rule(a, b),
+                                {Refinement::kDecided, work_cap}, ccd)
+                          .verdicts;
+  look_along_ways(world, told, ccd);
+  return told;
+}
+
 AssemblyJudgement judge_assembly(World& world, Scratch& scratch, std::uint64_t work_cap) {
-  return judge(world, scratch, {Refinement::kDecided, work_cap, true});
+  return judge(world, scratch, {Refinement::kDecided, work_cap, true, false});
 }
 
 }  // namespace mortise

@@ -34,8 +34,13 @@ struct AssemblyJudgement {
 };
 /// Pairs of parts of the same kinds that stand to each other in the same way (to a nanometre over
 /// the parts) are judged once; their verdicts are moved to the others. Only pairs without a rule of
-/// their own are alike. `work_cap`: of one overlap, see OverlapQuery.
+/// their own are alike. `work_cap`: of one overlap, see OverlapQuery. Ways out are left open, which
+/// takes as long as all the rest: tell_pair is for the pairs that somebody reads.
 AssemblyJudgement judge_assembly(World& world, Scratch& scratch, std::uint64_t work_cap);
+
+/// The verdicts of one pair with its way out, and what that meets first.
+PairVerdicts tell_pair(const World& world, PartId a, PartId b, std::uint64_t work_cap,
+                       Scratch& scratch);
 
 /// Which kinds the parts of a pair are, and how the second stands to the first, in steps of a
 /// nanometre over the part: equal for pairs that are alike.

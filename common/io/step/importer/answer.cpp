@@ -39,7 +39,7 @@ StepDocument document_of(const std::filesystem::path& file) {
     }
     document.parts.push_back(std::move(part));
   }
-  read_pmi(tree, document);
+  read_pmi(file, tree, document);
   return document;
 }
 

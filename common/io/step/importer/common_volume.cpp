@@ -6,6 +6,7 @@
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepGProp.hxx>
 #include <GProp_GProps.hxx>
+#include <TopExp_Explorer.hxx>
 #include <gp_Quaternion.hxx>
 
 #include <algorithm>
@@ -27,11 +28,17 @@ StepCommon common_of(const TopoDS_Shape& a, const TopoDS_Shape& b, const Pose& X
   StepCommon common;
   BRepAlgoAPI_Common operation(a, b.Moved(location_of(X_AB)));
   if (!operation.IsDone() || operation.HasErrors()) return common;
-  GProp_GProps volume, surface;
-  BRepGProp::VolumeProperties(operation.Shape(), volume, 1e-4, true);
-  BRepGProp::SurfaceProperties(operation.Shape(), surface);
-  common.volume_mm3 = std::max(0.0, volume.Mass());
-  common.area_mm2 = surface.Mass();
+  common.volume_mm3 = 0.0;
+  // Each piece by itself: a thin sliver elsewhere must not make a thick one seem thin.
+  for (TopExp_Explorer x(operation.Shape(), TopAbs_SOLID); x.More(); x.Next()) {
+    GProp_GProps volume, surface;
+    BRepGProp::VolumeProperties(x.Current(), volume, 1e-4, true);
+    BRepGProp::SurfaceProperties(x.Current(), surface);
+    const double own_mm3 = std::max(0.0, volume.Mass());
+    common.volume_mm3 += own_mm3;
+    if (surface.Mass() > 0.0)
+      common.thickness_mm = std::max(common.thickness_mm, 2.0 * own_mm3 / surface.Mass());
+  }
   return common;
 }
 

@@ -207,6 +207,7 @@ class TreeReader {
     known->second = static_cast<int>(tree_.parts.size());
     tree_.parts.push_back(std::move(part));
     tree_.solids.push_back(own);
+    tree_.as_read.push_back(solids);
     return known->second;
   }
 

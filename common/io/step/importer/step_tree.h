@@ -15,7 +15,9 @@ namespace mortise {
 struct StepTree {
   std::string refusal;               ///< not empty: nothing else is set
   std::vector<TopoDS_Shape> solids;  ///< of each part, in its own frame
-  std::vector<StepPart> parts;       ///< names and counts; no mesh
+  /// The same before a mirror image or a scale was made of it, with its faces in the same order.
+  std::vector<TopoDS_Shape> as_read;
+  std::vector<StepPart> parts;  ///< names and counts; no mesh
   std::vector<StepInstance> instances;
   std::vector<std::string> not_solid, notes;
   Handle(TDocStd_Document) document;

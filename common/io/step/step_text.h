@@ -1,0 +1,42 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace mortise {
+
+/// The entities of a STEP file (ISO 10303-21) as text, for what the reader of the library does not
+/// understand: measures that are complex entities, modifiers, tolerances of kinds that it has not.
+/// Nothing is trusted: damage ends the search for entities and no more.
+class StepText {
+ public:
+  explicit StepText(std::string text);
+
+  /// "POSITION_TOLERANCE('a','',#1,#2)" of #label, or empty. Points into this object.
+  std::string_view entity(int label) const;
+  /// The labels of all entities that contain this text, ascending.
+  std::vector<int> labels_with(std::string_view text) const;
+
+ private:
+  std::string text_;
+  std::unordered_map<int, std::pair<std::size_t, std::size_t>> place_of_;  // begin, length
+};
+
+/// The keywords of an entity: one of a simple, several of a complex one.
+std::vector<std::string> step_keywords(std::string_view entity);
+
+/// The arguments of this keyword in an entity, as text without blanks at their ends; nothing when
+/// the entity has no such keyword.
+std::optional<std::vector<std::string_view>> step_arguments(std::string_view entity,
+                                                            std::string_view keyword);
+
+/// "#12" as 12; 0 when it is no reference.
+int step_reference(std::string_view argument);
+
+/// "0.2", or the number of a typed one: "LENGTH_MEASURE(0.2)".
+std::optional<double> step_number(std::string_view argument);
+
+}  // namespace mortise
