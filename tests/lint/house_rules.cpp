@@ -90,9 +90,7 @@ const std::vector<NamedHere>& named_here() {
        std::regex("openssl/.*"),
        {"client/web/", "idl/identity.", "tests/network/page_client."}},
       {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
-      {"CLI11",
-       std::regex("CLI/.*"),
-       {"common/io/usage.", "tests/bench/"}},
+      {"CLI11", std::regex("CLI/.*"), {"common/io/usage.", "tests/bench/"}},
   };
   return rules;
 }
