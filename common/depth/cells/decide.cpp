@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "common/depth/cells/deepest.h"
 
@@ -49,10 +50,12 @@ class SharpSearch {
 
   SharpDecision run() {
     const auto decided = [&] { return decision_.state == SharpDecision::State::kDecided; };
-    for (const SharpLayer layer : {SharpLayer::kLeast, SharpLayer::kLargest}) {
-      SharpDepth& depth = layer == SharpLayer::kLeast ? decision_.least : decision_.largest;
-      if (decided()) find_margin(layer, depth);
-      if (decided() && depth.margin_mm.lo > 0.0) find_overlap(layer, depth);
+    for (const auto& [layer, depth] : {std::pair{SharpLayer::kLeast, &decision_.least},
+                                       std::pair{SharpLayer::kLargest, &decision_.largest},
+                                       std::pair{SharpLayer::kModelled, &decision_.modelled}}) {
+      if (layer == SharpLayer::kModelled && !query_.modelled) continue;
+      if (decided()) find_margin(layer, *depth);
+      if (decided() && depth->margin_mm.lo > 0.0) find_overlap(layer, *depth);
     }
     return decision_;
   }

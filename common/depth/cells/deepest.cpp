@@ -109,7 +109,7 @@ LinearProgram::Row DeepestPoint::row_of(const WindowPair& windows, const Literal
   LinearProgram::Row row;
   row.g = {plane.n.x(), plane.n.y(), plane.n.z()};
   row.g[measure_ == SharpMeasure::kSum && literal.part == 1 ? 4 : 3] = 1.0;
-  row.h = plane.c + (layer_ == SharpLayer::kLargest ? plane.offset_mm.hi : plane.offset_mm.lo);
+  row.h = plane.c_in(layer_);
   if (!literal.fails) return row;
   for (double& g : row.g) g = -g;
   row.h = kBranchOverlap_mm - row.h;
@@ -135,9 +135,8 @@ std::vector<double> DeepestPoint::slacks(const WindowPair& windows, int part,
   all.reserve(windows.planes[part].size());
   const double depth = at.y[measure_ == SharpMeasure::kSum && part == 1 ? 4 : 3];
   for (const WindowPair::Plane& plane : windows.planes[part])
-    all.push_back(plane.c +
-                  (layer_ == SharpLayer::kLargest ? plane.offset_mm.hi : plane.offset_mm.lo) -
-                  plane.n.x() * at.y[0] - plane.n.y() * at.y[1] - plane.n.z() * at.y[2] - depth);
+    all.push_back(plane.c_in(layer_) - plane.n.x() * at.y[0] - plane.n.y() * at.y[1] -
+                  plane.n.z() * at.y[2] - depth);
   return all;
 }
 

@@ -10,7 +10,7 @@
 
 namespace mortise {
 
-enum class SharpLayer : std::uint8_t { kLeast, kLargest };
+enum class SharpLayer : std::uint8_t { kLeast, kLargest, kModelled };
 
 /// kMargin: twice the lesser depth of a point in both bodies, negative outside; kSum: the sum of
 /// both, where both are positive.
@@ -26,6 +26,11 @@ struct WindowPair {
     Vec3 n;
     double c = 0.0;
     Interval offset_mm;
+    double c_in(SharpLayer layer) const {
+      return layer == SharpLayer::kModelled  ? c
+             : layer == SharpLayer::kLargest ? c + offset_mm.hi
+                                             : c + offset_mm.lo;
+    }
   };
   SharpWindow part[2];
   std::vector<Plane> planes[2];

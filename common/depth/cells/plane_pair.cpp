@@ -13,6 +13,8 @@ namespace {
 
 // Depths are told up to so many times what all offsets make together; beyond, so much deeper.
 constexpr double kDepths = 2.0, kDeeper = 4.0;
+// So often in full.
+constexpr int kMostLooks = 6;
 // A place for a later look lies this share of the way from the witness to the face of A.
 constexpr double kTowardsFace = 0.9;
 
@@ -40,20 +42,32 @@ bool has_plane_faces(const Body& body) {
          !body.plane_faces().faces.empty();
 }
 
+// The depth in all faces is that in the part.
+bool is_convex(const Body& body, double nothing_mm) {
+  const Outline& outline = body.solid->outline();
+  return outline.complete && outline.convex_slack_mm <= nothing_mm;
+}
+
 }  // namespace
 
-PlanePair::PlanePair(const PairFrame& pair) : pair_(pair) {
+PlanePair::PlanePair(const PairFrame& pair, bool delta, bool full) : pair_(pair) {
   if (pair.trivial || !has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return;
+  delta_ =
+      delta && is_convex(pair.bodies[0], pair.touch_mm) && is_convex(pair.bodies[1], pair.touch_mm);
   look(kDepths * all_offsets_mm(pair));
   // Windows that reach farther may know less of the signs: what is known stays.
-  if (!decided_ || has_brackets()) return;
-  const SharpDecision near = decision_;
-  const double near_mm = depth_mm_;
-  look(kDeeper * near_mm);
-  if (has_brackets()) return;
-  decision_ = near;
-  depth_mm_ = near_mm;
-  decided_ = true;
+  for (int i = 0; i < (full ? kMostLooks : 1); ++i) {
+    if (!decided_ || has_brackets()) return;
+    const SharpDecision near = decision_;
+    const double near_mm = depth_mm_;
+    look(kDeeper * near_mm);
+    if (has_brackets()) return;
+    if (decided_ && full) continue;
+    decision_ = near;
+    depth_mm_ = near_mm;
+    decided_ = true;
+    return;
+  }
 }
 
 void PlanePair::look(double depth_mm) {
@@ -64,6 +78,7 @@ void PlanePair::look(double depth_mm) {
   query.b = {pair_.bodies[1].solid, &pair_.bodies[1].plane_faces()};
   query.X_BA = pair_.X_KS[0];
   query.depth_mm = depth_mm;
+  query.modelled = delta_;
   decision_ = decide(query);
   const auto has_sign = [&](const SharpDepth& depth) {
     return depth.margin_mm.hi <= pair_.touch_mm ||
@@ -132,6 +147,18 @@ void PlanePair::tell_largest(OverlapRegion& region) const {
   if (decision_.largest.has_point) name_faces(decision_.largest, region);
 }
 
+void PlanePair::tell_modelled(std::vector<OverlapRegion>& regions) const {
+  const SharpDepth& modelled = decision_.modelled;
+  if (!modelled.has_point || !(modelled.margin_mm.lo > pair_.touch_mm) ||
+      !(modelled.overlap_mm.hi < depth_mm_))
+    return;
+  for (OverlapRegion& region : regions) {
+    region.delta_mm.hi = std::min(region.delta_mm.hi, modelled.overlap_mm.hi);
+    region.delta_mm.lo = std::min(region.delta_mm.lo, region.delta_mm.hi);
+  }
+  nearest(regions, pair_.X_W[1] * modelled.point_B).delta_mm = modelled.overlap_mm;
+}
+
 Bracket PlanePair::told(const Bracket& mesh, Layer layer) const {
   const Interval bracket = *bracket_mm(layer);
   Bracket told = mesh;
@@ -161,6 +188,7 @@ void PlanePair::tell(bool only_certain, std::vector<OverlapRegion>& regions) con
   };
   tell_largest(place(decision_.largest));
   tell_least(place(certain() ? decision_.least : decision_.largest));
+  if (delta_) tell_modelled(regions);
   // Where no point of one mesh lies in the other, delta is the gap, found faster than by search.
   Interval& delta_mm = regions.front().delta_mm;
   if (regions.size() == 1 && delta_mm.lo <= 0.0 && delta_mm.width() > pair_.touch_mm)

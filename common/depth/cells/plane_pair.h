@@ -12,7 +12,9 @@ namespace mortise {
 class PlanePair {
  public:
   /// Costs nothing where a part has no plane faces, and little where others are near the overlap.
-  explicit PlanePair(const PairFrame& pair);
+  /// delta: of convex parts that of the parts as modelled is asked for as well. full: as deep as
+  /// they are, which costs more.
+  PlanePair(const PairFrame& pair, bool delta, bool full);
 
   /// Whether the least bodies interfere, and whether the largest do, is known.
   bool decided() const { return decided_; }
@@ -43,10 +45,12 @@ class PlanePair {
   OverlapRegion& nearest(std::vector<OverlapRegion>& regions, const Vec3& x_W) const;
   void tell_least(OverlapRegion& region) const;
   void tell_largest(OverlapRegion& region) const;
+  void tell_modelled(std::vector<OverlapRegion>& regions) const;
   void name_faces(const SharpDepth& depth, OverlapRegion& region) const;
 
   const PairFrame& pair_;
   SharpDecision decision_;
+  bool delta_ = false;
   double depth_mm_ = 0.0;
   bool decided_ = false;  // whether the least bodies interfere, and whether the largest do
 };
