@@ -52,17 +52,18 @@ bool is_convex(const Body& body, double nothing_mm) {
 
 PlanePair::PlanePair(const PairFrame& pair, bool delta, bool full) : pair_(pair) {
   if (pair.trivial || !has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return;
-  delta_ =
-      delta && is_convex(pair.bodies[0], pair.touch_mm) && is_convex(pair.bodies[1], pair.touch_mm);
+  const bool convex = (delta || full) && is_convex(pair.bodies[0], pair.touch_mm) &&
+                      is_convex(pair.bodies[1], pair.touch_mm);
+  delta_ = delta && convex;
   look(kDepths * all_offsets_mm(pair));
   // Windows that reach farther may know less of the signs: what is known stays.
-  for (int i = 0; i < (full ? kMostLooks : 1); ++i) {
+  for (int i = 0; i < (full && convex ? kMostLooks : 1); ++i) {
     if (!decided_ || has_brackets()) return;
     const SharpDecision near = decision_;
     const double near_mm = depth_mm_;
     look(kDeeper * near_mm);
     if (has_brackets()) return;
-    if (decided_ && full) continue;
+    if (decided_ && full && convex) continue;
     decision_ = near;
     depth_mm_ = near_mm;
     decided_ = true;

@@ -12,7 +12,7 @@ namespace mortise {
 class PlanePair {
  public:
   /// Costs nothing where a part has no plane faces, and little where others are near the overlap.
-  /// delta: of convex parts that of the parts as modelled is asked for as well. full: as deep as
+  /// Of convex parts, delta: that of the parts as modelled is asked for as well; full: as deep as
   /// they are, which costs more.
   PlanePair(const PairFrame& pair, bool delta, bool full);
 
