@@ -121,8 +121,7 @@ class Overlap {
       : query_(query),
         pair_(query),
         covers_(pair_, query.use_covers, result_.evaluations),
-        planes_(pair_, query.want_delta && !query.only_certain,
-                query.refinement == Refinement::kFull && !query.only_certain) {}
+        planes_(pair_, query.want_delta && !query.only_certain) {}
 
   OverlapResult run() {
     if (query_.only_certain && told_by_covers()) return std::move(result_);

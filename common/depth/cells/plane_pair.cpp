@@ -13,8 +13,6 @@ namespace {
 
 // Depths are told up to so many times what all offsets make together; beyond, so much deeper.
 constexpr double kDepths = 2.0, kDeeper = 4.0;
-// So often in full.
-constexpr int kMostLooks = 6;
 // A place for a later look lies this share of the way from the witness to the face of A.
 constexpr double kTowardsFace = 0.9;
 
@@ -50,25 +48,20 @@ bool is_convex(const Body& body, double nothing_mm) {
 
 }  // namespace
 
-PlanePair::PlanePair(const PairFrame& pair, bool delta, bool full) : pair_(pair) {
+PlanePair::PlanePair(const PairFrame& pair, bool delta) : pair_(pair) {
   if (pair.trivial || !has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return;
-  const bool convex = (delta || full) && is_convex(pair.bodies[0], pair.touch_mm) &&
-                      is_convex(pair.bodies[1], pair.touch_mm);
-  delta_ = delta && convex;
+  delta_ =
+      delta && is_convex(pair.bodies[0], pair.touch_mm) && is_convex(pair.bodies[1], pair.touch_mm);
   look(kDepths * all_offsets_mm(pair));
   // Windows that reach farther may know less of the signs: what is known stays.
-  for (int i = 0; i < (full && convex ? kMostLooks : 1); ++i) {
-    if (!decided_ || has_brackets()) return;
-    const SharpDecision near = decision_;
-    const double near_mm = depth_mm_;
-    look(kDeeper * near_mm);
-    if (has_brackets()) return;
-    if (decided_ && full && convex) continue;
-    decision_ = near;
-    depth_mm_ = near_mm;
-    decided_ = true;
-    return;
-  }
+  if (!decided_ || has_brackets()) return;
+  const SharpDecision near = decision_;
+  const double near_mm = depth_mm_;
+  look(kDeeper * near_mm);
+  if (has_brackets()) return;
+  decision_ = near;
+  depth_mm_ = near_mm;
+  decided_ = true;
 }
 
 void PlanePair::look(double depth_mm) {

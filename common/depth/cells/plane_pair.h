@@ -12,9 +12,8 @@ namespace mortise {
 class PlanePair {
  public:
   /// Costs nothing where a part has no plane faces, and little where others are near the overlap.
-  /// Of convex parts, delta: that of the parts as modelled is asked for as well; full: as deep as
-  /// they are, which costs more.
-  PlanePair(const PairFrame& pair, bool delta, bool full);
+  /// delta: of convex parts that of the parts as modelled is asked for as well.
+  PlanePair(const PairFrame& pair, bool delta);
 
   /// Whether the least bodies interfere, and whether the largest do, is known.
   bool decided() const { return decided_; }
