@@ -1,6 +1,7 @@
 #include "common/depth/pair_covers.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/depth/region_report.h"
 #include "common/geometry/signed_distance.h"
@@ -25,6 +26,12 @@ const CoverOverlap& PairCovers::overlap_of(Layer layer) {
   overlap = CoverPair(of(0), of(1)).overlap(pair_.X_KS[0], pair_.touch_mm, work);
   evaluations_ += evaluations_of_bounds(work);
   return *overlap;
+}
+
+double PairCovers::most_mm(Layer layer) {
+  const CoverOverlap& overlap = overlap_of(layer);
+  return overlap.is_depth || apart(layer) ? overlap.most_mm
+                                          : std::numeric_limits<double>::infinity();
 }
 
 std::optional<Sample> PairCovers::deepest(Layer layer) {
@@ -54,7 +61,8 @@ std::optional<Bracket> PairCovers::bracket(Layer layer, double accuracy_mm, bool
 std::optional<OverlapRegion> PairCovers::certain_region() {
   const std::optional<Sample> sample = deepest(Layer::kLower);
   if (!sample) return std::nullopt;
-  OverlapRegion region = region_of_certain(pair_, *sample, most_mm(Layer::kLower));
+  const double most = std::min(most_mm(Layer::kLower), 2.0 * pair_.deepest_mm(Layer::kLower));
+  OverlapRegion region = region_of_certain(pair_, *sample, most);
   set_witness(pair_, find_witness(pair_, *sample, evaluations_, &region.witnesses_refused), *sample,
               region);
   if (!region.has_witness) return std::nullopt;
@@ -67,8 +75,8 @@ void PairCovers::give_witness(std::vector<OverlapRegion>& regions) {
   std::optional<OverlapRegion> found = certain_region();
   if (!found) return;
   if (regions.empty()) {
-    found->delta_mm = {-pair_.reach_mm(Layer::kLower),
-                       most_mm(Layer::kUpper) + pair_.reach_mm(Layer::kUpper)};
+    found->delta_mm = {-pair_.reach_mm(Layer::kLower), 2.0 * pair_.deepest_mm(Layer::kMesh)};
+    found->possible_mm.hi = 2.0 * pair_.deepest_mm(Layer::kUpper);
     found->points_W = {found->point_W};
     regions.push_back(std::move(*found));
     return;

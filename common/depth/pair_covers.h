@@ -17,9 +17,9 @@ class PairCovers {
   PairCovers(const PairFrame& pair, bool use, std::uint64_t& evaluations);
 
   /// No overlap of kLower or kUpper is deeper. Infinity: nothing is known.
-  double most_mm(Layer layer) { return overlap_of(layer).most_mm; }
+  double most_mm(Layer layer);
   /// No point is in both parts of the layer deeper than touching.
-  bool apart(Layer layer) { return most_mm(layer) <= pair_.touch_mm; }
+  bool apart(Layer layer) { return overlap_of(layer).most_mm <= pair_.touch_mm; }
   /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
   /// the covers name none that is deeper than touching.
   std::optional<Sample> deepest(Layer layer);

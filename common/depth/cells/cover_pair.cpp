@@ -74,12 +74,13 @@ class CoverPair::Bound {
     const Chord& chord = views_.chord[role];
     // Over a span only what excludes is of use, at a pose what is below the best bound so far.
     const double useless_mm = chord.ends == 2 ? limit_mm_ : least_;
-    double most = -kInfinity;
+    double most = -kInfinity, second = -kInfinity;
     std::optional<Vec3> at_S;
     for (const HalfSpace& plane : hole.planes) {
       ++work_;
       const double beyond = beyond_plane_mm(s(role), chord, plane);
       if (beyond >= least_) return false;
+      second = std::max(second, std::min(most, beyond));
       if (beyond <= most) continue;
       most = beyond;
       if (chord.ends == 1) at_S = s(role).farthest(-(chord.X_KS[0].q.conjugate() * plane.n));
@@ -89,6 +90,7 @@ class CoverPair::Bound {
       const double beyond =
           beyond_wall_mm(s(role), chord, *hole.wall, part.heights_of(cells_->cell[1 - role], v),
                          limit_mm_, useless_mm, work_, at_wall);
+      second = std::max(second, std::min(most, beyond));
       if (beyond > most) {
         most = beyond;
         at_S = at_wall;
@@ -97,6 +99,8 @@ class CoverPair::Bound {
     if (!(most < least_)) return false;
     least_ = most;
     cells_->at_S = at_S;
+    // The way out through the nearest wall does not meet another one.
+    cells_->by_one_face = second <= -std::fabs(most);
     cells_->role = role;
     cells_->by_void = true;
     cells_->v = v;
@@ -108,6 +112,7 @@ class CoverPair::Bound {
     least_ = bound;
     cells_->role = role;
     cells_->by_void = false;
+    cells_->by_one_face = true;
     cells_->n = n;
     cells_->at_S.reset();
     return least_ <= limit_mm_;
@@ -208,6 +213,8 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
     const double bound = Bound(*this, views, overlap.most_mm, work)(cells);
     if (!(bound > overlap.most_mm)) continue;
     overlap.most_mm = bound;
+    overlap.is_depth =
+        parts_[0]->cells.size() == 1 && parts_[1]->cells.size() == 1 && cells.by_one_face;
     if (cells.role < 0) continue;
     overlap.role = cells.role;
     overlap.at_S = deepest_of(cells, views);

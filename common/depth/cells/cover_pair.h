@@ -27,6 +27,9 @@ constexpr std::uint64_t evaluations_of_bounds(std::uint64_t work) {
 struct CoverOverlap {
   /// No point is deeper in both. Infinity: nothing is known.
   double most_mm = std::numeric_limits<double>::infinity();
+  /// False: in some cell or beyond some wall that is so; the depth in the whole part, inside a
+  /// hollow edge, may be larger. What is no deeper than least_mm is not in both, however.
+  bool is_depth = false;
   /// A point of S = part `role` that may be that deep in the other part, in its own frame; to be
   /// verified.
   std::optional<Vec3> at_S;
@@ -57,6 +60,7 @@ class CoverPair {
     int role = -1;
     std::size_t v = 0;
     bool by_void = false;
+    bool by_one_face = true;  // no other wall of the void is as near
     Vec3 n = Vec3::Zero();
     std::optional<Vec3> at_S;  // by_void: of the part that is seen, what comes farthest
   };
