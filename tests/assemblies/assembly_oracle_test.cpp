@@ -275,7 +275,7 @@ TEST(StepImport, StatementsSurviveAnotherExport) {
 }
 
 // How long judging takes beside exact Booleans of the same pairs, both without reading the file.
-TEST(SoakAssemblySpeed, BesideExactBooleans) {
+TEST(AssemblySpeed, SoakBesideExactBooleans) {
   const test::TestFolder folder;
   const std::string file = folder.path() / "arm.step";
   test::step_maker("arm '" + file + "' 6");
@@ -296,7 +296,7 @@ TEST(SoakAssemblySpeed, BesideExactBooleans) {
 }
 
 // From a cold start: 114 instances, a file of 2.3 MB.
-TEST(SoakAssemblySpeed, FromAColdStart) {
+TEST(AssemblySpeed, SoakFromAColdStart) {
   const test::TestFolder folder;
   const std::string file = folder.path() / "arm.step";
   test::step_maker("arm '" + file + "' 6");

@@ -144,7 +144,7 @@ TEST(StepMutants, AnOpenPartIsToldAndJudged) {
 }
 
 // 1,000 of one small file.
-TEST(SoakStepMutants, AThousandOfASmallFile) {
+TEST(StepMutants, SoakAThousandOfASmallFile) {
   test::use_built_importer();
   const test::TestFolder folder;
   const std::string file = folder.path() / "mutant.step";
