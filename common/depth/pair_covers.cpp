@@ -78,6 +78,11 @@ void PairCovers::give_witness(std::vector<OverlapRegion>& regions) {
     found->delta_mm = {-pair_.reach_mm(Layer::kLower), 2.0 * pair_.deepest_mm(Layer::kMesh)};
     found->possible_mm.hi = 2.0 * pair_.deepest_mm(Layer::kUpper);
     found->points_W = {found->point_W};
+    for (const DeviationGrade grade : {pair_.bodies[0].face(found->triangle_a).grade,
+                                       pair_.bodies[1].face(found->triangle_b).grade}) {
+      found->grade = std::max(found->grade, grade);
+      found->estimated |= grade == DeviationGrade::kEstimated;
+    }
     regions.push_back(std::move(*found));
     return;
   }

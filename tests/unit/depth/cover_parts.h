@@ -160,11 +160,9 @@ inline DrawnPart ring(Random& random, double fit_r_mm) {
 
 inline DrawnPart plate(Random& random, double fit_r_mm) {
   const Vec3 half(2.5 * fit_r_mm + 5.0, 1.5 * fit_r_mm + 3.0, 0.0);
-  const double top = uniform(random, 5.0, 20.0), x1 = -1.2 * fit_r_mm, x2 = 1.3 * fit_r_mm + 1.0;
+  const double top = uniform(random, 5.0, 20.0);
   const double r2 = 0.8 * fit_r_mm;
   const double pitch = 2.4 * fit_r_mm;
-  (void)x1;
-  (void)x2;
   DrawnPart part = finish(random,
                           *generate("dowel_plate", {{"length_mm", 2.0 * half.x()},
                                                     {"width_mm", 2.0 * half.y()},

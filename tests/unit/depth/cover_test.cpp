@@ -158,7 +158,7 @@ Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
       tally.apart += most <= kNothing_mm;
       tally.tight += found > 0.0 && most < 2.0 * found + 5e-3;
       if (2.0 * found <= std::min(most, other) + 1e-9) continue;
-      if (++tally.below <= 30)
+      if (++tally.below <= 3)
         std::printf("pair %d (%s, %s) layer %d: %.9f in both, bounds %.9f %.9f\n", i,
                     pair.a.what.c_str(), pair.b.what.c_str(), int(largest), 2.0 * found, most,
                     other);
