@@ -141,7 +141,9 @@ TEST(AssemblyOracle, NoPairOfAnOpenFileContradictsTheExactSolids) {
   std::size_t pairs = 0;
   for (const auto& file : files) {
     SCOPED_TRACE(file.filename());
-    const std::size_t compared = agrees_with_exact_solids(test::checked(file), exact_of(file));
+    const test::Checked c = test::checked(file);
+    if (c.report.parts < 2) continue;
+    const std::size_t compared = agrees_with_exact_solids(c, exact_of(file));
     std::cout << file.filename().string() << ": " << compared << " pairs\n";
     pairs += compared;
   }

@@ -99,12 +99,12 @@ TEST(StepMutants, NoneReachesTheHost) {
       originals.push_back(bytes_of(more));
   std::mt19937_64 random(20);
   int refused = 0, judged = 0;
-  for (int i = 0; i < test::effort(25); ++i) {
+  for (int i = 0; i < test::effort(8); ++i) {
     const std::string& of = originals[static_cast<std::size_t>(i) % originals.size()];
     std::ofstream(file, std::ios::binary) << mutant_of(of, random);
     ++(is_refused(file) ? refused : judged);
   }
-  EXPECT_EQ(refused + judged, test::effort(25));
+  EXPECT_EQ(refused + judged, test::effort(8));
   end_of(refused, judged);
 }
 

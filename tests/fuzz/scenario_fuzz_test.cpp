@@ -151,7 +151,7 @@ TEST(ScenarioFuzz, TheSeedsAreUsable) {
 TEST(ScenarioFuzz, MutatedScenariosAreUsedOrRefused) {
   std::mt19937_64 random(20'261'125);
   const std::vector<std::string> from = seeds();
-  const int count = effort(800);
+  const int count = effort(300);
   int used = 0;
   double slowest_s = 0.0;
   for (int i = 0; i < count; ++i) {

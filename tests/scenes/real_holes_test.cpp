@@ -15,6 +15,7 @@
 #include "common/session/tick/judge_world.h"
 #include "common/session/tick/step.h"
 #include "tests/scenes/first_error.h"
+#include "tests/support/effort.h"
 #include "tests/support/test_data.h"
 
 namespace mortise {
@@ -282,9 +283,11 @@ TEST_P(RealHoles, PinsAtAndAboutTheLimitsAreJudgedAsIntervalsSay) {
   const StatedHoles stated = stated_holes();
   const NistPart part = nist_part(GetParam(), stated.lines);
   ASSERT_EQ(part.features.size(), part.holes.size());
-  // Full brackets cost more: thresholds are compared on one of the meshes, classes on all.
+  // Full brackets cost more: thresholds are compared on one of the meshes (of all sizes only in a
+  // soak), classes on all.
   const bool full_brackets = std::string(GetParam()).find("0.1mm") != std::string::npos;
-  for (const Size& size : kSizes) expect_verdicts(part, size, full_brackets);
+  for (const Size& size : kSizes)
+    expect_verdicts(part, size, full_brackets && (&size == kSizes || test::effort(1) > 1));
   // None is left out in silence: each stated line is found in the mesh, and each of its bores
   // judged.
   EXPECT_EQ(stated.faces, 66);

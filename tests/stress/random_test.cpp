@@ -12,7 +12,7 @@ constexpr std::uint64_t kFirstSeed = 1'000'000;
 
 TEST(Random, NothingMissedLateOrInvented) {
   Sweep sweep("random meshes and motions");
-  const int cases = test::effort(5000);
+  const int cases = test::effort(2500);
   for (int i = 0; i < cases; ++i) {
     const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(i);
     sweep.ask(random_case(seed), "random_case(" + std::to_string(seed) + ")");

@@ -5,6 +5,7 @@
 
 #include "common/depth/patch.h"
 #include "common/math/rotation.h"
+#include "tests/support/effort.h"
 #include "tests/support/numbers.h"
 #include "tests/unit/depth/overlap_case.h"
 
@@ -296,10 +297,11 @@ Said judged(Pair& pair, Refinement refinement) {
 class TorusPair : public testing::TestWithParam<Kind> {};
 
 TEST_P(TorusPair, IsDecidedAsTheExactSurfacesAre) {
-  constexpr int kCases = 36, kFullEvery = 9;
+  const int cases = test::effort(12);
+  constexpr int kFullEvery = 9;
   constexpr double kDoubt_mm = 5e-4, kClose_mm = 2e-4;
   int real = 0, apart = 0;
-  for (int i = 0; i < kCases; ++i) {
+  for (int i = 0; i < cases; ++i) {
     Pair pair = Maker(1000 * static_cast<int>(GetParam()) + i).make(GetParam());
     const double truth = true_overlap(pair);
     if (std::fabs(truth) < kDoubt_mm) continue;
@@ -325,8 +327,8 @@ TEST_P(TorusPair, IsDecidedAsTheExactSurfacesAre) {
       }
     }
   }
-  EXPECT_GE(real, 3);
-  EXPECT_GE(apart, 5);
+  EXPECT_GE(real, test::effort(1));
+  EXPECT_GE(apart, test::effort(2));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, TorusPair,
