@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/ccd/distance.h"
 #include "common/depth/candidates.h"
 #include "common/depth/cells/plane_pair.h"
 #include "common/depth/convex_edge.h"
@@ -127,8 +128,9 @@ class Overlap {
     }
     planes_.emplace(pair_, query_.want_delta && !query_.only_certain);
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
+    const bool only_meshes = pair_.trivial || covers_.apart(Layer::kUpper);
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
-    near.want_meetings = pair_.trivial && !result_.no_inside;
+    near.want_meetings = only_meshes && !result_.no_inside;
     Candidates candidates = find_candidate_triangles(near);
     known_ = known_overlaps(pair_, candidates);
     for (const KnownFacePair& known : candidates.known)
@@ -170,7 +172,8 @@ class Overlap {
   // What was asked for needs no triangle: the layer is apart, or the deepest region is known as
   // closely as it has to be. Those who want what is near, too, want all regions.
   bool told_by_covers() {
-    if (query_.want_delta && !query_.only_certain) return false;
+    if (query_.want_delta && !query_.only_certain)
+      return !pair_.trivial && covers_.apart(Layer::kUpper) && !meshes_cross();
     if (covers_.apart(query_.only_certain ? Layer::kLower : Layer::kUpper)) return true;
     if (query_.only_certain &&
         covers_.most_mm(Layer::kLower) + pair_.rounding_mm <= query_.ignore_below_mm)
@@ -181,6 +184,12 @@ class Overlap {
       return false;
     result_.regions.push_back(std::move(*region));
     return true;
+  }
+
+  // Parts that are apart and whose meshes are so, too, are no finding.
+  bool meshes_cross() const {
+    CcdScratch scratch;
+    return surfaces_cross(*query_.a, query_.X_WA, *query_.b, query_.X_WB, scratch);
   }
 
   // One region whose brackets in both layers are those of the sharp bodies.
