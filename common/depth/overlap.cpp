@@ -128,9 +128,8 @@ class Overlap {
     }
     planes_.emplace(pair_, query_.want_delta && !query_.only_certain);
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
-    const bool only_meshes = pair_.trivial || covers_.apart(Layer::kUpper);
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
-    near.want_meetings = only_meshes && !result_.no_inside;
+    near.want_meetings = pair_.trivial && !result_.no_inside;
     Candidates candidates = find_candidate_triangles(near);
     known_ = known_overlaps(pair_, candidates);
     for (const KnownFacePair& known : candidates.known)
