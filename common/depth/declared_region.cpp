@@ -116,13 +116,15 @@ class DeclaredSearch {
     for (int role = 0; role < 2; ++role) {
       if (!pair_.k(role).has_inside) continue;
       const std::vector<std::uint32_t>& triangles = known.triangles[role];
+      std::uint32_t near = Topology::kNone;  // of the point before
       const double step =
           std::max(1.0, static_cast<double>(triangles.size()) / static_cast<double>(kQuestions));
       for (double i = 0.0; i < static_cast<double>(triangles.size()); i += step) {
         const std::uint32_t t = triangles[static_cast<std::size_t>(i)];
         for (const Vec3& x : probe_points(*pair_.s(role).mesh, t)) {
           ++evaluations_;
-          const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x);
+          const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x, near);
+          near = sample.at.triangle;
           if (sample.depth_mm > found.best.depth_mm) found.best = sample;
           if (sample.depth_mm > pair_.touch_mm && found.samples.size() < kQuestions)
             found.samples.push_back(sample);

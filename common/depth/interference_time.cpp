@@ -149,8 +149,8 @@ const OverlapRegion* interfering_region(const OverlapResult& result, Layer layer
 // By the search at fixed poses, whose word is what a verdict rests on, or by covers.
 std::optional<CertainPlace> interferes_at(const OverlapQuery& query, Layer layer,
                                           std::uint64_t& evaluations) {
-  if (const auto place = interferes_by_covers(query, layer == Layer::kLower, evaluations))
-    return place;
+  const SaidByCovers said = said_by_covers(query, layer == Layer::kLower, evaluations);
+  if (said.apart || said.place) return said.place;
   CcdScratch scratch;
   const OverlapResult result = find_overlap(query, scratch);
   evaluations += result.evaluations;
@@ -471,7 +471,9 @@ class InterferenceSearch {
   InterferenceTime answer_;
 };
 
-// Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
+// Looks ahead from the proven time, doubling from the accuracy, before anything is searched. By
+// covers, which cost next to nothing, as far as is close enough anyway: what slides becomes deep
+// slowly.
 constexpr int kLooks = 3;
 
 // Work of one look; at the brink of interfering it is not worth more.
@@ -502,6 +504,7 @@ bool is_possible_at(const SweptQuery& query, double t, std::uint64_t& evaluation
   at.X_WA = query.motion_a.pose_at(t);
   at.X_WB = query.motion_b.pose_at(t);
   at.refinement = Refinement::kDecided;
+  at.want_delta = false;
   at.work_cap = std::min(at.work_cap, kPossibleLookWorkCap);
   const OverlapResult result = find_overlap(at, scratch);
   evaluations += result.evaluations;
@@ -566,13 +569,17 @@ SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,
   at.want_delta = false;
   at.work_cap =
       std::min(at.work_cap, layer == Layer::kLower ? kCertainLookWorkCap : kPossibleLookWorkCap);
+  const double speed = std::max(path.speed_upper_bound(), 1e-300);
   for (const bool search : {false, true}) {
-    double step = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
-    for (int i = 0; i < kLooks && t + step <= 1.0; ++i, step *= 2.0) {
+    double step = query.accuracy_mm / speed;
+    const auto is_soon = [&](int i) {
+      return i < kLooks || (!search && step * speed <= kCloseEnough_mm);
+    };
+    for (int i = 0; is_soon(i) && t + step <= 1.0; ++i, step *= 2.0) {
       at.X_WA = query.motion_a.pose_at(t + step);
       at.X_WB = query.motion_b.pose_at(t + step);
       const auto place = search ? interferes_at(at, layer, evaluations)
-                                : interferes_by_covers(at, layer == Layer::kLower, evaluations);
+                                : said_by_covers(at, layer == Layer::kLower, evaluations).place;
       if (place) return {true, t + step, *place};
     }
   }
@@ -588,15 +595,34 @@ double certain_free_until(const SweptQuery& query, std::uint64_t& evaluations) {
   return free.all ? 1.0 : free.t_free;
 }
 
+namespace {
+
+// Covers name a point of both parts of a layer where the path begins.
+std::optional<CertainPlace> interferes_at_start(const SweptQuery& query, Layer layer,
+                                                std::uint64_t& evaluations) {
+  OverlapQuery at = query.at_target;
+  at.X_WA = query.motion_a.pose_at(0.0);
+  at.X_WB = query.motion_b.pose_at(0.0);
+  return said_by_covers(at, layer == Layer::kLower, evaluations).place;
+}
+
+}  // namespace
+
 // 1. As long as the covers of both least parts are apart nothing is certain.
-// 2. Often something is certain shortly behind that.
+// 2. Often something is certain shortly behind that, or where the path begins.
 // 3. Else the rest of the path is searched; all of it where they are not even apart at its start.
 InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
   check(query);
   const CoverFree free = free_by_covers(query, Layer::kLower);
   InterferenceTime answer;
   if (!free.all && free.t_free <= 0.0) {
-    answer = first_interference(query, Layer::kLower);
+    if (const auto place = interferes_at_start(query, Layer::kLower, answer.evaluations)) {
+      answer.becomes_real = answer.real_at_start = true;
+      answer.t_free = answer.t_real = 0.0;
+      answer.certain_place = *place;
+    } else {
+      answer = first_interference(query, Layer::kLower);
+    }
   } else if (!free.all) {
     const SoonAfter soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
     if (soon.interferes) {
@@ -715,7 +741,12 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   const CoverFree free = free_by_covers(query, Layer::kUpper);
   PossibleTime answer;
   if (!free.all && free.t_free <= 0.0) {
-    answer = search_possible_time(query, scratch);
+    if (interferes_at_start(query, Layer::kUpper, answer.evaluations)) {
+      answer.becomes_possible = true;
+      answer.t_clear = answer.t_possible = 0.0;
+    } else {
+      answer = search_possible_time(query, scratch);
+    }
   } else if (!free.all) {
     const SoonAfter soon = look_soon_after(query, free.t_free, Layer::kUpper, answer.evaluations);
     if (soon.interferes) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/ccd/distance.h"
 #include "common/depth/candidates.h"
 #include "common/depth/cells/plane_pair.h"
 #include "common/depth/convex_edge.h"
@@ -118,13 +119,14 @@ std::vector<Bracket> better_of(std::vector<Bracket> refined, const std::vector<B
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query)
-      : query_(query),
-        pair_(query),
-        covers_(pair_, query.use_covers, result_.evaluations),
-        planes_(pair_, query.want_delta && !query.only_certain) {}
+      : query_(query), pair_(query), covers_(pair_, query.use_covers, result_.evaluations) {}
 
   OverlapResult run() {
-    if (query_.only_certain && told_by_covers()) return std::move(result_);
+    if (told_by_covers()) {
+      mark_cracks(pair_, !query_.only_certain, result_);
+      return std::move(result_);
+    }
+    planes_.emplace(pair_, query_.want_delta && !query_.only_certain);
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
@@ -147,8 +149,8 @@ class Overlap {
       if (const auto shared = find_shared_inside(pair_, candidates))
         result_.regions.push_back(region_of(pair_, *shared));
     if (result_.no_inside) add_without_depth(candidates);
-    planes_.tell(query_.only_certain, result_.regions);
-    if (!query_.only_certain && !planes_.decided() && !covers_.apart(Layer::kUpper)) add_tip();
+    planes_->tell(query_.only_certain, result_.regions);
+    if (!query_.only_certain && !planes_->decided() && !covers_.apart(Layer::kUpper)) add_tip();
     if (!query_.only_certain) covers_.tell(result_.regions);
     mark_cracks(pair_, !query_.only_certain, result_);
     for (const OverlapRegion& region : result_.regions)
@@ -166,19 +168,31 @@ class Overlap {
   }
 
  private:
-  // The least parts are apart; or, where only the class is asked for, the covers name a point that
-  // is verified to be in both.
+  // What was asked for needs no triangle: the layer is apart, or the deepest region is known as
+  // closely as it has to be. Those who want what is near, too, want all regions.
   bool told_by_covers() {
-    if (covers_.apart(Layer::kLower)) return true;
-    if (query_.refinement != Refinement::kDecided) return false;
-    auto region = covers_.certain_region();
-    if (!region || !(region->certain_mm.lo > query_.ignore_below_mm)) return false;
+    if (query_.want_delta && !query_.only_certain)
+      return !pair_.trivial && covers_.apart(Layer::kUpper) && !meshes_cross();
+    if (covers_.apart(query_.only_certain ? Layer::kLower : Layer::kUpper)) return true;
+    if (query_.only_certain &&
+        covers_.most_mm(Layer::kLower) + pair_.rounding_mm <= query_.ignore_below_mm)
+      return true;
+    if (query_.certain_from_mm < 0.0 && query_.refinement == Refinement::kFull) return false;
+    auto region = covers_.region(query_);
+    if (!region || (query_.only_certain && !(region->certain_mm.lo > query_.ignore_below_mm)))
+      return false;
     result_.regions.push_back(std::move(*region));
     return true;
   }
 
+  // Parts that are apart and whose meshes are so, too, are no finding.
+  bool meshes_cross() const {
+    CcdScratch scratch;
+    return surfaces_cross(*query_.a, query_.X_WA, *query_.b, query_.X_WB, scratch);
+  }
+
   // One region whose brackets in both layers are those of the sharp bodies.
-  bool told_by_planes() const { return regions_.count == 1 && planes_.has_brackets(); }
+  bool told_by_planes() const { return regions_.count == 1 && planes_->has_brackets(); }
 
   std::uint64_t work_left() const {
     return query_.work_cap - std::min(query_.work_cap, result_.evaluations);
@@ -239,8 +253,8 @@ class Overlap {
     bool any_open = false;
     for (const bool open : regions_.may_interfere) any_open |= open;
     if (told_by_planes()) {
-      upper = {planes_.told(mesh.front(), Layer::kUpper)};
-      lower = {planes_.told(mesh.front(), Layer::kLower)};
+      upper = {planes_->told(mesh.front(), Layer::kUpper)};
+      lower = {planes_->told(mesh.front(), Layer::kLower)};
     } else if (!pair_.trivial && ((any_open && !covers_.apart(Layer::kUpper)) || !lazy)) {
       upper = search(Layer::kUpper, true, work_left());
       bool may_be_certain = false;
@@ -390,7 +404,7 @@ class Overlap {
   const OverlapQuery& query_;
   const PairFrame pair_;
   PairCovers covers_;
-  const PlanePair planes_;
+  std::optional<PlanePair> planes_;  // asked once covers do not do
   SearchScratch scratch_;
   KnownOverlaps known_;
   Regions regions_;
@@ -436,20 +450,23 @@ OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
   return result;
 }
 
-std::optional<CertainPlace> interferes_by_covers(const OverlapQuery& query, bool least,
-                                                 std::uint64_t& evaluations) {
+SaidByCovers said_by_covers(const OverlapQuery& query, bool least, std::uint64_t& evaluations) {
   check(query);
   if (b_comes_first(query)) {
-    std::optional<CertainPlace> place = interferes_by_covers(mirrored(query), least, evaluations);
-    if (place) place->role = 1 - place->role;
-    return place;
+    SaidByCovers said = said_by_covers(mirrored(query), least, evaluations);
+    if (said.place) said.place->role = 1 - said.place->role;
+    return said;
   }
   const PairFrame pair(query);
   PairCovers covers(pair, query.use_covers, evaluations);
-  const std::optional<Sample> deepest = covers.deepest(least ? Layer::kLower : Layer::kUpper);
-  if (!deepest || (least && !find_witness(pair, *deepest, evaluations))) return std::nullopt;
-  return CertainPlace{deepest->role, deepest->triangle,
-                      pair.X_KS[1 - deepest->role] * deepest->point_K};
+  const Layer layer = least ? Layer::kLower : Layer::kUpper;
+  SaidByCovers said;
+  said.apart = covers.apart(layer);
+  const std::optional<Sample> deepest = covers.deepest(layer);
+  if (deepest && (!least || find_witness(pair, *deepest, evaluations)))
+    said.place = {deepest->role, deepest->triangle,
+                  pair.X_KS[1 - deepest->role] * deepest->point_K};
+  return said;
 }
 
 bool is_certain_at(const OverlapQuery& query, const CertainPlace& place,

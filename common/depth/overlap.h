@@ -101,11 +101,13 @@ struct OverlapResult {
 /// within the band (sum of the largest offsets). Two movers, any poses; deterministic.
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 
-/// Where the covers of both parts (README, section 11) name a point that is in both least parts, or
-/// in both largest ones, and it is verified: that place. nullopt: they name none. Some
-/// microseconds.
-std::optional<CertainPlace> interferes_by_covers(const OverlapQuery& query, bool least,
-                                                 std::uint64_t& evaluations);
+/// What the covers of both parts (README, section 11) say of the least parts, or of the largest.
+struct SaidByCovers {
+  bool apart = false;                 ///< no point is in both
+  std::optional<CertainPlace> place;  ///< a point that is in both, verified
+};
+/// Neither: they say nothing. Some microseconds.
+SaidByCovers said_by_covers(const OverlapQuery& query, bool least, std::uint64_t& evaluations);
 
 /// True implies: the overlap is certain at the poses of the query, because this place is inside.
 /// False implies nothing. Adds to `evaluations` one for the nearest point and those of

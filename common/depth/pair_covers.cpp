@@ -7,6 +7,13 @@
 #include "common/geometry/signed_distance.h"
 
 namespace mortise {
+namespace {
+
+// A point that is this share as deep as any may be: no other place is asked but the first ones.
+constexpr double kAsDeep = 0.9;
+constexpr std::size_t kFirstPlaces = 3;
+
+}  // namespace
 
 PairCovers::PairCovers(const PairFrame& pair, bool use, std::uint64_t& evaluations)
     : pair_(pair),
@@ -30,18 +37,41 @@ const CoverOverlap& PairCovers::overlap_of(Layer layer) {
 
 double PairCovers::most_mm(Layer layer) {
   const CoverOverlap& overlap = overlap_of(layer);
-  return overlap.is_depth || apart(layer) ? overlap.most_mm
-                                          : std::numeric_limits<double>::infinity();
+  if (apart(layer)) return overlap.most_mm;
+  return overlap.is_depth ? overlap.most_mm + pair_.touch_mm
+                          : std::numeric_limits<double>::infinity();
 }
 
+// Where the cover is the part, its border is its surface; else what is nearest of the mesh counts.
 std::optional<Sample> PairCovers::deepest(Layer layer) {
   const CoverOverlap& overlap = overlap_of(layer);
-  if (!overlap.at_S || apart(layer)) return std::nullopt;
-  const SurfacePoint at = nearest_surface(*pair_.s(overlap.role).solid, *overlap.at_S);
-  evaluations_ += 2;
-  const Sample sample = sample_at(pair_, layer, overlap.role, at.triangle, at.point);
-  if (!(sample.depth_mm > pair_.touch_mm)) return std::nullopt;
-  return sample;
+  std::optional<Sample>& found = deepest_[layer == Layer::kLower ? 0 : 1];
+  if (found || apart(layer)) return found;
+  const int role = overlap.role;
+  const Body &s = pair_.s(role), &k = pair_.k(role);
+  std::optional<Sample> off_mesh;
+  const auto deeper = [&](std::optional<Sample>& known, const Sample& sample) {
+    if (sample.depth_mm > (known ? known->depth_mm : pair_.touch_mm)) known = sample;
+  };
+  for (std::size_t i = 0; i < overlap.places_S.size(); ++i) {
+    if (i >= kFirstPlaces && found && found->depth_mm >= kAsDeep * overlap.most_mm) break;
+    const Vec3& x_S = overlap.places_S[i];
+    const SurfacePoint own = nearest_surface(*s.solid, x_S);
+    evaluations_ += 2;
+    if (s.depth_in(x_S, own, layer) < -pair_.touch_mm) {
+      deeper(off_mesh, sample_at(pair_, layer, role, own.triangle, own.point));
+      continue;
+    }
+    Sample sample;
+    sample.role = role;
+    sample.triangle = own.triangle;
+    sample.point_K = pair_.X_KS[role] * x_S;
+    sample.at = nearest_surface(*k.solid, sample.point_K);
+    sample.depth_mm = k.depth_in(sample.point_K, sample.at, layer);
+    deeper(found, sample);
+  }
+  if (!found) found = off_mesh;
+  return found;
 }
 
 std::optional<Bracket> PairCovers::bracket(Layer layer, double accuracy_mm, bool sign_only) {
@@ -58,15 +88,105 @@ std::optional<Bracket> PairCovers::bracket(Layer layer, double accuracy_mm, bool
   return bracket;
 }
 
+namespace {
+
+void grade_by_faces(const PairFrame& pair, OverlapRegion& region) {
+  for (const DeviationGrade grade : {pair.bodies[0].face(region.triangle_a).grade,
+                                     pair.bodies[1].face(region.triangle_b).grade}) {
+    region.grade = std::max(region.grade, grade);
+    region.estimated |= grade == DeviationGrade::kEstimated;
+  }
+}
+
+}  // namespace
+
+// With a witness; only what is certain is known.
 std::optional<OverlapRegion> PairCovers::certain_region() {
   const std::optional<Sample> sample = deepest(Layer::kLower);
   if (!sample) return std::nullopt;
-  const double most = std::min(most_mm(Layer::kLower), 2.0 * pair_.deepest_mm(Layer::kLower));
+  const double most =
+      std::min(most_mm(Layer::kLower) + pair_.rounding_mm, 2.0 * pair_.deepest_mm(Layer::kLower));
   OverlapRegion region = region_of_certain(pair_, *sample, most);
   set_witness(pair_, find_witness(pair_, *sample, evaluations_, &region.witnesses_refused), *sample,
               region);
   if (!region.has_witness) return std::nullopt;
+  region.points_W = {region.point_W};
+  grade_by_faces(pair_, region);
   return region;
+}
+
+// Nothing is certain in it.
+std::optional<OverlapRegion> PairCovers::possible_region() {
+  if (!apart(Layer::kLower)) return std::nullopt;
+  const std::optional<Sample> sample = deepest(Layer::kUpper);
+  if (!sample) return std::nullopt;
+  OverlapRegion region = region_of_certain(pair_, *sample, 0.0);
+  region.possible_mm.lo = sample->depth_mm;
+  region.certain_mm = {-pair_.reach_mm(Layer::kLower) - pair_.reach_mm(Layer::kUpper), 0.0};
+  region.points_W = {region.point_W};
+  grade_by_faces(pair_, region);
+  return region;
+}
+
+bool PairCovers::is_closed(const Interval& bracket, const OverlapQuery& query) const {
+  return bracket.hi <= 0.0 || query.refinement == Refinement::kDecided ||
+         bracket.width() <= std::max(query.accuracy_mm, pair_.rounding_mm);
+}
+
+std::optional<OverlapRegion> PairCovers::region(const OverlapQuery& query) {
+  std::optional<OverlapRegion> region = certain_region();
+  if (region && !is_closed(region->certain_mm, query)) return std::nullopt;
+  if (query.only_certain) return region;
+  if (!region) region = possible_region();
+  if (!region) return std::nullopt;
+  if (query.refinement != Refinement::kDecided && region->has_witness)
+    if (const std::optional<Sample> sample = deepest(Layer::kUpper))
+      region->possible_mm.lo = std::max(region->possible_mm.lo, sample->depth_mm);
+  region->possible_mm.hi = std::max(
+      region->possible_mm.lo,
+      std::min(most_mm(Layer::kUpper) + pair_.rounding_mm, 2.0 * pair_.deepest_mm(Layer::kUpper)));
+  if (!is_closed(region->possible_mm, query)) return std::nullopt;
+  return region;
+}
+
+namespace {
+
+bool has_estimates(const Body& body) {
+  return std::any_of(body.band->faces.begin(), body.band->faces.end(),
+                     [](const auto& face) { return face.grade == DeviationGrade::kEstimated; });
+}
+
+// Is a face about a point of the cover's border known by estimate only? Where the cover is larger
+// than the part: the nearest face.
+bool is_estimated_at(const Body& body, const Vec3& x, double reach_mm) {
+  bool any = false, estimated = false;
+  for_each_triangle_in(body.solid->bvh(), Box{x.array() - reach_mm, x.array() + reach_mm},
+                       [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
+                         if ((nearest_on_triangle(x, c[0], c[1], c[2]) - x).norm() > reach_mm)
+                           return;
+                         any = true;
+                         estimated |= body.face(t).grade == DeviationGrade::kEstimated;
+                       });
+  if (any) return estimated;
+  return body.face(nearest_point(*body.solid, x).triangle).grade == DeviationGrade::kEstimated;
+}
+
+}  // namespace
+
+bool PairCovers::apart_by_estimate() {
+  if (!apart(Layer::kUpper) || !(has_estimates(pair_.bodies[0]) || has_estimates(pair_.bodies[1])))
+    return false;
+  std::uint64_t work = 0;
+  const CoverPair covers(cover_of(pair_.bodies[0]).largest, cover_of(pair_.bodies[1]).largest);
+  const auto places = covers.places_between(pair_.X_KS[0], pair_.near_mm, work);
+  evaluations_ += evaluations_of_bounds(work);
+  return std::any_of(places.begin(), places.end(), [&](const std::array<Vec3, 2>& place) {
+    for (const int i : {0, 1})
+      if (is_estimated_at(pair_.bodies[i], place[static_cast<std::size_t>(i)],
+                          pair_.near_mm + pair_.touch_mm))
+        return true;
+    return false;
+  });
 }
 
 void PairCovers::give_witness(std::vector<OverlapRegion>& regions) {
@@ -77,12 +197,6 @@ void PairCovers::give_witness(std::vector<OverlapRegion>& regions) {
   if (regions.empty()) {
     found->delta_mm = {-pair_.reach_mm(Layer::kLower), 2.0 * pair_.deepest_mm(Layer::kMesh)};
     found->possible_mm.hi = 2.0 * pair_.deepest_mm(Layer::kUpper);
-    found->points_W = {found->point_W};
-    for (const DeviationGrade grade : {pair_.bodies[0].face(found->triangle_a).grade,
-                                       pair_.bodies[1].face(found->triangle_b).grade}) {
-      found->grade = std::max(found->grade, grade);
-      found->estimated |= grade == DeviationGrade::kEstimated;
-    }
     regions.push_back(std::move(*found));
     return;
   }
@@ -107,7 +221,9 @@ void PairCovers::cap(Interval& bracket, Layer layer) {
 
 void PairCovers::tell(std::vector<OverlapRegion>& regions) {
   give_witness(regions);
+  const bool by_estimate = !regions.empty() && apart_by_estimate();
   for (OverlapRegion& region : regions) {
+    region.estimated |= by_estimate;
     cap(region.possible_mm, Layer::kUpper);
     if (!(region.certain_mm.hi > 0.0)) continue;
     if (region.has_witness && apart(Layer::kLower)) {

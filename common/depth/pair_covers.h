@@ -26,13 +26,19 @@ class PairCovers {
   /// The bracket of a layer of a pair with one region, where a point of it is known that is about
   /// as deep as any can be: but for accuracy_mm, or a share of it where the sign is enough.
   std::optional<Bracket> bracket(Layer layer, double accuracy_mm, bool sign_only);
-  /// A region with a witness, of which only what is certain is known.
-  std::optional<OverlapRegion> certain_region();
+  /// The deepest region, where no search is needed for what the query asks of certain and possible;
+  /// nothing of the meshes.
+  std::optional<OverlapRegion> region(const OverlapQuery& query);
+  /// Are the largest parts kept apart by a face that is known by estimate only?
+  bool apart_by_estimate();
   /// Gives a witness to the nearest region where none has one, and caps certain and possible. A
   /// witness of parts whose least covers are apart is refused and counted: one of both is wrong.
   void tell(std::vector<OverlapRegion>& regions);
 
  private:
+  bool is_closed(const Interval& bracket, const OverlapQuery& query) const;
+  std::optional<OverlapRegion> certain_region();
+  std::optional<OverlapRegion> possible_region();
   void give_witness(std::vector<OverlapRegion>& regions);
   void cap(Interval& bracket, Layer layer);
   const CoverOverlap& overlap_of(Layer layer);
@@ -41,6 +47,7 @@ class PairCovers {
   bool found_;
   std::uint64_t& evaluations_;
   std::optional<CoverOverlap> overlap_[2];  // least, largest
+  std::optional<Sample> deepest_[2];
 };
 
 }  // namespace mortise

@@ -13,6 +13,8 @@ const std::vector<JudgementSection>& judgement_sections() {
       {"convex", "convex polyhedra with bands against linear programs", section_convex},
       {"csg", "unions and differences of simple solids against their membership", section_csg},
       {"gpd", "random pairs against their exact depth, and against a longer search", section_gpd},
+      {"covers", "the demo's fits with covers and without", section_covers},
+      {"places", "the same part twice, one inside another", section_places},
       {"insertion", "a shaft through its bore, tick by tick", section_insertion},
   };
   return all;

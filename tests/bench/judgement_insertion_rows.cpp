@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kFacets = 64;
 constexpr double kClearance_mm = 0.005, kNominal_mm = 20.0, kHeight_mm = 30.0;
-constexpr double kTick_s = 1.0 / 60.0, kShareBar = 0.25;
+constexpr double kTick_s = 1.0 / 60.0, kShareBar = 0.05;
 
 struct Setting {
   const char* name;

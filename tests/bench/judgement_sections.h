@@ -20,6 +20,8 @@ void section_realization(Report& report, const JudgementOptions& options);
 void section_recognition(Report& report, const JudgementOptions& options);
 void section_depth(Report& report, const JudgementOptions& options);
 void section_speed(Report& report, const JudgementOptions& options);
+void section_covers(Report& report, const JudgementOptions& options);
+void section_places(Report& report, const JudgementOptions& options);
 void section_insertion(Report& report, const JudgementOptions& options);
 void section_convex(Report& report, const JudgementOptions& options);
 void section_csg(Report& report, const JudgementOptions& options);

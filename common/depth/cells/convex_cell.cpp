@@ -54,6 +54,33 @@ Vec3 ConvexCell::farthest(const Vec3& n) const {
   return at;
 }
 
+std::vector<Vec3> ConvexCell::around_farthest(const Vec3& n, double slack_mm) const {
+  const double least = support_mm(n) - slack_mm;
+  std::vector<Vec3> around;
+  const auto add = [&](const Vec3& x) {
+    if (n.dot(x) >= least) around.push_back(x);
+  };
+  if (!round) {
+    for (const Vec3& x : corners) add(x);
+    return around;
+  }
+  const Vec3 across_axis = n - n.dot(axis) * axis;
+  const Vec3 u = across_axis.norm() > 0.0 ? Vec3(across_axis.normalized()) : across[0];
+  const Vec3 v = axis.cross(u);
+  for (const Circle& circle : circles)
+    for (const Vec3& off : {u, Vec3(-u), v, Vec3(-v)})
+      add(point + circle.z_mm * axis + circle.r_mm * off);
+  return around;
+}
+
+Vec3 ConvexCell::farthest_middle(const Vec3& n, double slack_mm) const {
+  const std::vector<Vec3> around = around_farthest(n, slack_mm);
+  if (around.empty()) return farthest(n);
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& x : around) sum += x;
+  return sum / static_cast<double>(around.size());
+}
+
 Vec3 ConvexCell::nearest_of_round(const Vec3& x) const {
   const Vec3 d = x - point;
   const double z = d.dot(axis);

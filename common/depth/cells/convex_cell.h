@@ -36,6 +36,10 @@ struct ConvexCell {
   /// Largest n · x over the body; of a point where it is reached. n need not be a unit vector.
   double support_mm(const Vec3& n) const;
   Vec3 farthest(const Vec3& n) const;
+  /// The middle of all that is no more than slack_mm less far. n: a unit vector.
+  Vec3 farthest_middle(const Vec3& n, double slack_mm) const;
+  /// Corners of it; some of a disc.
+  std::vector<Vec3> around_farthest(const Vec3& n, double slack_mm) const;
   /// A point of the body near x; of one of revolution the nearest, of a polytope about that.
   Vec3 near(const Vec3& x) const;
 

@@ -10,6 +10,12 @@ namespace {
 
 // Sectors looked at before what is known so far has to do; each halving quarters their error.
 constexpr int kMostSectors = 200;
+// A place is so many times as far inside of an end of material as it is deep.
+constexpr double kInner = 1.05;
+// Another place is so far off a rim.
+constexpr double kOffRim_mm = 0.1;
+// Places on a circle.
+constexpr int kAround = 16;
 // A bracket this narrow is good enough, mm.
 constexpr double kNarrow_mm = 2e-5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -54,8 +60,33 @@ class RoundInWall {
     return heap_.empty() ? -kInfinity : heap_.front().hi;
   }
 
-  /// The point of S that came farthest, of those seen.
-  const std::optional<Vec3>& at_S() const { return at_S_; }
+  /// The point of S that came farthest, of those seen, and others on its circle, as deep as they
+  /// are: the wall may be missing in a place.
+  std::vector<Vec3> places() const {
+    if (place_.far == -kInfinity) return {};
+    std::vector<std::pair<double, Vec3>> around;
+    const auto take = [&](double z, double r, const Direction& u, bool always) {
+      const Vec3 x_S = s_.point + z * s_.axis + r * (u.c * s_.across[0] + u.s * s_.across[1]);
+      const double far = beyond(wall_, chord_.X_KS[0] * x_S);
+      if (always || far > 0.0) around.emplace_back(far, x_S);
+    };
+    take(place_.z_mm, place_.r_mm, place_.u, true);
+    take(place_.end_z_mm, radius(place_.segment, place_.end_z_mm), place_.u, true);
+    // Where a mesh has its rim it is off the surface by its chords.
+    const double off_rim =
+        std::clamp(0.5 * (place_.to_z_mm - place_.z_mm), -kOffRim_mm, kOffRim_mm);
+    take(place_.z_mm + off_rim, radius(place_.segment, place_.z_mm + off_rim), place_.u, false);
+    Direction u = place_.u;
+    for (int i = 1; i < kAround; ++i) {
+      u = {u.c * kTurn.c - u.s * kTurn.s, u.c * kTurn.s + u.s * kTurn.c};
+      take(place_.z_mm, place_.r_mm, u, false);
+    }
+    std::stable_sort(around.begin() + 2, around.end(),
+                     [](const auto& x, const auto& y) { return x.first > y.first; });
+    std::vector<Vec3> places;
+    for (const auto& [far, x_S] : around) places.push_back(x_S);
+    return places;
+  }
 
  private:
   struct Direction {
@@ -69,6 +100,7 @@ class RoundInWall {
   struct Rises {
     std::array<double, 2> least, most;  // by end of the chord
   };
+  static constexpr Direction kTurn{0.9238795325112867, 0.3826834323650898};  // by 1 / kAround
   static constexpr Direction kQuarters[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
 
   static Direction between(const Direction& a, const Direction& b) {
@@ -168,15 +200,31 @@ class RoundInWall {
         for (const double z : {a, b}) {
           const double r = radius(k, z);
           const double at = beyond(wall_, point_[e] + z * axis_[e] + r / out * u[e][2]);
-          if (at <= best_) continue;
-          best_ = at;
-          at_S_ = s_.point + z * s_.axis + r * (middle.c * s_.across[0] + middle.s * s_.across[1]);
+          best_ = std::max(best_, at);
+          if (chord_.ends == 1 && at > place_.far) note(k, z, z == a ? b : a, at, middle);
         }
     }
     if (most == -kInfinity) return;
     heap_.push_back({from, to, std::min(known, most + chord_.spread_mm)});
     std::push_heap(heap_.begin(), heap_.end());
   }
+
+  // At the end of the material nothing is deep: as far inside of it as that matters.
+  void note(std::size_t segment, double z, double to_z, double at, const Direction& u) {
+    const double inner =
+        z + std::clamp(0.5 * (to_z - z), -kInner * std::max(0.0, at), kInner * std::max(0.0, at));
+    const double r = radius(segment, inner);
+    const Vec3 x_S = s_.point + inner * s_.axis + r * (u.c * s_.across[0] + u.s * s_.across[1]);
+    const double far = beyond(wall_, chord_.X_KS[0] * x_S);
+    if (far > place_.far) place_ = {far, segment, inner, z, to_z, r, u};
+  }
+
+  struct Place {
+    double far = -kInfinity;
+    std::size_t segment = 0;
+    double z_mm = 0.0, end_z_mm = 0.0, to_z_mm = 0.0, r_mm = 0.0;
+    Direction u{1.0, 0.0};
+  };
 
   const ConvexCell& s_;
   const Chord& chord_;
@@ -187,7 +235,7 @@ class RoundInWall {
   double rise_[2] = {0.0, 0.0};
   int work_here_ = 0;
   double best_ = -kInfinity;  // of points seen, at an end of the chord
-  std::optional<Vec3> at_S_;
+  Place place_;
   std::vector<Sector> heap_;
 };
 
@@ -195,7 +243,7 @@ class RoundInWall {
 // where its edges pass a height. Heights are those at an end of the chord, widened by how much any
 // height changes.
 double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
-                        const Interval& along, std::uint64_t& work, std::optional<Vec3>& at_S) {
+                        const Interval& along, std::uint64_t& work, std::vector<Vec3>& places) {
   ++work;
   const std::size_t count = s.corners.size();
   std::vector<Vec3> x(count * static_cast<std::size_t>(chord.ends));
@@ -215,7 +263,7 @@ double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall&
   const auto take = [&](double far, const Vec3& x_S) {
     if (far <= most) return;
     most = far;
-    at_S = x_S;
+    places = {x_S};
   };
   for (int e = 0; e < chord.ends; ++e) {
     const std::size_t first = e * count;
@@ -246,15 +294,20 @@ double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace&
 
 double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
                       const Interval& along, double limit_mm, double useless_mm,
-                      std::uint64_t& work, std::optional<Vec3>& at_S) {
+                      std::uint64_t& work, std::vector<Vec3>& places) {
   if (!(along.lo <= along.hi)) return -kInfinity;
+  if (chord.ends == 1) {
+    const Vec3 x = chord.X_KS[0] * s.middle;
+    const double z = (x - wall.point).dot(wall.axis);
+    if (along.lo <= z && z <= along.hi && beyond(wall, x) > useless_mm) return kInfinity;
+  }
   double most = -kInfinity;
   if (s.round) {
     RoundInWall in_wall(s, chord, wall, along, work);
     most = in_wall.run(limit_mm, useless_mm);
-    at_S = in_wall.at_S();
+    places = in_wall.places();
   } else {
-    most = polytope_in_wall(s, chord, wall, along, work, at_S);
+    most = polytope_in_wall(s, chord, wall, along, work, places);
   }
   // A depth is measured at right angles to the wall, the way along one radius is longer.
   return most > 0.0 ? most / wall.cosine : most;

@@ -1,6 +1,6 @@
 #pragma once
 #include <cstdint>
-#include <optional>
+#include <vector>
 
 #include "common/depth/cells/cover.h"
 #include "common/math/pose.h"
@@ -21,9 +21,9 @@ double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace&
 /// No point of S comes farther than this beyond the wall of a hole, where its height along the axis
 /// is in `along_mm`; minus infinity: none gets there. Looks no closer once it is not above
 /// limit_mm; infinity where it is seen to be above useless_mm. Adds what it has looked at to
-/// `work`. at_S: a point of S that comes about so far, where one is seen.
+/// `work`. places: points of S that come about so far, the farthest first, where some are seen.
 double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
                       const Interval& along_mm, double limit_mm, double useless_mm,
-                      std::uint64_t& work, std::optional<Vec3>& at_S);
+                      std::uint64_t& work, std::vector<Vec3>& places);
 
 }  // namespace mortise

@@ -287,13 +287,22 @@ class Turned {
         if (border.sign == 0.0) r = std::min(r, border.line.r(z));
       return r;
     };
+    // A line beside another one that it never meets: a step, however low.
+    const auto steps_down = [&](const OuterLine& line) {
+      return std::any_of(borders.begin(), borders.end(), [&](const Border& border) {
+        const OuterLine& own = border.line;
+        return border.sign == 0.0 && line.slope == own.slope &&
+               std::fabs(line.at_zero - own.at_zero) <= f_.same_mm &&
+               (line.offsets[0] < own.offsets[0] || line.offsets[1] < own.offsets[1]);
+      });
+    };
     const auto near_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z0 : slabs_[i].z1; };
     const auto far_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z1 : slabs_[i].z0; };
     std::size_t i = k;
     while (by > 0 ? i + 1 < slabs_.size() : i > 0) {
       const std::size_t next = by > 0 ? i + 1 : i - 1;
       const OuterLine& line = lines_[next];
-      if (line.r(near_end(next)) < least(near_end(next)) - f_.same_mm) break;
+      if (line.r(near_end(next)) < least(near_end(next)) - f_.same_mm || steps_down(line)) break;
       if (line.r(far_end(next)) < least(far_end(next)) - f_.same_mm)
         borders.push_back({line, 0.0, 0.0});
       i = next;

@@ -13,6 +13,14 @@ constexpr int kSteps = 24;
 constexpr int kMostSpans = 400;
 // Onto each of two cells, to find a point of both.
 constexpr int kProjections = 6;
+// What comes so much less far is as good a place to look at.
+constexpr double kAsFar_mm = 2e-5;
+// A place beside the rim of a face is this share of the way to its middle.
+constexpr double kFromRim = 0.02;
+// Normals this near to opposite are those of two sides of one slot; nobody is beyond both.
+constexpr double kOpposite = 1.0 - 1e-12;
+// Who goes along a face goes less than this share towards it.
+constexpr double kAcross = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -74,33 +82,30 @@ class CoverPair::Bound {
     const Chord& chord = views_.chord[role];
     // Over a span only what excludes is of use, at a pose what is below the best bound so far.
     const double useless_mm = chord.ends == 2 ? limit_mm_ : least_;
-    double most = -kInfinity, second = -kInfinity;
-    std::optional<Vec3> at_S;
+    double most = -kInfinity;
+    std::vector<Vec3> places_S;
     for (const HalfSpace& plane : hole.planes) {
       ++work_;
       const double beyond = beyond_plane_mm(s(role), chord, plane);
       if (beyond >= least_) return false;
-      second = std::max(second, std::min(most, beyond));
       if (beyond <= most) continue;
       most = beyond;
-      if (chord.ends == 1) at_S = s(role).farthest(-(chord.X_KS[0].q.conjugate() * plane.n));
+      if (chord.ends == 1)
+        places_S = {s(role).farthest_middle(-(chord.X_KS[0].q.conjugate() * plane.n), kAsFar_mm)};
     }
     if (hole.wall) {
-      std::optional<Vec3> at_wall;
+      std::vector<Vec3> at_wall;
       const double beyond =
           beyond_wall_mm(s(role), chord, *hole.wall, part.heights_of(cells_->cell[1 - role], v),
                          limit_mm_, useless_mm, work_, at_wall);
-      second = std::max(second, std::min(most, beyond));
       if (beyond > most) {
         most = beyond;
-        at_S = at_wall;
+        places_S = std::move(at_wall);
       }
     }
     if (!(most < least_)) return false;
     least_ = most;
-    cells_->at_S = at_S;
-    // The way out through the nearest wall does not meet another one.
-    cells_->by_one_face = second <= -std::fabs(most);
+    cells_->places_S = std::move(places_S);
     cells_->role = role;
     cells_->by_void = true;
     cells_->v = v;
@@ -112,9 +117,8 @@ class CoverPair::Bound {
     least_ = bound;
     cells_->role = role;
     cells_->by_void = false;
-    cells_->by_one_face = true;
     cells_->n = n;
-    cells_->at_S.reset();
+    cells_->places_S.clear();
     return least_ <= limit_mm_;
   }
 
@@ -143,6 +147,95 @@ class CoverPair::Bound {
   std::uint64_t& work_;
   Cells* cells_ = nullptr;
   double least_ = kInfinity;
+};
+
+// Does what bounds one pair of cells bound the depth in both parts, with all of their cells? The
+// proof is in the README, section 11.
+class CoverPair::Whole {
+ public:
+  Whole(const CoverPair& pair, const Views& views, double most_mm, double least_mm,
+        std::uint64_t& work)
+      : pair_(pair), views_(views), most_mm_(most_mm), least_mm_(least_mm), work_(work) {}
+
+  bool operator()(const Cells& deciding) {
+    role_ = deciding.role;
+    return deciding.by_void ? of_void(deciding.v) : of_direction(deciding.n);
+  }
+
+ private:
+  const std::vector<ConvexCell>& s() const { return pair_.parts_[role_]->cells; }
+  const CoverLayer& k() const { return *pair_.parts_[1 - role_]; }
+
+  // How far any cell of S comes beyond the border.
+  double beyond_mm(const HalfSpace& material) {
+    double most = -kInfinity;
+    for (const ConvexCell& cell : s()) {
+      ++work_;
+      most = std::max(most, beyond_plane_mm(cell, views_.chord[role_], material));
+    }
+    return most;
+  }
+  // What stands on an end of the material only touches it.
+  double beyond_wall(std::size_t v) {
+    double most = -kInfinity;
+    std::vector<Vec3> at;
+    for (std::size_t j = 0; j < k().cells.size(); ++j) {
+      const Interval& along = k().heights_of(j, v);
+      const Interval inner{along.lo + least_mm_, along.hi - least_mm_};
+      for (const ConvexCell& cell : s())
+        most = std::max(most, beyond_wall_mm(cell, views_.chord[role_], *k().voids[v].wall, inner,
+                                             most_mm_, most_mm_, work_, at));
+    }
+    return most;
+  }
+
+  // All of S is above a plane that all of K is below.
+  bool of_direction(const Vec3& n) {
+    double c_mm = -kInfinity;
+    for (const ConvexCell& cell : k().cells) c_mm = std::max(c_mm, cell.support_mm(n));
+    return beyond_mm({n, c_mm}) <= most_mm_;
+  }
+
+  // Whoever is beyond a wall leaves through it, and meets no other one on the way.
+  bool of_void(std::size_t v) {
+    const Void& hole = k().voids[v];
+    const double wall_mm = hole.wall ? beyond_wall(v) : -kInfinity;
+    if (wall_mm > most_mm_) return false;
+    std::vector<double> plane_mm;
+    for (const HalfSpace& plane : hole.planes) {
+      plane_mm.push_back(beyond_mm(plane));
+      if (plane_mm.back() > most_mm_) return false;
+    }
+    for (std::size_t a = 0; a < hole.planes.size(); ++a) {
+      const Vec3& n = hole.planes[a].n;
+      if (hole.wall) {
+        const double along = n.dot(hole.wall->axis), across = (n - along * hole.wall->axis).norm();
+        if (!stays(plane_mm[a], wall_mm, across + std::fabs(hole.wall->slope * along)) ||
+            !stays(wall_mm, plane_mm[a], across))
+          return false;
+      }
+      for (std::size_t b = 0; b < hole.planes.size(); ++b) {
+        const double opposite = -n.dot(hole.planes[b].n);
+        if (b != a && opposite < kOpposite && !stays(plane_mm[a], plane_mm[b], opposite))
+          return false;
+      }
+    }
+    return true;
+  }
+
+  // Who leaves through a face that it is beyond by some depth goes that share of it towards another
+  // face: is it still beside that one?
+  bool stays(double through_mm, double other_mm, double share) const {
+    if (through_mm <= least_mm_) return true;
+    if (share < kAcross) return other_mm <= least_mm_;
+    return other_mm + through_mm * share <= 0.0;
+  }
+
+  const CoverPair& pair_;
+  const Views& views_;
+  const double most_mm_, least_mm_;
+  std::uint64_t& work_;
+  int role_ = 0;
 };
 
 CoverPair::Views CoverPair::views_of(const PairPath& path, const Span& span) {
@@ -209,29 +302,63 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   views.chord[1].X_KS[0] = X_BA.inverse();
   CoverOverlap overlap;
   overlap.most_mm = least_mm;
-  for (Cells& cells : all_cells()) {
+  std::vector<Cells> all = all_cells();
+  const Cells* deciding = nullptr;
+  for (Cells& cells : all) {
     const double bound = Bound(*this, views, overlap.most_mm, work)(cells);
     if (!(bound > overlap.most_mm)) continue;
     overlap.most_mm = bound;
-    overlap.is_depth =
-        parts_[0]->cells.size() == 1 && parts_[1]->cells.size() == 1 && cells.by_one_face;
-    if (cells.role < 0) continue;
-    overlap.role = cells.role;
-    overlap.at_S = deepest_of(cells, views);
+    deciding = &cells;
   }
+  if (deciding == nullptr || deciding->role < 0) return overlap;
+  overlap.role = deciding->role;
+  overlap.places_S = places_of(*deciding, views);
+  overlap.is_depth = Whole(*this, views, overlap.most_mm, least_mm, work)(*deciding);
   return overlap;
 }
 
-// By a direction: between both cells, then as far as S goes along it.
-Vec3 CoverPair::deepest_of(const Cells& cells, const Views& views) const {
-  if (cells.at_S) return *cells.at_S;
+std::vector<std::array<Vec3, 2>> CoverPair::places_between(const Pose& X_BA, double near_mm,
+                                                           std::uint64_t& work) const {
+  Views views;
+  views.chord[0].X_KS[0] = X_BA;
+  views.chord[1].X_KS[0] = X_BA.inverse();
+  std::vector<std::array<Vec3, 2>> places;
+  for (Cells& cells : all_cells()) {
+    if (Bound(*this, views, -near_mm, work)(cells) <= -near_mm || cells.role < 0) continue;
+    const int role = cells.role;
+    const Pose& X_KS = views.chord[role].X_KS[0];
+    const ConvexCell& s = parts_[role]->cells[cells.cell[role]];
+    const ConvexCell& k = parts_[1 - role]->cells[cells.cell[1 - role]];
+    std::array<Vec3, 2>& place = places.emplace_back();
+    // At a wall both are in one place.
+    const bool by_place = cells.by_void && !cells.places_S.empty();
+    place[role] = by_place ? cells.places_S.front() : s.farthest(-(X_KS.q.conjugate() * cells.n));
+    place[1 - role] = by_place ? Vec3(X_KS * place[role]) : k.farthest(cells.n);
+  }
+  return places;
+}
+
+// By a direction: between both cells, then as far as S goes along it. Around the middle of a disc
+// as well, since a shaft may come out of it.
+std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) const {
+  if (!cells.places_S.empty()) return cells.places_S;
   const Pose& X_KS = views.chord[cells.role].X_KS[0];
   const ConvexCell& s = parts_[cells.role]->cells[cells.cell[cells.role]];
   const ConvexCell& k = parts_[1 - cells.role]->cells[cells.cell[1 - cells.role]];
-  Vec3 x_S = s.farthest(-(X_KS.q.conjugate() * cells.n));
   const Pose X_SK = X_KS.inverse();
-  for (int i = 0; i < kProjections; ++i) x_S = s.near(X_SK * k.near(X_KS * x_S));
-  return x_S;
+  const Vec3 n_S = -(X_KS.q.conjugate() * cells.n);
+  std::vector<Vec3> places;
+  const auto add = [&](Vec3 x_S) {
+    for (int i = 0; i < kProjections; ++i) x_S = s.near(X_SK * k.near(X_KS * x_S));
+    places.push_back(x_S);
+  };
+  const Vec3 middle = s.farthest_middle(n_S, kAsFar_mm);
+  add(middle);
+  for (const Vec3& x_S : s.around_farthest(n_S, kAsFar_mm)) {
+    const Vec3 inner = x_S + kFromRim * (middle - x_S);
+    add(inner);
+  }
+  return places;
 }
 
 }  // namespace mortise

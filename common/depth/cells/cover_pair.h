@@ -1,7 +1,7 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "common/depth/cells/cover.h"
@@ -28,11 +28,12 @@ struct CoverOverlap {
   /// No point is deeper in both. Infinity: nothing is known.
   double most_mm = std::numeric_limits<double>::infinity();
   /// False: in some cell or beyond some wall that is so; the depth in the whole part, inside a
-  /// hollow edge, may be larger. What is no deeper than least_mm is not in both, however.
+  /// hollow edge, may be larger. What is no deeper than least_mm is not in both, however. True: no
+  /// point of either part is deeper in the other than most_mm and least_mm.
   bool is_depth = false;
-  /// A point of S = part `role` that may be that deep in the other part, in its own frame; to be
-  /// verified.
-  std::optional<Vec3> at_S;
+  /// Points of S = part `role` that may be that deep in the other part, in its own frame, the
+  /// likeliest first; to be verified.
+  std::vector<Vec3> places_S;
   int role = 0;
 };
 
@@ -48,6 +49,11 @@ class CoverPair {
   /// Overlaps below least_mm count as that.
   CoverOverlap overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const;
 
+  /// Of cells that are kept apart by less than near_mm: what keeps them, a point of A's border and
+  /// one of B's, each in its own frame.
+  std::vector<std::array<Vec3, 2>> places_between(const Pose& X_BA, double near_mm,
+                                                  std::uint64_t& work) const;
+
  private:
   /// How each part is seen from the other over a span.
   struct Views {
@@ -60,16 +66,16 @@ class CoverPair {
     int role = -1;
     std::size_t v = 0;
     bool by_void = false;
-    bool by_one_face = true;  // no other wall of the void is as near
     Vec3 n = Vec3::Zero();
-    std::optional<Vec3> at_S;  // by_void: of the part that is seen, what comes farthest
+    std::vector<Vec3> places_S;  // by_void: of the part that is seen, what comes farthest
   };
   class Bound;
+  class Whole;
 
   static Views views_of(const PairPath& path, const Span& span);
   std::vector<Cells> all_cells() const;
-  /// A point of part cells.role where what kept its cell from the other one last is least far.
-  Vec3 deepest_of(const Cells& cells, const Views& views) const;
+  /// Points of part cells.role where what kept its cell from the other one last is least far.
+  std::vector<Vec3> places_of(const Cells& cells, const Views& views) const;
 
   const CoverLayer* parts_[2];
 };

@@ -12,7 +12,8 @@ namespace mortise {
 namespace {
 
 // Depths are told up to so many times what all offsets make together; beyond, so much deeper.
-constexpr double kDepths = 2.0, kDeeper = 4.0;
+// Of convex parts however deep.
+constexpr double kDepths = 2.0, kDeeper = 4.0, kAnyDepth = 2.0;
 // A place for a later look lies this share of the way from the witness to the face of A.
 constexpr double kTowardsFace = 0.9;
 
@@ -50,15 +51,23 @@ bool is_convex(const Body& body, double nothing_mm) {
 
 PlanePair::PlanePair(const PairFrame& pair, bool delta) : pair_(pair) {
   if (pair.trivial || !has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return;
-  delta_ =
-      delta && is_convex(pair.bodies[0], pair.touch_mm) && is_convex(pair.bodies[1], pair.touch_mm);
+  const bool convex =
+      is_convex(pair.bodies[0], pair.touch_mm) && is_convex(pair.bodies[1], pair.touch_mm);
+  delta_ = delta && convex;
   look(kDepths * all_offsets_mm(pair));
   // Windows that reach farther may know less of the signs: what is known stays.
-  if (!decided_ || has_brackets()) return;
-  const SharpDecision near = decision_;
-  const double near_mm = depth_mm_;
-  look(kDeeper * near_mm);
-  if (has_brackets()) return;
+  if (!decided_ || knows_all()) return;
+  SharpDecision near = decision_;
+  double near_mm = depth_mm_;
+  const double most_mm = convex ? kAnyDepth * pair.deepest_mm(Layer::kUpper) : 0.0;
+  for (const double depth_mm : {kDeeper * near_mm, most_mm}) {
+    if (!(depth_mm > near_mm)) continue;
+    look(depth_mm);
+    if (knows_all()) return;
+    if (!has_brackets()) continue;
+    near = decision_;
+    near_mm = depth_mm_;
+  }
   decision_ = near;
   depth_mm_ = near_mm;
   decided_ = true;
@@ -92,6 +101,12 @@ std::optional<Interval> PlanePair::bracket_mm(Layer layer) const {
   // A deeper point would show with as much.
   if (!(depth.overlap_mm.hi < depth_mm_)) return std::nullopt;
   return depth.overlap_mm;
+}
+
+bool PlanePair::knows_all() const {
+  const SharpDepth& modelled = decision_.modelled;
+  const bool delta = modelled.margin_mm.hi <= pair_.touch_mm || modelled.overlap_mm.hi < depth_mm_;
+  return has_brackets() && (!delta_ || delta);
 }
 
 double PlanePair::upper_mm(Layer layer) const {

@@ -31,6 +31,7 @@ class PlanePair {
 
  private:
   void look(double depth_mm);
+  bool knows_all() const;
   bool certain() const { return decision_.least.margin_mm.lo > pair_.touch_mm; }
   bool possible() const { return decision_.largest.margin_mm.lo > pair_.touch_mm; }
   /// Of the overlap, or of minus the gap; nullopt: deeper than was looked.

@@ -9,6 +9,7 @@
 #include "common/depth/body.h"
 #include "common/depth/cells/cover_pair.h"
 #include "common/depth/interference_time.h"
+#include "common/depth/search.h"
 #include "common/math/rotation.h"
 #include "tests/unit/depth/cover_parts.h"
 
@@ -324,6 +325,165 @@ TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
   EXPECT_EQ(less, 0);
   EXPECT_EQ(refused, 0);
   EXPECT_GT(more, 0);
+}
+
+// Behind a chamfer a depth by the mesh is as good as its chords.
+constexpr double kMeshDepth_mm = 1e-3;
+
+// A point of either surface of the layer, drawn anew; how deep it lies in the other part.
+double deepest_of_surfaces(const PairFrame& pair, Layer layer, Random& random, int points) {
+  double most = -1e9;
+  for (int i = 0; i < points; ++i) {
+    const int role = below(random, 2);
+    const TriangleMesh& mesh = *pair.s(role).mesh;
+    const auto t = static_cast<std::uint32_t>(below(random, int(mesh.triangles.size())));
+    double u = uniform(random, 0, 1), v = below(random, 2) * uniform(random, 0, 1);
+    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+    const Vec3 x = mesh.corner(t, 0) + u * (mesh.corner(t, 1) - mesh.corner(t, 0)) +
+                   v * (mesh.corner(t, 2) - mesh.corner(t, 0));
+    const Sample at = sample_at(pair, layer, role, t, x);
+    if (at.depth_mm <= most) continue;
+    // Where a neighbour cuts its face short it is no point of the part.
+    const Vec3 x_S = pair.X_KS[1 - role] * at.point_K;
+    const Body& s = pair.s(role);
+    if (s.depth_in(x_S, nearest_surface(*s.solid, x_S), layer) > -kNothing_mm) most = at.depth_mm;
+  }
+  return most;
+}
+
+OverlapQuery look_at(const DrawnPair& pair) {
+  OverlapQuery query;
+  query.a = pair.a.solid.get();
+  query.b = pair.b.solid.get();
+  query.band_a = &pair.a.band;
+  query.band_b = &pair.b.band;
+  query.X_WA = pair.X_BA;
+  query.work_cap = 5000;
+  query.want_delta = false;
+  query.prove_not_certain = true;
+  return query;
+}
+
+// What covers call a depth holds in the parts, inside hollow edges as well.
+TEST(Cover, NoSurfaceIsDeeperThanADepth) {
+  Random random(7007);
+  int depths = 0, deeper = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const DrawnPair pair = any_pair(random);
+    const PairFrame frame(look_at(pair));
+    for (const bool largest : {false, true}) {
+      std::uint64_t work = 0;
+      const CoverOverlap overlap = CoverPair(layer_of(pair.a, largest), layer_of(pair.b, largest))
+                                       .overlap(frame.X_KS[0], frame.touch_mm, work);
+      if (!overlap.is_depth) continue;
+      ++depths;
+      const double found =
+          deepest_of_surfaces(frame, largest ? Layer::kUpper : Layer::kLower, random, 3000);
+      if (found <= overlap.most_mm + kMeshDepth_mm) continue;
+      if (++deeper <= 3)
+        std::printf("pair %d (%s, %s) layer %d: %.6f deep, said %.6f\n", i, pair.a.what.c_str(),
+                    pair.b.what.c_str(), int(largest), found, overlap.most_mm);
+    }
+  }
+  std::printf("%d depths by covers\n", depths);
+  EXPECT_EQ(deeper, 0);
+  EXPECT_GT(depths, 200);
+}
+
+// Looks at certain and possible alone, lazily and in full: brackets of the deepest region that have
+// nothing in common with those of the search would be a contradiction.
+TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
+  Random random(7008);
+  int told = 0, opposite = 0, apart = 0, less = 0;
+  for (int i = 0; i < 400; ++i) {
+    const DrawnPair pair = any_pair(random);
+    OverlapQuery query = look_at(pair);
+    query.refinement = i % 2 == 0 ? Refinement::kDecided : Refinement::kFull;
+    query.only_certain = i % 3 == 0;
+    CcdScratch scratch;
+    const OverlapResult with = find_overlap(query, scratch);
+    query.use_covers = false;
+    const OverlapResult without = find_overlap(query, scratch);
+    told += with.evaluations < without.evaluations / 4;
+    const auto most = [](const OverlapResult& result, Interval OverlapRegion::*of) {
+      Interval found{-1e9, 0.0};
+      for (const OverlapRegion& region : result.regions) {
+        found.lo = std::max(found.lo, (region.*of).lo);
+        found.hi = std::max(found.hi, (region.*of).hi);
+      }
+      return found;
+    };
+    // Faces beyond moved neighbours are too deep for the search: the drawings decide.
+    const auto compare = [&](Interval OverlapRegion::*of, bool largest) {
+      const Interval x = most(with, of), y = most(without, of);
+      if (y.hi < x.lo - 1e-5) ++apart;
+      if (x.hi < y.lo - 1e-5)
+        apart += 2.0 * Deepest(pair, pair.X_BA, largest).find(random, 800) > x.hi + 1e-5;
+    };
+    compare(&OverlapRegion::certain_mm, false);
+    if (query.only_certain) continue;
+    compare(&OverlapRegion::possible_mm, true);
+    const CollisionClass word = class_of(with), other = class_of(without);
+    less += other != CollisionClass::kPotential && word == CollisionClass::kPotential;
+    opposite += (word == CollisionClass::kReal) != (other == CollisionClass::kReal) &&
+                other != CollisionClass::kPotential && word != CollisionClass::kPotential;
+  }
+  std::printf("%d of 400 looks with a quarter of the work or less\n", told);
+  EXPECT_EQ(apart, 0);
+  EXPECT_EQ(opposite, 0);
+  EXPECT_EQ(less, 0);
+  EXPECT_GT(told, 150);
+}
+
+// A peg with 20 um of play, half a facet turned: both meshes overlap, the parts do not. `estimated`
+// names a face that is known by estimate only.
+bool fake_is_by_estimate(const std::string& estimated) {
+  const auto solid_of = [](GeneratedPart& part) {
+    return std::make_shared<const Solid>(std::move(part.mesh));
+  };
+  auto peg = *generate("dowel", {{"diameter_mm", 19.98},
+                                 {"length_mm", 40.0},
+                                 {"facets", 32.0},
+                                 {"phase_rad", std::numbers::pi / 32.0}});
+  auto plate = *generate("plate_with_bore", {{"bore_mm", 20.0}, {"facets", 32.0}});
+  const SolidPtr solids[2] = {solid_of(peg), solid_of(plate)};
+  SurfaceBand bands[2];
+  bool found = estimated.empty();
+  for (const int i : {0, 1}) {
+    BandInput input;
+    input.solid = solids[i].get();
+    const std::vector<Feature>& features = i == 0 ? peg.features : plate.features;
+    input.features = features;
+    input.of_feature.assign(features.size(), {});
+    bands[i] = build_band(input);
+    for (SurfaceBand::Face& face : bands[i].faces)
+      if (!estimated.empty() && face.name == estimated) {
+        face.grade = DeviationGrade::kEstimated;
+        found = true;
+      }
+  }
+  EXPECT_TRUE(found) << estimated;
+  OverlapQuery query;
+  query.a = solids[0].get();
+  query.b = solids[1].get();
+  query.band_a = &bands[0];
+  query.band_b = &bands[1];
+  query.X_WA = Pose::translation(Vec3(0.0, 0.0, -10.0));
+  CcdScratch scratch;
+  const OverlapResult result = find_overlap(query, scratch);
+  EXPECT_EQ(class_of(result), CollisionClass::kFake);
+  return std::any_of(result.regions.begin(), result.regions.end(),
+                     [](const OverlapRegion& region) { return region.estimated; });
+}
+
+// The sentence of a fake names an estimate where a face that keeps the parts apart is one, and
+// faces away from the contact are not blamed.
+TEST(Cover, AFakeIsByEstimateOfTheFacesThatKeepThePartsApart) {
+  EXPECT_FALSE(fake_is_by_estimate(""));
+  EXPECT_TRUE(fake_is_by_estimate("bore"));
+  EXPECT_TRUE(fake_is_by_estimate("journal"));
+  for (const std::string face : {"end_upper", "chamfer_lower", "left", "front", "top"})
+    EXPECT_FALSE(fake_is_by_estimate(face)) << face;
 }
 
 }  // namespace

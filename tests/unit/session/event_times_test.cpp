@@ -3,6 +3,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/session/tick/judge_world.h"
+#include "tests/support/shapes.h"
 #include "tests/unit/depth/depth_bands.h"
 #include "tests/unit/session/session_builder.h"
 
@@ -196,9 +197,14 @@ TEST(Skipping, WithoutTolerancesNoBandIsLookedAt) {
 // Far beyond a threshold the class is decided while the depth is still a wide bracket; on demand
 // all are refined, or named as not examined to the end.
 TEST(Skipping, DecidedEarlyAndRefinedAreCounted) {
-  BlocksAt s(3.0, 0.05);
-  const StepCounters lazy = judge_world(s.session.world, s.scratch, false).counters;
-  const StepCounters full = judge_world(s.session.world, s.scratch, true).counters;
+  SessionBuilder session(Policy::kReport);
+  Scratch scratch;
+  const PartId parts[] = {
+      session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(20, 50, 50)), at(0, 0, 0), false),
+      session.add("ring", shapes::ring({5, -4, 4, 32, 2, 0}, 10), at(-7, 0, 0), true)};
+  for (const PartId part : parts) session.set_tolerance(part, 0.05);
+  const StepCounters lazy = judge_world(session.world, scratch, false).counters;
+  const StepCounters full = judge_world(session.world, scratch, true).counters;
   EXPECT_EQ(lazy.regions_decided_early + lazy.regions_refined, lazy.verdicts.in);
   EXPECT_GT(lazy.regions_decided_early, 0U);
   EXPECT_EQ(full.regions_decided_early, 0U);
