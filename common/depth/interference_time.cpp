@@ -538,6 +538,10 @@ SweptQuery rest_of(const SweptQuery& query, double t) {
 // A time of the path that is left after t0, in the whole one.
 double in_whole(double t0, double t) { return t >= 1.0 ? 1.0 : t0 + (1.0 - t0) * t; }
 
+// A path ends where its covers are this deep in each other: who goes on from there is, rounded,
+// still no deeper than touching.
+constexpr double kPathEnds_mm = 0.5 * kAccuracyDefault_mm;
+
 CoverFree free_by_covers(const SweptQuery& query, Layer layer) {
   const OverlapQuery& at = query.at_target;
   CoverFree nothing{0.0, false, 0};
@@ -548,7 +552,15 @@ CoverFree free_by_covers(const SweptQuery& query, Layer layer) {
   const CoverPair pair(cover_of(a).of(least), cover_of(b).of(least));
   const PairPath path(query.motion_a, *at.a, query.motion_b, *at.b);
   // What is no deeper than touching is not in both; the rest of the accuracy is that of the time.
-  CoverFree free = pair.free_until(path, kAccuracyDefault_mm, kSmallestShare * query.accuracy_mm);
+  const double moment_mm = kSmallestShare * query.accuracy_mm;
+  CoverFree free = pair.free_until(path, kPathEnds_mm, moment_mm);
+  if (!free.all && free.t_free <= 0.0) {
+    // Who stands where a path has ended may leave it again, and no farther than that.
+    CoverFree leaving = pair.free_until(path, kAccuracyDefault_mm, moment_mm);
+    leaving.work += free.work;
+    if (!leaving.all) leaving.t_free = 0.0;
+    free = leaving;
+  }
   free.work = evaluations_of_bounds(free.work);
   return free;
 }

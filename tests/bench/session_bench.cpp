@@ -17,6 +17,7 @@ const std::vector<SessionSection>& session_sections() {
       {"lossy", "a link that loses, delays, doubles and reorders", section_lossy},
       {"security", "what it costs to be met with keys", section_security},
       {"guided", "shafts put into bores by hands that tremble", section_guided},
+      {"pushed", "pegs in their holes that are all pushed at once", section_pushed},
   };
   return all;
 }

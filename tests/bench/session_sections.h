@@ -29,6 +29,7 @@ void section_scene(Report& report, const SessionOptions& options);
 void section_lossy(Report& report, const SessionOptions& options);
 void section_security(Report& report, const SessionOptions& options);
 void section_guided(Report& report, const SessionOptions& options);
+void section_pushed(Report& report, const SessionOptions& options);
 
 using SessionSection = BenchSection<SessionOptions>;
 const std::vector<SessionSection>& session_sections();

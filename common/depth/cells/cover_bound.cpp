@@ -18,6 +18,8 @@ constexpr double kOffRim_mm = 0.1;
 constexpr int kAround = 16;
 // A bracket this narrow is good enough, mm.
 constexpr double kNarrow_mm = 2e-5;
+// The same of a path, where a part may slide along at the limit.
+constexpr double kParallel_mm = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double beyond(const VoidWall& wall, const Vec3& x) {
@@ -39,12 +41,17 @@ class RoundInWall {
       axis_[e] = X.q * s.axis;
       for (int k = 0; k < 2; ++k) across_[e][k] = X.q * s.across[k];
       rise_[e] = std::hypot(across_[e][0].dot(wall.axis), across_[e][1].dot(wall.axis));
+      for (const auto& circle : s.circles)
+        too_far_mm_ =
+            std::max(too_far_mm_, circle.r_mm * rise_[e] * (rise_[e] + std::fabs(wall.slope)));
     }
   }
 
   double run(double limit_mm, double useless_mm) {
     const double whole = whole_circle();
     if (whole <= limit_mm || whole == -kInfinity) return whole;
+    // Of a path only the number is asked, and beside a parallel axis that is exact.
+    if (chord_.ends == 2 && too_far_mm_ <= kParallel_mm) return whole;
     for (int i = 0; i < 4; ++i) add(kQuarters[i], kQuarters[(i + 1) % 4], whole);
     while (!heap_.empty() && work_here_ < kMostSectors) {
       const double most = heap_.front().hi;
@@ -233,6 +240,7 @@ class RoundInWall {
   std::uint64_t& work_;
   Vec3 point_[2], axis_[2], across_[2][2];
   double rise_[2] = {0.0, 0.0};
+  double too_far_mm_ = 0.0;  // what whole_circle() may say too much
   int work_here_ = 0;
   double best_ = -kInfinity;  // of points seen, at an end of the chord
   Place place_;

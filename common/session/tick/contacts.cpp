@@ -180,12 +180,15 @@ bool stays_held(const World& world, PairWork& pair) {
   return true;
 }
 
-// The tick has no work left for it: nothing is known beyond how it stands.
+// The tick has no work left for it. It goes as far as covers prove at once that nothing is certain:
+// who leaves a wall, or slides along it, is not held by what others need.
 void leave_unasked(const World& world, PairWork& pair) {
   pair.near = pair.undecided = pair.contact_waits = true;
   if (!holds_back(world.policy)) return;
-  pair.short_of_work = true;
-  pair.t_stop = pair.tau;
+  const double t = free_by_covers(pair);
+  pair.never_real = t >= 1.0;
+  pair.short_of_work = t < 1.0;
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
 }
 
 void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, CcdScratch& ccd) {

@@ -149,12 +149,29 @@ void follow(const World& world, Scratch::Impl& work) {
   }
 }
 
+// Do these increments take the part back from where it was pushed?
+bool lead_back(const World& world, std::span<const Increment> increments, const KeptPush& push) {
+  const Part& part = world.parts[push.part];
+  const double radius_mm = part.solid->sphere().radius_mm;
+  double along = 0.0;
+  for (const Increment& by : increments)
+    if (by.part == part.id)
+      along += by.translation_mm.dot(push.shift_mm) +
+               radius_mm * radius_mm * by.rotation_rad.dot(push.turn_rad);
+  return along < 0.0;
+}
+
 // Parts that go on with what they were pushed by while they waited, unless somebody else has them
-// now or they were put elsewhere.
-void go_on(const World& world, Scratch::Impl& work) {
+// now or they were put elsewhere. Who pulls back has given up what still waited.
+void go_on(const World& world, std::span<const Increment> increments, Scratch::Impl& work,
+           StepCounters& counters) {
   for (const KeptPush& push : world.state->kept) {
     const Part& part = world.parts[push.part];
     if (!identical(part.X_WP, push.X_WP) || (part.holder && part.holder != push.user)) continue;
+    if (lead_back(world, increments, push)) {
+      ++counters.pushes_cut;
+      continue;
+    }
     Move& move = move_of(work, target_of(world, push.part));
     move.user = push.user;
     move.turned_rad = push.turn_rad.norm();
@@ -262,7 +279,7 @@ void gather(World& world, std::span<const Increment> increments, Scratch::Impl& 
     work.move_of_part.assign(world.parts.size(), -1);
   for (const Move& move : work.moves) work.move_of_part[move.part] = -1;
   work.moves.clear();
-  go_on(world, work);
+  go_on(world, increments, work, report.counters);
   compose(world, increments, work, report);
   follow(world, work);
   make_motions(world, work, report.counters);

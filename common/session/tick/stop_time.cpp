@@ -277,14 +277,11 @@ SweptQuery swept_query(const PairWork& pair) {
 
 double free_time(PairWork& pair, CcdScratch& ccd) {
   SweptQuery query = swept_query(pair);
-  // What slides or stays apart needs no look at its depth.
-  const double t_start = std::max(
-      pair.t_stop_start, certain_free_until(query, pair.counts.depth_evaluations));
+  const double t_start = pair.t_stop_start;
   // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
   const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
-  const Advance advance = t_start >= 1.0 ? Advance{Advanced::kDone, 1.0}
-                          : may_touch    ? Advance{Advanced::kUnsure, t_start}
-                                         : advance_to_real(pair, t_start, ccd);
+  const Advance advance =
+      may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
   if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
   const double allowed_mm = pair.memo->allowed_depth_mm;
   if (std::isfinite(allowed_mm)) pair.memo.change().allowed_depth_mm = kInfinity;
@@ -360,11 +357,22 @@ bool is_stalled(const PairWork& pair) {
          dot(*before, now) >= kSamePushCosine * std::sqrt(dot(*before, *before) * dot(now, now));
 }
 
+double free_by_covers(PairWork& pair) {
+  if (pair.plain() || pair.no_inside()) return 0.0;
+  const double t = certain_free_until(swept_query(pair), pair.counts.depth_evaluations);
+  // Who has come out is not withdrawn any more.
+  if (t > 0.0 && std::isfinite(pair.memo->allowed_depth_mm))
+    pair.memo.change().allowed_depth_mm = kInfinity;
+  return t;
+}
+
 SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch) {
   // Without an inside there is no depth and so no real verdict: nobody is stopped.
   if (pair.no_inside())
     return {touch.state == ContactState::kUndecided ? touch.t_clear : 1.0, true};
-  const SearchedTime time = start_of_search(pair, touch);
+  SearchedTime time = start_of_search(pair, touch);
+  if (!time.known) time.t = std::max(time.t, free_by_covers(pair));
+  time.known |= time.t >= 1.0;
   pair.t_stop_start = time.t;
   pair.never_real = time.known && time.t >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
   return time;

@@ -10,8 +10,12 @@ struct SearchedTime {
   bool known = false;  ///< a search would give the same
 };
 
+/// Time of the segment up to which the covers of the parts prove that nothing is certain; some
+/// microseconds. 0 for pairs without a band.
+double free_by_covers(PairWork& pair);
+
 /// As far as first contact knows it (`touch`: of the meshes), or the place that held the pair
-/// before: a few evaluations.
+/// before, or covers: a few evaluations.
 SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch);
 
 /// Is a part that is pushed again where its last push left it held by the same place? The poses at
