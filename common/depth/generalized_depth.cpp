@@ -8,6 +8,7 @@
 #include "common/base/check.h"
 #include "common/depth/gpd/holds.h"
 #include "common/depth/gpd/hull_depth.h"
+#include "common/depth/gpd/inner_piece.h"
 #include "common/depth/gpd/separation_search.h"
 #include "common/depth/gpd/starts.h"
 #include "common/math/rotation.h"
@@ -30,6 +31,9 @@ constexpr double kCloseShare = 1.01, kCloseFullShare = 1.0001, kClose_mm = 2e-6;
 // What part of the work is kept for the holds; lines of them.
 constexpr std::uint64_t kHoldsShare = 4;
 constexpr std::size_t kHoldLines = 32, kHoldLinesFull = 96;
+// Places at which pieces of the parts are asked, and planes of one.
+constexpr std::size_t kPiecePoints = 2, kPiecePointsFull = 6;
+constexpr std::size_t kPiecePlanes = 16, kPiecePlanesFull = 40;
 // Two directions are one when they differ by no more (cosine), two motions by their longest path.
 constexpr double kAlong = 1.0 - 1e-8, kAlike = 1e-3;
 // A turn whose path is this share of the whole is rounding.
@@ -139,12 +143,31 @@ class PairDepth {
     xi_ = straight;
   }
 
+  // A lower end by what of the parts holds each other: convex pieces, then balls.
   void hold() {
     // In a crack the depth of a ball is a guess.
     if (!mover_.inside_known() || !other_.inside_known()) return;
+    if (!std::isfinite(hi_mm_) || evaluations_ >= query_.work_cap) return;
     std::vector<Vec3> points;
     for (const OverlapRegion& region : query_.regions)
       if (region.delta_mm.hi > 0.0) points.push_back(region.point_W);
+    hold_by_pieces(points);
+    if (!closed()) hold_by_balls(points);
+  }
+
+  void hold_by_pieces(const std::vector<Vec3>& points) {
+    gpd::PiecesQuery query;
+    query.a = &mover_;
+    query.b = &other_;
+    query.X_WA = X_mover_;
+    query.X_WB = X_other_;
+    query.points_W = points;
+    query.most_points = full_ ? kPiecePointsFull : kPiecePoints;
+    query.most_planes = full_ ? kPiecePlanesFull : kPiecePlanes;
+    lo_mm_ = std::max(lo_mm_, gpd::lower_bound_by_pieces_mm(query, evaluations_));
+  }
+
+  void hold_by_balls(const std::vector<Vec3>& points) {
     gpd::HoldsQuery query;
     query.a = &mover_;
     query.b = &other_;
@@ -153,7 +176,6 @@ class PairDepth {
     query.points_W = points;
     query.limit_mm = hi_mm_;
     query.most_lines = full_ ? kHoldLinesFull : kHoldLines;
-    if (!std::isfinite(hi_mm_) || evaluations_ >= query_.work_cap) return;
     lo_mm_ = std::max(lo_mm_, gpd::lower_bound_by_holds_mm(query, scratch_, evaluations_));
   }
 
