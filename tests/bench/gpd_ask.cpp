@@ -11,7 +11,7 @@
 
 namespace mortise::bench {
 
-GpdWord ask_gpd(const GpdPair& pair, Refinement refinement) {
+GpdWord ask_gpd(const GpdPair& pair, Refinement refinement, const GpdWord* first) {
   const SurfaceBand band = nominal_band();
   CcdScratch scratch;
   GpdQuery query;
@@ -24,6 +24,7 @@ GpdWord ask_gpd(const GpdPair& pair, Refinement refinement) {
   if (refinement == Refinement::kFull) query.work_cap *= 10;
   query.motion_a = still_motion(pair.X_WA);
   query.motion_b = still_motion(pair.X_WB);
+  if (first != nullptr && first->depth.motion.moves()) query.known = &first->depth.motion;
   GpdWord word;
   word.overlap = find_overlap(query.overlap, scratch);
   query.regions = word.overlap.regions;
