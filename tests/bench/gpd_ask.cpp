@@ -50,7 +50,7 @@ double holds_beyond_mm(const GpdPair& pair, const GpdWord& word) {
   query.limit_mm = 2.0 * word.depth.gpd_mm.hi;
   CcdScratch scratch;
   std::uint64_t work = 0;
-  return gpd::lower_bound_by_holds_mm(query, scratch, work);
+  return gpd::held_by_balls(query, scratch, work).least_mm;
 }
 
 double search_longer(const GpdPair& pair, const GpdWord& word, int effort) {
