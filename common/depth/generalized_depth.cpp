@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/base/check.h"
 #include "common/depth/gpd/holds.h"
 #include "common/depth/gpd/hull_depth.h"
+#include "common/depth/gpd/inner_piece.h"
 #include "common/depth/gpd/separation_search.h"
 #include "common/depth/gpd/starts.h"
 #include "common/math/rotation.h"
@@ -26,10 +28,15 @@ constexpr int kGapsTried = 6;
 constexpr double kHullAccuracy_mm = 1e-8, kStartAccuracyShare = 1e-3;
 constexpr int kStartSupports = 60;
 // A bracket this close is closed: no more is looked for. kFull: as far as rounding allows.
-constexpr double kCloseShare = 1.01, kCloseFullShare = 1.0001, kClose_mm = 2e-6;
+constexpr double kCloseShare = 1.002, kCloseFullShare = 1.0001, kClose_mm = 2e-6;
 // What part of the work is kept for the holds; lines of them.
 constexpr std::uint64_t kHoldsShare = 4;
 constexpr std::size_t kHoldLines = 32, kHoldLinesFull = 96;
+// So many times what the holds ask for is tried as a motion.
+constexpr double kHeldTimes[] = {1.0, 1.02, 1.1, 1.3, 1.6, 2.0, 3.0};
+// Places at which pieces of the parts are asked, and planes of one.
+constexpr std::size_t kPiecePoints = 2, kPiecePointsFull = 6;
+constexpr std::size_t kPiecePlanes = 16, kPiecePlanesFull = 40;
 // Two directions are one when they differ by no more (cosine), two motions by their longest path.
 constexpr double kAlong = 1.0 - 1e-8, kAlike = 1e-3;
 // A turn whose path is this share of the whole is rounding.
@@ -55,8 +62,10 @@ class PairDepth {
     if (!(delta_mm_ > 0.0) && gpd::is_apart(mover_, X_mover_, other_, X_other_, scratch_))
       return {};
     const Vec6 apart = part_hulls();
-    if (!closed()) search(apart);
-    if (!closed()) hold();
+    if (!closed()) search_near(apart);
+    if (!closed()) hold_by_pieces();
+    if (!closed()) hold_by_balls();
+    if (!closed()) search_far();
     straighten();
     GeneralizedDepth depth;
     depth.gpd_mm = {std::min(lo_mm_, hi_mm_), hi_mm_};
@@ -102,11 +111,25 @@ class PairDepth {
     return xi;
   }
 
-  void search(const Vec6& apart) {
+  void search_near(const Vec6& apart) {
     starts_ = gpd::starts_of(query_, frame_, evaluations_);
     starts_.twists.push_back(apart);
     if (query_.known != nullptr && query_.known->of_b == query_.b_moves)
       starts_.twists.push_back(frame_.twist_of(query_.known->displacement()));
+    // Some is left for the lower end.
+    search(gpd::Looking::kNear, starts_.twists, query_.work_cap - query_.work_cap / kHoldsShare);
+  }
+
+  // From afar, and along what all holds ask for.
+  void search_far() {
+    std::vector<Vec6> starts = {xi_};
+    if (held_)
+      for (const double times : kHeldTimes) starts.push_back(times * *held_);
+    search(gpd::Looking::kFar, starts, query_.work_cap);
+  }
+
+  void search(gpd::Looking looking, const std::vector<Vec6>& starts, std::uint64_t cap) {
+    if (evaluations_ >= cap) return;
     gpd::SeparationQuery query;
     query.a = &mover_;
     query.b = &other_;
@@ -115,13 +138,13 @@ class PairDepth {
     std::vector<Vec3> directions = starts_.normals;
     directions.insert(directions.end(), starts_.axes.begin(), starts_.axes.end());
     query.directions = directions;
-    query.starts = starts_.twists;
-    query.least_mm = delta_mm_;
+    query.starts = starts;
+    query.looking = looking;
+    query.first_is_descended = looking == gpd::Looking::kFar;
+    query.least_mm = lo_mm_;
     query.enough_mm = (full_ ? kCloseFullShare : kCloseShare) * lo_mm_ + kClose_mm;
     query.thorough = full_;
-    // Some is left for the lower end.
-    const std::uint64_t cap = query_.work_cap - query_.work_cap / kHoldsShare;
-    query.work_cap = cap - std::min(cap, evaluations_);
+    query.work_cap = cap - evaluations_;
     const gpd::Separation found = gpd::find_separation(query, scratch_);
     evaluations_ += found.work;
     if (found.found) offer(found.xi, found.length_mm);
@@ -139,22 +162,47 @@ class PairDepth {
     xi_ = straight;
   }
 
-  void hold() {
-    // In a crack the depth of a ball is a guess.
-    if (!mover_.inside_known() || !other_.inside_known()) return;
+  // In a crack the depth of a point is a guess.
+  bool can_hold() const {
+    return mover_.inside_known() && other_.inside_known() && std::isfinite(hi_mm_) &&
+           evaluations_ < query_.work_cap;
+  }
+  std::vector<Vec3> deepest_points() const {
     std::vector<Vec3> points;
     for (const OverlapRegion& region : query_.regions)
       if (region.delta_mm.hi > 0.0) points.push_back(region.point_W);
+    return points;
+  }
+
+  void hold_by_pieces() {
+    if (!can_hold()) return;
+    const std::vector<Vec3> points = deepest_points();
+    gpd::PiecesQuery query;
+    query.a = &mover_;
+    query.b = &other_;
+    query.X_WA = X_mover_;
+    query.X_WB = X_other_;
+    query.points_W = points;
+    query.most_points = full_ ? kPiecePointsFull : kPiecePoints;
+    query.most_planes = full_ ? kPiecePlanesFull : kPiecePlanes;
+    lo_mm_ = std::max(lo_mm_, gpd::lower_bound_by_pieces_mm(query, evaluations_));
+  }
+
+  void hold_by_balls() {
+    if (!can_hold()) return;
+    const std::vector<Vec3> points = deepest_points();
     gpd::HoldsQuery query;
     query.a = &mover_;
     query.b = &other_;
     query.X_WA = X_mover_;
     query.X_WB = X_other_;
     query.points_W = points;
+    query.known_mm = std::min(lo_mm_, hi_mm_);
     query.limit_mm = hi_mm_;
     query.most_lines = full_ ? kHoldLinesFull : kHoldLines;
-    if (!std::isfinite(hi_mm_) || evaluations_ >= query_.work_cap) return;
-    lo_mm_ = std::max(lo_mm_, gpd::lower_bound_by_holds_mm(query, scratch_, evaluations_));
+    const gpd::HeldBy held = gpd::held_by_balls(query, scratch_, evaluations_);
+    lo_mm_ = std::max(lo_mm_, held.least_mm);
+    held_ = held.twist;
   }
 
   SeparatingMotion motion_of(const Vec6& xi) const {
@@ -189,6 +237,7 @@ class PairDepth {
   double delta_mm_ = 0.0, lo_mm_ = 0.0, hi_mm_ = std::numeric_limits<double>::infinity();
   Vec6 xi_ = Vec6::Zero();
   gpd::Starts starts_;
+  std::optional<Vec6> held_;
   std::uint64_t evaluations_ = 0;
 };
 

@@ -38,7 +38,7 @@ struct GpdQuery {
 
 /// Generalized penetration depth of a pair (README, section 7), for the part that is moved.
 /// gpd_mm.lo: no motion parts the meshes without moving some point of the part at least so far. By
-/// the overlap, by holds, and by the hulls where both parts are convex.
+/// the overlap, by holds and pieces, and by the hulls where both parts are convex.
 /// gpd_mm.hi: the longest path of any point under `motion`, which parts them. Finite. Verified at
 /// its end: surfaces do not cross, neither part contains the other; the way may pass through.
 /// lo = hi, but for rounding and a gap of 1e-7 mm, where both parts are convex.

@@ -200,6 +200,10 @@ Json json_of(const PairVerdicts& pair, const SessionNames& names) {
   json["no_inside"] = pair.no_inside;
   json["not_examined"] = pair.not_examined;
   json["distance_mm"] = number(pair.distance_mm);
+  if (pair.layers.least_mm && pair.layers.largest_mm) {
+    json["gpd_least_mm"] = json_of(*pair.layers.least_mm);
+    json["gpd_largest_mm"] = json_of(*pair.layers.largest_mm);
+  }
   json["verdicts"] = Json::array();
   for (const Verdict& verdict : pair.verdicts) {
     json["verdicts"].push_back(json_of(verdict));

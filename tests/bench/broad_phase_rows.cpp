@@ -13,6 +13,7 @@
 #include "common/broadphase/brute_force.h"
 #include "common/broadphase/dynamic_tree.h"
 #include "common/broadphase/pair_filter.h"
+#include "tests/bench/grid_phase.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/statistics.h"
 
@@ -20,6 +21,7 @@ namespace mortise::bench {
 namespace {
 
 constexpr double kBarRatio = 0.5;
+constexpr double kCell_mm = 60.0;  // about as large as most parts
 
 struct Workload {
   const char* name;
@@ -248,7 +250,7 @@ void broad_phase_rows(Report& report, bool quick) {
   report.table(
       "Broad phase and pair filter, 200 movers among 10,000 static parts, us a tick (mean)",
       {"movers", "pairs a tick", "mortise", "p99", "FCL one tree", "FCL two trees",
-       "FCL tree against tree", "share of the best FCL"});
+       "FCL tree against tree", "dynamic grid", "share of the best FCL"});
   double worst = 0.0;
   for (const Workload& workload : kWorkloads) {
     const Crowd crowd = make_crowd(workload, movers, fixed, ticks);
@@ -261,13 +263,16 @@ void broad_phase_rows(Report& report, bool quick) {
       peer_us.push_back(mean(peer.tick_us));
       same = same && peer.pairs == truth.pairs && peer.checksum == truth.checksum;
     }
+    const Answer grid =
+        least_of(rounds, [&] { return ask_ours(crowd, make_grid_phase(kCell_mm)); });
+    same = same && grid.pairs == truth.pairs && grid.checksum == truth.checksum;
     if (!same) report.note(std::string("NOT THE SAME PAIRS: ") + workload.name);
     const double share =
         same ? mean(ours.tick_us) / *std::min_element(peer_us.begin(), peer_us.end()) : 1e9;
     if (workload.asleep) worst = std::max(worst, share);
     report.row({std::string(workload.name), static_cast<double>(ours.pairs) / ticks,
                 mean(ours.tick_us), quantile(ours.tick_us, 0.99), peer_us[0], peer_us[1],
-                peer_us[2], share});
+                peer_us[2], mean(grid.tick_us), share});
   }
   report.bar("broad phase and pair filter, share of FCL's tree where most pairs sleep", worst,
              kBarRatio, BoundKind::kAtMost);

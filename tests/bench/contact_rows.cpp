@@ -4,14 +4,13 @@
 
 #include "common/base/constants.h"
 #include "tests/bench/contact_summary.h"
+#include "tests/bench/score.h"
 #include "tests/bench/sections.h"
 #include "tests/bench/statistics.h"
 #include "tests/unit/ccd/workload.h"
 
 namespace mortise::bench {
 namespace {
-
-constexpr double kFinest_mm = 1e-10;
 
 std::vector<MotionSet> generated_sets(bool quick) {
   const int count = quick ? 12 : 40;
@@ -45,15 +44,6 @@ void add_data_sets(std::vector<MotionSet>& sets, Report& report, bool quick) {
     for (const std::string& id : fit_ids()) add(fit_set(id, count), "fits, " + id);
   for (const std::string& name : testing::workload_names())
     add(measured_set(name, count), "ccd-motions/" + name);
-}
-
-void find_truth(MotionSet& set) {
-  if (set.truth != TruthSource::kFinest) return;
-  const std::vector<Answer> answers = ask_all(ours(set, kFinest_mm), set);
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    set.items[i].contact = answers[i].outcome == Outcome::kContact;
-    if (set.items[i].contact) set.items[i].t_contact = answers[i].t;
-  }
 }
 
 std::vector<Asked> ask_everyone(const MotionSet& set, bool quick) {

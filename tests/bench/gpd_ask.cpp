@@ -11,7 +11,7 @@
 
 namespace mortise::bench {
 
-GpdWord ask_gpd(const GpdPair& pair, Refinement refinement) {
+GpdWord ask_gpd(const GpdPair& pair, Refinement refinement, const GpdWord* first) {
   const SurfaceBand band = nominal_band();
   CcdScratch scratch;
   GpdQuery query;
@@ -24,6 +24,7 @@ GpdWord ask_gpd(const GpdPair& pair, Refinement refinement) {
   if (refinement == Refinement::kFull) query.work_cap *= 10;
   query.motion_a = still_motion(pair.X_WA);
   query.motion_b = still_motion(pair.X_WB);
+  if (first != nullptr && first->depth.motion.moves()) query.known = &first->depth.motion;
   GpdWord word;
   word.overlap = find_overlap(query.overlap, scratch);
   query.regions = word.overlap.regions;
@@ -49,7 +50,7 @@ double holds_beyond_mm(const GpdPair& pair, const GpdWord& word) {
   query.limit_mm = 2.0 * word.depth.gpd_mm.hi;
   CcdScratch scratch;
   std::uint64_t work = 0;
-  return gpd::lower_bound_by_holds_mm(query, scratch, work);
+  return gpd::held_by_balls(query, scratch, work).least_mm;
 }
 
 double search_longer(const GpdPair& pair, const GpdWord& word, int effort) {

@@ -11,7 +11,8 @@ struct GpdWord {
   double time_s = 0.0;  ///< of the generalized depth alone
 };
 
-GpdWord ask_gpd(const GpdPair& pair, Refinement refinement);
+/// `first`: what the lazy search told, where the full one begins.
+GpdWord ask_gpd(const GpdPair& pair, Refinement refinement, const GpdWord* first = nullptr);
 
 /// What holds show when they are asked beyond the motion that is known, mm: were they wrong, it
 /// would be more than that motion is long.

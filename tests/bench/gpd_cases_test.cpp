@@ -21,7 +21,7 @@ struct KnownWay {
 constexpr KnownWay kKnownWays[] = {{"blocks5um", 9.995, 0.9999999}, {"slab_bar", 5.2, 0.9999999},
                                    {"peg_tilt", 0.09526, 0.9},      {"key_turned", 0.17458, 0.5},
                                    {"dshaft", 0.370, 0.0},          {"4pins", 0.010158, 0.9},
-                                   {"hooks", 8.000625, 0.0},        {"gears_close", 0.138145, 0.9}};
+                                   {"hooks", 8.000625, 0.999},        {"gears_close", 0.138145, 0.9}};
 
 Verdict worst_of(World& world, bool full) {
   Scratch scratch;

@@ -26,6 +26,9 @@ double distance_at(const MotionSet& set, std::size_t item, double t) {
       .distance_mm;
 }
 
+// What truth is taken from where there is no other, mm.
+constexpr double kFinest_mm = 1e-10;
+
 const Asked* find(const std::vector<Asked>& all, const std::string& name) {
   for (const Asked& asked : all)
     if (asked.method.name == name) return &asked;
@@ -37,6 +40,15 @@ const Asked* find(const std::vector<Asked>& all, const std::string& name) {
 double truth_error_mm(TruthSource source) {
   // Measured truths end within 1e-7 mm of distance: at grazing angles 1e-5 mm of travel.
   return source == TruthSource::kMeasured ? 1e-5 : 1e-9;
+}
+
+void find_truth(MotionSet& set) {
+  if (set.truth != TruthSource::kFinest) return;
+  const std::vector<Answer> answers = ask_all(ours(set, kFinest_mm), set);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    set.items[i].contact = answers[i].outcome == Outcome::kContact;
+    if (set.items[i].contact) set.items[i].t_contact = answers[i].t;
+  }
 }
 
 double error_mm(const MotionSet& set, std::size_t i, const Answer& answer, double accuracy_mm) {

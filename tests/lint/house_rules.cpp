@@ -68,6 +68,7 @@ struct NamedHere {
 const std::vector<NamedHere>& named_here() {
   static const std::vector<NamedHere> rules = {
       {"FCL", std::regex("fcl/.*"), {"common/broadphase/", "tests/"}},
+      {"libccd", std::regex("ccd/ccd\\.h"), {"tests/bench/"}},
       {"Bullet", std::regex("(Bullet.*|LinearMath)/.*"), {"tests/"}},
       {"assimp",
        std::regex("assimp/.*"),

@@ -103,6 +103,21 @@ std::string region_text(const RegionNames& names, const Verdict& v) {
   return text;
 }
 
+std::string depth_text(const Interval& depth_mm) {
+  if (!(depth_mm.hi > 0.0)) return "free";
+  const std::string least = length_text(depth_mm.lo), most = length_text(depth_mm.hi);
+  if (least == most) return most;
+  return depth_mm.lo > 0.0 ? least + " to " + most : "at most " + most;
+}
+
+// The depth beside its two thresholds: the least bodies have to be moved where the pair is real,
+// the largest ones where it is at least potential. Nothing where they are the parts as modelled.
+std::string layers_text(const LayerDepths& layers) {
+  if (!layers.least_mm || !layers.largest_mm || *layers.least_mm == *layers.largest_mm) return "";
+  return fmt::format("      {:<12}made smallest {}, made largest {}\n", "to be free",
+                     depth_text(*layers.least_mm), depth_text(*layers.largest_mm));
+}
+
 std::string reason_of(const World& world, const PairVerdicts& pair) {
   const PairRule* rule = world.rule(pair.a, pair.b);
   return rule == nullptr ? "" : rule->reason;
@@ -147,6 +162,7 @@ std::string places_text(const World& world, const Clash& clash) {
     text += region_text({clash.number + i, a.name, b.name, blocker != nullptr ? blocker->name : ""},
                         pair.verdicts[i]);
   }
+  text += layers_text(pair.layers);
   if (shown < pair.verdicts.size())
     text += fmt::format("  ... {} more places, none worse; --json lists all\n",
                         pair.verdicts.size() - shown);

@@ -18,10 +18,12 @@ constexpr double kShorter = 0.55;
 constexpr double kRounding_mm = 2e-9, kLeastHold_mm = 1e-9, kLeastDistance_mm = 1e-6;
 // Corners, middles of edges and faces looked at in each part; of the deep ones the deepest few and
 // then every so many.
-constexpr std::size_t kMostLooks = 600, kDeepest = 6, kMostDeep = 20;
+constexpr std::size_t kMostSeen = 16'384, kMostLooks = 600, kDeepest = 6, kMostDeep = 20;
 constexpr double kPlacesReach = 0.05;
 constexpr std::uint32_t kMostPlacePairs = 256;
-constexpr int kBisections = 12;
+constexpr int kBisections = 10;
+// Where the search for the bound begins, as a share of the limit, when nothing is known.
+constexpr double kLeastShare = 1e-4;
 
 // A ball of A around x + t m and one of B, which overlap by e along m.
 struct Hold {
@@ -51,15 +53,24 @@ class Holds {
     collect_from_places();
   }
 
-  double bound_mm() {
-    if (lines_.empty() || !(across_mm_ > 0.0)) return 0.0;
-    double lo = 0.0, hi = query_.limit_mm * (1.0 - 1e-6);
-    if (excludes(hi)) return hi;
-    for (int i = 0; i < kBisections; ++i) {
+  HeldBy bound() {
+    HeldBy held{query_.known_mm, std::nullopt};
+    if (lines_.empty() || !(across_mm_ > 0.0)) return held;
+    // Doubled until it is no longer excluded, then halved.
+    const double limit = query_.limit_mm * (1.0 - 1e-6);
+    double lo = query_.known_mm, hi = std::max(2.0 * lo, kLeastShare * limit);
+    while (hi < limit && excludes(hi)) {
+      lo = hi;
+      hi *= 2.0;
+    }
+    hi = std::min(hi, limit);
+    for (int i = 0; i < kBisections && lo < hi; ++i) {
       const double r = 0.5 * (lo + hi);
       (excludes(r) ? lo : hi) = r;
     }
-    return lo;
+    held.least_mm = lo;
+    if (Vec6 xi; program_.solve(rows_of(lo), xi)) held.twist = xi;
+    return held;
   }
 
  private:
@@ -88,12 +99,16 @@ class Holds {
     if (most > 0.0) across_mm_ = most / (d1 + d2).norm();
   }
 
-  // Does every motion that moves no point by more than r leave an overlap?
-  bool excludes(double r) {
+  // Terms of second order of a motion that moves no point by more than r: θ² / 2.
+  double second_of(double r) const {
     const double sine = r / across_mm_;
-    if (!(sine < 0.7)) return false;
     const double theta = 2.0 * sine / std::sqrt(1.0 - sine * sine);  // above 2 asin
-    const double second = 0.5 * theta * theta;
+    return 0.5 * theta * theta;
+  }
+
+  // What each line asks of such a motion.
+  std::vector<Row> rows_of(double r) const {
+    const double second = second_of(r);
     std::vector<Row> rows(lines_.size());
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const Line& line = lines_[i];
@@ -106,9 +121,15 @@ class Holds {
       rows[i].g << line.m, (line.x - frame_.center_W).cross(line.m) / frame_.radius_mm;
       rows[i].h = most;
     }
+    return rows;
+  }
+
+  // Does every motion that moves no point by more than r leave an overlap?
+  bool excludes(double r) {
+    if (!(r < 0.7 * across_mm_)) return false;
     work_ += 20;
-    const double limit = r + second * arm_mm_;
-    return program_.lower_bound_mm(rows, limit) > limit;
+    const double limit = r + second_of(r) * arm_mm_;
+    return program_.lower_bound_mm(rows_of(r), limit) > limit;
   }
 
   SurfacePoint at(int part, const Vec3& x_W) {
@@ -170,13 +191,17 @@ class Holds {
     const Pose& back = part == 0 ? back_B_ : back_A_;
     const Box& other = (part == 0 ? query_.b : query_.a)->bounds();
     std::vector<Look> looks;
+    // Of a large mesh every so many are enough.
+    const std::size_t every =
+        std::max<std::size_t>(1, (mesh.points_mm.size() + 4 * mesh.triangles.size()) / kMostSeen);
     const auto look = [&](const Vec3& x_W, const Vec3& n) {
       const Vec3 y = back * x_W;
       if ((y.array() >= other.lo.array()).all() && (y.array() <= other.hi.array()).all())
         looks.push_back({x_W, n, 0.0});
     };
-    for (const Vec3& p : mesh.points_mm) look(X * p, Vec3::Zero());
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < mesh.points_mm.size(); i += every)
+      look(X * mesh.points_mm[i], Vec3::Zero());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); t += static_cast<std::uint32_t>(every)) {
       const Vec3 p = X * mesh.corner(t, 0), q = X * mesh.corner(t, 1), r = X * mesh.corner(t, 2);
       const Vec3 n = (q - p).cross(r - p).stableNormalized();
       for (const Vec3& x :
@@ -233,8 +258,8 @@ class Holds {
 
 }  // namespace
 
-double lower_bound_by_holds_mm(const HoldsQuery& query, CcdScratch& scratch, std::uint64_t& work) {
-  return Holds(query, scratch, work).bound_mm();
+HeldBy held_by_balls(const HoldsQuery& query, CcdScratch& scratch, std::uint64_t& work) {
+  return Holds(query, scratch, work).bound();
 }
 
 }  // namespace mortise::gpd

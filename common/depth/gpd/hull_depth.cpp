@@ -15,11 +15,10 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 // A facet is no facet when its height is below this share of its longest edge.
 constexpr double kSliver = 1e-11;
 
-// b - a for all points of the hulls: A may be moved by t without overlap when t is outside.
+// b - a for all points of the bodies: A may be moved by t without overlap when t is outside.
 class Difference {
  public:
-  Difference(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB)
-      : a_(a), b_(b), X_A_(X_WA), X_B_(X_WB) {}
+  Difference(const ConvexBody& a, const ConvexBody& b) : a_(a), b_(b) {}
 
   struct Point {
     Vec3 x;
@@ -27,16 +26,13 @@ class Difference {
   };
   Point farthest(const Vec3& n_W) {
     ++asked;
-    const Vec3 on_a = X_A_ * farthest_corner(a_.bvh(), a_.outline(), -(X_A_.q.conjugate() * n_W));
-    const Vec3 on_b = X_B_ * farthest_corner(b_.bvh(), b_.outline(), X_B_.q.conjugate() * n_W);
-    const Vec3 x = on_b - on_a;
+    const Vec3 x = b_.farthest(n_W) - a_.farthest(-n_W);
     return {x, n_W.dot(x)};
   }
   std::uint64_t asked = 0;
 
  private:
-  const Solid &a_, &b_;
-  const Pose &X_A_, &X_B_;
+  const ConvexBody &a_, &b_;
 };
 
 struct Facet {
@@ -189,14 +185,29 @@ bool spanning(Difference& difference, double least_mm, std::array<Vec3, 4>& corn
 
 }  // namespace
 
-HullDepth hull_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                     double accuracy_mm, int most_supports) {
-  const double size_mm = a.sphere().radius_mm + b.sphere().radius_mm;
-  const Vec3 apart = X_WA * a.sphere().center_mm - X_WB * b.sphere().center_mm;
-  const double rounding_mm =
-      kRoundingFactor * kUnitRoundoff *
-      (2.0 * size_mm + X_WA.p.norm() + X_WB.p.norm() + a.bvh().extent_mm + b.bvh().extent_mm);
-  Difference difference(a, X_WA, b, X_WB);
+ConvexBody hull_of(const Solid& part, const Pose& X_W) {
+  return {[&part, &X_W](const Vec3& n_W) -> Vec3 {
+            return X_W * farthest_corner(part.bvh(), part.outline(), X_W.q.conjugate() * n_W);
+          },
+          X_W* part.sphere().center_mm, part.sphere().radius_mm,
+          X_W.p.norm() + part.bvh().extent_mm};
+}
+
+ConvexBody hull_of(const ConvexCell& cell, const Pose& X_W) {
+  double radius_mm = 0.0;
+  for (const Vec3& x : cell.corners) radius_mm = std::max(radius_mm, (x - cell.middle).norm());
+  return {[&cell, &X_W](const Vec3& n_W) -> Vec3 {
+            return X_W * cell.farthest(X_W.q.conjugate() * n_W);
+          },
+          X_W* cell.middle, radius_mm, X_W.p.norm() + cell.middle.norm() + radius_mm};
+}
+
+HullDepth hull_depth(const ConvexBody& a, const ConvexBody& b, double accuracy_mm,
+                     int most_supports) {
+  const Vec3 apart = a.middle_W - b.middle_W;
+  const double rounding_mm = kRoundingFactor * kUnitRoundoff *
+                             (2.0 * (a.radius_mm + b.radius_mm) + a.scale_mm + b.scale_mm);
+  Difference difference(a, b);
   HullDepth result;
   result.normal_W = apart.norm() > 0.0 ? Vec3(apart.normalized()) : Vec3(Vec3::UnitZ());
   result.depth_mm = {0.0, std::max(0.0, difference.farthest(result.normal_W).height)};

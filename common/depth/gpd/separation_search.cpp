@@ -32,7 +32,7 @@ constexpr int kIdleSteps = 2;
 // Starts no worse than this times the best are descended from, so many whose directions differ.
 constexpr double kWorthDescent = 2.5, kAlike = 0.05;
 constexpr std::size_t kDescents = 3, kThoroughDescents = 8;
-constexpr std::uint32_t kMostPlacePairs = 1024;
+constexpr std::uint32_t kMostPlacePairs = 4096;
 // No more of a turn is looked at, rad.
 constexpr double kMostTurn_rad = 3.0;
 // Lengths tried along a twist grow by this factor.
@@ -43,6 +43,8 @@ constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
 constexpr std::uint64_t kFreeWork = 4, kPlacesWork = 20, kProgramWork = 10;
 constexpr std::uint64_t kTestsAWorkUnit = 8;
+// In meshes of so many triangles together every question takes once as long again.
+constexpr std::uint64_t kLargeMesh = 8'192;
 
 // Uniform numbers from a fixed seed (Knuth's 64-bit linear congruence).
 class Random {
@@ -70,17 +72,20 @@ class Search {
         frame_(*query.a, query.X_WA),
         program_(frame_, corners_W()),
         size_mm_(2.0 * (query.a->sphere().radius_mm + query.b->sphere().radius_mm)),
-        scale_mm_(std::max({query.least_mm, 1e-6 * size_mm_, 1e-6})) {}
+        scale_mm_(std::max({query.least_mm, 1e-6 * size_mm_, 1e-6})),
+        unit_(1 +
+              (query.a->mesh().triangles.size() + query.b->mesh().triangles.size()) / kLargeMesh) {}
 
   Separation run() {
     // Of several along one line the first that is free says it all.
-    for (const Vec6& start : query_.starts)
-      if (length(start) < best_.length_mm && is_free(start)) offer(start);
-    push_and_descend();
-    if (!done()) sweep_back();
-    if (!done() && (query_.thorough || best_.length_mm > kFar * scale_mm_)) try_turns();
-    if (!done()) descend_from_best();
-    best_.work = work_;
+    bool descended = query_.first_is_descended;
+    for (const Vec6& start : query_.starts) {
+      if (length(start) < best_.length_mm && is_free(start)) offer(start, descended);
+      descended = false;
+    }
+    if (query_.looking != Looking::kFar) push_and_descend();
+    if (query_.looking != Looking::kNear) look_far();
+    best_.work = work_ * unit_;
     return best_;
   }
 
@@ -97,7 +102,7 @@ class Search {
     return corners;
   }
   bool done() const { return best_.length_mm <= query_.enough_mm || out_of_work(); }
-  bool out_of_work() const { return work_ >= query_.work_cap; }
+  bool out_of_work() const { return work_ * unit_ >= query_.work_cap; }
 
   double length(const Vec6& xi) const {
     return longest_path_mm(*query_.a, query_.X_WA, frame_, xi);
@@ -197,6 +202,12 @@ class Search {
       if (is_free(xi)) return true;
     }
     return false;
+  }
+
+  void look_far() {
+    if (!done()) sweep_back();
+    if (!done() && (query_.thorough || best_.length_mm > kFar * scale_mm_)) try_turns();
+    if (!done()) descend_from_best();
   }
 
   void push_and_descend() {
@@ -340,6 +351,7 @@ class Search {
   const TwistFrame frame_;
   Minimax program_;
   const double size_mm_, scale_mm_;
+  const std::uint64_t unit_;
   std::vector<Found> found_;
   Separation best_;
   std::uint64_t work_ = 0;

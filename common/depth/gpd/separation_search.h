@@ -9,6 +9,10 @@
 
 namespace mortise::gpd {
 
+/// Where motions are looked for. kNear: the starts as they are, and pushes from where the parts
+/// stand. kFar: sweeps from afar, turns, and descents from the best of them.
+enum class Looking : std::uint8_t { kNear, kFar, kEverywhere };
+
 /// Part A is moved, B stays. World frame.
 struct SeparationQuery {
   const Solid* a = nullptr;
@@ -19,6 +23,8 @@ struct SeparationQuery {
   double least_mm = 0.0;  ///< no motion that parts them is known to be shorter; scale of the search
   double enough_mm = 0.0;  ///< a motion of this length ends the search
   bool thorough = false;   ///< turns and random twists as well
+  Looking looking = Looking::kEverywhere;
+  bool first_is_descended = false;  ///< the first start is the end of a descent
   std::uint64_t work_cap = std::numeric_limits<std::uint64_t>::max();
 };
 

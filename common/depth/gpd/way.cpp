@@ -1,6 +1,9 @@
 #include "common/depth/gpd/way.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "common/depth/gpd/separation_search.h"
 
 namespace mortise {
 namespace {
@@ -31,6 +34,9 @@ bool deeper_along(OverlapQuery query, const Motion& path, bool of_b, double t_en
   }
   return false;
 }
+
+// Two directions are one, or opposite, when they differ by no more (cosine).
+constexpr double kOneLine = 1.0 - 1e-8;
 
 }  // namespace
 
@@ -79,6 +85,43 @@ std::optional<double> met_on_way(const Solid& part, const Pose& X_WP,
   const double most_mm = depth_at(overlap, scratch).hi;
   if (deeper_along(overlap, query.motion_a, false, 1.0, most_mm, scratch)) return 0.0;
   return std::nullopt;
+}
+
+std::vector<SeparatingMotion> ways_as_long(const OverlapQuery& start,
+                                           const SeparatingMotion& motion, double length_mm,
+                                           CcdScratch& scratch) {
+  const Solid &mover = motion.of_b ? *start.b : *start.a,
+              &other = motion.of_b ? *start.a : *start.b;
+  const Pose &X_mover = motion.of_b ? start.X_WB : start.X_WA,
+             &X_other = motion.of_b ? start.X_WA : start.X_WB;
+  std::vector<SeparatingMotion> ways;
+  const auto try_way = [&](const Vec3& shift, const Vec3& turn) {
+    SeparatingMotion way = motion;
+    way.translation_mm = shift;
+    way.rotation_rad = turn;
+    if (longest_path_mm(mover, X_mover, way) <= length_mm * (1.0 + 1e-9) &&
+        gpd::is_apart(mover, way.displacement() * X_mover, other, X_other, scratch))
+      ways.push_back(way);
+  };
+  if (!motion.rotation_rad.isZero(0.0)) {
+    try_way(-motion.translation_mm, motion.rotation_rad);
+    try_way(motion.translation_mm, -motion.rotation_rad);
+    try_way(-motion.translation_mm, -motion.rotation_rad);
+  }
+  std::vector<Vec3> lines;
+  const auto add_line = [&](const Vec3& d) {
+    if (std::none_of(lines.begin(), lines.end(),
+                     [&](const Vec3& line) { return std::fabs(line.dot(d)) > kOneLine; }))
+      lines.push_back(d);
+  };
+  if (motion.rotation_rad.isZero(0.0)) add_line(motion.translation_mm.normalized());
+  for (const Vec3& n : mover.outline().main_normals) add_line(X_mover.q * n);
+  for (const Vec3& n : other.outline().main_normals) add_line(X_other.q * n);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (const double sign : {-1.0, 1.0})
+      if (i > 0 || sign < 0.0 || !motion.rotation_rad.isZero(0.0))
+        try_way(sign * length_mm * lines[i], Vec3::Zero());
+  return ways;
 }
 
 }  // namespace mortise

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "common/depth/generalized_depth.h"
 
@@ -19,5 +20,13 @@ bool way_goes_deeper(const OverlapQuery& start, double depth_mm, const Separatin
 std::optional<double> met_on_way(const Solid& part, const Pose& X_WP,
                                  const SeparatingMotion& motion, const Solid& other,
                                  const Pose& X_WO, CcdScratch& scratch);
+
+/// Other motions that part the pair as well and are no longer than length_mm, the longest path of
+/// `motion`, but for rounding: straight ones of that length along the main faces of both parts, and
+/// `motion` with its shift, its turn or both reversed. Verified at their ends. Cost: some twenty
+/// tests whether the meshes cross.
+std::vector<SeparatingMotion> ways_as_long(const OverlapQuery& start,
+                                           const SeparatingMotion& motion, double length_mm,
+                                           CcdScratch& scratch);
 
 }  // namespace mortise

@@ -52,6 +52,8 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Close
   judged.verdicts.a = a.id;
   judged.verdicts.b = b.id;
   judged.verdicts.no_inside = judgement.overlap.no_inside;
+  if (closeness.refinement == Refinement::kFull && !judgement.verdicts.empty())
+    judged.verdicts.layers = depths_of_layers(query, judgement, ccd);
   judged.verdicts.verdicts = std::move(judgement.verdicts);
   if (judged.verdicts.verdicts.empty() &&
       containment(*a.solid, a.X_WP, *b.solid, b.X_WP, kAccuracyDefault_mm) ==
@@ -77,7 +79,11 @@ void look_along_ways(const World& world, PairVerdicts& pair, CcdScratch& ccd) {
     if (looked == nullptr) {
       look_along_way(world, pair.a, pair.b, depth_mm, verdict, ccd);
       looked = &verdict;
+      continue;
     }
+    verdict.separation_way = looked->separation_way;
+    verdict.separation_translation_mm = looked->separation_translation_mm;
+    verdict.separation_rotation_rad = looked->separation_rotation_rad;
     verdict.separation_path = looked->separation_path;
     verdict.separation_blocker = looked->separation_blocker;
   }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/broadphase/broad_phase.h"
+#include "common/depth/gpd/layer_depth.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {
@@ -16,6 +17,8 @@ struct PairVerdicts {
   bool no_inside = false;
   /// One lies where the inside of the other is not known: nobody can say that they are apart.
   bool not_examined = false;
+  /// The generalized depth of the least and of the largest bodies; with full brackets only.
+  LayerDepths layers;
   /// The pair whose verdicts these are, moved here; none: judged itself.
   PartId like_a, like_b;
 };

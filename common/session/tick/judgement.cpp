@@ -280,6 +280,31 @@ Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
   return judgement;
 }
 
+LayerDepths depths_of_layers(const JudgementQuery& query, const Judgement& judgement,
+                             CcdScratch& scratch) {
+  if (!query.a->solid->inside_known() || !query.b->solid->inside_known()) return {};
+  if (judgement.verdicts.empty() ||
+      judgement.verdicts.front().collision_class == CollisionClass::kFake)
+    return {Interval{}, Interval{}};
+  if (band_a_of(query).trivial && band_b_of(query).trivial) {
+    const Interval& mesh = judgement.verdicts.front().gpd_mm;
+    return {mesh, mesh};
+  }
+  GpdQuery gpd;
+  gpd.overlap = overlap_query(query);
+  gpd.b_moves = b_is_moved(query);
+  gpd.motion_a = query.motion_a;
+  gpd.motion_b = query.motion_b;
+  gpd.t_contact = query.t_contact;
+  LayerDepths layers = depths_of_layers(query.a->solid, query.b->solid, gpd, scratch);
+  if (!layers.least_mm) return layers;
+  Interval &least = *layers.least_mm, &most = *layers.largest_mm;
+  for (const OverlapRegion& region : judgement.overlap.regions)
+    if (region.has_witness) least.lo = std::clamp(region.certain_mm.lo, least.lo, least.hi);
+  most.lo = std::clamp(least.lo, most.lo, most.hi);
+  return layers;
+}
+
 void count(const JudgementQuery& query, const Judgement& judgement, StepCounters& counts) {
   ++counts.depth_queries;
   ++(band_a_of(query).trivial && band_b_of(query).trivial ? counts.judged_plain

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "common/depth/generalized_depth.h"
+#include "common/depth/gpd/layer_depth.h"
 #include "common/depth/overlap.h"
 #include "common/evaluation/verdict.h"
 #include "common/session/world/world.h"
@@ -33,6 +34,12 @@ const SurfaceBand& band_a_of(const JudgementQuery& query);
 const SurfaceBand& band_b_of(const JudgementQuery& query);
 
 Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch);
+
+/// The generalized depth of the pair made smallest and made largest, beside what was judged of it:
+/// of a fake both are zero, and what is certain is a part of the first. Not of parts without an
+/// inside.
+LayerDepths depths_of_layers(const JudgementQuery& query, const Judgement& judgement,
+                             CcdScratch& scratch);
 
 /// Adds the counters of one judgement.
 void count(const JudgementQuery& query, const Judgement& judgement, StepCounters& counts);

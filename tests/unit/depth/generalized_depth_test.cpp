@@ -195,6 +195,22 @@ TEST(GeneralizedDepth, TheShorterWayAlongTheAxisAnywhereInTheWorld) {
   }
 }
 
+// A slack peg that leans in its bore comes free by a small turn and shift, however many facets
+// stand for it: no motion of less than 0.199 mm does.
+TEST(GeneralizedDepth, ALeaningPegIsTurnedBack) {
+  for (const int facets : {24, 48, 96}) {
+    MovedPair s{solid(peg({9.95, 0, 40, facets, 3, 0})),
+                solid(ring({10, 0, 20, facets, 2, 0}, 20))};
+    s.motion_a = still_motion({rotation_exp({0.01, 0, 0}), {0, 0, -5}});
+    s.refinement = Refinement::kDecided;
+    const GeneralizedDepth gpd = depth_of(s);
+    EXPECT_GT(gpd.gpd_mm.lo, 0.197) << facets;
+    EXPECT_LT(gpd.gpd_mm.hi, 0.281) << facets;
+    EXPECT_EQ(gpd.way, SeparationWay::kFitted) << facets;
+    expect_parts(s, gpd);
+  }
+}
+
 // A bottom of the hole does not matter when the way out is the way it came.
 TEST(GeneralizedDepth, ABlindHoleIsLeftUpwards) {
   MovedPair s = Standing(15).scene;

@@ -64,6 +64,57 @@ TEST(WayOut, TellsTheFirstPartThatStandsInIt) {
   EXPECT_EQ(path({nearest, near}), std::pair(SeparationPath::kBlocked, 3U));
 }
 
+// A cube in the middle of a slab comes out to either side by 1.5 mm: to the side that is free.
+TEST(WayOut, OfTwoThatAreAsLongIsTheOneThatIsFree) {
+  const auto told = [](const std::vector<double>& sides) {
+    SessionBuilder session;
+    session.add("a", cube_mesh(1.0), Pose(), true);
+    session.add("slab", box_mesh({-1, -9, -9}, {1, 9, 9}), Pose(), false);
+    for (const double side : sides)
+      session.add("other", cube_mesh(1.0), Pose::translation({2.2 * side, 0, 0}), false);
+    Scratch scratch;
+    const JudgeReport report = judge_world(session.world, scratch, false);
+    return report.pairs.front().verdicts.front();
+  };
+  EXPECT_EQ(told({}).separation_path, SeparationPath::kFree);
+  for (const double side : {1.0, -1.0}) {
+    const Verdict v = told({side});
+    EXPECT_EQ(v.separation_path, SeparationPath::kFree) << side;
+    EXPECT_EQ(v.separation_way, SeparationWay::kNormal) << side;
+    EXPECT_FALSE(v.separation_blocker) << side;
+    EXPECT_NEAR(v.gpd_mm.hi, 1.5, 1e-6);
+    EXPECT_NEAR(v.separation_translation_mm.x(), -1.5 * side, 1e-6);
+  }
+  // Where both are blocked what stands in the first is told.
+  EXPECT_EQ(told({1.0, -1.0}).separation_path, SeparationPath::kBlocked);
+}
+
+// Faces of ±0.02 on both parts: 0.1 as modelled, 0.06 made smallest, 0.14 made largest; 0.05 apart
+// nothing, and with ±0.03 at most 0.01. Told with full brackets only.
+TEST(WayOut, IsBracketedByTheLeastAndTheLargestBodies) {
+  const auto layers = [](double x_mm, double tolerance_mm, bool full) {
+    SessionBuilder session;
+    const PartId a = session.add("a", cube_mesh(2.0), Pose::translation({x_mm, 0, 0}), true);
+    const PartId wall = session.add("wall", box_mesh({0, -9, -9}, {9, 9, 9}), Pose(), false);
+    session.set_tolerance(a, tolerance_mm);
+    session.set_tolerance(wall, tolerance_mm);
+    Scratch scratch;
+    const JudgeReport report = judge_world(session.world, scratch, full);
+    return report.pairs.empty() ? LayerDepths() : report.pairs.front().layers;
+  };
+  const LayerDepths deep = layers(-0.9, 0.02, true), near = layers(-1.05, 0.03, true);
+  ASSERT_TRUE(deep.least_mm && deep.largest_mm && near.least_mm && near.largest_mm);
+  EXPECT_NEAR(deep.least_mm->lo, 0.06, 1e-6);
+  EXPECT_NEAR(deep.least_mm->hi, 0.06, 1e-6);
+  EXPECT_NEAR(deep.largest_mm->lo, 0.14, 1e-6);
+  EXPECT_NEAR(deep.largest_mm->hi, 0.14, 1e-6);
+  EXPECT_EQ(*near.least_mm, Interval{});
+  EXPECT_NEAR(near.largest_mm->lo, 0.01, 1e-6);
+  EXPECT_NEAR(near.largest_mm->hi, 0.01, 1e-6);
+  EXPECT_FALSE(layers(-0.9, 0.02, false).least_mm);
+  EXPECT_FALSE(layers(-1.05, 0.02, true).least_mm) << "nothing is told of parts that are apart";
+}
+
 TEST(WayOut, AppliedItFreesTheParts) {
   CubeInWall scene;
   const SeparatingMotion motion = way_out(scene.worst());
