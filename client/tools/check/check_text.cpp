@@ -269,6 +269,7 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   const SessionNames names = names_of(opened.scene.world);
   const CheckCounts& c = report.counts;
   Json json;
+  json["schema"] = "mortise/check/1";
   json["counts"] = {{"unexplained_real", c.unexplained_real},
                     {"explained_real", c.explained_real},
                     {"potential", c.potential},
@@ -305,7 +306,11 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
     for (const auto& [a, b] : pair.all)
       entry["instances"].push_back(Json::array({names.part(a), names.part(b)}));
     entry["verdicts"] = Json::array();
-    for (const Verdict& verdict : pair.verdicts) entry["verdicts"].push_back(json_of(verdict));
+    for (const Verdict& verdict : pair.verdicts) {
+      entry["verdicts"].push_back(json_of(verdict));
+      if (verdict.separation_blocker)
+        entry["verdicts"].back()["separation"]["blocker"] = names.part(verdict.separation_blocker);
+    }
     json["pairs"].push_back(std::move(entry));
   }
   json["min_gap_mm"] = report.min_gap_mm;
