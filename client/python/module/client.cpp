@@ -23,7 +23,7 @@ auto waiting(Call call) {
   return call();
 }
 
-void bind_values(py::module_& module) {
+void bind_live_values(py::module_& module) {
   py::class_<LivePart>(module, "LivePart", "What a client knows of a part.")
       .def_readonly("name", &LivePart::name)
       .def_property_readonly("pose", [](const LivePart& part) { return matrix_of(part.X_WP); })
@@ -55,7 +55,7 @@ void bind_values(py::module_& module) {
 }  // namespace
 
 void bind_client(py::module_& module) {
-  bind_values(module);
+  bind_live_values(module);
   module.def("join", &join, py::arg("user"), py::arg("options"));
   py::class_<Client>(module, "RawClient")
       .def("parts", &Client::parts)

@@ -35,7 +35,7 @@ py::dict tables_of(const Log& log) {
   return tables;
 }
 
-void bind_check(py::module_& module) {
+void bind_options(py::module_& module) {
   py::class_<CheckOptions>(module, "CheckOptions")
       .def(py::init<>())
       .def_readwrite("min_gap_mm", &CheckOptions::min_gap_mm)
@@ -48,6 +48,9 @@ void bind_check(py::module_& module) {
       .def_readwrite("html", &CheckOptions::html)
       .def_readwrite("threads", &CheckOptions::threads)
       .def("set_unit", [](CheckOptions& o, const std::string& unit) { o.unit = unit_named(unit); });
+}
+
+void bind_pair(py::module_& module) {
   py::class_<CheckedPair>(module, "CheckedPair", "Two parts and what they are to each other.")
       .def_readonly("part_a", &CheckedPair::part_a, "path in the tree")
       .def_readonly("part_b", &CheckedPair::part_b, "path in the tree")
@@ -75,6 +78,9 @@ void bind_check(py::module_& module) {
                (p.contact ? std::string("contact") : api::name_of(p.collision_class)) + ": " +
                p.part_a + " × " + p.part_b + ", " + p.relation + ">";
       });
+}
+
+void bind_report(py::module_& module) {
   py::class_<CheckReport>(module, "CheckReport", "What check() found.")
       .def_readonly("pairs", &CheckReport::pairs, "in the order in which a designer reads them")
       .def_property_readonly(
@@ -104,9 +110,7 @@ void bind_check(py::module_& module) {
   module.def("check", &check, py::arg("files"), py::arg("options"));
 }
 
-}  // namespace
-
-void bind_files(py::module_& module) {
+void bind_reading(py::module_& module) {
   module.def(
       "load",
       [](const std::string& file, const std::string& unit) {
@@ -140,7 +144,15 @@ void bind_files(py::module_& module) {
         return give(std::move(svg));
       },
       py::arg("a"), py::arg("b"), py::arg("fit"), py::arg("X_WA"), py::arg("X_WB"));
-  bind_check(module);
+}
+
+}  // namespace
+
+void bind_files(py::module_& module) {
+  bind_reading(module);
+  bind_options(module);
+  bind_pair(module);
+  bind_report(module);
   py::class_<Log>(module, "RawLog")
       .def_readonly("session", &Log::session)
       .def_readonly("complete", &Log::complete)

@@ -28,9 +28,7 @@ Pushed push(Session& session, PartRef part, const py::object& motion) {
   return pushed;
 }
 
-}  // namespace
-
-void bind_session(py::module_& module) {
+void bind_session_values(py::module_& module) {
   py::class_<PartRef>(module, "PartRef", "A part of a session.")
       .def_readonly("value", &PartRef::value)
       .def("__bool__", [](PartRef ref) { return static_cast<bool>(ref); });
@@ -41,12 +39,10 @@ void bind_session(py::module_& module) {
       .def_readonly("clashes", &Pushed::clashes, "open ones of the part, the worst first")
       .def_readonly("state_hash", &Pushed::state_hash,
                     "of the whole session: the same pushes give the same");
-  py::class_<Session>(module, "Session",
-                      "Parts that users hold and push in this process, each collision judged.")
-      .def(py::init(&session_of), py::arg("policy") = "stop", py::arg("max_jump_mm") = 50.0,
-           py::arg("threads") = 1)
-      .def("add", &add, py::arg("part"), py::arg("pose") = py::none(), py::arg("fixed") = false,
-           "Adds a part; a fixed one stands.")
+}
+
+void bind_statements(py::class_<Session>& session) {
+  session
       .def(
           "fit",
           [](Session& s, PartRef a, const std::string& feature_a, PartRef b,
@@ -66,7 +62,21 @@ void bind_session(py::module_& module) {
           [](Session& s, PartRef a, PartRef b, const std::string& reason) {
             give(s.exclude(a, b, reason));
           },
-          py::arg("a"), py::arg("b"), py::arg("reason") = "excluded", "The pair is never judged.")
+          py::arg("a"), py::arg("b"), py::arg("reason") = "excluded", "The pair is never judged.");
+}
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+  bind_session_values(module);
+  py::class_<Session> session(
+      module, "Session", "Parts that users hold and push in this process, each collision judged.");
+  bind_statements(session);
+  session
+      .def(py::init(&session_of), py::arg("policy") = "stop", py::arg("max_jump_mm") = 50.0,
+           py::arg("threads") = 1)
+      .def("add", &add, py::arg("part"), py::arg("pose") = py::none(), py::arg("fixed") = false,
+           "Adds a part; a fixed one stands.")
       .def(
           "hold",
           [](Session& s, const std::string& user, PartRef part) {
