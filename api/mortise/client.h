@@ -10,10 +10,10 @@ struct ClientOptions {
   std::string session = "default";      ///< its name
   int domain = 0;                       ///< 0 to 232
   std::string interface = "127.0.0.1";  ///< own IPv4 address
-  std::string server;                   ///< hosts that may lead it, comma between; empty: this one
-  std::string discovery_server;         ///< HOST[:PORT], comma between; empty: none
+  std::string server = {};              ///< hosts that may lead it, comma between; empty: this one
+  std::string discovery_server = {};    ///< HOST[:PORT], comma between; empty: none
   int discovery_port = 0;               ///< of the server; 0: by the domain
-  std::string keys;                     ///< folder of an identity; empty: none
+  std::string keys = {};                ///< folder of an identity; empty: none
   std::string role = "designer";        ///< designer, observer or bot
   double wait_s = 10.0;                 ///< for the server and the answer
 };

@@ -31,16 +31,16 @@ Status save_stl(const Part& part, const std::string& file);
 
 /// How an assembly is checked.
 struct CheckOptions {
-  double min_gap_mm = 0.0;              ///< list pairs that are nearer; 0: as the scenario says
-  std::vector<std::string> no_explain;  ///< relations that explain no overlap: "thread"
-  std::vector<std::string> bought;      ///< paths or products whose inside is muted, '*' allowed
-  std::string general;                  ///< general tolerance of a STEP file: "ISO 2768-m"
-  std::string fit;                      ///< of meshes: "H7/g6"
-  Unit unit = mm;                       ///< of meshes
-  std::string baseline;                 ///< an older --json report: adds what is new and gone
-  bool exact_volumes = true;            ///< ask OpenCASCADE where an explanation needs a volume
-  bool html = false;                    ///< also make the page with pictures
-  int threads = 2;                      ///< 1 to 256; the answer does not depend on it
+  double min_gap_mm = 0.0;  ///< list pairs that are nearer; 0: as the scenario says
+  std::vector<std::string> no_explain = {};  ///< relations that explain no overlap: "thread"
+  std::vector<std::string> bought = {};  ///< paths or products whose inside is muted, '*' allowed
+  std::string general = {};              ///< general tolerance of a STEP file: "ISO 2768-m"
+  std::string fit = {};                  ///< of meshes: "H7/g6"
+  Unit unit = mm;                        ///< of meshes
+  std::string baseline = {};             ///< an older --json report: adds what is new and gone
+  bool exact_volumes = true;             ///< ask OpenCASCADE where an explanation needs a volume
+  bool html = false;                     ///< also make the page with pictures
+  int threads = 2;                       ///< 1 to 256; the answer does not depend on it
 };
 
 /// Two parts of an assembly and what they are to each other.

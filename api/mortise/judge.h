@@ -54,7 +54,7 @@ struct Clash {
 
 /// How a pair is judged.
 struct JudgeOptions {
-  std::string fit;               ///< of hole and shaft, "H7/g6" or "Ø20 H7/g6"; empty: none
+  std::string fit = {};          ///< of hole and shaft, "H7/g6" or "Ø20 H7/g6"; empty: none
   Pose X_WA = Pose::Identity();  ///< where A stands
   Pose X_WB = Pose::Identity();  ///< where B stands
   bool full = false;             ///< refine every bracket to 1e-4 mm
@@ -96,10 +96,10 @@ struct Motion {
   /// kLinear: the reference point moves straight, the part turns about it at constant speed.
   /// kScrew: the part turns about and slides along one axis.
   enum class Path : std::uint8_t { kLinear, kScrew };
-  Pose X_W0 = Pose::Identity();     ///< start
-  Pose X_W1 = Pose::Identity();     ///< end; less than half a turn from the start
-  Path path = Path::kLinear;        ///< between them
-  std::optional<Vec3> reference_P;  ///< none: the centre of the part's bounding sphere
+  Pose X_W0 = Pose::Identity();          ///< start
+  Pose X_W1 = Pose::Identity();          ///< end; less than half a turn from the start
+  Path path = Path::kLinear;             ///< between them
+  std::optional<Vec3> reference_P = {};  ///< none: the centre of the part's bounding sphere
 };
 
 /// How first contact is asked.
