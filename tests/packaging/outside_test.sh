@@ -11,7 +11,7 @@ server=
 trap '[ -z "$server" ] || kill -INT "$server" 2>/dev/null || true; rm -rf "$work"' EXIT
 prefix=$work/prefix
 say() { "$@" >"$work/said.txt" 2>&1; }
-say cmake --build "$build" --target shared_libraries || fail "the shared libraries"
+say cmake --build "$build" --target shared_libraries package_changelog sbom || fail "the shared libraries"
 install() { for component in "$@"; do say cmake --install "$build" --prefix "$prefix" --component "$component" || fail "install $component"; done; }
 
 # 1. the engine alone: six headers, which name Eigen and nothing else
