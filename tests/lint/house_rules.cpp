@@ -54,6 +54,13 @@ const std::vector<Room> kRooms = {
     {"client/replay/", {"client/", "client/report/", "common/io/"}},
     {"client/tools/", {"client/", "client/picture/", "common/io/"}},
     {"client/tools/check/", {"client/tools/", "client/report/"}},
+    {"api/",
+     {"api/mortise", "client/", "client/tools/check/", "client/tools/", "client/report/",
+      "client/picture/", "common/io/", "idl/"}},
+    // What other programs see names nothing of the house, and neither do they.
+    {"api/mortise", {}},
+    {"api/examples", {}},
+    {"client/python/", {}},
     {"tests/",
      {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/replay/",
       "client/report/", "client/picture/", "client/tools/", "client/tools/check/", "tests/"}},
@@ -91,6 +98,7 @@ const std::vector<NamedHere>& named_here() {
        std::regex("openssl/.*"),
        {"client/web/", "idl/identity.", "tests/network/page_client."}},
       {"Cairo", std::regex("cairo.*"), {"client/picture/canvas.cpp"}},
+      {"pybind11", std::regex("pybind11/.*"), {"client/python/"}},
       {"CLI11", std::regex("CLI/.*"), {"common/io/usage.", "tests/bench/"}},
   };
   return rules;

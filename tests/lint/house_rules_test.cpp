@@ -109,6 +109,18 @@ TEST_F(PlantedTree, TheWireKnowsNoEngine) {
   write("idl/topics.cpp", "#include \"common/session/tick/step.h\"\n");
   expect_one("idl/topics.cpp:1", "idl/ may not include common/session/");
 }
+TEST_F(PlantedTree, HeadersForOthersShowNothingOfTheHouse) {
+  write("api/README.md", "# api\n");
+  write("api/part.cpp", "#include \"common/io/scenario/open_scene.h\"\n");
+  write("api/mortise/io.h", "#include <mortise/judge.h>\n#include \"common/math/pose.h\"\n");
+  expect_one("api/mortise/io.h:2", "api/mortise may not include common/math/");
+}
+TEST_F(PlantedTree, PythonSeesTheDoorAlone) {
+  write("client/python/README.md", "# python\n");
+  write("client/python/module/parts.cpp",
+        "#include <mortise/mortise.h>\n#include \"client/client.h\"\n");
+  expect_one("client/python/module/parts.cpp:2", "client/python/ may not include client/");
+}
 TEST_F(PlantedTree, LibrariesInTheirRooms) {
   const std::vector<std::pair<std::string, std::string>> planted = {
       {"fcl/fcl.h", "FCL"},
@@ -116,6 +128,7 @@ TEST_F(PlantedTree, LibrariesInTheirRooms) {
       {"assimp/Importer.hpp", "assimp"},
       {"TopoDS_Shape.hxx", "OpenCASCADE"},
       {"yaml-cpp/yaml.h", "yaml-cpp"},
+      {"pybind11/pybind11.h", "pybind11"},
       {"fastdds/dds.hpp", "Fast DDS"},
       {"fastrtps/utils.h", "Fast DDS"},
       {"spdlog/spdlog.h", "spdlog"}};

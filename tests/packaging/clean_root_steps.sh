@@ -131,8 +131,8 @@ session() {  # what the packages are for, with keys and without
     said=$(mortise-directory --domain 7 --discovery-server localhost --wait 2 $(with anna) 2>&1) || fail "mortise-directory, keys: $keys: $said"
     grep -qw "$keys" <<<"$said" || fail "mortise-directory does not see the session: $said"
     if [ $keys = no ]; then
-      if [ -x example/build/watch ]; then
-        { example/build/watch no 7 >said.txt && grep -qx input_shaft said.txt; } || { cat said.txt; fail "the example does not see the parts"; }
+      if [ -x example/build/live_client ]; then
+        { example/build/live_client no 7 >said.txt && grep -qx input_shaft said.txt; } || { cat said.txt; fail "the example does not see the parts"; }
         echo "the example sees $(wc -l <said.txt) parts"
       fi
       mortise-web --session no --domain 7 --http-port 0 --addresses web.txt --quiet >web.log 2>&1 &
@@ -155,12 +155,24 @@ session() {  # what the packages are for, with keys and without
   echo "a session ran from what is installed, found by a discovery server, with keys and without; its logs verify"
 }
 
-library() {  # the package of the library brings what its users compile with; the example outside of the tree is built
-  apt "libmortise-dev does not install" g++ cmake make "$here"/libmortise-dev_*.deb
-  cp -r /usr/share/doc/libmortise-dev/examples/example /tmp/example
+library() {  # the package of the library brings what its users compile with: Eigen alone for the engine; examples are built and run
+  apt "libmortise-dev does not install" g++ cmake make "$here"/libmortise-dev_*.deb "$here"/libmortise-engine_*.deb
+  local extra
+  extra=$(dpkg-query -W -f '${Package}\n' 'lib*-dev' | grep -E '^lib(fcl|fastrtps|fastcdr|yaml-cpp|assimp|ssl|sqlite3|fmt|zstd|cairo2|boost)' | xargs)
+  [ -z "$extra" ] || fail "the engine brought $extra"
+  cp -r /usr/share/doc/libmortise-dev/examples /tmp/example
+  cmake -S /tmp/example -B /tmp/example/engine -DCOMPONENTS=engine >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "find_package(mortise COMPONENTS engine)"; }
+  cmake --build /tmp/example/engine >/tmp/said.txt 2>&1 || { tail -n 30 /tmp/said.txt; fail "the example of the engine"; }
+  /tmp/example/engine/thirty_lines | grep -q 'H7/g6: the peg stands at z = 5.000 mm' || fail "the example of the engine"
+  apt "libmortise-io and -client do not install" "$here"/libmortise-{io,client}_*.deb
   cmake -S /tmp/example -B /tmp/example/build -DCMAKE_BUILD_TYPE=Release >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "find_package(mortise)"; }
   cmake --build /tmp/example/build >/tmp/said.txt 2>&1 || { tail -n 30 /tmp/said.txt; fail "the example"; }
   echo "built: the example, with libmortise-dev, g++, cmake and make"
+}
+
+python() {  # the package of Python checks what it is given
+  apt "python3-mortise does not install" "$here"/python3-mortise_*.deb "$here"/mortise-tools_*.deb "$here"/mortise-step_*.deb
+  python3 -c 'import mortise, sys; r = mortise.check(sys.argv[1]); print("python:", r.counts); sys.exit(r.counts["unexplained_real"] != 1)' $here/tensioner.step || fail "import mortise"
 }
 
 resolves() {  # a package could be installed beside the others; what it brings is not fetched
@@ -170,7 +182,7 @@ resolves() {  # a package could be installed beside the others; what it brings i
 
 purge() {  # nothing of it is left, nor of what came with it; what people have put beside it stays
   local installed left own=/etc/mortise/own.yaml kept=no
-  mapfile -t installed < <(dpkg-query -W -f '${Package} ${db:Status-Status}\n' 'mortise*' 'libmortise*' 'g++' cmake make 2>/dev/null | awk '$2 == "installed" {print $1}')
+  mapfile -t installed < <(dpkg-query -W -f '${Package} ${db:Status-Status}\n' 'mortise*' 'libmortise*' 'python3-mortise*' 'g++' cmake make 2>/dev/null | awk '$2 == "installed" {print $1}')
   [ ${#installed[@]} -gt 0 ] || fail "nothing is installed"
   if [ -d /etc/mortise ]; then echo 'a: 1' >$own; kept=yes; fi
   apt-get remove -y --auto-remove "${installed[@]}" >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "remove"; }

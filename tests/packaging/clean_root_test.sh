@@ -38,7 +38,7 @@ mount -t tmpfs t "$root"
 tar -C "$root" -xf "$cache/root.tar"
 # Directories of libraries that each program names: what it links itself, without what those link in turn.
 mkdir "$root/mortise-test"
-cp "$packages"/*.deb "$steps" "$root/mortise-test/"
+cp "$packages"/*.deb "$steps" "$(dirname "$steps")/../../scenarios/tensioner.step" "$root/mortise-test/"
 for deb in "$packages"/mortise-*.deb; do
   dpkg-deb -x "$deb" "$root/mortise-test/unpacked"
   for program in "$root"/mortise-test/unpacked/usr/bin/*; do
@@ -70,6 +70,7 @@ for package in mortise-server mortise-web; do
   step alone linked "$package"
 done
 # The compiler and all that the library is compiled with are many: fetched in long runs only.
-if [ "${MORTISE_EFFORT:-1}" -gt 1 ]; then step world library; else step world resolves libmortise-dev; fi
+if [ "${MORTISE_EFFORT:-1}" -gt 1 ]; then step world library; else step world resolves libmortise-engine; fi
+if compgen -G "$root/mortise-test/python3-mortise_*.deb" >/dev/null && compgen -G "$root/mortise-test/mortise-step_*.deb" >/dev/null; then step world python; fi
 step alone session
 step world purge

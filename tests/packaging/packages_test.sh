@@ -58,7 +58,7 @@ files() { find /usr /etc /lib /opt -xdev \( -name mortise -o -name 'mortise*' -o
 [ -z "$(files)" ] || { echo "mortise is in this root already:"; files; exit 1; }
 [ ! -e "$2/CMakeLists.txt" ] || { echo "the sources are to be seen"; exit 1; }
 dpkg -i "$inside"/*.deb >/dev/null
-echo "installed: $(dpkg-query -W -f '${Package} ${Version} ${db:Status-Status}; ' mortise-server mortise-tools mortise-web libmortise-dev)"
+echo "installed: $(dpkg-query -W -f '${Package} ${Version} ${db:Status-Status}; ' mortise-server mortise-tools mortise-web "libmortise*" python3-mortise 2>/dev/null || true)"
 for program in server discovery bot directory web replay judge lint inspect first-contact generate; do mortise-$program --help >/dev/null; done
 if command -v systemd-analyze >/dev/null; then
   said=$(systemd-analyze verify --man=no mortise-server@demo.service mortise-web@demo.service mortise-discovery.service 2>&1 | grep mortise || true)
@@ -75,14 +75,14 @@ mortise-web --session packed --domain $domain --http-port 0 --addresses /tmp/web
 web=$!
 # Small roots leave documents out: the example is taken from the package itself.
 dpkg-deb -x "$inside"/libmortise-dev_*.deb /tmp/unpacked
-cp -r /tmp/unpacked/usr/share/doc/libmortise-dev/examples/example /tmp/example
+cp -r /tmp/unpacked/usr/share/doc/libmortise-dev/examples /tmp/example
 command -v make >/dev/null || export CMAKE_GENERATOR=Ninja
 cmake -S /tmp/example -B /tmp/example/build -DCMAKE_BUILD_TYPE=Release >/tmp/cmake.txt 2>&1 || { cat /tmp/cmake.txt; exit 1; }
 cmake --build /tmp/example/build >/tmp/cmake.txt 2>&1 || { tail -n 30 /tmp/cmake.txt; exit 1; }
-/tmp/example/build/watch packed $domain >/tmp/parts.txt || { cat /tmp/server.txt; exit 1; }
+/tmp/example/build/live_client packed $domain >/tmp/parts.txt || { cat /tmp/server.txt; exit 1; }
 grep -qx input_shaft /tmp/parts.txt || { echo "the example did not see the parts"; cat /tmp/parts.txt; exit 1; }
 echo "the example outside of the tree sees $(wc -l </tmp/parts.txt) parts"
-! /tmp/example/build/watch no-such-session $domain 2>/tmp/none.txt || { echo "a session that is not there was seen"; exit 1; }
+! /tmp/example/build/live_client no-such-session $domain 2>/tmp/none.txt || { echo "a session that is not there was seen"; exit 1; }
 port=$(sed -nE 's|^designer http://127.0.0.1:([0-9]+)/.*|\1|p' /tmp/web.txt)
 get() { exec 3<>/dev/tcp/127.0.0.1/"$port"; printf 'GET %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nConnection: close\r\n\r\n' "$1" "$port" >&3; cat <&3; exec 3>&-; }
 get / >/tmp/page.txt; grep -q '<title>mortise' /tmp/page.txt || { echo "no page"; head -n 5 /tmp/page.txt; exit 1; }
@@ -91,7 +91,11 @@ if [ -e /usr/share/mortise/page/node_modules ]; then get /three/build/three.modu
 kill -INT $web $server; wait $server $web
 mortise-replay verify /tmp/packed.mcap >/tmp/verify.txt || { cat /tmp/verify.txt; exit 1; }
 echo "a session ran from what is installed, its log verifies"
-dpkg -P mortise-server mortise-web mortise-tools libmortise-dev >/dev/null
+if dpkg-query -W python3-mortise >/dev/null 2>&1; then
+  mortise-generate dowel -o /tmp/a.stl >/dev/null
+  python3 -c 'import mortise; print("python: judged as", mortise.judge("/tmp/a.stl", "/tmp/dowel.stl").worst)' || exit 1
+fi
+dpkg-query -W -f '${Package}\n' 'mortise*' 'libmortise*' 'python3-mortise*' 2>/dev/null | xargs dpkg -P >/dev/null
 [ -z "$(files)" ] || { echo "left behind:"; files; exit 1; }
 echo "removed, nothing is left"
 INSIDE

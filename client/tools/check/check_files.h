@@ -1,6 +1,6 @@
 #pragma once
 #include "client/tools/check/check.h"
-#include "client/tools/check/options.h"
+#include "client/tools/check/check_command.h"
 
 namespace mortise {
 

@@ -255,6 +255,35 @@ Json tree_json(const OpenedScene& opened, const CheckReport& report) {
 
 Json number_or_null(double x, bool known) { return known ? Json(x) : Json(nullptr); }
 
+Json json_of(const CheckedPair& pair, const SessionNames& names) {
+  Json entry;
+  entry["a"] = names.part(pair.a);
+  entry["b"] = names.part(pair.b);
+  entry["class"] = name_of(pair.collision_class);
+  entry["contact"] = pair.is_contact;
+  entry["relation"] = name_of(pair.mating.relation);
+  entry["relation_text"] = pair.mating.text;
+  entry["explained"] = pair.explained;
+  entry["reason"] = pair.reason;
+  entry["count"] = pair.all.size();
+  entry["inside"] = pair.inside;
+  entry["muted"] = pair.muted;
+  entry["accuracy_mm"] = pair.accuracy_mm;
+  entry["common_mm3"] = number_or_null(pair.common_mm3, pair.common_mm3 >= 0.0);
+  entry["thickness_mm"] = number_or_null(pair.thickness_mm, pair.common_mm3 >= 0.0);
+  entry["explained_mm3"] = pair.mating.explained_mm3;
+  entry["instances"] = Json::array();
+  for (const auto& [a, b] : pair.all)
+    entry["instances"].push_back(Json::array({names.part(a), names.part(b)}));
+  entry["verdicts"] = Json::array();
+  for (const Verdict& verdict : pair.verdicts) {
+    entry["verdicts"].push_back(json_of(verdict));
+    if (verdict.separation_blocker)
+      entry["verdicts"].back()["separation"]["blocker"] = names.part(verdict.separation_blocker);
+  }
+  return entry;
+}
+
 }  // namespace
 
 std::string class_word(const CheckedPair& pair) {
@@ -269,6 +298,7 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   const SessionNames names = names_of(opened.scene.world);
   const CheckCounts& c = report.counts;
   Json json;
+  json["schema"] = "mortise/check/1";
   json["counts"] = {{"unexplained_real", c.unexplained_real},
                     {"explained_real", c.explained_real},
                     {"potential", c.potential},
@@ -284,30 +314,7 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   json["candidate_pairs"] = report.candidate_pairs;
   json["tree"] = tree_json(opened, report);
   json["pairs"] = Json::array();
-  for (const CheckedPair& pair : report.pairs) {
-    Json entry;
-    entry["a"] = names.part(pair.a);
-    entry["b"] = names.part(pair.b);
-    entry["class"] = name_of(pair.collision_class);
-    entry["contact"] = pair.is_contact;
-    entry["relation"] = name_of(pair.mating.relation);
-    entry["relation_text"] = pair.mating.text;
-    entry["explained"] = pair.explained;
-    entry["reason"] = pair.reason;
-    entry["count"] = pair.all.size();
-    entry["inside"] = pair.inside;
-    entry["muted"] = pair.muted;
-    entry["accuracy_mm"] = pair.accuracy_mm;
-    entry["common_mm3"] = number_or_null(pair.common_mm3, pair.common_mm3 >= 0.0);
-    entry["thickness_mm"] = number_or_null(pair.thickness_mm, pair.common_mm3 >= 0.0);
-    entry["explained_mm3"] = pair.mating.explained_mm3;
-    entry["instances"] = Json::array();
-    for (const auto& [a, b] : pair.all)
-      entry["instances"].push_back(Json::array({names.part(a), names.part(b)}));
-    entry["verdicts"] = Json::array();
-    for (const Verdict& verdict : pair.verdicts) entry["verdicts"].push_back(json_of(verdict));
-    json["pairs"].push_back(std::move(entry));
-  }
+  for (const CheckedPair& pair : report.pairs) json["pairs"].push_back(json_of(pair, names));
   json["min_gap_mm"] = report.min_gap_mm;
   json["near"] = Json::array();
   for (const NearPair& near : report.near)

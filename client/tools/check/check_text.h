@@ -13,7 +13,7 @@ struct CheckTextStyle {
 };
 std::string check_text(const OpenedScene& opened, const CheckReport& report, CheckTextStyle style);
 
-/// One document; it begins with the counts.
+/// One document (client/schemas); it begins with the counts.
 Json check_json(const OpenedScene& opened, const CheckReport& report);
 
 /// "real", "potential", "contact", "fake": the class of a pair, with what touches apart.

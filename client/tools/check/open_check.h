@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "client/tools/check/options.h"
+#include "client/tools/check/check_command.h"
 #include "common/io/scenario/open_scene.h"
 
 namespace mortise {

@@ -2,8 +2,6 @@
 
 #include "common/base/length_unit.h"
 #include "common/io/build_info.h"
-#include "common/io/mesh/mesh_import.h"
-#include "common/io/step/step_import.h"
 #include "common/io/usage.h"
 
 namespace mortise {
@@ -40,9 +38,10 @@ void add_output(ProgramOptions& app, CheckCommand& o) {
   app.add("--csv", o.csv, "write the pairs to this file");
   app.add("--html", o.html, "write a page with pictures of the worst to this file");
   app.add("--junit", o.junit, "write a test report for CI to this file");
-  app.add("--bcf", o.bcf,
-          "write an issue for each clash that nothing explains to this BCF 3.0 file, which must not "
-          "exist");
+  app.add(
+      "--bcf", o.bcf,
+      "write an issue for each clash that nothing explains to this BCF 3.0 file, which must not "
+      "exist");
   app.add("--sqlite", o.sqlite, "write a database to this file, which must not exist");
   app.add("--baseline", o.baseline,
           "a JSON report of before: say what is new, gone, changed and unchanged");
@@ -69,18 +68,9 @@ CheckCommandLine read_check_command_line(int argc, char** argv) {
   add_output(app, o);
   app.footer("Exit codes: 0 ok, 2 usage, 3 a file has errors, 6 --fail-on found something.");
   line.exit_code = app.read(argc, argv, [&] {
-    const bool meshes = is_mesh_name(o.files.front()) && !is_step_name(o.files.front());
-    if (!meshes && o.files.size() > 1)
-      throw UsageError("one assembly, one scenario, or two or more meshes: not " + o.files[0] +
-                       " and " + o.files[1]);
-    if (!meshes && (!o.fit.empty() || !o.unit.empty()))
-      throw UsageError("--fit and --unit are of meshes; a scenario says them itself");
-    if (!is_step_name(o.files.front()) && (o.propose || !o.general.empty() || !o.bought.empty()))
-      throw UsageError("--propose, --general and --bought are of a STEP assembly");
-    if (o.fail_on == "new" && o.baseline.empty())
-      throw UsageError("--fail-on new needs --baseline OLD.json");
+    o.check.unexplained.insert(unexplained.begin(), unexplained.end());
+    if (const Status good = coherent(o); !good) throw UsageError(good.error().text);
   });
-  o.check.unexplained.insert(unexplained.begin(), unexplained.end());
   return line;
 }
 

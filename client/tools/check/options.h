@@ -1,21 +1,7 @@
 #pragma once
-#include <string>
-#include <vector>
-
-#include "client/tools/check/check.h"
+#include "client/tools/check/check_command.h"
 
 namespace mortise {
-
-struct CheckCommand {
-  std::vector<std::string> files;  ///< one assembly or scenario, or meshes
-  std::string unit, fit;           ///< of meshes
-  std::string fail_on, baseline;
-  std::string csv, html, junit, sqlite, bcf;  ///< files to write; empty: none
-  std::vector<std::string> bought;
-  std::string general;
-  bool json = false, verbose = false, propose = false;
-  CheckOptions check;
-};
 
 /// Reads the command line and prints help or a usage error.
 struct CheckCommandLine {

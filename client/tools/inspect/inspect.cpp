@@ -141,6 +141,7 @@ std::string inspect_text(const std::vector<InspectedPart>& parts) {
 
 Json inspect_json(const std::vector<InspectedPart>& parts) {
   Json json;
+  json["schema"] = "mortise/inspect/1";
   json["parts"] = Json::array();
   for (const InspectedPart& part : parts) {
     const Topology& topology = part.solid->topology();

@@ -48,7 +48,9 @@ std::string step_text(const std::string& file, const StepDocument& document) {
 }
 
 Json step_json(const std::string& file, const StepDocument& document) {
-  Json json = {{"file", file}, {"statements", document.statements.size()}};
+  Json json = {{"schema", "mortise/inspect-step/1"},
+               {"file", file},
+               {"statements", document.statements.size()}};
   json["parts"] = Json::array();
   for (const StepInstance& instance : document.instances) {
     const StepPart& part = document.parts[instance.part];

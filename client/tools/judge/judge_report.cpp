@@ -233,6 +233,7 @@ Json judge_json(const OpenedScene& opened, const JudgeReport& report) {
   const World& world = opened.scene.world;
   const SessionNames names = names_of(world);
   Json json;
+  json["schema"] = "mortise/judge/1";
   json["scenario"] = opened.scenario.name;
   json["file"] = opened.scenario.file;
   json["pairs"] = Json::array();

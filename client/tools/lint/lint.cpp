@@ -118,6 +118,7 @@ std::string lint_text(const OpenedScene& opened, bool color) {
 Json lint_json(const OpenedScene& opened) {
   const LoadedScene& scene = opened.scene;
   Json json;
+  json["schema"] = "mortise/lint/1";
   json["scenario"] = opened.scenario.name;
   json["file"] = opened.scenario.file;
   json["usable"] = opened.usable();

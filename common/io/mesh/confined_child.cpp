@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "common/io/mesh/sandbox.h"
 
@@ -196,7 +197,15 @@ MappedBytes::~MappedBytes() {
 fs::path program_beside(const char* variable, const char* name) {
   if (const char* named = std::getenv(variable); named != nullptr && *named != '\0') return named;
   std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / name;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / name;
+  if (fs::exists(beside, ignored)) return beside;
+  // The library within a program of others: where the shell would find it.
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (!folder.empty() && fs::is_regular_file(fs::path(folder) / name, ignored))
+      return fs::path(folder) / name;
+  return beside;
 }
 
 Result<MappedBytes> run_confined(const ConfinedChild& child) {

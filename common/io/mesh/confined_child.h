@@ -43,7 +43,7 @@ class MappedBytes {
 };
 
 /// The program that an environment variable names, else the one of this name beside the running
-/// program.
+/// program, else the first one in PATH: a library runs in programs of others.
 std::filesystem::path program_beside(const char* variable, const char* name);
 
 /// Runs it and returns its answer. Every failure of it (crash, hang, limits, no answer) becomes one

@@ -205,4 +205,13 @@ Result<ImportedMesh> import_mesh(const fs::path& file, double unit_mm,
   return fail(Code::kRuntime, file.string() + ": cannot be imported: " + error.what());
 }
 
+Result<ImportedMesh> mesh_of_triangles(std::vector<double> coordinates_mm,
+                                       const std::string& name) {
+  RawSoup soup;
+  soup.format = "triangles";
+  soup.raw_vertices = coordinates_mm.size() / 3;
+  soup.coordinates = std::move(coordinates_mm);
+  return made_of(soup, name, 1.0);
+}
+
 }  // namespace mortise

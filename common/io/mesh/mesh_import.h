@@ -56,4 +56,8 @@ bool is_mesh_name(const std::filesystem::path& file);
 Result<ImportedMesh> import_mesh(const std::filesystem::path& file, double unit_mm,
                                  const ImportLimits& limits = {});
 
+/// The same of loose triangles that are in memory, nine finite coordinates each, in mm, none beyond
+/// 10 km. `name`: for messages.
+Result<ImportedMesh> mesh_of_triangles(std::vector<double> coordinates_mm, const std::string& name);
+
 }  // namespace mortise

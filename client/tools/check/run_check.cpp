@@ -1,0 +1,29 @@
+#include "client/tools/check/run_check.h"
+
+#include "client/tools/check/baseline.h"
+#include "client/tools/check/check_text.h"
+
+namespace mortise {
+
+Result<CheckOutcome> run_check(CheckSubject subject, const CheckCommand& command) {
+  CheckOutcome outcome{std::move(subject), {}, {}, {}};
+  OpenedScene& opened = outcome.subject.opened;
+  outcome.report = check_scene(opened, outcome.subject.step, command.check);
+  outcome.document = check_json(opened, outcome.report);
+  if (command.baseline.empty()) return outcome;
+  Result<std::string> changes = compare_with_baseline(command.baseline, outcome.document);
+  if (!changes) return changes.error();
+  outcome.changes = std::move(*changes);
+  return outcome;
+}
+
+Result<CheckOutcome> run_check(const CheckCommand& command) {
+  if (const Status good = coherent(command); !good) return good.error();
+  Result<CheckSubject> subject = open_check(command);
+  if (!subject) return subject.error();
+  for (const Finding& finding : subject->opened.findings)
+    if (finding.is_error) return fail(Code::kInvalidInput, finding.text);
+  return run_check(std::move(*subject), command);
+}
+
+}  // namespace mortise
