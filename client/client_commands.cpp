@@ -50,6 +50,10 @@ std::uint64_t ClientCommands::reset(LocalUser user, PartId part) {
 std::uint64_t ClientCommands::ask_hand_over(LocalUser user, PartId part) {
   return command(user, CommandKind::kAskHandOver, part);
 }
+
+std::uint64_t ClientCommands::withdraw(LocalUser user, PartId part) {
+  return command(user, CommandKind::kWithdraw, part);
+}
 std::uint64_t ClientCommands::consent(LocalUser user, PartId part) {
   return command(user, CommandKind::kConsent, part);
 }

@@ -188,6 +188,7 @@ const std::vector<CommandRow>& command_rows() {
       {"reset", kReset, {read_part}},
       {"ask", kAskHandOver, {read_part}},
       {"consent", kConsent, {read_part}},
+      {"withdraw", kWithdraw, {read_part}},
       {"decline", kDecline, {read_part, read_any_text}},
       {"policy", kSetPolicy, {read_text}},
       {"tolerance", kSetTolerance, {read_part, read_features, read_text}},

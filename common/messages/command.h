@@ -32,6 +32,7 @@ enum class CommandKind : std::uint8_t {
   kAddConstraint = 14,   ///< constraint; its held.part is `part`
   kDropConstraint = 15,  ///< constraint_id
   kSnap = 16,            ///< constraint: the server chooses the fields that are left empty
+  kWithdraw = 17,        ///< takes back what the user asked of the holder of the part
 };
 inline constexpr std::uint8_t kCommandKindCount = 17;
 
@@ -124,7 +125,7 @@ struct Decision {
     kAskHandOver = 10,  ///< user asks details.other_user, who holds the part
     kHandOver = 11,     ///< user gives the part to details.other_user
     kDecline = 12,      ///< user keeps the part that details.other_user asked for
-    kAskEnd = 13,       ///< the request of user was not answered in time
+    kAskEnd = 13,       ///< user no longer asks for the part
     kSetPolicy = 14,
     kSetTolerance = 15,
     kSetExclusion = 16,

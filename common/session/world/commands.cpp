@@ -137,6 +137,14 @@ Refused check_answer(const World& world, const User& user, const Command& comman
   return {};
 }
 
+Refused check_withdraw(const World& world, const User& user, PartId id) {
+  Refused refused = check_part(world, id);
+  if (refused.refusal != Refusal::kNone) return refused;
+  const Part& part = *world.find(id);
+  if (part.asked_by == user.id) return {};
+  return {Refusal::kNotAsked, "'" + user.name + "' does not ask for '" + part.name + "'"};
+}
+
 // 5. rules of the session
 
 Refused check_right(const World& world, const User& user, Right right) {
@@ -225,6 +233,8 @@ Refused check(const World& world, const Command& command) {
     case CommandKind::kSetPolicy:
       return check_policy(world, *user, command);
     case CommandKind::kSetTolerance:
+    case CommandKind::kWithdraw:
+      return check_withdraw(world, *user, command.part);
       return check_tolerance(world, *user, command);
     case CommandKind::kSetExclusion:
     case CommandKind::kDropExclusion:
@@ -263,6 +273,8 @@ Decision::Kind decision_of(CommandKind kind) {
     case CommandKind::kSetPolicy:
       return Decision::Kind::kSetPolicy;
     case CommandKind::kSetTolerance:
+    case CommandKind::kWithdraw:
+      return Decision::Kind::kAskEnd;
       return Decision::Kind::kSetTolerance;
     case CommandKind::kSetExclusion:
       return Decision::Kind::kSetExclusion;
@@ -312,7 +324,8 @@ Decision decide(const World& world, const Command& command) {
   decision.part = command.part;
   decision.details = command.details;
   const Part* part = world.find(command.part);
-  if (decision.kind == Decision::Kind::kAskHandOver) decision.details.other_user = part->holder;
+  if (decision.kind == Decision::Kind::kAskHandOver || decision.kind == Decision::Kind::kAskEnd)
+    decision.details.other_user = part->holder;
   if (decision.kind == Decision::Kind::kHandOver || decision.kind == Decision::Kind::kDecline)
     decision.details.other_user = part->asked_by;
   return decision;

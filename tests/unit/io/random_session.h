@@ -142,6 +142,7 @@ class RandomSession {
         return below(4) == 0 ? ask(who, CommandKind::kReset, part) : void();
       case 8:
         ask(user(), CommandKind::kAskHandOver, part);
+        if (below(4) == 0) return ask(state.asked_by, CommandKind::kWithdraw, part);
         return below(2) == 0 ? ask(state.holder, CommandKind::kConsent, part) : void();
       case 9: {
         constexpr const char* kPolicies[] = {"stop", "slide", "report", "slide"};

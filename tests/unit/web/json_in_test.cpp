@@ -51,6 +51,7 @@ TEST(PageMessage, ReadsEveryCommand) {
   EXPECT_EQ(command(R"("do":"redo","part":2)").kind, CommandKind::kRedo);
   EXPECT_EQ(command(R"("do":"reset","part":2)").kind, CommandKind::kReset);
   EXPECT_EQ(command(R"("do":"ask","part":2)").kind, CommandKind::kAskHandOver);
+  EXPECT_EQ(command(R"("do":"withdraw","part":2)").kind, CommandKind::kWithdraw);
   EXPECT_EQ(command(R"("do":"consent","part":2)").kind, CommandKind::kConsent);
   EXPECT_EQ(command(R"("do":"decline","part":2,"text":"no")").details.text, "no");
   EXPECT_EQ(command(R"("do":"policy","text":"slide")").details.text, "slide");
