@@ -738,6 +738,14 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   return pulse;
 }
 
+  for (const UnexaminedRow& row : pulse.unexamined) {
+    wire::UnexaminedPair& pair = out.unexamined().emplace_back();
+    pair.part_a(row.a.value);
+    pair.part_b(row.b.value);
+    pair.why(static_cast<std::uint8_t>(row.why));
+    pair.ticks(row.ticks);
+  }
+  out.unexamined_left_out(pulse.unexamined_left_out);
 // ---- what constraints can name
 
 wire::Feature to_wire(const FeatureInfo& feature) {
@@ -747,6 +755,10 @@ wire::Feature to_wire(const FeatureInfo& feature) {
   out.inward(feature.inward);
   out.point_mm(triple(feature.point_P));
   out.axis(triple(feature.axis_P));
+  door.need(in.unexamined().size() <= kMostUnexaminedRows, "unexamined");
+  for (const wire::UnexaminedPair& pair : in.unexamined())
+    door.need(pair.part_a() != 0 && pair.part_a() < pair.part_b() && pair.why() < kUnexaminedCount,
+              "unexamined");
   out.radius_mm(feature.radius_mm);
   out.tube_radius_mm(feature.tube_radius_mm);
   out.half_angle_rad(feature.half_angle_rad);
@@ -761,6 +773,10 @@ Result<FeatureInfo> from_wire(const wire::Feature& in) {
   door.need(in.origin() != 0 && in.origin() < kFeatureOriginCount, "origin");
   door.need(in.kind() != 0 && in.kind() < kSurfaceKindCount, "kind");
   door.position(in.point_mm(), "point_mm");
+  for (const wire::UnexaminedPair& pair : in.unexamined())
+    pulse.unexamined.push_back({PartId{pair.part_a()}, PartId{pair.part_b()},
+                                static_cast<Unexamined>(pair.why()), pair.ticks()});
+  pulse.unexamined_left_out = in.unexamined_left_out();
   door.need(std::abs(vec3(in.axis()).norm() - 1.0) <= kUnitNormAllowance, "axis");
   for (const double radius_mm : {in.radius_mm(), in.tube_radius_mm()})
     door.need(radius_mm >= 0.0 && radius_mm <= kMaxCoordinate_mm, "radius_mm");

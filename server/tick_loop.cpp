@@ -73,6 +73,7 @@ void TickLoop::tick() {
   metrics_.step.add(step_ns);
   statistics_.forget_users(intake_.decisions);
   statistics_.add(report_);
+  note_unexamined();
 
   // 7. out
   begin_record(step_ns);
@@ -83,6 +84,7 @@ void TickLoop::tick() {
   if (last_ || now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
     pulse_ns_ = now_ns_;
     if (publisher_.has_readers()) channel_.publish_pulse(pulse());
+    unexamined_.clear();
   }
   ++metrics_.ticks;
   metrics_.tick.add(clock_.now_ns() - now_ns_);
@@ -131,6 +133,20 @@ void TickLoop::measure_delay() {
   }
   for (const Decision& decision : intake_.decisions) {
     if (decision.kind == Decision::Kind::kJoin) fastest_ns_.erase(decision.user);  // another clock
+  }
+}
+
+// A part that has moved on with a verdict takes what was told of its pairs before.
+void TickLoop::note_unexamined() {
+  const auto has_moved = [&](PartId part) {
+    return std::ranges::any_of(report_.moved, [&](auto& moved) { return moved.part == part; });
+  };
+  std::erase_if(unexamined_, [&](const auto& entry) {
+    return has_moved(entry.first.first) || has_moved(entry.first.second);
+  });
+  for (const UnexaminedPair& pair : report_.unexamined) {
+    UnexaminedRow& row = unexamined_[{pair.a, pair.b}];
+    row = {pair.a, pair.b, pair.why, row.ticks + 1};
   }
 }
 
@@ -198,5 +214,8 @@ SessionPulse TickLoop::pulse() const {
   pulse.draining = draining_;
   return pulse;
 }
+  for (const auto& [pair, row] : unexamined_)
+    if (pulse.unexamined.size() < kMostUnexaminedRows) pulse.unexamined.push_back(row);
+  pulse.unexamined_left_out = unexamined_.size() - pulse.unexamined.size();
 
 }  // namespace mortise

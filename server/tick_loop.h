@@ -84,6 +84,7 @@ class TickLoop {
   void tell_follower();
   void measure_delay();
 
+  void note_unexamined();
   World& world_;
   ServerChannel& channel_;
   Clock& clock_;
@@ -98,7 +99,8 @@ class TickLoop {
   TickRecorder recorder_;
   TickPublisher publisher_;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
-  std::vector<Decision> departures_;           ///< of before a restore, not yet logged
+  std::map<std::pair<PartId, PartId>, UnexaminedRow> unexamined_;  ///< since the last pulse
+  std::vector<Decision> departures_;  ///< of before a restore, not yet logged
   std::int64_t opened_ns_ = 0, now_ns_ = 0, pulse_ns_ = 0;
   bool superseded_ = false;
   std::string superseded_by_;

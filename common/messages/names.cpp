@@ -182,6 +182,17 @@ std::string_view name_of(ReviewStatus value) {
   return "?";
 }
 
+std::string_view name_of(Unexamined value) {
+  switch (value) {
+    case Unexamined::kUnknown: return "unknown";
+    case Unexamined::kWaitsForContact: return "waits for first contact";
+    case Unexamined::kWaitsForDepth: return "waits for depth";
+    case Unexamined::kGivenUp: return "given up";
+    case Unexamined::kNoInside: return "no inside";
+  }
+  return "?";
+}
+
 std::string_view name_of(Role value) {
   switch (value) {
     case Role::kUnknown: return "unknown";

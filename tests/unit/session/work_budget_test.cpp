@@ -75,6 +75,12 @@ TEST(WorkBudget, WhoWaitsIsNotLetIntoAnything) {
   Row with(Policy::kStop, true);
   std::uint64_t waiting = 0;
   for (int i = 0; i < 60; ++i) waiting += with.push(Vec3(0.25, 0, 0)).counters.pairs_waiting;
+  EXPECT_EQ(some.unexamined.size(), some.counters.pairs_waiting);
+  for (const UnexaminedPair& pair : some.unexamined) {
+    EXPECT_EQ(pair.why, Unexamined::kWaitsForDepth);
+    EXPECT_EQ(pair.b.value, pair.a.value + 1) << "a wall and its peg";
+  }
+  EXPECT_TRUE(all.unexamined.empty());
   EXPECT_GT(waiting, 0U);
   for (const PartId peg : with.pegs) {
     // Face to face at x = -1; least surfaces meet 0.05 mm later.
