@@ -40,7 +40,7 @@ class ClientCommands {
   std::uint64_t exclude(LocalUser user, PartId a, PartId b, const std::string& reason);
   std::uint64_t include(LocalUser user, PartId a, PartId b);  ///< drops the exclusion
   std::uint64_t review(LocalUser user, ClashId clash, ReviewStatus status,
-                       const std::string& comment = "");
+                       const std::string& comment = "", UserId assignee = {});
   std::uint64_t add_constraint(LocalUser user, const Constraint& constraint);
   /// Constrains a held part to the nearest feature that fits, and moves it there. The server
   /// chooses what is left empty; the reply says in words what it chose, the decision kAddConstraint

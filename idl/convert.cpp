@@ -666,6 +666,31 @@ Result<PartNote> from_wire(const wire::PartNote& in) {
   return PartNote{PartId{in.part()}, in.text()};
 }
 
+wire::Remark to_wire(const Remark& remark) {
+  wire::Remark out;
+  out.clash(remark.clash.value);
+  out.user(remark.user.value);
+  out.assignee(remark.assignee.value);
+  out.status(static_cast<std::uint8_t>(remark.status));
+  out.tick(remark.tick);
+  out.text(clip(remark.text, kMaxText_bytes));
+  return out;
+}
+
+Result<Remark> from_wire(const wire::Remark& in) {
+  Door door("remark");
+  door.need(in.clash() != 0, "clash");
+  door.need(in.status() < kReviewStatusCount, "status");
+  door.text(in.text(), "text");
+  if (!door.open()) return door.refusal();
+  return Remark{ClashId{in.clash()},
+                UserId{in.user()},
+                UserId{in.assignee()},
+                static_cast<ReviewStatus>(in.status()),
+                in.tick(),
+                in.text()};
+}
+
 wire::UserInfo to_wire(const UserInfo& user) {
   wire::UserInfo out;
   out.user(user.user.value);
@@ -692,6 +717,7 @@ Result<Snapshot> from_wire(const wire::Snapshot& in) {
   if (Status read = read_all(in.open_clashes(), snapshot.open_clashes); !read) return read.error();
   if (Status read = read_all(in.standing(), snapshot.standing); !read) return read.error();
   if (Status read = read_all(in.notes(), snapshot.notes); !read) return read.error();
+  if (Status read = read_all(in.remarks(), snapshot.remarks); !read) return read.error();
   return snapshot;
 }
 
@@ -712,6 +738,14 @@ wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial) {
   out.users(pulse.users);
   out.pose_serial(pose_serial);
   out.draining(pulse.draining);
+  for (const UnexaminedRow& row : pulse.unexamined) {
+    wire::UnexaminedPair& pair = out.unexamined().emplace_back();
+    pair.part_a(row.a.value);
+    pair.part_b(row.b.value);
+    pair.why(static_cast<std::uint8_t>(row.why));
+    pair.ticks(row.ticks);
+  }
+  out.unexamined_left_out(pulse.unexamined_left_out);
   return out;
 }
 
@@ -721,6 +755,10 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   door.count(in.tick_p99_us(), "tick_p99_us");
   door.count(in.tick_max_us(), "tick_max_us");
   door.count(in.lateness_p99_us(), "lateness_p99_us");
+  door.need(in.unexamined().size() <= kMostUnexaminedRows, "unexamined");
+  for (const wire::UnexaminedPair& pair : in.unexamined())
+    door.need(pair.part_a() != 0 && pair.part_a() < pair.part_b() && pair.why() < kUnexaminedCount,
+              "unexamined");
   if (!door.open()) return door.refusal();
   SessionPulse pulse;
   pulse.tick = in.tick();
@@ -735,17 +773,13 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   pulse.not_examined = in.not_examined();
   pulse.users = in.users();
   pulse.draining = in.draining();
+  for (const wire::UnexaminedPair& pair : in.unexamined())
+    pulse.unexamined.push_back({PartId{pair.part_a()}, PartId{pair.part_b()},
+                                static_cast<Unexamined>(pair.why()), pair.ticks()});
+  pulse.unexamined_left_out = in.unexamined_left_out();
   return pulse;
 }
 
-  for (const UnexaminedRow& row : pulse.unexamined) {
-    wire::UnexaminedPair& pair = out.unexamined().emplace_back();
-    pair.part_a(row.a.value);
-    pair.part_b(row.b.value);
-    pair.why(static_cast<std::uint8_t>(row.why));
-    pair.ticks(row.ticks);
-  }
-  out.unexamined_left_out(pulse.unexamined_left_out);
 // ---- what constraints can name
 
 wire::Feature to_wire(const FeatureInfo& feature) {
@@ -755,10 +789,6 @@ wire::Feature to_wire(const FeatureInfo& feature) {
   out.inward(feature.inward);
   out.point_mm(triple(feature.point_P));
   out.axis(triple(feature.axis_P));
-  door.need(in.unexamined().size() <= kMostUnexaminedRows, "unexamined");
-  for (const wire::UnexaminedPair& pair : in.unexamined())
-    door.need(pair.part_a() != 0 && pair.part_a() < pair.part_b() && pair.why() < kUnexaminedCount,
-              "unexamined");
   out.radius_mm(feature.radius_mm);
   out.tube_radius_mm(feature.tube_radius_mm);
   out.half_angle_rad(feature.half_angle_rad);
@@ -773,10 +803,6 @@ Result<FeatureInfo> from_wire(const wire::Feature& in) {
   door.need(in.origin() != 0 && in.origin() < kFeatureOriginCount, "origin");
   door.need(in.kind() != 0 && in.kind() < kSurfaceKindCount, "kind");
   door.position(in.point_mm(), "point_mm");
-  for (const wire::UnexaminedPair& pair : in.unexamined())
-    pulse.unexamined.push_back({PartId{pair.part_a()}, PartId{pair.part_b()},
-                                static_cast<Unexamined>(pair.why()), pair.ticks()});
-  pulse.unexamined_left_out = in.unexamined_left_out();
   door.need(std::abs(vec3(in.axis()).norm() - 1.0) <= kUnitNormAllowance, "axis");
   for (const double radius_mm : {in.radius_mm(), in.tube_radius_mm()})
     door.need(radius_mm >= 0.0 && radius_mm <= kMaxCoordinate_mm, "radius_mm");

@@ -176,11 +176,11 @@ Json percentiles_of(std::vector<double> samples_ms) {
 }
 
 Json json_of(const Scene& scene, const ClassBits& classes) {
-  Json json{{"type", "scene"},          {"session", scene.session},
-            {"tick", scene.tick},       {"tick_rate_hz", number(scene.tick_rate_hz)},
-            {"policy", scene.policy},   {"parts", Json::array()},
-            {"users", Json::array()},   {"clashes", Json::array()},
-            {"standing", Json::array()}};
+  Json json{{"type", "scene"},           {"session", scene.session},
+            {"tick", scene.tick},        {"tick_rate_hz", number(scene.tick_rate_hz)},
+            {"policy", scene.policy},    {"parts", Json::array()},
+            {"users", Json::array()},    {"clashes", Json::array()},
+            {"standing", Json::array()}, {"remarks", Json::array()}};
   for (const PartInfo& part : scene.parts) {
     const auto bits = classes.find(part.part);
     Json row = json_of(part, bits == classes.end() ? 0u : bits->second);
@@ -198,6 +198,7 @@ Json json_of(const Scene& scene, const ClassBits& classes) {
     json["clashes"].push_back(json_of(clash));
   }
   for (const Decision& decision : scene.standing) json["standing"].push_back(json_of(decision));
+  for (const Remark& remark : scene.remarks) json["remarks"].push_back(json_of(remark));
   return json;
 }
 

@@ -45,6 +45,7 @@ struct Scene {
   std::vector<ClashEvent> clashes;
   std::vector<Decision> standing;
   std::vector<PartNote> notes;
+  std::vector<Remark> remarks;
 };
 Json json_of(const Scene& scene, const ClassBits& classes);
 

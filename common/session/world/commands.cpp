@@ -190,6 +190,9 @@ Refused check_exclusion(const World& world, const User& user, const Command& com
 Refused check_review(const World& world, const User& user, const Command& command) {
   const Refused refused = check_right(world, user, Right::kReview);
   if (refused.refusal != Refusal::kNone) return refused;
+  const UserId assignee = command.details.other_user;
+  if (assignee && !world.find(assignee))
+    return {Refusal::kUnknownUser, "there is no user " + std::to_string(assignee.value)};
   if (find_open(world, command.details.clash)) return {};
   return {Refusal::kUnknownClash,
           "clash " + std::to_string(command.details.clash.value) + " is not open"};
@@ -230,11 +233,11 @@ Refused check(const World& world, const Command& command) {
     case CommandKind::kConsent:
     case CommandKind::kDecline:
       return check_answer(world, *user, command);
+    case CommandKind::kWithdraw:
+      return check_withdraw(world, *user, command.part);
     case CommandKind::kSetPolicy:
       return check_policy(world, *user, command);
     case CommandKind::kSetTolerance:
-    case CommandKind::kWithdraw:
-      return check_withdraw(world, *user, command.part);
       return check_tolerance(world, *user, command);
     case CommandKind::kSetExclusion:
     case CommandKind::kDropExclusion:
@@ -270,11 +273,11 @@ Decision::Kind decision_of(CommandKind kind) {
       return Decision::Kind::kHandOver;
     case CommandKind::kDecline:
       return Decision::Kind::kDecline;
+    case CommandKind::kWithdraw:
+      return Decision::Kind::kAskEnd;
     case CommandKind::kSetPolicy:
       return Decision::Kind::kSetPolicy;
     case CommandKind::kSetTolerance:
-    case CommandKind::kWithdraw:
-      return Decision::Kind::kAskEnd;
       return Decision::Kind::kSetTolerance;
     case CommandKind::kSetExclusion:
       return Decision::Kind::kSetExclusion;

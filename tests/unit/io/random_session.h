@@ -173,6 +173,7 @@ class RandomSession {
         details.clash = now.open_clashes[below(now.open_clashes.size())].clash;
         details.status = static_cast<ReviewStatus>(1 + below(4));
         details.text = "seen";
+        details.other_user = below(2) == 0 ? UserId{} : user();
         return ask(who, CommandKind::kReview, PartId{}, details);
       }
       case 14:
