@@ -193,6 +193,8 @@ void TickLoop::close() {
   hand_over_record();
   now_ns_ = clock_.now_ns();
   publisher_.publish_snapshot(now_ns_);
+  draining_ = true;
+  if (publisher_.has_readers()) channel_.publish_pulse(pulse());
 }
 
 SessionPulse TickLoop::pulse() const {
@@ -212,10 +214,10 @@ SessionPulse TickLoop::pulse() const {
   pulse.not_examined = statistics_.counters().not_examined;
   pulse.users = inbox_.users_present();
   pulse.draining = draining_;
-  return pulse;
-}
   for (const auto& [pair, row] : unexamined_)
     if (pulse.unexamined.size() < kMostUnexaminedRows) pulse.unexamined.push_back(row);
   pulse.unexamined_left_out = unexamined_.size() - pulse.unexamined.size();
+  return pulse;
+}
 
 }  // namespace mortise

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/io/log/session_log.h"
@@ -63,7 +64,7 @@ class TickLoop {
   /// is told to go on from here.
   void last_tick(bool hands_over);
 
-  /// A last snapshot for those who stay.
+  /// A last snapshot for those who stay, and that nothing comes after it.
   void close();
 
   const World& world() const { return world_; }
@@ -83,8 +84,8 @@ class TickLoop {
   void hand_over_record() { recorder_.hand_over(intake_.decisions, intake_.increments, report_); }
   void tell_follower();
   void measure_delay();
-
   void note_unexamined();
+
   World& world_;
   ServerChannel& channel_;
   Clock& clock_;
