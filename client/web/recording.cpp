@@ -1,8 +1,8 @@
 #include "client/web/recording.h"
 
 #include <algorithm>
-#include <utility>
 
+#include "client/event_stream.h"
 #include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 
@@ -97,16 +97,7 @@ Scene Recording::scene_at(std::uint64_t tick) const {
   std::map<ClashId, ClashEvent> open;
   for (const ClashEvent& event : events) {
     if (event.tick > tick) break;
-    if (event.kind == ClashEvent::Kind::kEnd) {
-      open.erase(event.clash);
-      continue;
-    }
-    ClashEvent& clash = open[event.clash];
-    const ClashEvent before = std::exchange(clash, event);
-    if (event.kind != ClashEvent::Kind::kReview) continue;
-    // Who looked at it has not moved it.
-    clash.user = before.user;
-    clash.cause = before.cause;
+    note_event(event, open);
   }
   for (auto& [id, clash] : open) scene.clashes.push_back(std::move(clash));
   return scene;

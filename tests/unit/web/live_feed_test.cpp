@@ -130,6 +130,8 @@ TEST_F(PagesOnASession, AreToldTheSameClashAndItsClass) {
   feed->enter(eve);  // late
   turn();
   EXPECT_EQ(eve.last("scene")["clashes"][0]["review"]["comment"], "hm");
+  EXPECT_EQ(eve.last("scene")["clashes"][0]["user"], 1) << "bob looked at it, ann has moved";
+  EXPECT_EQ(eve.last("scene")["clashes"][0]["cause"], "unknown");
   ASSERT_EQ(eve.last("scene")["remarks"].size(), 1u);
   EXPECT_EQ(eve.last("scene")["remarks"][0]["text"], "hm");
   // The fit of the scenario is there from the start, of nobody.
