@@ -13,6 +13,9 @@ std::int64_t steady_now_ns() {
       .count();
 }
 
+/// A snapshot and the decision that it holds already come within so long.
+constexpr std::uint64_t kSameRemark_ticks = 120;
+
 std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
 }  // namespace
@@ -133,10 +136,27 @@ void Client::apply_decision(const Decision& decision, ClientUpdate& update) {
     case Decision::Kind::kSetPolicy:
       policy_ = decision.details.text;
       break;
+    case Decision::Kind::kReview:
+      update.remarks |= add_remark(decision);
+      break;
     default:
       break;
   }
   update.decisions.push_back(decision);
+}
+
+// Snapshots and decisions come by ways of their own: what a snapshot has told is not added again.
+bool Client::add_remark(const Decision& decision) {
+  const Details& said = decision.details;
+  Remark remark{said.clash, decision.user, said.other_user, said.status, statistics_.highest_tick,
+                said.text};
+  for (const Remark& known : remarks_) {
+    Remark same = known;
+    same.tick = remark.tick;
+    if (same == remark && known.tick + kSameRemark_ticks >= remark.tick) return false;
+  }
+  remarks_.push_back(std::move(remark));
+  return true;
 }
 
 void Client::set_holder(PartId id, UserId holder) {
@@ -153,6 +173,8 @@ void Client::take_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
   tick_rate_hz_ = snapshot.tick_rate_hz;
   session_users_ = snapshot.users;
   notes_ = snapshot.notes;
+  update.remarks |= remarks_ != snapshot.remarks;
+  remarks_ = snapshot.remarks;
   update.standing |= standing_.take(snapshot);
   for (const UserInfo& info : snapshot.users) own_.doubt(info);
   std::map<PartId, KnownPart> parts;

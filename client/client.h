@@ -61,6 +61,8 @@ class Client final : public ClientCommands {
   const std::vector<UserInfo>& users() const { return session_users_; }
   /// What was found when meshes of the session were read.
   const std::vector<PartNote>& notes() const { return notes_; }
+  /// What was said of open clashes up to the last snapshot and since, by their reviews.
+  const std::vector<Remark>& remarks() const { return remarks_; }
   /// The decisions in force, as the session tells them: policy, tolerances, exclusions, constraints
   /// and hand-over requests without an answer.
   const std::vector<Decision>& standing() const { return standing_.decisions(); }
@@ -75,6 +77,7 @@ class Client final : public ClientCommands {
   std::uint64_t send_command(LocalUser user, CommandKind kind, PartId part,
                              Details details) override;
   void apply_decision(const Decision& decision, ClientUpdate& update);
+  bool add_remark(const Decision& decision);
   UserInfo& known_user(UserId id);
   void forget_server();
   void take_snapshot(const Snapshot& snapshot, ClientUpdate& update);
@@ -95,6 +98,7 @@ class Client final : public ClientCommands {
   KnownFeatures features_;
   std::vector<UserInfo> session_users_;
   std::vector<PartNote> notes_;
+  std::vector<Remark> remarks_;
   KnownStanding standing_;
   std::uint64_t stale_tick_ = 0;  ///< poses up to here may have been missed
   bool server_present_ = false;

@@ -50,6 +50,10 @@ std::uint64_t ClientCommands::reset(LocalUser user, PartId part) {
 std::uint64_t ClientCommands::ask_hand_over(LocalUser user, PartId part) {
   return command(user, CommandKind::kAskHandOver, part);
 }
+
+std::uint64_t ClientCommands::withdraw(LocalUser user, PartId part) {
+  return command(user, CommandKind::kWithdraw, part);
+}
 std::uint64_t ClientCommands::consent(LocalUser user, PartId part) {
   return command(user, CommandKind::kConsent, part);
 }
@@ -80,8 +84,9 @@ std::uint64_t ClientCommands::include(LocalUser user, PartId a, PartId b) {
   return command(user, CommandKind::kDropExclusion, a, of_pair(b, ""));
 }
 std::uint64_t ClientCommands::review(LocalUser user, ClashId clash, ReviewStatus status,
-                                     const std::string& comment) {
+                                     const std::string& comment, UserId assignee) {
   Details details = of_text(comment);
+  details.other_user = assignee;
   details.clash = clash;
   details.status = status;
   return command(user, CommandKind::kReview, PartId{}, std::move(details));

@@ -24,9 +24,11 @@ class ClientCommands {
   std::uint64_t undo(LocalUser user, PartId part);
   std::uint64_t redo(LocalUser user, PartId part);
   std::uint64_t reset(LocalUser user, PartId part);
-  /// Asks its holder for a part; the answer is a decision kHandOver, kDecline or kAskEnd.
+  /// Asks its holder for a part, until the decision kHandOver, kDecline or kAskEnd, or until the
+  /// holder has let it go.
   std::uint64_t ask_hand_over(LocalUser user, PartId part);
-  std::uint64_t consent(LocalUser user, PartId part);  ///< to the user who asked for it
+  std::uint64_t withdraw(LocalUser user, PartId part);  ///< asks no longer
+  std::uint64_t consent(LocalUser user, PartId part);   ///< to the user who asked for it
   std::uint64_t decline(LocalUser user, PartId part, const std::string& why = "");
   std::uint64_t set_policy(LocalUser user, const std::string& policy);
   /// text as in a scenario ("±0.05", "H7"), of the whole part or one feature; empty: nothing.
@@ -38,7 +40,7 @@ class ClientCommands {
   std::uint64_t exclude(LocalUser user, PartId a, PartId b, const std::string& reason);
   std::uint64_t include(LocalUser user, PartId a, PartId b);  ///< drops the exclusion
   std::uint64_t review(LocalUser user, ClashId clash, ReviewStatus status,
-                       const std::string& comment = "");
+                       const std::string& comment = "", UserId assignee = {});
   std::uint64_t add_constraint(LocalUser user, const Constraint& constraint);
   /// Constrains a held part to the nearest feature that fits, and moves it there. The server
   /// chooses what is left empty; the reply says in words what it chose, the decision kAddConstraint

@@ -43,6 +43,7 @@ struct ClientUpdate {
   std::vector<Reply> replies;             ///< to our users
   std::vector<Decision> decisions;        ///< of the server about all users, in order
   bool standing = false;                  ///< standing() may be another list
+  bool remarks = false;                   ///< remarks() may be another list
   std::vector<RefusedIncrement> refused;  ///< of our users
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here

@@ -13,6 +13,18 @@ std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 
 
 }  // namespace
 
+void note_event(const ClashEvent& event, std::map<ClashId, ClashEvent>& open) {
+  if (event.kind == ClashEvent::Kind::kEnd) {
+    open.erase(event.clash);
+    return;
+  }
+  ClashEvent& clash = open[event.clash];
+  const ClashEvent before = std::exchange(clash, event);
+  if (event.kind != ClashEvent::Kind::kReview) return;
+  clash.user = before.user;
+  clash.cause = before.cause;
+}
+
 void EventStream::collect(const std::vector<ClashEvent>& events) {
   for (const ClashEvent& event : events) {
     if ((has_snapshot_ && event.seq <= seq_) || !pending_.emplace(event.seq, event).second) {
@@ -29,11 +41,7 @@ void EventStream::apply(ClientUpdate& update) {
     ClashEvent event = std::move(pending_.begin()->second);
     pending_.erase(pending_.begin());
     seq_ = event.seq;
-    if (event.kind == ClashEvent::Kind::kEnd) {
-      open_clashes_.erase(event.clash);
-    } else {
-      open_clashes_[event.clash] = event;
-    }
+    note_event(event, open_clashes_);
     update.events.push_back(std::move(event));
     ++statistics_.events_applied;
   }

@@ -8,6 +8,10 @@
 
 namespace mortise {
 
+/// What is known of the open clashes after an event. A review tells who looked, not who moved: that
+/// stays as it was.
+void note_event(const ClashEvent& event, std::map<ClashId, ClashEvent>& open);
+
 /// The clash events of a session without gap and repeat, and the clashes that are open after them.
 /// Waits for the events of a gap for a short time, and then for a snapshot that covers them.
 class EventStream {

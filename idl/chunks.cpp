@@ -100,6 +100,9 @@ std::vector<wire::Snapshot> cut(const Snapshot& snapshot, std::uint64_t serial) 
   for (const PartNote& note : snapshot.notes) {
     cutter.add(to_wire(note), member<wire::PartNote>(&wire::Snapshot::notes));
   }
+  for (const Remark& remark : snapshot.remarks) {
+    cutter.add(to_wire(remark), member<wire::Remark>(&wire::Snapshot::remarks));
+  }
   std::vector<wire::Snapshot> chunks = std::move(cutter).take();
   number(chunks);
   return chunks;

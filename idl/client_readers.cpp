@@ -118,6 +118,7 @@ void ClientReaders::take_snapshots(ClientInput& input) {
       append(part.open_clashes, into.open_clashes);
       append(part.standing, into.standing);
       append(part.notes, into.notes);
+      append(part.remarks, into.remarks);
     });
     if (whole) input.snapshots.push_back(std::move(*whole));
   });

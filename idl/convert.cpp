@@ -666,6 +666,31 @@ Result<PartNote> from_wire(const wire::PartNote& in) {
   return PartNote{PartId{in.part()}, in.text()};
 }
 
+wire::Remark to_wire(const Remark& remark) {
+  wire::Remark out;
+  out.clash(remark.clash.value);
+  out.user(remark.user.value);
+  out.assignee(remark.assignee.value);
+  out.status(static_cast<std::uint8_t>(remark.status));
+  out.tick(remark.tick);
+  out.text(clip(remark.text, kMaxText_bytes));
+  return out;
+}
+
+Result<Remark> from_wire(const wire::Remark& in) {
+  Door door("remark");
+  door.need(in.clash() != 0, "clash");
+  door.need(in.status() < kReviewStatusCount, "status");
+  door.text(in.text(), "text");
+  if (!door.open()) return door.refusal();
+  return Remark{ClashId{in.clash()},
+                UserId{in.user()},
+                UserId{in.assignee()},
+                static_cast<ReviewStatus>(in.status()),
+                in.tick(),
+                in.text()};
+}
+
 wire::UserInfo to_wire(const UserInfo& user) {
   wire::UserInfo out;
   out.user(user.user.value);
@@ -692,6 +717,7 @@ Result<Snapshot> from_wire(const wire::Snapshot& in) {
   if (Status read = read_all(in.open_clashes(), snapshot.open_clashes); !read) return read.error();
   if (Status read = read_all(in.standing(), snapshot.standing); !read) return read.error();
   if (Status read = read_all(in.notes(), snapshot.notes); !read) return read.error();
+  if (Status read = read_all(in.remarks(), snapshot.remarks); !read) return read.error();
   return snapshot;
 }
 
@@ -712,6 +738,14 @@ wire::Pulse to_wire(const SessionPulse& pulse, std::uint64_t pose_serial) {
   out.users(pulse.users);
   out.pose_serial(pose_serial);
   out.draining(pulse.draining);
+  for (const UnexaminedRow& row : pulse.unexamined) {
+    wire::UnexaminedPair& pair = out.unexamined().emplace_back();
+    pair.part_a(row.a.value);
+    pair.part_b(row.b.value);
+    pair.why(static_cast<std::uint8_t>(row.why));
+    pair.ticks(row.ticks);
+  }
+  out.unexamined_left_out(pulse.unexamined_left_out);
   return out;
 }
 
@@ -721,6 +755,10 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   door.count(in.tick_p99_us(), "tick_p99_us");
   door.count(in.tick_max_us(), "tick_max_us");
   door.count(in.lateness_p99_us(), "lateness_p99_us");
+  door.need(in.unexamined().size() <= kMostUnexaminedRows, "unexamined");
+  for (const wire::UnexaminedPair& pair : in.unexamined())
+    door.need(pair.part_a() != 0 && pair.part_a() < pair.part_b() && pair.why() < kUnexaminedCount,
+              "unexamined");
   if (!door.open()) return door.refusal();
   SessionPulse pulse;
   pulse.tick = in.tick();
@@ -735,6 +773,10 @@ Result<SessionPulse> from_wire(const wire::Pulse& in) {
   pulse.not_examined = in.not_examined();
   pulse.users = in.users();
   pulse.draining = in.draining();
+  for (const wire::UnexaminedPair& pair : in.unexamined())
+    pulse.unexamined.push_back({PartId{pair.part_a()}, PartId{pair.part_b()},
+                                static_cast<Unexamined>(pair.why()), pair.ticks()});
+  pulse.unexamined_left_out = in.unexamined_left_out();
   return pulse;
 }
 

@@ -91,6 +91,8 @@ wire::PartInfo to_wire(const PartInfo& part);
 Result<PartInfo> from_wire(const wire::PartInfo& part);
 wire::PartNote to_wire(const PartNote& note);
 Result<PartNote> from_wire(const wire::PartNote& note);
+wire::Remark to_wire(const Remark& remark);
+Result<Remark> from_wire(const wire::Remark& remark);
 wire::UserInfo to_wire(const UserInfo& user);
 Result<UserInfo> from_wire(const wire::UserInfo& user);
 /// One chunk of a snapshot.

@@ -307,10 +307,6 @@ void Inbox::end_leases(World& world, std::int64_t now_ns, Intake& intake) {
     ++tally_.all().lease_ends;
     decide(end, world, intake);
   }
-  for (const Decision& end : leases_.unanswered(world, now_ns)) {
-    ++tally_.all().ask_ends;
-    decide(end, world, intake);
-  }
 }
 
 void Inbox::decide(const Decision& decision, World& world, Intake& intake) {

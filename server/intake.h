@@ -48,8 +48,7 @@ struct UserCounters {
 };
 
 struct InboxCounters {
-  std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0,
-                ask_ends = 0;
+  std::uint64_t joins = 0, joins_refused = 0, leaves = 0, liveliness_lost = 0, lease_ends = 0;
   std::uint64_t joins_put_off = 0;  ///< not answered by a server that is about to end
   std::uint64_t commands = 0, commands_refused = 0, commands_deferred = 0;
   std::uint64_t commands_overdue = 0;  ///< applied without increments that were sent before them

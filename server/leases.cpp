@@ -10,7 +10,6 @@ std::int64_t lease_ns(const World& world) { return static_cast<std::int64_t>(wor
 void Leases::begin_drain(const World& world, std::int64_t now_ns) {
   if (renewed_ns_.size() == world.parts.size()) return;
   renewed_ns_.resize(world.parts.size(), now_ns);
-  asked_ns_.resize(world.parts.size(), now_ns);
   moving_.clear();
   for (std::uint32_t i = 0; i < world.parts.size(); ++i)
     if (world.parts[i].moving) moving_.push_back(i);
@@ -24,11 +23,8 @@ void Leases::renew_all(const World& world, UserId user, std::int64_t now_ns) {
 void Leases::note(const Decision& decision, std::int64_t now_ns) {
   std::vector<PartId> parts = decision.details.parts;
   if (parts.empty() && decision.part) parts.push_back(decision.part);
-  for (const PartId part : parts) {
-    if (decision.kind == Decision::Kind::kGrab || decision.kind == Decision::Kind::kHandOver)
-      renew(part, now_ns);
-    if (decision.kind == Decision::Kind::kAskHandOver) asked_ns_[part.value - 1] = now_ns;
-  }
+  if (decision.kind != Decision::Kind::kGrab && decision.kind != Decision::Kind::kHandOver) return;
+  for (const PartId part : parts) renew(part, now_ns);
 }
 
 std::vector<Decision> Leases::ended(const World& world, std::int64_t now_ns,
@@ -39,17 +35,6 @@ std::vector<Decision> Leases::ended(const World& world, std::int64_t now_ns,
     if (!part.holder || now_ns - renewed_ns_[i] <= lease_ns(world)) continue;
     if (moved(part.holder, part.id)) continue;
     decisions.push_back({Decision::Kind::kLeaseEnd, part.holder, part.id, {}});
-  }
-  return decisions;
-}
-
-std::vector<Decision> Leases::unanswered(const World& world, std::int64_t now_ns) const {
-  std::vector<Decision> decisions;
-  for (const std::uint32_t i : moving_) {
-    const Part& part = world.parts[i];
-    if (!part.asked_by || now_ns - asked_ns_[i] <= lease_ns(world)) continue;
-    decisions.push_back({Decision::Kind::kAskEnd, part.asked_by, part.id, {}});
-    decisions.back().details.other_user = part.holder;
   }
   return decisions;
 }

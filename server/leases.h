@@ -8,8 +8,8 @@
 
 namespace mortise {
 
-/// How long a holder keeps a part that is not used, and how long a hand-over request stays open:
-/// World::lease_s each.
+/// How long a holder keeps a part that is not used: World::lease_s. What somebody asks the holder
+/// stays until it is answered or withdrawn.
 class Leases {
  public:
   /// Before each drain. The parts of a world do not change.
@@ -17,21 +17,19 @@ class Leases {
 
   void renew(PartId part, std::int64_t now_ns) { renewed_ns_[part.value - 1] = now_ns; }
   void renew_all(const World& world, UserId user, std::int64_t now_ns);
-  /// A grab or hand-over begins a lease, a request begins its time.
+  /// A grab or hand-over begins a lease.
   void note(const Decision& decision, std::int64_t now_ns);
 
-  /// Leases that end now, and requests. A part keeps its lease while increments of it wait
-  /// (`moved`).
+  /// Leases that end now. A part keeps its lease while increments of it wait (`moved`).
   std::vector<Decision> ended(const World& world, std::int64_t now_ns,
                               const std::function<bool(UserId, PartId)>& moved) const;
-  std::vector<Decision> unanswered(const World& world, std::int64_t now_ns) const;
 
   /// Parts that can be held, by index: not all of a scene.
   std::span<const std::uint32_t> moving() const { return moving_; }
 
  private:
   std::vector<std::uint32_t> moving_;
-  std::vector<std::int64_t> renewed_ns_, asked_ns_;  ///< by part index
+  std::vector<std::int64_t> renewed_ns_;  ///< by part index
 };
 
 }  // namespace mortise

@@ -73,6 +73,7 @@ void TickLoop::tick() {
   metrics_.step.add(step_ns);
   statistics_.forget_users(intake_.decisions);
   statistics_.add(report_);
+  note_unexamined();
 
   // 7. out
   begin_record(step_ns);
@@ -83,6 +84,7 @@ void TickLoop::tick() {
   if (last_ || now_ns_ - pulse_ns_ >= in_ns(options_.pulse_s)) {
     pulse_ns_ = now_ns_;
     if (publisher_.has_readers()) channel_.publish_pulse(pulse());
+    unexamined_.clear();
   }
   ++metrics_.ticks;
   metrics_.tick.add(clock_.now_ns() - now_ns_);
@@ -134,6 +136,20 @@ void TickLoop::measure_delay() {
   }
 }
 
+// A part that has moved on with a verdict takes what was told of its pairs before.
+void TickLoop::note_unexamined() {
+  const auto has_moved = [&](PartId part) {
+    return std::ranges::any_of(report_.moved, [&](auto& moved) { return moved.part == part; });
+  };
+  std::erase_if(unexamined_, [&](const auto& entry) {
+    return has_moved(entry.first.first) || has_moved(entry.first.second);
+  });
+  for (const UnexaminedPair& pair : report_.unexamined) {
+    UnexaminedRow& row = unexamined_[{pair.a, pair.b}];
+    row = {pair.a, pair.b, pair.why, row.ticks + 1};
+  }
+}
+
 void TickLoop::run(const std::function<bool()>& stop, const std::function<void()>& after_tick) {
   const std::int64_t period_ns = in_ns(1.0 / world_.tick_rate_hz);
   std::int64_t deadline_ns = clock_.now_ns();
@@ -177,6 +193,8 @@ void TickLoop::close() {
   hand_over_record();
   now_ns_ = clock_.now_ns();
   publisher_.publish_snapshot(now_ns_);
+  draining_ = true;
+  if (publisher_.has_readers()) channel_.publish_pulse(pulse());
 }
 
 SessionPulse TickLoop::pulse() const {
@@ -196,6 +214,9 @@ SessionPulse TickLoop::pulse() const {
   pulse.not_examined = statistics_.counters().not_examined;
   pulse.users = inbox_.users_present();
   pulse.draining = draining_;
+  for (const auto& [pair, row] : unexamined_)
+    if (pulse.unexamined.size() < kMostUnexaminedRows) pulse.unexamined.push_back(row);
+  pulse.unexamined_left_out = unexamined_.size() - pulse.unexamined.size();
   return pulse;
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/io/log/session_log.h"
@@ -63,7 +64,7 @@ class TickLoop {
   /// is told to go on from here.
   void last_tick(bool hands_over);
 
-  /// A last snapshot for those who stay.
+  /// A last snapshot for those who stay, and that nothing comes after it.
   void close();
 
   const World& world() const { return world_; }
@@ -83,6 +84,7 @@ class TickLoop {
   void hand_over_record() { recorder_.hand_over(intake_.decisions, intake_.increments, report_); }
   void tell_follower();
   void measure_delay();
+  void note_unexamined();
 
   World& world_;
   ServerChannel& channel_;
@@ -98,7 +100,8 @@ class TickLoop {
   TickRecorder recorder_;
   TickPublisher publisher_;
   std::map<UserId, std::int64_t> fastest_ns_;  ///< arrival minus send, of two clocks: least so far
-  std::vector<Decision> departures_;           ///< of before a restore, not yet logged
+  std::map<std::pair<PartId, PartId>, UnexaminedRow> unexamined_;  ///< since the last pulse
+  std::vector<Decision> departures_;  ///< of before a restore, not yet logged
   std::int64_t opened_ns_ = 0, now_ns_ = 0, pulse_ns_ = 0;
   bool superseded_ = false;
   std::string superseded_by_;

@@ -17,7 +17,7 @@ constexpr ClassColours class_colours(CollisionClass collision_class) {
     case CollisionClass::kReal:
       return {0xc62828, 0xff6b6b, 0xe8575b, 0x8a0d2a};
     case CollisionClass::kPotential:
-      return {0xb26a00, 0xf5b942, 0xf8dc6a, 0xe8842a};
+      return {0xa86300, 0xf5b942, 0xf8dc6a, 0xe8842a};
     case CollisionClass::kFake:
       return {0x1668b3, 0x63b3f4, 0xb5d8f5, 0x2b76b8};
     case CollisionClass::kNone:

@@ -42,6 +42,8 @@ std::optional<CommandKind> command_of(Decision::Kind kind) {
       return CommandKind::kConsent;
     case Decision::Kind::kDecline:
       return CommandKind::kDecline;
+    case Decision::Kind::kAskEnd:
+      return CommandKind::kWithdraw;
     case Decision::Kind::kSetPolicy:
       return CommandKind::kSetPolicy;
     case Decision::Kind::kSetTolerance:

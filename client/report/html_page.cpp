@@ -57,7 +57,11 @@ tr.now td { font-weight: 700; background: var(--band); }
 td a { color: inherit; }
 @media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
   body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
-  .wide { overflow: visible; } table { font-size: 7.5pt; } .wide > svg { width: 100%; height: auto; }
+  .wide { overflow: visible; } table { font-size: 7pt; } .wide > svg { width: 100%; height: auto; }
+  th, td { padding: .15rem .25rem; } .wide td, .wide th { overflow-wrap: anywhere; white-space: normal; }
+  #clashes svg { width: 60px; } #clashes col:nth-child(1) { width: 4% !important; }
+  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9% !important; }
+  #clashes col:nth-child(3) { width: 19% !important; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11% !important; }
   figure > svg { width: 100%; } .parts { grid-template-columns: 1fr 1fr; }
   th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
 )";

@@ -147,6 +147,7 @@ void read_features(Keys& keys, CommandWish& wish) {
 void read_review(Keys& keys, CommandWish& wish) {
   wish.details.clash = keys.id<ClashId>("clash");
   wish.details.status = keys.named<ReviewStatus>("status", 0, kReviewStatusCount);
+  if (keys.has("assignee")) wish.details.other_user = keys.id<UserId>("assignee");
   read_any_text(keys, wish);
 }
 void read_constraint(Keys& keys, CommandWish& wish) {
@@ -187,6 +188,7 @@ const std::vector<CommandRow>& command_rows() {
       {"redo", kRedo, {read_part}},
       {"reset", kReset, {read_part}},
       {"ask", kAskHandOver, {read_part}},
+      {"withdraw", kWithdraw, {read_part}},
       {"consent", kConsent, {read_part}},
       {"decline", kDecline, {read_part, read_any_text}},
       {"policy", kSetPolicy, {read_text}},

@@ -132,7 +132,22 @@ Json json_of(const Decision& decision) {
   return json;
 }
 
+Json json_of(const Remark& remark) {
+  return {{"clash", remark.clash.value},
+          {"user", remark.user.value},
+          {"assignee", remark.assignee.value},
+          {"status", name_of(remark.status)},
+          {"tick", remark.tick},
+          {"text", remark.text}};
+}
+
+Json json_of(const UnexaminedRow& row) {
+  return {{"a", row.a.value}, {"b", row.b.value}, {"why", name_of(row.why)}, {"ticks", row.ticks}};
+}
+
 Json json_of(const SessionPulse& pulse) {
+  Json unexamined = Json::array();
+  for (const UnexaminedRow& row : pulse.unexamined) unexamined.push_back(json_of(row));
   return {{"type", "pulse"},
           {"tick", pulse.tick},
           {"open", by_class(pulse.clashes_open)},
@@ -146,6 +161,8 @@ Json json_of(const SessionPulse& pulse) {
           {"refused", pulse.refused},
           {"not_examined", pulse.not_examined},
           {"users", pulse.users},
+          {"unexamined", std::move(unexamined)},
+          {"unexamined_left_out", pulse.unexamined_left_out},
           {"draining", pulse.draining}};
 }
 
@@ -159,11 +176,11 @@ Json percentiles_of(std::vector<double> samples_ms) {
 }
 
 Json json_of(const Scene& scene, const ClassBits& classes) {
-  Json json{{"type", "scene"},          {"session", scene.session},
-            {"tick", scene.tick},       {"tick_rate_hz", number(scene.tick_rate_hz)},
-            {"policy", scene.policy},   {"parts", Json::array()},
-            {"users", Json::array()},   {"clashes", Json::array()},
-            {"standing", Json::array()}};
+  Json json{{"type", "scene"},           {"session", scene.session},
+            {"tick", scene.tick},        {"tick_rate_hz", number(scene.tick_rate_hz)},
+            {"policy", scene.policy},    {"parts", Json::array()},
+            {"users", Json::array()},    {"clashes", Json::array()},
+            {"standing", Json::array()}, {"remarks", Json::array()}};
   for (const PartInfo& part : scene.parts) {
     const auto bits = classes.find(part.part);
     Json row = json_of(part, bits == classes.end() ? 0u : bits->second);
@@ -181,6 +198,7 @@ Json json_of(const Scene& scene, const ClassBits& classes) {
     json["clashes"].push_back(json_of(clash));
   }
   for (const Decision& decision : scene.standing) json["standing"].push_back(json_of(decision));
+  for (const Remark& remark : scene.remarks) json["remarks"].push_back(json_of(remark));
   return json;
 }
 

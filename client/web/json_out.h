@@ -23,6 +23,8 @@ Json json_of(const PartInfo& part, std::uint32_t classes);
 Json json_of(const UserInfo& user);
 Json json_of(const ClashEvent& event);
 Json json_of(const Decision& decision);
+Json json_of(const Remark& remark);
+Json json_of(const UnexaminedRow& row);
 Json json_of(const SessionPulse& pulse);
 Json percentiles_of(std::vector<double> samples_ms);  ///< null without any
 
@@ -43,6 +45,7 @@ struct Scene {
   std::vector<ClashEvent> clashes;
   std::vector<Decision> standing;
   std::vector<PartNote> notes;
+  std::vector<Remark> remarks;
 };
 Json json_of(const Scene& scene, const ClassBits& classes);
 

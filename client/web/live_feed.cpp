@@ -39,6 +39,8 @@ void LiveFeed::turn(double now_s) {
     tell_decisions(update);
     if (update.standing && !update.resynced)
       seats_.tell_all(message_of_list("standing", "standing", client_.standing()));
+    if (update.remarks && !update.resynced)
+      seats_.tell_all(message_of_list("remarks", "remarks", client_.remarks()));
     if (!update.events.empty()) seats_.tell_all(message_of_list("events", "events", update.events));
     if (!update.resynced) tell_changes(update);
   }
@@ -106,6 +108,7 @@ SharedBytes LiveFeed::scene() {
   for (const auto& [id, clash] : client_.open_clashes()) scene.clashes.push_back(clash);
   scene.standing = client_.standing();
   scene.notes = client_.notes();
+  scene.remarks = client_.remarks();
   meshes_.expect(scene.parts);
   return text_of(json_of(scene, classes_));
 }

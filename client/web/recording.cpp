@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "client/event_stream.h"
 #include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"
 
@@ -19,7 +20,11 @@ PartState state_of(const Part& part) { return {part.id, part.holder, part.X_WP, 
 
 Recording::Agreement agreement_of(const World& world, std::vector<Decision> decisions) {
   Snapshot now = snapshot_of(world);
-  return {world.tick, std::move(now.policy), std::move(now.users), std::move(now.standing),
+  return {world.tick,
+          std::move(now.policy),
+          std::move(now.users),
+          std::move(now.standing),
+          std::move(now.remarks),
           std::move(decisions)};
 }
 
@@ -82,8 +87,8 @@ std::vector<PartId> Recording::moved_between(std::uint64_t from, std::uint64_t t
 
 Scene Recording::scene_at(std::uint64_t tick) const {
   const Agreement& agreement = agreement_at(tick);
-  Scene scene{session, agreement.policy,   tick,      tick_rate_hz, parts, agreement.users,
-              {},      agreement.standing, part_notes};
+  Scene scene{session, agreement.policy,   tick,       tick_rate_hz,     parts, agreement.users,
+              {},      agreement.standing, part_notes, agreement.remarks};
   for (PartInfo& part : scene.parts) {
     const PartState state = state_at(part.part, tick);
     part.X_WP = state.X_WP;
@@ -92,10 +97,7 @@ Scene Recording::scene_at(std::uint64_t tick) const {
   std::map<ClashId, ClashEvent> open;
   for (const ClashEvent& event : events) {
     if (event.tick > tick) break;
-    if (event.kind == ClashEvent::Kind::kEnd)
-      open.erase(event.clash);
-    else
-      open[event.clash] = event;
+    note_event(event, open);
   }
   for (auto& [id, clash] : open) scene.clashes.push_back(std::move(clash));
   return scene;

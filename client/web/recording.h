@@ -24,6 +24,7 @@ struct Recording {
     std::string policy;
     std::vector<UserInfo> users;
     std::vector<Decision> standing;
+    std::vector<Remark> remarks;
     std::vector<Decision> decisions;  ///< of this tick
   };
 

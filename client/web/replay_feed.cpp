@@ -125,6 +125,7 @@ void ReplayFeed::tell_decisions(Viewer& viewer, std::uint64_t from, std::uint64_
     viewer.say(text_of(message_of_list("decisions", "decisions", agreement.decisions)));
     viewer.say(text_of(message_of_list("users", "users", agreement.users)));
     viewer.say(text_of(message_of_list("standing", "standing", agreement.standing)));
+    viewer.say(text_of(message_of_list("remarks", "remarks", agreement.remarks)));
   }
 }
 

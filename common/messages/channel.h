@@ -126,6 +126,16 @@ struct PoseBatch {
   bool keyframe = false;  ///< holds all parts
 };
 
+/// A pair that had no verdict in some ticks since the last pulse, and why in the last of them.
+struct UnexaminedRow {
+  PartId a, b;  ///< a < b
+  Unexamined why = Unexamined::kUnknown;
+  std::uint32_t ticks = 0;
+  friend bool operator==(const UnexaminedRow&, const UnexaminedRow&) = default;
+};
+/// Most rows of one pulse.
+inline constexpr std::size_t kMostUnexaminedRows = 64;
+
 /// Figures of the running session, once a second.
 struct SessionPulse {
   std::uint64_t tick = 0;
@@ -136,6 +146,8 @@ struct SessionPulse {
   std::uint64_t refused = 0, not_examined = 0;
   std::uint32_t users = 0;
   bool draining = false;  ///< this server ends soon; the session continues on another one, or later
+  std::vector<UnexaminedRow> unexamined;  ///< by pair
+  std::uint64_t unexamined_left_out = 0;  ///< rows beyond kMostUnexaminedRows
 };
 
 /// The server's end of a transport. take() and publish_*() never block and are called from the tick

@@ -28,12 +28,13 @@ enum class CommandKind : std::uint8_t {
       10,  ///< feature, other_part, other_feature; text as in a scenario, empty: nothing
   kSetExclusion = 11,    ///< other_part; text: the reason
   kDropExclusion = 12,   ///< other_part
-  kReview = 13,          ///< clash, status; text: the comment, may be empty
+  kReview = 13,          ///< clash, status; other_user: whose task; text: the comment, may be empty
   kAddConstraint = 14,   ///< constraint; its held.part is `part`
   kDropConstraint = 15,  ///< constraint_id
   kSnap = 16,            ///< constraint: the server chooses the fields that are left empty
+  kWithdraw = 17,        ///< takes back what the user asked of the holder of the part
 };
-inline constexpr std::uint8_t kCommandKindCount = 17;
+inline constexpr std::uint8_t kCommandKindCount = 18;
 
 /// Why something was not done. Goes over the wire and into the log, so numbers never change.
 enum class Refusal : std::uint8_t {
@@ -75,7 +76,7 @@ struct Details {
   std::vector<PartId> parts;           ///< of a group; `part` is then none
   PartId other_part;                   ///< the other one of a pair
   std::string feature, other_feature;  ///< of part and other_part; empty: the whole part
-  UserId other_user;                   ///< to whom, from whom
+  UserId other_user;                   ///< to whom, from whom; of a review: whose task it is
   ClashId clash;
   ReviewStatus status = ReviewStatus::kNew;
   std::string text;
@@ -124,7 +125,7 @@ struct Decision {
     kAskHandOver = 10,  ///< user asks details.other_user, who holds the part
     kHandOver = 11,     ///< user gives the part to details.other_user
     kDecline = 12,      ///< user keeps the part that details.other_user asked for
-    kAskEnd = 13,       ///< the request of user was not answered in time
+    kAskEnd = 13,       ///< user no longer asks for the part
     kSetPolicy = 14,
     kSetTolerance = 15,
     kSetExclusion = 16,

@@ -128,6 +128,7 @@ std::string_view name_of(CommandKind value) {
     case CommandKind::kAddConstraint: return "add constraint";
     case CommandKind::kDropConstraint: return "drop constraint";
     case CommandKind::kSnap: return "snap";
+    case CommandKind::kWithdraw: return "withdraw";
   }
   return "?";
 }
@@ -147,7 +148,7 @@ std::string_view name_of(Decision::Kind value) {
     case Decision::Kind::kAskHandOver: return "ask for hand-over";
     case Decision::Kind::kHandOver: return "hand-over";
     case Decision::Kind::kDecline: return "decline";
-    case Decision::Kind::kAskEnd: return "ask unanswered";
+    case Decision::Kind::kAskEnd: return "ask withdrawn";
     case Decision::Kind::kSetPolicy: return "set policy";
     case Decision::Kind::kSetTolerance: return "set tolerance";
     case Decision::Kind::kSetExclusion: return "set exclusion";
@@ -177,6 +178,17 @@ std::string_view name_of(ReviewStatus value) {
     case ReviewStatus::kReviewed: return "reviewed";
     case ReviewStatus::kApproved: return "approved";
     case ReviewStatus::kResolved: return "resolved";
+  }
+  return "?";
+}
+
+std::string_view name_of(Unexamined value) {
+  switch (value) {
+    case Unexamined::kUnknown: return "unknown";
+    case Unexamined::kWaitsForContact: return "waits for first contact";
+    case Unexamined::kWaitsForDepth: return "waits for depth";
+    case Unexamined::kGivenUp: return "given up";
+    case Unexamined::kNoInside: return "no inside";
   }
   return "?";
 }

@@ -4,6 +4,7 @@
 #include "common/messages/command.h"
 #include "common/messages/constraint.h"
 #include "common/messages/event.h"
+#include "common/messages/report.h"
 
 namespace mortise {
 
@@ -19,6 +20,7 @@ std::string_view name_of(CommandKind value);
 std::string_view name_of(Decision::Kind value);
 std::string_view name_of(ClashEvent::Kind value);
 std::string_view name_of(ReviewStatus value);
+std::string_view name_of(Unexamined value);
 std::string_view name_of(Role value);
 
 }  // namespace mortise

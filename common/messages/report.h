@@ -66,11 +66,28 @@ struct RefusedIncrement {
   Refusal reason = Refusal::kNone;
 };
 
+/// Why a pair has no verdict of this tick. Goes over the wire, so numbers never change.
+enum class Unexamined : std::uint8_t {
+  kUnknown = 0,
+  kWaitsForContact = 1,  ///< for work on first contact
+  kWaitsForDepth = 2,    ///< for work on depth
+  kGivenUp = 3,          ///< a search came to the most work that a pair may have
+  kNoInside = 4,         ///< the inside of a part is not known where the other one is
+};
+inline constexpr std::uint8_t kUnexaminedCount = 5;
+
+/// A pair that is counted in StepCounters::not_examined.
+struct UnexaminedPair {
+  PartId a, b;
+  Unexamined why = Unexamined::kUnknown;
+};
+
 struct StepReport {
   std::uint64_t tick = 0;
   std::vector<PartPose> moved;     ///< parts whose pose changed, by id
   std::vector<ClashEvent> events;  ///< in order of ClashEvent::seq
   std::vector<RefusedIncrement> refused;
+  std::vector<UnexaminedPair> unexamined;  ///< by pair
   StepCounters counters;
   std::uint64_t state_hash =
       0;  ///< of all poses, holders, open clashes and verdicts after the tick

@@ -24,4 +24,15 @@ struct Review {
   std::uint64_t tick = 0;  ///< when, 0: never
 };
 
+/// What somebody said of a clash with one review: the remarks of a clash are its thread.
+struct Remark {
+  ClashId clash;
+  UserId user;
+  UserId assignee;  ///< whose task it is from then on; none: nobody's
+  ReviewStatus status = ReviewStatus::kNew;
+  std::uint64_t tick = 0;
+  std::string text;  ///< may be empty
+  friend bool operator==(const Remark&, const Remark&) = default;
+};
+
 }  // namespace mortise

@@ -49,6 +49,8 @@ struct Snapshot {
   /// replaces which; it tells changes to this list as StandingChange.
   std::vector<Decision> standing;
   std::vector<PartNote> notes;  ///< by part
+  /// What was said of the open clashes, in order. Later ones are told as decisions of kind kReview.
+  std::vector<Remark> remarks;
 };
 
 }  // namespace mortise

@@ -2,9 +2,11 @@
 import { Connection, tokenOf } from './session/connection.js';
 import { Choice } from './session/choice.js';
 import { Commands } from './session/commands.js';
+import { forgetToken, keptToken } from './session/link.js';
 import { readPoseFrame } from './session/frames.js';
 import { Mover } from './session/mover.js';
 import { Session } from './session/session.js';
+import { Stops } from './session/stops.js';
 import { Stage } from './view/stage.js';
 import { Camera } from './view/camera.js';
 import { ClashMarks } from './view/clash_marks.js';
@@ -19,15 +21,15 @@ import { say } from './panels/said.js';
 
 /**
  * The line to the gateway as people see it.
- * @typedef {{state: import('./session/connection.js').LineState, text: string, roundTrip: number, frames: number, onChange: () => void}} Line
+ * @typedef {{state: import('./session/connection.js').LineState, told: import('./session/connection.js').LineTold, roundTrip: number, frames: number, onChange: () => void}} Line
  */
 
 export function makeDesk() {
   const session = new Session();
   const choice = new Choice();
   /** @type {Line} */
-  const line = { state: 'connecting', text: '', roundTrip: 0, frames: 0, onChange: () => {} };
-  const connection = new Connection(tokenOf(location.hash), {
+  const line = { state: 'connecting', told: { trouble: '', why: '', retryAt: 0 }, roundTrip: 0, frames: 0, onChange: () => {} };
+  const connection = new Connection(keptToken(tokenOf(location.hash), localStorage), {
     message: (message) => (message.type === 'reply' ? commands.take(message) : session.apply(message)),
     poses: (buffer) => {
       const frame = readPoseFrame(buffer);
@@ -36,19 +38,26 @@ export function makeDesk() {
       session.applyPoses(frame);
     },
     roundTrip: (ms) => (line.roundTrip = ms),
-    state: (state, text) => {
+    state: (state, told) => {
       if (line.state === 'open' && state !== 'open') {
         session.lost();
         commands.lost();
         mover.dropAll();
       }
-      Object.assign(line, { state, text });
+      if (told.trouble === 'token') forgetToken(connection.token, localStorage);
+      Object.assign(line, { state, told });
       line.onChange();
     },
   });
   const send = (/** @type {object} */ message) => connection.send(message);
   const commands = new Commands(send, say);
-  const mover = new Mover((part, { t, r }) => send({ type: 'move', part, t, r }));
+  const stops = new Stops();
+  const mover = new Mover((part, increment) => {
+    const known = session.parts.get(part);
+    const sent = send({ type: 'move', part, ...increment });
+    if (known && sent) stops.asked(known, increment, performance.now());
+    return sent;
+  });
 
   const stage = new Stage(/** @type {HTMLCanvasElement} */ (byId('canvas')));
   const partsView = new PartsView(stage, (hash) => connection.mesh(hash), (text) => say(text, 'bad'));
@@ -60,7 +69,7 @@ export function makeDesk() {
   const labels = new Labels(stage, session, partsView, byId('labels'));
   labels.sources.push(() => marks.notes);
   const flights = makeFlights({ session, choice, camera, partsView, section });
-  return { session, choice, line, connection, send, commands, mover, stage, partsView, camera, marks, heat, section, handles, labels, say, ...flights };
+  return { session, choice, line, connection, send, commands, mover, stops, stage, partsView, camera, marks, heat, section, handles, labels, say, ...flights };
 }
 
 /** @typedef {ReturnType<typeof makeDesk>} Desk */

@@ -145,6 +145,9 @@ std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
   return "generator " + spec.mesh.generator + " has no feature of this name; " + known_names(mesh);
 }
 
+/// Told again with each snapshot; a list of more is not read by people.
+constexpr std::size_t kMostDeclared = 1024;
+
 class SceneLoader {
  public:
   SceneLoader(const Scenario& scenario, const MeshProvider& meshes)
@@ -165,6 +168,7 @@ class SceneLoader {
       world.pair_rules = std::move(rules.pair_rules);
       scene_.fits = std::move(rules.fits);
       scene_.findings.insert(scene_.findings.end(), rules.findings.begin(), rules.findings.end());
+      declare();
     }
     if (scene_.usable()) world.rules = make_live_rules(scenario_, stated_);
     if (scenario_.assembly) scene_.assembly = scenario_.assembly->sent;
@@ -175,6 +179,40 @@ class SceneLoader {
  private:
   void finding(bool is_error, SourceLine at, const std::string& text) {
     scene_.findings.push_back({is_error, place_of(scenario_, at) + text});
+  }
+
+  // Fits and exclusions as participants are told of them.
+  void declare() {
+    World& world = scene_.world;
+    std::map<std::string, PartId> ids;
+    for (const Part& part : world.parts) ids.emplace(part.name, part.id);
+    std::vector<Decision> all;
+    for (const LoadedScene::ResolvedFit& fit : scene_.fits) {
+      Decision& said = all.emplace_back();
+      said.kind = Decision::Kind::kSetTolerance;
+      said.part = ids.at(fit.part_a);
+      said.details.other_part = ids.at(fit.part_b);
+      said.details.feature = fit.feature_a;
+      said.details.other_feature = fit.feature_b;
+      said.details.text = fit.code;
+    }
+    for (const auto& [pair, rule] : world.pair_rules) {
+      if (!rule.excluded) continue;
+      Decision& said = all.emplace_back();
+      said.kind = Decision::Kind::kSetExclusion;
+      said.part = rule.a;
+      said.details.other_part = rule.b;
+      said.details.text = rule.reason;
+    }
+    if (all.size() > kMostDeclared) {
+      scene_.findings.push_back({false, place_of(scenario_, {}) + "of " +
+                                            std::to_string(all.size()) +
+                                            " pairs with a fit or an exclusion participants are "
+                                            "told the first " +
+                                            std::to_string(kMostDeclared)});
+      all.resize(kMostDeclared);
+    }
+    world.declared = std::move(all);
   }
 
   // 1. parts, one kind for all that are alike

@@ -45,12 +45,12 @@ void put_rules(Writer& out, const World& world) {
 // All but the memos. The members of a world are named here as those of the rest in state_fields.
 void put_frame(Writer& out, const World& world) {
   const auto& [name, tick_rate_hz, policy, max_jump_mm, lease_s, tick, parts, users, pair_rules,
-               may_hold, standing, rules, restated, guides, next_constraint, next_group, recognized,
-               evaluates, state] = world;
+               may_hold, declared, standing, remarks, rules, restated, guides, next_constraint,
+               next_group, recognized, evaluates, state] = world;
   out(tick, policy);
   out.count(parts.size());
   for (const Part& part : parts) out(part);
-  out(users, restated, standing);
+  out(users, restated, standing, remarks);
   put_rules(out, world);
   out(guides, next_constraint, next_group, evaluates, *state);
 }
@@ -156,8 +156,8 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   std::vector<PairStatement> statements;
   bool evaluates = false;
   auto state = empty_state(world);
-  in(world.users, restated, standing, statements, world.guides, world.next_constraint,
-     world.next_group, evaluates, *state);
+  in(world.users, restated, standing, world.remarks, statements, world.guides,
+     world.next_constraint, world.next_group, evaluates, *state);
   const std::size_t memos = in.count(0);
   for (std::size_t i = 0; i < memos && in.ok(); ++i) {
     std::uint64_t key = 0;

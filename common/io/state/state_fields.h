@@ -54,6 +54,12 @@ void fields(A& a, Review& x) {
 }
 
 template <class A>
+void fields(A& a, Remark& x) {
+  auto& [clash, user, assignee, status, tick, text] = x;
+  a(clash, user, assignee, status, tick, text);
+}
+
+template <class A>
 void fields(A& a, Verdict& x) {
   auto& [collision_class, delta_mm, gpd_mm, fake_below_mm, real_above_mm, margin_mm, probability,
          travel_mm, normal_travel_mm, point_W, normal_W, area_mm2, has_witness, witness_W,

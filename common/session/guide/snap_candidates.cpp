@@ -4,12 +4,15 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "common/messages/names.h"
 #include "common/session/guide/guidance.h"
 #include "common/session/world/moving_group.h"
+#include "common/session/world/standing.h"
 
 namespace mortise {
 namespace {
@@ -82,6 +85,31 @@ bool near_and_alike(const Placed& a, const Placed& b, const Vec3& reference_W,
   return candidate.angle_rad <= limits.angle_rad && candidate.distance_mm <= limits.distance_mm;
 }
 
+// The fits in force of one part, each from its end.
+class Fits {
+ public:
+  Fits(const World& world, PartId part) {
+    for (Decision& fit : standing_decisions(world)) {
+      Details& of = fit.details;
+      if (fit.kind != Decision::Kind::kSetTolerance || !of.other_part || of.text.empty()) continue;
+      if (of.other_part == part) {
+        of.other_part = fit.part;
+        std::swap(of.feature, of.other_feature);
+      } else if (fit.part != part) {
+        continue;
+      }
+      of_[{of.other_part, of.feature, of.other_feature}] = of.text;
+    }
+  }
+  std::string between(const std::string& feature, const FeatureOf& other) const {
+    const auto found = of_.find({other.part, feature, other.feature});
+    return found == of_.end() ? "" : found->second;
+  }
+
+ private:
+  std::map<std::tuple<PartId, std::string, std::string>, std::string> of_;
+};
+
 }  // namespace
 
 std::vector<SnapCandidate> snap_candidates(const World& world, PartId part_id,
@@ -91,6 +119,7 @@ std::vector<SnapCandidate> snap_candidates(const World& world, PartId part_id,
   const Part& part = *world.find(part_id);
   const MovingGroup group = moving_group_of(world, part_id.value - 1);
   const std::vector<Placed> own = placed_features(world, part);
+  const Fits fits(world, part_id);
   const Vec3 reference_W = part.X_WP * part.solid->sphere().center_mm;
   for (const Part& other : world.parts) {
     const auto& ball = other.solid->sphere();
@@ -105,13 +134,14 @@ std::vector<SnapCandidate> snap_candidates(const World& world, PartId part_id,
         candidate.constraint.held = {part.id, a.feature->name};
         candidate.constraint.other = {other.id, b.feature->name};
         candidate.constraint.snap = true;
+        candidate.fit = fits.between(a.feature->name, candidate.constraint.other);
         candidates.push_back(std::move(candidate));
       }
   }
   // Nearest first: turning by an angle moves the rim of the part.
   const double lever_mm = part.solid->sphere().radius_mm;
   const auto key = [&](const SnapCandidate& c) {
-    return c.distance_mm + lever_mm * c.angle_rad + c.radius_off_mm;
+    return std::pair(c.fit.empty(), c.distance_mm + lever_mm * c.angle_rad + c.radius_off_mm);
   };
   std::stable_sort(candidates.begin(), candidates.end(),
                    [&](const auto& x, const auto& y) { return key(x) < key(y); });
@@ -138,7 +168,8 @@ std::string chosen_text(const World& world, const SnapCandidate& candidate) {
                 candidate.angle_rad * 180.0 / std::numbers::pi);
   return named(world, candidate.constraint.held) + " " +
          std::string(name_of(candidate.constraint.kind)) + " with " +
-         named(world, candidate.constraint.other) + ", " + off + " away";
+         named(world, candidate.constraint.other) + ", " + off + " away" +
+         (candidate.fit.empty() ? "" : "; their fit is " + candidate.fit);
 }
 
 // What was asked for, for the sentence that says that it is not there.

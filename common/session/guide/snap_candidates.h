@@ -18,10 +18,12 @@ struct SnapCandidate {
   double distance_mm = 0.0;    ///< how far the part would move, at its feature
   double angle_rad = 0.0;      ///< and turn
   double radius_off_mm = 0.0;  ///< difference of the radii; 0 for planes
+  std::string fit;             ///< that is in force between the two features; empty: none
 };
 
-/// Features near those of the part that fit them, nearest first: a shaft and a bore of nearly the
-/// same radius, planes that face each other. Considers the features of the scene and recognized
+/// Features near those of the part that fit them: a shaft and a bore of nearly the same radius,
+/// planes that face each other. First those with a fit in force between them, each time the nearest
+/// first. Considers the features of the scene and recognized
 /// ones (world.recognized). O(features of the part times features of all others within reach).
 std::vector<SnapCandidate> snap_candidates(const World& world, PartId part,
                                            const SnapLimits& limits);
@@ -33,7 +35,7 @@ struct SnapChoice {
   Constraint constraint;
 };
 
-/// The nearest candidate that the wish allows, that agrees with the constraints in force, and that
+/// The first candidate that the wish allows, that agrees with the constraints in force, and that
 /// reduces the freedom. The wish must name held.part; all its other fields may be empty and then
 /// allow anything. With other.part named any distance and angle is allowed, else the limits above
 /// hold. Changes nothing. Costs the search, and a check of each candidate up to the chosen one.

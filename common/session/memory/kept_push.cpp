@@ -37,13 +37,10 @@ std::vector<KeptPush> kept_pushes(const World& world, const Scratch::Impl& work,
   for (std::size_t i = 0; i < work.moves.size(); ++i) {
     const Move& move = work.moves[i];
     if (!move.stopped || move.group || move.sliding >= 0) continue;
-    const PartId id = world.parts[move.part].id;
-    if (std::any_of(world.guides.begin(), world.guides.end(),
-                    [&](const Guide& guide) { return guide.constraint.held.part == id; }))
-      continue;
     if (!waits(work, static_cast<std::int32_t>(i))) continue;
     const Pose &X_W0 = move.X_WP_end, &X_W1 = move.motion.X_W1;
-    const Vec3& reference_P = move.motion.reference_P;
+    // About which gather turns it: a guided motion may have turned about a point of its axis.
+    const Vec3& reference_P = world.parts[move.part].solid->sphere().center_mm;
     KeptPush push{move.part, move.user, X_W0, X_W1 * reference_P - X_W0 * reference_P,
                   rotation_log((X_W1.q * X_W0.q.conjugate()).normalized())};
     const double cut_mm = shortened(push.shift_mm, world.max_jump_mm);

@@ -19,8 +19,17 @@
 namespace mortise {
 namespace {
 
-// Counts of the pairs, added in their order.
-void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters& counters) {
+Unexamined why_unexamined(const PairWork& pair) {
+  if (pair.contact_waits) return Unexamined::kWaitsForContact;
+  if (pair.counts.pairs_waiting > 0) return Unexamined::kWaitsForDepth;
+  if (pair.undecided || pair.withdrawal_unsure || pair.counts.not_examined > 0)
+    return Unexamined::kGivenUp;
+  return pair.hidden ? Unexamined::kNoInside : Unexamined::kUnknown;
+}
+
+// Counts of the pairs, added in their order, and which have no verdict.
+void count_pairs_of(const World& world, const Scratch::Impl& work, StepReport& report) {
+  StepCounters& counters = report.counters;
   std::vector<std::uint32_t> open_parts;
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     const PairWork& pair = work.pairs[i];
@@ -31,6 +40,8 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepCounters&
     }
     ++counters.pairs.out;
     ++counters.contacts.in;
+    if (const Unexamined why = why_unexamined(pair); why != Unexamined::kUnknown)
+      report.unexamined.push_back({world.parts[pair.a].id, world.parts[pair.b].id, why});
     if (pair.undecided || pair.withdrawal_unsure) ++counters.not_examined;
     if (pair.undecided) {
       ++counters.contacts_undecided;
@@ -84,7 +95,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
     check_committed(world, state, report);
     note_held(world, work);
     report_clashes(world, state, work, report);
-    count_pairs_of(world, work, report.counters);
+    count_pairs_of(world, work, report);
     note_changed_memos(state, work);
   }
   close_depth_budget(state, work);

@@ -137,6 +137,14 @@ Refused check_answer(const World& world, const User& user, const Command& comman
   return {};
 }
 
+Refused check_withdraw(const World& world, const User& user, PartId id) {
+  Refused refused = check_part(world, id);
+  if (refused.refusal != Refusal::kNone) return refused;
+  const Part& part = *world.find(id);
+  if (part.asked_by == user.id) return {};
+  return {Refusal::kNotAsked, "'" + user.name + "' does not ask for '" + part.name + "'"};
+}
+
 // 5. rules of the session
 
 Refused check_right(const World& world, const User& user, Right right) {
@@ -182,6 +190,9 @@ Refused check_exclusion(const World& world, const User& user, const Command& com
 Refused check_review(const World& world, const User& user, const Command& command) {
   const Refused refused = check_right(world, user, Right::kReview);
   if (refused.refusal != Refusal::kNone) return refused;
+  const UserId assignee = command.details.other_user;
+  if (assignee && !world.find(assignee))
+    return {Refusal::kUnknownUser, "there is no user " + std::to_string(assignee.value)};
   if (find_open(world, command.details.clash)) return {};
   return {Refusal::kUnknownClash,
           "clash " + std::to_string(command.details.clash.value) + " is not open"};
@@ -222,6 +233,8 @@ Refused check(const World& world, const Command& command) {
     case CommandKind::kConsent:
     case CommandKind::kDecline:
       return check_answer(world, *user, command);
+    case CommandKind::kWithdraw:
+      return check_withdraw(world, *user, command.part);
     case CommandKind::kSetPolicy:
       return check_policy(world, *user, command);
     case CommandKind::kSetTolerance:
@@ -260,6 +273,8 @@ Decision::Kind decision_of(CommandKind kind) {
       return Decision::Kind::kHandOver;
     case CommandKind::kDecline:
       return Decision::Kind::kDecline;
+    case CommandKind::kWithdraw:
+      return Decision::Kind::kAskEnd;
     case CommandKind::kSetPolicy:
       return Decision::Kind::kSetPolicy;
     case CommandKind::kSetTolerance:
@@ -312,7 +327,8 @@ Decision decide(const World& world, const Command& command) {
   decision.part = command.part;
   decision.details = command.details;
   const Part* part = world.find(command.part);
-  if (decision.kind == Decision::Kind::kAskHandOver) decision.details.other_user = part->holder;
+  if (decision.kind == Decision::Kind::kAskHandOver || decision.kind == Decision::Kind::kAskEnd)
+    decision.details.other_user = part->holder;
   if (decision.kind == Decision::Kind::kHandOver || decision.kind == Decision::Kind::kDecline)
     decision.details.other_user = part->asked_by;
   return decision;

@@ -6,6 +6,7 @@
 #include "common/session/memory/session_state.h"
 #include "common/session/world/placing.h"
 #include "common/session/world/review.h"
+#include "common/session/world/standing.h"
 #include "common/session/world/surface_rules.h"
 
 namespace mortise {
@@ -21,6 +22,10 @@ void forget(World& world, UserId user) {
   for (std::vector<Decision>* rules : {&world.standing, &world.restated})
     for (Decision& rule : *rules)
       if (rule.user == user) rule.user = UserId{};
+  for (Remark& remark : world.remarks) {
+    if (remark.user == user) remark.user = UserId{};
+    if (remark.assignee == user) remark.assignee = UserId{};
+  }
   if (world.state) forget_user(*world.state, user);
 }
 
@@ -121,17 +126,6 @@ bool hand_over(World& world, Part& part, const Decision& decision) {
 }
 
 // 3. rules
-
-bool same_target(const Decision& x, const Decision& y) {
-  const auto is_exclusion = [](Decision::Kind kind) {
-    return kind == Decision::Kind::kSetExclusion || kind == Decision::Kind::kDropExclusion;
-  };
-  const Details &a = x.details, &b = y.details;
-  if (is_exclusion(x.kind) && is_exclusion(y.kind))
-    return std::minmax(x.part, a.other_part) == std::minmax(y.part, b.other_part);
-  return x.kind == y.kind && x.part == y.part && a.other_part == b.other_part &&
-         a.feature == b.feature && a.other_feature == b.other_feature;
-}
 
 // The last decision about a thing is the one that holds.
 void stand(World& world, const Decision& decision) {

@@ -1,11 +1,30 @@
 #include "common/session/world/review.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "common/messages/names.h"
 
 namespace mortise {
 namespace {
+
+// Most remarks of one clash; the oldest go.
+constexpr std::size_t kMostRemarks = 64;
+
+void add_remark(World& world, const Decision& decision) {
+  std::set<ClashId> open;
+  for (const auto& [pair, clashes] : world.state->open)
+    for (const OpenClash& clash : clashes) open.insert(clash.last.clash);
+  std::vector<Remark>& remarks = world.remarks;
+  std::erase_if(remarks, [&](const Remark& remark) { return !open.contains(remark.clash); });
+  const Details& said = decision.details;
+  const auto of_clash = [&](const Remark& remark) { return remark.clash == said.clash; };
+  if (std::ranges::count_if(remarks, of_clash) >= static_cast<std::ptrdiff_t>(kMostRemarks))
+    remarks.erase(std::ranges::find_if(remarks, of_clash));
+  remarks.push_back(
+      {said.clash, decision.user, said.other_user, said.status, world.tick + 1, said.text});
+}
 
 std::string depth_text(const Interval& delta_mm) {
   char text[64];
@@ -32,6 +51,7 @@ void review(World& world, const Decision& decision) {
   if (clash == nullptr) return;
   clash->last.review = {decision.details.status, decision.details.text, decision.user,
                         world.tick + 1};
+  add_remark(world, decision);
   clash->approved_class = clash->now.collision_class;
   clash->approved_delta_mm = clash->now.delta_mm;
   ClashEvent event = clash->last;

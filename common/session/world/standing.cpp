@@ -1,11 +1,41 @@
 #include "common/session/world/standing.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace mortise {
 
+bool same_target(const Decision& x, const Decision& y) {
+  const auto is_exclusion = [](Decision::Kind kind) {
+    return kind == Decision::Kind::kSetExclusion || kind == Decision::Kind::kDropExclusion;
+  };
+  const Details &a = x.details, &b = y.details;
+  if (is_exclusion(x.kind) && is_exclusion(y.kind))
+    return std::minmax(x.part, a.other_part) == std::minmax(y.part, b.other_part);
+  return x.kind == y.kind && x.part == y.part && a.other_part == b.other_part &&
+         a.feature == b.feature && a.other_feature == b.other_feature;
+}
+
+namespace {
+
+// A fit is the same whichever of its ends is named first.
+bool replaces(const Decision& later, const Decision& declared) {
+  if (same_target(later, declared)) return true;
+  Decision turned = later;
+  turned.part = later.details.other_part;
+  turned.details.other_part = later.part;
+  std::swap(turned.details.feature, turned.details.other_feature);
+  return same_target(turned, declared);
+}
+
+}  // namespace
+
 std::vector<Decision> standing_decisions(const World& world) {
-  std::vector<Decision> standing = world.standing;
+  std::vector<Decision> standing;
+  for (const Decision& declared : world.declared)
+    if (std::ranges::none_of(world.standing, [&](auto& d) { return replaces(d, declared); }))
+      standing.push_back(declared);
+  standing.insert(standing.end(), world.standing.begin(), world.standing.end());
   for (const Part& part : world.parts) {
     if (!part.asked_by) continue;
     Decision& ask = standing.emplace_back();

@@ -8,6 +8,9 @@
 
 namespace mortise {
 
+/// Are both about the same fit, tolerance, exclusion or policy? The later of two holds.
+bool same_target(const Decision& x, const Decision& y);
+
 /// The decisions that are in force, see Snapshot::standing. Each as it was made, but without the
 /// user where another user has that id now.
 std::vector<Decision> standing_decisions(const World& world);

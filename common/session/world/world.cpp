@@ -27,6 +27,7 @@ Snapshot snapshot_of(const World& world) {
   snapshot.tick_rate_hz = world.tick_rate_hz;
   snapshot.policy = name_of(world.policy);
   snapshot.standing = standing_decisions(world);
+  snapshot.remarks = world.remarks;
   for (const Part& part : world.parts)
     snapshot.parts.push_back({part.id, part.name, part.solid->hash(), part.moving, part.holder,
                               part.X_WP, part.solid->sphere().center_mm,

@@ -85,7 +85,11 @@ struct World {
   std::vector<User> users;  ///< users[i].id.value == i + 1
   std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
   std::vector<Scenario::UserSpec> may_hold;  ///< who may hold and change what, see rights.h
+  /// Fits and exclusions of the scenario, as decisions of nobody. They hold until a decision about
+  /// the same takes their place.
+  std::vector<Decision> declared;
   std::vector<Decision> standing;       ///< changes of policy, tolerance and exclusions in force
+  std::vector<Remark> remarks;          ///< of clashes that are open, in order; see review.h
   std::shared_ptr<SurfaceRules> rules;  ///< null: tolerances cannot be changed
   /// Every accepted change of a tolerance, in order: applied to a fresh scene they give the present
   /// bands. Of several consecutive changes of one target only the last is kept.

@@ -108,12 +108,17 @@ TEST(Convert, ReviewsGoRoundInEventsAndSnapshots) {
   snapshot.open_clashes = {sent};
   snapshot.standing = {{Decision::Kind::kSetPolicy, UserId{1}, PartId{}, ""}};
   snapshot.notes = {{PartId{2}, "all triangles faced inwards and were turned"}};
+  snapshot.remarks = {{ClashId{3}, UserId{1}, UserId{2}, ReviewStatus::kActive, 77, "see there"}};
   wire::Snapshot chunk = cut(snapshot, 1)[0];
   const Result<Snapshot> back = from_wire(chunk);
   ASSERT_TRUE(back) << back.error().text;
   ASSERT_EQ(back->notes.size(), 1u);
   EXPECT_EQ(back->notes[0].part, PartId{2});
   EXPECT_EQ(back->notes[0].text, snapshot.notes[0].text);
+  EXPECT_EQ(back->remarks, snapshot.remarks);
+  wire::Snapshot of_no_clash = chunk;
+  of_no_clash.remarks()[0].clash(0);
+  EXPECT_FALSE(from_wire(of_no_clash));
   wire::Snapshot of_no_part = chunk;
   of_no_part.notes()[0].part(0);
   EXPECT_FALSE(from_wire(of_no_part));

@@ -319,6 +319,8 @@ TEST(Convert, PulseGoesRoundAndIsRefused) {
   sent.tick_p99_us = 12.5;
   sent.users = 3;
   sent.draining = true;
+  sent.unexamined = {{PartId{2}, PartId{7}, Unexamined::kWaitsForDepth, 5}};
+  sent.unexamined_left_out = 3;
   const Result<SessionPulse> got = from_wire(to_wire(sent, 11));
   ASSERT_TRUE(got);
   EXPECT_EQ(got->clashes_open[3], 2u);
@@ -326,7 +328,17 @@ TEST(Convert, PulseGoesRoundAndIsRefused) {
   EXPECT_EQ(got->tick_p99_us, 12.5);
   EXPECT_EQ(got->users, 3u);
   EXPECT_TRUE(got->draining);
+  EXPECT_EQ(got->unexamined, sent.unexamined);
+  EXPECT_EQ(got->unexamined_left_out, 3u);
   wire::Pulse bad = to_wire(sent, 11);
+  for (const std::uint32_t a : {0u, 7u}) {
+    wire::Pulse of_no_pair = bad;
+    of_no_pair.unexamined()[0].part_a(a);
+    EXPECT_FALSE(from_wire(of_no_pair)) << a;
+  }
+  wire::Pulse of_no_reason = bad;
+  of_no_reason.unexamined()[0].why(kUnexaminedCount);
+  EXPECT_FALSE(from_wire(of_no_reason));
   EXPECT_EQ(bad.pose_serial(), 11u);
   bad.tick_max_us(-1.0);
   EXPECT_FALSE(from_wire(bad));

@@ -39,7 +39,8 @@ std::string numbers_markdown() {
          entry<ConstraintKind>("`Constraint.kind`") + entry<DeviationGrade>("`Verdict.grade`") +
          entry<FaceShape>("`Verdict.shape_a`, `shape_b`") +
          entry<SeparationWay>("`Verdict.separation_way`") +
-         entry<SeparationPath>("`Verdict.separation_path`");
+         entry<SeparationPath>("`Verdict.separation_path`") +
+         entry<Unexamined>("`UnexaminedPair.why`");
 }
 
 TEST(WireNumbers, StandInTheReadme) {

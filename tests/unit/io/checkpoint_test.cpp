@@ -96,7 +96,7 @@ TEST(Checkpoint, FromEachOneRandomSessionsGoOnToTheSameEnd) {
        {CommandKind::kGrab, CommandKind::kRelease, CommandKind::kUndo, CommandKind::kRedo,
         CommandKind::kReset, CommandKind::kSetPolicy, CommandKind::kSetTolerance,
         CommandKind::kSetExclusion, CommandKind::kDropExclusion, CommandKind::kReview,
-        CommandKind::kAddConstraint, CommandKind::kConsent})
+        CommandKind::kAddConstraint, CommandKind::kConsent, CommandKind::kWithdraw})
     EXPECT_GT(accepted[static_cast<std::size_t>(kind)], 0U) << static_cast<int>(kind);
 }
 

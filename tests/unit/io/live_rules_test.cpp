@@ -142,6 +142,25 @@ TEST_F(LiveRules, ATolerancesOfAWholePartBringsNearPairsIn) {
   expect_replay_agrees();
 }
 
+// The fit of the file is told as a decision of nobody, until somebody decides about the same ends,
+// whichever of them is named first.
+TEST_F(LiveRules, WhatTheScenarioSaysStandsUntilSomebodyDecides) {
+  std::vector<Decision> standing = snapshot_of(scene.world).standing;
+  ASSERT_EQ(standing.size(), 1U);
+  EXPECT_EQ(standing[0].kind, Decision::Kind::kSetTolerance);
+  EXPECT_FALSE(standing[0].user);
+  EXPECT_EQ(standing[0].part, plate);
+  EXPECT_EQ(standing[0].details.other_part, peg);
+  EXPECT_EQ(standing[0].details.feature, "bore");
+  EXPECT_EQ(standing[0].details.other_feature, "journal");
+  EXPECT_EQ(standing[0].details.text, "Ø20 H7/g6");
+  ASSERT_EQ(state(peg, "journal", "H7/p6", plate, "bore").refusal, Refusal::kNone);
+  standing = snapshot_of(scene.world).standing;
+  ASSERT_EQ(standing.size(), 1U);
+  EXPECT_EQ(standing[0].user, ann);
+  EXPECT_EQ(standing[0].details.text, "H7/p6");
+}
+
 TEST_F(LiveRules, WhatContradictsIsRefusedWithTheSentenceOfTheFile) {
   insert();
   const std::uint64_t hash = ticks.back().report.state_hash;
@@ -163,7 +182,7 @@ TEST_F(LiveRules, WhatContradictsIsRefusedWithTheSentenceOfTheFile) {
   EXPECT_NE(reply.text.find("part peg: feature chamfer_lower: "), std::string::npos) << reply.text;
   EXPECT_NE(sentence.find("part peg: feature chamfer_lower: "), std::string::npos) << sentence;
   // Nothing has changed, and what is said next is taken.
-  EXPECT_TRUE(snapshot_of(scene.world).standing.empty());
+  EXPECT_TRUE(scene.world.standing.empty());
   EXPECT_TRUE(tick().events.empty());
   EXPECT_EQ(class_now(), CollisionClass::kFake);
   EXPECT_NE(ticks.back().report.state_hash, hash);  // of another tick

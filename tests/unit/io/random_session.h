@@ -142,6 +142,7 @@ class RandomSession {
         return below(4) == 0 ? ask(who, CommandKind::kReset, part) : void();
       case 8:
         ask(user(), CommandKind::kAskHandOver, part);
+        if (below(4) == 0) return ask(state.asked_by, CommandKind::kWithdraw, part);
         return below(2) == 0 ? ask(state.holder, CommandKind::kConsent, part) : void();
       case 9: {
         constexpr const char* kPolicies[] = {"stop", "slide", "report", "slide"};
@@ -172,6 +173,7 @@ class RandomSession {
         details.clash = now.open_clashes[below(now.open_clashes.size())].clash;
         details.status = static_cast<ReviewStatus>(1 + below(4));
         details.text = "seen";
+        details.other_user = below(2) == 0 ? UserId{} : user();
         return ask(who, CommandKind::kReview, PartId{}, details);
       }
       case 14:

@@ -30,6 +30,7 @@ void expect_all_named(std::uint8_t count) {
 TEST(Names, EveryNumberOfTheWireHasItsOwnName) {
   expect_all_named<CommandKind>(kCommandKindCount);
   expect_all_named<Decision::Kind>(kDecisionKindCount);
+  expect_all_named<Unexamined>(kUnexaminedCount);
   expect_all_named<ReviewStatus>(kReviewStatusCount);
   expect_all_named<ConstraintKind>(kConstraintKindCount);
   expect_all_named<Role>(kRoleCount);

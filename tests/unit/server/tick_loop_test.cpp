@@ -241,6 +241,15 @@ TEST_F(TickLoopTest, ADrainIsToldAtOnceAndOnlyThen) {
   EXPECT_EQ(anna.pulses.size(), before + 1) << "also those who have come since";
 }
 
+TEST_F(TickLoopTest, TheEndIsTold) {
+  Participant anna = join("anna");
+  for (int i = 0; i < 90; ++i) tick();
+  loop_->close();
+  anna.take();
+  ASSERT_FALSE(anna.pulses.empty());
+  EXPECT_TRUE(anna.pulses.back().draining);
+}
+
 TEST_F(TickLoopTest, AKeyframeFollowsAChangeWithinASecond) {
   Participant anna = join("anna");
   for (int i = 0; i < 120; ++i) tick();

@@ -97,7 +97,7 @@ TEST(ContactBudget, ATickSpendsNoMoreThanItMayAndSaysWhatItLeftOut) {
 
 // What moved unseen is never told as clear.
 TEST(ContactBudget, UnderReportWhoWaitsIsNotExamined) {
-  std::uint64_t all = 0;
+  std::uint64_t all = 0, waits_for_contact = 0;
   Sockets with(Policy::kReport, 24, 1000.0, true);
   for (int i = 0; i < 20; ++i) {
     const StepReport report = with.push(Vec3(0.3 * kGap_mm * (i % 2 == 0 ? 1 : -1), 0, 0));
@@ -106,9 +106,13 @@ TEST(ContactBudget, UnderReportWhoWaitsIsNotExamined) {
                   counters.contacts_undecided,
               24U);
     EXPECT_GE(counters.contacts_undecided, with.unanswered);
+    EXPECT_EQ(report.unexamined.size(), counters.not_examined);
+    for (const UnexaminedPair& pair : report.unexamined)
+      waits_for_contact += pair.why == Unexamined::kWaitsForContact ? 1 : 0;
     all += with.unanswered;
   }
   EXPECT_GT(all, 100U);
+  EXPECT_GT(waits_for_contact, 100U);
 }
 
 // Somebody pushes on: who was cut short goes on in the next tick from where it was proven clear.

@@ -271,5 +271,39 @@ TEST_F(PeopleTest, AListOfPartsIsForThoseWhoCheckIt) {
   EXPECT_EQ(session.world.find(peg)->holder, ada);
 }
 
+TEST_F(PeopleTest, WhatIsSaidOfAClashStaysInOrderWhileItIsOpen) {
+  const ClashEvent event = clash();
+  Details first = review_of(event, ReviewStatus::kActive, "who takes it?");
+  ask(ada, CommandKind::kReview, {}, first);
+  Details second = review_of(event, ReviewStatus::kReviewed, "I do");
+  second.other_user = bob;
+  ask(bob, CommandKind::kReview, {}, second);
+  tick();
+  const std::vector<Remark> told = snapshot_of(session.world).remarks;
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].user, ada);
+  EXPECT_EQ(told[0].text, "who takes it?");
+  EXPECT_FALSE(told[0].assignee);
+  EXPECT_EQ(told[1].user, bob);
+  EXPECT_EQ(told[1].assignee, bob);
+  EXPECT_EQ(told[1].status, ReviewStatus::kReviewed);
+  EXPECT_EQ(told[1].tick, session.world.tick);
+  EXPECT_EQ(twin.world.remarks, session.world.remarks);
+  second.other_user = UserId{99};
+  EXPECT_EQ(refusal(bob, CommandKind::kReview, {}, second), Refusal::kUnknownUser);
+  // The oldest of a clash go; those of others stay.
+  second.other_user = {};
+  for (int i = 0; i < 80; ++i) ask(bob, CommandKind::kReview, {}, second);
+  EXPECT_EQ(session.world.remarks.size(), 64U);
+  // What is said next of another clash takes those of an ended one away.
+  move(ada, peg, Vec3(-5, 0, 0));
+  move(ada, peg, Vec3(5, 0, 0));
+  const ClashEvent anew = snapshot_of(session.world).open_clashes.at(0);
+  ASSERT_NE(anew.clash, event.clash);
+  ask(ada, CommandKind::kReview, {}, review_of(anew, ReviewStatus::kActive, "again"));
+  ASSERT_EQ(session.world.remarks.size(), 1U);
+  EXPECT_EQ(session.world.remarks[0].text, "again");
+}
+
 }  // namespace
 }  // namespace mortise

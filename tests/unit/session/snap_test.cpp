@@ -113,5 +113,34 @@ TEST_F(Snap, ReplaysFromItsDecision) {
     ASSERT_EQ(digest(tremble(0.2, 0.01)), digest(other.tremble(0.2, 0.01))) << i;
 }
 
+TEST_F(Snap, FeaturesWithAFitInForceComeFirst) {
+  Decision fit;
+  fit.kind = Decision::Kind::kSetTolerance;
+  fit.part = ring;
+  fit.details.other_part = pin;
+  fit.details.feature = "top";
+  fit.details.other_feature = "end";
+  fit.details.text = "±0.01";
+  const auto without = snap_candidates(session.world, pin, {});
+  ASSERT_NE(without.at(0).constraint.held.feature, "end") << "it would be first anyhow";
+  session.world.declared = {fit};
+  const auto with = snap_candidates(session.world, pin, {});
+  ASSERT_EQ(with.size(), without.size());
+  EXPECT_EQ(with[0].constraint.held.feature, "end");
+  EXPECT_EQ(with[0].fit, "±0.01");
+  EXPECT_EQ(with[1].constraint, without[0].constraint);
+  const Reply reply = snap(wish());
+  EXPECT_EQ(decision.details.constraint.held.feature, "end");
+  EXPECT_NE(reply.text.find("their fit is ±0.01"), std::string::npos) << reply.text;
+  // One that was dropped counts no more, from whichever end it was said.
+  Decision dropped = fit;
+  dropped.part = pin;
+  dropped.details.other_part = ring;
+  std::swap(dropped.details.feature, dropped.details.other_feature);
+  dropped.details.text.clear();
+  session.world.standing = {dropped};
+  EXPECT_TRUE(snap_candidates(session.world, pin, {}).at(0).fit.empty());
+}
+
 }  // namespace
 }  // namespace mortise

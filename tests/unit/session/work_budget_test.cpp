@@ -30,6 +30,17 @@ struct Row {
     }
     scratch.impl().switches.work_budget = budget;
   }
+  // Each peg and its wall have a plane through their middle in common.
+  void keep_heights() {
+    const Element level{ElementKind::kPlane, Vec3::Zero(), Vec3::UnitZ()};
+    for (const PartId peg : pegs) {
+      const PartId wall{peg.value - 1};
+      session.world.guides.push_back({ConstraintId{session.world.next_constraint++},
+                                      ada,
+                                      {ConstraintKind::kCoplanar, {peg, "a"}, {wall, "b"}},
+                                      {level, level, false, 0.0}});
+    }
+  }
   StepReport push(const Vec3& by) {
     std::vector<Increment> increments;
     for (const PartId peg : pegs) increments.push_back(session.push(ada, peg, by));
@@ -64,6 +75,12 @@ TEST(WorkBudget, PairsThatWaitAreCountedAndJudgedLater) {
   EXPECT_LT(some.counters.depth_evaluations, all.counters.depth_evaluations);
   EXPECT_GT(some.counters.pairs_waiting, 0U);
   EXPECT_GE(some.counters.not_examined, some.counters.pairs_waiting);
+  EXPECT_EQ(some.unexamined.size(), some.counters.pairs_waiting);
+  for (const UnexaminedPair& pair : some.unexamined) {
+    EXPECT_EQ(pair.why, Unexamined::kWaitsForDepth);
+    EXPECT_EQ(pair.b.value, pair.a.value + 1) << "a wall and its peg";
+  }
+  EXPECT_TRUE(all.unexamined.empty());
   EXPECT_LT(with.open_reals(), with.pegs.size());
   // Nobody pushes any more: what was owed is told all the same.
   for (int i = 0; i < 200 && with.open_reals() < with.pegs.size(); ++i) with.rest();
@@ -85,10 +102,11 @@ TEST(WorkBudget, WhoWaitsIsNotLetIntoAnything) {
 
 // Who waits goes on with what it was pushed by, as soon as there is work: nothing that was accepted
 // is lost, and pushes there and back come to nothing.
-TEST(WorkBudget, WhoWaitsKeepsItsPushes) {
+void expect_pushes_are_kept(bool guided) {
   Row with(Policy::kStop, true), without(Policy::kStop, false);
   std::uint64_t waiting = 0;
   for (Row* row : {&with, &without}) {
+    if (guided) row->keep_heights();
     // Into what the tolerance leaves open, then along the walls.
     for (int i = 0; i < 8; ++i) row->push(Vec3(0.5025, 0, 0));
     for (int i = 0; i < 12; ++i) {
@@ -104,6 +122,11 @@ TEST(WorkBudget, WhoWaitsKeepsItsPushes) {
               1e-6)
         << "peg " << i;
 }
+
+TEST(WorkBudget, WhoWaitsKeepsItsPushes) { expect_pushes_are_kept(false); }
+
+// The faces along which the pegs are guided do not take a push away.
+TEST(WorkBudget, WhoWaitsOnAConstraintKeepsItsPushes) { expect_pushes_are_kept(true); }
 
 TEST(WorkBudget, PushedOnAgainstTheSamePlaceNothingIsSearched) {
   Row one(Policy::kStop, true, 1);

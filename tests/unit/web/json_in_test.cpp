@@ -51,6 +51,7 @@ TEST(PageMessage, ReadsEveryCommand) {
   EXPECT_EQ(command(R"("do":"redo","part":2)").kind, CommandKind::kRedo);
   EXPECT_EQ(command(R"("do":"reset","part":2)").kind, CommandKind::kReset);
   EXPECT_EQ(command(R"("do":"ask","part":2)").kind, CommandKind::kAskHandOver);
+  EXPECT_EQ(command(R"("do":"withdraw","part":2)").kind, CommandKind::kWithdraw);
   EXPECT_EQ(command(R"("do":"consent","part":2)").kind, CommandKind::kConsent);
   EXPECT_EQ(command(R"("do":"decline","part":2,"text":"no")").details.text, "no");
   EXPECT_EQ(command(R"("do":"policy","text":"slide")").details.text, "slide");
@@ -66,6 +67,9 @@ TEST(PageMessage, ReadsEveryCommand) {
   const auto review = command(R"("do":"review","clash":5,"status":"approved","text":"ok")");
   EXPECT_EQ(review.details.clash, ClashId{5});
   EXPECT_EQ(review.details.status, ReviewStatus::kApproved);
+  EXPECT_FALSE(review.details.other_user);
+  const auto task = command(R"("do":"review","clash":5,"status":"active","assignee":2)");
+  EXPECT_EQ(task.details.other_user, UserId{2});
   const auto constrain = command(
       R"("do":"constrain","kind":"coaxial","part":2,"feature":"a","other":1,"other_feature":"b","snap":true)");
   EXPECT_EQ(constrain.part, PartId{2});

@@ -117,13 +117,28 @@ TEST_F(PagesOnASession, AreToldTheSameClashAndItsClass) {
   EXPECT_EQ(event["class"], "fake");
   EXPECT_EQ(bob.seen[kPeg].classes, 1u);
   EXPECT_EQ(bob.seen[PartId{1}].classes, 1u);  // the plate never moved, yet is shown as it stands
-  say(bob, R"({"type":"command","id":77,"do":"review","clash":1,"status":"reviewed","text":"hm"})");
+  say(bob,
+      R"({"type":"command","id":77,"do":"review","clash":1,"status":"reviewed","text":"hm","assignee":1})");
   turn(2);
+  ASSERT_EQ(ann.last("remarks")["remarks"].size(), 1u);
+  const Json remark = ann.last("remarks")["remarks"][0];
+  EXPECT_EQ(remark["text"], "hm");
+  EXPECT_EQ(remark["user"], 2);
+  EXPECT_EQ(remark["assignee"], 1);
   EXPECT_EQ(bob.last("reply")["id"], 77);
   EXPECT_EQ(ann.last("events")["events"][0]["review"]["comment"], "hm");
   feed->enter(eve);  // late
   turn();
   EXPECT_EQ(eve.last("scene")["clashes"][0]["review"]["comment"], "hm");
+  EXPECT_EQ(eve.last("scene")["clashes"][0]["user"], 1) << "bob looked at it, ann has moved";
+  EXPECT_EQ(eve.last("scene")["clashes"][0]["cause"], "unknown");
+  ASSERT_EQ(eve.last("scene")["remarks"].size(), 1u);
+  EXPECT_EQ(eve.last("scene")["remarks"][0]["text"], "hm");
+  // The fit of the scenario is there from the start, of nobody.
+  const Json fit = eve.last("scene")["standing"][0];
+  EXPECT_EQ(fit["kind"], "set tolerance");
+  EXPECT_EQ(fit["user"], 0);
+  EXPECT_EQ(fit["other"], 2);
   EXPECT_EQ(eve.last("scene")["parts"][0]["classes"], 1u);
   move(ann, kPeg, 20.0);
   turn(2);
@@ -194,8 +209,7 @@ TEST_F(PagesOnASession, WhoGoesBeforeTheServerAnswersIsNoGhost) {
   feed->leave(ann);
   turn(5);
   const Json told = bob.last("users");
-  for (const Json& user : told["users"])
-    EXPECT_EQ(user["present"], user["name"] == "bob") << user;
+  for (const Json& user : told["users"]) EXPECT_EQ(user["present"], user["name"] == "bob") << user;
 }
 
 TEST_F(PagesOnASession, LookOnlyWithTheLinkForIt) {
@@ -328,12 +342,15 @@ TEST_F(PagesOnASession, AreToldWhatCanBeAlignedAndAlignIt) {
   EXPECT_NEAR(ann.seen[kPeg].X_WP.p.y(), 0.0, 1e-6);
 }
 
-/// What a page shows as holding: the last list that it was told.
+/// What a page shows as holding since the scenario: of the last list that it was told.
 Json standing_of(const Page& page) {
   Json standing = Json::array();
   for (const Json& told : page.told)
     if (told.contains("standing")) standing = told["standing"];
-  return standing;
+  Json since = Json::array();
+  for (const Json& decision : standing)
+    if (decision["user"] != 0) since.push_back(decision);
+  return since;
 }
 
 TEST_F(PagesOnASession, AreToldThatNoConstraintHoldsOfAPartThatWasLetGo) {

@@ -90,12 +90,20 @@ test('the report is downloaded, and opens by itself', async () => {
   await report.goto(`file://${file}`);
   await report.locator('#clashes tbody tr').first().waitFor(PATIENCE);
   assert.deepEqual(asked.filter((url) => !/^(file|data):/.test(url)), []);
+  // No table is wider than a window of 1280 pixels, or than paper (A4 less its margins).
+  for (const [media, width] of /** @type {const} */ ([['screen', 1280], ['print', 718]])) {
+    await report.setViewportSize({ width, height: 900 });
+    await report.emulateMedia({ media });
+    await report.evaluate(() => dispatchEvent(new Event('beforeprint')));
+    assert.deepEqual(await report.evaluate(() => [...document.querySelectorAll('table')].filter((table) => table.getBoundingClientRect().right > innerWidth - 20)
+      .map((table) => table.id || table.closest('.wide')?.previousElementSibling?.previousElementSibling?.textContent)), [], `${media}, ${width} pixels`);
+  }
   await report.close();
   await rm(folder, { recursive: true });
 });
 
 test('nobody takes a part in hand', async () => {
-  assert.equal(await page.locator('#hand button:visible').count(), 0);
+  assert.equal(await page.locator('#hand button:not(.look):visible').count(), 0);
   assert.equal(await page.isDisabled('#tool_move'), true);
   assert.deepEqual(page.complaints, []);
 });

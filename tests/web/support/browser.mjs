@@ -27,8 +27,8 @@ export async function openBrowser() {
 }
 
 /** A page of its own profile. What it complains of is collected. @param {import('playwright-core').Browser} browser */
-export async function openPage(browser, address, { scheme = 'dark', name, first } = {}) {
-  const context = await browser.newContext({ viewport: VIEW, colorScheme: scheme, reducedMotion: 'reduce' });
+export async function openPage(browser, address, { scheme = 'dark', name, first, view = VIEW, touch = false } = {}) {
+  const context = await browser.newContext({ viewport: view, colorScheme: scheme, reducedMotion: 'reduce', hasTouch: touch });
   const page = await context.newPage();
   if (first) await page.addInitScript(first);
   page.complaints = [];

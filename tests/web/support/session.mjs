@@ -1,5 +1,5 @@
 // A session as people have it: server, gateway, and bots where asked for, each a process of its own; ended by their ids.
-import { spawn } from 'node:child_process';
+import { execFile, spawn } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -46,6 +46,12 @@ export class LiveSession {
     this.server = await this.start('server', [file, '--session', this.name, '--domain', `${this.domain}`, ...more]);
   }
 
+  /** Another server that stands by for the one that logs to the folder of this session; returns once it follows. @param {string[]} [more] */
+  async standBy(more = []) {
+    const logs = join(this.folder, 'logs');
+    return this.start('server', ['--standby-of', this.name, '--restore', logs, '--log', logs, '--domain', `${this.domain}`, ...more], (text) => /standing by: (?!waiting)/.test(text));
+  }
+
   /**
    * @param {string} [log] a recorded session, from the root of the project; else the running one
    * @param {string} [port] @returns the two addresses; their tokens stay the same
@@ -65,6 +71,13 @@ export class LiveSession {
   async play(play, seconds) {
     const args = ['--session', this.name, '--domain', `${this.domain}`, '--wait', '10', '--behaviour', 'script', '--play', join(root, 'scenarios', play), '--quiet', '--duration', `${seconds}`];
     return this.start('bot', args);
+  }
+
+  /** A program that ends by itself; what it printed. @param {string} program @param {string[]} args @returns {Promise<string>} */
+  run(program, args) {
+    return new Promise((done, fail) => {
+      execFile(join(bin, `mortise-${program}`), args, { cwd: root }, (error, stdout, stderr) => (error ? fail(new Error(`${error.message}\n${stderr}`)) : done(stdout)));
+    });
   }
 
   /** @param {import('node:child_process').ChildProcess} child */

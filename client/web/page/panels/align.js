@@ -1,8 +1,8 @@
 // Align: a feature of the held part, one of another part, and what they keep to each other. Picked in the view or from lists.
 import * as THREE from 'three';
-import { inPart, placed } from '../session/motion.js';
+import { placed } from '../session/motion.js';
 import { plain } from '../session/words.js';
-import { offSurface } from '../session/surfaces.js';
+import { featureAt } from '../view/feature_at.js';
 import { byId, el, setText } from './dom.js';
 
 /** @typedef {import('../session/session.js').Part} Part */
@@ -100,25 +100,10 @@ export function makeAlign({ session, choice, commands, labels, stage, say }) {
     refreshState();
   };
 
-  /** The feature of the part whose surface is nearest to the hit. @param {Part} part @param {THREE.Vector3} hit */
-  function featureAt(part, hit) {
-    const at = inPart(part, hit.toArray());
-    let best = null;
-    let nearest = Math.max(0.3, part.radius * 0.02);
-    for (const feature of featuresOf(part.id)) {
-      const h = at.reduce((s, value, i) => s + (value - feature.point[i]) * feature.axis[i], 0);
-      const [lo, hi] = feature.along;
-      const beyond = feature.kind === 'plane' || hi <= lo ? 0 : Math.max(0, lo - h, h - hi);
-      const off = offSurface(feature, at) + beyond;
-      if (off < nearest) [best, nearest] = [feature, off];
-    }
-    return best;
-  }
-
   /** @param {Part} part @param {THREE.Vector3} hit @returns {boolean} whether the click was for this tool */
   function pick(part, hit) {
     if (choice.tool !== 'align') return false;
-    const feature = featureAt(part, hit);
+    const feature = featureAt(part, featuresOf(part.id), hit);
     if (!feature) {
       say(`${part.name} has no known feature there`);
       return true;

@@ -1,6 +1,9 @@
-// One clash in full: why it is of its class, the section through it, and what people say of it.
-import { STATUSES, bracket, percent, plain, small } from '../session/words.js';
+// One clash in full: why it is of its class, the section through it, what people say of it, and the link to it.
+import { linkOf } from '../session/link.js';
+import { bracket, percent, plain, small, span } from '../session/words.js';
 import { byId, el, setText } from './dom.js';
+import { makeClashFit } from './clash_fit.js';
+import { makeClashReview } from './clash_review.js';
 import { fillDepthBar, fillScale } from './depth_bar.js';
 import { classMark, icon } from './icons.js';
 import { SectionDrawing } from './section_drawing.js';
@@ -9,36 +12,61 @@ import { SectionDrawing } from './section_drawing.js';
 
 /** @param {import('../desk.js').Desk} desk */
 export function makeClashDetail(desk) {
-  const { session, choice, commands, flyToClash, cutAtClash, say } = desk;
+  const { session, choice, camera, flyToClash, cutAtClash, say } = desk;
   const panel = byId('clash');
   const title = el('span', { class: 'grow' });
   const mark = el('span');
-  const close = el('button', { class: 'small', type: 'button', 'aria-label': 'Close', title: 'Close', onclick: () => choice.chooseClash(0) }, icon('close'));
+  const button = (/** @type {string} */ name, /** @type {string} */ drawn, /** @type {() => unknown} */ onclick, title = name) =>
+    el('button', { type: 'button', class: 'small', 'aria-label': name, title, onclick }, icon(drawn));
+  const link = button('Copy the link to this clash', 'link', copyLink);
+  const close = button('Close', 'close', () => choice.chooseClash(0));
   const bar = el('div', { class: 'depth' });
   const scale = el('div', { class: 'scale' });
   const figures = el('dl');
   const why = el('p');
   const drawing = new SectionDrawing(desk);
-  const status = el('select', { 'aria-label': 'Review status' }, ...STATUSES.map((name) => el('option', { value: name }, plain(name))));
-  const comment = el('input', { type: 'text', 'aria-label': 'Comment', placeholder: 'Comment', maxLength: 500 });
-  const save = el('button', { type: 'button', class: 'primary' }, 'Save');
-  const by = el('span', { class: 'quiet' });
-  const fly = el('button', { type: 'button', class: 'small', 'aria-label': 'Fly there', title: 'Fly there (Enter)', onclick: () => flyToClash(choice.clash) }, icon('zoom'));
-  const cut = el('button', { type: 'button', class: 'small', 'aria-label': 'Cut the view here', title: 'Cut the view here', onclick: () => cutAtClash(choice.clash) }, icon('section'));
-  const turn = el('button', { type: 'button', class: 'small', 'aria-label': 'Section across or along', title: 'Section across or along', onclick: () => drawing.turn() }, icon('rotate'));
-  panel.append(el('h3', {}, mark, title, close), bar, scale, figures, drawing.canvas,
-    el('div', { class: 'row' }, drawing.caption, fly, cut, turn), el('div', { class: 'row' }, status, comment, save), by, why);
-  let edited = false;
+  const review = makeClashReview(desk);
+  const fit = makeClashFit(desk);
+  const fly = button('Fly there', 'zoom', () => flyToClash(choice.clash), 'Fly there (Enter)');
+  const cut = button('Cut the view here', 'section', () => cutAtClash(choice.clash));
+  const turn = button('Section across or along', 'rotate', () => drawing.turn());
+  panel.append(el('h3', {}, mark, title, link, close), bar, scale, figures, drawing.canvas,
+    el('div', { class: 'row' }, drawing.caption, fly, cut, turn), review.thread, review.form, fit.form, why);
 
   function current() {
     return session.clashes.get(choice.clash) ?? null;
   }
 
+  async function copyLink() {
+    const { clash } = choice;
+    const place = { session: session.name, clash, tick: session.tick, eye: camera.eye, at: camera.at };
+    const text = linkOf(location.href, place);
+    try {
+      await navigator.clipboard.writeText(text);
+      say(`The link to clash ${clash} is copied; it holds no token, so whoever opens it needs an address of their own`, 'good');
+    } catch {
+      say(text);
+    }
+  }
+
+  /** @param {Clash} clash @returns {Array<[string, string]>} */
+  function people(clash) {
+    const { review: said, ruled } = clash;
+    const reviewer = said?.user ? `${session.userName(said.user)}: ${plain(said.status)}` : clash.approval_lost ? 'approval lost: it got worse' : '';
+    const task = session.assigneeOf(clash.clash);
+    return [
+      ['Moved by', clash.mover ? session.userName(clash.mover) : ''],
+      ['Rule by', ruled ? `${session.userName(ruled.user)} (${ruled.cause})` : ''],
+      ['Reviewed by', reviewer],
+      ['Task of', task ? session.userName(task) : ''],
+      ['Since', span(session.ago(clash.begin_tick))],
+    ];
+  }
+
   /** @param {Clash} clash */
   function rows(clash) {
-        const margin = { real: 'beyond the real threshold', fake: 'to spare', potential: 'to the nearer threshold', none: '' }[clash.class];
+    const margin = { real: 'beyond the real threshold', fake: 'to spare', potential: 'to the nearer threshold', none: '' }[clash.class];
     const faces = clash.faces.map((face) => face || 'unnamed face').join(' × ');
-    const moved = clash.user ? `, moved by ${session.userName(clash.user)}` : '';
     const worst = clash.worst_class !== clash.class ? `${clash.worst_class}, ${bracket(clash.worst_delta)}` : '';
     return [
       ['Overlap', bracket(clash.delta)],
@@ -47,8 +75,18 @@ export function makeClashDetail(desk) {
       ['Faces', faces],
       ['Comes free', clash.separation.way === 'none' ? '' : `${bracket(clash.gpd)} ${clash.separation.way}`],
       ['Worst so far', worst],
-      ['Since', `${Math.max(0, (session.tick - clash.begin_tick) / session.tickRate).toFixed(1)} s${moved}`],
+      ...people(clash),
     ].filter(([, text]) => text);
+  }
+
+  /** @param {Clash} clash */
+  function showFigures(clash) {
+    const wanted = rows(clash);
+    if (figures.children.length !== 2 * wanted.length) figures.replaceChildren(...wanted.flatMap(() => [el('dt'), el('dd')]));
+    wanted.forEach(([name, text], i) => {
+      setText(figures.children[2 * i], name);
+      setText(figures.children[2 * i + 1], text);
+    });
   }
 
   function refresh() {
@@ -56,40 +94,33 @@ export function makeClashDetail(desk) {
     panel.hidden = clash === null;
     if (!clash) return;
     mark.replaceChildren(classMark(clash.class));
-    setText(title, `${session.partName(clash.a)} × ${session.partName(clash.b)}`);
+    setText(title, `#${clash.clash} ${session.partName(clash.a)} × ${session.partName(clash.b)}`);
     title.title = title.textContent ?? '';
-    panel.setAttribute('aria-label', `${clash.ended ? 'Ended' : clash.class} clash of ${title.title}`);
+    panel.setAttribute('aria-label', `${clash.ended ? 'Ended' : clash.class} clash ${title.title}`);
     fillDepthBar(bar, clash);
     fillScale(scale, clash);
-    figures.replaceChildren(...rows(clash).flatMap(([name, text]) => [el('dt', {}, name), el('dd', {}, text)]));
+    showFigures(clash);
     setText(why, clash.explanation);
-    const review = clash.review ?? { status: 'new', comment: '', user: 0, tick: 0 };
-    if (!edited) {
-      status.value = review.status;
-      comment.value = review.comment;
-    }
-    const reviewer = review.user ? `${review.status} by ${session.userName(review.user)}` : clash.approval_lost ? 'approval lost: it got worse' : '';
-    by.hidden = reviewer === '';
-    setText(by, reviewer);
-    for (const control of [status, comment, save]) control.disabled = !session.mayAct || clash.ended === true;
+    review.show(clash);
+    fit.show(clash);
     drawing.show(clash);
   }
 
-  save.onclick = async () => {
-    const reply = await commands.ask('review', { clash: choice.clash, status: status.value, text: comment.value });
-    if (!reply.done) return;
-    edited = false;
-    say('Review saved', 'good');
-  };
-  for (const control of [status, comment]) control.addEventListener('input', () => (edited = true));
+  /** What counts on while nothing happens. */
+  function refreshTimes() {
+    const clash = current();
+    if (!clash) return;
+    showFigures(clash);
+    review.showTimes(clash);
+  }
+
   choice.on('clash', () => {
-    edited = false;
     refresh();
     // The list has become shorter.
     document.querySelector('#clashes [aria-selected="true"]')?.scrollIntoView({ block: 'nearest' });
   });
   session.on('event', (event) => event.clash === choice.clash && refresh());
-  session.on('scene', refresh);
-  session.on('me', refresh);
-  session.on('features', refresh);
+  session.on('pulse', refreshTimes);
+  session.on('replay', refreshTimes);
+  for (const what of /** @type {const} */ (['scene', 'me', 'features', 'remarks', 'standing', 'users'])) session.on(what, refresh);
 }

@@ -1,4 +1,5 @@
 // The list of clashes: worst first, filtered by class, state of review and person; a click flies there.
+import { GROUPINGS, inGroups } from '../session/groups.js';
 import { CLASSES, STATUSES, bracket, plain, rankOf, small } from '../session/words.js';
 import { byId, el, keepRows, seldom, setPressed, setText } from './dom.js';
 import { fillDepthBar } from './depth_bar.js';
@@ -11,7 +12,7 @@ import { markChosen, walkable } from './list_keys.js';
 export function makeClashList({ session, choice, flyToClash, heat }) {
   const list = byId('clashes');
   const classes = new Set(/** @type {string[]} */ (['real', 'potential', 'fake']));
-  const [status, who] = makeFilters();
+  const [status, who, grouping] = makeFilters();
 
   function makeFilters() {
     const box = byId('clash_filters');
@@ -28,15 +29,16 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
       el('option', { value: 'open' }, 'Open'), el('option', { value: 'todo' }, 'To review'), el('option', { value: 'ended' }, 'Ended'), el('option', { value: 'all' }, 'All'),
       ...STATUSES.map((name) => el('option', { value: name }, plain(name))));
     const people = el('select', { 'aria-label': 'Whose', onchange: () => refresh() },
-      el('option', { value: 'all' }, 'Anybody'), el('option', { value: 'mine' }, 'My parts'), el('option', { value: 'chosen' }, 'This part'));
+      el('option', { value: 'all' }, 'Anybody'), el('option', { value: 'mine' }, 'My parts'), el('option', { value: 'task' }, 'My task'), el('option', { value: 'chosen' }, 'This part'));
+    const groups = el('select', { 'aria-label': 'Groups', onchange: () => refresh() }, ...GROUPINGS.map(([value, text]) => el('option', { value }, text)));
     const faces = el('button', { class: 'chip', type: 'button', 'aria-pressed': 'true', title: 'Colour the faces that clash' }, 'Heat');
     faces.onclick = () => {
       heat.on = !heat.on;
       setPressed(faces, heat.on);
       showHeat();
     };
-    box.append(...chips, states, people, faces);
-    return [states, people];
+    box.append(...chips, states, people, groups, faces);
+    return [states, people, groups];
   }
 
   /** @param {Clash} clash */
@@ -47,42 +49,61 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
     const rightState = { open, todo: open && (review === 'new' || review === 'active'), ended: !open, all: true }[status.value] ?? review === status.value;
     if (!rightState) return false;
     const parts = [session.parts.get(clash.a), session.parts.get(clash.b)];
-    if (who.value === 'mine') return clash.user === session.me || parts.some((part) => part && session.isMine(part));
+    if (who.value === 'task') return session.me !== 0 && session.assigneeOf(clash.clash) === session.me;
+    if (who.value === 'mine') return clash.mover === session.me || parts.some((part) => part && session.isMine(part));
     return who.value !== 'chosen' || clash.a === choice.part || clash.b === choice.part;
   }
 
   function make(/** @type {Clash} */ clash) {
     return el('li', { role: 'option', id: `clash_${clash.clash}` },
-      el('span'), el('span', { class: 'grow' }), el('span', { class: 'tag' }),
+      el('span'), el('span', { class: 'quiet' }), el('span', { class: 'grow' }), el('span', { class: 'tag' }),
       el('span', { class: 'figures' }, el('span'), el('span', { class: 'depth' }), el('span')));
   }
 
   function fill(/** @type {HTMLElement} */ row, /** @type {Clash} */ clash) {
-    const figure = `${clash.seq} ${clash.ended} ${session.partName(clash.a)} ${session.partName(clash.b)}`;
+    const task = session.assigneeOf(clash.clash);
+    const figure = `${clash.seq} ${clash.ended} ${task} ${session.partName(clash.a)} ${session.partName(clash.b)}`;
     if (row.dataset.figure === figure) return;
     row.dataset.figure = figure;
-    const [mark, name, tag, figures] = /** @type {HTMLElement[]} */ ([...row.children]);
+    const [mark, number, name, tag, figures] = /** @type {HTMLElement[]} */ ([...row.children]);
     const of = clash.ended ? clash.worst_class : clash.class;
     mark.replaceChildren(classMark(of));
     const pair = `${session.partName(clash.a)} × ${session.partName(clash.b)}`;
+    setText(number, `#${clash.clash}`);
     setText(name, pair);
     name.title = pair;
     const review = clash.review?.status ?? 'new';
-    setText(tag, clash.ended ? 'ended' : clash.approval_lost ? 'approval lost' : review);
+    const state = clash.ended ? 'ended' : clash.approval_lost ? 'approval lost' : review;
+    setText(tag, task ? `${state}, ${session.userName(task)}` : state);
     row.classList.toggle('ended', clash.ended === true);
     const [depth, bar, margin] = /** @type {HTMLElement[]} */ ([...figures.children]);
     setText(depth, small(clash.delta[1]));
     fillDepthBar(bar, clash);
     const chance = clash.probability === null ? '–' : `P ${(100 * clash.probability).toFixed(0)} %`;
     setText(margin, of === 'potential' ? chance : `${small(clash.margin)} ${of === 'real' ? 'beyond' : 'spare'}`);
-    row.setAttribute('aria-label', `${of}, ${pair}, overlap ${bracket(clash.delta)}, margin ${small(clash.margin)}, ${clash.ended ? 'ended' : review}`);
+    row.setAttribute('aria-label', `${of}, ${pair}, overlap ${bracket(clash.delta)}, margin ${small(clash.margin)}, ${clash.ended ? 'ended' : review}, number ${clash.clash}`);
+  }
+
+  /** @typedef {{head: string, clashes: Clash[]}} Head of a group */
+  /** @param {Head | Clash} row @returns {row is Head} */
+  const isHead = (row) => 'head' in row;
+
+  function fillHead(/** @type {HTMLElement} */ row, /** @type {Head} */ { head, clashes }) {
+    const [name, counts] = /** @type {HTMLElement[]} */ ([...row.children]);
+    setText(name, head);
+    name.title = head;
+    const of = (/** @type {string} */ wanted) => clashes.filter((clash) => (clash.ended ? clash.worst_class : clash.class) === wanted).length;
+    setText(counts, CLASSES.filter((wanted) => of(wanted) > 0).map((wanted) => `${wanted[0].toUpperCase()} ${of(wanted)}`).join(' · '));
   }
 
   function refresh() {
     const clashes = [...session.clashes.values()].filter(wanted);
     clashes.sort((a, b) => Number(a.ended ?? false) - Number(b.ended ?? false) || rankOf(b.class) - rankOf(a.class) || b.margin - a.margin || a.clash - b.clash);
     list.querySelector('.empty')?.remove();
-    keepRows(list, clashes, (clash) => `${clash.clash}`, make, fill);
+    const rows = inGroups(clashes, grouping.value, (id) => session.partName(id)).flatMap(({ name, clashes: of }) => /** @type {Array<Head | Clash>} */ (name ? [{ head: name, clashes: of }, ...of] : of));
+    keepRows(list, rows, (row) => (isHead(row) ? `head ${row.head}` : `${row.clash}`),
+      (row) => (isHead(row) ? el('li', { class: 'head', role: 'presentation' }, el('span', { class: 'grow' }), el('span', { class: 'quiet' })) : make(row)),
+      (row, of) => (isHead(of) ? fillHead(row, of) : fill(row, of)));
     if (clashes.length === 0) {
       const open = session.openClashes().length;
       list.append(el('li', { class: 'empty' }, open ? `${open} open, none that these filters show` : 'No clash is open'));
@@ -95,7 +116,7 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
   }
 
   function showHeat() {
-    const open = session.openClashes();
+    const open = session.openClashes().filter(({ clash, a, b }) => clash === choice.clash || !(choice.hidden.has(a) || choice.hidden.has(b)));
     open.sort((a, b) => rankOf(a.class) - rankOf(b.class));
     heat.show(choice.clash ? open.filter((clash) => clash.clash === choice.clash) : open, choice.clash !== 0);
   }
@@ -105,8 +126,7 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
     showHeat();
   }, 60);
   walkable(list, () => `${choice.clash}`, (key) => choice.chooseClash(Number(key)), (key) => flyToClash(Number(key)));
-  session.on('clashes', soon);
-  session.on('scene', soon);
+  for (const what of /** @type {const} */ (['clashes', 'scene', 'remarks', 'users'])) session.on(what, soon);
   session.on('features', () => {
     heat.clear();
     soon();
@@ -114,6 +134,7 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
   session.on('poses', seldom(() => heat.follow(), 150));
   session.on('me', soon);
   choice.on('part', soon);
+  choice.on('hidden', showHeat);
   choice.on('clash', (clash) => {
     markChosen(list, `${clash}`, true);
     showHeat();

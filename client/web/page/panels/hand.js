@@ -3,6 +3,7 @@ import { coordinate, degrees, radians } from '../session/words.js';
 import { rotationVectorOf } from '../session/motion.js';
 import { byId, el, seldom, setText } from './dom.js';
 import { icon } from './icons.js';
+import { makeStopLine } from './stop_line.js';
 
 /** @typedef {import('../session/motion.js').Vec3} Vec3 */
 /** @typedef {import('../session/session.js').Part} Part */
@@ -13,15 +14,17 @@ export const STEPS = /** @type {const} */ ([
 ]);
 
 /** @param {import('../desk.js').Desk} desk */
-export function makeHand({ session, choice, commands, mover }) {
+export function makeHand(desk) {
+  const { session, choice, commands, mover } = desk;
   const box = byId('hand');
   const name = el('strong');
   const state = el('span', { class: 'quiet' });
   const pose = el('span', { class: 'pose' });
+  const small = (/** @type {string} */ name, /** @type {string} */ title, /** @type {() => void} */ onclick) => el('button', { type: 'button', class: 'small look', 'aria-label': title, title, onclick }, icon(name));
+  const hide = small('hide', 'Hide it (D)', () => choice.hide(choice.together));
+  const alone = small('isolate', 'Show it alone (I)', () => choice.isolate(choice.together, session.parts.keys()));
   const grab = el('button', { type: 'button', class: 'primary' }, icon('grab'), el('span'));
   const ask = el('button', { type: 'button' }, 'Ask for it');
-  const give = el('button', { type: 'button', class: 'primary' }, 'Hand over');
-  const keep = el('button', { type: 'button' }, 'Keep it');
   const kind = el('select', { 'aria-label': 'Shift or turn' }, el('option', { value: 'translate' }, 'Shift, mm'), el('option', { value: 'rotate' }, 'Turn, °'));
   const fields = ['X', 'Y', 'Z'].map((axis) => el('input', { type: 'text', inputMode: 'decimal', value: '0', 'aria-label': `By how much along or about ${axis}` }));
   const go = el('button', { type: 'submit' }, 'Move by');
@@ -29,7 +32,7 @@ export function makeHand({ session, choice, commands, mover }) {
   step.value = '1';
   const form = el('form', { class: 'fields' }, kind,
     ...['X', 'Y', 'Z'].flatMap((axis, i) => [el('label', {}, axis), fields[i]]), go, el('span', { class: 'gap' }), el('label', {}, 'Step'), step);
-  box.append(el('div', { class: 'title' }, name, state, pose, el('span', { class: 'spring' }), give, keep, ask, grab), form);
+  box.append(el('div', { class: 'title' }, name, state, pose, el('span', { class: 'spring' }), hide, alone, ask, grab), makeStopLine(desk), form);
 
   const part = () => session.parts.get(choice.part) ?? null;
   const asked = () => session.standing.find((d) => d.kind === 'ask for hand-over' && d.part === choice.part);
@@ -53,10 +56,9 @@ export function makeHand({ session, choice, commands, mover }) {
     setText(/** @type {Element} */ (grab.lastElementChild), `${mine ? 'Release' : 'Grab'}${count > 1 ? ` ${count} parts` : ''}`);
     grab.hidden = !session.mayAct || !shown.moving || (shown.holder !== 0 && !mine);
     ask.hidden = !session.mayAct || shown.holder === 0 || mine;
-    ask.disabled = asked()?.user === session.me;
-    const wanted = mine && asked() !== undefined;
-    give.hidden = keep.hidden = !wanted;
-    if (wanted) setText(give, `Hand over to ${session.userName(asked().user)}`);
+    const waits = asked()?.user === session.me;
+    setText(ask, waits ? 'Ask no longer' : 'Ask for it');
+    ask.onclick = () => commands.ask(waits ? 'withdraw' : 'ask', { part: shown.id });
     form.hidden = !mine;
     showPose();
   }
@@ -96,15 +98,13 @@ export function makeHand({ session, choice, commands, mover }) {
     if (!shown || !values.every(Number.isFinite)) return;
     const vector = /** @type {Vec3} */ (kind.value === 'rotate' ? values.map(radians) : values);
     mover.glide(shown.id, kind.value === 'rotate' ? { t: [0, 0, 0], r: vector } : { t: vector, r: [0, 0, 0] });
+    for (const field of fields) field.value = '0'; // a second Enter is no second move
   });
   kind.onchange = () => choice.chooseTool(kind.value === 'rotate' ? 'rotate' : 'move');
   choice.on('tool', (tool) => {
     if (tool === 'rotate' || tool === 'move') kind.value = tool === 'rotate' ? 'rotate' : 'translate';
   });
   grab.onclick = toggle;
-  ask.onclick = () => commands.ask('ask', { part: choice.part });
-  give.onclick = () => commands.ask('consent', { part: choice.part });
-  keep.onclick = () => commands.ask('decline', { part: choice.part });
   const poseSoon = seldom(showPose, 60);
   session.on('poses', poseSoon);
   for (const what of /** @type {const} */ (['scene', 'holder', 'me', 'standing', 'users'])) session.on(what, refresh);

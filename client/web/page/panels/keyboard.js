@@ -12,23 +12,25 @@ const plainKey = (key) => (/** @type {KeyboardEvent} */ event) => event.key.toLo
 const withCtrl = (key, shift = false) => (/** @type {KeyboardEvent} */ event) => event.key.toLowerCase() === key && (event.ctrlKey || event.metaKey) && event.shiftKey === shift;
 
 /**
- * @param {Record<'grab' | 'gather' | 'fit' | 'part' | 'section' | 'ghost' | 'undo' | 'redo' | 'cancel' | 'play' | 'nextClash' | 'lastClash', () => unknown>
- *   & {tool: (tool: 'select' | 'move' | 'rotate' | 'align') => void, from: (side: string) => void, step: (axis: number, sign: number, turn: boolean) => boolean,
+ * @param {Record<'grab' | 'gather' | 'fit' | 'part' | 'section' | 'ghost' | 'hide' | 'isolate' | 'unhide' | 'picture' | 'undo' | 'redo' | 'cancel' | 'play' | 'nextClash' | 'lastClash', () => unknown>
+ *   & {tool: (tool: 'select' | 'move' | 'rotate' | 'align' | 'measure') => void, from: (side: string) => void, step: (axis: number, sign: number, turn: boolean) => boolean,
  *      stepSize: (by: number) => void, turnView: (right: number, up: number) => void, closer: (times: number) => void}} act
  */
 export function makeKeyboard(act) {
   /** @type {Binding[]} */
   const bindings = [
     { keys: 'G', text: 'Grab or release the chosen part', is: plainKey('g'), run: act.grab },
-    { keys: 'M', text: 'Gather the chosen part, or leave it: gathered parts are taken in hand as one body (in the list: Ctrl+click)', is: plainKey('m'), run: act.gather },
+    { keys: 'M', text: 'Gather the chosen part, or leave it: gathered parts are taken in hand as one body (in list and view: Ctrl+click)', is: plainKey('m'), run: act.gather },
     { keys: '← → ↑ ↓ PgUp PgDn', text: 'Step of the part in hand along −X +X +Y −Y +Z −Z; with Shift a turn about the axis. Without a part in hand: turn the view', is: (e) => e.key in ARROWS && !e.ctrlKey && !e.altKey, run: arrow },
     { keys: '[ ]', text: 'Smaller, larger steps: 1 µm … 10 mm', is: (e) => e.key === '[' || e.key === ']', run: (e) => act.stepSize(e.key === ']' ? 1 : -1) },
-    { keys: 'V T E A', text: 'Select; move, turn by handles; align two features', is: (e) => ['v', 't', 'e', 'a'].some((key) => plainKey(key)(e)), run: tool },
+    { keys: 'V T E A K', text: 'Select; move, turn by handles or the part itself; align two features; measure', is: (e) => ['v', 't', 'e', 'a', 'k'].some((key) => plainKey(key)(e)), run: tool },
     { keys: 'N Shift+N', text: 'Next, previous clash, and fly there', is: plainKey('n'), run: (e) => (e.shiftKey ? act.lastClash() : act.nextClash()) },
     { keys: 'F Z', text: 'Show everything; show the chosen part', is: (e) => plainKey('f')(e) || plainKey('z')(e), run: (e) => (e.key.toLowerCase() === 'f' ? act.fit() : act.part()) },
     { keys: '0 1 2 3', text: 'Look from: isometric, top, front, right', is: (e) => '0123'.includes(e.key) && !e.ctrlKey, run: (e) => act.from(['iso', 'top', 'front', 'right'][Number(e.key)]) },
     { keys: '+ −', text: 'Closer, farther', is: (e) => ['+', '=', '-'].includes(e.key) && !e.ctrlKey, run: (e) => act.closer(e.key === '-' ? 0.8 : 1.25) },
     { keys: 'X H', text: 'Section plane; make other parts transparent', is: (e) => plainKey('x')(e) || plainKey('h')(e), run: (e) => (e.key.toLowerCase() === 'x' ? act.section() : act.ghost()) },
+    { keys: 'D I U', text: 'Hide the chosen or gathered parts; show them alone; show all', is: (e) => ['d', 'i', 'u'].some((key) => plainKey(key)(e)), run: (e) => ({ d: act.hide, i: act.isolate, u: act.unhide })[/** @type {'d'} */ (e.key.toLowerCase())]() },
+    { keys: 'P', text: 'Save a picture of the view', is: plainKey('p'), run: act.picture },
     { keys: 'Ctrl+Z', text: 'Undo your last move of the part', is: withCtrl('z'), run: act.undo },
     { keys: 'Ctrl+Y, Ctrl+Shift+Z', text: 'Redo', is: (e) => withCtrl('y')(e) || withCtrl('z', true)(e), run: act.redo },
     { keys: 'Space', text: 'Replay: play or pause', is: (e) => e.key === ' ', run: act.play },
@@ -45,7 +47,7 @@ export function makeKeyboard(act) {
 
   /** @param {KeyboardEvent} event */
   function tool(event) {
-    act.tool(/** @type {const} */ ({ v: 'select', t: 'move', e: 'rotate', a: 'align' })[/** @type {'v'} */ (event.key.toLowerCase())]);
+    act.tool(/** @type {const} */ ({ v: 'select', t: 'move', e: 'rotate', a: 'align', k: 'measure' })[/** @type {'v'} */ (event.key.toLowerCase())]);
   }
 
   const help = /** @type {HTMLDialogElement} */ (byId('keys'));

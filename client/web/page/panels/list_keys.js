@@ -5,7 +5,7 @@
  * @param {(key: string) => void} [open] Enter, or a double click @param {(key: string) => void} [gather] a click with Ctrl
  */
 export function walkable(list, chosen, choose, open, gather) {
-  const rows = () => /** @type {HTMLElement[]} */ ([...list.children]).filter((row) => row.dataset.key);
+  const rows = () => /** @type {HTMLElement[]} */ ([...list.children]).filter((row) => row.dataset.key && !row.classList.contains('head'));
   list.addEventListener('keydown', (event) => {
     if (event.target !== list) return;
     const keys = rows().map((row) => row.dataset.key ?? '');
@@ -20,7 +20,7 @@ export function walkable(list, chosen, choose, open, gather) {
       event.stopPropagation();
     }
   });
-  const keyOf = (/** @type {Event} */ event) => /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest('[data-key]'))?.dataset.key;
+  const keyOf = (/** @type {Event} */ event) => /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest('[data-key]:not(.head)'))?.dataset.key;
   list.addEventListener('click', (event) => {
     if (/** @type {Element} */ (event.target).closest('button')) return;
     const key = keyOf(event);

@@ -22,8 +22,8 @@ export function makeNews({ session, say }) {
         return `${who} gave ${part} to ${session.userName(d.other_user)}`;
       case 'decline':
         return d.other_user === session.me ? `${who} keeps ${part}${d.text ? `: ${d.text}` : ''}` : '';
-      case 'ask unanswered':
-        return mine ? `Nobody answered about ${part}` : '';
+      case 'ask withdrawn':
+        return d.other_user === session.me ? `${who} asks no longer for ${part}` : '';
       case 'set policy':
         return `${who}: at a real contact now ${d.text}`;
       case 'set tolerance':

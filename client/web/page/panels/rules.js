@@ -1,4 +1,4 @@
-// What is asked of parts while the session runs: fits, tolerances, pairs that are left out. The list is what is in force, the form asks for more.
+// What is asked of parts: fits, tolerances, pairs that are left out. The list is what is in force, of the scenario and since; the form asks for more.
 import { plain } from '../session/words.js';
 import { byId, el, keepRows, setText } from './dom.js';
 
@@ -20,8 +20,10 @@ export function makeRules({ session, commands, say }) {
   const first = el('div', { class: 'row' }, part, feature);
   const second = el('div', { class: 'row' }, other, otherFeature);
   const form = el('form', { class: 'rule' }, kind, first, second, el('div', { class: 'row' }, text, set));
+  const title = el('h2', {}, 'In force ', el('span', { class: 'count' }));
+  const search = el('input', { type: 'search', placeholder: 'Search rules', 'aria-label': 'Search rules', oninput: () => refreshList() });
   const rules = el('ul', { class: 'list', 'aria-label': 'Rules in force' });
-  panel.append(form, rules);
+  panel.append(form, title, search, rules);
 
   /** @param {HTMLSelectElement} select @param {string} none @param {Array<[string, string]>} options */
   function fill(select, none, options) {
@@ -58,22 +60,33 @@ export function makeRules({ session, commands, say }) {
   /** @param {number} id @param {string} name */
   const place = (id, name) => `${session.partName(id)}${name ? `.${plain(name)}` : ''}`;
 
+  /** @param {any} d */
+  function sentence(d) {
+    const where = d.other ? `${place(d.part, d.feature)} × ${place(d.other, d.other_feature)}` : place(d.part, d.feature);
+    const what = d.kind === 'set exclusion' ? `left out${d.text ? `: ${d.text}` : ''}` : d.text;
+    return `${where} ${what}`;
+  }
+
   function refreshList() {
     rules.querySelector('.empty')?.remove();
-    const rows = inForce();
-    keepRows(rules, rows, ([key]) => key, ([key]) => el('li', { id: `rule_${key.replaceAll(' ', '_')}` }, el('span', { class: 'grow' }), el('button', { type: 'button' })),
+    const all = inForce();
+    const wanted = search.value.trim().toLowerCase();
+    const rows = all.filter(([, d]) => sentence(d).toLowerCase().includes(wanted));
+    // What was decided here stands before what the scenario says.
+    rows.sort(([, x], [, y]) => Number(y.user !== 0) - Number(x.user !== 0) || sentence(x).localeCompare(sentence(y), 'en', { numeric: true }));
+    setText(/** @type {Element} */ (title.lastElementChild), rows.length === all.length ? `${all.length}` : `${rows.length} of ${all.length}`);
+    keepRows(rules, rows, ([key]) => key, ([key]) => el('li', { id: `rule_${key.replaceAll(' ', '_')}` }, el('span', { class: 'grow' }), el('span', { class: 'quiet' }), el('button', { type: 'button' })),
       (row, [, d]) => {
-        const [name, drop] = /** @type {[HTMLElement, HTMLButtonElement]} */ ([...row.children]);
-        const where = d.other ? `${place(d.part, d.feature)} × ${place(d.other, d.other_feature)}` : place(d.part, d.feature);
-        const what = d.kind === 'set exclusion' ? `left out${d.text ? `: ${d.text}` : ''}` : d.text;
-        setText(name, `${where} ${what}`);
+        const [name, by, drop] = /** @type {[HTMLElement, HTMLElement, HTMLButtonElement]} */ ([...row.children]);
+        setText(name, sentence(d));
+        setText(by, d.user ? session.userName(d.user) : 'scenario');
         name.title = name.textContent ?? '';
         setText(drop, d.kind === 'set exclusion' ? 'Judge again' : 'Drop');
         drop.setAttribute('aria-label', `${drop.textContent}: ${name.title}`);
         drop.disabled = !session.mayAct;
         drop.onclick = () => take(d);
       });
-    if (rows.length === 0) rules.append(el('li', { class: 'empty' }, 'Nothing was changed since the scenario'));
+    if (all.every(([, d]) => !d.user)) rules.append(el('li', { class: 'empty' }, 'Nothing was changed since the scenario'));
   }
 
   /** @param {any} d */

@@ -52,8 +52,9 @@ export function makeTree({ session, choice, partsView, showPart }) {
       marks.dataset.worst = worst;
       marks.replaceChildren(...(rankOf(worst) ? [classMark(worst)] : []));
     }
-    const words = [part.name, part.moving ? 'moving' : 'fixed', part.holder ? `held by ${holder}` : '', rankOf(worst) ? `${worst} clash` : '', choice.group.has(part.id) ? 'gathered' : '', ...notes];
+    const words = [part.name, part.moving ? 'moving' : 'fixed', part.holder ? `held by ${holder}` : '', rankOf(worst) ? `${worst} clash` : '', choice.group.has(part.id) ? 'gathered' : '', choice.hidden.has(part.id) ? 'hidden' : '', ...notes];
     row.classList.toggle('gathered', choice.group.has(part.id));
+    row.classList.toggle('hidden', choice.hidden.has(part.id));
     const label = words.filter(Boolean).join(', ');
     if (row.getAttribute('aria-label') !== label) row.setAttribute('aria-label', label);
   }
@@ -64,6 +65,8 @@ export function makeTree({ session, choice, partsView, showPart }) {
     keepRows(list, parts, (part) => `${part.id}`, make, fill);
     markChosen(list, `${choice.part}`);
     const all = session.parts.size;
+    byId('hidden_row').hidden = choice.hidden.size === 0;
+    setText(byId('hidden_count'), `${choice.hidden.size} hidden`);
     setText(byId('parts_count'), parts.length === all ? `${all}` : `${parts.length} of ${all}`);
   }
 
@@ -80,6 +83,8 @@ export function makeTree({ session, choice, partsView, showPart }) {
   session.on('me', soon);
   session.on('users', soon);
   choice.on('group', refresh);
+  choice.on('hidden', refresh);
+  byId('show_hidden').onclick = () => choice.showAll();
   choice.on('part', (part) => markChosen(list, `${part}`, true));
   // Class bits come with poses, many times a second.
   const classes = seldom(refresh, 400);

@@ -4,7 +4,7 @@
 /** @type {Record<'fake' | 'potential' | 'real', {light: number, dark: number, heat: [number, number]}>} */
 export const CLASS_COLOURS = {
   fake: { light: 0x1668b3, dark: 0x63b3f4, heat: [0xb5d8f5, 0x2b76b8] },
-  potential: { light: 0xb26a00, dark: 0xf5b942, heat: [0xf8dc6a, 0xe8842a] },
+  potential: { light: 0xa86300, dark: 0xf5b942, heat: [0xf8dc6a, 0xe8842a] },
   real: { light: 0xc62828, dark: 0xff6b6b, heat: [0xe8575b, 0x8a0d2a] },
 };
 

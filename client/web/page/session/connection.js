@@ -8,11 +8,25 @@ const SILENCE_MS = 15000;
 const MESH_TRIES = 40;
 
 /** @typedef {'connecting' | 'open' | 'waiting' | 'refused'} LineState */
+/**
+ * Why there is no line: the address has no token, or one that is not accepted; nobody answers; there are too many browsers already; the gateway has closed the
+ * line and said why.
+ * @typedef {'no_token' | 'token' | 'gateway' | 'full' | 'closed'} Trouble
+ */
+/** @typedef {{trouble: Trouble | '', why: string, retryAt: number}} LineTold why in words of the gateway, may be empty; retryAt by performance.now(), 0: not by itself */
+
+const UNTROUBLED = /** @type {LineTold} */ ({ trouble: '', why: '', retryAt: 0 });
 
 /** @param {string} hash of the address: `#token=T` */
 export function tokenOf(hash) {
   const token = new URLSearchParams(hash.replace(/^#/, '')).get('token') ?? '';
   return /^[A-Za-z0-9_-]{1,128}$/.test(token) ? token : '';
+}
+
+/** What an attempt without success means, by the answer to a request with the same token. @param {number} status of HTTP; 0: no answer @returns {Trouble} */
+export function troubleOf(status) {
+  if (status === 401) return 'token';
+  return status === 0 ? 'gateway' : 'full';
 }
 
 export class Connection {
@@ -26,7 +40,7 @@ export class Connection {
   /**
    * @param {string} token
    * @param {{message: (message: any) => void, poses: (buffer: ArrayBuffer) => void,
-   *          state: (state: LineState, text: string) => void, roundTrip: (ms: number) => void}} on
+   *          state: (state: LineState, told: LineTold) => void, roundTrip: (ms: number) => void}} on
    */
   constructor(token, on) {
     this.token = token;
@@ -36,11 +50,13 @@ export class Connection {
 
   open() {
     clearTimeout(this.#again);
+    this.#socket?.close();
+    this.#socket = null;
     if (!this.token) {
-      this.on.state('refused', 'This address carries no token: open the one that mortise-web printed');
+      this.on.state('refused', { ...UNTROUBLED, trouble: 'no_token' });
       return;
     }
-    this.on.state('connecting', 'Connecting');
+    this.on.state('connecting', UNTROUBLED);
     const address = new URL('ws', location.href.replace(/#.*$/, ''));
     address.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const socket = new WebSocket(address, ['mortise.1', `token.${this.token}`]);
@@ -50,19 +66,33 @@ export class Connection {
       opened = true;
       this.#wait = FIRST_WAIT_MS;
       this.#heard = performance.now();
-      this.on.state('open', 'Connected');
+      this.on.state('open', UNTROUBLED);
     };
     socket.onmessage = ({ data }) => this.#take(data);
-    socket.onclose = ({ code, reason }) => {
+    socket.onclose = async ({ code, reason }) => {
       if (this.#socket !== socket) return;
       this.#socket = null;
-      const why = reason || (opened ? `closed (${code})` : 'the gateway does not answer or refuses this address');
-      const seconds = Math.round(this.#wait / 1000);
-      this.on.state('waiting', `Not connected: ${why}. Trying again ${seconds < 1 ? 'now' : `in ${seconds} s`}`);
+      // A browser does not tell why it could not open a WebSocket: a request with the same token is told.
+      const trouble = opened ? (code === 1006 ? 'gateway' : 'closed') : troubleOf(await this.#statusOf());
+      if (this.#socket !== null) return;
+      if (trouble === 'token') {
+        this.on.state('refused', { ...UNTROUBLED, trouble });
+        return;
+      }
+      this.on.state('waiting', { trouble, why: reason, retryAt: performance.now() + this.#wait });
       this.#again = setTimeout(() => this.open(), this.#wait);
       this.#wait = Math.min(this.#wait * 2, LONGEST_WAIT_MS);
     };
     this.#socket = socket;
+  }
+
+  /** Of HTTP, for this token; 0: no answer. @returns {Promise<number>} */
+  async #statusOf() {
+    try {
+      return (await fetch('statistics', { headers: { Authorization: `Bearer ${this.token}` }, cache: 'no-store' })).status;
+    } catch {
+      return 0;
+    }
   }
 
   /** @param {string | ArrayBuffer} data */

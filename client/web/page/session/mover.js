@@ -61,6 +61,14 @@ export class Mover {
     this.#timer ??= setInterval(() => this.beat(), this.period);
   }
 
+  /** What is longer than one increment may be goes in several beats. @param {number} part @param {Increment} increment */
+  #sendOne(part, increment) {
+    const [first, ...rest] = inPieces(increment, 1, MOST);
+    if (!this.send(part, first)) return;
+    if (rest.length === 0) this.#pending.delete(part);
+    else this.#pending.set(part, rest.reduce(sum));
+  }
+
   beat() {
     for (const [part, queue] of this.#glides) {
       const piece = queue.shift();
@@ -68,7 +76,8 @@ export class Mover {
       if (queue.length === 0) this.#glides.delete(part);
     }
     for (const [part, increment] of this.#pending) {
-      if (isNothing(increment) || this.send(part, increment)) this.#pending.delete(part);
+      if (isNothing(increment)) this.#pending.delete(part);
+      else this.#sendOne(part, increment);
     }
     if (this.#pending.size === 0 && this.#glides.size === 0) {
       clearInterval(this.#timer);

@@ -1,5 +1,6 @@
 // What is known of the session: parts, people, clashes, rules, as the gateway tells it. No picture, no network.
 import { Signals } from './signals.js';
+import { Unexamined } from './unexamined.js';
 
 /** @typedef {import('./motion.js').Vec3} Vec3 */
 /** @typedef {import('./motion.js').Quat} Quat */
@@ -24,7 +25,9 @@ import { Signals } from './signals.js';
  * @property {number} begin_tick @property {ClashClass} worst_class @property {[number, number]} worst_delta @property {string} cause
  * @property {{status: string, comment: string, user: number, tick: number}} review @property {boolean} approval_lost
  * @property {boolean} [ended]
+ * @property {number} [mover] who moved a part of it last, 0 not known @property {{user: number, cause: string}} [ruled] who changed a rule that it was judged by
  */
+/** @typedef {{clash: number, user: number, assignee: number, status: string, tick: number, text: string}} Remark what was said with one review */
 /**
  * @typedef {object} Feature of a part, in its frame
  * @property {string} name @property {string} origin @property {string} kind @property {boolean} inward
@@ -35,6 +38,8 @@ import { Signals } from './signals.js';
 /** @typedef {{user: number, p: Vec3, target: Vec3, up: Vec3}} View */
 
 const MOST_ENDED = 200;
+/** Decisions that put a part somewhere: whoever made one has moved it. The others of an event change rules. */
+const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset']);
 
 /**
  * @typedef {object} Said
@@ -42,7 +47,7 @@ const MOST_ENDED = 200;
  * @property {void} users @property {any} decision @property {void} standing @property {any} pulse @property {void} server
  * @property {void} me @property {Array<{part: number, reason: string, count: number}>} refused @property {View[]} views
  * @property {void} features @property {any} timeline @property {any} replay @property {string} mesh @property {string} error
- * @property {void} welcome @property {string} join_refused
+ * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {void} draining
  */
 
 /** @extends {Signals<Said>} */
@@ -62,6 +67,9 @@ export class Session extends Signals {
   /** @type {Map<number, User>} */ users = new Map();
   /** @type {Map<number, Clash>} */ clashes = new Map();
   /** @type {any[]} */ standing = [];
+  /** @type {Remark[]} */ remarks = [];
+  unexamined = new Unexamined();
+  draining = false; // its server has said that it ends
   /** @type {Map<number, Feature[]>} */ features = new Map();
   /** @type {Map<number, View>} */ views = new Map();
   /** @type {any} */ timeline = null;
@@ -90,6 +98,21 @@ export class Session extends Signals {
     return [...this.parts.values()].filter((part) => this.isMine(part));
   }
 
+  /** What was said of a clash, in order. @param {number} clash */
+  remarksOf(clash) {
+    return this.remarks.filter((remark) => remark.clash === clash);
+  }
+
+  /** Whose task a clash is; 0 nobody's. @param {number} clash */
+  assigneeOf(clash) {
+    return this.remarksOf(clash).at(-1)?.assignee ?? 0;
+  }
+
+  /** A time of the session as it is told beside a picture that goes on. @param {number} tick */
+  ago(tick) {
+    return Math.max(0, (this.tick - tick) / this.tickRate);
+  }
+
   openClashes() {
     return [...this.clashes.values()].filter((clash) => !clash.ended);
   }
@@ -116,6 +139,7 @@ export class Session extends Signals {
       this.#hold(part, frame.words[16 * k + 1]);
       changed.push(part);
     }
+    this.unexamined.moved(changed);
     this.emit('poses', changed);
   }
 
@@ -146,6 +170,7 @@ export class Session extends Signals {
     server: (m) => {
       this.serverPresent = m.present;
       if (!m.present) this.me = 0;
+      if (m.present) this.draining = false;
       this.emit('server', undefined);
       this.emit('me', undefined);
     },
@@ -172,7 +197,11 @@ export class Session extends Signals {
       this.emit('views', m.views);
     },
     refused: (m) => this.emit('refused', m.increments),
-    pulse: (m) => this.emit('pulse', m),
+    remarks: (m) => {
+      this.remarks = m.remarks;
+      this.emit('remarks', undefined);
+    },
+    pulse: (m) => this.#pulse(m),
     mesh: (m) => this.emit('mesh', m.hash),
     error: (m) => this.emit('error', m.text),
     timeline: (m) => {
@@ -194,11 +223,19 @@ export class Session extends Signals {
     this.policy = m.policy;
     this.parts = new Map(m.parts.map((/** @type {Part} */ part) => [part.id, part]));
     for (const user of m.users) this.users.set(user.id, user);
-    this.clashes = new Map(m.clashes.map((/** @type {Clash} */ clash) => [clash.clash, clash]));
+    const known = this.clashes;
+    this.clashes = new Map();
+    for (const clash of m.clashes) {
+      tellMovers(clash, known.get(clash.clash));
+      this.clashes.set(clash.clash, clash);
+    }
     this.standing = m.standing ?? [];
+    this.remarks = m.remarks ?? [];
+    this.unexamined.clear();
+    this.draining = false;
     for (const part of m.parts) if (part.features?.length) this.features.set(part.id, part.features);
     this.serverPresent = true;
-    for (const what of /** @type {const} */ (['scene', 'server', 'users', 'clashes', 'standing'])) this.emit(what, undefined);
+    for (const what of /** @type {const} */ (['scene', 'server', 'users', 'clashes', 'standing', 'remarks', 'unexamined'])) this.emit(what, undefined);
   }
 
   /** @param {any} m */
@@ -217,11 +254,22 @@ export class Session extends Signals {
     event.ended = event.kind === 'end' || (event.kind === 'review' && this.clashes.get(event.clash)?.ended);
     // The end of a clash says nothing of how it looked: what it was stays to be read.
     const before = this.clashes.get(event.clash);
+    tellMovers(event, before);
     this.clashes.set(event.clash, event.kind === 'end' && before ? { ...before, kind: 'end', ended: true, review: event.review } : event);
     const ended = [...this.clashes.values()].filter((clash) => clash.ended);
     for (const clash of ended.slice(0, Math.max(0, ended.length - MOST_ENDED))) this.clashes.delete(clash.clash);
     this.emit('event', event);
     this.emit('clashes', undefined);
+  }
+
+  /** @param {any} m */
+  #pulse(m) {
+    this.tick = Math.max(this.tick, m.tick ?? 0);
+    if (this.unexamined.take(m)) this.emit('unexamined', undefined);
+    const begins = m.draining === true && !this.draining;
+    this.draining = m.draining === true;
+    if (begins) this.emit('draining', undefined);
+    this.emit('pulse', m);
   }
 
   /** @param {any} decision */
@@ -237,6 +285,8 @@ export class Session extends Signals {
   #forgetUser(id) {
     for (const clash of this.clashes.values()) {
       if (clash.user === id) clash.user = 0;
+      if (clash.mover === id) clash.mover = 0;
+      if (clash.ruled?.user === id) clash.ruled.user = 0;
       if (clash.review?.user === id) clash.review.user = 0;
     }
     this.emit('clashes', undefined);
@@ -250,4 +300,14 @@ export class Session extends Signals {
     if (decision.kind === 'hand-over') this.#hold(part, decision.other_user);
     if (['release', 'lease end'].includes(decision.kind)) this.#hold(part, 0);
   }
+}
+
+/**
+ * An event tells one user: who moved, or who decided. Both stay to be told.
+ * @param {Clash} event is filled in @param {Clash | undefined} before the same clash as it was
+ */
+function tellMovers(event, before) {
+  const motion = MOTIONS.has(event.cause ?? 'unknown') && event.kind !== 'review';
+  event.mover = motion ? event.user : before?.mover;
+  event.ruled = motion || event.cause === 'review' || event.kind === 'review' ? before?.ruled : { user: event.user, cause: event.cause };
 }

@@ -52,6 +52,13 @@ export function bracket([lo, hi]) {
   return a === b ? a : `${a} … ${b}`;
 }
 
+/** How long something has lasted. @param {number} s */
+export function span(s) {
+  if (s < 60) return `${s.toFixed(0)} s`;
+  const minutes = Math.floor(s / 60);
+  return minutes < 60 ? `${minutes} min ${Math.floor(s % 60)} s` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
 /** @param {number} mm */
 export function coordinate(mm) {
   return mm.toFixed(4).replace(/^-(0\.0+)$/, '$1');

@@ -48,6 +48,21 @@ export class Camera {
     return this.controls.target;
   }
 
+  /** Where the eye is, mm. @returns {import('../session/motion.js').Vec3} */
+  get eye() {
+    return this.stage.camera.position.toArray();
+  }
+
+  /** What it looks at. @returns {import('../session/motion.js').Vec3} */
+  get at() {
+    return this.target.toArray();
+  }
+
+  /** At once. @param {import('../session/motion.js').Vec3} eye @param {import('../session/motion.js').Vec3} at */
+  stand(eye, at) {
+    this.flyTo(new THREE.Vector3(...eye), new THREE.Vector3(...at), true);
+  }
+
   /** @param {THREE.Vector3} position @param {THREE.Vector3} target @param {boolean} [atOnce] */
   flyTo(position, target, atOnce = matchMedia('(prefers-reduced-motion: reduce)').matches) {
     const { camera } = this.stage;

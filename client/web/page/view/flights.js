@@ -9,7 +9,8 @@ import { across, cross, unit } from '../session/slice.js';
 export function makeFlights({ session, choice, camera, partsView, section }) {
   /** @param {string} [side] @param {boolean} [atOnce] */
   function showAll(side, atOnce) {
-    const boxes = partsView.boxesOf(session.parts.values());
+    const seen = [...session.parts.values()].filter((part) => !choice.hidden.has(part.id));
+    const boxes = partsView.boxesOf(seen.length > 0 ? seen : session.parts.values());
     if (boxes.length > 0) camera.fit(boxes, side, atOnce);
   }
 
@@ -49,7 +50,7 @@ export function makeFlights({ session, choice, camera, partsView, section }) {
 
   /** The next or last clash of the list as it stands. @param {number} way */
   function goClash(way) {
-    const keys = [...document.querySelectorAll('#clashes [data-key]')].map((row) => Number(/** @type {HTMLElement} */ (row).dataset.key));
+    const keys = [...document.querySelectorAll('#clashes [data-key]:not(.head)')].map((row) => Number(/** @type {HTMLElement} */ (row).dataset.key));
     if (keys.length === 0) return;
     const at = keys.indexOf(choice.clash);
     choice.chooseClash(keys[(at < 0 ? (way > 0 ? 0 : keys.length - 1) : at + way + keys.length) % keys.length]);

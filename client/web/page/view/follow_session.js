@@ -9,6 +9,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
     const pair = clash && !clash.ended ? [clash.a, clash.b] : null;
     partsView.setLooks((part) => {
       if (pair) return pair.includes(part.id) ? 'plain' : 'ghost';
+      if (choice.hidden.has(part.id)) return 'hidden';
       if (choice.together.includes(part.id)) return 'chosen';
       return choice.ghost && choice.part ? 'ghost' : 'plain';
     });
@@ -28,7 +29,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
 
   session.on('scene', async () => {
     if (!session.parts.has(choice.part)) choice.choosePart(0);
-    for (const id of [...choice.group]) if (!session.parts.has(id)) choice.gather(id);
+    if ([...choice.group].some((id) => !session.parts.has(id))) choice.ungather();
     if (!session.clashes.has(choice.clash)) choice.chooseClash(0);
     handles.attach(null, 'translate');
     await partsView.setParts(session.parts.values());
@@ -36,9 +37,11 @@ export function followSession({ session, choice, partsView, marks, handles, labe
     showMarks();
     hand();
     // A new session is framed; the same one again (after a lost line, in a replay) leaves the eye where it is.
-    if (framed === session.name) return;
-    framed = session.name;
-    showAll('iso', true);
+    if (framed !== session.name) {
+      framed = session.name;
+      showAll('iso', true);
+    }
+    choice.framed();
   });
   session.on('poses', (parts) => {
     partsView.movePoses(parts);
@@ -62,6 +65,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
   choice.on('tool', hand);
   choice.on('ghost', looks);
   choice.on('group', looks);
+  choice.on('hidden', looks);
   choice.on('clash', (clash) => {
     looks();
     showMarks();

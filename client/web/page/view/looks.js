@@ -12,7 +12,7 @@ export function personColour(user) {
   return PEOPLE[user % PEOPLE.length];
 }
 
-/** @typedef {'plain' | 'chosen' | 'ghost'} Look */
+/** @typedef {'plain' | 'chosen' | 'ghost' | 'hidden'} Look */
 
 export class Looks {
   /** @type {Map<string, THREE.Material>} */

@@ -104,16 +104,17 @@ export class PartsView {
       shown.faces.material = this.looks.faces(colour, look);
       shown.inside.material = this.looks.inside(colour, look);
       this.#showInside(shown);
-      if (shown.edges) shown.edges.material = this.looks.edges(look);
+      shown.faces.visible = look !== 'hidden';
+      if (shown.edges) Object.assign(shown.edges, { material: this.looks.edges(look), visible: look !== 'hidden' });
       // What is seen through is drawn after what is not.
       shown.faces.renderOrder = look === 'ghost' ? 1 : 0;
     }
     this.stage.ask();
   }
 
-  /** The cut face of a ghost says nothing. @param {Shown} shown */
+  /** The cut face of a ghost says nothing, and there is none of what is hidden. @param {Shown} shown */
   #showInside({ inside, look }) {
-    inside.visible = this.looks.clipping.length > 0 && look !== 'ghost';
+    inside.visible = this.looks.clipping.length > 0 && look !== 'ghost' && look !== 'hidden';
   }
 
   /** @param {THREE.Plane[]} planes */
@@ -125,7 +126,7 @@ export class PartsView {
 
   /** The nearest part that is not ghosted or cut away. @param {THREE.Raycaster} ray */
   hit(ray) {
-    const solid = [...this.shown.values()].filter((shown) => shown.look !== 'ghost').map((shown) => shown.faces);
+    const solid = [...this.shown.values()].filter((shown) => shown.look !== 'ghost' && shown.look !== 'hidden').map((shown) => shown.faces);
     const hits = ray.intersectObjects(solid, false);
     return hits.find(({ point }) => this.looks.clipping.every((plane) => plane.distanceToPoint(point) >= 0)) ?? null;
   }

@@ -1,6 +1,6 @@
 // The pointer on the picture: a click chooses a part, a mark or a feature; a drag is the camera's or the handles'.
 
-const STILL_PIXELS = 4;
+const STILL_PIXELS = { mouse: 4, touch: 12 };
 
 /**
  * @param {import('../desk.js').Desk} desk
@@ -14,9 +14,9 @@ export function makePointer({ session, choice, stage, partsView, marks, handles,
     down = { x: event.clientX, y: event.clientY, grips: handles.grips };
   }, { capture: true });
   canvas.addEventListener('pointerup', (event) => {
-    const still = Math.hypot(event.clientX - down.x, event.clientY - down.y) < STILL_PIXELS;
+    const still = Math.hypot(event.clientX - down.x, event.clientY - down.y) < (event.pointerType === 'touch' ? STILL_PIXELS.touch : STILL_PIXELS.mouse);
     if (!still || down.grips || event.button !== 0) return;
-    const clash = choice.tool === 'align' ? 0 : marks.hit(event);
+    const clash = choice.tool === 'align' || choice.tool === 'measure' ? 0 : marks.hit(event);
     if (clash) {
       choice.chooseClash(clash);
       return;
@@ -24,7 +24,8 @@ export function makePointer({ session, choice, stage, partsView, marks, handles,
     const hit = partsView.hit(stage.rayAt(event));
     const part = hit ? (session.parts.get(hit.object.userData.part) ?? null) : null;
     if (part && hit && pickFeature(part, hit.point)) return;
-    if (choice.clash && !part) choice.chooseClash(0);
+    if (part && (event.ctrlKey || event.metaKey)) choice.gather(part.id);
+    else if (choice.clash && !part) choice.chooseClash(0);
     else choice.choosePart(part?.id ?? 0);
   });
   canvas.addEventListener('dblclick', () => choice.part && showPart(choice.part));

@@ -1,0 +1,234 @@
+// What hands do: every stop says why, asking for a part, several parts, hiding, measuring, dragging, pictures.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { openBrowser, openPage } from '../support/browser.mjs';
+import { PATIENCE, choose, grab, moveBy, position, settled, whenListed } from '../support/people.mjs';
+import { PEGS } from '../support/scenario.mjs';
+import { LiveSession } from '../support/session.mjs';
+
+const session = new LiveSession(`hands${process.pid}`);
+let browser, addresses, ann, bob;
+
+before(async () => {
+  await session.serve(PEGS);
+  addresses = await session.open();
+  browser = await openBrowser();
+  ann = await openPage(browser, addresses.designer, { name: 'ann' });
+  bob = await openPage(browser, addresses.designer, { name: 'bob', scheme: 'light' });
+  await whenListed(ann, 'parts', 'peg_k6');
+  await whenListed(bob, 'parts', 'peg_k6');
+}, { timeout: 90_000 });
+
+after(async () => {
+  await browser?.close();
+  await session.end();
+});
+
+const release = (page) => page.click('#hand button:has-text("Release")');
+
+test('"Move by" clears its numbers after use', async () => {
+  await grab(ann, 'block');
+  const from = await settled(ann);
+  await moveBy(ann, [0, 0, 7]);
+  const values = await ann.locator('#hand input').evaluateAll((fields) => fields.map((field) => field.value));
+  assert.deepEqual(values, ['0', '0', '0']);
+  const to = await settled(ann);
+  assert.ok(Math.abs(to[2] - from[2] - 7) < 1e-3);
+  await ann.locator('#hand input').first().press('Enter');
+  assert.deepEqual(await settled(ann), to);
+});
+
+test('a part is dragged by itself in the plane of the view', async () => {
+  await ann.click('#tool_move');
+  await ann.focus('#canvas');
+  await ann.keyboard.press('2'); // from the front: the plane of the view is that of X and Z
+  await ann.waitForTimeout(500);
+  await ann.keyboard.press('z');
+  await ann.waitForTimeout(500);
+  const from = await settled(ann);
+  const box = await ann.locator('#canvas').boundingBox();
+  // Beside its handles, which stand in the middle and along the axes.
+  const [x, y] = [box.x + box.width / 2 - 60, box.y + box.height / 2 + 60];
+  await ann.mouse.move(x, y);
+  await ann.mouse.down();
+  await ann.mouse.move(x + 40, y + 30, { steps: 8 });
+  await ann.mouse.up();
+  await ann.waitForTimeout(400);
+  const to = await settled(ann);
+  assert.ok(to[0] > from[0] + 1 && to[2] < from[2] - 1, `dragged from ${from} to ${to}`);
+  assert.ok(Math.abs(to[1] - from[1]) < 1e-3, `out of the plane of the view: from ${from} to ${to}`);
+  await release(ann);
+});
+
+test('a stop at a real contact says with which part and by how much, in the bar and at the part', async () => {
+  await grab(ann, 'peg_p6');
+  await ann.focus('#canvas');
+  await ann.keyboard.press('f');
+  await moveBy(ann, [0, 0, -28]);
+  const said = ann.locator('#hand .stop', { hasText: 'Real contact with plate_p6' });
+  await said.waitFor(PATIENCE);
+  assert.match(await said.textContent(), /^[\d.]+ mm of the move is missing\. Real contact with plate_p6: [\d.]+ µm deep .* [\d.]+ µm beyond .*\(clash #\d+\)/);
+  await ann.locator('#labels > div', { hasText: 'real contact: plate_p6' }).waitFor(PATIENCE);
+  await moveBy(ann, [0, 0, 3]); // away from it there is nothing to say
+  await said.waitFor({ ...PATIENCE, state: 'hidden' });
+  await release(ann);
+});
+
+test('a stop by a constraint names it, and one by somebody else’s hand names the holder', async () => {
+  await grab(bob, 'stray');
+  await bob.click('#tool_align');
+  await bob.locator('#align_bar option[value="journal"]').first().waitFor({ ...PATIENCE, state: 'attached' });
+  await bob.getByLabel('Feature of the part in your hand').selectOption('journal');
+  await bob.getByLabel('Other part', { exact: true }).selectOption({ label: 'plate_k6' });
+  await bob.getByLabel('Feature of the other part').selectOption('bore');
+  await bob.click('#align_bar button:has-text("Align")');
+  await bob.getByText('Kept:').waitFor(PATIENCE);
+  await settled(bob);
+  await bob.click('#tool_move');
+  await moveBy(bob, [4, 0, 0]);
+  const said = bob.locator('#hand .stop', { hasText: 'Held by its constraint: journal coaxial with plate_k6 bore' });
+  await said.waitFor(PATIENCE);
+  assert.match(await said.textContent(), /^4\.000 mm of the move is missing/);
+  await release(bob);
+});
+
+test('twenty typed moves along an axis go all the way', async () => {
+  await grab(bob, 'stray');
+  await bob.click('#tool_align');
+  await bob.getByLabel('Feature of the part in your hand').selectOption('journal');
+  await bob.getByLabel('Other part', { exact: true }).selectOption({ label: 'plate_k6' });
+  await bob.getByLabel('Feature of the other part').selectOption('bore');
+  await bob.click('#align_bar button:has-text("Align")');
+  await bob.getByText('Kept:').waitFor(PATIENCE);
+  for (let i = 0; i < 20; ++i) {
+    const from = await settled(bob);
+    await moveBy(bob, [0, 0, i % 2 ? -20 : 20]);
+    await bob.waitForTimeout(600);
+    const to = await settled(bob);
+    assert.ok(Math.abs(Math.abs(to[2] - from[2]) - 20) < 1e-3, `move ${i}: from ${from} to ${to}`);
+  }
+  await bob.click('#tool_select');
+  await release(bob);
+});
+
+test('who asks for a part sees that for as long as it takes, whatever is chosen, and may ask no longer', async () => {
+  await grab(ann, 'block');
+  await choose(bob, 'block');
+  await bob.click('#hand button:has-text("Ask for it")');
+  const asks = (page, text) => page.locator('#asks > div', { hasText: text });
+  await asks(bob, 'You ask ann for block').waitFor(PATIENCE);
+  await asks(ann, 'bob asks you for block').waitFor(PATIENCE);
+  await choose(bob, 'peg_g6');
+  await choose(ann, 'peg_g6');
+  await bob.waitForTimeout(7000); // longer than a lease
+  assert.ok(await asks(bob, 'You ask ann for block').isVisible());
+  assert.ok(await asks(ann, 'bob asks you for block').isVisible());
+  await asks(bob, 'You ask ann for block').getByText('Ask no longer').click();
+  await asks(ann, 'bob asks you').waitFor({ ...PATIENCE, state: 'hidden' });
+  await choose(bob, 'block');
+  await bob.click('#hand button:has-text("Ask for it")');
+  await asks(ann, 'bob asks you for block').getByText('Give it to bob').click();
+  await bob.locator('#hand .quiet', { hasText: 'in your hand' }).waitFor(PATIENCE);
+  assert.ok(await bob.locator('#asks').isHidden());
+  await release(bob);
+  // One that is let go while somebody waits for it is said to be free.
+  await grab(ann, 'block');
+  await bob.click('#hand button:has-text("Ask for it")');
+  await asks(bob, 'You ask ann for block').waitFor(PATIENCE);
+  await release(ann);
+  await bob.getByText('block is free now').waitFor(PATIENCE);
+});
+
+test('a click, another with Ctrl, and G: both parts are in hand', async () => {
+  await choose(ann, 'block');
+  await ann.locator('#parts > li', { hasText: 'peg_g6' }).click({ modifiers: ['Control'] });
+  await ann.focus('#canvas');
+  await ann.keyboard.press('g');
+  await bob.locator('#people > li', { hasText: 'holds 2' }).filter({ hasText: 'ann' }).waitFor(PATIENCE);
+  await ann.keyboard.press('g');
+  await bob.locator('#people > li', { hasText: 'holds 2' }).waitFor({ ...PATIENCE, state: 'hidden' });
+  for (let i = 0; i < 3 && (await ann.locator('#parts > li.gathered').count()) > 0; ++i) await ann.keyboard.press('Escape');
+  assert.equal(await ann.locator('#parts > li.gathered').count(), 0);
+});
+
+test('parts are hidden, shown alone, and shown again; what is hidden is not hit', async () => {
+  await choose(ann, 'block');
+  await ann.focus('#canvas');
+  await ann.keyboard.press('z');
+  await ann.waitForTimeout(700);
+  const box = await ann.locator('#canvas').boundingBox();
+  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  await ann.keyboard.press('d');
+  await ann.locator('#hidden_count', { hasText: '1 hidden' }).waitFor(PATIENCE);
+  await ann.mouse.click(...middle);
+  assert.notEqual(await ann.locator('#hand strong').textContent(), await ann.locator('#hand').isVisible() ? 'block' : 'nothing');
+  await ann.keyboard.press('u');
+  await ann.locator('#hidden_row').waitFor({ ...PATIENCE, state: 'hidden' });
+  await ann.mouse.click(...middle);
+  await ann.locator('#hand strong', { hasText: 'block' }).waitFor(PATIENCE);
+  await ann.click('#hand button[aria-label^="Show it alone"]');
+  await ann.locator('#hidden_count', { hasText: '7 hidden' }).waitFor(PATIENCE);
+  await ann.click('#show_hidden');
+});
+
+test('what is between two faces is measured, with what the session has judged of them', async () => {
+  await choose(ann, 'block');
+  await ann.focus('#canvas');
+  await ann.keyboard.press('k');
+  await ann.keyboard.press('1');
+  await ann.waitForTimeout(500);
+  await ann.keyboard.press('z');
+  await ann.waitForTimeout(500);
+  const box = await ann.locator('#canvas').boundingBox();
+  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  await ann.mouse.move(middle[0] + 3, middle[1] + 3);
+  await ann.locator('#labels > div', { hasText: /^block: / }).waitFor(PATIENCE); // the face under the pointer, before it is clicked
+  await ann.mouse.click(...middle); // its top
+  await ann.focus('#canvas');
+  await ann.keyboard.press('2');
+  await ann.waitForTimeout(500);
+  await ann.keyboard.press('z');
+  await ann.waitForTimeout(500);
+  await ann.mouse.click(...middle); // its front
+  await ann.locator('#measure_bar', { hasText: 'Angle 90.0000°' }).waitFor(PATIENCE);
+  await ann.click('#measure_bar button:has-text("Measure anew")');
+  await ann.locator('#measure_bar', { hasText: 'Click a face' }).waitFor(PATIENCE);
+  await ann.keyboard.press('Escape');
+});
+
+test('a side of the cube looks from there, and the view is saved as a picture', async () => {
+  const eye = () => ann.evaluate(() => document.getElementById('compass')?.toDataURL());
+  await ann.focus('#canvas');
+  await ann.keyboard.press('0');
+  await ann.waitForTimeout(700);
+  const before = await eye();
+  const cube = await ann.locator('#compass').boundingBox();
+  await ann.mouse.click(cube.x + cube.width / 2, cube.y + cube.height / 2 - 14); // its top
+  await ann.waitForTimeout(900);
+  const top = await eye();
+  assert.notEqual(top, before);
+  await ann.focus('#canvas');
+  await ann.keyboard.press('1');
+  await ann.waitForTimeout(900);
+  assert.equal(await eye(), top);
+  const [download] = await Promise.all([ann.waitForEvent('download'), ann.click('#view_picture')]);
+  const bytes = readFileSync(await download.path());
+  assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+  assert.ok(bytes.length > 5000);
+});
+
+test('a snap takes the declared fit before what is nearer', async () => {
+  await grab(ann, 'peg_g6');
+  await ann.click('#tool_align');
+  await ann.click('#align_bar button:has-text("Snap")');
+  await ann.getByText('their fit is Ø20 H7/g6').first().waitFor(PATIENCE);
+  await ann.getByText('Kept: journal coaxial with plate_g6 bore').waitFor(PATIENCE);
+  await ann.click('#align_bar button:has-text("Free")');
+  await ann.click('#tool_select');
+  await release(ann);
+});
+
+test('nothing was complained of', () => {
+  assert.deepEqual([...ann.complaints, ...bob.complaints], []);
+});

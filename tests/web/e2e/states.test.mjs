@@ -1,0 +1,152 @@
+// What goes wrong is told with what to do about it, and a screen of any size reaches everything.
+import assert from 'node:assert/strict';
+import { rmSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { joinAs, openBrowser, openPage } from '../support/browser.mjs';
+import { cutOff, paleTexts, smallTargets } from '../support/looks.mjs';
+import { PATIENCE, choose, grab, moveBy, settled, whenListed } from '../support/people.mjs';
+import { PEGS } from '../support/scenario.mjs';
+import { LiveSession } from '../support/session.mjs';
+
+const session = new LiveSession(`states${process.pid}`);
+let browser, addresses, ann;
+
+before(async () => {
+  await session.serve(PEGS, ['--log', join(session.folder, 'logs')]);
+  addresses = await session.open();
+  browser = await openBrowser();
+  ann = await openPage(browser, addresses.designer, { name: 'ann' });
+  await whenListed(ann, 'parts', 'peg_k6');
+  await grab(ann, 'peg_p6');
+  const real = whenListed(ann, 'clashes', 'real, plate_p6 × peg_p6');
+  await moveBy(ann, [0, 0, -28]);
+  await real;
+  await ann.click('#hand button:has-text("Release")');
+}, { timeout: 90_000 });
+
+after(async () => {
+  await browser?.close();
+  await session.end();
+});
+
+const trouble = (page, kind) => page.locator(`#banner[data-trouble="${kind}"]`);
+
+test('at 1440, 1280, 1024 and 800 pixels nothing is cut off, covered or out of reach, in both themes', async () => {
+  for (const scheme of ['dark', 'light']) {
+    const page = await openPage(browser, addresses.designer, { name: `tom ${scheme}`, scheme });
+    await whenListed(page, 'clashes', 'real, plate_p6 × peg_p6');
+    await choose(page, 'block');
+    await page.locator('#clashes > li').first().click();
+    for (const [width, height] of [[1440, 900], [1280, 720], [1024, 768], [800, 600]]) {
+      await page.setViewportSize({ width, height });
+      for (const side of ['left', 'right']) {
+        const place = page.locator(`#place_${side}`);
+        if (await place.isVisible()) await place.click();
+        else if (side === 'left') assert.ok(await page.locator('#parts').isVisible() && await page.locator('#clashes').isVisible());
+        await page.waitForTimeout(150);
+        assert.deepEqual(await cutOff(page), [], `${scheme} ${width} × ${height}, ${side}`);
+        assert.ok(await page.locator(side === 'left' ? '#parts' : '#clashes').isVisible(), `${side} at ${width}`);
+      }
+    }
+    await page.context().close();
+  }
+});
+
+test('text stands out from its ground by 4.5 or more, in both themes', async () => {
+  for (const scheme of ['dark', 'light']) {
+    const page = await openPage(browser, addresses.designer, { name: `cid ${scheme}`, scheme });
+    await whenListed(page, 'clashes', 'real, plate_p6 × peg_p6');
+    await choose(page, 'block');
+    await page.click('#clash_filters .chip >> nth=2');
+    await page.locator('#clashes > li').first().click();
+    for (const tab of ['clashes', 'rules', 'statistics']) {
+      await page.click(`#tab_${tab}`);
+      await page.waitForTimeout(300);
+      assert.deepEqual(await paleTexts(page), [], `${scheme}, ${tab}`);
+    }
+    await page.context().close();
+  }
+});
+
+test('at 390 pixels one looks on and reviews by touch, with targets of 44 pixels', async () => {
+  const page = await openPage(browser, addresses.designer, { name: 'eve', touch: true, view: { width: 390, height: 844 } });
+  await whenListed(page, 'clashes', 'real, plate_p6 × peg_p6');
+  assert.deepEqual(await smallTargets(page), []);
+  await page.locator('#clashes > li', { hasText: 'plate_p6 × peg_p6' }).tap();
+  await page.getByLabel('Review status').selectOption('reviewed');
+  await page.getByLabel('Comment').fill('seen on the way');
+  await page.locator('#clash button:has-text("Save")').scrollIntoViewIfNeeded();
+  assert.deepEqual(await smallTargets(page), []);
+  await page.locator('#clash button:has-text("Save")').tap();
+  await ann.locator('#clashes > li', { hasText: 'reviewed' }).waitFor(PATIENCE);
+  await page.locator('#place_left').tap();
+  await page.locator('#parts > li', { hasText: 'block' }).first().tap();
+  await page.locator('#hand strong', { hasText: 'block' }).waitFor(PATIENCE);
+  assert.deepEqual(await smallTargets(page), []);
+  await page.locator('#place_none').tap();
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(wide <= 0, `the page is ${wide} pixels too wide`);
+  await page.context().close();
+});
+
+test('an address without a token, and one with a wrong token, say what to do', async () => {
+  const without = await openPage(browser, addresses.designer.replace(/#.*/, ''));
+  await trouble(without, 'no_token').getByText('Open the whole address').waitFor(PATIENCE);
+  const wrong = await openPage(browser, addresses.designer.replace(/token=.*/, 'token=wrong'));
+  await trouble(wrong, 'token').getByText('wrong or has expired').waitFor(PATIENCE);
+  assert.equal(await wrong.textContent('#line_text'), 'No access');
+  await wrong.waitForTimeout(2500);
+  assert.ok(wrong.complaints.filter((text) => /401/.test(text)).length <= 3, 'a token that is wrong is not tried over and over');
+  for (const page of [without, wrong]) await page.context().close();
+});
+
+test('a gateway that is gone: seconds are counted down, and one can try now', async () => {
+  const { port } = new URL(addresses.designer);
+  await session.stop(session.gateway);
+  await trouble(ann, 'gateway').waitFor(PATIENCE);
+  const left = async () => Number(/Trying again in (\d+) s/.exec(await ann.textContent('#banner'))?.[1] ?? 0);
+  await ann.waitForFunction(() => /in [4-8] s/.test(document.getElementById('banner')?.textContent ?? ''), undefined, PATIENCE);
+  const first = await left();
+  await ann.waitForFunction((n) => Number(/in (\d+) s/.exec(document.getElementById('banner')?.textContent ?? '')?.[1]) === n - 2, first, { timeout: 4000 });
+  await session.open(undefined, port);
+  await ann.click('#banner button:has-text("Try now")');
+  await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);
+  assert.ok(await ann.locator('#banner').isHidden());
+  // Started anew with other tokens, this address is of yesterday.
+  await session.stop(session.gateway);
+  rmSync(join(session.folder, 'tokens'));
+  const fresh = await session.open(undefined, port);
+  await trouble(ann, 'token').getByText('Ask who runs the session').waitFor(PATIENCE);
+  await ann.goto('about:blank');
+  await ann.goto(fresh.designer);
+  await joinAs(ann, 'ann');
+});
+
+test('a server that is killed: one that stands by takes over, and the page says so', async () => {
+  const standby = await session.standBy();
+  session.server.removeAllListeners('exit');
+  session.server.kill('SIGKILL');
+  await ann.getByText('one leads it again').first().waitFor(PATIENCE);
+  assert.ok(await ann.locator('#banner').isHidden());
+  await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);
+  await grab(ann, 'block');
+  await settled(ann);
+  // Nobody stands by for the second one.
+  standby.removeAllListeners('exit');
+  standby.kill('SIGKILL');
+  await trouble(ann, 'take_over').getByText('It has not said that it ends').waitFor(PATIENCE);
+  const gone = async () => Number(/Since (\d+) s/.exec(await ann.textContent('#banner'))?.[1]);
+  const first = await gone();
+  await ann.waitForTimeout(2100);
+  assert.ok(await gone() >= first + 2, 'the seconds since then are counted');
+  await session.serve(PEGS);
+  await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);
+});
+
+test('a session that ends in good order is said to have ended', async () => {
+  await session.stop(session.server);
+  await trouble(ann, 'take_over').getByText('It has said that it ends').waitFor(PATIENCE);
+  await trouble(ann, 'ended').getByText('mortise web --replay').waitFor(PATIENCE);
+  assert.equal(await ann.textContent('#line_text'), 'No server');
+});

@@ -1,0 +1,65 @@
+// What a page looks like, measured: what is cut off, how texts stand out from their ground, how large what is touched is.
+
+/** Controls and headings that are out of the window or lie on each other. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export function cutOff(page) {
+  return page.evaluate(() => {
+    const bad = [];
+    const controls = [...document.querySelectorAll('.bar > *, .bar button, .bar select, .places button, .tabs button, .panel h2, #clash_filters > *, #hand button, #hand input, #hand select, #heat_legend, #compass, .status > span')]
+      .filter((c) => c.checkVisibility() && c.getBoundingClientRect().width > 0);
+    for (const control of controls) {
+      const { left, right, top, bottom } = control.getBoundingClientRect();
+      if (left < -1 || top < -1 || right > innerWidth + 1 || bottom > innerHeight + 1) bad.push(`out of view: ${control.outerHTML.slice(0, 80)}`);
+      for (const other of controls) {
+        if (other === control || other.contains(control) || control.contains(other)) continue;
+        const o = other.getBoundingClientRect();
+        if (Math.min(right, o.right) - Math.max(left, o.left) > 1 && Math.min(bottom, o.bottom) - Math.max(top, o.top) > 1) bad.push(`covers: ${control.outerHTML.slice(0, 60)} and ${other.outerHTML.slice(0, 60)}`);
+      }
+    }
+    if (document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight) bad.push('the page scrolls');
+    return bad;
+  });
+}
+
+/** Texts whose contrast with what is behind them is below 4.5 (WCAG 2.2, 1.4.3). What is disabled is exempt. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export function paleTexts(page) {
+  return page.evaluate(() => {
+    const numbers = (/** @type {string} */ colour) => colour.match(/[\d.]+/g)?.map(Number) ?? [0, 0, 0, 0];
+    const over = (top, under) => {
+      const a = top[3] ?? 1;
+      return [0, 1, 2].map((i) => top[i] * a + under[i] * (1 - a));
+    };
+    const luminance = (c) => [0, 1, 2].reduce((sum, i) => {
+      const s = c[i] / 255;
+      return sum + [0.2126, 0.7152, 0.0722][i] * (s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4);
+    }, 0);
+    const ground = (element) => {
+      const own = numbers(getComputedStyle(element).backgroundColor);
+      const under = (own[3] ?? 1) === 1 || !element.parentElement ? own : ground(element.parentElement);
+      return over(own, under);
+    };
+    const faded = (element) => (element ? Number(getComputedStyle(element).opacity) * faded(element.parentElement) : 1);
+    const bad = new Set();
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+      const element = node.parentElement;
+      if (!node.textContent.trim() || !element.checkVisibility() || element.closest('svg, [disabled], script, #labels, #heat_legend .zone')) continue;
+      const back = ground(element);
+      const alpha = faded(element);
+      const own = numbers(getComputedStyle(element).color);
+      const front = over([own[0], own[1], own[2], (own[3] ?? 1) * alpha], back);
+      const [light, dark] = [luminance(front), luminance(back)].sort((x, y) => y - x);
+      const ratio = (light + 0.05) / (dark + 0.05);
+      if (ratio < 4.5) bad.add(`${ratio.toFixed(2)}: ${element.className || element.tagName} "${node.textContent.trim().slice(0, 30)}"`);
+    }
+    return [...bad];
+  });
+}
+
+/** What is touched and is smaller than 44 pixels, as far as it is in sight. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export function smallTargets(page) {
+  return page.evaluate(() => [...document.querySelectorAll('button, select, input, textarea, .list > li')]
+    .filter((c) => c.checkVisibility() && c.getBoundingClientRect().width > 0)
+    .map((c) => ({ c, box: c.getBoundingClientRect() }))
+    .filter(({ box }) => box.width < 43.5 || box.height < 43.5)
+    .map(({ c, box }) => `${box.width.toFixed(0)} × ${box.height.toFixed(0)}: ${c.outerHTML.slice(0, 80)}`));
+}
