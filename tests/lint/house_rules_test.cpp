@@ -110,10 +110,10 @@ TEST_F(PlantedTree, TheWireKnowsNoEngine) {
   expect_one("idl/topics.cpp:1", "idl/ may not include common/session/");
 }
 TEST_F(PlantedTree, HeadersForOthersShowNothingOfTheHouse) {
-  write("api/README.md", "# api\n");
-  write("api/part.cpp", "#include \"common/io/scenario/open_scene.h\"\n");
-  write("api/mortise/io.h", "#include <mortise/judge.h>\n#include \"common/math/pose.h\"\n");
-  expect_one("api/mortise/io.h:2", "api/mortise may not include common/math/");
+  write("client/api/README.md", "# api\n");
+  write("client/api/part.cpp", "#include \"common/io/scenario/open_scene.h\"\n");
+  write("client/api/mortise/io.h", "#include <mortise/judge.h>\n#include \"common/math/pose.h\"\n");
+  expect_one("client/api/mortise/io.h:2", "client/api/mortise may not include common/math/");
 }
 TEST_F(PlantedTree, PythonSeesTheDoorAlone) {
   write("client/python/README.md", "# python\n");

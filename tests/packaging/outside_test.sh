@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Programs of others on what is installed: outside_test.sh BUILD. Installs the library below a folder of its own, first the engine alone, builds
-# api/examples there and runs them.
+# client/api/examples there and runs them.
 set -euo pipefail
 build=$1
 skip() { echo "[  SKIPPED ] $*"; exit 77; }

@@ -171,7 +171,7 @@ TEST(Session, JudgesWhereItStandsAndGoesOn) {
 
 struct SessionOfFiles : InFolder {};
 
-// As it stands in api/README.md, with files.
+// As it stands in client/api/README.md, with files.
 TEST_F(SessionOfFiles, TheBuilderReadsAsItIsPromised) {
   setenv("MORTISE_IMPORTER", MORTISE_BIN_DIR "/mortise-import", 1);
   ASSERT_TRUE(save_stl(*plate(), (folder_ / "plate.stl").string()));

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/convert.h"
-#include "api/part_body.h"
+#include "client/api/convert.h"
+#include "client/api/part_body.h"
 #include "common/generators/generators.h"
 #include "common/geometry/recognition/recognition.h"
 #include "common/geometry/topology.h"

@@ -2,8 +2,8 @@
 
 #include <mortise/io.h>
 
-#include "api/convert.h"
-#include "api/judgement.h"
+#include "client/api/convert.h"
+#include "client/api/judgement.h"
 #include "client/tools/check/check_tables.h"
 #include "client/tools/check/check_text.h"
 #include "common/base/json_text.h"

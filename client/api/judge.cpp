@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/convert.h"
-#include "api/judgement.h"
-#include "api/opened_parts.h"
-#include "api/part_body.h"
+#include "client/api/convert.h"
+#include "client/api/judgement.h"
+#include "client/api/opened_parts.h"
+#include "client/api/part_body.h"
 #include "client/tools/judge/judge_report.h"
 #include "common/base/json_text.h"
 #include "common/ccd/distance.h"

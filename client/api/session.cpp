@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 
-#include "api/convert.h"
-#include "api/judgement.h"
-#include "api/opened_parts.h"
-#include "api/part_body.h"
+#include "client/api/convert.h"
+#include "client/api/judgement.h"
+#include "client/api/opened_parts.h"
+#include "client/api/part_body.h"
 #include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/tick/judge_world.h"

@@ -1,4 +1,4 @@
-#include "api/convert.h"
+#include "client/api/convert.h"
 
 #include <cmath>
 

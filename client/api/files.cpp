@@ -2,9 +2,9 @@
 
 #include <fstream>
 
-#include "api/convert.h"
-#include "api/judgement.h"
-#include "api/part_body.h"
+#include "client/api/convert.h"
+#include "client/api/judgement.h"
+#include "client/api/part_body.h"
 #include "client/picture/picture.h"
 #include "client/tools/generate/write_mesh.h"
 #include "common/io/scenario/assembly_parts.h"

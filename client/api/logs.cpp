@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "api/convert.h"
-#include "api/judgement.h"
+#include "client/api/convert.h"
+#include "client/api/judgement.h"
 #include "client/report/session_tables.h"
 #include "common/io/log/log_chain.h"
 #include "common/io/log/replay.h"

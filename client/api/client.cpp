@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "api/convert.h"
+#include "client/api/convert.h"
 #include "client/client.h"
 #include "common/messages/names.h"
 #include "idl/dds_channel.h"

@@ -1,10 +1,10 @@
-#include "api/opened_parts.h"
+#include "client/api/opened_parts.h"
 
 #include <algorithm>
 #include <map>
 #include <string_view>
 
-#include "api/part_body.h"
+#include "client/api/part_body.h"
 #include "common/io/scenario/mesh_scenario.h"
 
 namespace mortise::api {
