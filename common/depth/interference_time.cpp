@@ -471,9 +471,7 @@ class InterferenceSearch {
   InterferenceTime answer_;
 };
 
-// Looks ahead from the proven time, doubling from the accuracy, before anything is searched. By
-// covers, which cost next to nothing, as far as is close enough anyway: what slides becomes deep
-// slowly.
+// Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
 constexpr int kLooks = 3;
 
 // Work of one look; at the brink of interfering it is not worth more.
@@ -584,10 +582,7 @@ SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,
   const double speed = std::max(path.speed_upper_bound(), 1e-300);
   for (const bool search : {false, true}) {
     double step = query.accuracy_mm / speed;
-    const auto is_soon = [&](int i) {
-      return i < kLooks || (!search && step * speed <= kCloseEnough_mm);
-    };
-    for (int i = 0; is_soon(i) && t + step <= 1.0; ++i, step *= 2.0) {
+    for (int i = 0; i < kLooks && t + step <= 1.0; ++i, step *= 2.0) {
       at.X_WA = query.motion_a.pose_at(t + step);
       at.X_WB = query.motion_b.pose_at(t + step);
       const auto place = search ? interferes_at(at, layer, evaluations)
@@ -628,13 +623,7 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
   const CoverFree free = free_by_covers(query, Layer::kLower);
   InterferenceTime answer;
   if (!free.all && free.t_free <= 0.0) {
-    if (const auto place = interferes_at_start(query, Layer::kLower, answer.evaluations)) {
-      answer.becomes_real = answer.real_at_start = true;
-      answer.t_free = answer.t_real = 0.0;
-      answer.certain_place = *place;
-    } else {
-      answer = first_interference(query, Layer::kLower);
-    }
+    answer = first_interference(query, Layer::kLower);
   } else if (!free.all) {
     const SoonAfter soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
     if (soon.interferes) {

@@ -149,46 +149,6 @@ std::optional<OverlapRegion> PairCovers::region(const OverlapQuery& query) {
   return region;
 }
 
-namespace {
-
-bool has_estimates(const Body& body) {
-  return std::any_of(body.band->faces.begin(), body.band->faces.end(),
-                     [](const auto& face) { return face.grade == DeviationGrade::kEstimated; });
-}
-
-// Is a face about a point of the cover's border known by estimate only? Where the cover is larger
-// than the part: the nearest face.
-bool is_estimated_at(const Body& body, const Vec3& x, double reach_mm) {
-  bool any = false, estimated = false;
-  for_each_triangle_in(body.solid->bvh(), Box{x.array() - reach_mm, x.array() + reach_mm},
-                       [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
-                         if ((nearest_on_triangle(x, c[0], c[1], c[2]) - x).norm() > reach_mm)
-                           return;
-                         any = true;
-                         estimated |= body.face(t).grade == DeviationGrade::kEstimated;
-                       });
-  if (any) return estimated;
-  return body.face(nearest_point(*body.solid, x).triangle).grade == DeviationGrade::kEstimated;
-}
-
-}  // namespace
-
-bool PairCovers::apart_by_estimate() {
-  if (!apart(Layer::kUpper) || !(has_estimates(pair_.bodies[0]) || has_estimates(pair_.bodies[1])))
-    return false;
-  std::uint64_t work = 0;
-  const CoverPair covers(cover_of(pair_.bodies[0]).largest, cover_of(pair_.bodies[1]).largest);
-  const auto places = covers.places_between(pair_.X_KS[0], pair_.near_mm, work);
-  evaluations_ += evaluations_of_bounds(work);
-  return std::any_of(places.begin(), places.end(), [&](const std::array<Vec3, 2>& place) {
-    for (const int i : {0, 1})
-      if (is_estimated_at(pair_.bodies[i], place[static_cast<std::size_t>(i)],
-                          pair_.near_mm + pair_.touch_mm))
-        return true;
-    return false;
-  });
-}
-
 void PairCovers::give_witness(std::vector<OverlapRegion>& regions) {
   for (const OverlapRegion& region : regions)
     if (region.has_witness) return;
@@ -221,9 +181,7 @@ void PairCovers::cap(Interval& bracket, Layer layer) {
 
 void PairCovers::tell(std::vector<OverlapRegion>& regions) {
   give_witness(regions);
-  const bool by_estimate = !regions.empty() && apart_by_estimate();
   for (OverlapRegion& region : regions) {
-    region.estimated |= by_estimate;
     cap(region.possible_mm, Layer::kUpper);
     if (!(region.certain_mm.hi > 0.0)) continue;
     if (region.has_witness && apart(Layer::kLower)) {

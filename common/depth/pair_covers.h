@@ -29,8 +29,6 @@ class PairCovers {
   /// The deepest region, where no search is needed for what the query asks of certain and possible;
   /// nothing of the meshes.
   std::optional<OverlapRegion> region(const OverlapQuery& query);
-  /// Are the largest parts kept apart by a face that is known by estimate only?
-  bool apart_by_estimate();
   /// Gives a witness to the nearest region where none has one, and caps certain and possible. A
   /// witness of parts whose least covers are apart is refused and counted: one of both is wrong.
   void tell(std::vector<OverlapRegion>& regions);

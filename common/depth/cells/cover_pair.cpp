@@ -317,27 +317,6 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   return overlap;
 }
 
-std::vector<std::array<Vec3, 2>> CoverPair::places_between(const Pose& X_BA, double near_mm,
-                                                           std::uint64_t& work) const {
-  Views views;
-  views.chord[0].X_KS[0] = X_BA;
-  views.chord[1].X_KS[0] = X_BA.inverse();
-  std::vector<std::array<Vec3, 2>> places;
-  for (Cells& cells : all_cells()) {
-    if (Bound(*this, views, -near_mm, work)(cells) <= -near_mm || cells.role < 0) continue;
-    const int role = cells.role;
-    const Pose& X_KS = views.chord[role].X_KS[0];
-    const ConvexCell& s = parts_[role]->cells[cells.cell[role]];
-    const ConvexCell& k = parts_[1 - role]->cells[cells.cell[1 - role]];
-    std::array<Vec3, 2>& place = places.emplace_back();
-    // At a wall both are in one place.
-    const bool by_place = cells.by_void && !cells.places_S.empty();
-    place[role] = by_place ? cells.places_S.front() : s.farthest(-(X_KS.q.conjugate() * cells.n));
-    place[1 - role] = by_place ? Vec3(X_KS * place[role]) : k.farthest(cells.n);
-  }
-  return places;
-}
-
 // By a direction: between both cells, then as far as S goes along it. Around the middle of a disc
 // as well, since a shaft may come out of it.
 std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) const {

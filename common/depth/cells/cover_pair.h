@@ -49,11 +49,6 @@ class CoverPair {
   /// Overlaps below least_mm count as that.
   CoverOverlap overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const;
 
-  /// Of cells that are kept apart by less than near_mm: what keeps them, a point of A's border and
-  /// one of B's, each in its own frame.
-  std::vector<std::array<Vec3, 2>> places_between(const Pose& X_BA, double near_mm,
-                                                  std::uint64_t& work) const;
-
  private:
   /// How each part is seen from the other over a span.
   struct Views {

@@ -435,56 +435,5 @@ TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
   EXPECT_GT(told, 150);
 }
 
-// A peg with 20 um of play, half a facet turned: both meshes overlap, the parts do not. `estimated`
-// names a face that is known by estimate only.
-bool fake_is_by_estimate(const std::string& estimated) {
-  const auto solid_of = [](GeneratedPart& part) {
-    return std::make_shared<const Solid>(std::move(part.mesh));
-  };
-  auto peg = *generate("dowel", {{"diameter_mm", 19.98},
-                                 {"length_mm", 40.0},
-                                 {"facets", 32.0},
-                                 {"phase_rad", std::numbers::pi / 32.0}});
-  auto plate = *generate("plate_with_bore", {{"bore_mm", 20.0}, {"facets", 32.0}});
-  const SolidPtr solids[2] = {solid_of(peg), solid_of(plate)};
-  SurfaceBand bands[2];
-  bool found = estimated.empty();
-  for (const int i : {0, 1}) {
-    BandInput input;
-    input.solid = solids[i].get();
-    const std::vector<Feature>& features = i == 0 ? peg.features : plate.features;
-    input.features = features;
-    input.of_feature.assign(features.size(), {});
-    bands[i] = build_band(input);
-    for (SurfaceBand::Face& face : bands[i].faces)
-      if (!estimated.empty() && face.name == estimated) {
-        face.grade = DeviationGrade::kEstimated;
-        found = true;
-      }
-  }
-  EXPECT_TRUE(found) << estimated;
-  OverlapQuery query;
-  query.a = solids[0].get();
-  query.b = solids[1].get();
-  query.band_a = &bands[0];
-  query.band_b = &bands[1];
-  query.X_WA = Pose::translation(Vec3(0.0, 0.0, -10.0));
-  CcdScratch scratch;
-  const OverlapResult result = find_overlap(query, scratch);
-  EXPECT_EQ(class_of(result), CollisionClass::kFake);
-  return std::any_of(result.regions.begin(), result.regions.end(),
-                     [](const OverlapRegion& region) { return region.estimated; });
-}
-
-// The sentence of a fake names an estimate where a face that keeps the parts apart is one, and
-// faces away from the contact are not blamed.
-TEST(Cover, AFakeIsByEstimateOfTheFacesThatKeepThePartsApart) {
-  EXPECT_FALSE(fake_is_by_estimate(""));
-  EXPECT_TRUE(fake_is_by_estimate("bore"));
-  EXPECT_TRUE(fake_is_by_estimate("journal"));
-  for (const std::string face : {"end_upper", "chamfer_lower", "left", "front", "top"})
-    EXPECT_FALSE(fake_is_by_estimate(face)) << face;
-}
-
 }  // namespace
 }  // namespace mortise
