@@ -1,6 +1,7 @@
 #include "common/io/state/checkpoint.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -93,7 +94,7 @@ bool fits(const World& world, const SessionState& state) {
          std::ranges::is_sorted(state.owed) &&
          std::ranges::all_of(state.kept, [&](const KeptPush& push) {
            return is_part(push.part) && is_user(world, push.user) && valid(push.X_WP) &&
-                  push.shift_mm.allFinite() && push.turn_rad.allFinite();
+                  push.turn_rad.norm() <= kMaxRotationPerTick_rad;
          });
 }
 
@@ -109,7 +110,8 @@ bool fits(const World& world) {
   for (std::size_t i = 0; i < world.users.size(); ++i)
     if (world.users[i].id.value != i + 1) return false;
   return std::ranges::all_of(world.guides, [&](const Guide& guide) {
-    return world.find(guide.constraint.held.part) && world.find(guide.constraint.other.part);
+    return world.find(guide.constraint.held.part) && world.find(guide.constraint.other.part) &&
+           std::fabs(guide.relation.distance_mm) <= kLargestCoordinate_mm;
   });
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/constants.h"
 #include "common/base/ids.h"
 #include "common/base/rare.h"
 #include "common/io/state/bytes.h"
@@ -153,7 +155,7 @@ class Writer {
 };
 
 /// Never reads past its end: the first value that does not fit makes ok() false, and it and all
-/// after it are zero.
+/// after it are zero. So does a vector that is not finite or longer than any coordinate.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : in_(bytes) {}
@@ -162,7 +164,7 @@ class Reader {
     (visit(*this, values), ...);
   }
   static constexpr bool reads() { return true; }
-  bool ok() const { return in_.ok(); }
+  bool ok() const { return in_.ok() && sensible_; }
   bool at_end() const { return in_.at_end(); }
   template <class T>
   void plain(T& value) {
@@ -176,7 +178,10 @@ class Reader {
   }
   template <class T>
   void plains(T* values, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) plain(values[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      plain(values[i]);
+      sensible_ &= std::islessequal(std::abs(values[i]), kLargestCoordinate_mm);
+    }
   }
   /// Every item takes at least one byte; a count larger than that allows becomes 0.
   std::size_t count(std::size_t) {
@@ -188,6 +193,7 @@ class Reader {
 
  private:
   ByteReader in_;
+  bool sensible_ = true;
 };
 
 }  // namespace mortise::state_bytes
