@@ -462,7 +462,7 @@ SaidByCovers said_by_covers(const OverlapQuery& query, bool least, std::uint64_t
   const Layer layer = least ? Layer::kLower : Layer::kUpper;
   SaidByCovers said;
   said.apart = covers.apart(layer);
-  const std::optional<Sample> deepest = covers.deepest(layer);
+  const std::optional<Sample> deepest = least ? covers.on_mesh(layer) : covers.deepest(layer);
   if (deepest && (!least || find_witness(pair, *deepest, evaluations)))
     said.place = {deepest->role, deepest->triangle,
                   pair.X_KS[1 - deepest->role] * deepest->point_K};

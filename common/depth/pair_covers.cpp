@@ -74,6 +74,17 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
   return found;
 }
 
+std::optional<Sample> PairCovers::on_mesh(Layer layer) {
+  const CoverOverlap& overlap = overlap_of(layer);
+  if (overlap.places_S.empty() || apart(layer)) return std::nullopt;
+  const Vec3& x_S = overlap.places_S[overlap.places_S.size() > 1 ? 1 : 0];
+  const SurfacePoint at = nearest_surface(*pair_.s(overlap.role).solid, x_S);
+  evaluations_ += 2;
+  const Sample sample = sample_at(pair_, layer, overlap.role, at.triangle, at.point);
+  if (!(sample.depth_mm > pair_.touch_mm)) return std::nullopt;
+  return sample;
+}
+
 std::optional<Bracket> PairCovers::bracket(Layer layer, double accuracy_mm, bool sign_only) {
   if (layer == Layer::kMesh || pair_.trivial) return std::nullopt;
   const std::optional<Sample> sample = deepest(layer);

@@ -23,6 +23,9 @@ class PairCovers {
   /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
   /// the covers name none that is deeper than touching.
   std::optional<Sample> deepest(Layer layer);
+  /// The same by a point of the mesh beside the end of its cell: what holds a part there has a face
+  /// of its own, along which the part slides.
+  std::optional<Sample> on_mesh(Layer layer);
   /// The bracket of a layer of a pair with one region, where a point of it is known that is about
   /// as deep as any can be: but for accuracy_mm, or a share of it where the sign is enough.
   std::optional<Bracket> bracket(Layer layer, double accuracy_mm, bool sign_only);
