@@ -298,7 +298,6 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   const SessionNames names = names_of(opened.scene.world);
   const CheckCounts& c = report.counts;
   Json json;
-  json["schema"] = "mortise/check/1";
   json["counts"] = {{"unexplained_real", c.unexplained_real},
                     {"explained_real", c.explained_real},
                     {"potential", c.potential},
@@ -308,6 +307,7 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
                     {"not_judged", c.not_judged},
                     {"explained_potential", c.explained_potential},
                     {"muted", c.muted}};
+  json["schema"] = "mortise/check/1";
   json["file"] = opened.scenario.file;
   json["parts"] = report.parts;
   json["products"] = report.products;
