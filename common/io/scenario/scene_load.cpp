@@ -146,7 +146,7 @@ std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
 }
 
 /// Told again with each snapshot; a list of more is not read by people.
-constexpr std::size_t kMostDeclared = 1024;
+constexpr std::size_t kMostDeclared = 4096;
 
 class SceneLoader {
  public:

@@ -297,7 +297,7 @@ Said judged(Pair& pair, Refinement refinement) {
 class TorusPair : public testing::TestWithParam<Kind> {};
 
 TEST_P(TorusPair, IsDecidedAsTheExactSurfacesAre) {
-  const int cases = test::effort(12);
+  const int cases = test::effort(18);
   constexpr int kFullEvery = 9;
   constexpr double kDoubt_mm = 5e-4, kClose_mm = 2e-4;
   int real = 0, apart = 0;

@@ -71,7 +71,7 @@ int first_difference(const RandomSession& session, const Saved& saved, std::stri
 
 TEST(Checkpoint, FromEachOneRandomSessionsGoOnToTheSameEnd) {
   std::size_t accepted[kCommandKindCount] = {}, events = 0, waiting = 0, held = 0, slid = 0;
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(10)); ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(16)); ++seed) {
     // In each after another tick.
     const Played played = play(seed, 160, 160, 5 + seed % 31 * 5);
     for (std::size_t k = 0; k < kCommandKindCount; ++k) accepted[k] += played.session->accepted[k];
