@@ -165,7 +165,7 @@ class Reader {
   }
   static constexpr bool reads() { return true; }
   bool ok() const { return in_.ok() && sensible_; }
-  bool at_end() const { return in_.at_end(); }
+  bool at_end() const { return sensible_ && in_.at_end(); }
   template <class T>
   void plain(T& value) {
     const auto bytes = in_.raw(sizeof(T));
