@@ -7,9 +7,9 @@ namespace mortise {
 // Pairs are served in the order of in_order(). Each is asked with what it needed the last time, or
 // with a first share. Pairs whose share was not enough then continue from where they are proven
 // clear, two at a time, with all that a pair may have, as long as the tick has work left. The first
-// of them may take more than is left, and the next ticks pay for it. A pair that is not asked to the
-// end is proven clear up to FirstContact::t_clear only, one that is not asked at all goes as far as
-// covers prove that nothing is certain. Either is counted in not_examined.
+// of them may take more than is left, and the next ticks pay for it. A pair that is not asked to
+// the end is proven clear up to FirstContact::t_clear only, one that is not asked at all goes as
+// far as covers prove that nothing is certain. Either is counted in not_examined.
 
 /// The most work of one question, some 50 ms and more. Where that is not enough, the pair is left
 /// where it is proven clear.
