@@ -198,7 +198,6 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.t_contact = pair.t_stop = 1.0;
   pair.never_real = pair.held_again = pair.wants_stop_time = false;
   pair.stop_gave_up = pair.short_of_work = pair.stalled = pair.withdrawal_unsure = false;
-  pair.times_unsure = false;
   pair.place = {};
   pair.t_enter = pair.apart_at_end_mm = 0.0;
   pair.contact_waits = false;

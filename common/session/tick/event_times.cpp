@@ -41,7 +41,7 @@ SweptQuery swept_query(const PairWork& pair) {
 void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
   ++pair.counts.event_time_queries;
   pair.counts.depth_evaluations += evaluations;
-  pair.times_unsure |= capped;
+  if (capped) pair.undecided = true;
 }
 
 // Where the search leaves more of the tick open between what is clear and what is not, the time at

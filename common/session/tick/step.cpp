@@ -43,7 +43,7 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepReport& r
     ++counters.contacts.in;
     if (const Unexamined why = why_unexamined(pair); why != Unexamined::kUnknown)
       report.unexamined.push_back({world.parts[pair.a].id, world.parts[pair.b].id, why});
-    if (pair.undecided || pair.withdrawal_unsure || pair.times_unsure) ++counters.not_examined;
+    if (pair.undecided || pair.withdrawal_unsure) ++counters.not_examined;
     if (pair.undecided) {
       ++counters.contacts_undecided;
     } else if (pair.near || pair.touching) {
@@ -51,8 +51,7 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepReport& r
     } else {
       ++counters.contacts_clear;
     }
-    if (pair.hidden && !pair.undecided && !pair.withdrawal_unsure && !pair.times_unsure)
-      ++counters.not_examined;
+    if (pair.hidden && !pair.undecided && !pair.withdrawal_unsure) ++counters.not_examined;
     if (!pair.near || !pair.judgement.overlap.no_inside) continue;
     for (const std::uint32_t part : {pair.a, pair.b})
       if (!world.parts[part].solid->has_inside()) open_parts.push_back(part);

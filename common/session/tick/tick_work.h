@@ -123,7 +123,6 @@ struct PairWork {
   bool short_of_work = false;      ///< and had been given less than a pair may have
   bool stalled = false;            ///< or none, because the same push had no result before
   bool withdrawal_unsure = false;  ///< the search along a withdrawal used up its work
-  bool times_unsure = false;       ///< so did that for when an event began; its verdict stands
   bool owed = false;               ///< near, but not judged to the end: again in the next tick
 
   /// Was it given less than most_work?
