@@ -8,6 +8,7 @@ namespace mortise {
 struct SweptQuery {
   OverlapQuery at_target;  ///< poses of the query are ignored
   Motion motion_a, motion_b;
+  bool slides = true;         ///< the certain place is wanted where a part can slide along a face
   double accuracy_mm = 1e-4;  ///< how closely the answer is known, along the path of any point
 };
 
@@ -32,6 +33,8 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch& scr
 /// alone: 0 where they prove nothing, 1: nothing is in the whole tick. Costs a few microseconds for
 /// parts that keep apart or slide. Adds the bounds it has looked at to `evaluations`.
 double certain_free_until(const SweptQuery& query, std::uint64_t& evaluations);
+/// The same of what is possible.
+double possible_free_until(const SweptQuery& query, std::uint64_t& evaluations);
 
 /// When an overlap becomes possible in the tick.
 struct PossibleTime {

@@ -450,20 +450,21 @@ OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
   return result;
 }
 
-SaidByCovers said_by_covers(const OverlapQuery& query, bool least, std::uint64_t& evaluations) {
+SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_t& evaluations) {
   check(query);
   if (b_comes_first(query)) {
-    SaidByCovers said = said_by_covers(mirrored(query), least, evaluations);
+    SaidByCovers said = said_by_covers(mirrored(query), named, evaluations);
     if (said.place) said.place->role = 1 - said.place->role;
     return said;
   }
   const PairFrame pair(query);
   PairCovers covers(pair, query.use_covers, evaluations);
-  const Layer layer = least ? Layer::kLower : Layer::kUpper;
+  const Layer layer = named == Named::kLargest ? Layer::kUpper : Layer::kLower;
   SaidByCovers said;
   said.apart = covers.apart(layer);
-  const std::optional<Sample> deepest = least ? covers.on_mesh(layer) : covers.deepest(layer);
-  if (deepest && (!least || find_witness(pair, *deepest, evaluations)))
+  const std::optional<Sample> deepest =
+      named == Named::kLeastHere ? covers.on_mesh(layer) : covers.deepest(layer);
+  if (deepest && (layer == Layer::kUpper || find_witness(pair, *deepest, evaluations)))
     said.place = {deepest->role, deepest->triangle,
                   pair.X_KS[1 - deepest->role] * deepest->point_K};
   return said;

@@ -107,7 +107,12 @@ struct SaidByCovers {
   std::optional<CertainPlace> place;  ///< a point that is in both, verified
 };
 /// Neither: they say nothing. Some microseconds.
-SaidByCovers said_by_covers(const OverlapQuery& query, bool least, std::uint64_t& evaluations);
+enum class Named : std::uint8_t {
+  kLargest,   ///< a place in both largest parts
+  kLeast,     ///< a place in both least parts
+  kLeastHere  ///< and beside a point of the mesh where the cell ends: along its face a part slides
+};
+SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_t& evaluations);
 
 /// True implies: the overlap is certain at the poses of the query, because this place is inside.
 /// False implies nothing. Adds to `evaluations` one for the nearest point and those of

@@ -21,11 +21,15 @@ double apart(const OpenClash& clash, const SeenRegion& seen) {
   return std::min((clash.p_A - seen.p_A).norm(), (clash.p_B - seen.p_B).norm());
 }
 
+double least_radius_mm(const PairWork& pair) {
+  return std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
+}
+
 // Is a region near enough to continue a clash? The deepest point of a flat contact may lie anywhere
 // on it, so the gate grows with the area; a contact line or point may wander a little over the
 // part.
-double gate_mm(const OpenClash& clash, const SeenRegion& seen, double radius_mm) {
-  const double area_mm2 = std::max(clash.now.area_mm2, seen.verdict.area_mm2);
+double gate_mm(const OpenClash& clash, const Verdict& seen, double radius_mm) {
+  const double area_mm2 = std::max(clash.now.area_mm2, seen.area_mm2);
   return 2.0 * std::sqrt(std::max(0.0, area_mm2)) + 0.2 * radius_mm;
 }
 
@@ -43,7 +47,7 @@ void pair_up(PairWork& pair, const std::vector<OpenClash>& open, double radius_m
     for (std::size_t r = 0; r < pair.seen.size(); ++r) {
       if (taken[c] || pair.seen[r].open >= 0) continue;
       const double d = apart(open[c], pair.seen[r]);
-      const double gate = wide ? radius_mm : gate_mm(open[c], pair.seen[r], radius_mm);
+      const double gate = wide ? radius_mm : gate_mm(open[c], pair.seen[r].verdict, radius_mm);
       if (d <= gate) options.push_back({d, static_cast<int>(c), static_cast<int>(r)});
     }
   std::sort(options.begin(), options.end(), [](const Option& x, const Option& y) {
@@ -210,9 +214,17 @@ void update(const World& world, SessionState& state, const PairWork* pair,
 
 }  // namespace
 
+bool is_at(const OpenClash& clash, const CertainPlace& place, const PairWork& pair) {
+  const bool of_a = place.role == 0;
+  const std::string& face = of_a ? clash.now.face_a : clash.now.face_b;
+  const SurfaceBand& band = of_a ? *pair.band_a : *pair.band_b;
+  if (!face.empty() && face == band.face_of(place.triangle).name) return true;
+  const double away_mm = (place.point_S - (of_a ? clash.p_A : clash.p_B)).norm();
+  return away_mm <= gate_mm(clash, clash.now, least_radius_mm(pair));
+}
+
 void match_clashes(const World& world, PairWork& pair, double distance_mm) {
-  const double radius_mm = std::min(world.parts[pair.a].solid->sphere().radius_mm,
-                                    world.parts[pair.b].solid->sphere().radius_mm);
+  const double radius_mm = least_radius_mm(pair);
   if (!pair.open) {
     // What stopped the pair is the worst of what it would have met, and one clash.
     if (pair.blocks && pair.seen.size() > 1) pair.seen.resize(1);

@@ -8,6 +8,9 @@ namespace mortise {
 /// at the end, infinite when not asked.
 void match_clashes(const World& world, PairWork& pair, double distance_mm);
 
+/// Is the place one of the clash: on the face of its part that the clash names, or near it?
+bool is_at(const OpenClash& clash, const CertainPlace& place, const PairWork& pair);
+
 /// Stage 6. Begin, change and end of clashes.
 void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
                     StepReport& report);

@@ -11,6 +11,7 @@
 #include "common/session/memory/known_distance.h"
 #include "common/session/tick/contact_budget.h"
 #include "common/session/tick/depth_budget.h"
+#include "common/session/tick/goes_on.h"
 #include "common/session/tick/stop_time.h"
 #include "common/session/tick/verdicts.h"
 
@@ -89,6 +90,12 @@ void ask_plain(const World& world, PairWork& pair, CcdScratch& ccd) {
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t_stop;
 }
 
+void find_stop_time(PairWork& pair, const FirstContact& touch) {
+  const SearchedTime time = stop_time_without_search(pair, touch);
+  pair.wants_stop_time = !time.known;
+  pair.t_stop = pair.tau + (1.0 - pair.tau) * time.t;
+}
+
 // With a band there are two questions: when do they come so near that the real surfaces could meet,
 // and when do the meshes meet.
 void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
@@ -101,18 +108,19 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   }
   pair.near = true;
   pair.entered = near.state == ContactState::kContact;
-  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, pair.clear_of_touch, ccd);
-  note_contained(pair, touch.state == ContactState::kFree);
-  pair.undecided =
-      near.state == ContactState::kUndecided || touch.state == ContactState::kUndecided;
-  pair.meets = touch.state != ContactState::kFree && touch.state != ContactState::kUndecided;
-  pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
-  if (pair.meets) pair.t_contact = touch.t_contact;
+  const FirstContact touch = ask_touch(pair, ccd);
+  pair.undecided |= near.state == ContactState::kUndecided;
   pair.t_enter = pair.entered ? near.t_contact : 0.0;
   if (!holds_back(world.policy)) return;
-  const SearchedTime time = stop_time_without_search(pair, touch);
-  pair.wants_stop_time = !time.known;
-  pair.t_stop = pair.tau + (1.0 - pair.tau) * time.t;
+  find_stop_time(pair, touch);
+}
+
+// Nothing but the meshes can meet.
+void ask_never_possible(PairWork& pair, CcdScratch& ccd) {
+  const FirstContact touch = ask_touch(pair, ccd);
+  pair.near = touch.state != ContactState::kFree;
+  pair.never_real = true;
+  if (!pair.near) pair.apart_at_end_mm = touch.distance_mm;
 }
 
 double needed_mm(const PairWork& pair) { return pair.band_mm + kClashHysteresis_mm; }
@@ -159,6 +167,17 @@ DistanceResult pair_distance(PairWork& pair, const Pose& X_WA, const Pose& X_WB,
   return result;
 }
 
+FirstContact ask_touch(PairWork& pair, CcdScratch& ccd) {
+  const FirstContact touch = ask_first_contact(pair, 0.0, AtStart::kSay, pair.clear_of_touch, ccd);
+  note_contained(pair, touch.state == ContactState::kFree);
+  pair.touch_unasked = false;
+  pair.undecided |= touch.state == ContactState::kUndecided;
+  pair.meets = touch.state != ContactState::kFree && touch.state != ContactState::kUndecided;
+  pair.overlaps_at_start = touch.state == ContactState::kOverlappingAtStart;
+  if (pair.meets) pair.t_contact = touch.t_contact;
+  return touch;
+}
+
 void note_contact_work(PairWork& pair, const CcdWork& work) {
   ++pair.counts.first_contact_queries;
   pair.counts.box_tests += work.box_tests;
@@ -177,6 +196,22 @@ bool stays_held(const World& world, PairWork& pair) {
   ++pair.counts.pairs_held_again;
   pair.near = pair.held_again = true;
   pair.t_stop = pair.tau;
+  return true;
+}
+
+// Something is told of the pair, and covers prove that it goes on, or else how far the pair goes
+// before it is real. Contact is asked only where an event is to be told.
+bool go_on(const World& world, PairWork& pair, CcdScratch& ccd) {
+  pair.goes_on = goes_on(pair, ccd);
+  if (!pair.goes_on && !holds_back(world.policy)) return false;
+  pair.near = pair.touch_unasked = true;
+  pair.never_real = pair.goes_on;
+  FirstContact touch;
+  touch.state = ContactState::kOverlappingAtStart;
+  if (pair.goes_on)
+    ++pair.counts.pairs_held_again;
+  else
+    find_stop_time(pair, touch);
   return true;
 }
 
@@ -200,7 +235,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.stop_gave_up = pair.short_of_work = pair.stalled = pair.withdrawal_unsure = false;
   pair.place = {};
   pair.t_enter = pair.apart_at_end_mm = 0.0;
-  pair.contact_waits = false;
+  pair.contact_waits = pair.goes_on = pair.touch_unasked = false;
   const bool cut_short = std::exchange(pair.contact_short, false);
   if (pair.together) {
     pair.asked = false;
@@ -215,9 +250,12 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     return;
   }
   if (switches.held_places && stays_held(world, pair)) return;
+  if (switches.told_goes_on && may_go_on(world, pair) && go_on(world, pair, ccd)) return;
   if (pair.contact_cap == 0) return leave_unasked(world, pair);
   if (pair.plain())
     ask_plain(world, pair, ccd);
+  else if (switches.told_goes_on && !pair.open && is_never_possible(pair))
+    ask_never_possible(pair, ccd);
   else
     ask_banded(world, pair, ccd);
   pair.short_of_work = pair.contact_short;
@@ -228,7 +266,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
 }
 
 // What is known of the stop without a search stands where there is no work left for one.
-void search_stop_time(PairWork& pair, CcdScratch& ccd) {
+void search_stop_time(PairWork& pair, bool slides, CcdScratch& ccd) {
   if (pair.cap == 0) {
     pair.undecided = pair.stop_gave_up = true;
     pair.stalled = is_stalled(pair) && pair.memo->stalled->in_full;
@@ -236,7 +274,8 @@ void search_stop_time(PairWork& pair, CcdScratch& ccd) {
     return;
   }
   const bool was_undecided = std::exchange(pair.undecided, false);
-  const double t = pair.plain() ? withdrawal_time(pair, ccd) : stop_time_with_bands(pair, ccd);
+  const double t =
+      pair.plain() ? withdrawal_time(pair, ccd) : stop_time_with_bands(pair, slides, ccd);
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
   note_depth_effort(pair, WorkStage::kStop, pair.undecided);
   pair.stop_gave_up = pair.undecided;
@@ -307,7 +346,9 @@ void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uin
     if (work.pairs[i].wants_stop_time) work.asked.push_back(i);
   if (work.asked.empty()) return;
   share_depth_work(world, work, work.asked, WorkStage::kStop);
-  each(work, work.asked, [](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, ccd); });
+  const bool slides = world.policy == Policy::kSlide;
+  each(work, work.asked,
+       [&](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, slides, ccd); });
 }
 
 void find_contacts(const World& world, Scratch::Impl& work) {

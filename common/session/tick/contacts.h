@@ -12,6 +12,9 @@ void find_contacts(const World& world, Scratch::Impl& work);
 /// Asks pairs over the segments set in them; used by stage 3 and by the rounds of stage 3b.
 void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs);
 
+/// When do the meshes touch in the segment? Sets what the pair knows of it.
+FirstContact ask_touch(PairWork& pair, CcdScratch& ccd);
+
 /// Counts what a question of first contact took.
 void note_contact_work(PairWork& pair, const CcdWork& work);
 

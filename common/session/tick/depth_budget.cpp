@@ -122,7 +122,7 @@ class Sharing {
       serve(pair, overdue ? most_ : std::min(most_, wanted + more_), expected(wanted));
     else
       put_off(pair, at_rest);
-    note_waiting(pair, stage_, served);
+    note_waiting(pair, stage_, served || pair.lingers);
   }
 
   void serve(PairWork& pair, std::uint64_t cap, std::uint64_t taken) {
@@ -137,6 +137,7 @@ class Sharing {
     const bool glances = stage_ == WorkStage::kStop && !is_stalled(pair) && left_.own >= kGlance;
     pair.cap = glances ? kGlance : 0;
     left_.own = less(left_.own, pair.cap);
+    if (stage_ == WorkStage::kVerdict && pair.lingers) return;
     if (!at_rest) left_.saved = 0;  // kept for who has waited longest
     ++pair.counts.pairs_waiting;
   }

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "common/depth/interference_time.h"
-#include "common/depth/overlap.h"
+#include "common/session/tick/pair_queries.h"
 
 namespace mortise {
 namespace {
@@ -23,19 +22,6 @@ CollisionClass worst_told(const PairWork& pair) {
   for (const SeenRegion& seen : pair.seen)
     if (seen.tell) worst = std::max(worst, seen.verdict.collision_class);
   return worst;
-}
-
-SweptQuery swept_query(const PairWork& pair) {
-  SweptQuery query;
-  query.at_target.a = pair.solid_a;
-  query.at_target.b = pair.solid_b;
-  query.at_target.band_a = pair.band_a;
-  query.at_target.band_b = pair.band_b;
-  query.at_target.work_cap =
-      pair.cap_of(pair.limited ? kEventTimeWorkCapOfTick : kEventTimeWorkCap);
-  query.motion_a = pair.motion_a;
-  query.motion_b = pair.motion_b;
-  return query;
 }
 
 void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
@@ -79,7 +65,9 @@ double halved(PairWork& pair, const SweptQuery& swept, double clear, double know
 // With bands the two times differ, and neither is that of the meshes.
 void search(PairWork& pair, CcdScratch& ccd) {
   const auto in_tick = [&](double t) { return pair.tau + (1.0 - pair.tau) * t; };
-  const SweptQuery query = swept_query(pair);
+  SweptQuery query = swept_query(pair);
+  query.at_target.work_cap =
+      pair.cap_of(pair.limited ? kEventTimeWorkCapOfTick : kEventTimeWorkCap);
   const PossibleTime possible = find_possible_time(query, ccd);
   count(pair, possible.evaluations, possible.capped);
   const bool close = possible.t_possible - possible.t_clear <= kClose;

@@ -43,7 +43,8 @@ AskedEarlier asked_until(const PairWork& pair, double t) {
   AskedEarlier asked{pair.tau,           pair.t_contact,    pair.t_enter,
                      pair.t_stop,        pair.motion_a,     pair.motion_b,
                      pair.entered,       pair.meets,        pair.overlaps_at_start,
-                     pair.short_of_work, pair.stop_gave_up, pair.place};
+                     pair.short_of_work, pair.stop_gave_up, pair.touch_unasked,
+                     pair.place};
   asked.t_end = t;
   return asked;
 }
@@ -63,6 +64,7 @@ void take_back(PairWork& pair, const AskedEarlier& asked) {
   pair.overlaps_at_start = asked.overlaps_at_start;
   pair.short_of_work = asked.short_of_work;
   pair.stop_gave_up = asked.stop_gave_up;
+  pair.touch_unasked = asked.touch_unasked;
   pair.place = asked.place;
 }
 

@@ -22,7 +22,8 @@ namespace {
 Unexamined why_unexamined(const PairWork& pair) {
   if (pair.contact_waits) return Unexamined::kWaitsForContact;
   // Who is owed a verdict is judged again in the next tick, with more work.
-  if (pair.counts.pairs_waiting > 0 || pair.owed) return Unexamined::kWaitsForDepth;
+  if (pair.counts.pairs_waiting > 0 || (pair.owed && !pair.goes_on && !pair.lingers))
+    return Unexamined::kWaitsForDepth;
   if (pair.undecided || pair.withdrawal_unsure || pair.counts.not_examined > 0)
     return Unexamined::kGivenUp;
   return pair.hidden ? Unexamined::kNoInside : Unexamined::kUnknown;

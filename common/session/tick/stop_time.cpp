@@ -6,8 +6,8 @@
 
 #include "common/base/constants.h"
 #include "common/depth/inner_overlap.h"
-#include "common/depth/interference_time.h"
 #include "common/session/memory/known_distance.h"
+#include "common/session/tick/pair_queries.h"
 
 namespace mortise {
 namespace {
@@ -76,15 +76,6 @@ double elsewhere_mm(const PairWork& pair) {
   return -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
 }
 
-OverlapQuery overlap_query(const PairWork& pair) {
-  OverlapQuery query;
-  query.a = pair.solid_a;
-  query.b = pair.solid_b;
-  query.band_a = pair.band_a;
-  query.band_b = pair.band_b;
-  return query;
-}
-
 // Bracket of the deepest overlap that is certain at one time of the segment, mm.
 struct Look {
   Interval depth_mm;
@@ -99,9 +90,7 @@ constexpr double kAll = -kInfinity;
 // What is no deeper than ignore_below_mm is only known to be so.
 Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refinement,
                    double ignore_below_mm, std::uint64_t work_cap, CcdScratch& ccd) {
-  OverlapQuery query = overlap_query(pair);
-  query.X_WA = pair.motion_a.pose_at(t);
-  query.X_WB = pair.motion_b.pose_at(t);
+  OverlapQuery query = overlap_query(pair, t);
   query.refinement = refinement;
   query.accuracy_mm = accuracy_mm;
   // A withdrawal is compared with the least certain depth: an unfinished search would let the part
@@ -201,9 +190,7 @@ double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
   // A look that is unfinished even so has found too little, and would hold the part.
   const double depth_mm = std::max(0.0, look.capped ? look.depth_mm.hi : look.depth_mm.lo);
   if (!look.has_place || pair.no_inside()) return depth_mm;
-  OverlapQuery query = overlap_query(pair);
-  query.X_WA = pair.motion_a.X_W0;
-  query.X_WB = pair.motion_b.X_W0;
+  const OverlapQuery query = overlap_query(pair, 0.0);
   const PairFrame frame(query);
   const auto inner = find_inner_overlap(frame, {std::span(&look.point_W, 1), depth_mm},
                                         kInnerWorkCap, pair.counts.depth_evaluations);
@@ -266,17 +253,9 @@ SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
   return pair.held_again ? SearchedTime{0.0, true} : SearchedTime{t_start, false};
 }
 
-SweptQuery swept_query(const PairWork& pair) {
-  SweptQuery query;
-  query.at_target = overlap_query(pair);
-  query.motion_a = pair.motion_a;
-  query.motion_b = pair.motion_b;
-  query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
-  return query;
-}
-
-double free_time(PairWork& pair, CcdScratch& ccd) {
+double free_time(PairWork& pair, bool slides, CcdScratch& ccd) {
   SweptQuery query = swept_query(pair);
+  query.slides = slides;
   const double t_start = pair.t_stop_start;
   // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
   const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
@@ -312,12 +291,9 @@ bool is_held_again(PairWork& pair) {
     return false;
   const double speed_mm =
       relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
-  OverlapQuery query = overlap_query(pair);
   const auto holds_at = [&](double path_mm) {
     const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
-    query.X_WA = pair.motion_a.pose_at(t);
-    query.X_WB = pair.motion_b.pose_at(t);
-    return is_certain_at(query, held->place, pair.counts.depth_evaluations);
+    return is_certain_at(overlap_query(pair, t), held->place, pair.counts.depth_evaluations);
   };
   const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
                      (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),
@@ -378,8 +354,8 @@ SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch)
   return time;
 }
 
-double stop_time_with_bands(PairWork& pair, CcdScratch& ccd) {
-  const double t_free = free_time(pair, ccd);
+double stop_time_with_bands(PairWork& pair, bool slides, CcdScratch& ccd) {
+  const double t_free = free_time(pair, slides, ccd);
   // Who withdraws is real all the while.
   pair.never_real = t_free >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
   return t_free;

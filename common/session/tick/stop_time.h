@@ -23,8 +23,9 @@ SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch)
 /// place.
 bool is_held_again(PairWork& pair);
 
-/// The same by a search from that time on, with at most PairWork::cap evaluations.
-double stop_time_with_bands(PairWork& pair, CcdScratch& ccd);
+/// The same by a search from that time on, with at most PairWork::cap evaluations. `slides`: the
+/// part may slide along what holds it.
+double stop_time_with_bands(PairWork& pair, bool slides, CcdScratch& ccd);
 
 /// Notes whether the search ended without a result.
 void note_stalled(PairWork& pair);

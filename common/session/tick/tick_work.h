@@ -51,7 +51,7 @@ struct AskedEarlier {
   double tau = 0.0, t_contact = 1.0, t_enter = 0.0, t_stop = 1.0;
   Motion motion_a, motion_b;
   bool entered = false, meets = false, overlaps_at_start = false, short_of_work = false;
-  bool stop_gave_up = false;
+  bool stop_gave_up = false, touch_unasked = false;
   CertainPlace place;
   double t_end = 1.0;  ///< of the tick: until then
 };
@@ -98,8 +98,11 @@ struct PairWork {
   bool held_again = false;       ///< at once, by the place that has held it back before
   CertainPlace place;            ///< a place that makes the pair real, where one is known
 
-  bool together = false;  ///< both move as one: their clashes stay as they are
-  double t_left = 2.0;    ///< of the tick: the parts went other ways from then on; 2: they did not
+  bool goes_on = false;        ///< what is told of it, proven without a look
+  bool lingers = false;        ///< told is real; proven is potential
+  bool touch_unasked = false;  ///< meets, t_contact, overlaps_at_start are not known
+  bool together = false;       ///< both move as one: their clashes stay as they are
+  double t_left = 2.0;  ///< of the tick: the parts went other ways from then on; 2: they did not
   std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
                                                 ///< back; near, and left again
 
@@ -161,6 +164,7 @@ struct StepSwitches {
   bool brute_force_pairs = false;  ///< at the first step of a world
   bool work_budget = true;         ///< false: every pair has the most that one may have
   bool held_places = true;         ///< false: who is held is found held by a search each tick
+  bool told_goes_on = true;        ///< false: what is told is looked at anew each tick
 };
 
 struct Scratch::Impl {

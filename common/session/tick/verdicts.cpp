@@ -10,6 +10,7 @@
 #include "common/session/tick/contacts.h"
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/event_times.h"
+#include "common/session/tick/goes_on.h"
 
 namespace mortise {
 namespace {
@@ -162,19 +163,37 @@ void look_at_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScrat
   for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
 }
 
-// The place that holds a part holds it again, or the same push comes to nothing again: what was
-// said of it holds on.
-bool stays_told(const PairWork& pair) {
-  if (pair.memo->not_judged) return false;
-  if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
-  return pair.near && pair.blocks && pair.held_again && is_told_real(pair);
+bool is_stopped(const Scratch::Impl& work, std::int32_t move) {
+  return move >= 0 && work.moves[static_cast<std::size_t>(move)].stopped;
 }
 
-// Nobody looked: the open clashes stay as they are.
+// What is told is proven to go on to the end of the tick; or the place that holds a part is one
+// that is told, or holds it again; or the same push comes to nothing again.
+bool stays_told(const World& world, const Scratch::Impl& work, const PairWork& pair) {
+  if (pair.memo->not_judged) return false;
+  if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
+  if (!pair.near) return false;
+  if (!pair.blocks) return pair.goes_on;
+  return (pair.held_again && is_told_real(pair)) ||
+         (work.switches.told_goes_on && is_told_there(world, pair));
+}
+
+// What is told holds to the end of the tick only where nobody was stopped before. Else, and where a
+// class is perhaps left, the pair is looked at if there is work, and told to go on if not.
+void note_going_on(const World& world, const Scratch::Impl& work, PairWork& pair) {
+  const bool stopped = is_stopped(work, pair.move_a) || is_stopped(work, pair.move_b);
+  pair.goes_on &= pair.near && !pair.blocks && !stopped;
+  pair.lingers = !pair.goes_on && pair.near && !pair.blocks && !stopped &&
+                 work.switches.told_goes_on && lingers(world, pair);
+}
+
+// Nobody looked: the open clashes stay as they are. What is proven to go on is looked at once its
+// parts rest.
 void keep_told(PairWork& pair) {
   pair.seen.clear();
   pair.judgement = {};
   if (pair.open) pair.keeps.assign(pair.open->size(), 1);
+  pair.owed |= pair.goes_on || pair.lingers;
 }
 
 void look_at_pair(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
@@ -233,6 +252,7 @@ bool anything_to_tell(const PairWork& pair) {
 // that are told stay.
 void put_off(PairWork& pair) {
   keep_told(pair);
+  if (pair.lingers) return;
   pair.undecided = true;
   pair.owed = !pair.blocks || !pair.open;
 }
@@ -260,6 +280,7 @@ void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdS
     put_off(pair);
     return;
   }
+  if (pair.touch_unasked) ask_touch(pair, ccd);
   const bool was_undecided = std::exchange(pair.undecided, false);
   // The separating motion is needed only where somebody is told of it.
   look_at_pair(world, work, pair, pair.open == nullptr, ccd);
@@ -294,6 +315,7 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
   for (std::uint32_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
     if (!pair.asked) continue;
+    note_going_on(world, work, pair);
     // A part that was stopped before this pair came near is clear of it.
     const bool looked_at =
         pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0);
@@ -301,14 +323,14 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
     if (looked_at && pair.blocks && pair.short_of_work)
       put_off(pair);
     else if (looked_at)
-      (stays_told(pair) ? work.unasked : work.asked).push_back(i);
+      (stays_told(world, work, pair) ? work.unasked : work.asked).push_back(i);
     else if (pair.open)
       work.unasked.push_back(i);
   }
   share_depth_work(world, work, work.asked, WorkStage::kVerdict);
   work.pool.for_each(work.unasked.size(), [&](std::size_t i, int thread) {
     PairWork& pair = work.pairs[work.unasked[i]];
-    if (stays_told(pair))
+    if (stays_told(world, work, pair))
       keep_told(pair);
     else
       look_at_clear_pair(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);

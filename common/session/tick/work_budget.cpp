@@ -58,7 +58,8 @@ std::vector<std::uint32_t> in_order(const World& world, std::span<const PairWork
   std::vector<std::uint32_t> order(pairs.begin(), pairs.end());
   const auto rank = [&](std::uint32_t i) {
     const int waited = work[i].memo->effort[static_cast<std::size_t>(stage)].waited;
-    return std::tuple(-waited - (is_held(world, work[i]) ? kHeldLead_ticks : 0), i);
+    return std::tuple(work[i].lingers, -waited - (is_held(world, work[i]) ? kHeldLead_ticks : 0),
+                      i);
   };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t x, std::uint32_t y) { return rank(x) < rank(y); });

@@ -1,0 +1,81 @@
+#include "common/session/tick/goes_on.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/constants.h"
+#include "common/session/tick/clash_identity.h"
+#include "common/session/tick/contacts.h"
+#include "common/session/tick/pair_queries.h"
+
+namespace mortise {
+namespace {
+
+// Each pair has a tick of its own, so that not all are looked at in the same one.
+bool is_due(const World& world, const PairWork& pair) {
+  return (world.tick + pair.a + pair.b) % kLookAgain_ticks == 0;
+}
+
+// The class that all open clashes have as last seen; kNone: they differ. Another class may be told,
+// which is not left far enough; that is for a look to say.
+CollisionClass seen_class(const std::vector<OpenClash>& open) {
+  const CollisionClass seen = open.front().now.collision_class;
+  const bool all = std::all_of(open.begin(), open.end(), [&](const OpenClash& clash) {
+    return clash.now.collision_class == seen;
+  });
+  return all ? seen : CollisionClass::kNone;
+}
+
+bool is_possible_at_end(PairWork& pair) {
+  std::uint64_t& evaluations = pair.counts.depth_evaluations;
+  return said_by_covers(overlap_query(pair, 1.0), Named::kLargest, evaluations).place.has_value();
+}
+
+// A clash of parts that come apart ends at some distance.
+bool is_as_near(PairWork& pair, CcdScratch& ccd) {
+  const double limit_mm = pair.band_mm + kClashHysteresis_mm;
+  return pair_distance(pair, pair.motion_a.X_W1, pair.motion_b.X_W1, limit_mm, ccd).within_limit;
+}
+
+}  // namespace
+
+bool may_go_on(const World& world, const PairWork& pair) {
+  const PairMemo& memo = *pair.memo;
+  return pair.open && !pair.open->empty() && !pair.placed && !pair.plain() && !pair.no_inside() &&
+         !memo.not_judged && !memo.not_seen && std::isinf(memo.allowed_depth_mm) &&
+         !is_due(world, pair);
+}
+
+bool goes_on(PairWork& pair, CcdScratch& ccd) {
+  std::uint64_t& evaluations = pair.counts.depth_evaluations;
+  switch (seen_class(*pair.open)) {
+    case CollisionClass::kFake:
+      return is_never_possible(pair) && is_as_near(pair, ccd);
+    case CollisionClass::kPotential:
+      // The point speaks of one place.
+      return pair.open->size() == 1 && certain_free_until(swept_query(pair), evaluations) >= 1.0 &&
+             is_possible_at_end(pair);
+    default:
+      return false;
+  }
+}
+
+bool is_never_possible(PairWork& pair) {
+  return possible_free_until(swept_query(pair), pair.counts.depth_evaluations) >= 1.0;
+}
+
+bool lingers(const World& world, PairWork& pair) {
+  return may_go_on(world, pair) && pair.never_real && pair.open->size() == 1 &&
+         pair.open->front().last.verdict.collision_class == CollisionClass::kReal &&
+         is_possible_at_end(pair);
+}
+
+bool is_told_there(const World& world, const PairWork& pair) {
+  return may_go_on(world, pair) && pair.place.known() &&
+         std::any_of(pair.open->begin(), pair.open->end(), [&](const OpenClash& clash) {
+           return clash.last.verdict.collision_class == CollisionClass::kReal &&
+                  is_at(clash, pair.place, pair);
+         });
+}
+
+}  // namespace mortise
