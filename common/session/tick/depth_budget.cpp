@@ -8,10 +8,10 @@
 namespace mortise {
 namespace {
 
-// 3,000 evaluations in a tick of 60 Hz, some 7 ms. More holds up everybody, less leaves more pairs
+// 5,000 evaluations in a tick of 60 Hz, some 7 ms. More holds up everybody, less leaves more pairs
 // waiting. Four ticks' work is saved, so that the first verdict on a clash and a stop at a brink
 // are found at once where the session is not always short of work.
-constexpr WorkRules kRules{.per_second = 180'000.0,
+constexpr WorkRules kRules{.per_second = 300'000.0,
                            .least = 500,
                            .saved_ticks = 4,
                            .owed_ticks = 2,
@@ -27,6 +27,9 @@ constexpr std::uint64_t kUnlimitedEffort = 10'000;
 // Evaluations of one pair the first time; and the fewest that are of use to a search for the stop:
 // parts that leave each other need no more.
 constexpr std::uint64_t kFirstEffort = 1'500, kGlance = 250;
+
+// What the times and the motion of an event may take: no less than a first, wide bracket does.
+constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 5'000;
 
 // A search that has come to nothing is not repeated for so many ticks while nothing has changed;
 // nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
@@ -170,6 +173,20 @@ void share_depth_work(const World& world, Scratch::Impl& work, std::span<const s
                       WorkStage stage) {
   Sharing(world, work, stage)
       .among(in_order(world, std::span(work.pairs).first(work.pair_count), pairs, stage));
+}
+
+void share_telling_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
+  if (pairs.empty()) return;
+  const bool limited = work.depth_budget.is_limited();
+  const std::uint64_t each =
+      limited ? std::clamp(depth_work_left(work) / pairs.size(), kLeastTelling, kMostTelling)
+              : kUnlimitedEffort;
+  for (const std::uint32_t i : pairs) {
+    PairWork& pair = work.pairs[i];
+    pair.stage_start = pair.counts.depth_evaluations;
+    pair.cap = pair.most_work = each;
+    pair.limited = limited;
+  }
 }
 
 void note_depth_effort(PairWork& pair, WorkStage stage, bool capped) {

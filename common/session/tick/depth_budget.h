@@ -3,12 +3,12 @@
 
 namespace mortise {
 
-// What a tick may spend on depth, counted in evaluations (some 3 us each). Pairs are served in the
-// order of in_order(); each is given what it needed the last time and half as much again. A pair
-// that would not get that much waits, because a search that is cut short has no result: it is left
-// at the time proven without a search, or with a short one, keeps the clashes that it has as they
-// are, and is counted in pairs_waiting and not_examined. The pair that has waited longest is served
-// after a few ticks in any case. Work that ticks do not need is saved, up to a limit.
+// What a tick may spend on depth, counted in evaluations (some 1.4 us each). Pairs are served in
+// the order of in_order(); each is given what it needed the last time and half as much again. A
+// pair that would not get that much waits, because a search that is cut short has no result: it is
+// left at the time proven without a search, or with a short one, keeps the clashes that it has as
+// they are, and is counted in pairs_waiting and not_examined. The pair that has waited longest is
+// served after a few ticks in any case. Work that ticks do not need is saved, up to a limit.
 
 /// Factor on the work of a tick under slide, because each of several legs is searched like a push.
 inline constexpr std::uint64_t kSlideTimes = 2;
@@ -23,6 +23,10 @@ std::uint64_t depth_work_left(const Scratch::Impl& work);
 /// before they are asked.
 void share_depth_work(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
                       WorkStage stage);
+
+/// The same of pairs of which an event is told, for the times and the motion that it carries. Each
+/// has an equal part of what the tick has left; with little of it brackets are wide.
+void share_telling_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs);
 
 /// Remembers what the pair used in the stage.
 void note_depth_effort(PairWork& pair, WorkStage stage, bool capped);

@@ -206,10 +206,9 @@ void tell_depth(const JudgementQuery& query, const GeneralizedDepth& depth,
 }
 
 // Fake ones need no way out, and without an inside there is no depth.
-bool wants_depth(const JudgementQuery& query, const Judgement& judgement,
-                 const OverlapRegion& region, const Verdict& verdict) {
-  return query.want_gpd && verdict.collision_class != CollisionClass::kFake &&
-         !judgement.overlap.no_inside && !region.at_crack;
+bool wants_depth(const Judgement& judgement, const OverlapRegion& region, const Verdict& verdict) {
+  return verdict.collision_class != CollisionClass::kFake && !judgement.overlap.no_inside &&
+         !region.at_crack;
 }
 
 // Parts of one mesh whose points all lie within this share of its radius of their twins are
@@ -251,28 +250,39 @@ const SurfaceBand& band_b_of(const JudgementQuery& query) {
   return query.rule != nullptr && query.rule->band_b ? *query.rule->band_b : query.b->band;
 }
 
+void add_depths(const JudgementQuery& query, Judgement& judgement, CcdScratch& scratch) {
+  std::optional<GeneralizedDepth> depth;
+  for (std::size_t i = 0; i < judgement.verdicts.size(); ++i) {
+    Verdict& verdict = judgement.verdicts[i];
+    const OverlapRegion& region = judgement.overlap.regions[judgement.of_regions[i]];
+    if (!wants_depth(judgement, region, verdict)) continue;
+    if (!depth)
+      depth = depth_of_pair(query, overlap_query(query), judgement.overlap.regions, scratch,
+                            judgement.overlap.evaluations);
+    tell_depth(query, *depth, region, verdict);
+  }
+}
+
 Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch) {
   Judgement judgement;
-  const OverlapQuery overlap = overlap_query(query);
-  judgement.overlap = overlap_of(overlap, scratch);
-  std::optional<GeneralizedDepth> depth;
-  for (const OverlapRegion& region : judgement.overlap.regions) {
-    Verdict verdict = judge_region(query, region, judgement.overlap.no_inside);
-    if (verdict.collision_class == CollisionClass::kNone) continue;
-    if (wants_depth(query, judgement, region, verdict)) {
-      if (!depth)
-        depth = depth_of_pair(query, overlap, judgement.overlap.regions, scratch,
-                              judgement.overlap.evaluations);
-      tell_depth(query, *depth, region, verdict);
-    }
-    judgement.verdicts.push_back(std::move(verdict));
+  judgement.overlap = overlap_of(overlap_query(query), scratch);
+  const std::vector<OverlapRegion>& regions = judgement.overlap.regions;
+  std::vector<std::pair<Verdict, std::size_t>> judged;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    Verdict verdict = judge_region(query, regions[i], judgement.overlap.no_inside);
+    if (verdict.collision_class != CollisionClass::kNone)
+      judged.emplace_back(std::move(verdict), i);
   }
   // Worst first; the regions are sorted by depth already.
-  std::stable_sort(
-      judgement.verdicts.begin(), judgement.verdicts.end(), [](const Verdict& x, const Verdict& y) {
-        return static_cast<int>(x.collision_class) > static_cast<int>(y.collision_class);
-      });
+  std::stable_sort(judged.begin(), judged.end(), [](const auto& x, const auto& y) {
+    return static_cast<int>(x.first.collision_class) > static_cast<int>(y.first.collision_class);
+  });
+  for (auto& [verdict, region] : judged) {
+    judgement.verdicts.push_back(std::move(verdict));
+    judgement.of_regions.push_back(region);
+  }
   if (judgement.verdicts.empty()) return judgement;
+  if (query.want_gpd) add_depths(query, judgement, scratch);
   Verdict& worst = judgement.verdicts.front();
   if (const std::string text = placement_text(query, judgement.overlap);
       worst.collision_class == CollisionClass::kReal && !text.empty())

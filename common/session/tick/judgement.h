@@ -25,7 +25,8 @@ struct JudgementQuery {
 };
 
 struct Judgement {
-  std::vector<Verdict> verdicts;  ///< classes other than kNone, worst first
+  std::vector<Verdict> verdicts;        ///< classes other than kNone, worst first
+  std::vector<std::size_t> of_regions;  ///< the region of each verdict
   OverlapResult overlap;
 };
 
@@ -34,6 +35,9 @@ const SurfaceBand& band_a_of(const JudgementQuery& query);
 const SurfaceBand& band_b_of(const JudgementQuery& query);
 
 Judgement judge_pair(const JudgementQuery& query, CcdScratch& scratch);
+
+/// Adds what want_gpd asks for to a judgement that was made without it by the same query.
+void add_depths(const JudgementQuery& query, Judgement& judgement, CcdScratch& scratch);
 
 /// The generalized depth of the pair made smallest and made largest, beside what was judged of it:
 /// of a fake both are zero, and what is certain is a part of the first. Not of parts without an

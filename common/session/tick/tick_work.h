@@ -60,9 +60,10 @@ struct AskedEarlier {
 struct SeenRegion {
   Verdict verdict;
   Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< its place, as a point of either part
-  int open = -1;         ///< index among the open clashes of the pair; -1: a new clash
-  bool tell = false;     ///< begin or change is due
-  bool passing = false;  ///< begins and ends within the tick
+  int open = -1;          ///< index among the open clashes of the pair; -1: a new clash
+  bool tell = false;      ///< begin or change is due
+  bool passing = false;   ///< begins and ends within the tick
+  int of_judgement = -1;  ///< which verdict of the pair's judgement it is; -1: of none
 };
 
 /// One candidate pair on its way through the tick; a < b.
@@ -144,6 +145,8 @@ struct PairWork {
 
   // Stage 4.
   Judgement judgement;
+  JudgementQuery judged;  ///< of that judgement
+  bool tells = false;     ///< an event of it is due
   std::vector<SeenRegion> seen;
   bool unsettled = false;  ///< a better class than told, but within the hysteresis
   bool in_full = false;    ///< then its depth is refined completely

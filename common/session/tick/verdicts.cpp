@@ -35,8 +35,15 @@ SegmentMotion as_asked(const PairWork& pair) {
   return {pair.motion_a, pair.motion_b, pair.t_contact, pair.t_enter};
 }
 
-Judgement judgement_at_end(const World& world, PairWork& pair, const SegmentMotion& motion,
-                           bool want_gpd, CcdScratch& ccd) {
+SeenRegion seen_at(const Verdict& verdict, const Pose& X_WA, const Pose& X_WB) {
+  SeenRegion seen;
+  seen.verdict = verdict;
+  seen.p_A = X_WA.inverse() * verdict.point_W;
+  seen.p_B = X_WB.inverse() * verdict.point_W;
+  return seen;
+}
+
+JudgementQuery query_at_end(const World& world, const PairWork& pair, const SegmentMotion& motion) {
   JudgementQuery query;
   query.a = &world.parts[pair.a];
   query.b = &world.parts[pair.b];
@@ -44,14 +51,28 @@ Judgement judgement_at_end(const World& world, PairWork& pair, const SegmentMoti
   query.motion_a = motion.a;
   query.motion_b = motion.b;
   query.t_contact = motion.t_contact;
-  query.want_gpd = want_gpd;
+  query.want_gpd = false;
   if (pair.in_full) query.refinement = Refinement::kFull;
   query.work_cap = query.whole_cap = pair.cap_of(kTickOverlapCap);
+  return query;
+}
+
+Judgement judge(PairWork& pair, const JudgementQuery& query, CcdScratch& ccd) {
   Judgement judgement = judge_pair(query, ccd);
   count(query, judgement, pair.counts);
   for (const OverlapRegion& region : judgement.overlap.regions)
     if (region.capped) pair.undecided = true;
   return judgement;
+}
+
+void judge_at_end(const World& world, PairWork& pair, const SegmentMotion& motion,
+                  CcdScratch& ccd) {
+  pair.judged = query_at_end(world, pair, motion);
+  pair.judgement = judge(pair, pair.judged, ccd);
+  for (std::size_t i = 0; i < pair.judgement.verdicts.size(); ++i) {
+    pair.seen.push_back(seen_at(pair.judgement.verdicts[i], motion.a.X_W1, motion.b.X_W1));
+    pair.seen.back().of_judgement = static_cast<int>(i);
+  }
 }
 
 double share_of(double t, double end) { return end > 0.0 ? std::min(1.0, t / end) : 1.0; }
@@ -97,14 +118,6 @@ Motion backward(const Motion& motion) {
   return linear_motion(motion.X_W1, motion.X_W0, motion.reference_P);
 }
 
-SeenRegion seen_at(const Verdict& verdict, const Pose& X_WA, const Pose& X_WB) {
-  SeenRegion seen;
-  seen.verdict = verdict;
-  seen.p_A = X_WA.inverse() * verdict.point_W;
-  seen.p_B = X_WB.inverse() * verdict.point_W;
-  return seen;
-}
-
 void prefix(Verdict& verdict, const char* what, double t) {
   char text[80];
   std::snprintf(text, sizeof text, "%s at t = %.4f: ", what, t);
@@ -115,7 +128,7 @@ void prefix(Verdict& verdict, const char* what, double t) {
 // or by. Looks inside the interval between the first and the last contact, whose ends are known to
 // the accuracy of first contact however thin the wall; middle first.
 std::optional<SeenRegion> passing(const World& world, PairWork& pair, const SegmentMotion& whole,
-                                  bool want_gpd, CcdScratch& ccd) {
+                                  CcdScratch& ccd) {
   ContactQuery back;
   back.a = pair.solid_a;
   back.b = pair.solid_b;
@@ -136,7 +149,9 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Segm
     }
     const double t = whole.t_enter + share * (t_out - whole.t_enter);
     const SegmentMotion there = up_to(whole, t);
-    const Judgement judgement = judgement_at_end(world, pair, there, want_gpd, ccd);
+    JudgementQuery query = query_at_end(world, pair, there);
+    query.want_gpd = true;
+    const Judgement judgement = judge(pair, query, ccd);
     if (judgement.verdicts.empty()) continue;
     SeenRegion region = seen_at(judgement.verdicts.front(), there.a.X_W1, there.b.X_W1);
     prefix(region.verdict, "worst found", pair.tau + (1.0 - pair.tau) * t);
@@ -148,17 +163,14 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Segm
 // The collision that made the response stop this pair, judged where the increments would have led.
 // Where the part was stopped it stands at the very brink of being real: nothing is to be learned
 // there.
-void look_at_attempt(const World& world, PairWork& pair, bool want_gpd, CcdScratch& ccd) {
+void look_at_attempt(const World& world, PairWork& pair, CcdScratch& ccd) {
   const SegmentMotion asked = as_asked(pair);
-  pair.judgement = judgement_at_end(world, pair, asked, want_gpd, ccd);
-  for (const Verdict& verdict : pair.judgement.verdicts)
-    pair.seen.push_back(seen_at(verdict, asked.a.X_W1, asked.b.X_W1));
+  judge_at_end(world, pair, asked, ccd);
   for (const OverlapRegion& region : pair.judgement.overlap.regions)
     if (!pair.place.known()) pair.place = region.certain_place;
   if (pair.seen.empty() || pair.seen.front().verdict.collision_class != CollisionClass::kReal) {
     pair.seen.clear();
-    if (auto region = passing(world, pair, asked, want_gpd, ccd))
-      pair.seen.push_back(std::move(*region));
+    if (auto region = passing(world, pair, asked, ccd)) pair.seen.push_back(std::move(*region));
   }
   for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
 }
@@ -196,19 +208,16 @@ void keep_told(PairWork& pair) {
   pair.owed |= pair.goes_on || pair.lingers;
 }
 
-void look_at_pair(const World& world, const Scratch::Impl& work, PairWork& pair, bool want_gpd,
-                  CcdScratch& ccd) {
+void look_at_pair(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   const SegmentMotion motion = as_moved(work, pair);
   pair.seen.clear();
   pair.unsettled = false;
   if (pair.blocks) {
-    look_at_attempt(world, pair, want_gpd, ccd);
+    look_at_attempt(world, pair, ccd);
   } else {
-    pair.judgement = judgement_at_end(world, pair, motion, want_gpd, ccd);
-    for (const Verdict& verdict : pair.judgement.verdicts)
-      pair.seen.push_back(seen_at(verdict, motion.a.X_W1, motion.b.X_W1));
+    judge_at_end(world, pair, motion, ccd);
     if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start)))
-      if (auto region = passing(world, pair, motion, want_gpd, ccd)) {
+      if (auto region = passing(world, pair, motion, ccd)) {
         region->passing = true;
         pair.seen.push_back(std::move(*region));
       }
@@ -242,6 +251,17 @@ void look_at_clear_pair(const World& world, const Scratch::Impl& work, PairWork&
   note_seen(pair);
 }
 
+void take_depth(const Verdict& from, Verdict& to) {
+  to.gpd_mm = from.gpd_mm;
+  to.travel_mm = from.travel_mm;
+  to.normal_travel_mm = from.normal_travel_mm;
+  to.separation_translation_mm = from.separation_translation_mm;
+  to.separation_rotation_rad = from.separation_rotation_rad;
+  to.separation_about_W = from.separation_about_W;
+  to.separation_of_b = from.separation_of_b;
+  to.separation_way = from.separation_way;
+}
+
 bool anything_to_tell(const PairWork& pair) {
   return std::any_of(pair.seen.begin(), pair.seen.end(),
                      [](const SeenRegion& seen) { return seen.tell; });
@@ -272,7 +292,7 @@ void settle(const World& world, const Scratch::Impl& work, PairWork& pair, CcdSc
     return;
   }
   pair.in_full = true;
-  look_at_pair(world, work, pair, false, ccd);
+  look_at_pair(world, work, pair, ccd);
 }
 
 void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
@@ -282,22 +302,31 @@ void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdS
   }
   if (pair.touch_unasked) ask_touch(pair, ccd);
   const bool was_undecided = std::exchange(pair.undecided, false);
-  // The separating motion is needed only where somebody is told of it.
-  look_at_pair(world, work, pair, pair.open == nullptr, ccd);
+  look_at_pair(world, work, pair, ccd);
   settle(world, work, pair, ccd);
   const bool capped = pair.undecided;
   if (capped && pair.may_have_more()) {
     put_off(pair);
   } else {
-    if (anything_to_tell(pair)) {
-      if (pair.open && pair.left() > 0) look_at_pair(world, work, pair, true, ccd);
-      find_event_times(pair, end_of(work, pair), ccd);
-    }
+    pair.tells = anything_to_tell(pair);
     note_judged(pair);
   }
   if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo.change().stalled->judged = true;
   note_depth_effort(pair, WorkStage::kVerdict, capped);
   pair.undecided |= was_undecided;
+}
+
+// Times and the separating motion are needed only where somebody is told of them.
+void complete(const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  find_event_times(pair, end_of(work, pair), ccd);
+  const std::uint64_t looked = pair.judgement.overlap.evaluations;
+  pair.judged.whole_cap = looked + pair.left();
+  add_depths(pair.judged, pair.judgement, ccd);
+  pair.counts.depth_evaluations += pair.judgement.overlap.evaluations - looked;
+  for (SeenRegion& seen : pair.seen)
+    if (seen.of_judgement >= 0)
+      take_depth(pair.judgement.verdicts[static_cast<std::size_t>(seen.of_judgement)],
+                 seen.verdict);
 }
 
 }  // namespace
@@ -314,6 +343,7 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
   work.unasked.clear();
   for (std::uint32_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
+    pair.tells = false;
     if (!pair.asked) continue;
     note_going_on(world, work, pair);
     // A part that was stopped before this pair came near is clear of it.
@@ -337,6 +367,11 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
   });
   work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
     examine(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
+  });
+  std::erase_if(work.asked, [&](std::uint32_t i) { return !work.pairs[i].tells; });
+  share_telling_work(work, work.asked);
+  work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
+    complete(work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
   });
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
