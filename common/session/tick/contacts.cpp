@@ -345,10 +345,9 @@ void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uin
   for (const std::uint32_t i : pairs)
     if (work.pairs[i].wants_stop_time) work.asked.push_back(i);
   if (work.asked.empty()) return;
-  share_depth_work(world, work, work.asked, WorkStage::kStop);
   const bool slides = world.policy == Policy::kSlide;
-  each(work, work.asked,
-       [&](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, slides, ccd); });
+  serve_in_turn(world, work, work.asked, WorkStage::kStop,
+                [&](PairWork& pair, CcdScratch& ccd) { search_stop_time(pair, slides, ccd); });
 }
 
 void find_contacts(const World& world, Scratch::Impl& work) {

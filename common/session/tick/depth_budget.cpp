@@ -51,9 +51,8 @@ struct Left {
   std::uint64_t own = 0, saved = 0, taken_of_saved = 0;
 };
 
-Left left_of(const Scratch::Impl& work) {
-  const WorkBudget& budget = work.depth_budget;
-  const std::uint64_t used = spent(work), beyond = less(used, budget.own());
+Left left_of(const WorkBudget& budget, std::uint64_t used) {
+  const std::uint64_t beyond = less(used, budget.own());
   return {less(budget.own(), used), less(budget.saved(), beyond), beyond};
 }
 
@@ -77,55 +76,74 @@ bool rests(const PairWork& pair, std::uint8_t waited) {
 // It is given half as much again as it needed the last time, and mostly needs that again.
 std::uint64_t expected(std::uint64_t wanted) { return wanted - wanted / 3; }
 
-// One stage of one tick shares out its work.
+// One stage of one tick shares out its work, in rounds: what a round did not need is there for the
+// next.
 class Sharing {
  public:
   Sharing(const World& world, Scratch::Impl& work, WorkStage stage)
-      : work_(work), stage_(stage), left_(left_of(work)) {
-    const WorkBudget& budget = work.depth_budget;
-    const auto at = static_cast<std::size_t>(stage);
-    const std::uint64_t times = world.policy == Policy::kSlide ? kSlideTimes : 1;
-    const std::uint64_t for_verdicts = budget.own() / kVerdictShare;
+      : work_(work), stage_(stage), spent_(spent(work)) {
+    const std::uint64_t own = work.depth_budget.own();
+    times_ = world.policy == Policy::kSlide ? kSlideTimes : 1;
+    for_verdicts_ = stage == WorkStage::kStop ? own / kVerdictShare : 0;
     // No more than there is in some tick, whatever little is asked besides.
-    std::uint64_t own_most = for_verdicts;
-    if (stage == WorkStage::kStop) {
-      left_.own = less(left_.own, for_verdicts);
-      own_most = budget.own() - for_verdicts;
-    }
-    left_.saved = std::min(left_.saved, less(times * kMostOfSaved[at], left_.taken_of_saved));
-    limited_ = budget.is_limited();
-    most_ = limited_ ? std::min(times * kMostEffort[at], own_most / 2 + times * kMostOfSaved[at])
+    const std::uint64_t own_most =
+        stage == WorkStage::kStop ? own - for_verdicts_ : own / kVerdictShare;
+    const auto at = static_cast<std::size_t>(stage);
+    limited_ = work.depth_budget.is_limited();
+    most_ = limited_ ? std::min(times_ * kMostEffort[at], own_most / 2 + times_ * kMostOfSaved[at])
                      : kUnlimitedEffort;
   }
 
-  void among(const std::vector<std::uint32_t>& order) {
+  // Gives work to the first of the order, as many as there is for, and returns how many those are.
+  // Where there is none for the first, that one waits.
+  std::size_t round(std::span<const std::uint32_t> order) {
+    left_ = left_now();
     std::uint64_t sum = 0;
     for (const std::uint32_t i : order) sum += expected(wanted_of(work_.pairs[i], stage_, most_));
     // What nobody needs is shared, should somebody need more than it expects.
-    more_ = order.empty() || sum > left_.own ? 0 : (left_.own - sum) / order.size();
-    for (const std::uint32_t i : order) give(work_.pairs[i]);
+    more_ = sum > left_.own ? 0 : (left_.own - sum) / order.size();
+    std::size_t count = 0;
+    while (count < order.size() && give(work_.pairs[order[count]], count == 0)) ++count;
+    return std::max<std::size_t>(count, 1);
+  }
+
+  void note_spent(std::span<const std::uint32_t> served) {
+    for (const std::uint32_t i : served)
+      spent_ += work_.pairs[i].counts.depth_evaluations - work_.pairs[i].stage_start;
   }
 
  private:
-  void give(PairWork& pair) {
+  Left left_now() const {
+    Left left = left_of(work_.depth_budget, spent_);
+    left.own = less(left.own, for_verdicts_);
+    const std::uint64_t most = times_ * kMostOfSaved[static_cast<std::size_t>(stage_)];
+    left.saved = std::min(left.saved, less(most, left.taken_of_saved));
+    if (kept_for_the_first_) left.saved = 0;
+    return left;
+  }
+
+  // False: there is no work for it in this round; in the next one it is the first.
+  bool give(PairWork& pair, bool is_last_chance) {
     pair.stage_start = pair.counts.depth_evaluations;
     pair.most_work = most_;
     pair.limited = limited_;
     if (!limited_) {
       pair.cap = most_;
-      return;
+      return true;
     }
     const std::uint8_t waited = waited_of(pair, stage_);
     const bool at_rest = stage_ == WorkStage::kStop && rests(pair, waited);
     const std::uint64_t wanted = wanted_of(pair, stage_, most_);
     const bool overdue = !at_rest && is_first_ && waited >= kLongestWait_ticks;
-    is_first_ &= at_rest;
     const bool served = !at_rest && (overdue || expected(wanted) <= left_.own + left_.saved);
+    if (!served && !at_rest && !is_last_chance) return false;
+    is_first_ &= at_rest;
     if (served)
       serve(pair, overdue ? most_ : std::min(most_, wanted + more_), expected(wanted));
     else
       put_off(pair, at_rest);
     note_waiting(pair, stage_, served || pair.lingers);
+    return true;
   }
 
   void serve(PairWork& pair, std::uint64_t cap, std::uint64_t taken) {
@@ -141,15 +159,19 @@ class Sharing {
     pair.cap = glances ? kGlance : 0;
     left_.own = less(left_.own, pair.cap);
     if (stage_ == WorkStage::kVerdict && pair.lingers) return;
-    if (!at_rest) left_.saved = 0;  // kept for who has waited longest
+    // What is saved is kept for who has waited longest.
+    kept_for_the_first_ |= !at_rest;
+    if (kept_for_the_first_) left_.saved = 0;
     ++pair.counts.pairs_waiting;
   }
 
   Scratch::Impl& work_;
   WorkStage stage_;
+  std::uint64_t spent_, times_ = 1, for_verdicts_ = 0;
   Left left_;
   bool limited_ = true;
   bool is_first_ = true;  // of those that do not rest
+  bool kept_for_the_first_ = false;
   std::uint64_t most_ = 0, more_ = 0;
 };
 
@@ -165,14 +187,23 @@ void close_depth_budget(SessionState& state, const Scratch::Impl& work) {
 }
 
 std::uint64_t depth_work_left(const Scratch::Impl& work) {
-  const Left left = left_of(work);
+  const Left left = left_of(work.depth_budget, spent(work));
   return left.own + left.saved;
 }
 
-void share_depth_work(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
-                      WorkStage stage) {
-  Sharing(world, work, stage)
-      .among(in_order(world, std::span(work.pairs).first(work.pair_count), pairs, stage));
+void serve_in_turn(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
+                   WorkStage stage, const ServePair& serve) {
+  const std::vector<std::uint32_t> all =
+      in_order(world, std::span(work.pairs).first(work.pair_count), pairs, stage);
+  Sharing sharing(world, work, stage);
+  for (std::span<const std::uint32_t> order = all; !order.empty();) {
+    const auto served = order.first(sharing.round(order));
+    work.pool.for_each(served.size(), [&](std::size_t i, int thread) {
+      serve(work.pairs[served[i]], work.ccd[static_cast<std::size_t>(thread)]);
+    });
+    sharing.note_spent(served);
+    order = order.subspan(served.size());
+  }
 }
 
 void share_telling_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "common/session/tick/tick_work.h"
 
 namespace mortise {
@@ -19,13 +21,16 @@ void close_depth_budget(SessionState& state, const Scratch::Impl& work);
 /// Evaluations that are left of the tick, what is saved included.
 std::uint64_t depth_work_left(const Scratch::Impl& work);
 
-/// Sets PairWork::cap and most_work of these pairs; cap 0 for those that have nothing; called
-/// before they are asked.
-void share_depth_work(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
-                      WorkStage stage);
+using ServePair = std::function<void(PairWork&, CcdScratch&)>;
 
-/// The same of pairs of which an event is told, for the times and the motion that it carries. Each
-/// has an equal part of what the tick has left; with little of it brackets are wide.
+/// Serves these pairs on all threads, those that have waited longest first, with PairWork::cap and
+/// most_work set; cap 0 where the tick has nothing for the pair. Goes on with what the first ones
+/// did not need.
+void serve_in_turn(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
+                   WorkStage stage, const ServePair& serve);
+
+/// Sets PairWork::cap of pairs of which an event is told, for the times and the motion that it
+/// carries. Each has an equal part of what the tick has left; with little of it brackets are wide.
 void share_telling_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs);
 
 /// Remembers what the pair used in the stage.

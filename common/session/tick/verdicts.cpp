@@ -357,7 +357,6 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
     else if (pair.open)
       work.unasked.push_back(i);
   }
-  share_depth_work(world, work, work.asked, WorkStage::kVerdict);
   work.pool.for_each(work.unasked.size(), [&](std::size_t i, int thread) {
     PairWork& pair = work.pairs[work.unasked[i]];
     if (stays_told(world, work, pair))
@@ -365,9 +364,8 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
     else
       look_at_clear_pair(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);
   });
-  work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
-    examine(world, work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
-  });
+  serve_in_turn(world, work, work.asked, WorkStage::kVerdict,
+                [&](PairWork& pair, CcdScratch& ccd) { examine(world, work, pair, ccd); });
   std::erase_if(work.asked, [&](std::uint32_t i) { return !work.pairs[i].tells; });
   share_telling_work(work, work.asked);
   work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
