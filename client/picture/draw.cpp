@@ -81,7 +81,9 @@ void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
     if (align == Canvas::Align::kRight && x - width < box.x) font.align = Canvas::Align::kLeft;
     if (align == Canvas::Align::kLeft && x + width > box.right())
       font.align = Canvas::Align::kRight;
-    canvas.text({x, top - 7.0}, text, font);
+    // Both may stand at one place: a gap between their texts.
+    const double gap = font.align == Canvas::Align::kRight ? -4.0 : 4.0;
+    canvas.text({x + gap, top - 7.0}, text, font);
   };
   if (fake_known) threshold(fake, fake_text(fake), Canvas::Align::kRight);
   if (real_known) threshold(real, real_text(real), Canvas::Align::kLeft);

@@ -198,6 +198,7 @@ def test_check(tmp_path):
     place = worst.places[0]
     assert place.depth_mm[0] == pytest.approx(0.4) and place.way_out.part == "cover"
     assert place.way_out.path == "blocked" and place.way_out.translation_mm[2] < -0.39
+    assert report._repr_html_().startswith("<p>1 unexplained real, 7 explained real") and "explained real</td>" in report._repr_html_()
     assert "cover × bracket" in report._repr_html_() and "cover × bracket" in report.text
     old = report.json()
     del old["pairs"][0]

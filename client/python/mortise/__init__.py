@@ -280,8 +280,8 @@ def _judgement_html(self):
 def _check_html(self):
     if self.html:
         return f'<iframe srcdoc="{_html.escape(self.html)}" style="width:100%;height:640px;border:0"></iframe>'
-    counts = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in self.counts.items())
-    rows = [("contact" if p.contact else p.collision_class, f"{p.part_a} × {p.part_b}", p.relation,
+    counts = ", ".join(f"{self.counts[name]} {name.replace('_', ' ')}" for name in self.json()["counts"])  # the worst first
+    rows = [("contact" if p.contact else f"{'explained ' if p.explained else ''}{p.collision_class}", f"{p.part_a} × {p.part_b}", p.relation,
              _depth(p.places[0]) if p.places else "", p.reason or (p.places[0].explanation if p.places else ""))
             for p in self.pairs]
     return f"<p>{_html.escape(counts)}</p>" + _table(("class", "parts", "relation", "depth, mm", "why"), rows)
