@@ -4,6 +4,7 @@ import copy
 import json
 import os
 import pathlib
+import random
 import re
 import subprocess
 
@@ -61,7 +62,7 @@ def hold(name, document):
 
 
 def test_the_schemas_are_schemas():
-    assert len(ALL) == 14
+    assert len(ALL) == 18
     for name, schema in ALL.items():
         jsonschema.Draft202012Validator.check_schema(schema)
         assert schema["$id"] == name and re.search(r", version \d+$", schema["title"]) and schema["description"]
@@ -153,6 +154,43 @@ def test_logs(log, tmp_path):
     hold("replay-whatif", said("replay", "whatif", log, "--sweep", "tolerance cube = ±[0.005..0.03/3]", "--json"))
     subprocess.run([BIN / "mortise-replay", "export", log, "--json", tmp_path / "tables.json"], check=True, capture_output=True)
     hold("replay-export", json.loads((tmp_path / "tables.json").read_text()))
+
+
+def test_a_live_session(tmp_path):
+    domain = str(random.randrange(140, 180))
+
+    def program(name, *words):
+        return subprocess.Popen([BIN / f"mortise-{name}", *map(str, words), "--json", "--quiet"], cwd=tmp_path, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+
+    def document_of(running, stop=False):
+        if stop:
+            running.terminate()
+        out, _ = running.communicate(timeout=60)
+        assert running.returncode == 0
+        return json.loads(out)
+
+    server = program("server", SCENARIOS / "peg_in_hole.yaml", "--session", "schemas", "--domain", domain, "--log", "s.mcap")
+    discovery = program("discovery", "--discovery-port", 20000 + int(domain))
+    bots = ("bot", "--session", "schemas", "--domain", domain, "--wait", 30, "--seconds", 2)
+    try:
+        alone = program(*bots, "--behaviour", "guided", "--tries", 1, "--limit", "lost_events=0")
+        seen = said("directory", "--domain", domain, "--wait", "2", "--json")
+        hold("directory", seen)
+        assert [row["session"] for row in seen["servers"]] == ["schemas"]
+        document = document_of(alone)
+        hold("bot", document)
+        assert document["limits"][0]["holds"] and "insertions" in document
+        many = document_of(program(*bots, "--processes", 2, "--users", 2))
+        hold("bot", many)
+        assert many["processes"] == 2 and len(many["participants"]) == 2
+        hold("discovery", document_of(discovery, stop=True))
+        closing = document_of(server, stop=True)
+        hold("server", closing)
+        assert closing["users"] and errors("server", {**closing, "log": "s.mcap"}, closed=False)
+    finally:
+        for running in (server, discovery):
+            running.kill()
 
 
 def planted(document):
