@@ -91,6 +91,40 @@ def test_anything_with_vertices_and_faces_is_a_part():
     assert mortise.distance(Trimesh(), (10 * CORNERS, SIDES), X_WB=[13, 0, 0]).distance_mm == pytest.approx(3)
 
 
+class Vector:  # of CadQuery
+    def __init__(self, point):
+        self.point = point
+
+    def toTuple(self):
+        return tuple(self.point)
+
+
+class Shape:
+    def __init__(self, vector):
+        self.vector, self.asked = vector, None
+
+    def tessellate(self, tolerance, angularTolerance=0.1):
+        self.asked = tolerance
+        return [self.vector(point) for point in 10 * CORNERS], [tuple(side) for side in SIDES.tolist()]
+
+
+class Workplane:
+    def __init__(self, *shapes):
+        self.shapes = list(shapes)
+
+    def vals(self):
+        return self.shapes
+
+
+def test_shapes_of_scripts_are_parts():
+    for shape in (Shape(Vector), Shape(tuple)):  # build123d: points that are sequences
+        assert mortise.distance(shape, Workplane(Shape(Vector)), X_WB=[13, 0, 0]).distance_mm == pytest.approx(3)
+        assert shape.asked == 0.01
+    for stack in ((), (Shape(Vector), Shape(Vector))):
+        with pytest.raises(mortise.Error, match=f"has {len(stack)} shapes"):
+            mortise.judge(Workplane(*stack), cube())
+
+
 def test_poses():
     pose = np.eye(4)
     pose[:3, 3] = [13, 0, 0]

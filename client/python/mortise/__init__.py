@@ -5,7 +5,8 @@
         print(pair.collision_class, pair.part_a, pair.part_b, pair.relation, pair.places[0].depth_mm)
 
 Lengths are mm, angles rad, world frame. Where a part is asked for, a Part, the path of a mesh or STEP file, a pair
-(points, triangles), or any object with `vertices` and `faces` (trimesh) may be given. A pose is None, a shift of three numbers, or
+(points, triangles), an object with `vertices` and `faces` (trimesh), or a shape of CadQuery or build123d may be given. The last is
+made into a mesh with chords of 0.01 mm; a STEP file of it keeps its exact surfaces. A pose is None, a shift of three numbers, or
 a 4 x 4 matrix. What goes wrong raises mortise.Error. Functions release the GIL; a Session or Client is for one thread at a time.
 """
 
@@ -35,11 +36,22 @@ def load_assembly(file):
     return _mortise.load_assembly(_os.fspath(file))
 
 
+_CHORD_MM = 0.01  # of shapes that are made into meshes here
+
+
 def _part(of, name):
     if isinstance(of, Part):
         return of
     if isinstance(of, (str, _os.PathLike)):
         return load(of)
+    if hasattr(of, "vals"):  # a Workplane of CadQuery: what it has made last
+        shapes = of.vals()
+        if len(shapes) != 1:
+            raise Error(f"{name}: the workplane has {len(shapes)} shapes; combine them, or give one")
+        of = shapes[0]
+    if hasattr(of, "tessellate"):  # a shape of CadQuery or build123d
+        points, triangles = of.tessellate(_CHORD_MM)
+        return Part([tuple(p.toTuple() if hasattr(p, "toTuple") else p) for p in points], triangles, name)
     if hasattr(of, "vertices") and hasattr(of, "faces"):
         return Part(of.vertices, of.faces, name)
     points, triangles = of

@@ -8,7 +8,7 @@ __version__: str
 _Array = NDArray[np.float64]
 _Pose = Optional[ArrayLike]
 _File = Union[str, "os.PathLike[str]"]
-_Shape = Any  # Part, path, (points, triangles), or an object with vertices and faces
+_Shape = Any  # Part, path, (points, triangles), an object with vertices and faces, or one with tessellate(tolerance)
 
 class Error(Exception):
     code: str
