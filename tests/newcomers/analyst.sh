@@ -13,4 +13,5 @@ run "./mortise replay whatif day.mcap --set 'tolerance cube = ±0.02'"
 saw 'tolerance cube'
 run "./mortise replay whatif day.mcap --sweep 'tolerance cube = ±[0.005..0.03/4]'"
 saw '0\.03'
+/usr/bin/python3 -c 'import mortise' 2>/dev/null || skip "program absent: pybind11 or numpy"
 run "/usr/bin/python3 -c 'import mortise; print(mortise.Log(\"day.mcap\")[\"clashes\"][\"worst_tick\"])'"
