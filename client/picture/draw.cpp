@@ -226,9 +226,9 @@ void draw_witness(Canvas& canvas, const Frame& frame, const DetailView& view) {
 void draw_way_out(Canvas& canvas, const Frame& frame, const DetailView& view,
                   const Verdict& verdict) {
   if (verdict.separation_way == SeparationWay::kNone) return;
-  const Vec3 way = verdict.separation_translation_mm +
-                   verdict.separation_rotation_rad.cross(verdict.point_W -
-                                                         verdict.separation_about_W);
+  const Vec3 way =
+      verdict.separation_translation_mm +
+      verdict.separation_rotation_rad.cross(verdict.point_W - verdict.separation_about_W);
   const Vec2 seen(way.dot(view.plane.right_W), way.dot(view.plane.up_W));
   const Color color{0.1, 0.5, 0.25, 1.0};
   const std::string label = (verdict.separation_of_b ? view.parts[1] : view.parts[0]).name +
