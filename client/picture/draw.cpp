@@ -81,7 +81,9 @@ void draw_thresholds(Canvas& canvas, const Box2& box, const Verdict& verdict) {
     if (align == Canvas::Align::kRight && x - width < box.x) font.align = Canvas::Align::kLeft;
     if (align == Canvas::Align::kLeft && x + width > box.right())
       font.align = Canvas::Align::kRight;
-    canvas.text({x, top - 7.0}, text, font);
+    // Both may stand at one place: a gap between their texts.
+    const double gap = font.align == Canvas::Align::kRight ? -4.0 : 4.0;
+    canvas.text({x + gap, top - 7.0}, text, font);
   };
   if (fake_known) threshold(fake, fake_text(fake), Canvas::Align::kRight);
   if (real_known) threshold(real, real_text(real), Canvas::Align::kLeft);
@@ -224,9 +226,9 @@ void draw_witness(Canvas& canvas, const Frame& frame, const DetailView& view) {
 void draw_way_out(Canvas& canvas, const Frame& frame, const DetailView& view,
                   const Verdict& verdict) {
   if (verdict.separation_way == SeparationWay::kNone) return;
-  const Vec3 way = verdict.separation_translation_mm +
-                   verdict.separation_rotation_rad.cross(verdict.point_W -
-                                                         verdict.separation_about_W);
+  const Vec3 way =
+      verdict.separation_translation_mm +
+      verdict.separation_rotation_rad.cross(verdict.point_W - verdict.separation_about_W);
   const Vec2 seen(way.dot(view.plane.right_W), way.dot(view.plane.up_W));
   const Color color{0.1, 0.5, 0.25, 1.0};
   const std::string label = (verdict.separation_of_b ? view.parts[1] : view.parts[0]).name +

@@ -4,10 +4,10 @@
 
 namespace mortise {
 
-/// Version of the project, e.g. "0.1.0".
+/// Version of the project: "major.minor.patch".
 std::string engine_version();
 
-/// What --version says, e.g. "mortise-server 0.1.0, build 0123456789ab": programs of one build
+/// What --version says, e.g. "mortise-server 1.2.3, build 0123456789ab": programs of one build
 /// replay each other's logs bit for bit.
 std::string version_line(const std::string& program);
 

@@ -1,4 +1,3 @@
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -6,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "common/io/progress_log.h"
 #include "server/discovery/options.h"
 #include "server/discovery/report.h"
 
@@ -20,9 +20,7 @@ void ask_to_stop(int) { stop_asked = 1; }
 int main(int argc, char** argv) {
   const mortise::DiscoveryCommand command = mortise::read_discovery_command(argc, argv);
   if (command.exit_code >= 0) return command.exit_code;
-  spdlog::set_default_logger(spdlog::stderr_color_mt("mortise-discovery"));
-  spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
-  spdlog::set_level(command.quiet ? spdlog::level::warn : spdlog::level::info);
+  mortise::begin_progress_log("mortise-discovery", command.quiet);
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
 

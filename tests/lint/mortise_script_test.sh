@@ -67,6 +67,14 @@ rm build/release/fresh
 exits 0 demo --seconds 3
 called "^ninja -C $work/build/release mortise-server mortise-bot\$"
 
+# packages are made with all that they may contain: STEP and Python as well
+mkdir -p build/release/packages
+touch build/release/packages/some.deb
+exits 0 packages
+called ' libocct-data-exchange-dev'
+called ' pybind11-dev'
+called "^ninja -C $work/build/release packages\$"
+
 # 4. tests are configured when they are asked for; the long ones with --soak; then not again
 exits 0 test -R some_name
 called '^cmake --preset release -DMORTISE_TESTS=ON -DMORTISE_SOAK=OFF$'

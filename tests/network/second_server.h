@@ -128,6 +128,25 @@ class SecondServer : public ::testing::Test {
       return true;
     });
   }
+  /// What another server has to go on with.
+  struct AllIn {
+    UserId anna, ben;
+    std::map<ClashId, CollisionClass> clashes;
+    int losses = 0;
+  };
+  AllIn as_all_are() const {
+    return {anna_->client->user_id(0), ben_->client->user_id(0), clashes(*anna_), losses_};
+  }
+  void expect_all_as(const AllIn& before) {
+    EXPECT_TRUE(all_in());
+    EXPECT_EQ(losses_, before.losses + kClients) << "each client changes servers once";
+    EXPECT_EQ(anna_->client->user_id(0), before.anna);
+    EXPECT_EQ(ben_->client->user_id(0), before.ben);
+    EXPECT_EQ(ben_->holder("blue"), before.ben) << "what was held is held";
+    EXPECT_EQ(anna_->holder("red"), before.anna);
+    EXPECT_EQ(clashes(*anna_), before.clashes);
+    EXPECT_EQ(clashes(*ben_), before.clashes);
+  }
   ClientUpdate listen(Guest& guest, PoseGap& gap) {
     ClientUpdate update = guest.listen();
     losses_ += update.server_lost;

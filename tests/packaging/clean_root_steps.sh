@@ -158,7 +158,9 @@ session() {  # what the packages are for, with keys and without
 library() {  # the package of the library brings what its users compile with: Eigen alone for the engine; examples are built and run
   apt "libmortise-dev does not install" g++ cmake make "$here"/libmortise-dev_*.deb "$here"/libmortise-engine_*.deb
   local extra
-  extra=$(dpkg-query -W -f '${Package}\n' 'lib*-dev' | grep -E '^lib(fcl|fastrtps|fastcdr|yaml-cpp|assimp|ssl|sqlite3|fmt|zstd|cairo2|boost)' | xargs)
+  # dpkg also knows packages that others only mention.
+  extra=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' 'lib*-dev' |
+    grep -E '^installed lib(fcl|fastrtps|fastcdr|yaml-cpp|assimp|ssl|sqlite3|fmt|zstd|cairo2|boost)' | xargs) || true
   [ -z "$extra" ] || fail "the engine brought $extra"
   cp -r /usr/share/doc/libmortise-dev/examples /tmp/example
   cmake -S /tmp/example -B /tmp/example/engine -DCOMPONENTS=engine >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "find_package(mortise COMPONENTS engine)"; }
@@ -172,7 +174,9 @@ library() {  # the package of the library brings what its users compile with: Ei
 
 python() {  # the package of Python checks what it is given
   apt "python3-mortise does not install" "$here"/python3-mortise_*.deb "$here"/mortise-tools_*.deb "$here"/mortise-step_*.deb
-  python3 -c 'import mortise, sys; r = mortise.check(sys.argv[1]); print("python:", r.counts); sys.exit(r.counts["unexplained_real"] != 1)' $here/tensioner.step || fail "import mortise"
+  python3 -c 'import mortise, sys; r = mortise.check(sys.argv[1]); print("python:", mortise.version(), r.counts); sys.exit(r.counts["unexplained_real"] != 1)' \
+    $here/tensioner.step || fail "import mortise"
+  compgen -G '/usr/lib/python3/dist-packages/mortise/__pycache__/*.pyc' >/dev/null || fail "the package of Python is not compiled: root's first import would be"
 }
 
 resolves() {  # a package could be installed beside the others; what it brings is not fetched
@@ -188,6 +192,9 @@ purge() {  # nothing of it is left, nor of what came with it; what people have p
   apt-get remove -y --auto-remove "${installed[@]}" >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "remove"; }
   left=$(compgen -G '/usr/bin/mortise*' || true)
   [ -z "$left" ] || fail "removed, and still there: $left"
+  # What Debian calls required, as tzdata that came with Python, apt does not take away by itself.
+  dpkg-query -W -f '${Package} ${Status} ${Priority}\n' | awk '$5 == "required" {print $1, $2, $3, $4}' | sort | comm -13 $here/packages-before.txt - |
+    cut -d' ' -f1 | xargs -r dpkg -P >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "purge of required packages"; }
   dpkg-query -W -f '${Package} ${db:Status-Status}\n' | awk '$2 == "config-files" {print $1}' | xargs -r dpkg -P >/tmp/said.txt 2>&1 || { cat /tmp/said.txt; fail "purge"; }
   if [ $kept = yes ]; then
     [ -e $own ] || fail "$own was taken away"

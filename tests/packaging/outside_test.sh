@@ -28,11 +28,13 @@ hidden=()
 for package in fcl fastrtps fastcdr yaml-cpp fmt zstd nlohmann_json assimp OpenSSL SQLite3 CLI11 spdlog Boost; do
   hidden+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
 done
-make_examples() {  # make_examples COMPONENTS FOLDER
-  say cmake -S "$examples" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" -DCOMPONENTS="$1" "${hidden[@]}" || return 1
+make_examples() {  # make_examples COMPONENTS FOLDER [OPTIONS]
+  say cmake -S "$examples" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" -DCOMPONENTS="$1" "${hidden[@]}" "${@:3}" || return 1
   say cmake --build "$2"
 }
-make_examples engine "$work/engine" || fail "the example of the engine"
+version=$(sed -n 's/^CMAKE_PROJECT_VERSION:[A-Z]*=\([0-9]*\.[0-9]*\).*/\1/p' "$build/CMakeCache.txt")
+make_examples engine "$work/engine" -DVERSION="$version" || fail "the example of the engine, version $version"
+! make_examples engine "$work/older" -DVERSION="${version%.*}.$((${version#*.} - 1))" || fail "an older minor version was found"
 say "$work/engine/thirty_lines" || fail "thirty_lines"
 cat "$work/said.txt"
 grep -q '^H7/g6: the peg stands at z = 5.000 mm$' "$work/said.txt" || fail "with H7/g6 the peg does not go in"

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -23,8 +24,8 @@ std::string said_by(const std::string& command) {
   return said;
 }
 
-std::set<std::string> libraries_of(const std::string& program) {
-  const std::string loader = said_by("ldd " MORTISE_BIN_DIR "/" + program);
+std::set<std::string> libraries_of(const std::string& file) {
+  const std::string loader = said_by("ldd " MORTISE_BUILD_DIR "/" + file);
   const std::regex line("(\\S+) => /");
   std::set<std::string> names;
   for (std::sregex_iterator at(loader.begin(), loader.end(), line), end; at != end; ++at)
@@ -32,15 +33,35 @@ std::set<std::string> libraries_of(const std::string& program) {
   return names;
 }
 
-/// File names that the packages ship which the list says are linked.
-std::set<std::string> shipped_by(const Json& sbom) {
-  std::set<std::string> linked, files;
+/// What each of our packages is made of, from the folder of the build.
+const std::map<std::string, std::string> kFiles{
+    {"mortise-server", "bin/mortise-server"},
+    {"mortise-web", "bin/mortise-web"},
+    {"mortise-tools", "bin/mortise-import"},
+    {"libmortise-engine", "lib/libmortise-engine.so"},
+    {"libmortise-io", "lib/libmortise-io.so"},
+    {"libmortise-client", "lib/libmortise-client.so"},
+    {"python3-mortise", "python/mortise/_mortise.*.so"}};
+
+/// Other elements of this relation of one of our packages.
+std::set<std::string> related(const Json& sbom, const std::string& ours, const std::string& type) {
+  std::set<std::string> others;
   for (const Json& relation : sbom["relationships"])
-    if (relation["relationshipType"] == "DYNAMIC_LINK")
-      linked.insert(relation["relatedSpdxElement"].get<std::string>());
+    if (relation["relationshipType"] == type && relation["spdxElementId"] == "SPDXRef-" + ours)
+      others.insert(relation["relatedSpdxElement"].get<std::string>());
+  return others;
+}
+
+/// File names that the packages ship which the list says are linked by this one of ours.
+std::set<std::string> shipped_by(const Json& sbom, const std::string& ours) {
+  std::set<std::string> files;
+  const std::set<std::string> linked = related(sbom, ours, "DYNAMIC_LINK");
   for (const Json& package : sbom["packages"]) {
+    const std::string name_of = package["name"];
     if (!linked.contains(package["SPDXID"].get<std::string>())) continue;
-    const std::string list = said_by("dpkg-query -L " + package["name"].get<std::string>());
+    if (const auto own = kFiles.find(name_of); own != kFiles.end())
+      files.insert(own->second.substr(own->second.find('/') + 1) + "." MORTISE_SOVERSION);
+    const std::string list = said_by("dpkg-query -L " + name_of + " 2>/dev/null");
     const std::regex name("/([^/\n]+)(\n|$)");
     for (std::sregex_iterator at(list.begin(), list.end(), name), end; at != end; ++at)
       files.insert((*at)[1]);
@@ -49,11 +70,12 @@ std::set<std::string> shipped_by(const Json& sbom) {
 }
 
 std::set<std::string> not_listed(const Json& sbom) {
-  const std::set<std::string> shipped = shipped_by(sbom);
   std::set<std::string> missing;
-  for (const char* program : {"mortise-server", "mortise-web"})
-    for (const std::string& library : libraries_of(program))
-      if (!shipped.contains(library)) missing.insert(library);
+  for (const auto& [ours, file] : kFiles) {
+    const std::set<std::string> shipped = shipped_by(sbom, ours);
+    for (const std::string& library : libraries_of(file))
+      if (!shipped.contains(library)) missing.insert(ours + ": " + library);
+  }
   return missing;
 }
 
@@ -68,12 +90,25 @@ struct Sbom : testing::Test {
 };
 
 TEST_F(Sbom, NamesEveryLibraryThatTheLoaderTakes) {
-  EXPECT_GT(libraries_of("mortise-web").size(), 10u);
+  for (const auto& [ours, file] : kFiles) EXPECT_GT(libraries_of(file).size(), 3u) << file;
   EXPECT_EQ(not_listed(sbom), std::set<std::string>{});
   Json planted = sbom;
   std::erase_if(planted["packages"].get_ref<Json::array_t&>(),
                 [](const Json& package) { return package["name"] == "libfastrtps2.9"; });
-  EXPECT_EQ(not_listed(planted), std::set<std::string>{"libfastrtps.so.2.9"});
+  std::set<std::string> missing;
+  for (const char* ours : {"libmortise-client", "mortise-server", "mortise-web", "python3-mortise"})
+    missing.insert(std::string(ours) + ": libfastrtps.so.2.9");
+  EXPECT_EQ(not_listed(planted), missing);
+}
+
+TEST_F(Sbom, NamesOurPackagesAndWhatTheyRunWith) {
+  const std::set<std::string> ours = related(sbom, "mortise", "CONTAINS");
+  for (const auto& [name, file] : kFiles) EXPECT_TRUE(ours.contains("SPDXRef-" + name)) << name;
+  EXPECT_TRUE(
+      related(sbom, "libmortise-client", "DYNAMIC_LINK").contains("SPDXRef-libmortise-engine"));
+  EXPECT_TRUE(related(sbom, "python3-mortise", "DEPENDS_ON").contains("SPDXRef-deb-python3-numpy"));
+  EXPECT_TRUE(related(sbom, "libmortise-dev", "DEPENDS_ON").contains("SPDXRef-deb-libeigen3-dev"));
+  EXPECT_TRUE(related(sbom, "mortise-web", "CONTAINS").contains("SPDXRef-npm-three"));
 }
 
 TEST_F(Sbom, VersionsAreThoseInstalled) {
@@ -82,7 +117,7 @@ TEST_F(Sbom, VersionsAreThoseInstalled) {
     const std::string name = package["name"],
                       locator = package["externalRefs"][0]["referenceLocator"];
     names.insert(name);
-    if (!locator.starts_with("pkg:deb/")) continue;
+    if (!locator.starts_with("pkg:deb/debian/")) continue;
     const std::string installed =
         said_by("dpkg-query -W -f '${Version}\n' " + name + " | head -n 1");
     EXPECT_EQ(package["versionInfo"].get<std::string>() + "\n", installed) << name;

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 #include "common/io/build_info.h"
 #include "tests/network/program.h"
 
@@ -21,6 +24,16 @@ TEST(Version, EachProgramSaysWhichBuildItIs) {
   EXPECT_GE(asked, 12);
   EXPECT_NE(version_line("x").find(engine_version()), std::string::npos);
   EXPECT_NE(version_line("x").find(build_fingerprint().substr(0, 12)), std::string::npos);
+}
+
+TEST(Version, FilesThatNobodyConfiguresSayTheSame) {
+  for (const auto& [file, words] :
+       {std::pair{"client/freecad/package.xml", "<version>" + engine_version() + "<"},
+        std::pair{"CHANGELOG.md", "\n## [" + engine_version() + "]"}}) {
+    std::ostringstream text;
+    text << std::ifstream(std::string(MORTISE_SOURCE_DIR "/") + file).rdbuf();
+    EXPECT_NE(text.str().find(words), std::string::npos) << file << " does not say " << words;
+  }
 }
 
 }  // namespace

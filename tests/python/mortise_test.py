@@ -91,6 +91,40 @@ def test_anything_with_vertices_and_faces_is_a_part():
     assert mortise.distance(Trimesh(), (10 * CORNERS, SIDES), X_WB=[13, 0, 0]).distance_mm == pytest.approx(3)
 
 
+class Vector:  # of CadQuery
+    def __init__(self, point):
+        self.point = point
+
+    def toTuple(self):
+        return tuple(self.point)
+
+
+class Shape:
+    def __init__(self, vector):
+        self.vector, self.asked = vector, None
+
+    def tessellate(self, tolerance, angularTolerance=0.1):
+        self.asked = tolerance
+        return [self.vector(point) for point in 10 * CORNERS], [tuple(side) for side in SIDES.tolist()]
+
+
+class Workplane:
+    def __init__(self, *shapes):
+        self.shapes = list(shapes)
+
+    def vals(self):
+        return self.shapes
+
+
+def test_shapes_of_scripts_are_parts():
+    for shape in (Shape(Vector), Shape(tuple)):  # build123d: points that are sequences
+        assert mortise.distance(shape, Workplane(Shape(Vector)), X_WB=[13, 0, 0]).distance_mm == pytest.approx(3)
+        assert shape.asked == 0.01
+    for stack in ((), (Shape(Vector), Shape(Vector))):
+        with pytest.raises(mortise.Error, match=f"has {len(stack)} shapes"):
+            mortise.judge(Workplane(*stack), cube())
+
+
 def test_poses():
     pose = np.eye(4)
     pose[:3, 3] = [13, 0, 0]
@@ -128,6 +162,65 @@ def test_session():
         session.push(box, [0, 0, 1])
 
 
+def scene_of_pegs():
+    scene = mortise.Scene()
+    assert scene.add(plate(), fixed=True) == "plate"
+    assert scene.add((10 * CORNERS, SIDES), pose=[200, 0, 0], name="block") == "block"
+    assert [scene.add(peg(), pose=[100 * i, 0, 100]) for i in range(2)] == ["peg", "peg_2"]
+    scene.fit("plate", "peg", "H7/p6")
+    return scene
+
+
+def test_a_scene_judges_all_pairs_at_poses():
+    scene = scene_of_pegs()
+    assert list(scene.parts) == ["plate", "block", "peg", "peg_2"] and scene.parts["block"].points.shape == (8, 3)
+    assert scene.poses["peg_2"][:3, 3].tolist() == [100, 0, 100]
+    assert len(scene.judge()) == 0
+    judged = scene.judge({"peg": [0, 0, -10], "peg_2": [205, 0, 0]})
+    assert {(c.part_a, c.part_b): c.collision_class for c in judged} == {("plate", "peg"): "real", ("block", "peg_2"): "real"}
+    assert judged[0] is not None and judged.worst == "real" and "H7/p6" in judged._repr_html_()
+    alone = mortise.judge(plate(), peg(), fit="H7/p6", X_WB=[0, 0, -10]).clashes[0]
+    ours = next(c for c in judged if c.part_b == "peg")
+    assert ours.depth_mm == alone.depth_mm and ours.margin_mm == alone.margin_mm  # the same bits, not nearly
+    scene.exclude("block", "peg_2")
+    assert [c.part_b for c in scene.judge()] == ["peg"]
+
+
+def test_a_scene_is_judged_along_poses():
+    scene = scene_of_pegs()
+    heights = [100, 40, 0, -10]
+    judged = scene.judge_along("peg", [[0, 0, z] for z in heights])
+    assert [j.worst for j in judged][0] == "none" and judged[-1].worst == "real" and len(judged) == 4
+    assert scene.poses["peg"][2, 3] == 100  # it stands where it was
+    with pytest.raises(mortise.Error, match="pose"):
+        scene.judge_along("peg", [[0, 0, 1], "x"])
+    assert scene.poses["peg"][2, 3] == 100
+
+
+def test_what_is_wrong_with_a_scene():
+    scene = scene_of_pegs()
+    for call in (lambda: scene.place("pin", None), lambda: scene.judge({"pin": None}), lambda: scene.fit("plate", "pin", "H7/g6"),
+                 lambda: scene.judge_along("pin", [None])):
+        with pytest.raises(mortise.Error, match="no part 'pin' in the scene; there is: plate, block, peg, peg_2"):
+            call()
+    assert len(scene.judge()) == 0  # nothing of it stays
+    scene.fit("plate", "peg_2", "H7/quite loose")
+    with pytest.raises(mortise.Error, match="quite loose"):
+        scene.judge()
+    with pytest.raises(mortise.Error):
+        mortise.Scene().judge()
+
+
+@needs_step
+def test_a_scene_of_an_assembly():
+    scene = mortise.Scene()
+    for part, pose in mortise.load_assembly(TENSIONER):
+        scene.add(part, pose)
+    real = {frozenset((c.part_a, c.part_b)) for c in scene.judge() if c.collision_class == "real"}
+    said = {frozenset((p.part_a, p.part_b)) for p in mortise.check(TENSIONER).pairs if p.collision_class == "real"}
+    assert frozenset(("cover", "bracket")) in real and said
+
+
 @needs_step
 def test_check(tmp_path):
     report = mortise.check(TENSIONER)
@@ -139,6 +232,7 @@ def test_check(tmp_path):
     place = worst.places[0]
     assert place.depth_mm[0] == pytest.approx(0.4) and place.way_out.part == "cover"
     assert place.way_out.path == "blocked" and place.way_out.translation_mm[2] < -0.39
+    assert report._repr_html_().startswith("<p>1 unexplained real, 7 explained real") and "explained real</td>" in report._repr_html_()
     assert "cover × bracket" in report._repr_html_() and "cover × bracket" in report.text
     old = report.json()
     del old["pairs"][0]
@@ -180,6 +274,17 @@ def test_log():
     assert mortise.verify_log(str(LOG)) == 68
     with pytest.raises(mortise.Error):
         mortise.Log(TENSIONER)
+
+
+def test_columns_of_a_log_in_pandas():
+    pytest.importorskip("pandas", reason="program absent: python3-pandas (packages-bench.txt)")
+    log = mortise.Log(LOG)
+    for name in log.keys():
+        frame = log.frame(name)
+        assert list(frame.columns) == list(log[name])
+        assert all((frame[column].to_numpy() == log[name][column]).all() or frame[column].dtype == float for column in frame)
+    clashes = log.frame("clashes")
+    assert clashes["begin_tick"].dtype == np.float64 and clashes["begin_tick"][0] == log["clashes"]["begin_tick"][0]
 
 
 def test_threads_run_beside_each_other():

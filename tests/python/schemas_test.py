@@ -4,6 +4,7 @@ import copy
 import json
 import os
 import pathlib
+import random
 import re
 import subprocess
 
@@ -61,7 +62,7 @@ def hold(name, document):
 
 
 def test_the_schemas_are_schemas():
-    assert len(ALL) == 13
+    assert len(ALL) == 18
     for name, schema in ALL.items():
         jsonschema.Draft202012Validator.check_schema(schema)
         assert schema["$id"] == name and re.search(r", version \d+$", schema["title"]) and schema["description"]
@@ -88,6 +89,24 @@ def test_meshes(meshes):
     hold("check", said("check", "plate.stl", "peg.stl", "--json", "--min-gap", "1", cwd=meshes))
     hold("inspect", said("inspect", "plate.stl", "peg.stl", "--json", cwd=meshes))
     hold("inspect", said("inspect", SCENARIOS / "gearbox.yaml", "--json"))
+
+
+def test_first_contacts(meshes):
+    pose = "{0}_x,{0}_y,{0}_z,{0}_qw,{0}_qx,{0}_qy,{0}_qz"
+    lines = ["id,path,ref_x,ref_y,ref_z," + pose.format("start") + "," + pose.format("end")]
+    for name, x, start, end in (("in", 5, 100, -10), ("by", 60, 300, 200), ("held", 5, -10, -20)):
+        lines.append(f"{name},linear,0,0,0,{x},0,{start},1,0,0,0,{x},0,{end},1,0,0,0")
+    (meshes / "motions.csv").write_text("\n".join(lines) + "\n")
+    words = ("--moving", "peg.stl", "--static", "plate.stl", "--motions", "motions.csv")
+    document = said("first-contact", *words, "--json", cwd=meshes)
+    hold("first-contact", document)
+    assert [m["state"] for m in document["motions"]] == ["contact", "free", "overlapping_at_start"]
+    assert document["counts"]["free"] == 1 and document["motions"][0]["point_mm"] and document["motions"][1]["point_mm"] is None
+    both = said("first-contact", *words, "--json", "--out", "out.csv", cwd=meshes)  # the table says the same
+    table = [line.split(",") for line in (meshes / "out.csv").read_text().splitlines()[1:]]
+    assert [(row[0], float(row[2])) for row in table] == [(m["id"], m["t_clear"]) for m in both["motions"]]
+    assert errors("first-contact", {**document, "motions": [{**document["motions"][0], "state": "hit"}]}, closed=False)
+    assert subprocess.run([BIN / "mortise-first-contact", *words], cwd=meshes, capture_output=True, check=False).returncode == 2
 
 
 @needs_step
@@ -135,6 +154,43 @@ def test_logs(log, tmp_path):
     hold("replay-whatif", said("replay", "whatif", log, "--sweep", "tolerance cube = ±[0.005..0.03/3]", "--json"))
     subprocess.run([BIN / "mortise-replay", "export", log, "--json", tmp_path / "tables.json"], check=True, capture_output=True)
     hold("replay-export", json.loads((tmp_path / "tables.json").read_text()))
+
+
+def test_a_live_session(tmp_path):
+    domain = str(random.randrange(140, 180))
+
+    def program(name, *words):
+        return subprocess.Popen([BIN / f"mortise-{name}", *map(str, words), "--json", "--quiet"], cwd=tmp_path, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+
+    def document_of(running, stop=False):
+        if stop:
+            running.terminate()
+        out, _ = running.communicate(timeout=60)
+        assert running.returncode == 0
+        return json.loads(out)
+
+    server = program("server", SCENARIOS / "peg_in_hole.yaml", "--session", "schemas", "--domain", domain, "--log", "s.mcap")
+    discovery = program("discovery", "--discovery-port", 20000 + int(domain))
+    bots = ("bot", "--session", "schemas", "--domain", domain, "--wait", 30, "--seconds", 2)
+    try:
+        alone = program(*bots, "--behaviour", "guided", "--tries", 1, "--limit", "lost_events=0")
+        seen = said("directory", "--domain", domain, "--wait", "2", "--json")
+        hold("directory", seen)
+        assert [row["session"] for row in seen["servers"]] == ["schemas"]
+        document = document_of(alone)
+        hold("bot", document)
+        assert document["limits"][0]["holds"] and "insertions" in document
+        many = document_of(program(*bots, "--processes", 2, "--users", 2))
+        hold("bot", many)
+        assert many["processes"] == 2 and len(many["participants"]) == 2
+        hold("discovery", document_of(discovery, stop=True))
+        closing = document_of(server, stop=True)
+        hold("server", closing)
+        assert closing["users"] and errors("server", {**closing, "log": "s.mcap"}, closed=False)
+    finally:
+        for running in (server, discovery):
+            running.kill()
 
 
 def planted(document):

@@ -35,15 +35,16 @@ fits:
   - {between: [plate.bore, peg.journal], code: Ø20 H7/k6}
 )";
 
-struct Withdrawal : testing::Test {
+/// A scene in which ada has a part in hand.
+struct InAdasHand : testing::Test {
   LoadedScene scene;
   Scratch scratch;
   UserId ada;
-  PartId stray;
+  PartId held;
   std::uint64_t seq = 0;
 
-  Withdrawal() {
-    auto reading = read_scenario_text(kScenario, "withdrawal.yaml");
+  InAdasHand(const std::string& scenario, const char* part) {
+    auto reading = read_scenario_text(scenario, "scenario.yaml");
     auto loaded = load_scene(reading->scenario, default_meshes());
     EXPECT_TRUE(loaded && loaded->usable());
     scene = std::move(*loaded);
@@ -53,18 +54,22 @@ struct Withdrawal : testing::Test {
     decision.role = Role::kDesigner;
     apply_decision(scene.world, decision);
     ada = scene.world.users.back().id;
-    stray = scene.world.find_part("stray")->id;
-    apply_command(scene.world, Command{ada, stray, 1, CommandKind::kGrab}, decision);
+    held = scene.world.find_part(part)->id;
+    apply_command(scene.world, Command{ada, held, 1, CommandKind::kGrab}, decision);
     step(scene.world, {}, scratch);
   }
+};
+
+struct Withdrawal : InAdasHand {
+  Withdrawal() : InAdasHand(kScenario, "stray") {}
   // Pieces of 1 mm that arrive in one tick, then a tick of rest. Its height after that.
   double push(int pieces, double by_mm) {
     std::vector<Increment> increments;
     for (int i = 0; i < pieces; ++i)
-      increments.push_back({ada, stray, ++seq, Vec3(0, 0, by_mm), Vec3::Zero()});
+      increments.push_back({ada, held, ++seq, Vec3(0, 0, by_mm), Vec3::Zero()});
     step(scene.world, increments, scratch);
     step(scene.world, {}, scratch);
-    return scene.world.find(stray)->X_WP.p.z();
+    return scene.world.find(held)->X_WP.p.z();
   }
 };
 
@@ -81,7 +86,7 @@ TEST_F(Withdrawal, IsNotHeldWhereThePartsJustTouch) {
 TEST_F(Withdrawal, InPiecesOfAnyNumber) {
   for (const int pieces : {2, 3, 4, 2, 3}) push(pieces, 1.0);
   // 5 mm lie behind it when it just touches; of the push from there the rest is lost.
-  EXPECT_GT(scene.world.find(stray)->X_WP.p.z(), 70.0 + 0.04);
+  EXPECT_GT(scene.world.find(held)->X_WP.p.z(), 70.0 + 0.04);
 }
 
 // Where they just touch the way out is open, the way in is not.
@@ -91,16 +96,7 @@ TEST_F(Withdrawal, FromTheBrinkNothingIsPressedIn) {
     for (int i = 0; i < 8; ++i) EXPECT_GE(push(1, by_mm), 65.0 - 1e-3) << by_mm;
 }
 
-// Pressed in askew, certain to interfere: every push that draws it out goes all its way, and none
-// of any other direction makes it deeper.
-struct Askew : testing::Test {
-  LoadedScene scene;
-  Scratch scratch;
-  UserId ada;
-  std::uint64_t seq = 0;
-
-  Askew() {
-    auto reading = read_scenario_text(R"(
+const std::string kAskew = R"(
 name: askew
 units: mm
 policy: stop
@@ -114,20 +110,12 @@ parts:
     pose: {position: [0.02, 0, 5], rotation_deg: [0.15, 0.1, 0]}
 fits:
   - {between: [plate.bore, peg.journal], code: Ø20 H7/p6}
-)",
-                                      "askew.yaml");
-    auto loaded = load_scene(reading->scenario, default_meshes());
-    EXPECT_TRUE(loaded && loaded->usable());
-    scene = std::move(*loaded);
-    Decision decision;
-    decision.kind = Decision::Kind::kJoin;
-    decision.user_name = "ada";
-    decision.role = Role::kDesigner;
-    apply_decision(scene.world, decision);
-    ada = scene.world.users.back().id;
-    apply_command(scene.world, Command{ada, peg().id, 1, CommandKind::kGrab}, decision);
-    step(scene.world, {}, scratch);
-  }
+)";
+
+// Pressed in askew, certain to interfere: every push that draws it out goes all its way, and none
+// of any other direction makes it deeper.
+struct Askew : InAdasHand {
+  Askew() : InAdasHand(kAskew, "peg") {}
   const Part& peg() { return *scene.world.find_part("peg"); }
   StepReport push(const Vec3& by_mm, const Vec3& turn_rad = Vec3::Zero()) {
     const std::vector<Increment> increments = {{ada, peg().id, ++seq, by_mm, turn_rad}};

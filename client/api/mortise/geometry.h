@@ -138,7 +138,7 @@ class Part {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Version of the library, "0.1.0".
+/// Version of the library: "major.minor.patch".
 std::string version();
 
 }  // namespace mortise::api

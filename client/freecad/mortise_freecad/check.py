@@ -29,10 +29,10 @@ def program(name):
 
 
 class Found:
-    """One pair of bodies: the objects, class, relation, depth (lo, hi) mm, the place, and what would free it."""
+    """One pair of bodies: the bodies, class, relation, depth (lo, hi) mm, the place, and what would free it."""
 
-    def __init__(self, pair, names, objects):
-        self.a, self.b = (objects[name] for name in names)
+    def __init__(self, pair, names, bodies):
+        self.a, self.b = (bodies[name] for name in names)
         self.collision_class = "contact" if pair["contact"] else pair["class"]
         self.relation = pair["relation"]
         self.explained = pair["explained"]
@@ -52,18 +52,18 @@ class Found:
 
 
 class Report:
-    def __init__(self, document, objects):
+    def __init__(self, document, bodies):
         self.json = document
         self.counts = document["counts"]
         self.not_judged = document["not_judged"]
-        self.found = [Found(pair, names, objects) for pair in document["pairs"] for names in pair["instances"]]
+        self.found = [Found(pair, names, bodies) for pair in document["pairs"] for names in pair["instances"]]
 
 
 def run(bodies, options=()):
     """Checks bodies as bodies_of() gives them. Raises CheckError."""
     if len(bodies) < 2:
         raise CheckError("two solids are needed; open an assembly, or select parts of it")
-    objects = {thing.Name: thing for thing, _ in bodies}
+    named = {body.name: body for body in bodies}
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "assembly.step")
         _bodies.export_step(bodies, file)
@@ -72,10 +72,10 @@ def run(bodies, options=()):
         lines = done.stderr.strip().splitlines()
         raise CheckError(lines[-1] if lines else f"mortise-check ended with {done.returncode}")
     report = json.loads(done.stdout)
-    unknown = {name for pair in report["pairs"] for names in pair["instances"] for name in names} - set(objects)
+    unknown = {name for pair in report["pairs"] for names in pair["instances"] for name in names} - set(named)
     if unknown:
         raise CheckError("the file names bodies that the document does not have: " + ", ".join(sorted(unknown)))
-    return Report(report, objects)
+    return Report(report, named)
 
 
 def open_session(bodies, folder=None):

@@ -12,20 +12,20 @@ COLOURS = {"real": "#b3261e", "potential": "#9a6700", "fake": "#1f6feb", "contac
 
 def _cells(found):
     word = found.collision_class + (" (explained)" if found.explained else "")
-    return word, f"{found.a.Label} × {found.b.Label}", found.relation, found.depth_text()
+    return word, f"{found.a.label} × {found.b.label}", found.relation, found.depth_text()
 
 
 def show(found):
     """Selects both parts, marks the place, which is drawn before them, and looks at it."""
     Gui.Selection.clearSelection()
-    for thing in (found.a, found.b):
-        Gui.Selection.addSelection(thing)
+    for body in (found.a, found.b):
+        Gui.Selection.addSelection(body.root.Document.Name, body.root.Name, body.path)
     if found.point is None:
         Gui.SendMsgToActiveView("ViewSelection")
         return
-    document = found.a.Document
+    document = found.a.root.Document
     mark = document.getObject(MARK) or document.addObject("Part::Sphere", MARK)
-    mark.Radius = max(0.5, 0.02 * min(thing.Shape.BoundBox.DiagonalLength for thing in (found.a, found.b)))
+    mark.Radius = max(0.5, 0.02 * min(body.shape.BoundBox.DiagonalLength for body in (found.a, found.b)))
     mark.Placement.Base = found.point
     mark.ViewObject.ShapeColor = (0.70, 0.15, 0.12)
     mark.ViewObject.OnTopWhenSelected = "Object"

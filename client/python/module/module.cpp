@@ -75,7 +75,7 @@ api::Unit unit_named(const std::string& name) {
 PYBIND11_MODULE(_mortise, module) {
   module.doc() = "The C++ library of mortise. Import mortise instead.";
   error_class() = py::module_::import("mortise._error").attr("Error");
-  module.def("version", &api::version, "Version of the library, \"0.1.0\".");
+  module.def("version", &api::version, "Version of the library: major.minor.patch.");
   bind_parts(module);
   bind_judgement(module);
   bind_session(module);

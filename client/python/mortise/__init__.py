@@ -5,7 +5,8 @@
         print(pair.collision_class, pair.part_a, pair.part_b, pair.relation, pair.places[0].depth_mm)
 
 Lengths are mm, angles rad, world frame. Where a part is asked for, a Part, the path of a mesh or STEP file, a pair
-(points, triangles), or any object with `vertices` and `faces` (trimesh) may be given. A pose is None, a shift of three numbers, or
+(points, triangles), an object with `vertices` and `faces` (trimesh), or a shape of CadQuery or build123d may be given. The last is
+made into a mesh with chords of 0.01 mm; a STEP file of it keeps its exact surfaces. A pose is None, a shift of three numbers, or
 a 4 x 4 matrix. What goes wrong raises mortise.Error. Functions release the GIL; a Session or Client is for one thread at a time.
 """
 
@@ -20,7 +21,7 @@ from ._mortise import (CheckedPair, CheckReport, Clash, Distance, Feature, First
 
 __version__ = version()
 __all__ = ["CheckReport", "CheckedPair", "Clash", "Client", "Distance", "Error", "Feature", "FirstContact", "Heard", "Judgement",
-           "LiveEvent", "LivePart", "Log", "Part", "PartRef", "Pushed", "Session", "WayOut", "check", "distance",
+           "LiveEvent", "LivePart", "Log", "Part", "PartRef", "Pushed", "Scene", "Session", "WayOut", "check", "distance",
            "first_contact", "judge", "load", "load_assembly", "picture", "verify_log", "version"]
 
 
@@ -35,11 +36,22 @@ def load_assembly(file):
     return _mortise.load_assembly(_os.fspath(file))
 
 
+_CHORD_MM = 0.01  # of shapes that are made into meshes here
+
+
 def _part(of, name):
     if isinstance(of, Part):
         return of
     if isinstance(of, (str, _os.PathLike)):
         return load(of)
+    if hasattr(of, "vals"):  # a Workplane of CadQuery: what it has made last
+        shapes = of.vals()
+        if len(shapes) != 1:
+            raise Error(f"{name}: the workplane has {len(shapes)} shapes; combine them, or give one")
+        of = shapes[0]
+    if hasattr(of, "tessellate"):  # a shape of CadQuery or build123d
+        points, triangles = of.tessellate(_CHORD_MM)
+        return Part([tuple(p.toTuple() if hasattr(p, "toTuple") else p) for p in points], triangles, name)
     if hasattr(of, "vertices") and hasattr(of, "faces"):
         return Part(of.vertices, of.faces, name)
     points, triangles = of
@@ -97,6 +109,77 @@ class Session(_mortise.Session):
     def add(self, part, pose=None, fixed=False):
         """Adds a part; a fixed one stands."""
         return super().add(_part(part, "part"), pose, fixed)
+
+
+class Scene:
+    """Parts at poses, all pairs judged; nothing is held or pushed.
+
+        scene = mortise.Scene()
+        scene.add("plate.stl", fixed=True)
+        scene.add((points, triangles), name="pin")
+        scene.fit("plate", "pin", "H7/g6")
+        for clash in scene.judge({"pin": [0, 0, -10]}):
+            print(clash.collision_class, clash.part_a, clash.part_b, clash.depth_mm)
+
+    Parts have names. Two fixed parts are no pair. A statement that does not hold, as a fit that is none, is told by judge()."""
+
+    def __init__(self, threads=1):
+        self._session = Session(policy="report", threads=threads)
+        self._parts = {}
+
+    def add(self, part, pose=None, name=None, fixed=False):
+        """Adds a part; returns the name by which it is asked for: `name` or its own, with a number where that is taken."""
+        part = _part(part, name or "part")
+        if name is not None:
+            part = part.named(name)
+        ref = self._session.add(part, pose, fixed)
+        self._parts[self._session.name(ref)] = (part, ref)
+        return self._session.name(ref)
+
+    def _find(self, name):
+        if name not in self._parts:
+            raise Error(f"there is no part '{name}' in the scene; there is: {', '.join(self._parts) or 'none'}")
+        return self._parts[name][1]
+
+    @property
+    def parts(self):
+        """{name: Part}; its points and triangles are numpy arrays."""
+        return {name: part for name, (part, _) in self._parts.items()}
+
+    @property
+    def poses(self):
+        """{name: 4 x 4} where the parts stand."""
+        return {name: self._session.pose(ref) for name, (_, ref) in self._parts.items()}
+
+    def place(self, name, pose):
+        """Puts a part somewhere."""
+        self._session.place(self._find(name), pose)
+
+    def fit(self, a, b, code, feature_a="", feature_b=""):
+        """States a fit, "H7/g6", of two features; "": of the hole and the shaft of the parts."""
+        self._session.fit(self._find(a), feature_a, self._find(b), feature_b, code)
+
+    def tolerance(self, name, text, feature=""):
+        """States a tolerance, "±0.02" or "H7", of a feature; "": of the whole part."""
+        self._session.tolerance(self._find(name), feature, text)
+
+    def exclude(self, a, b, reason="excluded"):
+        """The pair is never judged."""
+        self._session.exclude(self._find(a), self._find(b), reason)
+
+    def judge(self, poses=None, full=False):
+        """Judges all pairs: a Judgement, which is a list of Clash. poses: {name: pose} of parts to be put somewhere before."""
+        for name, pose in (poses or {}).items():
+            self.place(name, pose)
+        return self._session.judge(full)
+
+    def judge_along(self, name, poses, full=False):
+        """A list with one Judgement of all pairs for each pose of this part, which stands again where it was afterwards."""
+        before = self._session.pose(self._find(name))
+        try:
+            return [self.judge({name: pose}, full) for pose in poses]
+        finally:
+            self.place(name, before)
 
 
 class Client:
@@ -209,8 +292,8 @@ def _judgement_html(self):
 def _check_html(self):
     if self.html:
         return f'<iframe srcdoc="{_html.escape(self.html)}" style="width:100%;height:640px;border:0"></iframe>'
-    counts = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in self.counts.items())
-    rows = [("contact" if p.contact else p.collision_class, f"{p.part_a} × {p.part_b}", p.relation,
+    counts = ", ".join(f"{self.counts[name]} {name.replace('_', ' ')}" for name in self.json()["counts"])  # the worst first
+    rows = [("contact" if p.contact else f"{'explained ' if p.explained else ''}{p.collision_class}", f"{p.part_a} × {p.part_b}", p.relation,
              _depth(p.places[0]) if p.places else "", p.reason or (p.places[0].explanation if p.places else ""))
             for p in self.pairs]
     return f"<p>{_html.escape(counts)}</p>" + _table(("class", "parts", "relation", "depth, mm", "why"), rows)
@@ -221,5 +304,7 @@ def _document(self):
     return _json.loads(self.json_text)
 
 
+Judgement.__len__, Judgement.__iter__ = lambda self: len(self.clashes), lambda self: iter(self.clashes)
+Judgement.__getitem__ = lambda self, index: self.clashes[index]
 Judgement._repr_html_, Judgement.json = _judgement_html, _document
 CheckReport._repr_html_, CheckReport.json = _check_html, _document

@@ -141,9 +141,11 @@ std::string check_page(const OpenedScene& opened, const CheckReport& report) {
       "{4} pairs near each other</p><div class=\"cards\">",
       escaped(opened.scenario.file), report_style(), report.parts, report.products,
       report.candidate_pairs);
-  for (const auto& row : table_named(tables, "counts").rows)
-    html += fmt::format("<div class=\"card\"><b>{}</b>{}</div>", row[1].get<std::size_t>(),
-                        escaped(row[0].get<std::string>()));
+  for (const auto& row : table_named(tables, "counts").rows) {
+    std::string name = row[0].get<std::string>();
+    std::replace(name.begin(), name.end(), '_', ' ');
+    html += fmt::format("<div class=\"card\"><b>{}</b>{}</div>", row[1].get<std::size_t>(), name);
+  }
   html += "</div><h2>Clashes that nothing explains</h2>" + clash_section(opened, report);
   html += tree_section(tree_of(opened, report));
   html += plain_table(table_named(tables, "clashes"), "All pairs");

@@ -31,12 +31,16 @@ FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
       .shows_default();
   app.add("--out", o.out,
           "CSV to write: id,state,t_clear,t_contact,distance_mm,time_us; state is free, "
-          "contact, undecided, touching_at_start or overlapping_at_start")
-      .required();
+          "contact, undecided, touching_at_start or overlapping_at_start");
+  app.add_flag("--json", o.json, "One JSON document on stdout");
   app.footer(
       "t in [0, 1] of the motion. distance_mm is that of the meshes at t_contact (undecided: at "
       "t_clear).\nExit codes: 0 ok, 1 cannot write, 2 usage, 3 bad input.");
-  line.exit_code = app.read(argc, argv, [&] { o.unit_mm = *length_unit_mm(unit); });
+  line.exit_code = app.read(argc, argv, [&] {
+    o.unit_mm = *length_unit_mm(unit);
+    if (o.out.empty() && !o.json)
+      throw UsageError("say where the answers go: --out FILE.csv, or --json");
+  });
   return line;
 }
 

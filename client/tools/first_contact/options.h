@@ -11,6 +11,7 @@ struct FirstContactOptions {
   double unit_mm = 1.0;
   double accuracy_mm = kAccuracyDefault_mm;
   std::uint64_t work_cap = kCcdWorkCap;
+  bool json = false;  ///< one document on stdout
 };
 
 struct FirstContactCommandLine {

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "client/tools/first_contact/motions_file.h"
+#include "common/base/json_text.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/ccd/start_state.h"
@@ -83,6 +85,40 @@ Row ask(const ContactQuery& query, CcdScratch& scratch) {
   return row;
 }
 
+const char* state_of(const Row& row) {
+  return row.hidden ? "no_inside" : name_of(row.answer.state);
+}
+
+nlohmann::ordered_json document_of(const FirstContactOptions& options,
+                                   const std::vector<NamedMotion>& motions,
+                                   const std::vector<Row>& rows) {
+  nlohmann::ordered_json document;
+  document["schema"] = "mortise/first-contact/1";
+  document["moving"] = options.moving;
+  document["static"] = options.fixed;
+  document["accuracy_mm"] = options.accuracy_mm;
+  document["counts"] = {
+      {"free", 0},      {"contact", 0},  {"touching_at_start", 0}, {"overlapping_at_start", 0},
+      {"undecided", 0}, {"no_inside", 0}};
+  document["motions"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const FirstContact& answer = rows[i].answer;
+    const std::string state = state_of(rows[i]);
+    document["counts"][state] = document["counts"][state].get<int>() + 1;
+    document["motions"].push_back({{"id", motions[i].id},
+                                   {"state", state},
+                                   {"t_clear", answer.t_clear},
+                                   {"t_contact", answer.t_contact},
+                                   {"distance_mm", rows[i].distance_mm},
+                                   {"point_mm", nullptr},
+                                   {"time_us", rows[i].time_us}});
+    if (answer.state == ContactState::kContact || answer.state == ContactState::kTouchingAtStart)
+      document["motions"].back()["point_mm"] = {answer.point_b_W.x(), answer.point_b_W.y(),
+                                                answer.point_b_W.z()};
+  }
+  return document;
+}
+
 void summarize(const std::vector<Row>& rows) {
   int count[6] = {}, hidden = 0;
   std::vector<double> time_us;
@@ -111,8 +147,7 @@ Status write(const std::string& file, const std::vector<NamedMotion>& motions,
   if (out == nullptr) return fail(Code::kRuntime, file + ": cannot be written; check the folder");
   std::fprintf(out, "id,state,t_clear,t_contact,distance_mm,time_us\n");
   for (std::size_t i = 0; i < rows.size(); ++i)
-    std::fprintf(out, "%s,%s,%.17g,%.17g,%.17g,%.17g\n", motions[i].id.c_str(),
-                 rows[i].hidden ? "no_inside" : name_of(rows[i].answer.state),
+    std::fprintf(out, "%s,%s,%.17g,%.17g,%.17g,%.17g\n", motions[i].id.c_str(), state_of(rows[i]),
                  rows[i].answer.t_clear, rows[i].answer.t_contact, rows[i].distance_mm,
                  rows[i].time_us);
   const bool good = std::ferror(out) == 0;
@@ -150,9 +185,13 @@ Status run_first_contact(const FirstContactOptions& options) {
     if (rows.size() % 100 == 0)
       std::fprintf(stderr, "%zu of %zu motions\n", rows.size(), motions->size());
   }
-  const Status written = write(options.out, *motions, rows);
-  if (written) summarize(rows);
-  return written;
+  if (!options.out.empty())
+    if (const Status written = write(options.out, *motions, rows); !written) return written;
+  if (options.json)
+    std::printf("%s\n", json_text(document_of(options, *motions, rows)).c_str());
+  else
+    summarize(rows);
+  return ok();
 }
 
 }  // namespace mortise

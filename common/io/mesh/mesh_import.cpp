@@ -8,10 +8,10 @@
 #include <system_error>
 
 #include "common/base/in_quotes.h"
-#include "common/geometry/topology.h"
 #include "common/io/mesh/importer_process.h"
 #include "common/io/mesh/mesh_clean.h"
 #include "common/io/mesh/mesh_orient.h"
+#include "common/io/mesh/topology_report.h"
 
 namespace mortise {
 namespace {
@@ -157,13 +157,7 @@ Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, doubl
                 file + ": no triangles are left (" + std::to_string(report.raw_triangles) +
                     " read, all without area; " + std::to_string(report.points_and_lines_dropped) +
                     " points and lines); export the part as a solid");
-  const Topology topology = build_topology(imported.mesh);
-  report.boundary_edges = topology.boundary_edges;
-  report.non_manifold_edges = topology.non_manifold_edges;
-  report.misoriented_edges = topology.misoriented_edges;
-  report.components = topology.components;
-  report.volume_mm3 = topology.volume_mm3;
-  report.closed = topology.closed();
+  note_topology(imported.mesh, report);
   note_findings(soup, unit_mm, report);
   return imported;
 }

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "common/generators/generators.h"
-#include "common/geometry/topology.h"
+#include "common/io/mesh/topology_report.h"
 
 namespace mortise {
 namespace {
@@ -16,13 +16,7 @@ ImportedMesh with_report(TriangleMesh mesh, std::string file, std::string format
   report.format = std::move(format);
   report.raw_vertices = report.points = imported.mesh.points_mm.size();
   report.raw_triangles = report.triangles = imported.mesh.triangles.size();
-  const Topology topology = build_topology(imported.mesh);
-  report.boundary_edges = topology.boundary_edges;
-  report.non_manifold_edges = topology.non_manifold_edges;
-  report.misoriented_edges = topology.misoriented_edges;
-  report.components = topology.components;
-  report.volume_mm3 = topology.volume_mm3;
-  report.closed = topology.closed();
+  note_topology(imported.mesh, report);
   return imported;
 }
 

@@ -293,26 +293,30 @@ CollisionClass class_of(const OverlapResult& result) {
   return word;
 }
 
-// What one way decides the other one does not deny, and no witness is refused.
-TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
-  Random random(7006);
-  int decided = 0, more = 0, less = 0, opposite = 0, refused = 0;
-  for (int i = 0; i < 400; ++i) {
-    const DrawnPair pair = any_pair(random);
-    OverlapQuery query;
-    query.a = pair.a.solid.get();
-    query.b = pair.b.solid.get();
-    query.band_a = &pair.a.band;
-    query.band_b = &pair.b.band;
-    query.X_WA = pair.X_BA;
-    query.work_cap = 5000;
-    query.refinement = Refinement::kDecided;
-    CcdScratch scratch;
-    const OverlapResult with = find_overlap(query, scratch);
-    query.use_covers = false;
-    const CollisionClass word = class_of(with), other = class_of(find_overlap(query, scratch));
-    for (const OverlapRegion& region : with.regions)
-      refused += static_cast<int>(region.witnesses_refused);
+OverlapQuery overlap_of(const DrawnPair& pair) {
+  OverlapQuery query;
+  query.a = pair.a.solid.get();
+  query.b = pair.b.solid.get();
+  query.band_a = &pair.a.band;
+  query.band_b = &pair.b.band;
+  query.X_WA = pair.X_BA;
+  query.work_cap = 5000;
+  return query;
+}
+
+OverlapQuery look_at(const DrawnPair& pair) {
+  OverlapQuery query = overlap_of(pair);
+  query.want_delta = false;
+  query.prove_not_certain = true;
+  return query;
+}
+
+/// Words with covers beside those without them.
+struct Words {
+  int decided = 0, more = 0, less = 0, opposite = 0;
+
+  void compare(const OverlapResult& with, const OverlapResult& without) {
+    const CollisionClass word = class_of(with), other = class_of(without);
     const bool open = other == CollisionClass::kPotential;
     decided += !open;
     more += open && word != other;
@@ -320,11 +324,30 @@ TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
     opposite += (word == CollisionClass::kReal) != (other == CollisionClass::kReal) && !open &&
                 word != CollisionClass::kPotential;
   }
-  std::printf("%d decided without covers, %d more with them, %d less\n", decided, more, less);
-  EXPECT_EQ(opposite, 0);
-  EXPECT_EQ(less, 0);
+};
+
+// What one way decides the other one does not deny, and no witness is refused.
+TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
+  Random random(7006);
+  Words words;
+  int refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    const DrawnPair pair = any_pair(random);
+    OverlapQuery query = overlap_of(pair);
+    query.refinement = Refinement::kDecided;
+    CcdScratch scratch;
+    const OverlapResult with = find_overlap(query, scratch);
+    query.use_covers = false;
+    words.compare(with, find_overlap(query, scratch));
+    for (const OverlapRegion& region : with.regions)
+      refused += static_cast<int>(region.witnesses_refused);
+  }
+  std::printf("%d decided without covers, %d more with them, %d less\n", words.decided, words.more,
+              words.less);
+  EXPECT_EQ(words.opposite, 0);
+  EXPECT_EQ(words.less, 0);
   EXPECT_EQ(refused, 0);
-  EXPECT_GT(more, 0);
+  EXPECT_GT(words.more, 0);
 }
 
 // Behind a chamfer a depth by the mesh is as good as its chords.
@@ -349,19 +372,6 @@ double deepest_of_surfaces(const PairFrame& pair, Layer layer, Random& random, i
     if (s.depth_in(x_S, nearest_surface(*s.solid, x_S), layer) > -kNothing_mm) most = at.depth_mm;
   }
   return most;
-}
-
-OverlapQuery look_at(const DrawnPair& pair) {
-  OverlapQuery query;
-  query.a = pair.a.solid.get();
-  query.b = pair.b.solid.get();
-  query.band_a = &pair.a.band;
-  query.band_b = &pair.b.band;
-  query.X_WA = pair.X_BA;
-  query.work_cap = 5000;
-  query.want_delta = false;
-  query.prove_not_certain = true;
-  return query;
 }
 
 // What covers call a depth holds in the parts, inside hollow edges as well.
@@ -394,7 +404,8 @@ TEST(Cover, NoSurfaceIsDeeperThanADepth) {
 // nothing in common with those of the search would be a contradiction.
 TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
   Random random(7008);
-  int told = 0, opposite = 0, apart = 0, less = 0;
+  Words words;
+  int told = 0, apart = 0;
   for (int i = 0; i < 400; ++i) {
     const DrawnPair pair = any_pair(random);
     OverlapQuery query = look_at(pair);
@@ -423,15 +434,12 @@ TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
     compare(&OverlapRegion::certain_mm, false);
     if (query.only_certain) continue;
     compare(&OverlapRegion::possible_mm, true);
-    const CollisionClass word = class_of(with), other = class_of(without);
-    less += other != CollisionClass::kPotential && word == CollisionClass::kPotential;
-    opposite += (word == CollisionClass::kReal) != (other == CollisionClass::kReal) &&
-                other != CollisionClass::kPotential && word != CollisionClass::kPotential;
+    words.compare(with, without);
   }
   std::printf("%d of 400 looks with a quarter of the work or less\n", told);
   EXPECT_EQ(apart, 0);
-  EXPECT_EQ(opposite, 0);
-  EXPECT_EQ(less, 0);
+  EXPECT_EQ(words.opposite, 0);
+  EXPECT_EQ(words.less, 0);
   EXPECT_GT(told, 150);
 }
 

@@ -107,15 +107,20 @@ TEST(PossibleTime, TolerancesMeetBeforeTheMeshesDo) {
   EXPECT_FALSE(real_time_of(s).becomes_real);
 }
 
-// 20 H7/g6 pushed aside: its least clearance is 3.5 um, its largest 20.5; the meshes (32 facets,
-// half a phase apart) overlap from the start and say nothing.
-TEST(PossibleTime, PegPushedAsideInItsFit) {
+// 20 H7/g6; the meshes (32 facets, half a phase apart) overlap from the start and say nothing.
+Sweep peg_in_its_fit() {
   const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
   Sweep s;
   s.a = solid(peg({10, 0, 30, 32, 8, std::numbers::pi / 32}));
   s.b = solid(ring({10, 0, 20, 32, 8, 0}, 20));
   s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
   s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
+  return s;
+}
+
+// Pushed aside: its least clearance is 3.5 um, its largest 20.5.
+TEST(PossibleTime, PegPushedAsideInItsFit) {
+  Sweep s = peg_in_its_fit();
   s.motion_a = slide({0, 0, 5}, {0.03, 0, 5});
   const PossibleTime possible = possible_time_of(s);
   EXPECT_TRUE(possible.becomes_possible);
@@ -167,12 +172,7 @@ TEST(InterferenceTime, BlindHoleBehindAFakeOverlap) {
 }
 
 TEST(InterferenceTime, SlidingPegIsFreeAndCheap) {
-  const FitOffsets g6 = fit_offsets("H7/g6", 10.0);
-  Sweep s;
-  s.a = solid(peg({10, 0, 30, 32, 8, std::numbers::pi / 32}));
-  s.b = solid(ring({10, 0, 20, 32, 8, 0}, 20));
-  s.band_a = cylinder_band(s.a, 10, false, g6.shaft_mm);
-  s.band_b = cylinder_band(s.b, 10, true, g6.hole_mm);
+  Sweep s = peg_in_its_fit();
   s.motion_a = slide({0, 0, 5}, {0, 0, 4});
   const InterferenceTime slid = real_time_of(s);
   EXPECT_FALSE(slid.becomes_real);

@@ -1,29 +1,21 @@
 // What hands do: every stop says why, asking for a part, several parts, hiding, measuring, dragging, pictures.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage } from '../support/browser.mjs';
+import { before, test } from 'node:test';
+import { BrowserSession } from '../support/browser_session.mjs';
 import { PATIENCE, choose, grab, moveBy, position, settled, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
-import { LiveSession } from '../support/session.mjs';
 
-const session = new LiveSession(`hands${process.pid}`);
-let browser, addresses, ann, bob;
+const session = new BrowserSession('hands');
+let ann, bob;
 
 before(async () => {
   await session.serve(PEGS);
-  addresses = await session.open();
-  browser = await openBrowser();
-  ann = await openPage(browser, addresses.designer, { name: 'ann' });
-  bob = await openPage(browser, addresses.designer, { name: 'bob', scheme: 'light' });
+  await session.show();
+  [ann, bob] = await session.join('ann', 'bob');
   await whenListed(ann, 'parts', 'peg_k6');
   await whenListed(bob, 'parts', 'peg_k6');
 }, { timeout: 90_000 });
-
-after(async () => {
-  await browser?.close();
-  await session.end();
-});
 
 const release = (page) => page.click('#hand button:has-text("Release")');
 

@@ -3,24 +3,18 @@ import assert from 'node:assert/strict';
 import { mkdtemp, readFile, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage } from '../support/browser.mjs';
+import { before, test } from 'node:test';
+import { openPage } from '../support/browser.mjs';
+import { BrowserSession } from '../support/browser_session.mjs';
 import { PATIENCE, choose, position, whenListed } from '../support/people.mjs';
-import { LiveSession } from '../support/session.mjs';
 
-const session = new LiveSession();
-let browser, page;
+const session = new BrowserSession();
+let page;
 
 before(async () => {
-  const { designer } = await session.open('tests/golden/thin_wall.mcap');
-  browser = await openBrowser();
-  page = await openPage(browser, designer);
+  const { browser, addresses } = await session.show('tests/golden/thin_wall.mcap');
+  page = await openPage(browser, addresses.designer);
 }, { timeout: 60_000 });
-
-after(async () => {
-  await browser?.close();
-  await session.end();
-});
 
 const tick = () => page.evaluate(() => Number(/** @type {HTMLInputElement} */ (document.querySelector('#timeline input')).value));
 
@@ -83,7 +77,7 @@ test('the report is downloaded, and opens by itself', async () => {
   assert.ok(text.startsWith('<!DOCTYPE html>'));
   assert.match(text, /wall × cube/);
   assert.match(text, /id="clash-1"/);
-  const report = await browser.newPage();
+  const report = await session.browser.newPage();
   /** @type {string[]} */
   const asked = [];
   report.on('request', (request) => asked.push(request.url()));

@@ -2,13 +2,13 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage } from '../support/browser.mjs';
+import { before, test } from 'node:test';
+import { openPage } from '../support/browser.mjs';
+import { BrowserSession } from '../support/browser_session.mjs';
 import { PATIENCE, choose, grab, moveBy, settled, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
-import { LiveSession } from '../support/session.mjs';
 
-const session = new LiveSession(`review${process.pid}`);
+const session = new BrowserSession('review');
 let browser, addresses, eva, tom;
 
 // Beside the pegs a shell that is open at its top, and a ball that fits into it: what lies inside is not known.
@@ -26,21 +26,14 @@ function shellStl() {
 before(async () => {
   writeFileSync(join(session.folder, 'shell.stl'), shellStl());
   await session.serve(OPEN, ['--log', join(session.folder, 'review.mcap')]);
-  addresses = await session.open();
-  browser = await openBrowser();
-  eva = await openPage(browser, addresses.designer, { name: 'Eva' });
-  tom = await openPage(browser, addresses.designer, { name: 'Tom', scheme: 'light' });
+  ({ browser, addresses } = await session.show());
+  [eva, tom] = await session.join('Eva', 'Tom');
   for (const page of [eva, tom]) await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   await whenListed(eva, 'parts', 'peg_k6');
   await grab(eva, 'peg_k6');
   await moveBy(eva, [0, 0, -28]);
   await whenListed(tom, 'clashes', 'potential, plate_k6 × peg_k6');
 }, { timeout: 90_000 });
-
-after(async () => {
-  await browser?.close();
-  await session.end();
-});
 
 const row = (page, pair) => page.locator(`#clashes > li[aria-label*="${pair}"]`);
 const figure = (page, name) => page.locator('#clash dl').evaluate((list, wanted) => {

@@ -1,26 +1,19 @@
 // Two people and a late one share a session through their browsers; the server, the gateway and the engine are the real ones.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { joinAs, openBrowser, openPage } from '../support/browser.mjs';
+import { before, test } from 'node:test';
+import { joinAs, openPage } from '../support/browser.mjs';
+import { BrowserSession } from '../support/browser_session.mjs';
 import { PATIENCE, choose, grab, moveBy, position, settled, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
-import { LiveSession } from '../support/session.mjs';
 
-const session = new LiveSession();
+const session = new BrowserSession();
 let browser, addresses, ann, bob;
 
 before(async () => {
   await session.serve(PEGS);
-  addresses = await session.open();
-  browser = await openBrowser();
-  ann = await openPage(browser, addresses.designer, { name: 'ann' });
-  bob = await openPage(browser, addresses.designer, { name: 'bob', scheme: 'light' });
+  ({ browser, addresses } = await session.show());
+  [ann, bob] = await session.join('ann', 'bob');
 }, { timeout: 90_000 });
-
-after(async () => {
-  await browser?.close();
-  await session.end();
-});
 
 test('two people join and see each other', async () => {
   await whenListed(ann, 'parts', 'peg_k6');

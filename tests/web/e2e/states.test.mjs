@@ -2,21 +2,20 @@
 import assert from 'node:assert/strict';
 import { rmSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { joinAs, openBrowser, openPage } from '../support/browser.mjs';
+import { before, test } from 'node:test';
+import { joinAs, openPage } from '../support/browser.mjs';
+import { BrowserSession } from '../support/browser_session.mjs';
 import { cutOff, paleTexts, smallTargets } from '../support/looks.mjs';
 import { PATIENCE, choose, grab, moveBy, settled, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
-import { LiveSession } from '../support/session.mjs';
 
-const session = new LiveSession(`states${process.pid}`);
+const session = new BrowserSession('states');
 let browser, addresses, ann;
 
 before(async () => {
   await session.serve(PEGS, ['--log', join(session.folder, 'logs')]);
-  addresses = await session.open();
-  browser = await openBrowser();
-  ann = await openPage(browser, addresses.designer, { name: 'ann' });
+  ({ browser, addresses } = await session.show());
+  [ann] = await session.join('ann');
   await whenListed(ann, 'parts', 'peg_k6');
   await grab(ann, 'peg_p6');
   const real = whenListed(ann, 'clashes', 'real, plate_p6 × peg_p6');
@@ -24,11 +23,6 @@ before(async () => {
   await real;
   await ann.click('#hand button:has-text("Release")');
 }, { timeout: 90_000 });
-
-after(async () => {
-  await browser?.close();
-  await session.end();
-});
 
 const trouble = (page, kind) => page.locator(`#banner[data-trouble="${kind}"]`);
 
