@@ -20,6 +20,7 @@ class Pegs {
   Pegs(const Fit& fit, int count, const char* policy, int threads = 1);
 
   int count() const { return count_; }
+  World& world() { return world_; }
   Vec3 position(int i) const { return world_.find(peg(i))->X_WP.p; }
   /// From the axis of its bore, mm.
   Vec3 off_axis(int i) const;

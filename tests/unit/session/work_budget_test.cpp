@@ -180,7 +180,7 @@ TEST(WorkBudget, WhatIsNotJudgedStaysToldAsItWas) {
 TEST(WorkBudget, WhatUsersHoldComesFirst) {
   Row row(Policy::kReport, true);
   for (const double by : {3.5, 1.0}) row.push(Vec3(by, 0, 0));
-  row.session.world.tick_rate_hz = 240.0;
+  row.session.world.tick_rate_hz = 600.0;
   const PartId held = row.pegs.back();
   for (const PartId peg : row.pegs)
     if (peg != held) row.session.command(row.ada, peg, CommandKind::kRelease);
