@@ -62,6 +62,10 @@ void ServerWriters::say(std::span<const StandingChange> changes) {
   in_slices(changes, kDecisionSlice, [this](auto slice) { say(to_wire({}, {}, {}, {}, slice)); });
 }
 
+void ServerWriters::say(std::span<const UploadState> uploads) {
+  in_slices(uploads, kSlice, [this](auto slice) { say(to_wire({}, {}, {}, {}, {}, slice)); });
+}
+
 void ServerWriters::say(const PoseBatch& batch) {
   if (batch.keyframe) {
     for (const wire::PoseBatch& chunk : cut(batch, ++keyframe_serial_)) write(keyframes_, chunk);

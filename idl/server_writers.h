@@ -26,6 +26,7 @@ class ServerWriters {
   void say(std::span<const RefusedIncrement> refused);
   void say(std::span<const Decision> decisions);
   void say(std::span<const StandingChange> changes);
+  void say(std::span<const UploadState> uploads);
   void say(const PoseBatch& batch);
   void say(std::span<const ClashEvent> events);
   void say(const Snapshot& snapshot);

@@ -57,6 +57,10 @@ class HeldChannel final : public ServerChannel {
   void publish_decisions(std::span<const Decision> decisions) override;
   void publish_standing(std::span<const StandingChange> changes) override;
   void publish_refusals(std::span<const RefusedIncrement> refused) override;
+  /// Acknowledges nothing that could be lost with this server: an upload begins anew elsewhere.
+  void publish_uploads(std::span<const UploadState> uploads) override {
+    inner_.publish_uploads(uploads);
+  }
   void publish_poses(const PoseBatch& batch) override;
   void publish_events(std::span<const ClashEvent> events) override;
   void publish_snapshot(const Snapshot& snapshot) override;

@@ -71,6 +71,7 @@ struct Intake {
   std::vector<JoinReply> join_replies;
   std::vector<Reply> replies;
   std::vector<RefusedIncrement> refused;
+  std::vector<UploadState> uploads;                ///< news of them
   std::vector<Ack> acks;                           ///< one per user that sent increments, by user
   std::vector<std::string> turned_away;            ///< by the transport, in words
   bool follower_came = false, superseded = false;  ///< see ServerInput

@@ -53,6 +53,7 @@ void TickPublisher::publish_answers(const Intake& intake, const StepReport& repo
   if (!intake.decisions.empty()) publish_decisions(intake, report.tick);
   if (!intake.refused.empty()) channel_.publish_refusals(intake.refused);
   if (!report.refused.empty()) channel_.publish_refusals(report.refused);
+  if (!intake.uploads.empty()) channel_.publish_uploads(intake.uploads);
   if (report.events.empty()) return;
   channel_.publish_events(report.events);
   event_seq_ = report.events.back().seq;

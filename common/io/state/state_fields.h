@@ -36,11 +36,16 @@ void fields(A& a, Constraint& x) {
   a(kind, held, other, distance_mm, snap);
 }
 template <class A>
+void fields(A& a, PartEdit& x) {
+  auto& [name, mesh_hash, X_WP, moving, quantum_mm] = x;
+  a(name, mesh_hash, X_WP, moving, quantum_mm);
+}
+template <class A>
 void fields(A& a, Details& x) {
   auto& [parts, other_part, feature, other_feature, other_user, clash, status, text, constraint,
-         constraint_id] = x;
+         constraint_id, edit] = x;
   a(parts, other_part, feature, other_feature, other_user, clash, status, text, constraint,
-    constraint_id);
+    constraint_id, edit);
 }
 template <class A>
 void fields(A& a, Decision& x) {

@@ -249,6 +249,11 @@ Refused check(const World& world, const Command& command) {
     case CommandKind::kAddConstraint:
     case CommandKind::kDropConstraint:
       return {};  // checked where they are done
+    case CommandKind::kAddPart:
+    case CommandKind::kReplacePart:
+    case CommandKind::kRemovePart:
+    case CommandKind::kSetMoving:
+      return {Refusal::kNotAllowed, "this server does not change the parts of a session"};
     case CommandKind::kUnknown:
       break;
   }
@@ -290,6 +295,14 @@ Decision::Kind decision_of(CommandKind kind) {
       return Decision::Kind::kAddConstraint;
     case CommandKind::kDropConstraint:
       return Decision::Kind::kDropConstraint;
+    case CommandKind::kAddPart:
+      return Decision::Kind::kAddPart;
+    case CommandKind::kReplacePart:
+      return Decision::Kind::kReplacePart;
+    case CommandKind::kRemovePart:
+      return Decision::Kind::kRemovePart;
+    case CommandKind::kSetMoving:
+      return Decision::Kind::kSetMoving;
     case CommandKind::kUnknown:
       break;
   }

@@ -222,6 +222,10 @@ std::vector<PartPose> apply_decision(World& world, const Decision& decision) {
     case Decision::Kind::kDropConstraint:
       (void)drop_constraint(world, decision.user, decision.details.constraint_id);
       return {};
+    case Decision::Kind::kAddPart:
+    case Decision::Kind::kReplacePart:
+    case Decision::Kind::kRemovePart:
+    case Decision::Kind::kSetMoving:
     case Decision::Kind::kUnknown:
       break;
   }
