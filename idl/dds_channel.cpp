@@ -56,6 +56,9 @@ class DdsServerChannel final : public StandbyChannel {
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
     writers_.say(hash, bytes);
   }
+  void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    writers_.say(hash, bytes);
+  }
   void publish_features(const FeatureTable& table) override { writers_.say(table); }
   void publish_pulse(const SessionPulse& pulse) override { writers_.say(pulse); }
   bool has_readers() const override { return writers_.has_readers(); }

@@ -88,6 +88,8 @@ void ServerWriters::say(const Snapshot& snapshot) {
 }
 
 void ServerWriters::say(const std::string& mesh_hash, std::span<const std::byte> mesh) {
+  const std::lock_guard lock(mesh_mutex_);
+  if (!said_meshes_.insert(mesh_hash).second) return;
   const std::vector<wire::MeshChunk> chunks = cut_mesh(mesh_hash, mesh);
   if (mesh_chunks_ + chunks.size() > static_cast<std::size_t>(row_of(Topic::kMesh).max_keys)) {
     ++failed_;  // no room for the whole mesh: none of it

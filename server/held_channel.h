@@ -65,6 +65,10 @@ class HeldChannel final : public ServerChannel {
   void publish_events(std::span<const ClashEvent> events) override;
   void publish_snapshot(const Snapshot& snapshot) override;
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override;
+  /// It says nothing of the session.
+  void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    inner_.publish_coming_mesh(hash, bytes);
+  }
   void publish_features(const FeatureTable& table) override;
   void publish_pulse(const SessionPulse& pulse) override;
   bool has_readers() const override { return inner_.has_readers(); }

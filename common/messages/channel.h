@@ -199,7 +199,9 @@ class ServerChannel {
   virtual void publish_snapshot(const Snapshot& snapshot) = 0;  ///< kept for late joiners
   virtual void publish_mesh(const std::string& hash,
                             std::span<const std::byte> bytes) = 0;  ///< kept
-  virtual void publish_features(const FeatureTable& table) = 0;     ///< kept; the last one counts
+  /// A mesh that a part may be made of soon; kept as well. May be called by any thread.
+  virtual void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) = 0;
+  virtual void publish_features(const FeatureTable& table) = 0;  ///< kept; the last one counts
   virtual void publish_pulse(const SessionPulse& pulse) = 0;
   virtual bool has_readers() const = 0;
   virtual ChannelCounters counters() const = 0;

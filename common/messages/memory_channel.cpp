@@ -214,6 +214,9 @@ class MemoryServer final : public ServerChannel {
     const std::lock_guard lock(state_->mutex);
     if (current()) state_->meshes.push_back(mesh);
   }
+  void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    publish_mesh(hash, bytes);
+  }
   void publish_features(const FeatureTable& table) override {
     each([&](ClientBox& box) { box.reliable.features = {table}; });
     const std::lock_guard lock(state_->mutex);
