@@ -244,6 +244,7 @@ TEST_F(UploadTest, EachLimitIsOneLine) {
   send(ada, piece(ada, 6, 0, 100, 100));
   EXPECT_TRUE(turn_until([&] { return ada.uploads.back().refusal != Refusal::kNone; }));
   EXPECT_EQ(ada.uploads.back().refusal, Refusal::kUnreadableMesh);
+  EXPECT_NE(ada.uploads.back().text.find("announced"), std::string::npos);
   for (const Person* person : {&ada, &bot})
     for (const UploadState& state : person->uploads)
       EXPECT_EQ(state.text.find('\n'), std::string::npos);
