@@ -96,6 +96,7 @@ Result<ImportedMesh> read_file(const PartMaker::Wish& wish) {
 
 struct PartMaker::Work {
   PartShapes::Make make;
+  int threads = 1;
   std::mutex mutex;
   std::condition_variable wake;
   std::deque<Wish> wishes;
@@ -141,8 +142,8 @@ struct PartMaker::Work {
       wish.solid = std::make_shared<const Solid>(std::move(mesh->mesh));
     }
     const Solid& solid = *wish.solid;
-    build_derived(solid);
     ready.shape = std::make_shared<const PartShape>(make(wish.solid, ready.quantum_mm));
+    build_derived(*ready.shape, threads);
     if (solid.mesh().triangles.size() <= kRecognizedOnDemand)
       ready.recognized =
           std::make_shared<const std::vector<Feature>>(recognize_features(solid).features);
@@ -164,8 +165,10 @@ struct PartMaker::Work {
   }
 };
 
-PartMaker::PartMaker(PartShapes::Make make, Publish publish) : work_(std::make_shared<Work>()) {
+PartMaker::PartMaker(PartShapes::Make make, int threads, Publish publish)
+    : work_(std::make_shared<Work>()) {
   work_->make = std::move(make);
+  work_->threads = threads;
   work_->publish = std::move(publish);
   std::thread([work = work_] { work->run(); }).detach();
 }

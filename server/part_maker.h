@@ -37,7 +37,8 @@ class PartMaker {
   /// Called by the thread for each mesh of a file, before it is told as made.
   using Publish = std::function<void(const std::string& hash, std::span<const std::byte> bytes)>;
 
-  PartMaker(PartShapes::Make make, Publish publish);
+  /// threads: that judge the parts.
+  PartMaker(PartShapes::Make make, int threads, Publish publish);
   ~PartMaker();  ///< does not wait: the thread ends after its present file
   PartMaker(const PartMaker&) = delete;
   PartMaker& operator=(const PartMaker&) = delete;

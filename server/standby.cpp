@@ -72,6 +72,7 @@ Follower::Follower(World& world, SessionStatistics& statistics, SessionLogWriter
       statistics_(statistics),
       log_(log),
       recorder_(world, log, checkpoints),
+      threads_(threads),
       scratch_(threads) {
   statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   recorder_.open(now_ns());
@@ -121,10 +122,11 @@ Status Follower::take_mesh(MeshPiece piece) {
   if (mesh) triangles = {std::move(mesh->points_mm), std::move(mesh->triangles)};
   if (!mesh || mesh_hash(triangles) != mesh_.hash)
     return fail(Code::kMismatch, "mesh " + mesh_.hash + " was told with other bytes");
-  auto make = [make = world_.shapes->make(), quantum_mm = mesh_.quantum_mm,
+  auto make = [make = world_.shapes->make(), quantum_mm = mesh_.quantum_mm, threads = threads_,
                solid = std::make_shared<const Solid>(std::move(triangles))]() -> PartShapePtr {
-    build_derived(*solid);
-    return std::make_shared<const PartShape>(make(solid, quantum_mm));
+    auto shape = std::make_shared<const PartShape>(make(solid, quantum_mm));
+    build_derived(*shape, threads);
+    return shape;
   };
   meshes_.push_back({mesh_.quantum_mm, std::async(std::launch::async, std::move(make))});
   mesh_ = {};

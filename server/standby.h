@@ -44,6 +44,7 @@ class Follower {
   SessionStatistics& statistics_;
   SessionLogWriter* log_;
   TickRecorder recorder_;
+  int threads_;
   Scratch scratch_;
   std::vector<SeatRecord> seats_;
   std::uint64_t ticks_ = 0, state_hash_ = 0;

@@ -36,7 +36,8 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
   inbox_.uploads().publish_with(
       [&channel](const std::string& hash, std::span<const std::byte> mesh) {
         channel.publish_coming_mesh(hash, mesh);
-      });
+      },
+      options.threads);
 }
 
 void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> departures) {

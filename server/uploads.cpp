@@ -130,7 +130,7 @@ void Uploads::drop(UserId user) {
 
 PartMaker& Uploads::maker(const World& world) {
   if (!maker_) {
-    maker_ = std::make_unique<PartMaker>(world.shapes->make(), publish_);
+    maker_ = std::make_unique<PartMaker>(world.shapes->make(), threads_, publish_);
     for (const Part& part : world.parts) used_.insert(part.solid->hash());
   }
   return *maker_;

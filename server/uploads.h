@@ -23,8 +23,11 @@ class Uploads {
  public:
   explicit Uploads(const InboxLimits& limits) : limits_(limits) {}
 
-  /// How meshes get to clients; see PartMaker.
-  void publish_with(PartMaker::Publish publish) { publish_ = std::move(publish); }
+  /// How meshes get to clients, and how many threads judge the parts; see PartMaker.
+  void publish_with(PartMaker::Publish publish, int threads) {
+    publish_ = std::move(publish);
+    threads_ = threads;
+  }
   /// Is there a server that stands by, and has one just come? It gets each mesh before the decision
   /// that names it.
   void note_follower(bool is_there, bool has_come);
@@ -84,6 +87,7 @@ class Uploads {
 
   const InboxLimits& limits_;
   PartMaker::Publish publish_;
+  int threads_ = 1;
   std::unique_ptr<PartMaker> maker_;  ///< once it is needed
   std::map<Key, Upload> uploads_;
   std::map<UserId, std::uint64_t> bytes_of_;  ///< that each user has sent or announced

@@ -1,12 +1,16 @@
 #include "common/session/world/part_shapes.h"
 
+#include "common/depth/ready_body.h"
+
 namespace mortise {
 
-void build_derived(const Solid& solid) {
+void build_derived(const PartShape& shape, int threads) {
+  const Solid& solid = *shape.solid;
   solid.bvh();
   solid.shells();
   solid.outline();
   (void)solid.inside_known();  // and with it topology and cracks
+  make_body_ready(solid, shape.band, threads);
 }
 
 void PartShapes::add(SolidPtr solid, double quantum_mm) {

@@ -20,8 +20,9 @@ struct PartShape {
 };
 using PartShapePtr = std::shared_ptr<const PartShape>;
 
-/// Builds now what the first query of the mesh would build. Any thread.
-void build_derived(const Solid& solid);
+/// Builds now what the first queries of the mesh and its surface would build, for so many threads
+/// that judge. Any thread but those.
+void build_derived(const PartShape& shape, int threads);
 
 /// The meshes of which parts of a running session can be made. A mesh comes here before the
 /// decision that names it: from the scenario, from an upload, or from a log.

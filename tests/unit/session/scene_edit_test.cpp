@@ -1,6 +1,10 @@
 // Parts come, go, and begin to move while the session runs.
 #include <gtest/gtest.h>
 
+#include <thread>
+
+#include "common/depth/body_index.h"
+#include "common/depth/ready_body.h"
 #include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/world/part_shapes.h"
@@ -247,6 +251,26 @@ TEST_F(SceneEdit, PairsAreCountedOfWhatIsThere) {
   EXPECT_EQ(counters.pairs.in, 1U);
   EXPECT_EQ(counters.pairs_boxes_apart, 1U);
   EXPECT_EQ(counters.pairs_static + counters.pairs_still, 0U);
+}
+
+// What depth derives of an added part is made beside the ticks, once for each thread that judges.
+TEST(ReadyBody, IsTakenByOneThreadEach) {
+  const Solid solid(cube_mesh(10.0));
+  const SurfaceBand band = nominal_band();
+  const auto in_thread = [](const auto& act) { std::thread(act).join(); };
+  const auto is_ready = [&] {
+    bool ready = false;
+    in_thread([&] { ready = body_index(solid, band)->cover != nullptr; });
+    return ready;
+  };
+  EXPECT_FALSE(is_ready());
+  in_thread([&] { make_body_ready(solid, band, 2); });
+  EXPECT_TRUE(is_ready());
+  EXPECT_TRUE(is_ready());
+  EXPECT_FALSE(is_ready()) << "there were two";
+  const Solid other(cube_mesh(11.0));
+  in_thread([&] { make_body_ready(other, band, 1); });
+  EXPECT_FALSE(is_ready()) << "it is another part's";
 }
 
 }  // namespace
