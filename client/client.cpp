@@ -41,17 +41,18 @@ std::uint64_t Client::send_command(LocalUser user, CommandKind kind, PartId part
   return own_.send(user, Command{{}, part, 0, kind, std::move(details)}, now_ns_);
 }
 
+std::uint64_t Client::upload(LocalUser user, const std::string& name, double unit_mm,
+                             std::vector<std::byte> bytes) {
+  if (own_.state(user) == JoinState::kJoined)
+    return uploads_.begin(user, name, unit_mm, std::move(bytes));
+  ++statistics_.not_joined;
+  return 0;
+}
+
 ClientStatistics Client::statistics() const {
   ClientStatistics statistics = statistics_;
   own_.add_to(statistics);
   return statistics;
-}
-
-PartId Client::find_part(const std::string& name) const {
-  for (const auto& [id, part] : parts_) {
-    if (part.info.name == name) return id;
-  }
-  return {};
 }
 
 ClientUpdate Client::poll() {
@@ -59,7 +60,6 @@ ClientUpdate Client::poll() {
   ClientInput input = channel_.take();
   now_ns_ = clock_();
   update.at_ns = now_ns_;
-  changed_.clear();
   server_present_ = input.server_present;
   if (input.server_lost) {
     update.server_lost = true;
@@ -67,13 +67,14 @@ ClientUpdate Client::poll() {
   }
   for (const JoinReply& reply : input.join_replies) own_.take(reply, now_ns_, update);
   for (const Reply& reply : input.replies) {
-    if (reply.part) set_holder(reply.part, reply.holder);
+    if (reply.part) parts_.set_holder(reply.part, reply.holder);
     if (own_.owns(reply.user)) update.replies.push_back(reply);
   }
   for (const RefusedIncrement& refused : input.refused) {
     if (own_.owns(refused.user)) update.refused.push_back(refused);
     own_.take(refused);
   }
+  uploads_.take(input.uploads, update);
   // Snapshots after them: what they say is of the same tick or later.
   for (const Decision& decision : input.decisions) apply_decision(decision, update);
   for (const StandingChange& change : input.standing) update.standing |= standing_.take(change);
@@ -90,9 +91,10 @@ ClientUpdate Client::poll() {
   update.meshes = std::move(input.meshes);
   update.features = !input.features.empty();
   if (update.features) features_.take(input.features.back());
-  update.changed.assign(changed_.begin(), changed_.end());
+  update.changed = parts_.take_changed();
   if (server_present_) {
     own_.send_what_is_due(now_ns_);
+    uploads_.send_what_is_due();
     request_snapshot_when_due();
   }
   return update;
@@ -101,7 +103,8 @@ ClientUpdate Client::poll() {
 void Client::forget_server() {
   ++statistics_.server_losses;
   own_.forget_server();
-  for (auto& [id, part] : parts_) part.tick = 0;  // another server counts anew
+  uploads_.forget_server();
+  parts_.forget_server();
   features_.clear();
   standing_.expect_another_server();
   events_.forget_server();
@@ -140,6 +143,7 @@ void Client::apply_decision(const Decision& decision, ClientUpdate& update) {
       update.remarks |= add_remark(decision);
       break;
     default:
+      update.scene |= parts_.apply_edit(decision);
       break;
   }
   update.decisions.push_back(decision);
@@ -159,13 +163,6 @@ bool Client::add_remark(const Decision& decision) {
   return true;
 }
 
-void Client::set_holder(PartId id, UserId holder) {
-  const auto found = parts_.find(id);
-  if (found == parts_.end() || found->second.info.holder == holder) return;
-  found->second.info.holder = holder;
-  changed_.insert(id);
-}
-
 void Client::take_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
   requested_at_ns_.reset();  // answered
   session_ = snapshot.session;
@@ -177,42 +174,15 @@ void Client::take_snapshot(const Snapshot& snapshot, ClientUpdate& update) {
   remarks_ = snapshot.remarks;
   update.standing |= standing_.take(snapshot);
   for (const UserInfo& info : snapshot.users) own_.doubt(info);
-  std::map<PartId, KnownPart> parts;
-  for (const PartInfo& info : snapshot.parts) {
-    KnownPart& part = parts[info.part];
-    part.info = info;
-    part.tick = snapshot.tick;
-    const auto known = parts_.find(info.part);
-    if (known != parts_.end() && known->second.tick > snapshot.tick) {
-      part.info.X_WP = known->second.info.X_WP;
-      part.info.holder = known->second.info.holder;
-      part.tick = known->second.tick;
-    }
-    if (known == parts_.end() || known->second.info.holder != part.info.holder ||
-        !identical(known->second.info.X_WP, part.info.X_WP)) {
-      changed_.insert(info.part);
-    }
-  }
-  parts_ = std::move(parts);
+  update.scene |= parts_.take(snapshot);
   if (snapshot.tick >= stale_tick_) poses_stale_since_ns_.reset();
   statistics_.highest_tick = std::max(statistics_.highest_tick, snapshot.tick);
   events_.take(snapshot, update);
 }
 
 void Client::apply_poses(const PoseBatch& batch, ClientUpdate& update) {
-  for (const PartPose& pose : batch.parts) {
-    if (events_.has_snapshot() && !parts_.contains(pose.part)) continue;
-    KnownPart& part = parts_[pose.part];
-    part.info.part = pose.part;
-    if (batch.tick < part.tick) {
-      ++statistics_.poses_stale;
-      continue;
-    }
-    part.tick = batch.tick;
-    part.info.X_WP = pose.X_WP;
-    part.info.holder = pose.holder;
-    changed_.insert(pose.part);
-  }
+  for (const PartPose& pose : batch.parts)
+    if (!parts_.take(pose, batch.tick, !events_.has_snapshot())) ++statistics_.poses_stale;
   for (const Ack& ack : batch.acks) own_.take(ack, batch.tick, now_ns_, update);
   if (batch.keyframe && batch.tick >= stale_tick_) poses_stale_since_ns_.reset();
   events_.expect(batch.event_seq);

@@ -3,7 +3,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,9 @@
 #include "client/client_update.h"
 #include "client/event_stream.h"
 #include "client/known_features.h"
+#include "client/known_parts.h"
 #include "client/known_standing.h"
+#include "client/own_uploads.h"
 #include "client/own_users.h"
 #include "common/messages/channel.h"
 
@@ -44,6 +45,13 @@ class Client final : public ClientCommands {
   std::uint64_t send(LocalUser user, PartId part, const Vec3& translation_mm,
                      const Vec3& rotation_rad = Vec3::Zero());
 
+  /// Sends a mesh file to the server, piece by piece with each poll(). `name`: its ending says the
+  /// format ("bracket.stl"). unit_mm: mm per unit of its numbers. Returns the number that
+  /// ClientUpdate::uploads tells of it; 0 when the user has not joined (counted). A part can be
+  /// made of it at once, by content_hash(bytes): see add_part().
+  std::uint64_t upload(LocalUser user, const std::string& name, double unit_mm,
+                       std::vector<std::byte> bytes);
+
   /// Takes what has arrived, never blocks, sends what is due (joins, heartbeats, snapshot
   /// requests).
   ClientUpdate poll();
@@ -56,7 +64,7 @@ class Client final : public ClientCommands {
   const std::string& policy() const { return policy_; }
   double tick_rate_hz() const { return tick_rate_hz_; }
   /// Before the first snapshot a part may be known by its pose alone, without a name.
-  const std::map<PartId, KnownPart>& parts() const { return parts_; }
+  const std::map<PartId, KnownPart>& parts() const { return parts_.all(); }
   /// All users that the session knows, present or not, with their last role.
   const std::vector<UserInfo>& users() const { return session_users_; }
   /// What was found when meshes of the session were read.
@@ -70,7 +78,8 @@ class Client final : public ClientCommands {
   /// The features that constraints can name. Arrives soon after the first snapshot, and once or
   /// twice more while the server still searches meshes.
   const KnownFeatures& features() const { return features_; }
-  PartId find_part(const std::string& name) const;  ///< none when unknown
+  /// None when unknown.
+  PartId find_part(const std::string& name) const { return parts_.find(name); }
   ClientStatistics statistics() const;
 
  private:
@@ -84,17 +93,17 @@ class Client final : public ClientCommands {
   void apply_poses(const PoseBatch& batch, ClientUpdate& update);
   void note_missed_poses(std::uint64_t missed);
   void request_snapshot_when_due();
-  void set_holder(PartId part, UserId holder);
 
   ClientChannel& channel_;
   ClientOptions options_;
   Clock clock_;
   ClientStatistics statistics_;
   OwnUsers own_{channel_, options_, statistics_};
+  OwnUploads uploads_{channel_, own_};
   EventStream events_{options_, statistics_};
   std::string session_, policy_;
   double tick_rate_hz_ = 0.0;
-  std::map<PartId, KnownPart> parts_;
+  KnownParts parts_;
   KnownFeatures features_;
   std::vector<UserInfo> session_users_;
   std::vector<PartNote> notes_;
@@ -104,7 +113,6 @@ class Client final : public ClientCommands {
   bool server_present_ = false;
   /// The time since when; absent: no such state.
   std::optional<std::int64_t> poses_stale_since_ns_, requested_at_ns_;
-  std::set<PartId> changed_;  ///< in this poll()
   std::int64_t now_ns_ = 0;
 };
 

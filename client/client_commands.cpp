@@ -24,6 +24,12 @@ Details of_text(const std::string& text) {
   return details;
 }
 
+Details of_edit(PartEdit edit) {
+  Details details;
+  details.edit = std::move(edit);
+  return details;
+}
+
 }  // namespace
 
 std::uint64_t ClientCommands::grab(LocalUser user, PartId part) {
@@ -101,6 +107,22 @@ std::uint64_t ClientCommands::snap(LocalUser user, PartId held, const FeatureOf&
   Details details;
   details.constraint = {kind, {held, feature}, other, 0.0, true};
   return command(user, CommandKind::kSnap, held, std::move(details));
+}
+std::uint64_t ClientCommands::add_part(LocalUser user, const std::string& name,
+                                       const std::string& mesh_hash, const Pose& X_WP,
+                                       bool moving) {
+  return command(user, CommandKind::kAddPart, PartId{},
+                 of_edit({name, mesh_hash, X_WP, moving, 0.0}));
+}
+std::uint64_t ClientCommands::replace_part(LocalUser user, PartId part,
+                                           const std::string& mesh_hash) {
+  return command(user, CommandKind::kReplacePart, part, of_edit({"", mesh_hash, {}, false, 0.0}));
+}
+std::uint64_t ClientCommands::remove_part(LocalUser user, PartId part) {
+  return command(user, CommandKind::kRemovePart, part);
+}
+std::uint64_t ClientCommands::set_moving(LocalUser user, PartId part, bool moving) {
+  return command(user, CommandKind::kSetMoving, part, of_edit({"", "", {}, moving, 0.0}));
 }
 std::uint64_t ClientCommands::drop_constraint(LocalUser user, PartId held,
                                               ConstraintId constraint) {

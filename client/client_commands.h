@@ -50,6 +50,16 @@ class ClientCommands {
                      ConstraintKind kind = ConstraintKind::kUnknown);
   std::uint64_t drop_constraint(LocalUser user, PartId held, ConstraintId constraint);
 
+  /// Scene edits. mesh_hash: content_hash() of a file that this user uploads (see Client::upload),
+  /// or PartInfo::mesh_hash of any mesh of the session. The reply comes once the mesh is prepared;
+  /// the number of an added part is in the decision kAddPart.
+  std::uint64_t add_part(LocalUser user, const std::string& name, const std::string& mesh_hash,
+                         const Pose& X_WP, bool moving);
+  /// The part keeps number, name, pose and what is said of it.
+  std::uint64_t replace_part(LocalUser user, PartId part, const std::string& mesh_hash);
+  std::uint64_t remove_part(LocalUser user, PartId part);
+  std::uint64_t set_moving(LocalUser user, PartId part, bool moving);
+
  protected:
   ~ClientCommands() = default;
 

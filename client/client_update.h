@@ -45,6 +45,8 @@ struct ClientUpdate {
   bool standing = false;                  ///< standing() may be another list
   bool remarks = false;                   ///< remarks() may be another list
   std::vector<RefusedIncrement> refused;  ///< of our users
+  std::vector<UploadState> uploads;       ///< of our users, in order
+  bool scene = false;                     ///< parts were added, removed or changed
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here
   std::vector<SeenAck> acks;              ///< new ones, in order

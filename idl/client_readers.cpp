@@ -90,6 +90,7 @@ void ClientReaders::take_answers(const ClientKey& own, ClientInput& input) {
     append(answers->refused, input.refused);
     append(answers->decisions, input.decisions);
     append(answers->standing, input.standing);
+    append(answers->uploads, input.uploads);
   });
 }
 

@@ -109,6 +109,26 @@ bool says_anything(const Constraint& constraint) {
          constraint.other.part;
 }
 
+wire::PartEdit to_wire(const PartEdit& edit) {
+  wire::PartEdit out;
+  out.name(clip(edit.name, kMaxName_bytes));
+  out.mesh_hash(clip(edit.mesh_hash, kMaxName_bytes));
+  out.pose(wire_pose(edit.X_WP));
+  out.moving(edit.moving);
+  out.quantum_mm(edit.quantum_mm);
+  return out;
+}
+
+Result<PartEdit> from_wire(const wire::PartEdit& in) {
+  Door door("edit of a part");
+  door.name(in.name(), "name");
+  door.name(in.mesh_hash(), "mesh_hash");
+  door.pose(in.pose(), "pose");
+  door.count(in.quantum_mm(), "quantum_mm");
+  if (!door.open()) return door.refusal();
+  return PartEdit{in.name(), in.mesh_hash(), pose_of(in.pose()), in.moving(), in.quantum_mm()};
+}
+
 wire::Details to_wire(const Details& details) {
   wire::Details out;
   for (const PartId part : details.parts) out.parts().push_back(part.value);
@@ -126,6 +146,7 @@ wire::Details to_wire(const Details& details) {
   out.constraint_id(details.constraint_id.value);
   out.other_user(details.other_user.value);
   out.text(clip(details.text, kMaxText_bytes));
+  if (details.edit) out.edit().push_back(to_wire(*details.edit));
   return out;
 }
 
@@ -149,8 +170,14 @@ Result<Details> from_wire(const wire::Details& in) {
     door.name(constraint.other().feature(), "other feature");
   }
   door.text(in.text(), "text");
+  door.at_most_one(in.edit(), "edit");
   if (!door.open()) return door.refusal();
   Details details;
+  for (const wire::PartEdit& edit : in.edit()) {
+    Result<PartEdit> ours = from_wire(edit);
+    if (!ours) return ours.error();
+    details.edit = std::move(*ours);
+  }
   for (const std::uint32_t part : in.parts()) details.parts.push_back(PartId{part});
   for (const wire::PairDetails& pair : in.pair()) {
     details.feature = pair.feature();
@@ -236,6 +263,40 @@ Result<StandingChange> from_wire(const wire::StandingChange& in) {
 
 // ---- requests and answers
 
+namespace {
+
+wire::UploadPiece to_wire(const UploadPiece& piece) {
+  wire::UploadPiece out;
+  out.user(piece.user.value);
+  out.upload(piece.upload);
+  out.name(clip(piece.name, kMaxName_bytes));
+  out.unit_mm(piece.unit_mm);
+  out.hash(clip(piece.hash, kMaxName_bytes));
+  out.length(piece.length);
+  out.offset(piece.offset);
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(piece.bytes.data());
+  out.bytes().assign(bytes, bytes + piece.bytes.size());
+  return out;
+}
+
+Result<UploadPiece> from_wire(const wire::UploadPiece& in) {
+  Door door("upload");
+  door.need(in.user() != 0, "user");
+  door.need(in.upload() != 0, "upload");
+  door.name(in.name(), "name");
+  door.need(std::isfinite(in.unit_mm()) && in.unit_mm() > 0.0, "unit_mm");
+  door.name(in.hash(), "hash");
+  door.need(!in.bytes().empty() && in.bytes().size() <= kUploadPiece_bytes, "bytes");
+  door.need(in.offset() <= in.length() && in.bytes().size() <= in.length() - in.offset(), "offset");
+  if (!door.open()) return door.refusal();
+  const auto* bytes = reinterpret_cast<const std::byte*>(in.bytes().data());
+  return UploadPiece{
+      UserId{in.user()}, in.upload(), in.name(),   in.unit_mm(),
+      in.hash(),         in.length(), in.offset(), {bytes, bytes + in.bytes().size()}};
+}
+
+}  // namespace
+
 wire::Request to_wire(const Request& request) {
   wire::Request out;
   switch (request.kind) {
@@ -255,6 +316,9 @@ wire::Request to_wire(const Request& request) {
     case Request::Kind::kSnapshot:
       out.snapshot(true);
       break;
+    case Request::Kind::kUpload:
+      out.upload().push_back(to_wire(request.piece));
+      break;
     case Request::Kind::kUnknown:
       break;
   }
@@ -263,7 +327,9 @@ wire::Request to_wire(const Request& request) {
 
 Result<Request> from_wire(const wire::Request& in) {
   Door door("request");
-  door.need(in.join().size() + in.leave().size() + in.command().size() + in.snapshot() == 1,
+  door.need(in.join().size() + in.leave().size() + in.command().size() + in.snapshot() +
+                    in.upload().size() ==
+                1,
             "number");
   for (const wire::JoinRequest& join : in.join()) {
     door.need(!join.name().empty() && text_ok(join.name(), kMaxName_bytes), "name");
@@ -285,6 +351,11 @@ Result<Request> from_wire(const wire::Request& in) {
     if (!command) return command.error();
     request.kind = Request::Kind::kCommand;
     request.command = std::move(*command);
+  } else if (!in.upload().empty()) {
+    Result<UploadPiece> piece = from_wire(in.upload()[0]);
+    if (!piece) return piece.error();
+    request.kind = Request::Kind::kUpload;
+    request.piece = std::move(*piece);
   } else {
     request.kind = Request::Kind::kSnapshot;
   }
@@ -325,11 +396,36 @@ Result<RefusedIncrement> from_wire(const wire::RefusedIncrement& in) {
                           static_cast<Refusal>(in.reason())};
 }
 
+Result<UploadState> from_wire(const wire::UploadState& in) {
+  Door door("state of an upload");
+  door.need(in.refusal() < kRefusalCount, "refusal");
+  door.name(in.mesh_hash(), "mesh_hash");
+  door.text(in.text(), "text");
+  if (!door.open()) return door.refusal();
+  return UploadState{UserId{in.user()},
+                     in.upload(),
+                     in.received(),
+                     in.ready(),
+                     in.mesh_hash(),
+                     in.text(),
+                     static_cast<Refusal>(in.refusal())};
+}
+
 wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
                       std::span<const RefusedIncrement> refused,
-                      std::span<const Decision> decisions,
-                      std::span<const StandingChange> standing) {
+                      std::span<const Decision> decisions, std::span<const StandingChange> standing,
+                      std::span<const UploadState> uploads) {
   wire::Answers out;
+  for (const UploadState& upload : uploads) {
+    wire::UploadState& entry = out.uploads().emplace_back();
+    entry.user(upload.user.value);
+    entry.upload(upload.upload);
+    entry.received(upload.received);
+    entry.ready(upload.ready);
+    entry.mesh_hash(clip(upload.mesh_hash, kMaxName_bytes));
+    entry.text(clip(upload.text, kMaxText_bytes));
+    entry.refusal(static_cast<std::uint8_t>(upload.refusal));
+  }
   for (const Decision& decision : decisions) out.decisions().push_back(to_wire(decision));
   for (const StandingChange& change : standing) out.standing().push_back(to_wire(change));
   for (const JoinReply& reply : joins) {
@@ -366,6 +462,7 @@ Result<Answers> from_wire(const wire::Answers& in) {
   if (Status read = read_all(in.refused(), answers.refused); !read) return read.error();
   if (Status read = read_all(in.decisions(), answers.decisions); !read) return read.error();
   if (Status read = read_all(in.standing(), answers.standing); !read) return read.error();
+  if (Status read = read_all(in.uploads(), answers.uploads); !read) return read.error();
   return answers;
 }
 

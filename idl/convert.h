@@ -40,12 +40,14 @@ struct Request {
     kJoin = 1,
     kLeave = 2,
     kCommand = 3,
-    kSnapshot = 4
+    kSnapshot = 4,
+    kUpload = 5
   };
   Kind kind = Kind::kUnknown;
   Command command;  ///< kLeave: only the user
   std::uint64_t nonce = 0;
   std::string name, role;
+  UploadPiece piece;
 };
 wire::Request to_wire(const Request& request);
 Result<Request> from_wire(const wire::Request& request);
@@ -55,18 +57,21 @@ Result<Request> from_wire(const wire::Request& request);
 wire::Answers to_wire(std::span<const JoinReply> joins, std::span<const Reply> replies,
                       std::span<const RefusedIncrement> refused,
                       std::span<const Decision> decisions = {},
-                      std::span<const StandingChange> standing = {});
+                      std::span<const StandingChange> standing = {},
+                      std::span<const UploadState> uploads = {});
 struct Answers {
   std::vector<JoinReply> joins;
   std::vector<Reply> replies;
   std::vector<RefusedIncrement> refused;
   std::vector<Decision> decisions;
   std::vector<StandingChange> standing;
+  std::vector<UploadState> uploads;
 };
 Result<Answers> from_wire(const wire::Answers& answers);
 Result<JoinReply> from_wire(const wire::JoinReply& reply);
 Result<Reply> from_wire(const wire::Reply& reply);
 Result<RefusedIncrement> from_wire(const wire::RefusedIncrement& refused);
+Result<UploadState> from_wire(const wire::UploadState& upload);
 
 wire::PartPose to_wire(const PartPose& pose);
 Result<PartPose> from_wire(const wire::PartPose& pose);

@@ -49,10 +49,14 @@ class DdsServerChannel final : public StandbyChannel {
   void publish_refusals(std::span<const RefusedIncrement> refused) override {
     writers_.say(refused);
   }
+  void publish_uploads(std::span<const UploadState> uploads) override { writers_.say(uploads); }
   void publish_poses(const PoseBatch& batch) override { writers_.say(batch); }
   void publish_events(std::span<const ClashEvent> events) override { writers_.say(events); }
   void publish_snapshot(const Snapshot& snapshot) override { writers_.say(snapshot); }
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    writers_.say(hash, bytes);
+  }
+  void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
     writers_.say(hash, bytes);
   }
   void publish_features(const FeatureTable& table) override { writers_.say(table); }
@@ -270,6 +274,7 @@ class DdsClientChannel final : public ClientChannel {
   void heartbeat(UserId user) override;
   void send(const IncrementBatch& batch) override;
   void send(const Command& command) override;
+  void send(const UploadPiece& piece) override;
   void request_snapshot() override;
   ClientInput take() override;
   ChannelCounters counters() const override;
@@ -363,6 +368,14 @@ void DdsClientChannel::send(const Command& command) {
   Request request;
   request.kind = Request::Kind::kCommand;
   request.command = command;
+  write(requests_, to_wire(request));
+}
+
+void DdsClientChannel::send(const UploadPiece& piece) {
+  assert_presence();
+  Request request;
+  request.kind = Request::Kind::kUpload;
+  request.piece = piece;
   write(requests_, to_wire(request));
 }
 

@@ -85,6 +85,9 @@ void ServerReaders::take_request(const wire::Request& sample, const ClientKey& k
     case Request::Kind::kCommand:
       input.commands.push_back({key, request->command});
       break;
+    case Request::Kind::kUpload:
+      input.pieces.push_back({key, std::move(request->piece)});
+      break;
     case Request::Kind::kSnapshot:
       input.snapshot_requests.push_back(key);
       break;

@@ -62,6 +62,10 @@ void ServerWriters::say(std::span<const StandingChange> changes) {
   in_slices(changes, kDecisionSlice, [this](auto slice) { say(to_wire({}, {}, {}, {}, slice)); });
 }
 
+void ServerWriters::say(std::span<const UploadState> uploads) {
+  in_slices(uploads, kSlice, [this](auto slice) { say(to_wire({}, {}, {}, {}, {}, slice)); });
+}
+
 void ServerWriters::say(const PoseBatch& batch) {
   if (batch.keyframe) {
     for (const wire::PoseBatch& chunk : cut(batch, ++keyframe_serial_)) write(keyframes_, chunk);
@@ -84,6 +88,8 @@ void ServerWriters::say(const Snapshot& snapshot) {
 }
 
 void ServerWriters::say(const std::string& mesh_hash, std::span<const std::byte> mesh) {
+  const std::lock_guard lock(mesh_mutex_);
+  if (!said_meshes_.insert(mesh_hash).second) return;
   const std::vector<wire::MeshChunk> chunks = cut_mesh(mesh_hash, mesh);
   if (mesh_chunks_ + chunks.size() > static_cast<std::size_t>(row_of(Topic::kMesh).max_keys)) {
     ++failed_;  // no room for the whole mesh: none of it

@@ -1,5 +1,8 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
+#include <mutex>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,9 +29,11 @@ class ServerWriters {
   void say(std::span<const RefusedIncrement> refused);
   void say(std::span<const Decision> decisions);
   void say(std::span<const StandingChange> changes);
+  void say(std::span<const UploadState> uploads);
   void say(const PoseBatch& batch);
   void say(std::span<const ClashEvent> events);
   void say(const Snapshot& snapshot);
+  /// May be called by any thread.
   void say(const std::string& mesh_hash, std::span<const std::byte> mesh);
   void say(const FeatureTable& table);
   void say(const SessionPulse& pulse);
@@ -47,8 +52,10 @@ class ServerWriters {
                   *snapshots_ = nullptr, *meshes_ = nullptr, *features_ = nullptr,
                   *pulses_ = nullptr;
   std::uint64_t pose_serial_ = 0, keyframe_serial_ = 0, snapshot_serial_ = 0, feature_serial_ = 0;
+  std::mutex mesh_mutex_;
   std::size_t mesh_chunks_ = 0;
-  std::uint64_t failed_ = 0;
+  std::set<std::string> said_meshes_;
+  std::atomic<std::uint64_t> failed_ = 0;
 };
 
 }  // namespace mortise

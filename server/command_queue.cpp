@@ -5,6 +5,7 @@
 
 #include "common/messages/names.h"
 #include "common/session/world/commands.h"
+#include "common/session/world/scene_edits.h"
 
 namespace mortise {
 namespace {
@@ -26,6 +27,11 @@ bool waits_for_increments(CommandKind kind) {
   }
 }
 
+bool names_mesh(const Command& command) {
+  return (command.kind == CommandKind::kAddPart || command.kind == CommandKind::kReplacePart) &&
+         command.details.edit.has_value();
+}
+
 // Do both touch a part in common? A group, and what names no part, may touch any.
 bool touch_alike(const Command& x, const Command& y) {
   return x.user == y.user && (x.part == y.part || !x.part || !y.part);
@@ -34,6 +40,7 @@ bool touch_alike(const Command& x, const Command& y) {
 }  // namespace
 
 void CommandQueue::begin(UserId user) {
+  uploads_.drop(user);
   if (user.value > sequences_.size()) sequences_.resize(user.value);
   sequences_[user.value - 1] = {};
 }
@@ -46,8 +53,8 @@ void CommandQueue::receive(const Command& command, World& world, std::int64_t no
     return refuse(command, user, order, std::string(name_of(order)), world, intake);
   if (!rates_.take(user, now_ns))
     return refuse(command, user, Refusal::kRateTooHigh,
-                  "more messages a second than the session accepts from one user, or from all", world,
-                  intake);
+                  "more messages a second than the session accepts from one user, or from all",
+                  world, intake);
   ++tally_.all().commands;
   ++tally_.of(user).commands;
   const bool ends_drag = waits_for_increments(command.kind);
@@ -83,11 +90,15 @@ void CommandQueue::carry_out_waiting(World& world, std::int64_t now_ns, Intake& 
       carry_out(waiting.command, world, now_ns, intake);
   }
   waiting_ = std::move(still_waiting);
+  for (Command& edit : std::exchange(edits_, {}))
+    carry_out_edit(std::move(edit), world, now_ns, intake);
 }
 
 void CommandQueue::drop(UserId user) {
+  uploads_.drop(user);
   const std::size_t undone =
-      std::erase_if(waiting_, [&](const Waiting& w) { return w.command.user == user; });
+      std::erase_if(waiting_, [&](const Waiting& w) { return w.command.user == user; }) +
+      std::erase_if(edits_, [&](const Command& edit) { return edit.user == user; });
   for (std::size_t i = 0; i < undone; ++i) tally_.count_refused_command(user);
 }
 
@@ -102,6 +113,53 @@ bool CommandQueue::must_wait(const Waiting& waiting, std::int64_t now_ns) {
 
 void CommandQueue::carry_out(const Command& command, World& world, std::int64_t now_ns,
                              Intake& intake) {
+  if (names_mesh(command))
+    carry_out_edit(command, world, now_ns, intake);
+  else
+    apply(command, world, now_ns, intake);
+}
+
+void CommandQueue::carry_out_edit(Command command, World& world, std::int64_t now_ns,
+                                  Intake& intake) {
+  // What is refused anyway does not wait.
+  const User* user = world.find(command.user);
+  if (user == nullptr || !user->present || user->role == Role::kObserver ||
+      check_edit(world, *user, command).refusal != Refusal::kNone)
+    return apply(command, world, now_ns, intake);
+  std::string& name = command.details.edit->mesh_hash;
+  Uploads::Mesh mesh = uploads_.find(command.user, name, world);
+  switch (mesh.is) {
+    case Uploads::Mesh::Is::kUnknown:
+      return answer_refused(command, Refusal::kUnknownMesh,
+                            "no mesh '" + name + "' was uploaded: send it first", world, intake);
+    case Uploads::Mesh::Is::kUnusable:
+      return answer_refused(command, Refusal::kUnreadableMesh, std::move(mesh.text), world, intake);
+    case Uploads::Mesh::Is::kComing:
+      break;
+    case Uploads::Mesh::Is::kHere:
+      name = mesh.hash;
+      command.details.text = std::move(mesh.text);
+      return apply(command, world, now_ns, intake);
+  }
+  const auto waiting = std::ranges::count_if(
+      edits_, [&](const Command& other) { return other.user == command.user; });
+  if (waiting >= limits_.edits_waiting)
+    return answer_refused(
+        command, Refusal::kRateTooHigh,
+        std::to_string(waiting) + " commands of this user wait for meshes already", world, intake);
+  edits_.push_back(std::move(command));
+}
+
+void CommandQueue::answer_refused(const Command& command, Refusal reason, std::string text,
+                                  const World& world, Intake& intake) {
+  tally_.count_refused_command(command.user);
+  Reply reply{command.user, command.part, command.seq, reason, {}, std::move(text)};
+  if (const Part* part = world.find(command.part)) reply.holder = part->holder;
+  intake.replies.push_back(std::move(reply));
+}
+
+void CommandQueue::apply(const Command& command, World& world, std::int64_t now_ns,
+                         Intake& intake) {
   Decision decision;
   Reply reply;
   // Here, not where it arrived: what was carried out since may have filled the hand.
@@ -117,6 +175,7 @@ void CommandQueue::carry_out(const Command& command, World& world, std::int64_t 
     tally_.count_refused_command(command.user);
   } else {
     leases_.note(decision, now_ns);
+    if (decision.details.edit) uploads_.note_used(decision.details.edit->mesh_hash);
     intake.decisions.push_back(std::move(decision));
   }
   intake.replies.push_back(std::move(reply));

@@ -57,10 +57,18 @@ class HeldChannel final : public ServerChannel {
   void publish_decisions(std::span<const Decision> decisions) override;
   void publish_standing(std::span<const StandingChange> changes) override;
   void publish_refusals(std::span<const RefusedIncrement> refused) override;
+  /// Acknowledges nothing that could be lost with this server: an upload begins anew elsewhere.
+  void publish_uploads(std::span<const UploadState> uploads) override {
+    inner_.publish_uploads(uploads);
+  }
   void publish_poses(const PoseBatch& batch) override;
   void publish_events(std::span<const ClashEvent> events) override;
   void publish_snapshot(const Snapshot& snapshot) override;
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override;
+  /// It says nothing of the session.
+  void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    inner_.publish_coming_mesh(hash, bytes);
+  }
   void publish_features(const FeatureTable& table) override;
   void publish_pulse(const SessionPulse& pulse) override;
   bool has_readers() const override { return inner_.has_readers(); }

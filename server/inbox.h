@@ -36,6 +36,7 @@ class Inbox {
   /// do not ask to join again in time. Call once, before admit().
   void adopt(const std::vector<SeatRecord>& seats, std::int64_t now_ns);
   std::vector<SeatRecord> seats() const;  ///< of all who are present
+  Uploads& uploads() { return uploads_; }
 
   /// From now on a join of a new user gets no answer: the client asks again, and joins at the next
   /// leader.
@@ -91,7 +92,8 @@ class Inbox {
   MessageRates rates_{limits_};
   Leases leases_;
   IncrementAdmission increments_{limits_, tally_, rates_, leases_};
-  CommandQueue commands_{limits_, tally_, rates_, leases_, increments_};
+  Uploads uploads_{limits_};
+  CommandQueue commands_{limits_, tally_, rates_, leases_, increments_, uploads_};
   std::vector<Seat> seats_;
   std::vector<DeferredGoodbye> goodbyes_;
   bool puts_off_newcomers_ = false;

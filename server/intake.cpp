@@ -14,6 +14,7 @@ void Intake::clear() {
   join_replies.clear();
   replies.clear();
   refused.clear();
+  uploads.clear();
   acks.clear();
   turned_away.clear();
   follower_came = superseded = false;

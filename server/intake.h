@@ -36,6 +36,12 @@ struct InboxLimits {
   /// How long a command waits for earlier increments of its sender that have not arrived: ten
   /// repetitions. Then it is applied without them, and counted.
   double after_wait_s = 0.5;
+  /// Bytes of one mesh file that a user uploads, of all files of a user, and how many may be under
+  /// way. What was uploaded stays in the memory of the session, and in its log once it is used.
+  std::uint64_t upload_bytes = 128'000'000, upload_bytes_of_user = 512'000'000;
+  std::uint32_t uploads_at_once = 4;
+  /// Commands of a user that wait for a mesh.
+  std::uint32_t edits_waiting = 64;
 };
 
 /// What one user has sent since the session began here, and its outcome.
@@ -71,6 +77,7 @@ struct Intake {
   std::vector<JoinReply> join_replies;
   std::vector<Reply> replies;
   std::vector<RefusedIncrement> refused;
+  std::vector<UploadState> uploads;                ///< news of them
   std::vector<Ack> acks;                           ///< one per user that sent increments, by user
   std::vector<std::string> turned_away;            ///< by the transport, in words
   bool follower_came = false, superseded = false;  ///< see ServerInput

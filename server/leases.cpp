@@ -8,11 +8,12 @@ std::int64_t lease_ns(const World& world) { return static_cast<std::int64_t>(wor
 }  // namespace
 
 void Leases::begin_drain(const World& world, std::int64_t now_ns) {
-  if (renewed_ns_.size() == world.parts.size()) return;
+  if (renewed_ns_.size() == world.parts.size() && edits_ == world.edits) return;
+  edits_ = world.edits;
   renewed_ns_.resize(world.parts.size(), now_ns);
   moving_.clear();
   for (std::uint32_t i = 0; i < world.parts.size(); ++i)
-    if (world.parts[i].moving) moving_.push_back(i);
+    if (world.parts[i].present && world.parts[i].moving) moving_.push_back(i);
 }
 
 void Leases::renew_all(const World& world, UserId user, std::int64_t now_ns) {

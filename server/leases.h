@@ -28,6 +28,7 @@ class Leases {
   std::span<const std::uint32_t> moving() const { return moving_; }
 
  private:
+  std::uint64_t edits_ = 0;  ///< World::edits when the list was made
   std::vector<std::uint32_t> moving_;
   std::vector<std::int64_t> renewed_ns_;  ///< by part index
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/io/log/session_log_read.h"
+#include "common/messages/mesh_bytes.h"
 #include "common/session/world/decisions.h"
 #include "server/backlog.h"
 #include "server/silence.h"
@@ -71,6 +72,7 @@ Follower::Follower(World& world, SessionStatistics& statistics, SessionLogWriter
       statistics_(statistics),
       log_(log),
       recorder_(world, log, checkpoints),
+      threads_(threads),
       scratch_(threads) {
   statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
   recorder_.open(now_ns());
@@ -84,6 +86,8 @@ Status Follower::take(const ToldTick& told) {
   }
   if (tick.has_seats) seats_ = std::move(tick.seats);
   time_ns_ = std::max(time_ns_, tick.time_ns);
+  if (tick.mesh)
+    if (Status taken = take_mesh(std::move(*tick.mesh)); !taken) return taken;
   if (tick.tick <= world_.tick) return ok();
   // Between the log and what was told nothing went in, or it would be in one of them.
   if (ticks_ > 0 && tick.tick != world_.tick + 1) {
@@ -105,6 +109,37 @@ Status Follower::take(const ToldTick& told) {
   if (state_hash_ == tick.state_hash) return ok();
   return fail(Code::kMismatch, "at tick " + std::to_string(tick.tick) +
                                    " this engine computes something else than the one that leads");
+}
+
+Status Follower::take_mesh(MeshPiece piece) {
+  if (piece.offset == 0) mesh_ = {piece.hash, piece.quantum_mm, piece.length, 0, {}};
+  // The rest of one whose beginning was told before this one came: it is told again from there.
+  if (piece.hash != mesh_.hash || piece.offset != mesh_.bytes.size()) return ok();
+  mesh_.bytes.insert(mesh_.bytes.end(), piece.bytes.begin(), piece.bytes.end());
+  if (mesh_.bytes.size() < mesh_.length || !world_.shapes) return ok();
+  std::optional<WireMesh> mesh = mesh_from_bytes(mesh_.bytes);
+  TriangleMesh triangles;
+  if (mesh) triangles = {std::move(mesh->points_mm), std::move(mesh->triangles)};
+  if (!mesh || mesh_hash(triangles) != mesh_.hash)
+    return fail(Code::kMismatch, "mesh " + mesh_.hash + " was told with other bytes");
+  auto make = [make = world_.shapes->make(), quantum_mm = mesh_.quantum_mm, threads = threads_,
+               solid = std::make_shared<const Solid>(std::move(triangles))]() -> PartShapePtr {
+    auto shape = std::make_shared<const PartShape>(make(solid, quantum_mm));
+    build_derived(*shape, threads);
+    return shape;
+  };
+  meshes_.push_back({mesh_.quantum_mm, std::async(std::launch::async, std::move(make))});
+  mesh_ = {};
+  return ok();
+}
+
+bool Follower::has_meshes() {
+  std::erase_if(meshes_, [this](Mesh& mesh) {
+    if (mesh.shape.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    world_.shapes->add(mesh.shape.get(), mesh.quantum_mm);
+    return true;
+  });
+  return meshes_.empty();
 }
 
 void Follower::step_once(FollowedTick& tick) {
@@ -160,7 +195,8 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
                                       " ticks of the one that leads are not computed yet: this "
                                       "host is too slow to stand by");
     }
-    if (!told.empty()) {
+    const bool may_take = !told.empty() && follower.has_meshes();
+    if (may_take) {
       if (Status taken = follower.take(told.front()); !taken) return taken.error();
       told.pop_front();
     }
@@ -174,7 +210,7 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
                   "another server stands by for this session, and one is enough: this one ends");
     if (takes_over) return true;
     turns.end(silence);
-    if (told.empty()) channel.await_told(kTurn_ns);
+    if (!may_take) channel.await_told(kTurn_ns);
   }
   if (!channel.another_stands_by()) channel.confirm({kTakenAll, follower.last_tick()});
   return false;

@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "common/messages/channel.h"
 #include "common/session/tick/statistics.h"
 #include "common/session/tick/step.h"
+#include "common/session/world/part_shapes.h"
 #include "common/session/world/world.h"
 #include "server/tick_bytes.h"
 #include "server/tick_recorder.h"
@@ -22,6 +24,9 @@ class Follower {
   Follower(World& world, SessionStatistics& statistics, SessionLogWriter* log, int threads,
            const CheckpointTimes& checkpoints = {});
 
+  /// Are the meshes that ticks may name ready? They are made beside the ticks. Puts them at the
+  /// world's disposal.
+  bool has_meshes();
   /// Fails (kMismatch) where the two disagree, and (kRuntime) where ticks are missing between.
   Status take(const ToldTick& told);
   const std::vector<SeatRecord>& seats() const { return seats_; }
@@ -33,16 +38,24 @@ class Follower {
 
  private:
   void step_once(FollowedTick& tick);
+  Status take_mesh(MeshPiece piece);
 
   World& world_;
   SessionStatistics& statistics_;
   SessionLogWriter* log_;
   TickRecorder recorder_;
+  int threads_;
   Scratch scratch_;
   std::vector<SeatRecord> seats_;
   std::uint64_t ticks_ = 0, state_hash_ = 0;
   std::int64_t time_ns_ = 0;
   bool handed_over_ = false;
+  struct Mesh {
+    double quantum_mm = 0.0;
+    std::future<PartShapePtr> shape;
+  };
+  MeshPiece mesh_;  ///< the pieces of a mesh so far
+  std::vector<Mesh> meshes_;
 };
 
 /// Waits until the leader has told a tick, and then that all ticks before that one are in its log;

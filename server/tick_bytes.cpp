@@ -24,6 +24,14 @@ std::vector<std::byte> encode(const FollowedTick& tick) {
   put(out, log_records::encode(tick.tick, std::span<const Increment>(tick.increments)));
   out.u8(tick.hands_over);
   out.varint(tick.logged_tick);
+  out.u8(tick.mesh.has_value());
+  if (tick.mesh) {
+    out.string(tick.mesh->hash);
+    out.f64(tick.mesh->quantum_mm);
+    out.varint(tick.mesh->length);
+    out.varint(tick.mesh->offset);
+    put(out, tick.mesh->bytes);
+  }
   out.u8(tick.has_seats);
   if (!tick.has_seats) return out.take();
   out.varint(tick.seats.size());
@@ -53,6 +61,15 @@ bool decode(std::span<const std::byte> bytes, FollowedTick& tick) {
   tick.increments = std::move(increments.increments);
   tick.hands_over = in.u8() != 0;
   tick.logged_tick = in.varint();
+  if (in.u8() != 0) {
+    MeshPiece& mesh = tick.mesh.emplace();
+    mesh.hash = in.string();
+    mesh.quantum_mm = in.f64();
+    mesh.length = in.varint();
+    mesh.offset = in.varint();
+    const auto piece = in.raw(in.varint());
+    mesh.bytes.assign(piece.begin(), piece.end());
+  }
   tick.has_seats = in.u8() != 0;
   if (tick.has_seats) {
     const std::uint64_t count = in.varint();

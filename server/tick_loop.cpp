@@ -33,6 +33,11 @@ TickLoop::TickLoop(World& world, ServerChannel& channel, Clock& clock, SessionLo
       recorder_(world, log, options.checkpoints),
       publisher_(world, channel, clock, options) {
   statistics_.keep_ended_rows(SessionStatistics::kMostEndedRows);
+  inbox_.uploads().publish_with(
+      [&channel](const std::string& hash, std::span<const std::byte> mesh) {
+        channel.publish_coming_mesh(hash, mesh);
+      },
+      options.threads);
 }
 
 void TickLoop::resume(SessionStatistics statistics, std::vector<Decision> departures) {
@@ -59,7 +64,9 @@ void TickLoop::tick() {
   // 0. drain and decide
   ServerInput input = channel_.take();
   if (!input.snapshot_requests.empty()) publisher_.want_snapshot();
+  inbox_.uploads().note_follower(channel_.has_follower(), input.follower_came);
   inbox_.admit(std::move(input), world_, now_ns_, intake_);
+  inbox_.uploads().settle(world_, intake_);
   if (!departures_.empty()) {
     intake_.decisions.insert(intake_.decisions.begin(), departures_.begin(), departures_.end());
     departures_.clear();
@@ -111,6 +118,7 @@ void TickLoop::tell_follower() {
   followed.time_ns = clock_.wall_ns();
   followed.decisions = intake_.decisions;
   followed.increments = intake_.increments;
+  followed.mesh = inbox_.uploads().next_piece();
   followed.hands_over = hands_over_;
   followed.logged_tick = log_ != nullptr ? log_->flushed_tick() : report_.tick;
   followed.has_seats =

@@ -17,10 +17,16 @@ std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 
 TickPublisher::TickPublisher(World& world, ServerChannel& channel, Clock& clock,
                              const PublishOptions& options)
     : world_(world), channel_(channel), clock_(clock), options_(options) {
+  list_parts();
+}
+
+void TickPublisher::list_parts() {
+  edits_ = world_.edits;
+  moving_.clear();
   for (std::uint32_t i = 0; i < world_.parts.size(); ++i) {
     const Part& part = world_.parts[i];
-    published_.push_back({part.id, part.holder, part.X_WP});
-    if (part.moving) moving_.push_back(i);
+    if (i == published_.size()) published_.push_back({part.id, part.holder, part.X_WP});
+    if (part.present && part.moving) moving_.push_back(i);
   }
 }
 
@@ -41,10 +47,15 @@ void TickPublisher::open(std::int64_t now_ns) {
 }
 
 void TickPublisher::publish(const Intake& intake, const StepReport& report, std::int64_t now_ns) {
+  if (edits_ != world_.edits) {
+    list_parts();
+    snapshot_wanted_ = true;
+    features_are_due_ = true;
+  }
   publish_answers(intake, report);
   publish_poses(intake, report);
   publish_snapshot_when_due(intake, now_ns);
-  if (recognizer_) publish_features_when_due(now_ns);
+  if (recognizer_ || features_are_due_) publish_features_when_due(now_ns);
 }
 
 void TickPublisher::publish_answers(const Intake& intake, const StepReport& report) {
@@ -53,6 +64,7 @@ void TickPublisher::publish_answers(const Intake& intake, const StepReport& repo
   if (!intake.decisions.empty()) publish_decisions(intake, report.tick);
   if (!intake.refused.empty()) channel_.publish_refusals(intake.refused);
   if (!report.refused.empty()) channel_.publish_refusals(report.refused);
+  if (!intake.uploads.empty()) channel_.publish_uploads(intake.uploads);
   if (report.events.empty()) return;
   channel_.publish_events(report.events);
   event_seq_ = report.events.back().seq;
@@ -110,16 +122,18 @@ void TickPublisher::publish_snapshot(std::int64_t now_ns) {
 }
 
 void TickPublisher::publish_features_when_due(std::int64_t now_ns) {
-  const bool done = recognizer_->done();
-  for (auto& [mesh, features] : recognizer_->take()) {
-    world_.recognized[mesh] = std::move(features);
-    features_are_new_ = true;
-  }
-  if (!done && now_ns - features_ns_ < in_ns(options_.features_gap_s)) return;
-  if (features_are_new_) channel_.publish_features(feature_table(world_));
-  features_are_new_ = false;
+  const bool done = !recognizer_ || recognizer_->done();
+  if (recognizer_)
+    for (auto& [mesh, features] : recognizer_->take()) {
+      world_.recognized[mesh] = std::move(features);
+      features_are_due_ = true;
+    }
+  const bool ends = recognizer_ && done;
+  if (!ends && now_ns - features_ns_ < in_ns(options_.features_gap_s)) return;
+  if (features_are_due_) channel_.publish_features(feature_table(world_));
+  features_are_due_ = false;
   features_ns_ = now_ns;
-  if (done) recognizer_.reset();
+  if (ends) recognizer_.reset();
 }
 
 }  // namespace mortise

@@ -36,6 +36,7 @@ class TickPublisher {
   bool has_readers() const { return had_readers_; }  ///< at the last publish()
 
  private:
+  void list_parts();
   void publish_answers(const Intake& intake, const StepReport& report);
   void publish_decisions(const Intake& intake, std::uint64_t tick);
   void publish_poses(const Intake& intake, const StepReport& report);
@@ -52,7 +53,8 @@ class TickPublisher {
   std::unique_ptr<Recognizer> recognizer_;  ///< null: no mesh is searched any more
   std::uint64_t event_seq_ = 0;
   std::int64_t snapshot_ns_ = 0, features_ns_ = 0;
-  bool features_are_new_ = false;
+  std::uint64_t edits_ = 0;  ///< World::edits when the lists were made
+  bool features_are_due_ = false;
   bool changed_since_snapshot_ = false, snapshot_wanted_ = false;
   bool had_readers_ = false;
 };

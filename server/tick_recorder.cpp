@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/session/world/part_shapes.h"
+
 namespace mortise {
 namespace {
 
@@ -11,6 +13,11 @@ constexpr std::size_t kMostQueued_ticks = 256;
 std::int64_t in_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
 }  // namespace
+
+TickRecorder::TickRecorder(World& world, SessionLogWriter* log, const CheckpointTimes& times)
+    : world_(world), log_(log), times_(times) {
+  for (const Part& part : world.parts) logged_.insert(part.solid->hash());
+}
 
 void TickRecorder::open(std::int64_t now_ns) {
   checkpoint_ns_ = now_ns;
@@ -32,11 +39,20 @@ void TickRecorder::begin(const Stepped& stepped) {
 void TickRecorder::hand_over(std::vector<Decision>& decisions, std::vector<Increment>& increments,
                              StepReport& report) {
   if (record_.tick == 0) return;
+  add_meshes(decisions);
   record_.decisions.swap(decisions);
   record_.increments.swap(increments);
   record_.report = std::move(report);
   log_->record(std::move(record_));
   record_.tick = 0;
+}
+
+void TickRecorder::add_meshes(const std::vector<Decision>& decisions) {
+  for (const Decision& decision : decisions) {
+    if (!decision.details.edit || !world_.shapes) continue;
+    const SolidPtr solid = world_.shapes->find(decision.details.edit->mesh_hash).solid;
+    if (solid && logged_.insert(solid->hash()).second) record_.meshes.push_back(solid);
+  }
 }
 
 bool TickRecorder::checkpoint_is_due(std::int64_t now_ns) {

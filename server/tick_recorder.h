@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "common/io/log/session_log.h"
@@ -19,8 +21,7 @@ struct CheckpointTimes {
 class TickRecorder {
  public:
   /// `log` may be null: nothing is done then. Both must outlive this.
-  TickRecorder(World& world, SessionLogWriter* log, const CheckpointTimes& times)
-      : world_(world), log_(log), times_(times) {}
+  TickRecorder(World& world, SessionLogWriter* log, const CheckpointTimes& times);
 
   /// Before the first tick that it is to see. Times are of a clock that never goes back.
   void open(std::int64_t now_ns);
@@ -42,12 +43,14 @@ class TickRecorder {
 
  private:
   bool checkpoint_is_due(std::int64_t now_ns);
+  void add_meshes(const std::vector<Decision>& decisions);
 
   World& world_;
   SessionLogWriter* log_;
   CheckpointTimes times_;
   CheckpointMaker checkpoints_;
-  TickRecord record_;  ///< of the last tick, not yet handed over; tick 0: none
+  std::set<std::string> logged_;  ///< meshes that the log has
+  TickRecord record_;             ///< of the last tick, not yet handed over; tick 0: none
   std::int64_t worked_ns_ = 0, checkpoint_ns_ = 0;  ///< since the last one; when that was
   bool changed_since_checkpoint_ = false;
 };

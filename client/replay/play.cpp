@@ -58,6 +58,14 @@ std::optional<CommandKind> command_of(Decision::Kind kind) {
       return CommandKind::kAddConstraint;
     case Decision::Kind::kDropConstraint:
       return CommandKind::kDropConstraint;
+    case Decision::Kind::kAddPart:
+      return CommandKind::kAddPart;
+    case Decision::Kind::kReplacePart:
+      return CommandKind::kReplacePart;
+    case Decision::Kind::kRemovePart:
+      return CommandKind::kRemovePart;
+    case Decision::Kind::kSetMoving:
+      return CommandKind::kSetMoving;
     default:
       return std::nullopt;
   }

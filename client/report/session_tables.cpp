@@ -9,6 +9,7 @@
 #include "common/base/check.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/messages/names.h"
+#include "common/session/world/scene_edits.h"
 
 namespace mortise {
 namespace {
@@ -159,6 +160,11 @@ class Session {
   };
 
   void take_in(const Decision& decision, std::uint64_t tick) {
+    if (decision.kind == Decision::Kind::kAddPart && decision.part && decision.details.edit &&
+        decision.part.value <= names_.parts.size() + kMostSceneParts) {
+      names_.parts.resize(std::max<std::size_t>(names_.parts.size(), decision.part.value));
+      names_.parts[decision.part.value - 1] = decision.details.edit->name;
+    }
     if (decision.kind != Decision::Kind::kJoin || !decision.user) return;
     names_.users.resize(std::max<std::size_t>(names_.users.size(), decision.user.value));
     // An id that somebody took over was first the one's and then the other's: so are its sums.

@@ -38,10 +38,9 @@ SharedBytes mesh_of(const TriangleMesh& mesh) {
 /// Keeps what changed in each tick.
 class Recorder {
  public:
-  Recorder(Recording& recording, const World& world) : recording_(recording) {
-    for (const Part& part : world.parts) last_.push_back(state_of(part));
-  }
+  Recorder(Recording& recording, const World& world) : recording_(recording) { list_parts(world); }
   void take(const ReplayedTick& tick) {
+    if (tick.world.edits != edits_) list_parts(tick.world);
     for (std::size_t i = 0; i < last_.size(); ++i) {
       const Part& part = tick.world.parts[i];
       if (part.holder == last_[i].holder && identical(part.X_WP, last_[i].X_WP)) continue;
@@ -56,7 +55,15 @@ class Recorder {
   }
 
  private:
+  void list_parts(const World& world) {
+    edits_ = world.edits;
+    while (last_.size() < world.parts.size()) last_.push_back(state_of(world.parts[last_.size()]));
+    Snapshot now = snapshot_of(world);
+    recording_.part_lists.push_back({world.tick, std::move(now.parts), std::move(now.notes)});
+  }
+
   Recording& recording_;
+  std::uint64_t edits_ = 0;  ///< World::edits of the last list
   std::vector<PartState> last_;
 };
 
@@ -66,14 +73,20 @@ const Recording::Agreement& Recording::agreement_at(std::uint64_t tick) const {
   return *std::prev(rows_between(agreements, tick, tick).second);
 }
 
+const Recording::PartList& Recording::parts_at(std::uint64_t tick) const {
+  const auto after = rows_between(part_lists, tick, tick).second;
+  return after == part_lists.begin() ? *after : *std::prev(after);
+}
+
 PartState Recording::state_at(PartId part, std::uint64_t tick) const {
   const auto found = steps.find(part);
   if (found != steps.end()) {
     const auto after = rows_between(found->second, tick, tick).second;
     if (after != found->second.begin()) return std::prev(after)->state;
   }
-  const PartInfo& info = parts[part.value - 1];
-  return {part, UserId{}, info.X_WP, 0};
+  for (const PartInfo& info : parts_at(tick).parts)
+    if (info.part == part) return {part, UserId{}, info.X_WP, 0};
+  return {part, UserId{}, Pose{}, 0};
 }
 
 std::vector<PartId> Recording::moved_between(std::uint64_t from, std::uint64_t to) const {
@@ -87,8 +100,10 @@ std::vector<PartId> Recording::moved_between(std::uint64_t from, std::uint64_t t
 
 Scene Recording::scene_at(std::uint64_t tick) const {
   const Agreement& agreement = agreement_at(tick);
-  Scene scene{session, agreement.policy,   tick,       tick_rate_hz,     parts, agreement.users,
-              {},      agreement.standing, part_notes, agreement.remarks};
+  const PartList& list = parts_at(tick);
+  Scene scene{session,    agreement.policy, tick, tick_rate_hz,
+              list.parts, agreement.users,  {},   agreement.standing,
+              list.notes, agreement.remarks};
   for (PartInfo& part : scene.parts) {
     const PartState state = state_at(part.part, tick);
     part.X_WP = state.X_WP;
@@ -113,9 +128,6 @@ Result<Recording> read_recording(const std::filesystem::path& file) {
   recording.session = log->session;
   recording.tick_rate_hz = world.tick_rate_hz;
   recording.first_tick = recording.last_tick = world.tick;
-  Snapshot at_start = snapshot_of(world);
-  recording.parts = std::move(at_start.parts);
-  recording.part_notes = std::move(at_start.notes);
   recording.notes = log->notes;
   recording.agreements.push_back(agreement_of(world, {}));
   for (const auto& [hash, mesh] : log->meshes) recording.meshes[hash] = mesh_of(mesh);

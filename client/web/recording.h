@@ -28,11 +28,17 @@ struct Recording {
     std::vector<Decision> decisions;  ///< of this tick
   };
 
+  /// The parts after a tick that edited the scene: as they were put there.
+  struct PartList {
+    std::uint64_t tick = 0;
+    std::vector<PartInfo> parts;
+    std::vector<PartNote> notes;  ///< of the import of their meshes
+  };
+
   std::string session;
   double tick_rate_hz = 60.0;
   std::uint64_t first_tick = 0, last_tick = 0;
-  std::vector<PartInfo> parts;                ///< as the scenario put them
-  std::vector<PartNote> part_notes;           ///< of the import of their meshes
+  std::vector<PartList> part_lists;           ///< by tick, the first from before all
   std::map<PartId, std::vector<Step>> steps;  ///< by tick
   std::vector<ClashEvent> events;             ///< by tick
   std::vector<Agreement> agreements;          ///< by tick, the first from before all
@@ -42,6 +48,7 @@ struct Recording {
   /// The scene at the end of a tick.
   Scene scene_at(std::uint64_t tick) const;
   const Agreement& agreement_at(std::uint64_t tick) const;
+  const PartList& parts_at(std::uint64_t tick) const;
   PartState state_at(PartId part, std::uint64_t tick) const;
   /// Parts whose pose or holder changed in the ticks after `from` up to `to`.
   std::vector<PartId> moved_between(std::uint64_t from, std::uint64_t to) const;

@@ -89,6 +89,8 @@ void ReplayFeed::turn(double now_s) {
 
 void ReplayFeed::play_to(Viewer& viewer, Cursor& cursor, std::uint64_t tick) {
   tell_decisions(viewer, cursor.tick, tick);
+  if (&recording_.parts_at(cursor.tick) != &recording_.parts_at(tick))
+    return show(viewer, cursor, tick);
   std::vector<PartId> changed = take_events(viewer, cursor, tick);
   const std::vector<PartId> moved = recording_.moved_between(cursor.tick, tick);
   cursor.tick = tick;
@@ -113,7 +115,7 @@ std::vector<PartId> ReplayFeed::take_events(Viewer& viewer, Cursor& cursor, std:
   viewer.say(text_of(message_of_list("events", "events", now)));
   ClassBits bits = class_bits_of(cursor.open);
   std::vector<PartId> changed;
-  for (const PartInfo& part : recording_.parts)
+  for (const PartInfo& part : recording_.parts_at(to).parts)
     if (bits[part.part] != cursor.classes[part.part]) changed.push_back(part.part);
   cursor.classes = std::move(bits);
   return changed;
@@ -181,7 +183,7 @@ Json ReplayFeed::timeline() const {
 Json ReplayFeed::statistics() const {
   return {{"mode", "replay"},
           {"session", recording_.session},
-          {"parts", recording_.parts.size()},
+          {"parts", recording_.part_lists.back().parts.size()},
           {"meshes", recording_.meshes.size()},
           {"events", recording_.events.size()},
           {"last_tick", recording_.last_tick},

@@ -1,6 +1,8 @@
 #include "common/depth/body_index.h"
 
 #include <algorithm>
+#include <mutex>
+#include <utility>
 
 #include "common/base/check.h"
 
@@ -45,13 +47,51 @@ struct Shelf {
   };
   std::vector<Held> held;
   std::uint64_t asked = 0;
+  bool lays_out = false;  ///< it makes for others, and takes nothing that is laid out
 };
+
+// One shelf a thread: nothing is shared, and no answer depends on what it holds.
+thread_local Shelf shelf;
+
+// What one thread has made for another.
+struct LaidOut {
+  std::mutex mutex;
+  std::vector<Shelf::Held> indices;
+};
+
+LaidOut& laid_out() {
+  static LaidOut all;
+  return all;
+}
+
+std::shared_ptr<BodyIndex> take_laid_out(const Solid& solid, const SurfaceBand& band) {
+  if (shelf.lays_out) return nullptr;
+  LaidOut& all = laid_out();
+  const std::lock_guard lock(all.mutex);
+  for (auto it = all.indices.begin(); it != all.indices.end(); ++it) {
+    if (!it->is_of(solid, band)) continue;
+    std::shared_ptr<BodyIndex> index = std::move(it->index);
+    all.indices.erase(it);
+    return index;
+  }
+  return nullptr;
+}
 
 }  // namespace
 
-// One shelf a thread: nothing is shared, and no answer depends on what it holds.
+void lay_out_index(const Solid& solid, const SurfaceBand& band) {
+  shelf.lays_out = true;
+  const auto mine = std::ranges::find_if(
+      shelf.held, [&](const Shelf::Held& held) { return held.is_of(solid, band); });
+  if (mine == shelf.held.end()) return;
+  LaidOut& all = laid_out();
+  const std::lock_guard lock(all.mutex);
+  if (all.indices.size() >= kMostHeld) all.indices.erase(all.indices.begin());
+  all.indices.push_back(std::move(*mine));
+  shelf.held.erase(mine);
+}
+
 std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& band) {
-  thread_local Shelf shelf;
   ++shelf.asked;
   for (Shelf::Held& held : shelf.held)
     if (held.is_of(solid, band)) {
@@ -64,8 +104,10 @@ std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& ban
     shelf.held.erase(std::min_element(
         shelf.held.begin(), shelf.held.end(),
         [](const Shelf::Held& a, const Shelf::Held& b) { return a.asked < b.asked; }));
-  shelf.held.push_back({&solid, solid.hash(), band.faces, band.face_of_triangle,
-                        std::make_shared<BodyIndex>(), shelf.asked});
+  std::shared_ptr<BodyIndex> index = take_laid_out(solid, band);
+  if (!index) index = std::make_shared<BodyIndex>();
+  shelf.held.push_back(
+      {&solid, solid.hash(), band.faces, band.face_of_triangle, std::move(index), shelf.asked});
   return shelf.held.back().index;
 }
 

@@ -56,4 +56,8 @@ struct BodyIndex {
 /// new one. Costs one comparison of the band.
 std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& band);
 
+/// Gives the index that this thread has made of the part to the next thread that asks for an equal
+/// one. Nobody may use it here any more.
+void lay_out_index(const Solid& solid, const SurfaceBand& band);
+
 }  // namespace mortise

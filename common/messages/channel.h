@@ -75,6 +75,37 @@ struct LostUser {
   bool said_goodbye = false;  ///< left, as against lost liveliness
 };
 
+/// A piece of a mesh file on its way to the server. The pieces of an upload come in order, without
+/// a gap. At most kUploadAhead_bytes are under way beyond what UploadState says was received.
+struct UploadPiece {
+  UserId user;
+  std::uint64_t upload = 0;  ///< its number, of the user: 1, 2, 3 ...
+  std::string name;          ///< of the file; its ending says the format ("bracket.stl")
+  double unit_mm = 1.0;      ///< mm per unit of the numbers in the file
+  std::string hash;          ///< content_hash() of the whole file
+  std::uint64_t length = 0;  ///< bytes of the whole file
+  std::uint64_t offset = 0;  ///< of this piece
+  std::vector<std::byte> bytes;
+};
+inline constexpr std::size_t kUploadPiece_bytes = 49'152;
+inline constexpr std::uint64_t kUploadAhead_bytes = 8 * kUploadPiece_bytes;
+
+struct ReceivedPiece {
+  ClientKey client;
+  UploadPiece piece;
+};
+
+/// How far an upload is, told to everybody whenever it changes.
+struct UploadState {
+  UserId user;
+  std::uint64_t upload = 0;
+  std::uint64_t received = 0;        ///< bytes
+  bool ready = false;                ///< read and prepared: a part made of it appears at once
+  std::string mesh_hash;             ///< once ready: PartInfo::mesh_hash of its mesh
+  std::string text;                  ///< once ready: what was found in the file; may be empty
+  Refusal refusal = Refusal::kNone;  ///< it has ended; `text` says why
+};
+
 /// A tick as a server sends it to its standby. The transport does not interpret the bytes.
 struct ToldTick {
   std::uint64_t tick = 0;
@@ -100,6 +131,7 @@ struct ServerInput {
   std::vector<JoinRequest> joins;
   std::vector<ReceivedCommand> commands;
   std::vector<ReceivedIncrement> increments;
+  std::vector<ReceivedPiece> pieces;
   std::vector<LostUser> lost;
   std::vector<UserId> heartbeats;
   std::vector<ClientKey> snapshot_requests;  ///< clients that missed something: publish a snapshot
@@ -161,12 +193,15 @@ class ServerChannel {
   virtual void publish_decisions(std::span<const Decision> decisions) = 0;  ///< to everybody
   virtual void publish_standing(std::span<const StandingChange> changes) = 0;
   virtual void publish_refusals(std::span<const RefusedIncrement> refused) = 0;
+  virtual void publish_uploads(std::span<const UploadState> uploads) = 0;
   virtual void publish_poses(const PoseBatch& batch) = 0;
   virtual void publish_events(std::span<const ClashEvent> events) = 0;
   virtual void publish_snapshot(const Snapshot& snapshot) = 0;  ///< kept for late joiners
   virtual void publish_mesh(const std::string& hash,
                             std::span<const std::byte> bytes) = 0;  ///< kept
-  virtual void publish_features(const FeatureTable& table) = 0;     ///< kept; the last one counts
+  /// A mesh that a part may be made of soon; kept as well. May be called by any thread.
+  virtual void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) = 0;
+  virtual void publish_features(const FeatureTable& table) = 0;  ///< kept; the last one counts
   virtual void publish_pulse(const SessionPulse& pulse) = 0;
   virtual bool has_readers() const = 0;
   virtual ChannelCounters counters() const = 0;
@@ -224,6 +259,7 @@ struct ClientInput {
   std::vector<Decision> decisions;       ///< in the order in which they were made
   std::vector<StandingChange> standing;  ///< likewise
   std::vector<RefusedIncrement> refused;
+  std::vector<UploadState> uploads;
   std::vector<Snapshot> snapshots;
   std::vector<PoseBatch> poses;
   std::vector<ClashEvent> events;
@@ -244,6 +280,7 @@ class ClientChannel {
   virtual void heartbeat(UserId user) = 0;
   virtual void send(const IncrementBatch& batch) = 0;
   virtual void send(const Command& command) = 0;
+  virtual void send(const UploadPiece& piece) = 0;
   virtual void request_snapshot() = 0;  ///< after a gap, or when none has arrived
   virtual ClientInput take() = 0;
   virtual ChannelCounters counters() const = 0;

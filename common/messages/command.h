@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <vector>
 
 #include "common/base/ids.h"
+#include "common/math/pose.h"
 #include "common/messages/constraint.h"
 #include "common/messages/review.h"
 #include "common/messages/role.h"
@@ -33,8 +35,12 @@ enum class CommandKind : std::uint8_t {
   kDropConstraint = 15,  ///< constraint_id
   kSnap = 16,            ///< constraint: the server chooses the fields that are left empty
   kWithdraw = 17,        ///< takes back what the user asked of the holder of the part
+  kAddPart = 18,         ///< edit: name, mesh, pose, moving; the server numbers the part
+  kReplacePart = 19,     ///< edit: mesh; everything else of the part stays
+  kRemovePart = 20,      ///< its number is never used again
+  kSetMoving = 21,       ///< edit: moving
 };
-inline constexpr std::uint8_t kCommandKindCount = 18;
+inline constexpr std::uint8_t kCommandKindCount = 22;
 
 /// Why something was not done. Goes over the wire and into the log, so numbers never change.
 enum class Refusal : std::uint8_t {
@@ -66,10 +72,31 @@ enum class Refusal : std::uint8_t {
   kAlreadyAsked = 25,  ///< another user has asked and waits for an answer
   kBadRule = 26,       ///< not understood, contradicts another statement, or changes nothing
   kUnknownClash = 27,
-  kBadGroup = 28,     ///< a group of no parts, or with one twice
-  kNothingNear = 29,  ///< no feature to snap to
+  kBadGroup = 28,        ///< a group of no parts, or with one twice
+  kNothingNear = 29,     ///< no feature to snap to
+  kUnknownMesh = 30,     ///< neither uploaded nor in the session
+  kUploadLimit = 31,     ///< more bytes or uploads than a user may have
+  kUnreadableMesh = 32,  ///< the file of an upload, or its bytes are not what was announced
+  kBadPart = 33,         ///< a name that is taken or none, a pose beyond the limits, no change
+  kTooManyParts = 34,
 };
-inline constexpr std::uint8_t kRefusalCount = 30;
+inline constexpr std::uint8_t kRefusalCount = 35;
+
+/// What a scene edit says of its part.
+struct PartEdit {
+  std::string name;  ///< of an added part, as in a scenario
+  /// Command: content_hash() of an uploaded file, or PartInfo::mesh_hash of any mesh of the
+  /// session. Decision: PartInfo::mesh_hash.
+  std::string mesh_hash;
+  Pose X_WP;  ///< of an added part
+  bool moving = false;
+  /// Decision: how far a corner may be off for its file, mm; see ImportReport.
+  double quantum_mm = 0.0;
+  friend bool operator==(const PartEdit& x, const PartEdit& y) {
+    return x.name == y.name && x.mesh_hash == y.mesh_hash && identical(x.X_WP, y.X_WP) &&
+           x.moving == y.moving && x.quantum_mm == y.quantum_mm;
+  }
+};
 
 /// What commands and decisions say beside user and part.
 struct Details {
@@ -82,6 +109,7 @@ struct Details {
   std::string text;
   Constraint constraint;
   ConstraintId constraint_id;  ///< of a decision also with kAddConstraint
+  std::optional<PartEdit> edit = {};
   friend bool operator==(const Details&, const Details&) = default;
 };
 
@@ -133,6 +161,10 @@ struct Decision {
     kReview = 18,
     kAddConstraint = 19,
     kDropConstraint = 20,
+    kAddPart = 21,  ///< part: its number; details.edit, and in text what was found in its mesh
+    kReplacePart = 22,
+    kRemovePart = 23,
+    kSetMoving = 24,
   };
   Kind kind = Kind::kUnknown;
   UserId user;
@@ -142,7 +174,7 @@ struct Decision {
   Details details = {};        ///< with kJoin: text is the former owner of the user id, see below
   friend bool operator==(const Decision&, const Decision&) = default;
 };
-inline constexpr std::uint8_t kDecisionKindCount = 21;
+inline constexpr std::uint8_t kDecisionKindCount = 25;
 
 /// From this tick on an earlier decision is in force, or no longer is. See Snapshot::standing.
 struct StandingChange {
@@ -150,6 +182,9 @@ struct StandingChange {
   bool holds = false;
   Decision decision;
 };
+
+/// Does it change which parts there are, what they are made of, or which of them move?
+inline bool edits_scene(Decision::Kind kind) { return kind >= Decision::Kind::kAddPart; }
 
 /// Does a user join with the id of another one who left long ago? Nothing of that user passes on.
 inline bool takes_over_id(const Decision& decision) {

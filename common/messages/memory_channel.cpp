@@ -184,6 +184,11 @@ class MemoryServer final : public ServerChannel {
       box.reliable.refused.insert(box.reliable.refused.end(), refused.begin(), refused.end());
     });
   }
+  void publish_uploads(std::span<const UploadState> uploads) override {
+    each([&](ClientBox& box) {
+      box.reliable.uploads.insert(box.reliable.uploads.end(), uploads.begin(), uploads.end());
+    });
+  }
   void publish_poses(const PoseBatch& batch) override {
     each([&](ClientBox& box) {
       const std::uint64_t lost = box.poses.lost();
@@ -208,6 +213,9 @@ class MemoryServer final : public ServerChannel {
     each([&](ClientBox& box) { box.reliable.meshes.push_back(mesh); });
     const std::lock_guard lock(state_->mutex);
     if (current()) state_->meshes.push_back(mesh);
+  }
+  void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
+    publish_mesh(hash, bytes);
   }
   void publish_features(const FeatureTable& table) override {
     each([&](ClientBox& box) { box.reliable.features = {table}; });
@@ -275,6 +283,9 @@ class MemoryClient final : public ClientChannel {
   }
   void send(const Command& command) override {
     up([&](ServerInput& input) { input.commands.push_back({key_, command}); });
+  }
+  void send(const UploadPiece& piece) override {
+    up([&](ServerInput& input) { input.pieces.push_back({key_, piece}); });
   }
   void request_snapshot() override {
     up([&](ServerInput& input) { input.snapshot_requests.push_back(key_); });

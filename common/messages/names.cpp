@@ -94,6 +94,11 @@ std::string_view name_of(Refusal value) {
     case Refusal::kUnknownClash: return "unknown clash";
     case Refusal::kBadGroup: return "no group of parts";
     case Refusal::kNothingNear: return "nothing near to snap to";
+    case Refusal::kUnknownMesh: return "unknown mesh";
+    case Refusal::kUploadLimit: return "upload limit reached";
+    case Refusal::kUnreadableMesh: return "mesh cannot be read";
+    case Refusal::kBadPart: return "no part that could be added";
+    case Refusal::kTooManyParts: return "too many parts";
   }
   return "?";
 }
@@ -129,6 +134,10 @@ std::string_view name_of(CommandKind value) {
     case CommandKind::kDropConstraint: return "drop constraint";
     case CommandKind::kSnap: return "snap";
     case CommandKind::kWithdraw: return "withdraw";
+    case CommandKind::kAddPart: return "add part";
+    case CommandKind::kReplacePart: return "replace part";
+    case CommandKind::kRemovePart: return "remove part";
+    case CommandKind::kSetMoving: return "set moving";
   }
   return "?";
 }
@@ -156,6 +165,10 @@ std::string_view name_of(Decision::Kind value) {
     case Decision::Kind::kReview: return "review";
     case Decision::Kind::kAddConstraint: return "add constraint";
     case Decision::Kind::kDropConstraint: return "drop constraint";
+    case Decision::Kind::kAddPart: return "add part";
+    case Decision::Kind::kReplacePart: return "replace part";
+    case Decision::Kind::kRemovePart: return "remove part";
+    case Decision::Kind::kSetMoving: return "set moving";
   }
   return "?";
 }

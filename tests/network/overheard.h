@@ -38,6 +38,7 @@ class Overheard final : public ClientChannel {
   void heartbeat(UserId user) override { inner_->heartbeat(user); }
   void send(const IncrementBatch& batch) override { inner_->send(batch); }
   void send(const Command& command) override { inner_->send(command); }
+  void send(const UploadPiece& piece) override { inner_->send(piece); }
   void request_snapshot() override { inner_->request_snapshot(); }
   ChannelCounters counters() const override { return inner_->counters(); }
 

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
+#include "common/base/hash.h"
 #include "tests/network/domain.h"
 #include "tests/network/site.h"
 #include "tests/network/small_server.h"
+#include "tests/support/cube_file.h"
 #include "tests/support/small_scenarios.h"
 
 namespace mortise::test {
@@ -45,6 +48,60 @@ struct People : testing::Test {
     return person.client->parts().at(part).info.holder;
   }
 };
+
+TEST_F(People, PartsComeAndGoWhileEverybodySeesIt) {
+  const PartId block{3};
+  const auto all_see = [&](const std::function<bool(const Client&)>& so) {
+    return wait([&] {
+      return std::ranges::all_of(std::array{&anna, &ben, &eve},
+                                 [&](const Person* person) { return so(*person->client); });
+    });
+  };
+  // 1. A file, and a part of it, 1 mm deep in the block.
+  const std::vector<std::byte> file = cube_file(5.0);
+  const Pose& X_WB = anna.client->parts().at(block).info.X_WP;
+  const double radius_mm = anna.client->parts().at(block).info.radius_mm;
+  ASSERT_NE(anna.client->upload(0, "post.stl", 1.0, file), 0U);
+  const Pose X_WP = Pose::translation(X_WB.p + Vec3(0.5 * radius_mm, 0, 0));
+  const Reply added =
+      answer(anna, anna.client->add_part(0, "post", content_hash(file), X_WP, true));
+  ASSERT_EQ(added.refusal, Refusal::kNone) << added.text;
+  ASSERT_TRUE(all_see([](const Client& client) {
+    const PartId post = client.find_part("post");
+    return post && client.parts().at(post).info.radius_mm > 8.0 && !client.open_clashes().empty();
+  }));
+  const PartId post = ben.client->find_part("post");
+  EXPECT_TRUE(ben.was_decided(Decision::Kind::kAddPart));
+  // 2. Who comes later sees it, and has its mesh.
+  Person late;
+  late.enter(site->options, "late");
+  std::vector<MeshBytes> meshes;
+  ASSERT_TRUE(wait([&] {
+    ClientUpdate update = late.client->poll();
+    for (MeshBytes& mesh : update.meshes) meshes.push_back(std::move(mesh));
+    return late.is_in() && late.client->find_part("post") == post && !meshes.empty() &&
+           std::ranges::any_of(meshes, [&](const MeshBytes& mesh) {
+             return mesh.hash == late.client->parts().at(post).info.mesh_hash;
+           });
+  }));
+  // 3. It is held and moved as any other; then it goes and comes back.
+  EXPECT_EQ(answer(ben, ben.client->grab(0, post)).refusal, Refusal::kNone);
+  EXPECT_EQ(answer(anna, anna.client->remove_part(0, post)).refusal, Refusal::kHeldByOther);
+  EXPECT_EQ(answer(ben, ben.client->release(0, post)).refusal, Refusal::kNone);
+  EXPECT_EQ(answer(eve, eve.client->remove_part(0, post)).refusal, Refusal::kObserver);
+  EXPECT_EQ(answer(ben, ben.client->remove_part(0, post)).refusal, Refusal::kNone);
+  EXPECT_TRUE(all_see([&](const Client& client) {
+    return !client.find_part("post") && client.open_clashes().empty();
+  }));
+  EXPECT_EQ(answer(anna, anna.client->undo(0, post)).refusal, Refusal::kMovedBySomeoneElse);
+  EXPECT_EQ(answer(ben, ben.client->undo(0, post)).refusal, Refusal::kNone);
+  EXPECT_TRUE(all_see([&](const Client& client) {
+    return client.find_part("post") == post && !client.open_clashes().empty();
+  }));
+  EXPECT_EQ(answer(anna, anna.client->set_moving(0, post, false)).refusal, Refusal::kNone);
+  EXPECT_TRUE(all_see([&](const Client& client) { return !client.parts().at(post).info.moving; }));
+  EXPECT_EQ(answer(ben, ben.client->grab(0, post)).refusal, Refusal::kPartIsStatic);
+}
 
 TEST_F(People, HandsOverReviewsAndChangesRulesWhileEverybodySeesIt) {
   const PartId plate{1}, peg{2}, block{3};

@@ -9,9 +9,11 @@
 #include <optional>
 #include <thread>
 
+#include "common/base/hash.h"
 #include "tests/network/second_server.h"
 #include "tests/network/stalls.h"
 #include "tests/network/stopped_thread.h"
+#include "tests/support/cube_file.h"
 #include "tests/support/effort.h"
 
 namespace mortise::test {
@@ -91,6 +93,49 @@ TEST_F(Standby, TakesOverFromEachThatIsKilled) {
   if (timed()) {
     EXPECT_LE(gaps_s.back(), kTakeOver_s);
   }
+}
+
+/// A part that came while both ran is there after the take-over, and in the log of the second.
+TEST_F(Standby, KnowsThePartsThatWereAdded) {
+  auto [leader, second] = both();
+  const std::vector<std::byte> file = cube_file(3.0);
+  ASSERT_NE(anna_->client->upload(anna_->user, "post.stl", 1.0, file), 0u);
+  ASSERT_NE(anna_->client->add_part(anna_->user, "post", content_hash(file),
+                                    Pose::translation({0, 0, 200}), true),
+            0u);
+  const auto all_see = [&] {
+    return wait_until([&] {
+      for (const Guest* guest : {anna_.get(), ben_.get(), otto_.get()})
+        if (!guest->client->find_part("post")) return false;
+      return true;
+    });
+  };
+  ASSERT_TRUE(all_see()) << leader->errors();
+  const PartId post = ben_->client->find_part("post");
+  leader->signal(SIGKILL);
+  EXPECT_TRUE(says(*second, "taken over at tick")) << second->errors();
+  EXPECT_TRUE(all_in());
+  EXPECT_TRUE(all_see());
+  EXPECT_EQ(ben_->client->find_part("post"), post);
+  EXPECT_TRUE(anna_->grab("post"));
+  second->signal(SIGINT);
+  EXPECT_EQ(second->wait(kPatience_s), 0) << second->errors();
+  const auto restored = logs_to_restore(logs(), "default", Newest::kWritten);
+  ASSERT_FALSE(restored.empty());
+  const auto log = read_session(restored.front());
+  ASSERT_TRUE(log) << log.error().text;
+  const auto report = verify(*log, 1);
+  ASSERT_TRUE(report) << report.error().text;
+  EXPECT_FALSE(report->difference) << report->difference->what;
+  EXPECT_TRUE(std::ranges::any_of(log->ticks, [](const TickRecord& tick) {
+    return std::ranges::any_of(tick.decisions, [](const Decision& decision) {
+      return decision.kind == Decision::Kind::kAddPart;
+    });
+  }));
+  // And a session that goes on from that log has it.
+  const std::unique_ptr<Program> third = start({"--restore", logs(), "--no-log"});
+  EXPECT_TRUE(all_in());
+  EXPECT_TRUE(all_see()) << third->errors();
 }
 
 /// Ticks that take long: what is told and not computed yet is computed before the second leads.

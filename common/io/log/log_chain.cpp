@@ -79,6 +79,9 @@ Status join(SessionLog& log, SessionLog next, const std::string& file) {
     log.gaps.push_back({last, next.ticks.empty() ? 0 : next.ticks.front().tick,
                         "ticks up to " + std::to_string(at) + " are missing before " + file});
   // 3. The rest.
+  for (auto& mesh : next.meshes)
+    if (std::ranges::none_of(log.meshes, [&](auto& m) { return m.first == mesh.first; }))
+      log.meshes.push_back(std::move(mesh));
   log.checkpoints.push_back(std::move(next.begin->state));
   append(log.ticks, next.ticks);
   append(log.checkpoints, next.checkpoints);

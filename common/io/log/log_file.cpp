@@ -105,9 +105,7 @@ void LogFile::write_head(const LogHeader& header) {
                                          {"part", std::to_string(header.chain.part)}});
   mcap_->add_attachment(kScenarioAttachment, "application/yaml",
                         std::as_bytes(std::span(header.scenario_yaml)), 0);
-  for (const auto& [hash, mesh] : header.meshes)
-    mcap_->add_attachment(kMeshPrefix + hash, "application/x-mortise-mesh",
-                          log_records::encode(*mesh), 0);
+  for (const auto& [hash, mesh] : header.meshes) write(hash, *mesh);
   if (header.assembly)
     mcap_->add_attachment(kAssemblyPrefix + content_hash(*header.assembly),
                           "application/x-mortise-assembly", *header.assembly, 0);
@@ -136,6 +134,11 @@ void LogFile::write_head(const LogHeader& header) {
   if (header.begin->time_ns > 0) set_time(header.begin->time_ns);
   write(header.begin->state);
   message(totals_, log_records::encode(header.begin->statistics));
+}
+
+void LogFile::write(const std::string& mesh_hash, const TriangleMesh& mesh) {
+  mcap_->add_attachment(log_layout::kMeshPrefix + mesh_hash, "application/x-mortise-mesh",
+                        log_records::encode(mesh), time_ns_);
 }
 
 void LogFile::set_time(std::int64_t time_ns) {

@@ -29,6 +29,7 @@ class LogFile {
   static void remove_unnamed(const std::filesystem::path& file);
   /// Removes the file if it never got its name.
   void remove_if_unnamed();
+  void write(const std::string& mesh_hash, const TriangleMesh& mesh);
   void write(const TickRecord& tick);
   void write(const Checkpoint& state);
   void write_gap(const log_json::Gap& gap);

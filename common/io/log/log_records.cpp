@@ -112,6 +112,24 @@ bool get_constraint(ByteReader& in, Constraint& constraint) {
   return in.ok();
 }
 
+void put(ByteWriter& out, const PartEdit& edit) {
+  put(out, edit.name);
+  put(out, edit.mesh_hash);
+  for (int i = 0; i < 4; ++i) out.f64(edit.X_WP.q.coeffs()[i]);
+  for (int i = 0; i < 3; ++i) out.f64(edit.X_WP.p[i]);
+  out.u8(edit.moving);
+  out.f64(edit.quantum_mm);
+}
+
+void get_edit(ByteReader& in, PartEdit& edit) {
+  edit.name = get_text(in);
+  edit.mesh_hash = get_text(in);
+  for (int i = 0; i < 4; ++i) edit.X_WP.q.coeffs()[i] = in.f64();
+  for (int i = 0; i < 3; ++i) edit.X_WP.p[i] = in.f64();
+  edit.moving = in.u8() != 0;
+  edit.quantum_mm = in.f64();
+}
+
 // Kinds of format 1 are written as they were then; the high bit of the kind says that more follows.
 constexpr std::uint8_t kHasDetails = 0x80;
 
@@ -133,6 +151,7 @@ void put(ByteWriter& out, const Decision& decision) {
   put(out, d.text);
   put(out, d.constraint);
   out.varint(d.constraint_id.value);
+  if (edits_scene(decision.kind)) put(out, d.edit.value_or(PartEdit{}));
 }
 
 bool get_details(ByteReader& in, Decision& decision) {
@@ -153,7 +172,8 @@ bool get_details(ByteReader& in, Decision& decision) {
   d.text = get_text(in);
   if (!get_constraint(in, d.constraint)) return false;
   d.constraint_id.value = in.varint32();
-  return in.ok();
+  if (edits_scene(decision.kind)) get_edit(in, d.edit.emplace());
+  return in.ok() && (!d.edit || (valid(d.edit->X_WP) && d.edit->quantum_mm >= 0.0));
 }
 
 bool get_decision(ByteReader& in, Decision& decision) {

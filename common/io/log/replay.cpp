@@ -139,6 +139,11 @@ Result<LoadedScene> bare_scene_of(const SessionLog& log) {
   if (!scene) return scene.error();
   for (const Finding& finding : scene->findings)
     if (finding.is_error) return fail(Code::kInvalidInput, "scene of the log: " + finding.text);
+  // Of parts that were added later. What is known of their corners is said where they are.
+  if (scene->world.shapes)
+    for (const auto& [hash, mesh] : log.meshes)
+      if (!scene->world.shapes->find(hash).solid)
+        scene->world.shapes->add(std::make_shared<const Solid>(mesh), 0.0);
   return scene;
 }
 

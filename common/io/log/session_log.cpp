@@ -1,5 +1,6 @@
 #include "common/io/log/session_log.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -29,6 +30,7 @@ constexpr std::size_t kMostReserved = 8192;
 
 void empty(TickRecord& record) {
   record.tick = 0;
+  record.meshes.clear();
   record.decisions.clear();
   record.increments.clear();
   record.report = {};  // came with the record, and no one fills it again
@@ -61,6 +63,7 @@ class FileWriter final : public SessionLogWriter {
   void queue(TickRecord& record);
   void run();
   void write(const Item& item);
+  void write_meshes(const TickRecord& tick);
   void write_state(const TickRecord& tick);
   void rotate(Checkpoint state);
   void remember_error();
@@ -71,6 +74,7 @@ class FileWriter final : public SessionLogWriter {
   std::unique_ptr<LogFile> file_;
   LogHeader header_;
   LogOptions options_;
+  std::vector<SolidPtr> meshes_;  ///< added to those of the header since
   SessionStatistics statistics_;  ///< of all ticks so far; only where files are rotated
   StepCounters counters_;
   std::uint64_t written_tick_ = 0;    ///< the last
@@ -219,6 +223,7 @@ void FileWriter::write(const Item& item) {
   }
   file_->set_time(item.tick.time_ns);
   if (item.gap_before.ticks > 0) file_->write_gap(item.gap_before);
+  write_meshes(item.tick);
   file_->write(item.tick);
   accumulate(counters_, item.tick.report.counters);
   if (options_.rotate_bytes > 0) {
@@ -230,6 +235,16 @@ void FileWriter::write(const Item& item) {
   if (file_->mcap().chunk_is_full()) {
     file_->mcap().end_chunk();
     settle_chunk();
+  }
+}
+
+void FileWriter::write_meshes(const TickRecord& tick) {
+  for (const SolidPtr& solid : tick.meshes) {
+    if (std::ranges::any_of(header_.meshes, [&](auto& m) { return m.first == solid->hash(); }))
+      continue;
+    file_->write(solid->hash(), solid->mesh());
+    header_.meshes.emplace_back(solid->hash(), &solid->mesh());  // of the next file as well
+    meshes_.push_back(solid);
   }
 }
 
@@ -358,10 +373,14 @@ LogHeader log_header(const LoadedScene& scene, std::string session, std::string 
                    .imports = scene.imports,
                    .assembly = scene.assembly};
   std::map<std::string, const TriangleMesh*> meshes;
-  for (const Part& part : scene.world.parts) {
+  // Parts of the scenario; what was added since is in the state that the log begins with.
+  for (std::size_t i = 0; i < scene.imports.size(); ++i)
+    header.mesh_of_part.push_back(scene.world.parts[i].solid->hash());
+  for (const Part& part : scene.world.parts)
     meshes.emplace(part.solid->hash(), &part.solid->mesh());
-    header.mesh_of_part.push_back(part.solid->hash());
-  }
+  if (scene.world.shapes)
+    for (const auto& [hash, mesh] : scene.world.shapes->meshes())
+      meshes.emplace(hash, &mesh.solid->mesh());
   header.meshes.assign(meshes.begin(), meshes.end());
   return header;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/geometry/mesh.h"
+#include "common/geometry/solid.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/state/checkpoint.h"
 #include "common/messages/increment.h"
@@ -63,7 +63,8 @@ LogHeader log_header(const LoadedScene& scene, std::string session, std::string 
 /// increments.
 struct TickRecord {
   std::uint64_t tick = 0;
-  std::int64_t time_ns = 0;  ///< server clock, for the reader's timeline only
+  std::int64_t time_ns = 0;      ///< server clock, for the reader's timeline only
+  std::vector<SolidPtr> meshes;  ///< that its decisions are the first to name
   std::vector<Decision> decisions;
   std::vector<Increment> increments;
   StepReport report;

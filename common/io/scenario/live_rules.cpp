@@ -104,7 +104,7 @@ Result<Scenario::FitSpec> fit_of_text(const std::string& text, YamlContext& cont
 class LiveRules final : public SurfaceRules {
  public:
   LiveRules(const Scenario& scenario, std::vector<StatedPart> stated)
-      : scenario_(scenario), stated_(std::move(stated)) {}
+      : scenario_(scenario), stated_(std::move(stated)), named_(stated_.size()) {}
 
   Result<Change> restate(const World& world, const Target& target,
                          const std::string& text) override {
@@ -113,6 +113,12 @@ class LiveRules final : public SurfaceRules {
     context.unit_mm = scenario_.unit_mm;
     if (target.other_part) return restate_pair(world, target, text, context);
     return restate_part(world, target, text, context);
+  }
+
+  void add_part(const Part& part) override {
+    StatedPart& stated = stated_.emplace_back();
+    stated.kind = part.kind;
+    stated.of_feature.resize(part.features.size());
   }
 
  private:
@@ -229,7 +235,7 @@ class LiveRules final : public SurfaceRules {
 
   // The fits of every pair with the part, under what is stated now.
   Result<Change> change_of(const World& world, PartId part) const {
-    RuleOutcome rules = rules_of({scenario_, world.parts, stated_, live_, part});
+    RuleOutcome rules = rules_of({scenario_, world.parts, stated_, live_, named_, part});
     if (has_error(rules.findings)) return first_error(rules.findings);
     Change change;
     for (auto& [ids, rule] : rules.pair_rules) change.pairs.push_back(std::move(rule));
@@ -238,6 +244,7 @@ class LiveRules final : public SurfaceRules {
 
   Scenario scenario_;
   std::vector<StatedPart> stated_;
+  std::size_t named_;  ///< parts of the scenario
   std::vector<LiveFit> live_;
 };
 

@@ -148,7 +148,8 @@ void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario)
       if (const auto right = right_named(word))
         user.may->push_back(*right);
       else
-        map.error("may", "'" + word + "' is not known; list policy, tolerance, exclusions, review");
+        map.error("may",
+                  "'" + word + "' is not known; list policy, tolerance, exclusions, review, parts");
     }
   }
   if (const auto word = map.text("role")) {

@@ -183,9 +183,6 @@ Pose read_pose(YamlContext& context, const YAML::Node& node) {
 // 3. features
 
 constexpr const char* kBadName = "a name is one word without '.' and '*', short and printable";
-bool good_name(const std::string& name) {
-  return is_name(name) && name.find_first_of(".*") == std::string::npos;
-}
 
 struct KindKeys {
   const char* name;
@@ -282,7 +279,7 @@ void read_features(YamlContext& context, const YAML::Node& node, Scenario::PartS
   std::set<std::string> names;
   for (const auto& entry : node) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (!good_name(name))
+    if (!is_part_name(name))
       context.error(entry.first, "features: " + std::string(kBadName));
     else if (!names.insert(name).second)
       context.error(entry.first, "features: '" + name + "' stands here twice; rename one");
@@ -315,7 +312,7 @@ void read_instances(YamlContext& context, const YAML::Node& list, const Scenario
     copy.at.line = map.line();
     const auto name = map.text("name");
     if (!map.has("name")) map.error(kNoName);
-    if (name && !good_name(*name)) map.error("name", kBadName);
+    if (name && !is_part_name(*name)) map.error("name", kBadName);
     copy.name = name.value_or("");
     if (const YAML::Node pose = map.find("pose")) copy.X_WP = read_pose(context, pose);
     if (const auto moving = map.boolean("moving")) copy.moving = *moving;
@@ -383,7 +380,7 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
   const auto name = map.text("name");
   const bool named_by_instances = map.has("instances");
   if (!map.has("name") && !named_by_instances) map.error(kNoName);
-  if (name && !good_name(*name)) map.error("name", kBadName);
+  if (name && !is_part_name(*name)) map.error("name", kBadName);
   part.name = name.value_or("");
 
   const std::string source = map.one_of({"mesh", "generator"});

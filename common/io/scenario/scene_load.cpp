@@ -11,6 +11,7 @@
 #include "common/io/scenario/live_rules.h"
 #include "common/io/scenario/scene_features.h"
 #include "common/io/scenario/scene_rules.h"
+#include "common/session/world/surface_rules.h"
 
 namespace mortise {
 namespace {
@@ -145,6 +146,16 @@ std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
   return "generator " + spec.mesh.generator + " has no feature of this name; " + known_names(mesh);
 }
 
+// What can be added while the session runs.
+std::shared_ptr<PartShapes> make_shapes(const LoadedScene& scene, UndeclaredSurface undeclared) {
+  auto shapes = std::make_shared<PartShapes>([undeclared](SolidPtr solid, double quantum_mm) {
+    return shape_of(std::move(solid), quantum_mm, undeclared);
+  });
+  for (std::size_t i = 0; i < scene.world.parts.size(); ++i)
+    shapes->add(scene.world.parts[i].solid, scene.imports[i].quantum_mm);
+  return shapes;
+}
+
 /// Told again with each snapshot; a list of more is not read by people.
 constexpr std::size_t kMostDeclared = 4096;
 
@@ -170,9 +181,12 @@ class SceneLoader {
       scene_.findings.insert(scene_.findings.end(), rules.findings.begin(), rules.findings.end());
       declare();
     }
-    if (scene_.usable()) world.rules = make_live_rules(scenario_, stated_);
+    if (scene_.usable()) {
+      world.rules = make_live_rules(scenario_, stated_);
+      world.shapes = make_shapes(scene_, scenario_.undeclared);
+    }
     if (scenario_.assembly) scene_.assembly = scenario_.assembly->sent;
-    world.evaluates = evaluates();
+    world.evaluates = evaluates(world);
     return std::move(scene_);
   }
 
@@ -427,17 +441,6 @@ class SceneLoader {
     return spec.at;
   }
 
-  bool evaluates() const {
-    const World& world = scene_.world;
-    return std::any_of(world.parts.begin(), world.parts.end(),
-                       [](const Part& part) { return !part.band.trivial; }) ||
-           std::any_of(world.pair_rules.begin(), world.pair_rules.end(), [](const auto& entry) {
-             const PairRule& rule = entry.second;
-             return (rule.band_a && !rule.band_a->trivial) ||
-                    (rule.band_b && !rule.band_b->trivial);
-           });
-  }
-
   const Scenario& scenario_;
   const MeshProvider& meshes_;
   LoadedScene scene_;
@@ -450,6 +453,24 @@ class SceneLoader {
 };
 
 }  // namespace
+
+PartShape shape_of(SolidPtr solid, double quantum_mm, UndeclaredSurface undeclared) {
+  PartKind kind;
+  kind.solid = solid;
+  const bool recognizes = undeclared != UndeclaredSurface::kNominal;
+  RecognizedMeshes recognized;
+  if (recognizes) add_undeclared(recognized.of(*solid, quantum_mm), kind);
+  PartShape shape{solid, kind.features, {}};
+  shape.band = build_band({solid.get(),
+                           kind.features,
+                           std::nullopt,
+                           for_band(kind.stated.rest),
+                           for_band(kind.stated.of_feature),
+                           recognizes,
+                           quantum_mm,
+                           {}});
+  return shape;
+}
 
 bool LoadedScene::usable() const {
   return std::none_of(findings.begin(), findings.end(),

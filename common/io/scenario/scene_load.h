@@ -6,6 +6,7 @@
 #include "common/base/result.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/io/scenario/scene_meshes.h"
+#include "common/session/world/part_shapes.h"
 #include "common/session/world/world.h"
 
 namespace mortise {
@@ -36,6 +37,10 @@ struct LoadedScene {
   std::shared_ptr<const std::vector<std::byte>> assembly;
   bool usable() const;
 };
+
+/// A mesh of which the scenario says nothing, as a part of it: with the surfaces that it shows,
+/// where the scenario takes them.
+PartShape shape_of(SolidPtr solid, double quantum_mm, UndeclaredSurface undeclared);
 
 Result<LoadedScene> load_scene(const Scenario& scenario, const MeshProvider& meshes);
 

@@ -21,20 +21,21 @@ constexpr std::size_t kMaxRulePairs = 2'000'000;
 // The parts of the scene and their features by the names and patterns of a scenario.
 class Names {
  public:
-  explicit Names(const std::vector<Part>& parts) : parts_(parts) {}
+  Names(const std::vector<Part>& parts, std::size_t named)
+      : parts_(parts), named_(std::span(parts).first(std::min(named, parts.size()))) {}
 
   const Part& part(PartId id) const { return parts_[id.value - 1]; }
 
   std::vector<PartId> parts_matching(const std::string& pattern) const {
     std::vector<PartId> ids;
-    for (const Part& candidate : parts_)
+    for (const Part& candidate : named_)
       if (matches_name(pattern, candidate.name)) ids.push_back(candidate.id);
     return ids;
   }
 
   std::string no_such_part(const std::string& pattern) const {
     std::vector<std::string> names;
-    for (const Part& candidate : parts_) names.push_back(candidate.name);
+    for (const Part& candidate : named_) names.push_back(candidate.name);
     return "no part is called '" + pattern + "'" + did_you_mean(pattern, names);
   }
 
@@ -63,13 +64,14 @@ class Names {
 
  private:
   const std::vector<Part>& parts_;
+  std::span<const Part> named_;
 };
 
 // What an assembly has no longer after another export (unmatched) is told, and the rest is used.
 class RuleBook {
  public:
-  explicit RuleBook(const RuleInput& input)
-      : input_(input), scenario_(input.scenario), stated_(input.stated), names_(input.parts) {}
+  explicit RuleBook(const RuleInput& in)
+      : input_(in), scenario_(in.scenario), stated_(in.stated), names_(in.parts, in.named) {}
 
   RuleOutcome run() {
     for (const auto& fit : scenario_.fits) apply_fit(fit);

@@ -45,6 +45,8 @@ struct RuleInput {
   const std::vector<Part>& parts;
   const std::vector<StatedPart>& stated;
   std::span<const LiveFit> live = {};
+  /// So many parts, from the first on, are those that the scenario speaks of; others were added.
+  std::size_t named = static_cast<std::size_t>(-1);
   std::optional<PartId> only = {};  ///< only pairs with this part, and no more than their fits
 };
 

@@ -9,6 +9,7 @@
 
 #include "common/base/check.h"
 #include "common/io/state/state_fields.h"
+#include "common/session/world/scene_edits.h"
 #include "common/session/world/surface_rules.h"
 
 namespace mortise {
@@ -46,12 +47,12 @@ void put_rules(Writer& out, const World& world) {
 // All but the memos. The members of a world are named here as those of the rest in state_fields.
 void put_frame(Writer& out, const World& world) {
   const auto& [name, tick_rate_hz, policy, max_jump_mm, lease_s, tick, parts, users, pair_rules,
-               may_hold, declared, standing, remarks, rules, restated, guides, next_constraint,
-               next_group, recognized, evaluates, state] = world;
-  out(tick, policy);
+               may_hold, declared, standing, remarks, rules, shapes, edits, restated, guides,
+               next_constraint, next_group, recognized, evaluates, state] = world;
+  out(tick, policy, edits, restated);
   out.count(parts.size());
   for (const Part& part : parts) out(part);
-  out(users, restated, standing, remarks);
+  out(users, standing, remarks);
   put_rules(out, world);
   out(guides, next_constraint, next_group, evaluates, *state);
 }
@@ -118,7 +119,11 @@ bool fits(const World& world) {
 Status state_rules(World& world, const std::vector<Decision>& restated,
                    const std::vector<PairStatement>& statements) {
   for (const Decision& decision : restated)
-    if (Status said = set_tolerance(world, decision); !said) return said;
+    if (edits_scene(decision.kind)) {
+      world.restated.push_back(decision);
+    } else if (Status said = set_tolerance(world, decision); !said) {
+      return said;
+    }
   std::map<std::pair<PartId, PartId>, PairRule> rules;
   for (const PairStatement& statement : statements) {
     const auto found = world.pair_rules.find({statement.a, statement.b});
@@ -151,15 +156,19 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   MORTISE_CHECK(world.state == nullptr, "a state is restored into a world as it was loaded");
   Reader in(bytes);
   // 1. What the scene does not say.
-  in(world.tick, world.policy);
+  std::vector<Decision> restated, standing;
+  in(world.tick, world.policy, world.edits, restated);
+  for (const Decision& added : restated)
+    if (edits_scene(added.kind) && append_part(world, added) == nullptr)
+      return bad("the mesh of an added part is missing");
+  world.restated.clear();  // said again below, in their order
   if (in.count(0) != world.parts.size() || !in.ok()) return bad("it has another number of parts");
   for (Part& part : world.parts) in(part);
-  std::vector<Decision> restated, standing;
   std::vector<PairStatement> statements;
   bool evaluates = false;
   auto state = empty_state(world);
-  in(world.users, restated, standing, world.remarks, statements, world.guides,
-     world.next_constraint, world.next_group, evaluates, *state);
+  in(world.users, standing, world.remarks, statements, world.guides, world.next_constraint,
+     world.next_group, evaluates, *state);
   const std::size_t memos = in.count(0);
   for (std::size_t i = 0; i < memos && in.ok(); ++i) {
     std::uint64_t key = 0;
@@ -175,6 +184,7 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   if (world.evaluates != evaluates) return bad("its rules are not those of the scene");
   world.standing = std::move(standing);
   // 3. What follows from the rest.
+  count_parts(world, *state);
   set_resting_boxes(world, *state);
   world.state = std::move(state);
   return ok();

@@ -36,11 +36,16 @@ void fields(A& a, Constraint& x) {
   a(kind, held, other, distance_mm, snap);
 }
 template <class A>
+void fields(A& a, PartEdit& x) {
+  auto& [name, mesh_hash, X_WP, moving, quantum_mm] = x;
+  a(name, mesh_hash, X_WP, moving, quantum_mm);
+}
+template <class A>
 void fields(A& a, Details& x) {
   auto& [parts, other_part, feature, other_feature, other_user, clash, status, text, constraint,
-         constraint_id] = x;
+         constraint_id, edit] = x;
   a(parts, other_part, feature, other_feature, other_user, clash, status, text, constraint,
-    constraint_id);
+    constraint_id, edit);
 }
 template <class A>
 void fields(A& a, Decision& x) {
@@ -86,14 +91,19 @@ void fields(A& a, OpenClash& x) {
 }
 
 template <class A>
+void fields(A& a, PartForm& x) {
+  auto& [present, moving] = x;
+  a(present, moving);
+}
+template <class A>
 void fields(A& a, MoveHistory::Done& x) {
-  auto& [user, X_WP_before, number] = x;
-  a(user, X_WP_before, number);
+  auto& [user, X_WP_before, number, form_before] = x;
+  a(user, X_WP_before, number, form_before);
 }
 template <class A>
 void fields(A& a, MoveHistory::Undone& x) {
-  auto& [move, X_WP_after, below] = x;
-  a(move, X_WP_after, below);
+  auto& [move, X_WP_after, below, form_after] = x;
+  a(move, X_WP_after, below, form_after);
 }
 template <class A>
 void fields(A& a, MoveHistory& x) {
@@ -103,9 +113,9 @@ void fields(A& a, MoveHistory& x) {
 /// The members of a part that a session changes, without its band; the rest comes with the scene.
 template <class A>
 void fields(A& a, Part& x) {
-  auto& [id, name, solid, band, features, moving, X_WP_scenario, X_WP, holder, asked_by, history,
-         notes, group, kind] = x;
-  a(X_WP, holder, asked_by, history, group);
+  auto& [id, name, solid, band, features, moving, present, edits, X_WP_scenario, X_WP, holder,
+         asked_by, history, notes, group, kind] = x;
+  a(X_WP, holder, asked_by, history, group, moving, present, edits);
 }
 template <class A>
 void fields(A& a, User& x) {
@@ -175,11 +185,11 @@ void fields(A& a, KeptPush& x) {
 /// But for the boxes, which follow from poses and growth, and the memos, which are written apart.
 template <class A>
 void fields(A& a, SessionState& x) {
-  auto& [tick, event_seq, next_clash, moving_parts, broad_phase, parts, placed, owed, kept, rehash,
-         memos, touched, open, reviews, clashes_changed, saved_work, saved_tests, parts_hash,
-         clashes_hash] = x;
-  a(tick, event_seq, next_clash, moving_parts, parts, placed, owed, kept, rehash, open, reviews,
-    clashes_changed, saved_work, saved_tests, parts_hash, clashes_hash);
+  auto& [tick, event_seq, next_clash, present_parts, moving_parts, broad_phase, parts, placed, owed,
+         kept, rehash, memos, touched, open, reviews, clashes_changed, edited, saved_work,
+         saved_tests, parts_hash, clashes_hash] = x;
+  a(tick, event_seq, next_clash, present_parts, moving_parts, parts, placed, owed, kept, rehash,
+    open, reviews, clashes_changed, edited, saved_work, saved_tests, parts_hash, clashes_hash);
 }
 
 template <class A>

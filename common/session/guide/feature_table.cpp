@@ -90,6 +90,7 @@ std::vector<Kind> kinds_of(const World& world) {
   std::vector<Kind> kinds;
   std::map<std::string, std::vector<std::size_t>> by_mesh;
   for (const Part& part : world.parts) {
+    if (!part.present) continue;
     std::vector<std::size_t>& candidates = by_mesh[part.solid->hash()];
     const auto known = std::find_if(candidates.begin(), candidates.end(),
                                     [&](std::size_t k) { return alike(*kinds[k].first, part); });
@@ -133,7 +134,9 @@ std::vector<SolidPtr> unrecognized_meshes(const World& world) {
   std::vector<SolidPtr> meshes;
   std::set<std::string> seen;
   for (const Part& part : world.parts) {
-    if (!may_be_recognized(*part.solid) || world.recognized.contains(part.solid->hash())) continue;
+    if (!part.present || !may_be_recognized(*part.solid) ||
+        world.recognized.contains(part.solid->hash()))
+      continue;
     if (seen.insert(part.solid->hash()).second) meshes.push_back(part.solid);
   }
   std::stable_sort(meshes.begin(), meshes.end(), [](const SolidPtr& a, const SolidPtr& b) {

@@ -78,7 +78,7 @@ GuidanceReply check_parts(const World& world, UserId user_id, const Constraint& 
     return refuse(Refusal::kUnknownUser,
                   "user " + std::to_string(user_id.value) + " is not in the session: join first");
   for (const FeatureOf* side : {&constraint.held, &constraint.other})
-    if (!world.find(side->part))
+    if (!world.find_present(side->part))
       return refuse(Refusal::kUnknownPart, "there is no part " + std::to_string(side->part.value));
   const Part& held = *world.find(constraint.held.part);
   if (held.holder != user_id)

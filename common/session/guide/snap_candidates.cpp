@@ -122,6 +122,7 @@ std::vector<SnapCandidate> snap_candidates(const World& world, PartId part_id,
   const Fits fits(world, part_id);
   const Vec3 reference_W = part.X_WP * part.solid->sphere().center_mm;
   for (const Part& other : world.parts) {
+    if (!other.present) continue;
     const auto& ball = other.solid->sphere();
     const double gap_mm = (other.X_WP * ball.center_mm - reference_W).norm() - ball.radius_mm -
                           part.solid->sphere().radius_mm;

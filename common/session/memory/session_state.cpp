@@ -27,10 +27,9 @@ std::unique_ptr<SessionState> make_state(const World& world, bool brute_force_pa
                   "a band has a face for every triangle of its part");
     state->parts[i].growth_mm = part.band.farthest_mm();
     state->rehash.push_back(i);
-    if (!part.moving) continue;
-    ++state->moving_parts;
-    state->placed.push_back(i);
+    if (part.present && part.moving) state->placed.push_back(i);
   }
+  count_parts(world, *state);
   // A fit may give a pair larger bands than either part has alone.
   for (const auto& [pair, rule] : world.pair_rules) {
     const auto grow = [&](PartId part, const std::shared_ptr<const SurfaceBand>& band) {
@@ -68,6 +67,10 @@ std::uint64_t hash_of(const Part& part) {
   hash.add(static_cast<std::uint64_t>(part.holder.value));
   for (int i = 0; i < 4; ++i) hash.add(part.X_WP.q.coeffs()[i]);
   add(hash, part.X_WP.p);
+  if (part.edits == 0) return hash.value();  // as before there were edits
+  hash.add(static_cast<std::uint64_t>(part.present));
+  hash.add(static_cast<std::uint64_t>(part.moving));
+  hash.add(std::as_bytes(std::span(part.solid->hash())));
   return hash.value();
 }
 
@@ -96,7 +99,7 @@ void add(StateHash& hash, const OpenClash& clash) {
 SessionState& session_state(World& world, bool brute_force_pairs) {
   if (!world.state) world.state = make_state(world, brute_force_pairs);
   MORTISE_CHECK(world.state->tick == world.tick, "a copy of this world was stepped: load it twice");
-  MORTISE_CHECK(world.state->parts.size() == world.parts.size(), "parts are fixed after the load");
+  MORTISE_CHECK(world.state->parts.size() == world.parts.size(), "parts come by decisions alone");
   return *world.state;
 }
 
@@ -139,22 +142,17 @@ void note_holder(World& world, std::uint32_t index) {
   if (world.state) world.state->rehash.push_back(index);
 }
 
-void note_surface(World& world, PartId part, PartId other, const Decision& by) {
-  if (!world.state) return;
+namespace {
+
+// The moving parts of the pairs concerned count as put where they stand: that voids what is
+// remembered of them and has them judged. Without `other`: of all pairs of the part.
+void judge_anew(World& world, PartId part, PartId other, const Decision& by) {
   SessionState& state = *world.state;
-  // 1. Boxes as large as what they now hold.
-  for (const PartId id : {part, other}) {
-    if (!world.find(id)) continue;
-    const std::uint32_t index = id.value - 1;
-    state.parts[index].growth_mm = farthest_mm(world, id) + kClashHysteresisMost_mm;
-    state.broad_phase->set_box(index, resting_box(world, state, index));
-  }
-  // 2. The moving parts of the pairs concerned count as put where they stand: that voids what is
-  //    remembered of them and has them judged.
   std::vector<std::uint32_t> again;
   const auto add = [&](PartId id) {
-    if (world.find(id)->moving) again.push_back(id.value - 1);
-    return world.find(id)->moving;
+    const bool moves = world.find(id)->present && world.find(id)->moving;
+    if (moves) again.push_back(id.value - 1);
+    return moves;
   };
   if (world.find(other)) {
     if (!add(part)) add(other);
@@ -167,6 +165,62 @@ void note_surface(World& world, PartId part, PartId other, const Decision& by) {
       if (ids.first == part || ids.second == part) add(ids.first == part ? ids.second : ids.first);
   }
   for (const std::uint32_t index : again) note_placed(world, index, by);
+}
+
+}  // namespace
+
+bool is_judged(const World& world, PartId a, PartId b) {
+  const Part &x = *world.find(a), &y = *world.find(b);
+  return x.present && y.present && (x.moving || y.moving);
+}
+
+void count_parts(const World& world, SessionState& state) {
+  state.present_parts = state.moving_parts = 0;
+  for (const Part& part : world.parts) {
+    state.present_parts += part.present;
+    state.moving_parts += part.present && part.moving;
+  }
+}
+
+void note_form(World& world, std::uint32_t index, const Decision& by) {
+  if (!world.state) return;
+  SessionState& state = *world.state;
+  const Part& part = world.parts[index];
+  // 1. Lists and boxes.
+  state.parts.resize(world.parts.size());
+  count_parts(world, state);
+  PartState& of = state.parts[index];
+  of.growth_mm = farthest_mm(world, part.id) + kClashHysteresisMost_mm;
+  of.cause = by.kind;
+  of.cause_user = by.user;
+  of.cause_tick = world.tick + 1;
+  state.broad_phase->set_box(index, resting_box(world, state, index));
+  state.rehash.push_back(index);
+  state.edited = true;
+  // 2. What the next tick would have gone on with.
+  if (!part.present || !part.moving) {
+    std::erase(state.placed, index);
+    std::erase_if(state.kept, [&](const KeptPush& push) { return push.part == index; });
+  }
+  std::erase_if(state.owed, [&](IndexPair pair) {
+    return !is_judged(world, PartId{pair.a + 1}, PartId{pair.b + 1});
+  });
+  // 3. What is to be judged.
+  if (part.present) judge_anew(world, part.id, PartId{}, by);
+}
+
+void note_surface(World& world, PartId part, PartId other, const Decision& by) {
+  if (!world.state) return;
+  SessionState& state = *world.state;
+  // 1. Boxes as large as what they now hold.
+  for (const PartId id : {part, other}) {
+    if (!world.find(id)) continue;
+    const std::uint32_t index = id.value - 1;
+    state.parts[index].growth_mm = farthest_mm(world, id) + kClashHysteresisMost_mm;
+    state.broad_phase->set_box(index, resting_box(world, state, index));
+  }
+  // 2. Verdicts.
+  judge_anew(world, part, other, by);
 }
 
 void note_policy(World& world) {
@@ -192,6 +246,7 @@ void set_resting_boxes(const World& world, SessionState& state) {
 
 Box resting_box(const World& world, const SessionState& state, std::uint32_t index) {
   const Part& part = world.parts[index];
+  if (!part.present) return {};
   const BodyBounds body{part.solid->bounds(), part.solid->sphere()};
   Motion still = still_motion(part.X_WP);
   still.reference_P = body.sphere_P.center_mm;

@@ -131,7 +131,7 @@ struct SessionState {
   std::uint64_t tick = 0;
   std::uint64_t event_seq = 0;
   std::uint32_t next_clash = 1;
-  std::uint64_t moving_parts = 0;
+  std::uint64_t present_parts = 0, moving_parts = 0;  ///< of the present ones
   std::unique_ptr<BroadPhase> broad_phase;
   std::vector<PartState> parts;
   std::vector<std::uint32_t> placed;  ///< parts placed since the last tick, no repeats
@@ -149,6 +149,7 @@ struct SessionState {
   std::map<PartPair, std::vector<OpenClash>> open;  ///< clashes of a pair by ClashId
   std::vector<ClashEvent> reviews;                  ///< made since the last tick, told in the next
   bool clashes_changed = true;
+  bool edited = false;  ///< the scene, since the last tick: clashes may have nobody who judges them
   std::int64_t saved_work = 0;   ///< evaluations, see depth_budget.h; negative: owed
   std::int64_t saved_tests = 0;  ///< the same of first contact, see contact_budget.h
   std::uint64_t parts_hash = 0;  ///< sum of PartState::hash
@@ -181,18 +182,28 @@ void forget_user(SessionState& state, UserId user);
 void note_placed(World& world, std::uint32_t index, const Decision& by);
 /// The holder of part `index` changed.
 void note_holder(World& world, std::uint32_t index);
+/// The form of part `index` changed, or it is new: lists and boxes follow, and where it is present
+/// its pairs are judged again in the next tick.
+void note_form(World& world, std::uint32_t index, const Decision& by);
 /// The statements about the surface of `part` changed, or, with `other`, those of this pair alone:
 /// drops what depends on them, and has the pairs judged again in the next tick.
 void note_surface(World& world, PartId part, PartId other, const Decision& by);
 /// The response policy changed: drops how deep pairs may go.
 void note_policy(World& world);
 
+/// Is the pair judged in ticks? Both are there, and one of them moves.
+bool is_judged(const World& world, PartId a, PartId b);
+
 /// An empty state for this number of parts, to be filled by a restore; and the boxes of all parts,
 /// once growth and poses are set.
 std::unique_ptr<SessionState> empty_state(const World& world);
 void set_resting_boxes(const World& world, SessionState& state);
 
-/// World box of a resting part, grown by what may lie outside of its mesh.
+/// Numbers of parts, after they changed.
+void count_parts(const World& world, SessionState& state);
+
+/// World box of a resting part, grown by what may lie outside of its mesh; empty for one that was
+/// removed.
 Box resting_box(const World& world, const SessionState& state, std::uint32_t index);
 
 /// Hash over tick, poses, holders, open clashes and their verdicts. Costs only what changed.

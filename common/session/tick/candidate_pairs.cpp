@@ -98,7 +98,7 @@ void find_candidate_pairs(const World& world, SessionState& state, Scratch::Impl
                           StepReport& report) {
   StepCounters& counters = report.counters;
   work.pair_count = 0;
-  const PairCensus census = count_pairs(world.parts.size(), state.moving_parts, work.moves.size());
+  const PairCensus census = count_pairs(state.present_parts, state.moving_parts, work.moves.size());
   counters.pairs.in = census.all;
   counters.pairs_static = census.both_static;
   counters.pairs_still = census.both_still;

@@ -278,6 +278,22 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
   if (pair.seen.empty() && !anew && (close || barely)) pair.keeps.assign(open.size(), 1);
 }
 
+void end_unjudged_clashes(const World& world, SessionState& state, StepReport& report) {
+  if (!state.edited) return;
+  state.edited = false;
+  for (auto it = state.open.begin(); it != state.open.end();) {
+    auto& [ids, clashes] = *it;
+    if (is_judged(world, ids.first, ids.second)) {
+      ++it;
+      continue;
+    }
+    for (OpenClash& clash : clashes)
+      tell(world, state, clash, ClashEvent::Kind::kEnd, Times{}, report);
+    state.clashes_changed = true;
+    it = state.open.erase(it);
+  }
+}
+
 void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
                     StepReport& report) {
   if (work.moves.empty()) return;

@@ -15,4 +15,8 @@ bool is_at(const OpenClash& clash, const CertainPlace& place, const PairWork& pa
 void report_clashes(const World& world, SessionState& state, Scratch::Impl& work,
                     StepReport& report);
 
+/// Ends the clashes that nobody judges any more after an edit: of parts that are gone, and of two
+/// that stand for good.
+void end_unjudged_clashes(const World& world, SessionState& state, StepReport& report);
+
 }  // namespace mortise

@@ -203,14 +203,17 @@ AssemblyJudgement judge(World& world, Scratch& scratch, const Closeness& closene
     else
       judgement.without_verdict.push_back(candidates[i]);
   }
-  for (const auto& [pair, rule] : world.pair_rules) counters.pairs_excluded += rule.excluded;
+  for (const auto& [pair, rule] : world.pair_rules)
+    counters.pairs_excluded +=
+        rule.excluded && world.find_present(pair.first) && world.find_present(pair.second);
   std::sort(report.pairs.begin(), report.pairs.end(),
             [](const PairVerdicts& x, const PairVerdicts& y) {
               return std::pair(x.a, x.b) < std::pair(y.a, y.b);
             });
   counters.parts_without_inside =
       static_cast<std::uint64_t>(std::count(without_inside.begin(), without_inside.end(), 1));
-  counters.pairs = {count_pairs(n, n, n).all, candidates.size()};
+  const std::uint64_t present = world.state->present_parts;
+  counters.pairs = {count_pairs(present, present, present).all, candidates.size()};
   counters.pairs_boxes_apart = counters.pairs.in - counters.pairs.out - counters.pairs_excluded;
   return judgement;
 }

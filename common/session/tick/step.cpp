@@ -81,6 +81,7 @@ StepReport step(World& world, std::span<const Increment> increments, Scratch& sc
   StepReport report;
   report.tick = world.tick;
   tell_reviews(world, state, report);
+  end_unjudged_clashes(world, state, report);
   // The stages. Each reads what the ones before have written.
   gather(world, increments, work, report);
   find_candidate_pairs(world, state, work, report);

@@ -33,7 +33,7 @@ Met look_along(const World& world, PartId a, PartId b, const OverlapQuery& start
   double first = 2.0;
   Met met;
   for (const Part& other : world.parts) {
-    if (other.id == a || other.id == b) continue;
+    if (!other.present || other.id == a || other.id == b) continue;
     const PairRule* rule = world.rule(mover.id, other.id);
     if (rule != nullptr && rule->excluded) continue;
     const BodyBounds body{other.solid->bounds(), other.solid->sphere()};

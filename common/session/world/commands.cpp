@@ -8,6 +8,7 @@
 #include "common/session/world/placing.h"
 #include "common/session/world/review.h"
 #include "common/session/world/rights.h"
+#include "common/session/world/scene_edits.h"
 #include "common/session/world/surface_rules.h"
 
 namespace mortise {
@@ -26,7 +27,7 @@ Refused held_by_other(const World& world, const Part& part) {
 // 1. what every command about a part needs
 
 Refused check_part(const World& world, PartId id) {
-  const Part* part = world.find(id);
+  const Part* part = world.find_present(id);
   if (!part) return {Refusal::kUnknownPart, "there is no part " + std::to_string(id.value)};
   if (!part->moving)
     return {Refusal::kPartIsStatic, "'" + part->name + "' is static in this scenario"};
@@ -91,10 +92,15 @@ Refused check_all(const Command& command, Check check) {
 // 3. taking back and repeating
 
 Refused check_history(const World& world, const User& user, const Command& command) {
-  Refused refused = check_part(world, command.part);
-  if (refused.refusal != Refusal::kNone) return refused;
-  const Part& part = *world.find(command.part);
+  const Part* known = world.find(command.part);
+  if (known == nullptr) return check_part(world, command.part);
+  const Part& part = *known;
   const bool undo = command.kind == CommandKind::kUndo;
+  const auto form = undo ? part.history.form_of_undo() : part.history.form_of_redo(user.id);
+  // An edit can be taken back of a part that stands, or is gone.
+  if (!form)
+    if (Refused refused = check_part(world, command.part); refused.refusal != Refusal::kNone)
+      return refused;
   const MoveHistory::Answer answer =
       undo ? part.history.may_undo(user.id) : part.history.may_redo(user.id);
   if (answer.refusal == Refusal::kMovedBySomeoneElse)
@@ -104,7 +110,9 @@ Refused check_history(const World& world, const User& user, const Command& comma
     return {answer.refusal,
             "there is no move of '" + part.name + "' to " + (undo ? "undo" : "redo")};
   if (part.holder && part.holder != user.id) return held_by_other(world, part);
-  return {};
+  if (!form) return {};
+  EditReply reply = check_form(world, user, part, *form);
+  return {reply.refusal, std::move(reply.text)};
 }
 
 // 4. handing over
@@ -165,7 +173,7 @@ Refused check_policy(const World& world, const User& user, const Command& comman
 // Both parts of a pair, moving or not.
 Refused check_pair(const World& world, const Command& command) {
   for (const PartId id : {command.part, command.details.other_part})
-    if (!world.find(id))
+    if (!world.find_present(id))
       return {Refusal::kUnknownPart, "there is no part " + std::to_string(id.value)};
   if (command.part == command.details.other_part)
     return {Refusal::kBadRule, "a pair needs two parts"};
@@ -204,7 +212,7 @@ Refused check_tolerance(const World& world, const User& user, const Command& com
   if (!world.rules)
     return {Refusal::kBadRule, "this session has no scenario whose tolerances could be changed"};
   if (command.details.other_part) return check_pair(world, command);
-  if (!world.find(command.part))
+  if (!world.find_present(command.part))
     return {Refusal::kUnknownPart, "there is no part " + std::to_string(command.part.value)};
   return {};
 }
@@ -249,6 +257,13 @@ Refused check(const World& world, const Command& command) {
     case CommandKind::kAddConstraint:
     case CommandKind::kDropConstraint:
       return {};  // checked where they are done
+    case CommandKind::kAddPart:
+    case CommandKind::kReplacePart:
+    case CommandKind::kRemovePart:
+    case CommandKind::kSetMoving: {
+      EditReply reply = check_edit(world, *user, command);
+      return {reply.refusal, std::move(reply.text)};
+    }
     case CommandKind::kUnknown:
       break;
   }
@@ -290,6 +305,14 @@ Decision::Kind decision_of(CommandKind kind) {
       return Decision::Kind::kAddConstraint;
     case CommandKind::kDropConstraint:
       return Decision::Kind::kDropConstraint;
+    case CommandKind::kAddPart:
+      return Decision::Kind::kAddPart;
+    case CommandKind::kReplacePart:
+      return Decision::Kind::kReplacePart;
+    case CommandKind::kRemovePart:
+      return Decision::Kind::kRemovePart;
+    case CommandKind::kSetMoving:
+      return Decision::Kind::kSetMoving;
     case CommandKind::kUnknown:
       break;
   }
@@ -314,9 +337,12 @@ Refused carry_out(World& world, Decision& decision) {
           drop_constraint(world, decision.user, decision.details.constraint_id);
       return {reply.refusal, reply.text};
     }
-    default:
+    default: {
+      EditReply reply = complete_edit(world, decision);
+      if (reply.refusal != Refusal::kNone) return {reply.refusal, std::move(reply.text)};
       apply_decision(world, decision);
       return {};
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include "common/session/memory/session_state.h"
 #include "common/session/world/placing.h"
 #include "common/session/world/review.h"
+#include "common/session/world/scene_edits.h"
 #include "common/session/world/standing.h"
 #include "common/session/world/surface_rules.h"
 
@@ -100,13 +101,23 @@ bool release(World& world, Part& part, const Decision& decision) {
 
 bool undo(World& world, Part& part, const Decision& decision) {
   if (part.history.done.empty()) return false;
-  put(world, part, part.history.undo(part.X_WP), decision);
+  const std::optional<PartForm> form = part.history.form_of_undo();
+  const Pose X_WP = part.history.undo(part.X_WP, form_of(part));
+  if (form)
+    take_form(world, part, *form, decision);
+  else
+    put(world, part, X_WP, decision);
   return true;
 }
 
 bool redo(World& world, Part& part, const Decision& decision) {
   if (part.history.may_redo(decision.user).refusal != Refusal::kNone) return false;
-  put(world, part, part.history.redo(decision.user), decision);
+  const std::optional<PartForm> form = part.history.form_of_redo(decision.user);
+  const Pose X_WP = part.history.redo(decision.user);
+  if (form)
+    take_form(world, part, *form, decision);
+  else
+    put(world, part, X_WP, decision);
   return true;
 }
 
@@ -221,6 +232,12 @@ std::vector<PartPose> apply_decision(World& world, const Decision& decision) {
       return {};
     case Decision::Kind::kDropConstraint:
       (void)drop_constraint(world, decision.user, decision.details.constraint_id);
+      return {};
+    case Decision::Kind::kAddPart:
+    case Decision::Kind::kReplacePart:
+    case Decision::Kind::kRemovePart:
+    case Decision::Kind::kSetMoving:
+      (void)apply_edit(world, decision);
       return {};
     case Decision::Kind::kUnknown:
       break;

@@ -33,6 +33,22 @@ void MoveHistory::note(UserId user, const Pose& X_WP_before) {
   open = true;
 }
 
+void MoveHistory::note_edit(UserId user, const Pose& X_WP_before, const PartForm& before) {
+  end_move();
+  note(user, X_WP_before);
+  done.back().form_before = before;
+  end_move();
+}
+
+std::optional<PartForm> MoveHistory::form_of_undo() const {
+  return done.empty() ? std::nullopt : done.back().form_before;
+}
+
+std::optional<PartForm> MoveHistory::form_of_redo(UserId user) const {
+  const auto entry = last_of(undone, user);
+  return entry == undone.rend() ? std::nullopt : entry->form_after;
+}
+
 void MoveHistory::forget(UserId user) {
   for (Done& move : done)
     if (move.user == user) move.user = UserId{};
@@ -54,11 +70,13 @@ MoveHistory::Answer MoveHistory::may_redo(UserId user) const {
   return {Refusal::kMovedBySomeoneElse, is_further ? done.back().user : undone.back().move.user};
 }
 
-Pose MoveHistory::undo(const Pose& X_WP) {
+Pose MoveHistory::undo(const Pose& X_WP, const PartForm& form) {
   MORTISE_CHECK(!done.empty(), "there is no move to undo: ask may_undo first");
   const Done last = done.back();
   done.pop_back();
-  push_bounded(undone, {last, X_WP, last_number(done)});
+  std::optional<PartForm> form_after;
+  if (last.form_before) form_after = form;
+  push_bounded(undone, {last, X_WP, last_number(done), form_after});
   open = false;  // the next move of the same grab can be undone in its turn
   return last.X_WP_before;
 }

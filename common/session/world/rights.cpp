@@ -38,7 +38,7 @@ bool may_hold(const World& world, const User& user, const Part& part) {
 Refusal refusal_of(const World& world, const Increment& increment) {
   const User* user = world.find(increment.user);
   if (!user || !user->present) return Refusal::kUnknownUser;
-  const Part* part = world.find(increment.part);
+  const Part* part = world.find_present(increment.part);
   if (!part) return Refusal::kUnknownPart;
   if (!part->moving) return Refusal::kPartIsStatic;
   if (user->role == Role::kObserver) return Refusal::kObserver;

@@ -44,11 +44,21 @@ constexpr bool holds_back(Policy policy) {
 inline constexpr std::string_view kPolicyNames = "stop, slide or report";
 
 /// What a user may change while the session runs.
-enum class Right : std::uint8_t { kUnknown = 0, kPolicy, kTolerance, kExclusions, kReview };
+enum class Right : std::uint8_t {
+  kUnknown = 0,
+  kPolicy,
+  kTolerance,
+  kExclusions,
+  kReview,
+  kParts,  ///< which parts there are, what they are made of, which of them move
+};
 
-/// "policy", "tolerance", "exclusions", "review".
+/// "policy", "tolerance", "exclusions", "review", "parts".
 std::string_view name_of(Right value);
 std::optional<Right> right_named(std::string_view name);
+
+/// A part, or a feature, may be called so: "part.feature" and patterns stay unambiguous.
+bool is_part_name(std::string_view name);
 
 /// What is assumed about surfaces without a declaration.
 enum class UndeclaredSurface : std::uint8_t {

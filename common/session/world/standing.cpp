@@ -28,14 +28,22 @@ bool replaces(const Decision& later, const Decision& declared) {
   return same_target(turned, declared);
 }
 
+// What is said of a part that was removed holds again when it comes back.
+bool is_of_present(const World& world, const Decision& decision) {
+  const auto is_gone = [&](PartId id) { return id && world.find_present(id) == nullptr; };
+  return !is_gone(decision.part) && !is_gone(decision.details.other_part);
+}
+
 }  // namespace
 
 std::vector<Decision> standing_decisions(const World& world) {
   std::vector<Decision> standing;
   for (const Decision& declared : world.declared)
-    if (std::ranges::none_of(world.standing, [&](auto& d) { return replaces(d, declared); }))
+    if (is_of_present(world, declared) &&
+        std::ranges::none_of(world.standing, [&](auto& d) { return replaces(d, declared); }))
       standing.push_back(declared);
-  standing.insert(standing.end(), world.standing.begin(), world.standing.end());
+  for (const Decision& decision : world.standing)
+    if (is_of_present(world, decision)) standing.push_back(decision);
   for (const Part& part : world.parts) {
     if (!part.asked_by) continue;
     Decision& ask = standing.emplace_back();

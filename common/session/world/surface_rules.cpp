@@ -13,6 +13,14 @@ bool says_something(const std::shared_ptr<const SurfaceBand>& band) {
 
 }  // namespace
 
+bool evaluates(const World& world) {
+  return std::any_of(world.parts.begin(), world.parts.end(),
+                     [](const Part& part) { return !part.band.trivial; }) ||
+         std::any_of(world.pair_rules.begin(), world.pair_rules.end(), [](const auto& entry) {
+           return says_something(entry.second.band_a) || says_something(entry.second.band_b);
+         });
+}
+
 void apply_change(World& world, const Decision& by, SurfaceRules::Change change) {
   for (auto& [id, band] : change.bands)
     if (Part* part = world.find(id)) part->band = std::move(band);
@@ -32,12 +40,7 @@ void apply_change(World& world, const Decision& by, SurfaceRules::Change change)
     const PairRule& rule = entry.second;
     return !rule.excluded && !rule.band_a && !rule.band_b;
   });
-  world.evaluates =
-      std::any_of(world.parts.begin(), world.parts.end(),
-                  [](const Part& part) { return !part.band.trivial; }) ||
-      std::any_of(world.pair_rules.begin(), world.pair_rules.end(), [](const auto& entry) {
-        return says_something(entry.second.band_a) || says_something(entry.second.band_b);
-      });
+  world.evaluates = evaluates(world);
   note_surface(world, by.part, by.details.other_part, by);
 }
 

@@ -35,7 +35,13 @@ class SurfaceRules {
   /// returns the finding of the reader and changes nothing.
   virtual Result<Change> restate(const World& world, const Target& target,
                                  const std::string& text) = 0;
+  /// A part was added: nothing is stated of it yet, and the patterns of the scenario do not mean
+  /// it.
+  virtual void add_part(const Part& part) = 0;
 };
+
+/// Does some part, or pair, have deviation or tolerance?
+bool evaluates(const World& world);
 
 /// Applies a change to the world. Costs the rules of the part, and the judging of its pairs in the
 /// next tick.

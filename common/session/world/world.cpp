@@ -10,7 +10,7 @@ namespace mortise {
 
 const Part* World::find_part(const std::string& part_name) const {
   for (const Part& part : parts)
-    if (part.name == part_name) return &part;
+    if (part.present && part.name == part_name) return &part;
   return nullptr;
 }
 
@@ -28,12 +28,13 @@ Snapshot snapshot_of(const World& world) {
   snapshot.policy = name_of(world.policy);
   snapshot.standing = standing_decisions(world);
   snapshot.remarks = world.remarks;
-  for (const Part& part : world.parts)
+  for (const Part& part : world.parts) {
+    if (!part.present) continue;
     snapshot.parts.push_back({part.id, part.name, part.solid->hash(), part.moving, part.holder,
                               part.X_WP, part.solid->sphere().center_mm,
                               part.solid->sphere().radius_mm});
-  for (const Part& part : world.parts)
     for (const std::string& note : part.notes) snapshot.notes.push_back({part.id, note});
+  }
   for (const User& user : world.users)
     snapshot.users.push_back({user.id, user.name, user.present, user.role});
   if (!world.state) return snapshot;

@@ -19,8 +19,7 @@
 
 namespace mortise {
 
-/// One part of a session. Everything but pose, holder and history is fixed after load, but
-/// for bands, which a decision may change.
+/// One part of a session. Everything but pose, holder and history changes by decisions alone.
 struct Part {
   PartId id;
   std::string name;
@@ -28,7 +27,9 @@ struct Part {
   SurfaceBand band;               ///< resolved: deviation and tolerance of its faces
   std::vector<Feature> features;  ///< checked against the mesh
   bool moving = false;
-  Pose X_WP_scenario;  ///< where the scenario put it
+  bool present = true;      ///< false: it was removed; its number stays, and it may come back
+  std::uint32_t edits = 0;  ///< edits of the running session: it came, went, begins to move ...
+  Pose X_WP_scenario;       ///< where the scenario put it
   Pose X_WP;
   UserId holder;
   UserId asked_by;  ///< the user who waits for a hand-over of the part
@@ -67,6 +68,7 @@ struct Guide {
   bool follows = false;
 };
 
+class PartShapes;     ///< session/part_shapes.h
 class SurfaceRules;   ///< session/surface_rules.h
 struct SessionState;  ///< caches and open clashes between ticks, session/session_state.h
 
@@ -91,8 +93,11 @@ struct World {
   std::vector<Decision> standing;       ///< changes of policy, tolerance and exclusions in force
   std::vector<Remark> remarks;          ///< of clashes that are open, in order; see review.h
   std::shared_ptr<SurfaceRules> rules;  ///< null: tolerances cannot be changed
-  /// Every accepted change of a tolerance, in order: applied to a fresh scene they give the present
-  /// bands. Of several consecutive changes of one target only the last is kept.
+  std::shared_ptr<PartShapes> shapes;   ///< null: parts cannot be added
+  std::uint64_t edits = 0;  ///< of the scene: whoever keeps lists of parts makes them anew
+  /// Every accepted change of a tolerance and every added part, in order: applied to a fresh scene
+  /// they give the present parts and bands. Of several consecutive changes of one target only the
+  /// last is kept.
   std::vector<Decision> restated;
   std::vector<Guide> guides;  ///< by id, see session/guidance.h
   std::uint32_t next_constraint = 1, next_group = 1;
@@ -109,7 +114,16 @@ struct World {
   const User* find(UserId id) const {
     return id.value - 1 < users.size() ? &users[id.value - 1] : nullptr;
   }
-  const Part* find_part(const std::string& part_name) const;
+  /// Null as well for a part that was removed.
+  const Part* find_present(PartId id) const {
+    const Part* part = find(id);
+    return part != nullptr && part->present ? part : nullptr;
+  }
+  Part* find_present(PartId id) {
+    Part* part = find(id);
+    return part != nullptr && part->present ? part : nullptr;
+  }
+  const Part* find_part(const std::string& part_name) const;  ///< of those present
   const PairRule* rule(PartId a, PartId b) const;
 };
 

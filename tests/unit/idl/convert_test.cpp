@@ -126,6 +126,66 @@ TEST(Convert, RequestsGoRound) {
   EXPECT_EQ(wanted->kind, Request::Kind::kSnapshot);
 }
 
+TEST(Convert, EditsOfPartsGoRoundAndAreRefused) {
+  Request request;
+  request.kind = Request::Kind::kCommand;
+  request.command = {UserId{3}, PartId{}, 5, CommandKind::kAddPart};
+  const PartEdit edit{"bracket", "feed", Pose{Quat(0.6, 0.8, 0, 0), Vec3(1, 2, 3)}, true, 0.5};
+  request.command.details.edit = edit;
+  const auto back = from_wire(to_wire(request));
+  ASSERT_TRUE(back && back->command.details.edit);
+  EXPECT_EQ(*back->command.details.edit, edit);
+  const auto refused = [&](auto change) {
+    wire::Request wire = to_wire(request);
+    change(wire.command()[0].details().edit());
+    return !from_wire(wire);
+  };
+  EXPECT_TRUE(refused([](auto& e) { e.push_back(e[0]); }));
+  EXPECT_TRUE(refused([](auto& e) { e[0].name("a\nb"); }));
+  EXPECT_TRUE(refused([](auto& e) { e[0].quantum_mm(kNan); }));
+  EXPECT_TRUE(refused([](auto& e) { e[0].pose().q()[0] = 2.0; }));
+  EXPECT_TRUE(refused([](auto& e) { e[0].pose().p_mm()[1] = kInf; }));
+}
+
+TEST(Convert, UploadsGoRoundAndAreRefused) {
+  Request request;
+  request.kind = Request::Kind::kUpload;
+  request.piece = {UserId{3}, 7, "bracket.stl", 25.4, "feed", 10, 4, std::vector<std::byte>(6)};
+  const auto back = from_wire(to_wire(request));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->kind, Request::Kind::kUpload);
+  EXPECT_EQ(back->piece.user, UserId{3});
+  EXPECT_EQ(back->piece.upload, 7U);
+  EXPECT_EQ(back->piece.name, "bracket.stl");
+  EXPECT_EQ(back->piece.unit_mm, 25.4);
+  EXPECT_EQ(back->piece.hash, "feed");
+  EXPECT_EQ(back->piece.length, 10U);
+  EXPECT_EQ(back->piece.offset, 4U);
+  EXPECT_EQ(back->piece.bytes.size(), 6U);
+  const auto refused = [&](auto change) {
+    wire::Request wire = to_wire(request);
+    change(wire.upload()[0]);
+    return !from_wire(wire);
+  };
+  EXPECT_TRUE(refused([](auto& u) { u.user(0); }));
+  EXPECT_TRUE(refused([](auto& u) { u.upload(0); }));
+  EXPECT_TRUE(refused([](auto& u) { u.unit_mm(0.0); }));
+  EXPECT_TRUE(refused([](auto& u) { u.unit_mm(kInf); }));
+  EXPECT_TRUE(refused([](auto& u) { u.offset(5); })) << "beyond its end";
+  EXPECT_TRUE(refused([](auto& u) { u.offset(~std::uint64_t{0}); }));
+  EXPECT_TRUE(refused([](auto& u) { u.bytes().clear(); }));
+  EXPECT_TRUE(refused([](auto& u) {
+    u.length(1'000'000);
+    u.bytes().resize(kUploadPiece_bytes + 1);
+  }));
+  const UploadState state{UserId{3}, 7, 10, true, "feed", "open", Refusal::kNone};
+  const auto answers = from_wire(to_wire({}, {}, {}, {}, {}, std::span(&state, 1)));
+  ASSERT_TRUE(answers && answers->uploads.size() == 1);
+  EXPECT_EQ(answers->uploads[0].mesh_hash, "feed");
+  EXPECT_TRUE(answers->uploads[0].ready);
+  EXPECT_EQ(answers->uploads[0].received, 10U);
+}
+
 TEST(Convert, RequestsAreRefused) {
   const auto passes = [](auto change) {
     wire::Request request;

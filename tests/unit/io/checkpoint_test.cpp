@@ -33,8 +33,8 @@ struct Played {
 };
 
 // Saved every so many ticks, by `shift` ticks earlier.
-Played play(std::uint64_t seed, int ticks, int every, std::uint64_t shift = 0) {
-  Played played{std::make_unique<RandomSession>(seed), {}};
+Played play(std::uint64_t seed, int ticks, int every, std::uint64_t shift = 0, bool edits = false) {
+  Played played{std::make_unique<RandomSession>(seed, 3, edits), {}};
   for (int i = 1; i <= ticks; ++i) {
     played.session->tick();
     if ((static_cast<std::uint64_t>(i) + shift) % static_cast<std::uint64_t>(every) == 0)
@@ -47,6 +47,8 @@ Played play(std::uint64_t seed, int ticks, int every, std::uint64_t shift = 0) {
 // Where the session that goes on from these bytes first differs; -1: nowhere.
 int first_difference(const RandomSession& session, const Saved& saved, std::string& what) {
   auto scene = random_scene();
+  for (const auto& [hash, mesh] : session.scene.world.shapes->meshes())
+    scene->world.shapes->add(mesh.solid, 0.0);
   if (Status restored = restore_state(scene->world, saved.bytes); !restored) {
     what = restored.error().text;
     return 0;
@@ -97,6 +99,29 @@ TEST(Checkpoint, FromEachOneRandomSessionsGoOnToTheSameEnd) {
         CommandKind::kReset, CommandKind::kSetPolicy, CommandKind::kSetTolerance,
         CommandKind::kSetExclusion, CommandKind::kDropExclusion, CommandKind::kReview,
         CommandKind::kAddConstraint, CommandKind::kConsent, CommandKind::kWithdraw})
+    EXPECT_GT(accepted[static_cast<std::size_t>(kind)], 0U) << static_cast<int>(kind);
+}
+
+// Where parts come and go as well.
+TEST(Checkpoint, OfEditedScenesTheyGoOnToTheSameEnd) {
+  std::size_t accepted[kCommandKindCount] = {}, gone = 0, added = 0;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(4)); ++seed) {
+    const Played played = play(seed, 120, 120, 5 + seed % 23 * 5, true);
+    for (std::size_t k = 0; k < kCommandKindCount; ++k) accepted[k] += played.session->accepted[k];
+    const std::vector<Part>& parts = played.session->scene.world.parts;
+    gone += static_cast<std::size_t>(
+        std::ranges::count_if(parts, [](const Part& part) { return !part.present; }));
+    added += parts.size() - 8;
+    for (const Saved& saved : played.saved) {
+      std::string what;
+      EXPECT_EQ(first_difference(*played.session, saved, what), -1)
+          << "seed " << seed << ", checkpoint after tick " << saved.ticks << ": " << what;
+    }
+  }
+  EXPECT_GT(gone, 3U);
+  EXPECT_GT(added, 10U);
+  for (const CommandKind kind :
+       {CommandKind::kAddPart, CommandKind::kRemovePart, CommandKind::kSetMoving})
     EXPECT_GT(accepted[static_cast<std::size_t>(kind)], 0U) << static_cast<int>(kind);
 }
 

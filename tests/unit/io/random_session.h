@@ -15,7 +15,7 @@
 
 /// Sessions in which several users do everything that a session lets them do, at random: pushes,
 /// groups, undo, redo, reset, hand-over, constraints, reviews, and changes of policy, tolerances,
-/// fits and exclusions.
+/// fits and exclusions; where `edits`, parts also come, go, come back, and begin to move.
 namespace mortise::test {
 
 inline const std::string kRandomScenario = R"(
@@ -58,7 +58,8 @@ inline Result<LoadedScene> random_scene() {
 
 class RandomSession {
  public:
-  explicit RandomSession(std::uint64_t seed, int users = 3) : random_(seed) {
+  explicit RandomSession(std::uint64_t seed, int users = 3, bool edits = false)
+      : random_(seed), edits_(edits) {
     auto loaded = random_scene();
     EXPECT_TRUE(loaded && loaded->usable());
     for (const Finding& finding : loaded->findings) EXPECT_FALSE(finding.is_error) << finding.text;
@@ -81,6 +82,7 @@ class RandomSession {
   const TickRecord& tick() {
     for (int i = static_cast<int>(below(3)); i > 0; --i) act();
     TickRecord record;
+    record.meshes = std::exchange(meshes_, {});
     record.decisions = std::exchange(decisions_, {});
     record.increments = pushes();
     record.report = step(scene.world, record.increments, scratch_);
@@ -119,7 +121,47 @@ class RandomSession {
     decisions_.push_back(std::move(decision));
   }
 
+  // Parts of the session, and once a mesh that it did not have.
+  void edit() {
+    std::vector<Part>& parts = scene.world.parts;
+    const Part& some = parts[below(parts.size())];
+    const bool is_floor_or_plate = some.id.value <= 2;
+    Details details;
+    PartEdit& said = details.edit.emplace();
+    switch (below(6)) {
+      case 0:
+        if (is_floor_or_plate || parts.size() > 14) return;
+        said = {"extra_" + std::to_string(parts.size()),
+                below(2) == 0 ? new_mesh() : some.solid->hash(),
+                Pose{random_rotation(), 45.0 * Vec3(u(), u(), 0.4 + 0.5 * u())}, below(3) != 0,
+                0.0};
+        ask(user(), CommandKind::kAddPart, PartId{}, details);
+        if (parts.back().moving && parts.back().id != movers_.back())
+          movers_.push_back(parts.back().id);
+        return;
+      case 1:
+        return is_floor_or_plate ? void() : ask(user(), CommandKind::kRemovePart, some.id);
+      case 2:
+        said.moving = !some.moving;
+        return some.id.value == 1 ? void() : ask(user(), CommandKind::kSetMoving, some.id, details);
+      case 3:
+      case 4:
+        return ask(user(), CommandKind::kUndo, some.id);
+      default:
+        return ask(user(), CommandKind::kRedo, some.id);
+    }
+  }
+  std::string new_mesh() {
+    TriangleMesh mesh = scene.world.parts.back().solid->mesh();
+    for (Vec3& point : mesh.points_mm) point *= 1.0 + 0.1 * std::fabs(u());
+    meshes_.push_back(std::make_shared<const Solid>(std::move(mesh)));
+    scene.world.shapes->add(meshes_.back(), 1e-4);
+    return meshes_.back()->hash();
+  }
+  Quat random_rotation() { return Quat(1.0, u(), u(), u()).normalized(); }
+
   void act() {
+    if (edits_ && below(3) == 0) return edit();
     const PartId part = mover();
     const Part& state = *scene.world.find(part);
     const UserId who = state.holder && below(4) != 0 ? state.holder : user();
@@ -221,10 +263,12 @@ class RandomSession {
   }
 
   std::mt19937_64 random_;
+  bool edits_;
   std::vector<PartId> movers_;
   std::vector<std::uint64_t> seq_;  ///< by user
   std::uint64_t commands_ = 0;
   std::vector<Decision> decisions_;
+  std::vector<SolidPtr> meshes_;  ///< new in this tick
   Scratch scratch_;
 };
 

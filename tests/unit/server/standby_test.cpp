@@ -37,6 +37,8 @@ struct Line final : StandbyChannel {
   void publish_snapshot(const Snapshot&) override {}
   void publish_mesh(const std::string&, std::span<const std::byte>) override {}
   void publish_features(const FeatureTable&) override {}
+  void publish_uploads(std::span<const UploadState>) override {}
+  void publish_coming_mesh(const std::string&, std::span<const std::byte>) override {}
   void publish_pulse(const SessionPulse&) override {}
   bool has_readers() const override { return false; }
   ChannelCounters counters() const override { return {}; }

@@ -1,0 +1,20 @@
+#include "common/depth/ready_body.h"
+
+#include "common/depth/body.h"
+
+namespace mortise {
+
+void make_body_ready(const Solid& solid, const SurfaceBand& band, int threads) {
+  for (int i = 0; i < threads; ++i) {
+    {
+      const Body body(solid, band);
+      (void)body.face_of_child();
+      (void)body.plane_faces();
+      for (std::uint16_t face = 0; face < band.faces.size(); ++face) (void)body.ends_of(face);
+      (void)cover_of(body);
+    }
+    lay_out_index(solid, band);
+  }
+}
+
+}  // namespace mortise

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/messages/command.h"
+#include "common/session/world/part_shapes.h"
+
+namespace mortise {
+
+/// Reads uploaded mesh files and makes all that a session needs of them, one after another, in a
+/// thread that gives way to all others: no tick waits for it. A file is read in the confined
+/// importer, as any other.
+class PartMaker {
+ public:
+  struct Wish {
+    std::string key;  ///< told back
+    // A file with the hash that was announced,
+    std::string name, hash;
+    double unit_mm = 1.0;
+    std::vector<std::byte> file;
+    // or a mesh.
+    SolidPtr solid;
+    double quantum_mm = 0.0;
+  };
+  struct Made {
+    std::string key;
+    PartShapePtr shape;  ///< null: it could not be made, and `text` says why
+    double quantum_mm = 0.0;
+    std::string text;  ///< else what was found in the file; may be empty
+    std::shared_ptr<const std::vector<Feature>> recognized;    ///< null: not searched
+    std::shared_ptr<const std::vector<std::byte>> mesh_bytes;  ///< of a file: see mesh_bytes.h
+  };
+  /// Called by the thread for each mesh of a file, before it is told as made.
+  using Publish = std::function<void(const std::string& hash, std::span<const std::byte> bytes)>;
+
+  /// threads: that judge the parts.
+  PartMaker(PartShapes::Make make, int threads, Publish publish);
+  ~PartMaker();  ///< does not wait: the thread ends after its present file
+  PartMaker(const PartMaker&) = delete;
+  PartMaker& operator=(const PartMaker&) = delete;
+
+  void make(Wish wish);
+  /// What was made since the last call. Never blocks for longer than a move.
+  std::vector<Made> take();
+
+ private:
+  struct Work;
+  std::shared_ptr<Work> work_;
+};
+
+}  // namespace mortise
