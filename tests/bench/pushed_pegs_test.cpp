@@ -46,19 +46,19 @@ TEST(PushedPegs, SixtyFourGoAsFarAsOne) {
 }
 
 // What is told goes on without a look as long as covers prove it. A look at the poses that were
-// reached says nothing worse, and when the pegs rest just the same.
+// reached says nothing worse, and what is over ends once the pegs rest.
 TEST(PushedPegs, WhatGoesOnIsWhatALookSays) {
+  std::uint64_t went_on = 0;
   for (const Fit& fit : {Fit{"0.1 mm clearance", 19.9, ""}, Fit{"H7/g6", 20.0, "Ø20 H7/g6"},
                          Fit{"H7/k6", 20.0, "Ø20 H7/k6"}})
     for (const char* policy : {"report", "stop"}) {
       SCOPED_TRACE(std::string(fit.name) + ", " + policy);
       Pegs pegs(fit, 3, policy);
       Dice dice(29);
-      std::uint64_t went_on = 0;
       for (int tick = 0; tick < 60; ++tick) {
         std::vector<Vec3> by;
         for (int i = 0; i < pegs.count(); ++i)
-          by.emplace_back(dice.between(-0.02, 0.02), dice.between(-0.02, 0.02), 0.05);
+          by.emplace_back(dice.between(-0.01, 0.01), dice.between(-0.01, 0.01), 0.05);
         if (tick >= 50) by.assign(by.size(), Vec3::Zero());
         const StepReport report = pegs.push(by, Vec3::Zero());
         went_on += report.counters.pairs_held_again;
@@ -66,13 +66,14 @@ TEST(PushedPegs, WhatGoesOnIsWhatALookSays) {
         const bool rest = tick >= 56, held = std::string(policy) == "stop";
         for (const auto& [pair, told] : classes_of(pegs.world())) {
           EXPECT_GE(told.told, told.judged) << "tick " << tick;
-          if (rest && !held) {
-            EXPECT_EQ(told.told, told.judged) << "tick " << tick;
+          // A better class is told where it is left by enough; nothing at all needs no more.
+          if (rest && !held && told.judged == CollisionClass::kNone) {
+            EXPECT_EQ(told.told, CollisionClass::kNone) << "tick " << tick;
           }
         }
       }
-      EXPECT_GT(went_on, 20U);
     }
+  EXPECT_GT(went_on, 100U);
 }
 
 }  // namespace

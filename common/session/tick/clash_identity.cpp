@@ -275,7 +275,10 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
                   [&](const OverlapRegion& region) {
                     return region.possible_mm.hi <= 0.0 && region.possible_mm.hi > -h;
                   });
-  if (pair.seen.empty() && !anew && (close || barely)) pair.keeps.assign(open.size(), 1);
+  // Nothing trembles at rest.
+  if (!pair.seen.empty() || anew || pair.placed || !(close || barely)) return;
+  pair.keeps.assign(open.size(), 1);
+  pair.owed = pair.lingers = true;
 }
 
 void end_unjudged_clashes(const World& world, SessionState& state, StepReport& report) {

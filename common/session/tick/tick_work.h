@@ -100,7 +100,7 @@ struct PairWork {
   CertainPlace place;            ///< a place that makes the pair real, where one is known
 
   bool goes_on = false;        ///< what is told of it, proven without a look
-  bool lingers = false;        ///< told is real; proven is potential
+  bool lingers = false;        ///< what is told is perhaps left: to be seen when its parts rest
   bool touch_unasked = false;  ///< meets, t_contact, overlaps_at_start are not known
   bool together = false;       ///< both move as one: their clashes stay as they are
   double t_left = 2.0;  ///< of the tick: the parts went other ways from then on; 2: they did not
