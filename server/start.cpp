@@ -10,6 +10,7 @@
 #include "common/io/log/log_file.h"
 #include "common/io/log/replay.h"
 #include "common/io/scenario/assembly_parts.h"
+#include "idl/identity.h"
 #include "server/restore.h"
 
 namespace mortise {
@@ -86,6 +87,7 @@ Result<SessionStart> read_from_log(const fs::path& file) {
   (void)say_findings(start.scene.findings, true, start.source);
   start.log_chain = log->chain;
   start.log_name = file.filename().string();
+  start.last_seal = log->last_seal;
   start.led_until_ns = std::min(last_time_ns(*log), kLatest_ns);
   start.log = std::move(*log);
   return start;
@@ -162,11 +164,17 @@ Result<NewLog> create_log(const ServerOptions& options, const SessionStart& star
   }
   LogHeader header =
       log_header(start.scene, options.network.session, start.scenario_name, start.scenario_yaml);
-  if (begin) header.chain = {start.log_name, start.log_chain.part + 1};
+  if (begin) header.chain = {start.log_name, start.log_chain.part + 1, start.last_seal};
   header.begin = std::move(begin);
   LogOptions log_options;
   log_options.named_later = !options.standby_of.empty();
   log_options.rotate_bytes = static_cast<std::uint64_t>(options.log_rotate_mb * 1e6);
+  if (!options.network.keys.empty()) {
+    const KeyFiles keys(options.network.keys);
+    auto signer = LogSigner::open(keys.certificate, keys.key);
+    if (!signer) return signer.error();
+    log_options.signer = std::move(*signer);
+  }
   auto writer = SessionLogWriter::create(path, header, log_options);
   if (!writer) return writer.error();
   log.writer = std::move(*writer);

@@ -17,7 +17,8 @@ struct SessionStart {
   LoadedScene scene;
   std::optional<SessionLog> log;  ///< to be played again before the session goes on
   LogChain log_chain;             ///< place of that log, and
-  std::string log_name;           ///< its file name
+  std::string log_name;           ///< its file name, and
+  std::string last_seal;          ///< what it was sealed with last; empty: it has no seals
   std::int64_t led_until_ns = 0;  ///< wall clock of the last tick of that log; 0: no tick
 };
 

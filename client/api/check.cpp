@@ -73,7 +73,7 @@ Result<CheckReport> check_all(const std::vector<std::string>& files, const Check
   if (!command) return wrong("the unit of meshes is one of mm, cm, metre, inch and micron");
   mortise::Result<mortise::CheckOutcome> outcome = mortise::run_check(*command);
   if (!outcome) return error_of(outcome.error());
-  const mortise::OpenedScene& opened = outcome->subject.opened;
+  const mortise::OpenedScene& opened = outcome->opened;
   const mortise::World& world = opened.scene.world;
   CheckReport report;
   for (const mortise::CheckedPair& pair : outcome->report.pairs)

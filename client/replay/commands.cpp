@@ -12,6 +12,7 @@
 #include "client/replay/progress.h"
 #include "common/io/build_info.h"
 #include "common/io/log/log_chain.h"
+#include "common/io/log/log_seal_check.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log_recover.h"
 #include "common/io/report_json.h"
@@ -82,6 +83,7 @@ ordered_json json_of(const VerifyOptions& options, const Verification& verificat
                            {"difference", nullptr},
                            {"not_verifiable", report.not_verifiable},
                            {"notes", verification.log.notes}};
+  if (!options.signed_by.empty()) document["signed"] = true;
   if (report.difference)
     document["difference"] = {{"tick", report.difference->tick}, {"what", report.difference->what}};
   return document;
@@ -165,13 +167,31 @@ ordered_json contents_of(const SessionLog& log) {
 
 }  // namespace
 
+// Said before anything is computed: what was changed is not worth it.
+int verify_signed(const VerifyOptions& options) {
+  std::vector<std::filesystem::path> files{options.log};
+  files.insert(files.end(), options.more.begin(), options.more.end());
+  if (options.more.empty()) files = chain_from(options.log);
+  const auto why_not = why_not_signed(files, options.signed_by);
+  if (!why_not) return say_bad_log(why_not.error());
+  if (why_not->empty()) return kExitOk;
+  if (options.json)
+    print({{"log", options.log.string()}, {"verified", false}, {"not_signed", *why_not}});
+  else
+    std::cout << "NOT SIGNED, or not unchanged: " << *why_not << '\n';
+  return kExitMismatch;
+}
+
 int run_verify(const VerifyOptions& options) {
+  if (!options.signed_by.empty())
+    if (const int code = verify_signed(options); code != kExitOk) return code;
   const auto verification = verification_of(options, {});
   if (!verification) return say_bad_log(verification.error());
   if (options.json)
     print(json_of(options, *verification));
   else
     print_text(*verification);
+  if (!options.signed_by.empty() && !options.json) std::cout << "signed, and unchanged since\n";
   return verification->exit_code;
 }
 
@@ -244,6 +264,13 @@ int run_recover(const RecoverOptions& options) {
     return recovery.error().code == Code::kRuntime
                ? say(recovery.error(), exit_code_of(Code::kRuntime))
                : say_bad_log(recovery.error());
+  if (!recovery->not_replayable.empty()) {
+    if (options.json)
+      print({{"log", options.log.string()}, {"not_replayable", recovery->not_replayable}});
+    return say({Code::kInvalidInput,
+                "not replayable, and nothing was written: " + recovery->not_replayable},
+               kExitNotReplayable);
+  }
   if (options.json) {
     print({{"log", options.log.string()},
            {"out", options.out.string()},

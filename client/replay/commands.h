@@ -11,6 +11,7 @@ struct VerifyOptions {
   std::filesystem::path log;
   std::vector<std::filesystem::path> more;  ///< further files of the session; empty: its chain
   int threads = 1;
+  std::filesystem::path signed_by;  ///< folder of the site that is to have signed it; empty: any
   bool json = false;
 };
 int run_verify(const VerifyOptions& options);
@@ -25,6 +26,8 @@ struct InfoOptions {
 };
 int run_info(const InfoOptions& options);
 
+/// recover: nothing of the session can be played again.
+inline constexpr int kExitNotReplayable = 7;
 struct RecoverOptions {
   std::filesystem::path log, out;
   bool json = false;

@@ -35,6 +35,9 @@ void add_verify(ProgramOptions& app, int& code) {
   command.add("more", options->more, kMore);
   command.add("--threads", options->threads, "threads; the result does not depend on it")
       .in_range(1, 256);
+  command.add("--signed", options->signed_by,
+              "and prove that it is unchanged since servers of this site signed it: the folder of "
+              "the site's authority, or of any keys of it (mortise keys)");
   command.add_flag("--json", options->json, kJson);
 }
 
@@ -60,8 +63,9 @@ void add_info(ProgramOptions& app, int& code) {
 
 void add_recover(ProgramOptions& app, int& code) {
   auto options = std::make_shared<RecoverOptions>();
-  auto command = app.add_command("recover", "copy all that is whole into a new, closed log",
-                                 [options, &code] { code = run_recover(*options); });
+  auto command = app.add_command(
+      "recover", "copy all that is whole into a new, closed log; exit 7: it is not replayable",
+      [options, &code] { code = run_recover(*options); });
   command.add("log", options->log, "damaged session log").required();
   command.add("--out", options->out, "new log; must not exist").required();
   command.add_flag("--json", options->json, kJson);

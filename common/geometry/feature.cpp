@@ -11,15 +11,13 @@
 namespace mortise {
 namespace {
 
-double outside_distance(const Surface& s, const Vec3& x) { return SurfaceAt(s).outside_mm(x); }
-
-Vec3 outside_normal(const Surface& s, const Vec3& x) { return SurfaceAt(s).outside_normal(x); }
-
 // How closely the least distance to a torus is found, as a share of how deep a triangle is.
 constexpr double kTorusShare = 1e-2;
 
 // Rounding of a distance, as a share of it.
 constexpr double kRoundingShare = 1e-15;
+// The same of a least distance from a cone, as a share of how far the triangle is from the apex.
+constexpr double kConeRounding = 1e-14;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -51,8 +49,62 @@ std::array<Corners, 2> halves_of(const Corners& c) {
   return {Corners{c[longest], half, apex}, Corners{half, c[(longest + 1) % 3], apex}};
 }
 
+// Least r cos(half angle) - z sin(half angle) over an edge: the distance from the cone where its
+// generator is nearest, and no more than it behind the apex. r is the root of a square of the place
+// along the edge, z is linear.
+double least_over_edge(const SurfaceAt& at, double half_angle_rad, const Vec3& a, const Vec3& b) {
+  const double cosine = std::cos(half_angle_rad), sine = std::sin(half_angle_rad);
+  const auto value = [&](double share) {
+    const SurfaceAt::View v = at.view_from_axis(a + share * (b - a));
+    return v.r_mm * cosine - v.z_mm * sine;
+  };
+  const Vec3& axis = at.surface().axis;
+  const Vec3 from = a - at.surface().point, along = b - a;
+  const double rise = along.dot(axis);
+  const Vec3 across = along - rise * axis, off = from - from.dot(axis) * axis;
+  const double length = across.norm();
+  double least = std::min(value(0.0), value(1.0));
+  const double steep = cosine * length, falls = sine * rise;
+  if (!(steep > std::fabs(falls))) return least;  // it grows or falls all along
+  const double nearest = -off.dot(across) / (length * length);
+  const double least_r = (off + nearest * across).norm();
+  const double share =
+      nearest + falls * least_r / (length * std::sqrt(steep * steep - falls * falls));
+  if (share > 0.0 && share < 1.0) least = std::min(least, value(share));
+  return least;
+}
+
+// The same over a triangle. In its plane the function has a smooth minimum only where the plane is
+// parallel to a tangent plane, and then all along a generator, which ends on an edge. What is left
+// is the axis, where r has a corner.
+double least_over_cone(const Surface& s, const Corners& c) {
+  const SurfaceAt at(s);
+  double least = std::numeric_limits<double>::infinity(), size = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    least = std::min(least, least_over_edge(at, s.half_angle_rad, c[k], c[(k + 1) % 3]));
+    size = std::max(size, (c[k] - s.point).norm());
+  }
+  const Vec3 normal = (c[1] - c[0]).cross(c[2] - c[0]);
+  const double leans = normal.dot(s.axis);
+  if (leans != 0.0) {
+    const Vec3 x = s.point + normal.dot(c[0] - s.point) / leans * s.axis;
+    if (distance_to_flat_triangle(x, normal, c) == 0.0)
+      least = std::min(least, -std::sin(s.half_angle_rad) * (x - s.point).dot(s.axis));
+  }
+  return least - kConeRounding * size;
+}
+
+// Is every point of a triangle nearest to a generator, and not to the apex? Its ball is.
+bool in_front(const SurfaceAt& at, const Corners& c) {
+  const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+  double reach = 0.0;
+  for (const Vec3& x : c) reach = std::max(reach, (x - middle).norm());
+  const SurfaceAt::View v = at.view_from_axis(middle);
+  return at.along_generator(v.z_mm, v.r_mm) >= reach;
+}
+
 struct LeastSearch {
-  const Surface& surface;
+  const SurfaceAt at;
   double accuracy_mm;
   double best;  // least value met so far
 };
@@ -61,18 +113,18 @@ struct LeastSearch {
 // bounds a convex function from below, and halving the longest edge tightens it quadratically.
 double least_over(LeastSearch& search, const Corners& c, int depth) {
   const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
-  const double at_middle = outside_distance(search.surface, middle);
-  const Vec3 slope = outside_normal(search.surface, middle);
+  const double at_middle = search.at.outside_mm(middle);
+  const Vec3 slope = search.at.outside_normal(middle);
   double bound = std::numeric_limits<double>::infinity();
   double reach = 0.0;
   search.best = std::min(search.best, at_middle);
   for (const Vec3& corner : c) {
     bound = std::min(bound, at_middle + slope.dot(corner - middle));
     reach = std::max(reach, (corner - middle).norm());
-    search.best = std::min(search.best, outside_distance(search.surface, corner));
+    search.best = std::min(search.best, search.at.outside_mm(corner));
   }
   // A distance changes by no more than the path walked, whatever the curvature.
-  bound = std::max(at_middle - reach, bound - search.surface.concave_bend_mm(middle, c, 0.0));
+  bound = std::max(at_middle - reach, bound - search.at.surface().concave_bend_mm(middle, c, 0.0));
   if (bound >= search.best - search.accuracy_mm || depth == 0) return bound;
   const auto halves = halves_of(c);
   return std::min(least_over(search, halves[0], depth - 1),
@@ -81,17 +133,17 @@ double least_over(LeastSearch& search, const Corners& c, int depth) {
 
 // Is the outside distance nowhere less than the limit? By tangents, halving only where they leave
 // it open.
-bool nowhere_below(const Surface& s, double limit_mm, const Corners& c, int depth) {
+bool nowhere_below(const SurfaceAt& s, double limit_mm, const Corners& c, int depth) {
   const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
-  const double at_middle = outside_distance(s, middle);
+  const double at_middle = s.outside_mm(middle);
   if (at_middle < limit_mm) return false;
-  const Vec3 slope = outside_normal(s, middle);
+  const Vec3 slope = s.outside_normal(middle);
   double bound = std::numeric_limits<double>::infinity(), reach = 0.0;
   for (const Vec3& corner : c) {
     bound = std::min(bound, at_middle + slope.dot(corner - middle));
     reach = std::max(reach, (corner - middle).norm());
   }
-  bound -= s.concave_bend_mm(middle, c, 0.0);
+  bound -= s.surface().concave_bend_mm(middle, c, 0.0);
   if (std::max(bound, at_middle - reach) >= limit_mm) return true;
   if (depth == 0) return false;
   const auto halves = halves_of(c);
@@ -156,8 +208,8 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
   MORTISE_CHECK(a.allFinite() && b.allFinite() && c.allFinite() && accuracy_mm > 0.0,
                 "corners must be finite, the accuracy positive");
   constexpr int kHalvings = 24;  // 4096 pieces along each side
-  const double da = outside_distance(*this, a), db = outside_distance(*this, b),
-               dc = outside_distance(*this, c);
+  const SurfaceAt at(*this);
+  const double da = at.outside_mm(a), db = at.outside_mm(b), dc = at.outside_mm(c);
   if (kind == SurfaceKind::kPlane || kind == SurfaceKind::kUnknown)
     return {std::min({da, db, dc}), std::max({da, db, dc})};
   Corners corners{a, b, c};
@@ -167,14 +219,16 @@ Interval Surface::signed_distance_range_mm(const Vec3& a, const Vec3& b, const V
   if (kind == SurfaceKind::kCylinder) {
     least = distance_to_flat_triangle(point, axis, corners) * (1.0 - kRoundingShare) -
             radius_mm * (1.0 + kRoundingShare);
+  } else if (kind == SurfaceKind::kCone && in_front(at, corners)) {
+    least = least_over_cone(*this, corners);
   } else {
     // Tangents of a torus are off by its bend: closing them far below the sagitta costs the most.
     double accuracy = accuracy_mm;
     if (kind == SurfaceKind::kTorus) {
-      const double sagitta = std::min({da, db, dc}) - outside_distance(*this, (a + b + c) / 3.0);
+      const double sagitta = std::min({da, db, dc}) - at.outside_mm((a + b + c) / 3.0);
       accuracy = std::max(accuracy, kTorusShare * std::fabs(sagitta));
     }
-    LeastSearch search{*this, accuracy, std::min({da, db, dc})};
+    LeastSearch search{at, accuracy, std::min({da, db, dc})};
     least = least_over(search, corners, kHalvings);
   }
   // A convex function is largest at a corner.
@@ -204,7 +258,7 @@ bool Surface::stays_below_mm(const Vec3& a, const Vec3& b, const Vec3& c, double
                concave_bend_mm((a + b + c) / 3.0, Corners{a, b, c}, 0.0) <=
            limit_mm;
   if (kind == SurfaceKind::kCylinder) return signed_distance_range_mm(a, b, c).hi <= limit_mm;
-  return nowhere_below(*this, -limit_mm, {a, b, c}, kHalvings);
+  return nowhere_below(SurfaceAt(*this), -limit_mm, {a, b, c}, kHalvings);
 }
 
 }  // namespace mortise

@@ -69,12 +69,12 @@ std::vector<std::string> bombs() {
 // Reads and judges one file. True when it was refused; then in one line.
 bool is_refused(const std::string& file) {
   const auto begin = std::chrono::steady_clock::now();
-  auto opened = open_assembly(file);
+  auto opened = open_assembly(file, {{}, {}, {}, AfterReading::kKeepSolids});
   std::string said;
   if (!opened) said = opened.error().text;
   if (opened && !opened->usable()) said = opened->findings.back().text;
   EXPECT_EQ(said.find('\n'), std::string::npos) << said;
-  if (said.empty()) (void)check_scene(*opened, file, {});
+  if (said.empty()) (void)check_scene(*opened, {});
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   EXPECT_LE(took.count(), kMost_s + 5.0) << said;
   return !said.empty();
@@ -135,7 +135,7 @@ TEST(StepMutants, AnOpenPartIsToldAndJudged) {
     OpenedScene opened;
     opened.scenario = reading->scenario;
     opened.scene = std::move(*scene);
-    const CheckReport report = check_scene(opened, {}, {});  // ends
+    const CheckReport report = check_scene(opened, {});  // ends
     EXPECT_EQ(report.parts, whole->document.instances.size());
     told += std::any_of(opened.scene.findings.begin(), opened.scene.findings.end(),
                         [](auto& f) { return f.text.find("is open at") != std::string::npos; });

@@ -40,11 +40,11 @@ struct Checked {
 
 inline Checked checked(const std::filesystem::path& file, const CheckOptions& options = {}) {
   use_built_importer();
-  auto opened = open_assembly(file);
+  auto opened = open_assembly(file, {{}, {}, {}, AfterReading::kKeepSolids});
   EXPECT_TRUE(opened) << opened.error().text;
   Checked c{std::move(*opened), {}};
   for (const Finding& finding : c.opened.findings) EXPECT_FALSE(finding.is_error) << finding.text;
-  c.report = check_scene(c.opened, file, options);
+  c.report = check_scene(c.opened, options);
   return c;
 }
 

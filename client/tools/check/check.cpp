@@ -7,7 +7,6 @@
 #include <map>
 
 #include "common/ccd/distance.h"
-#include "common/io/step/step_import.h"
 #include "common/messages/length_text.h"
 
 namespace mortise {
@@ -127,17 +126,13 @@ void say_bodies(const OpenedScene& opened, CheckReport& report) {
 
 class Checker {
  public:
-  Checker(OpenedScene& opened, const std::filesystem::path& step, const CheckOptions& options)
-      : opened_(opened),
-        world_(opened.scene.world),
-        step_(step),
-        options_(options),
-        finder_(world_) {}
+  Checker(OpenedScene& opened, const CheckOptions& options)
+      : opened_(opened), world_(opened.scene.world), options_(options), finder_(world_) {}
 
   CheckReport run() {
     Scratch scratch(options_.threads);
     const AssemblyJudgement judged =
-        judge_assembly(world_, scratch, step_.empty() ? kTellWork : kFirstWork);
+        judge_assembly(world_, scratch, opened_.exact ? kFirstWork : kTellWork);
     report_.candidate_pairs = judged.report.counters.pairs.out;
     gather(judged.report);
     gather_touching(judged.without_verdict);
@@ -280,8 +275,7 @@ class Checker {
   }
 
   bool is_exact(const CheckedPair& pair) const {
-    return !step_.empty() && options_.exact_volumes && spec(pair.a).mesh.given &&
-           spec(pair.b).mesh.given;
+    return opened_.exact && spec(pair.a).mesh.given && spec(pair.b).mesh.given;
   }
 
   void ask_exact_solids() {
@@ -304,7 +298,8 @@ class Checker {
     for (const CheckedPair* pair : asked)
       queries.push_back({spec(pair->a).mesh.given_number, spec(pair->b).mesh.given_number,
                          part(pair->a).X_WP.inverse() * part(pair->b).X_WP});
-    const auto commons = step_commons(step_, queries);
+    if (queries.empty()) return;
+    const auto commons = opened_.exact->commons(queries);
     if (!commons) report_.notes.push_back("exact volumes: " + commons.error().text);
     for (std::size_t i = 0; i < asked.size(); ++i)
       hear(*asked[i], commons ? (*commons)[i] : StepCommon{});
@@ -407,7 +402,6 @@ class Checker {
 
   OpenedScene& opened_;
   World& world_;
-  const std::filesystem::path& step_;
   const CheckOptions& options_;
   MatingFinder finder_;
   CheckReport report_;
@@ -463,9 +457,8 @@ void order_and_count(CheckReport& report) {
   report.counts = counts;
 }
 
-CheckReport check_scene(OpenedScene& opened, const std::filesystem::path& step,
-                        const CheckOptions& options) {
-  return Checker(opened, step, options).run();
+CheckReport check_scene(OpenedScene& opened, const CheckOptions& options) {
+  return Checker(opened, options).run();
 }
 
 }  // namespace mortise

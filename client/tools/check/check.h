@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,7 +13,7 @@ struct CheckOptions {
   double min_gap_mm = 0.0;            ///< 0: as the scenario says
   std::set<std::string> unexplained;  ///< names of relations that explain nothing
   int threads = 2;
-  bool exact_volumes = true;  ///< ask for exact volumes where an explanation needs them
+  bool exact_volumes = true;  ///< keep the exact solids: explanations need their volumes
 };
 
 /// Pairs of parts that stand to each other in the same way, judged once.
@@ -57,10 +56,9 @@ struct CheckReport {
   CheckCounts counts;
 };
 
-/// Judges an opened scene as it stands. `step`: the file of its assembly, for exact volumes; empty:
-/// there is none, and then no overlap is explained.
-CheckReport check_scene(OpenedScene& opened, const std::filesystem::path& step,
-                        const CheckOptions& options);
+/// Judges an opened scene as it stands. Where the exact solids of its assembly were not kept, no
+/// overlap is explained; they are asked once.
+CheckReport check_scene(OpenedScene& opened, const CheckOptions& options);
 
 /// An overlap is explained when its exact volume is at most what hole and shaft explain, plus this
 /// share of it for run-outs and points of screws, plus this volume for rounding.

@@ -29,12 +29,12 @@ int main(int argc, char** argv) {
     say(subject.error());
     return mortise::kExitBadInput;
   }
-  for (const mortise::Finding& finding : subject->opened.findings)
+  for (const mortise::Finding& finding : subject->findings)
     std::fprintf(stderr, "mortise-check: %s\n", finding.text.c_str());
-  if (!subject->opened.usable()) return mortise::kExitBadInput;
+  if (!subject->usable()) return mortise::kExitBadInput;
   const auto outcome = mortise::run_check(std::move(*subject), o);
   if (!outcome) return say(outcome.error());
-  const mortise::OpenedScene& opened = outcome->subject.opened;
+  const mortise::OpenedScene& opened = outcome->opened;
   const mortise::CheckReport& report = outcome->report;
   const bool color = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const std::string text =

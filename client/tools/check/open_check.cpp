@@ -11,22 +11,15 @@ fs::path statements_beside(const fs::path& step) {
   return fs::path(step).replace_extension(".mortise.yaml");
 }
 
-Result<CheckSubject> open_check(const CheckCommand& command) {
+Result<OpenedScene> open_check(const CheckCommand& command) {
   const fs::path file = command.files.front();
-  const AssemblyWishes wishes{command.general, command.bought, {}};
-  Result<OpenedScene> opened =
-      is_step_name(file)
-          ? (fs::exists(statements_beside(file)) ? open_scene(statements_beside(file), wishes)
-                                                 : open_assembly(file, wishes))
-      : is_mesh_name(file)
-          ? open_meshes(command.files, command.unit.empty() ? "mm" : command.unit, command.fit)
-          : open_scene(file);
-  if (!opened) return opened.error();
-  CheckSubject subject{std::move(*opened), {}};
-  if (subject.opened.scenario.assembly)
-    subject.step = fs::path(subject.opened.scenario.file).parent_path() /
-                   subject.opened.scenario.assembly->file;
-  return subject;
+  if (!is_step_name(file) && is_mesh_name(file))
+    return open_meshes(command.files, command.unit.empty() ? "mm" : command.unit, command.fit);
+  AssemblyWishes wishes{command.general, command.bought, {}, {}};
+  if (command.check.exact_volumes) wishes.then = AfterReading::kKeepSolids;
+  if (!is_step_name(file)) return open_scene(file, wishes);
+  const fs::path statements = statements_beside(file);
+  return fs::exists(statements) ? open_scene(statements, wishes) : open_assembly(file, wishes);
 }
 
 }  // namespace mortise

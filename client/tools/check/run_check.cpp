@@ -5,11 +5,10 @@
 
 namespace mortise {
 
-Result<CheckOutcome> run_check(CheckSubject subject, const CheckCommand& command) {
-  CheckOutcome outcome{std::move(subject), {}, {}, {}};
-  OpenedScene& opened = outcome.subject.opened;
-  outcome.report = check_scene(opened, outcome.subject.step, command.check);
-  outcome.document = check_json(opened, outcome.report);
+Result<CheckOutcome> run_check(OpenedScene opened, const CheckCommand& command) {
+  CheckOutcome outcome{std::move(opened), {}, {}, {}};
+  outcome.report = check_scene(outcome.opened, command.check);
+  outcome.document = check_json(outcome.opened, outcome.report);
   if (command.baseline.empty()) return outcome;
   Result<std::string> changes = compare_with_baseline(command.baseline, outcome.document);
   if (!changes) return changes.error();
@@ -19,11 +18,11 @@ Result<CheckOutcome> run_check(CheckSubject subject, const CheckCommand& command
 
 Result<CheckOutcome> run_check(const CheckCommand& command) {
   if (const Status good = coherent(command); !good) return good.error();
-  Result<CheckSubject> subject = open_check(command);
-  if (!subject) return subject.error();
-  for (const Finding& finding : subject->opened.findings)
+  Result<OpenedScene> opened = open_check(command);
+  if (!opened) return opened.error();
+  for (const Finding& finding : opened->findings)
     if (finding.is_error) return fail(Code::kInvalidInput, finding.text);
-  return run_check(std::move(*subject), command);
+  return run_check(std::move(*opened), command);
 }
 
 }  // namespace mortise

@@ -9,18 +9,18 @@ namespace mortise {
 
 /// A check from its files to its report, as the program and other callers have it.
 struct CheckOutcome {
-  CheckSubject subject;
+  OpenedScene opened;
   CheckReport report;
   Json document;        ///< of --json, with the changes against the baseline
   std::string changes;  ///< the same changes for people
 };
 
 /// Opens, judges and compares. Writes no file and says nothing; what was found while reading is in
-/// subject.opened.findings. Fails when the wishes do not go together, a file cannot be used (then
+/// opened.findings. Fails when the wishes do not go together, a file cannot be used (then
 /// with the first finding that is an error), or the baseline is no report.
 Result<CheckOutcome> run_check(const CheckCommand& command);
 
 /// The same of what is open already.
-Result<CheckOutcome> run_check(CheckSubject subject, const CheckCommand& command);
+Result<CheckOutcome> run_check(OpenedScene opened, const CheckCommand& command);
 
 }  // namespace mortise

@@ -20,6 +20,8 @@ constexpr std::size_t kMostFloors = 24, kMostWalls = 8;
 constexpr double kHollow = 1e-6;
 // A point this share of the part's size above a floor is in its pocket.
 constexpr double kAboveShare = 1e-6;
+// Above the rounding of a distance, as a share of the part's size.
+constexpr double kFarShare = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Corners = std::array<Vec3, 3>;
@@ -37,10 +39,34 @@ bool same_wall(const Surface& a, const Surface& b) {
          a.radius_mm == b.radius_mm && a.half_angle_rad == b.half_angle_rad;
 }
 
+// A ball about each triangle, and how far outside of a wall one must be to say nothing of its hole.
+struct Balls {
+  explicit Balls(const CoverFaces& f) : far_mm(f.travel_mm) {
+    for (const SurfaceBand::Face& face : f.body.band->faces)
+      far_mm = std::max(far_mm, face.deviation_mm.hi);
+    far_mm += kFarShare * f.body.solid->bvh().extent_mm;
+    for (std::uint32_t t = 0; t < f.count(); ++t) {
+      const Corners c = corners_of(f.mesh(), t);
+      middle.push_back((c[0] + c[1] + c[2]) / 3.0);
+      radius_mm.push_back(0.0);
+      for (const Vec3& x : c)
+        radius_mm.back() = std::max(radius_mm.back(), (x - middle.back()).norm());
+    }
+  }
+  double far_mm;
+  std::vector<Vec3> middle;
+  std::vector<double> radius_mm;
+};
+
 // The hole of one round inner face: along its axis up to what stands in it.
 class Bore {
  public:
-  Bore(const CoverFaces& faces, const Surface& surface) : f_(faces), s_(surface) {
+  Bore(const CoverFaces& faces, const Balls& balls, const Surface& surface)
+      : f_(faces), balls_(balls), s_(surface) {
+    for (const SurfaceBand::Face& face : f_.body.band->faces) {
+      const Surface* own = Body::surface_of(face, Layer::kUpper);
+      own_face_.push_back(own != nullptr && same_wall(*own, s_));
+    }
     wall_.point = s_.point;
     wall_.axis = s_.axis;
     wall_.r_mm = s_.radius_mm;
@@ -55,7 +81,7 @@ class Bore {
     const double from = std::max(own_.lo, s_.kind == SurfaceKind::kCone ? 0.0 : -kInfinity);
     if (!(from < own_.hi)) return std::nullopt;
     for (std::uint32_t t = 0; t < f_.count(); ++t)
-      if (!is_own(t) && !see(t)) return std::nullopt;
+      if (!is_far(t) && !is_own(t) && !see(t)) return std::nullopt;
     if (!(free_.lo < free_.hi)) return std::nullopt;
     const double lo = std::max(from, free_.lo), hi = std::min(own_.hi, free_.hi);
     if (!(lo < hi) || !is_outside(f_, s_.point + 0.5 * (lo + hi) * s_.axis)) return std::nullopt;
@@ -72,9 +98,10 @@ class Bore {
 
  private:
   double height(const Vec3& x) const { return (x - s_.point).dot(s_.axis); }
-  bool is_own(std::uint32_t t) const {
-    const Surface* s = f_.surface(t);
-    return s != nullptr && same_wall(*s, s_);
+  bool is_own(std::uint32_t t) const { return own_face_[f_.body.face_index(t)]; }
+  // So far outside that see() would change nothing.
+  bool is_far(std::uint32_t t) const {
+    return ball_clearance(balls_.middle[t], balls_.radius_mm[t]) >= balls_.far_mm;
   }
 
   void find_own() {
@@ -98,6 +125,9 @@ class Bore {
     const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
     double radius = 0.0;
     for (const Vec3& x : c) radius = std::max(radius, (x - middle).norm());
+    return ball_clearance(middle, radius);
+  }
+  double ball_clearance(const Vec3& middle, double radius) const {
     const Vec3 d = middle - s_.point;
     const double z = d.dot(s_.axis);
     return wall_.cosine * ((d - z * s_.axis).norm() - wall_.r_mm - wall_.slope * z) - radius;
@@ -173,8 +203,10 @@ class Bore {
   }
 
   const CoverFaces& f_;
+  const Balls& balls_;
   const Surface& s_;
   VoidWall wall_;
+  std::vector<bool> own_face_;
   std::vector<bool> own_point_;
   LayerOffsets offsets_{};
   double chord_mm_ = 0.0;
@@ -312,6 +344,7 @@ void add_pockets(const CoverFaces& f, std::vector<LayerVoids>& voids) {
 std::vector<LayerVoids> find_voids(const CoverFaces& f) {
   std::vector<LayerVoids> voids;
   std::vector<const Surface*> done;
+  const Balls balls(f);
   for (const SurfaceBand::Face& face : f.body.band->faces) {
     const Surface* s = Body::surface_of(face, Layer::kUpper);
     if (s == nullptr || !s->inward ||
@@ -321,7 +354,7 @@ std::vector<LayerVoids> find_voids(const CoverFaces& f) {
       continue;
     done.push_back(s);
     if (voids.size() < kMostVoids)
-      if (auto bore = Bore(f, *s).run()) voids.push_back(std::move(*bore));
+      if (auto bore = Bore(f, balls, *s).run()) voids.push_back(std::move(*bore));
   }
   add_pockets(f, voids);
   return voids;

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "common/io/log/log_front.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/mcap_reader.h"
 
@@ -13,21 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the head of a file says of its place; none when it is no log, or the first of its session.
+// What a file says of its place; none when it is no log, or the first of its session. Its head says
+// so, unless that is damaged.
 std::optional<LogChain> place_of(const fs::path& file) {
   std::optional<LogChain> chain;
-  bool done = false;
+  bool head_read = false, is_first = false;
   const McapHandler handler{
-      .on_attachment = [&](const McapAttachment&) { done = true; },
+      .on_attachment = [&](const McapAttachment&) { head_read = true; },
       .on_metadata =
           [&](const std::string& name, const std::map<std::string, std::string>& values) {
+            if (!log_front::is_whole(values)) return;
+            const auto part = values.find("part");
+            if (name == log_layout::kSessionMetadata)
+              is_first = part == values.end() || part->second == "1";  // older ones do not say
             if (name != log_layout::kChainMetadata) return;
             const auto previous = values.find("previous");
-            const auto part = values.find("part");
             if (previous == values.end() || part == values.end()) return;
             chain = LogChain{previous->second, std::strtoull(part->second.c_str(), nullptr, 10)};
           },
-      .is_enough = [&] { return done || chain; }};
+      .is_enough = [&] { return chain || (head_read && is_first); }};
   if (!scan_mcap(file, handler)) return std::nullopt;
   return chain;
 }

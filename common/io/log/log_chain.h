@@ -7,7 +7,7 @@ namespace mortise {
 
 /// The files of a session in their order: `file` and those that continue it in the same folder. Of
 /// two files that continue the same one, the one whose name is later. Reads only the heads of
-/// files.
+/// files, where these are whole.
 std::vector<std::filesystem::path> chain_from(const std::filesystem::path& file);
 
 /// Several files of one session as one log, each continuing the previous one. Ticks of a file

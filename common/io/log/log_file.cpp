@@ -1,5 +1,4 @@
 #include "common/io/log/log_file.h"
-#include "common/base/hash.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,6 +6,7 @@
 
 #include "common/io/build_info.h"
 #include "common/io/log/log_checkpoint.h"
+#include "common/io/log/log_front.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/log_records.h"
 #include "common/io/log/output_file.h"
@@ -55,9 +55,9 @@ Result<std::unique_ptr<LogFile>> LogFile::create(const fs::path& file, const Log
                                                     .compress = options.compress,
                                                     .chunk_bytes = options.chunk_bytes});
   if (!mcap) return mcap.error();
-  std::unique_ptr<LogFile> log(new LogFile(std::move(*mcap), file));
+  std::unique_ptr<LogFile> log(new LogFile(std::move(*mcap), file, options.signer));
   log->write_head(header);
-  if (Status synced = log->mcap_->sync(); !synced) return synced.error();
+  if (Status synced = log->sync(); !synced) return synced.error();
   if (options.named_later) return log;
   if (Status named = log->take_name(); !named) return named.error();
   return log;
@@ -94,26 +94,8 @@ void LogFile::remove_unnamed(const fs::path& file) {
 
 void LogFile::write_head(const LogHeader& header) {
   using namespace log_layout;
-  std::map<std::string, std::string> session = {
-      {"format", kFormat}, {"session", header.session}, {"scenario_name", header.scenario_name}};
-  for (std::size_t i = 0; i < header.mesh_of_part.size(); ++i)
-    session["mesh_of_part/" + std::to_string(i + 1)] = header.mesh_of_part[i];
-  mcap_->add_metadata(kSessionMetadata, session);
-  mcap_->add_metadata(kBuildMetadata, build_info());
-  if (header.begin)
-    mcap_->add_metadata(kChainMetadata, {{"previous", header.chain.previous},
-                                         {"part", std::to_string(header.chain.part)}});
-  mcap_->add_attachment(kScenarioAttachment, "application/yaml",
-                        std::as_bytes(std::span(header.scenario_yaml)), 0);
-  for (const auto& [hash, mesh] : header.meshes) write(hash, *mesh);
-  if (header.assembly)
-    mcap_->add_attachment(kAssemblyPrefix + content_hash(*header.assembly),
-                          "application/x-mortise-assembly", *header.assembly, 0);
-  for (std::size_t i = 0; i < header.imports.size(); ++i) {
-    const std::string json = log_json::encode(header.imports[i]);
-    mcap_->add_attachment(kImportPrefix + std::to_string(i + 1), "application/json",
-                          std::as_bytes(std::span(json)), 0);
-  }
+  log_front::write(*mcap_, header);
+  if (signer_) mcap_->add_metadata(kSignerMetadata, {{"certificate", signer_->certificate()}});
   const auto binary = [&](const char* topic, std::uint16_t schema = 0) {
     return mcap_->add_channel(topic, kBinary, schema, {{"layout", "session_log_format.md"}});
   };
@@ -130,10 +112,40 @@ void LogFile::write_head(const LogHeader& header) {
   checkpoints_ =
       binary(kCheckpoints, mcap_->add_schema("mortise.Checkpoint", kBinary, kStateSchema));
   totals_ = binary(kTotals);
-  if (!header.begin) return;
+  if (!header.begin) return add_seal(false);
   if (header.begin->time_ns > 0) set_time(header.begin->time_ns);
-  write(header.begin->state);
-  message(totals_, log_records::encode(header.begin->statistics));
+  // In two chunks: one that is damaged costs nothing.
+  for (int copy = 0; copy < 2; ++copy) {
+    write(header.begin->state);
+    message(totals_, log_records::encode(header.begin->statistics));
+    end_chunk();
+  }
+}
+
+void LogFile::add_seal(bool is_last) {
+  seal_ = mcap_->take_digest();
+  std::map<std::string, std::string> seal = {
+      {"number", std::to_string(++seals_)}, {"sha256", seal_}, {"last", is_last ? "yes" : "no"}};
+  if (signer_) seal["signature"] = signer_->sign(seal_text(seals_, is_last, seal_));
+  mcap_->add_seal(log_layout::kSealMetadata, seal);
+}
+
+void LogFile::end_chunk() {
+  const std::uint32_t chunks = mcap_->chunks_written();
+  mcap_->end_chunk();
+  if (mcap_->chunks_written() > chunks) add_seal(false);
+}
+
+Status LogFile::sync() {
+  end_chunk();
+  return mcap_->sync();
+}
+
+Status LogFile::close(const LogHeader& header) {
+  end_chunk();
+  log_front::write(*mcap_, header);
+  add_seal(true);
+  return mcap_->close();
 }
 
 void LogFile::write(const std::string& mesh_hash, const TriangleMesh& mesh) {

@@ -34,6 +34,12 @@ class LogFile {
   void write(const Checkpoint& state);
   void write_gap(const log_json::Gap& gap);
   void write_statistics();
+  /// Ends the open chunk, and seals it: session_log_format.md, "Seals".
+  void end_chunk();
+  Status sync();  ///< and waits until all is on disk
+  /// Adds a second front, the last seal, index and footer.
+  Status close(const LogHeader& header);
+  const std::string& seal() const { return seal_; }  ///< digest of the last one
 
   /// The time of records written from now on; never falls.
   void set_time(std::int64_t time_ns);
@@ -43,14 +49,19 @@ class LogFile {
   const McapWriter& mcap() const { return *mcap_; }
 
  private:
-  LogFile(std::unique_ptr<McapWriter> mcap, std::filesystem::path path)
-      : mcap_(std::move(mcap)), path_(std::move(path)) {}
+  LogFile(std::unique_ptr<McapWriter> mcap, std::filesystem::path path,
+          std::shared_ptr<const LogSigner> signer)
+      : mcap_(std::move(mcap)), path_(std::move(path)), signer_(std::move(signer)) {}
   void write_head(const LogHeader& header);
+  void add_seal(bool is_last);
   void message(std::uint16_t channel, std::span<const std::byte> data);
   void message(std::uint16_t channel, const std::string& text);
 
   std::unique_ptr<McapWriter> mcap_;
   std::filesystem::path path_;
+  std::shared_ptr<const LogSigner> signer_;
+  std::string seal_;
+  std::uint64_t seals_ = 0;
   std::uint16_t decisions_ = 0, increments_ = 0, poses_ = 0, clashes_ = 0, ticks_ = 0,
                 statistics_ = 0, gaps_ = 0, checkpoints_ = 0, totals_ = 0;
   std::uint64_t time_ns_ = 0, statistics_time_ns_ = 0;

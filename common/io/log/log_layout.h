@@ -12,6 +12,8 @@ inline constexpr const char* kSessionMetadata = "mortise.session";
 inline constexpr const char* kBuildMetadata = "mortise.build";
 inline constexpr const char* kRecoveryMetadata = "mortise.recovery";
 inline constexpr const char* kChainMetadata = "mortise.chain";
+inline constexpr const char* kSignerMetadata = "mortise.signer";
+inline constexpr const char* kSealMetadata = "mortise.seal";
 
 inline constexpr const char* kScenarioAttachment = "scenario.yaml";
 inline constexpr const char* kMeshPrefix = "mesh/";          ///< and the hash of the mesh

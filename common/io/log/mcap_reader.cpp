@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "common/io/log/crc32.h"
 #include "common/io/log/input_file.h"
 #include "common/io/log/mcap_format.h"
+#include "common/io/log/mcap_index.h"
 #include "common/io/state/bytes.h"
 
 namespace mortise {
@@ -17,17 +20,6 @@ namespace {
 
 // A damaged file must not fill the report with one line per byte.
 constexpr std::size_t kMostNotes = 50;
-
-std::map<std::string, std::string> read_map(ByteReader& in) {
-  ByteReader entries(in.raw(in.u32()));
-  std::map<std::string, std::string> values;
-  while (entries.left() > 0) {
-    std::string key = entries.string();
-    std::string value = entries.string();
-    if (entries.ok()) values[std::move(key)] = std::move(value);
-  }
-  return values;
-}
 
 // The next place at or after `from` that is a chunk by all its lengths; the size of the file when
 // there is none. Linear: each byte is looked at once.
@@ -59,8 +51,9 @@ std::uint64_t find_chunk(const InputFile& file, std::uint64_t from,
 
 class Scanner {
  public:
-  Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits)
-      : file_(file), handler_(handler), limits_(limits) {
+  Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits,
+          mcap::Index index)
+      : file_(file), handler_(handler), limits_(limits), index_(std::move(index)) {
     const std::uint64_t size = file.size();
     expansion_left_ = size > UINT64_MAX / limits.expansion ? UINT64_MAX : size * limits.expansion;
     expansion_left_ = std::max(expansion_left_, limits.expansion_floor_bytes);
@@ -77,6 +70,8 @@ class Scanner {
   void chunk_records(std::span<const std::byte> records);
   void schema(std::span<const std::byte> content);
   void channel(std::span<const std::byte> content);
+  void announce(McapChannel channel);
+  void announce_missing();
   void message(std::span<const std::byte> content);
   void attachment(std::span<const std::byte> content);
   void note(const std::string& what);
@@ -90,6 +85,8 @@ class Scanner {
   std::uint64_t expansion_left_ = 0;
   bool crc_known_ = true;
   std::uint32_t crc_ = 0;
+  mcap::Index index_;  ///< empty: there is none that is whole
+  bool all_announced_ = false;
   std::map<std::uint16_t, McapChannel> channels_;
   std::set<std::uint16_t> unknown_channels_;
   std::vector<std::byte> buffer_, search_buffer_, decompressed_;
@@ -169,9 +166,11 @@ Scanner::Next Scanner::record(std::uint8_t opcode, std::uint64_t length,
       channel(content);
       break;
     case mcap::kMessage:
+      announce_missing();
       message(content);
       break;
     case mcap::kChunk:
+      announce_missing();
       return chunk(content) ? Next::kGoOn : Next::kResync;
     case mcap::kAttachment:
       attachment(content);
@@ -179,7 +178,7 @@ Scanner::Next Scanner::record(std::uint8_t opcode, std::uint64_t length,
     case mcap::kMetadata: {
       ByteReader reader(content);
       const std::string name = reader.string();
-      const auto values = read_map(reader);
+      const auto values = mcap::read_map(reader);
       if (!reader.ok())
         note("metadata record is damaged and left out");
       else if (handler_.on_metadata)
@@ -298,33 +297,44 @@ void Scanner::chunk_records(std::span<const std::byte> records) {
   }
 }
 
+// What the index says of a record of the front is what was written: it has a checksum.
 void Scanner::schema(std::span<const std::byte> content) {
-  ByteReader reader(content);
-  McapSchema schema;
-  schema.id = reader.u16();
-  schema.name = reader.string();
-  schema.encoding = reader.string();
-  schema.data = reader.raw(reader.u32());
-  if (!reader.ok() || schema.id == 0)
-    note("schema record is damaged and left out");
-  else if (handler_.on_schema)
-    handler_.on_schema(schema);
+  const auto schema = mcap::schema_of(content);
+  if (!schema) return note("schema record is damaged and left out");
+  const auto again = index_.schemas.find(schema->id);
+  if (handler_.on_schema)
+    handler_.on_schema(again == index_.schemas.end() ? *schema : again->second);
 }
 
 void Scanner::channel(std::span<const std::byte> content) {
-  ByteReader reader(content);
-  McapChannel channel;
-  channel.id = reader.u16();
-  channel.schema = reader.u16();
-  channel.topic = reader.string();
-  channel.message_encoding = reader.string();
-  channel.metadata = read_map(reader);
-  if (!reader.ok()) {
-    note("channel record is damaged and left out");
-    return;
+  std::optional<McapChannel> channel = mcap::channel_of(content);
+  if (!channel) return note("channel record is damaged and left out");
+  if (!index_.channels.empty()) {
+    const auto again = index_.channels.find(channel->id);
+    if (again == index_.channels.end())
+      return note("a channel that is not in the index is left out");
+    if (again->second.topic != channel->topic || again->second.schema != channel->schema ||
+        again->second.message_encoding != channel->message_encoding)
+      note("channel record is damaged; its copy in the index is taken");
+    channel = again->second;
   }
+  announce(std::move(*channel));
+}
+
+void Scanner::announce(McapChannel channel) {
   const auto [entry, is_new] = channels_.try_emplace(channel.id, std::move(channel));
   if (is_new && handler_.on_channel) handler_.on_channel(entry->second);
+}
+
+// Channels whose record at the front is damaged, before the first message needs them.
+void Scanner::announce_missing() {
+  if (std::exchange(all_announced_, true)) return;
+  for (const auto& [id, channel] : index_.channels) {
+    if (channels_.contains(id)) continue;
+    const auto schema = index_.schemas.find(channel.schema);
+    if (schema != index_.schemas.end() && handler_.on_schema) handler_.on_schema(schema->second);
+    announce(channel);
+  }
 }
 
 void Scanner::message(std::span<const std::byte> content) {
@@ -337,8 +347,11 @@ void Scanner::message(std::span<const std::byte> content) {
   message.data = reader.raw(reader.left());
   const auto known = channels_.find(channel);
   if (!reader.ok() || known == channels_.end()) {
-    if (unknown_channels_.insert(channel).second)
-      loss("messages of channel " + std::to_string(channel) + " left out: it was never announced");
+    if (!unknown_channels_.insert(channel).second) return;
+    const std::string what =
+        "messages of channel " + std::to_string(channel) + " left out: it was never announced";
+    note(what);
+    if (handler_.on_stray) handler_.on_stray("byte " + std::to_string(at_) + ": " + what);
     return;
   }
   ++scan_.messages;
@@ -372,13 +385,16 @@ Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler&
     return fail(Code::kNotFound, file.string() + ": cannot open the log: " + std::strerror(errno));
   if (input.size() == 0)
     return fail(Code::kInvalidInput, file.string() + ": is empty; there is nothing to read");
+  std::optional<mcap::Index> index = mcap::read_index(input);
   std::vector<std::byte> magic;
-  if (!std::ranges::equal(input.read(0, mcap::kMagic.size(), magic),
-                          std::as_bytes(std::span(mcap::kMagic))))
+  const bool begins = std::ranges::equal(input.read(0, mcap::kMagic.size(), magic),
+                                         std::as_bytes(std::span(mcap::kMagic)));
+  // One that ends as such a file does is one whose first bytes are damaged.
+  if (!begins && !index)
     return fail(Code::kInvalidInput,
                 file.string() +
                     ": is no session log (MCAP): it does not begin as one; is it the right file?");
-  return Scanner(input, handler, limits).run();
+  return Scanner(input, handler, limits, std::move(index).value_or(mcap::Index{})).run();
 }
 
 }  // namespace mortise

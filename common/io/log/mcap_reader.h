@@ -41,7 +41,9 @@ struct McapHandler {
   std::function<void(const McapAttachment&)> on_attachment = {};
   std::function<void(const std::string& name, const std::map<std::string, std::string>&)>
       on_metadata = {};
-  std::function<void(const std::string& what)> on_loss = {};  ///< messages were lost here
+  std::function<void(const std::string& what)> on_loss = {};  ///< bytes were lost here
+  /// A message of a channel that nothing announced was left out.
+  std::function<void(const std::string& what)> on_stray = {};
   /// After each record: the share of the file that is read, 0 to 1.
   std::function<void(double share)> on_progress = {};
   std::function<bool()> is_enough = {};  ///< after each record; true: the rest is not read
@@ -64,10 +66,10 @@ struct McapScan {
   std::vector<std::string> notes;  ///< what was lost or unexpected, with its place in the file
 };
 
-/// Reads an MCAP file from front to back without its index: a file without its tail, or with damage
-/// in the middle, gives all chunks that are whole. Fails only when the file cannot be opened or
-/// does not begin as MCAP. Never throws on any content; memory is bounded by the limits and the
-/// size of the file.
+/// Reads an MCAP file from front to back: a file without its tail, or with damage in the middle,
+/// gives all chunks that are whole. Of the index it takes schemas and channels alone, where it is
+/// whole. Fails only when the file cannot be opened, or neither begins nor ends as MCAP. Never
+/// throws on any content; memory is bounded by the limits and the size of the file.
 Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler& handler,
                            const McapLimits& limits = {});
 

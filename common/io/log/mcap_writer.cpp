@@ -64,7 +64,10 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::pa
 
 McapWriter::McapWriter(std::unique_ptr<OutputFile> out, const std::filesystem::path& folder,
                        McapWriterOptions options)
-    : out_(std::move(out)), options_(std::move(options)), chunk_indexes_(folder) {
+    : out_(std::move(out)),
+      options_(std::move(options)),
+      chunk_indexes_(folder),
+      seal_indexes_(folder) {
   // So that it does not grow when a busy hour brings the first full chunk, nor shrink in a quiet
   // one.
   if (options_.compress) {
@@ -138,9 +141,9 @@ void McapWriter::add_attachment(std::string_view name, std::string_view media_ty
   ++attachments_;
 }
 
-void McapWriter::add_metadata(std::string_view name,
-                              const std::map<std::string, std::string>& values) {
-  end_chunk();
+// Returns its record of the index.
+ByteWriter McapWriter::write_metadata(std::string_view name,
+                                      const std::map<std::string, std::string>& values) {
   ByteWriter content;
   content.string(name);
   put_map(content, values);
@@ -149,8 +152,21 @@ void McapWriter::add_metadata(std::string_view name,
   index.u64(mcap::kRecordHeaderBytes + content.size());
   index.string(name);
   write_record(mcap::kMetadata, content);
-  put_record(summary_[mcap::kMetadataIndex], mcap::kMetadataIndex, index);
   ++metadata_;
+  return index;
+}
+
+void McapWriter::add_metadata(std::string_view name,
+                              const std::map<std::string, std::string>& values) {
+  end_chunk();
+  const ByteWriter index = write_metadata(name, values);
+  put_record(summary_[mcap::kMetadataIndex], mcap::kMetadataIndex, index);
+}
+
+void McapWriter::add_seal(std::string_view name, const std::map<std::string, std::string>& values) {
+  ByteWriter record;
+  put_record(record, mcap::kMetadataIndex, write_metadata(name, values));
+  seal_indexes_.append(record.bytes());
 }
 
 void McapWriter::add_message(std::uint16_t channel, std::uint64_t time_ns,
@@ -252,12 +268,15 @@ void McapWriter::write_summary() {
   const std::uint64_t summary_start = bytes_written();
   out_->begin_crc();  // from here on: of the summary section
   ByteWriter offsets;
-  if (chunk_indexes_.size() > 0) summary_[mcap::kChunkIndex].clear();  // has its place among them
+  const std::map<std::uint8_t, const Spool*> spools = {{mcap::kChunkIndex, &chunk_indexes_},
+                                                       {mcap::kMetadataIndex, &seal_indexes_}};
+  for (const auto& [opcode, spool] : spools)
+    if (spool->size() > 0) static_cast<void>(summary_[opcode]);  // has its place among them
   for (const auto& [opcode, records] : summary_) {
     const std::uint64_t group_start = bytes_written();
     out_->write(records.bytes());
-    if (opcode == mcap::kChunkIndex &&
-        !chunk_indexes_.read([&](auto bytes) { out_->write(bytes); })) {
+    const auto spool = spools.find(opcode);
+    if (spool != spools.end() && !spool->second->read([&](auto bytes) { out_->write(bytes); })) {
       out_->set_error("read back the index of");
       return;
     }

@@ -45,6 +45,10 @@ class McapWriter {
   void add_attachment(std::string_view name, std::string_view media_type,
                       std::span<const std::byte> data, std::uint64_t time_ns);
   void add_metadata(std::string_view name, const std::map<std::string, std::string>& values);
+  /// The same; there may be many.
+  void add_seal(std::string_view name, const std::map<std::string, std::string>& values);
+  /// SHA-256 of all bytes of the file since the last one was taken.
+  std::string take_digest() { return out_->take_digest(); }
   void add_message(std::uint16_t channel, std::uint64_t time_ns, std::span<const std::byte> data);
 
   /// Is the open chunk full (McapWriterOptions::chunk_bytes)? The caller closes chunks, so that
@@ -72,6 +76,8 @@ class McapWriter {
                     std::span<const std::byte> more = {});
   /// What a chunk is stored as; empty: as it is.
   std::span<const std::byte> compressed(std::span<const std::byte> records);
+  ByteWriter write_metadata(std::string_view name,
+                            const std::map<std::string, std::string>& values);
   void write_summary();
 
   std::unique_ptr<OutputFile> out_;
@@ -91,6 +97,7 @@ class McapWriter {
   std::map<std::uint16_t, std::uint64_t> messages_of_channel_;
   std::map<std::uint8_t, ByteWriter> summary_;  ///< records of the summary section by opcode
   Spool chunk_indexes_;                         ///< those of chunks: some 300 bytes each
+  Spool seal_indexes_;                          ///< and of what stands behind them
 };
 
 }  // namespace mortise

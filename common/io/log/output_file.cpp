@@ -60,8 +60,11 @@ void OutputFile::write(std::span<const std::byte> bytes, std::span<const std::by
     rest = rest.subspan(of_rest);
     then = then.subspan(static_cast<std::size_t>(count) - of_rest);
   }
-  for (const auto& part : {bytes, more})
-    if (!part.empty()) crc_ = crc32(part, crc_);  // that of nothing would begin a new one
+  for (const auto& part : {bytes, more}) {
+    if (part.empty()) continue;  // its CRC would begin a new one
+    crc_ = crc32(part, crc_);
+    digest_.add(part);
+  }
   offset_.fetch_add(bytes.size() + more.size(), std::memory_order_relaxed);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/base/result.h"
+#include "common/io/log/log_seal.h"
 
 namespace mortise {
 
@@ -34,6 +35,7 @@ class OutputFile {
   std::uint64_t bytes_written() const { return offset_.load(std::memory_order_relaxed); }
   std::uint32_t crc() const { return crc_; }  ///< of all since begin_crc()
   void begin_crc() { crc_ = 0; }
+  std::string take_digest() { return digest_.take(); }  ///< of all since the last one
   const std::optional<Error>& error() const { return error_; }
   /// The log cannot be written any more: errno says why, `doing` at what.
   void set_error(const char* doing);
@@ -46,6 +48,7 @@ class OutputFile {
   std::optional<Error> error_;
   std::atomic<std::uint64_t> offset_ = 0;
   std::uint32_t crc_ = 0;
+  RunningDigest digest_;
 };
 
 }  // namespace mortise

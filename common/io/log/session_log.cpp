@@ -184,7 +184,7 @@ void FileWriter::run() {
     for (const Item& item : items) write(item);
     if (!unflushed) next_flush = Clock::now() + period;
     if (unflushed && (Clock::now() >= next_flush || flushes > flushes_done_)) {
-      static_cast<void>(file_->mcap().sync());  // an error sticks and is taken below
+      static_cast<void>(file_->sync());  // an error sticks and is taken below
       settle_chunk();
       flushed_tick_.store(written_tick_);
       unflushed = false;
@@ -233,7 +233,7 @@ void FileWriter::write(const Item& item) {
   ++ticks_in_chunk_;
   if (item.tick.state) write_state(item.tick);
   if (file_->mcap().chunk_is_full()) {
-    file_->mcap().end_chunk();
+    file_->end_chunk();
     settle_chunk();
   }
 }
@@ -261,10 +261,10 @@ void FileWriter::write_state(const TickRecord& tick) {
 // was written.
 void FileWriter::rotate(Checkpoint state) {
   file_->write_statistics();
-  const Status closed = file_->mcap().close();
+  const Status closed = file_->close(header_);
   settle_chunk();
   if (!closed) return;
-  header_.chain = {file_->path().filename().string(), header_.chain.part + 1};
+  header_.chain = {file_->path().filename().string(), header_.chain.part + 1, file_->seal()};
   header_.begin =
       LogBegin{std::move(state), statistics_, static_cast<std::int64_t>(file_->time_ns())};
   LogOptions options;
@@ -345,7 +345,7 @@ Status FileWriter::close() {
     if (!rotate_error_) {
       if (gap_.ticks > 0) file_->write_gap(gap_);
       file_->write_statistics();
-      if (Status closed = file_->mcap().close(); !closed) error_ = closed.error();
+      if (Status closed = file_->close(header_); !closed) error_ = closed.error();
       settle_chunk();
     }
     if (options_.named_later) file_->remove_if_unnamed();

@@ -8,6 +8,7 @@
 
 #include "common/base/result.h"
 #include "common/geometry/solid.h"
+#include "common/io/log/log_seal.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/state/checkpoint.h"
 #include "common/messages/increment.h"
@@ -38,6 +39,8 @@ struct LogBegin {
 struct LogChain {
   std::string previous;    ///< name of the previous file, in the same folder; empty: the first file
   std::uint64_t part = 1;  ///< 1, 2, 3 ...
+  /// The last seal of the previous file that this one goes on from; empty: it had none.
+  std::string previous_seal = {};
 };
 
 /// What a log starts with: enough to play the session again without any other file.
@@ -83,6 +86,7 @@ struct LogOptions {
   /// The file and those that follow it are called "x.mcap.begun" until take_name(), and are removed
   /// when closed before. For a standby, whose log must not be mistaken for the session's.
   bool named_later = false;
+  std::shared_ptr<const LogSigner> signer = {};  ///< null: nobody signs the log
 };
 
 /// The file that follows `file` when it has become too large: "x.mcap", "x_p0002.mcap" ...
@@ -92,8 +96,8 @@ std::filesystem::path next_in_chain(const std::filesystem::path& file);
 /// (bounded) and never waits for the disk or the writer. Ticks that a full queue drops are counted
 /// in dropped_ticks() and marked in the log as a gap. Chunks are flushed each second. Ticks must
 /// rise; ticks without input may be left out, because a replay steps through them. Layout:
-/// session_log_format.md. A file gets its name once its head is on disk. With rotation the meshes
-/// of the header must live as long as the writer.
+/// session_log_format.md. A file gets its name once its head is on disk. The meshes of the header
+/// must live as long as the writer, which writes them again at the end.
 class SessionLogWriter {
  public:
   static Result<std::unique_ptr<SessionLogWriter>> create(const std::filesystem::path& file,

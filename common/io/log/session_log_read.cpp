@@ -7,6 +7,7 @@
 #include "common/base/hash.h"
 #include "common/base/in_quotes.h"
 #include "common/io/log/log_checkpoint.h"
+#include "common/io/log/log_front.h"
 #include "common/io/log/log_json.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/log_records.h"
@@ -51,7 +52,8 @@ class LogAssembler {
     return {.on_message = [this](const auto& c, const auto& m) { message(c, m); },
             .on_attachment = [this](const McapAttachment& a) { attachment(a); },
             .on_metadata = [this](const auto& name, const auto& v) { metadata(name, v); },
-            .on_loss = [this](const std::string& what) { loss(what); },
+            .on_loss = [this](const std::string& what) { loss_in_file(what); },
+            .on_stray = [this](const std::string& what) { loss(what); },
             .on_progress = reading_.on_progress};
   }
   Result<SessionLog> finish(const std::string& file, McapScan scan);
@@ -61,7 +63,8 @@ class LogAssembler {
   void attachment(const McapAttachment& attachment);
   void metadata(const std::string& name, const std::map<std::string, std::string>& values);
   void loss(const std::string& what);
-  void end_tick(log_records::TickEnd end, std::int64_t time_ns);
+  void loss_in_file(const std::string& what);
+  void end_tick(log_records::TickEnd end, std::int64_t time_ns, std::uint32_t sequence);
   TickRecord& open(std::uint64_t tick);
   void open_gap(std::string reason);
   void note(const std::string& what);
@@ -74,17 +77,20 @@ class LogAssembler {
   std::optional<TickRecord> tick_;  ///< records seen, end not yet
   std::vector<ClashEvent> events_;  ///< of the tick whose end record comes next
   std::optional<LogGap> gap_;       ///< seen, first tick after it not yet
+  bool gap_at_front_ = false;       ///< perhaps no tick was lost in it
   std::string format_;
   std::map<std::uint64_t, std::string> mesh_of_part_;
   std::map<std::uint64_t, ImportReport> imports_;
   bool has_session_ = false, has_scenario_ = false;
+  std::uint64_t part_told_ = 0;  ///< by the session's record; 0: not told
   std::uint64_t bad_records_ = 0;
 };
 
 void LogAssembler::note(const std::string& what) { log_.notes.push_back(what); }
 
 void LogAssembler::open_gap(std::string reason) {
-  if (gap_) return;
+  if (gap_ && !gap_at_front_) return;
+  gap_at_front_ = false;
   gap_ = LogGap{last_tick(), 0, std::move(reason)};
 }
 
@@ -99,19 +105,29 @@ void LogAssembler::loss(const std::string& what) {
   open_gap(what);
 }
 
+// Before the first tick: what the front says stands in the file again, so the log may be whole.
+void LogAssembler::loss_in_file(const std::string& what) {
+  const bool at_front = (!gap_ || gap_at_front_) && bad_records_ == 0 && log_.ticks.empty() &&
+                        !tick_ && events_.empty();
+  loss(what);
+  gap_at_front_ = at_front;
+}
+
 // It stands behind its tick, or at the front of a file. A damaged one is no loss: the ticks are
 // still there.
 void LogAssembler::checkpoint(std::span<const std::byte> bytes, std::int64_t time_ns) {
   Checkpoint state;
   const std::uint64_t tick = log_.ticks.empty() ? 0 : log_.ticks.back().tick;
-  const bool is_begin = log_.ticks.empty() && !log_.begin && log_.chain.part > 1;
+  const bool is_begin = log_.ticks.empty() && bad_records_ == 0 && part_told_ != 1;
   if (!log_records::decode(bytes, state, is_begin || reading_.keep_checkpoints > 0) ||
       (!is_begin &&
        (state.tick != tick || state.state_hash != log_.ticks.back().report.state_hash)))
     return note("the checkpoint " +
                 (is_begin ? std::string("at the front") : "after tick " + std::to_string(tick)) +
                 " is damaged or of another layout, and left out");
+  if (is_begin && log_.begin) return;  // it stands there twice
   if (is_begin) {
+    if (gap_at_front_) gap_.reset();
     log_.begin = LogBegin{std::move(state), {}, time_ns};
     return;
   }
@@ -138,11 +154,14 @@ TickRecord& LogAssembler::open(std::uint64_t tick) {
   return *tick_;
 }
 
-void LogAssembler::end_tick(log_records::TickEnd end, std::int64_t time_ns) {
+void LogAssembler::end_tick(log_records::TickEnd end, std::int64_t time_ns,
+                            std::uint32_t sequence) {
   TickRecord& record = open(end.tick);
   if (log_.ticks.empty() && log_.chain.part > 1 && !log_.begin)
     open_gap("it goes on from " + log_.chain.previous +
              ", and the state that it begins with is missing or damaged");
+  // All records of a tick stand before this one: if it is the first of its kind, none was lost.
+  if (gap_at_front_ && sequence == 1) gap_.reset();
   const std::uint64_t before = last_tick();
   const bool follows = end.tick > before && end.tick - before <= kMostIdleTicks;
   if (!follows || log_.ticks.size() >= kMostTicks) {
@@ -185,7 +204,8 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
   } else if (channel.topic == kPoses) {
     take(log_records::Poses{}, [&](auto r) { open(r.tick).report.moved = std::move(r.poses); });
   } else if (channel.topic == kTicks) {
-    take(log_records::TickEnd{}, [&](auto r) { end_tick(std::move(r), time_ns); });
+    take(log_records::TickEnd{},
+         [&](auto r) { end_tick(std::move(r), time_ns, message.sequence); });
   } else if (channel.topic == kClashes) {
     ClashEvent event;
     if (log_json::decode(text_of(message.data), event))
@@ -210,11 +230,14 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
 void LogAssembler::attachment(const McapAttachment& attachment) {
   using namespace log_layout;
   const std::string& name = attachment.name;
-  if (name == kScenarioAttachment) {
+  if (name == kScenarioAttachment && !has_scenario_) {
     log_.scenario_yaml = text_of(attachment.data);
     has_scenario_ = true;
   } else if (name.starts_with(kMeshPrefix)) {
     const std::string hash = name.substr(std::string_view(kMeshPrefix).size());
+    if (std::ranges::find(log_.meshes, hash, [](const auto& m) { return m.first; }) !=
+        log_.meshes.end())
+      return;
     TriangleMesh mesh;
     if (!log_records::decode(attachment.data, mesh) || mesh_hash(mesh) != hash)
       note("mesh " + hash + " is damaged and left out");
@@ -240,8 +263,14 @@ void LogAssembler::metadata(const std::string& name,
     const auto found = values.find(key);
     return found == values.end() ? std::string() : found->second;
   };
+  if (name == log_layout::kSealMetadata) {
+    log_.last_seal = value("sha256");
+    return;
+  }
+  if (!log_front::is_whole(values)) return note("the record " + name + " is damaged and left out");
   if (name == log_layout::kSessionMetadata) {
     has_session_ = true;
+    part_told_ = std::strtoull(value("part").c_str(), nullptr, 10);
     format_ = value("format");
     log_.session = value("session");
     log_.scenario_name = value("scenario_name");
@@ -252,6 +281,7 @@ void LogAssembler::metadata(const std::string& name,
   } else if (name == log_layout::kChainMetadata) {
     log_.chain.previous = value("previous");
     log_.chain.part = std::strtoull(value("part").c_str(), nullptr, 10);
+    log_.chain.previous_seal = value("previous_seal");
   } else if (name == log_layout::kBuildMetadata) {
     log_.engine_version = value("engine_version");
     log_.build_fingerprint = value("fingerprint");
@@ -271,7 +301,7 @@ bool as_list(std::map<std::uint64_t, Value>& values, std::vector<Value>& list) {
 
 Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) {
   const auto bad = [&](const std::string& what) { return fail(Code::kInvalidInput, file + what); };
-  if (scan.profile != log_layout::kProfile)
+  if (scan.profile != log_layout::kProfile && !has_session_)
     return bad(": an MCAP file, but no session log: its profile is " + in_quotes(scan.profile));
   if (!has_session_) return bad(": the record that names the session is missing or damaged");
   if (std::find(std::begin(log_layout::kFormatsRead), std::end(log_layout::kFormatsRead),
@@ -282,6 +312,10 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
   if (!as_list(mesh_of_part_, log_.mesh_of_part) || !as_list(imports_, log_.imports))
     return bad(": the list of parts is damaged");
   log_.complete = scan.complete;
+  if (log_.begin && log_.chain.part < 2) {
+    log_.chain.part = 2;
+    note("it continues another file, and the record that says which one is damaged");
+  }
   if (tick_ || !events_.empty())
     open_gap(tick_ ? "tick " + std::to_string(tick_->tick) + " has no end record"
                    : "the last tick has no end record");

@@ -29,6 +29,7 @@ struct SessionLog {
   std::vector<TickRecord> ticks;      ///< report holds tick, events, moved, refused and state_hash
   std::optional<LogBegin> begin;      ///< set: the file continues another one
   LogChain chain;
+  std::string last_seal;  ///< digest of the last one that is whole; empty: none
   /// By tick; with those at the front of later files, but without that of `begin`.
   std::vector<Checkpoint> checkpoints;
   bool complete = false;

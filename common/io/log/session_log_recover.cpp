@@ -1,6 +1,10 @@
 #include "common/io/log/session_log_recover.h"
 
+#include <set>
+#include <utility>
+
 #include "common/io/build_info.h"
+#include "common/io/log/log_front.h"
 #include "common/io/log/log_json.h"
 #include "common/io/log/log_layout.h"
 #include "common/io/log/mcap_reader.h"
@@ -14,21 +18,22 @@ namespace {
 // A copy record by record: what this program does not know (topics of a later version) survives.
 class Copy {
  public:
-  explicit Copy(McapWriter& out) : out_(out) {}
+  /// `read`: the same log. Ticks may be lost before the first one; that damage shows does not say.
+  Copy(McapWriter& out, const SessionLog& read)
+      : out_(out),
+        begins_with_gap_(!read.gaps.empty() &&
+                         read.gaps[0].after_tick == (read.begin ? read.begin->state.tick : 0)) {}
 
   McapHandler handler() {
-    return {.on_schema = [this](const McapSchema& schema) { add(schema); },
-            .on_channel = [this](const McapChannel& channel) { add(channel); },
-            .on_message = [this](const McapChannel& channel,
-                                 const McapMessage& message) { add(channel, message); },
-            .on_attachment =
-                [this](const McapAttachment& attachment) {
-                  out_.add_attachment(attachment.name, attachment.media_type, attachment.data,
-                                      attachment.log_time_ns);
-                },
-            .on_metadata = [this](const std::string& name,
-                                  const auto& values) { out_.add_metadata(name, values); },
-            .on_loss = [this](const std::string& reason) { mark_gap(reason); }};
+    return {
+        .on_schema = [this](const McapSchema& schema) { add(schema); },
+        .on_channel = [this](const McapChannel& channel) { add(channel); },
+        .on_message = [this](const McapChannel& channel,
+                             const McapMessage& message) { add(channel, message); },
+        .on_attachment = [this](const McapAttachment& attachment) { add(attachment); },
+        .on_metadata = [this](const std::string& name, const auto& values) { add(name, values); },
+        .on_loss = [this](const std::string& reason) { lost(reason); },
+        .on_stray = [this](const std::string& reason) { lost(reason); }};
   }
 
  private:
@@ -48,19 +53,44 @@ class Copy {
     if (channel.topic == log_layout::kGaps) gaps_channel_ = number;
   }
 
+  // The front stands in a log twice, and seals are of the file that they stand in.
+  void add(const McapAttachment& attachment) {
+    if (!front_.insert(attachment.name).second) return;
+    out_.add_attachment(attachment.name, attachment.media_type, attachment.data,
+                        attachment.log_time_ns);
+  }
+
+  void add(const std::string& name, const log_front::Values& values) {
+    if (name == log_layout::kSealMetadata || name == log_layout::kSignerMetadata) return;
+    if (log_front::is_whole(values) && front_.insert(name).second) out_.add_metadata(name, values);
+  }
+
   void add(const McapChannel& channel, const McapMessage& message) {
     time_ns_ = message.log_time_ns;
+    is_front_ = is_front_ &&
+                (channel.topic == log_layout::kCheckpoints || channel.topic == log_layout::kTotals);
+    if (!is_front_) mark_gap();
     out_.add_message(channels_[channel.id], time_ns_, message.data);
     if (channel.topic == log_layout::kTicks && out_.chunk_is_full()) out_.end_chunk();
   }
 
-  void mark_gap(const std::string& reason) {
-    if (gaps_channel_ == 0) return;  // lost before anything was recorded: said in the metadata
-    const std::string gap = log_json::encode(log_json::Gap{.reason = reason});
+  void lost(const std::string& reason) {
+    if (is_front_ && !begins_with_gap_) return;
+    lost_ = reason;
+    if (!is_front_) mark_gap();
+  }
+
+  void mark_gap() {
+    if (lost_.empty() || gaps_channel_ == 0) return;
+    const std::string gap = log_json::encode(log_json::Gap{.reason = std::exchange(lost_, {})});
     out_.add_message(gaps_channel_, time_ns_, std::as_bytes(std::span(gap)));
   }
 
   McapWriter& out_;
+  bool begins_with_gap_;
+  bool is_front_ = true;         ///< no record of a tick was there yet
+  std::string lost_;             ///< why, until it is marked
+  std::set<std::string> front_;  ///< names of what was copied
   std::map<std::uint16_t, std::uint16_t> schemas_, channels_;  // number there -> number here
   std::uint16_t gaps_channel_ = 0;
   std::uint64_t time_ns_ = 0;
@@ -87,12 +117,16 @@ Status prove(const std::filesystem::path& file, Recovery& recovery) {
 Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
                                      const std::filesystem::path& new_file) {
   Result<SessionLog> readable = read_session_log(damaged);
-  if (!readable) return readable.error();
+  if (!readable) {
+    const Result<McapScan> of_ours = scan_mcap(damaged, {});
+    if (!of_ours || of_ours->profile != log_layout::kProfile) return readable.error();
+    return Recovery{.not_replayable = readable.error().text};
+  }
   auto created = McapWriter::create(
       new_file, {.profile = log_layout::kProfile, .library = "mortise " + engine_version()});
   if (!created) return created.error();
   McapWriter& out = **created;
-  Copy copy(out);
+  Copy copy(out, *readable);
   const Result<McapScan> scan = scan_mcap(damaged, copy.handler());
   if (!scan) return scan.error();
 
@@ -107,13 +141,12 @@ Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
                     .lost_chunks = scan->lost_chunks,
                     .was_complete = scan->complete,
                     .notes = std::move(readable->notes)};
-  const Status whole = prove(new_file, recovery);
-  if (whole) return recovery;
-  std::error_code ignored;
-  std::filesystem::remove(new_file, ignored);
-  return fail(
-      Code::kInvalidInput,
-      damaged.string() + ": not replayable, and nothing was written: " + whole.error().text);
+  if (const Status whole = prove(new_file, recovery); !whole) {
+    std::error_code ignored;
+    std::filesystem::remove(new_file, ignored);
+    recovery.not_replayable = damaged.string() + ": " + whole.error().text;
+  }
+  return recovery;
 }
 
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -122,6 +123,9 @@ Result<pid_t> spawn(const ConfinedChild& child, int question, int answer) {
 struct End {
   bool timed_out = false;
   int status = -1;
+  bool well() const {
+    return !timed_out && status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
 };
 
 End wait_for(pid_t pid, double seconds) {
@@ -165,10 +169,10 @@ std::string seconds_text(double seconds) {
 }
 
 /// What the end of the process means when it said nothing usable.
-std::string reason_of_end(const End& end, const ConfinedChild& child) {
+std::string reason_of_end(const End& end, const ConfinedChild& child, double seconds) {
   const ImportLimits& limits = child.limits;
   if (end.timed_out)
-    return "reading took longer than " + seconds_text(wall_limit_s(child)) +
+    return "reading took longer than " + seconds_text(seconds) +
            " and was ended; simplify the file, or raise the time limit of the import";
   if (end.status == -1) return "the importer's end could not be observed; try again";
   if (WIFSIGNALED(end.status)) {
@@ -222,18 +226,140 @@ Result<MappedBytes> run_confined(const ConfinedChild& child) {
   }
   Result<pid_t> pid = spawn(child, question.get(), answer.get());
   if (!pid) return pid.error();
-  const End end = wait_for(*pid, wall_limit_s(child));
-  const bool well =
-      !end.timed_out && end.status != -1 && WIFEXITED(end.status) && WEXITSTATUS(end.status) == 0;
-  if (!well) return fail(Code::kInvalidInput, reason_of_end(end, child));
+  const double seconds = wall_limit_s(child);
+  const End end = wait_for(*pid, seconds);
+  if (!end.well()) return fail(Code::kInvalidInput, reason_of_end(end, child, seconds));
 
   struct stat info {};
   if (fstat(answer.get(), &info) != 0) return system_error("cannot read the importer's answer");
   const auto size = static_cast<std::size_t>(info.st_size);
-  if (size == 0) return fail(Code::kRuntime, reason_of_end(end, child));
+  if (size == 0) return fail(Code::kRuntime, reason_of_end(end, child, seconds));
   void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, answer.get(), 0);
   if (bytes == MAP_FAILED) return system_error("cannot map the importer's answer");
   return MappedBytes({static_cast<const std::byte*>(bytes), size});
+}
+
+namespace {
+
+int milliseconds_to(Clock::time_point deadline) {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+  return static_cast<int>(std::clamp<long long>(left.count(), 0, 1'000'000'000));
+}
+
+Clock::time_point after(double seconds) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                            std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
+}
+
+/// False: it ended, or the time is over.
+bool wait_to(int socket, short event, Clock::time_point deadline) {
+  pollfd waited{socket, event, 0};
+  int ready;
+  while ((ready = poll(&waited, 1, milliseconds_to(deadline))) < 0 && errno == EINTR) {
+  }
+  return ready > 0;
+}
+
+bool receive_all(int socket, void* to, std::size_t count, Clock::time_point deadline) {
+  auto* bytes = static_cast<std::byte*>(to);
+  for (std::size_t done = 0; done < count;) {
+    if (!wait_to(socket, POLLIN, deadline)) return false;
+    const ssize_t n = recv(socket, bytes + done, count - done, MSG_DONTWAIT);
+    if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) return false;
+    if (n > 0) done += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+bool send_all(int socket, std::span<const std::byte> bytes, Clock::time_point deadline) {
+  while (!bytes.empty()) {
+    if (!wait_to(socket, POLLOUT, deadline)) return false;
+    const ssize_t n = send(socket, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (n < 0 && errno != EAGAIN && errno != EINTR) return false;
+    if (n > 0) bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+}  // namespace
+
+ConfinedDialogue::ConfinedDialogue(ConfinedDialogue&& other) noexcept
+    : child_(std::move(other.child_)),
+      pid_(std::exchange(other.pid_, 0)),
+      answer_(std::exchange(other.answer_, -1)),
+      socket_(std::exchange(other.socket_, -1)),
+      said_(std::move(other.said_)),
+      said_bytes_(other.said_bytes_) {}
+
+ConfinedDialogue::~ConfinedDialogue() {
+  if (pid_ > 0) (void)wait_for(pid_, 0.0);
+  if (answer_ >= 0) close(answer_);
+  if (socket_ >= 0) close(socket_);
+}
+
+Result<ConfinedDialogue> ConfinedDialogue::start(const ConfinedChild& child) {
+  ConfinedDialogue dialogue(child);
+  if (const Status begun = dialogue.begin(); !begun) return begun.error();
+  return dialogue;
+}
+
+Status ConfinedDialogue::begin() {
+  int ends[2];
+  answer_ = memfd_create("mortise-answer", MFD_CLOEXEC);
+  if (answer_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    return system_error("cannot make a memory file and a socket for the " + child_.called);
+  socket_ = ends[0];
+  const double seconds = wall_limit_s(child_);
+  const Clock::time_point deadline = after(seconds);
+  {
+    const Descriptor theirs(ends[1]);  // closed here: then the end of the child is seen
+    const Result<pid_t> pid = spawn(child_, theirs.get(), answer_);
+    if (!pid) return pid.error();
+    pid_ = *pid;
+  }
+  std::uint64_t length = 0;
+  if (!receive_all(socket_, &length, sizeof length, deadline))
+    return end_of_child(milliseconds_to(deadline) * 1e-3, seconds);
+  Result<std::vector<std::byte>> said = answer_from(0, length);
+  if (!said) return said.error();
+  said_ = std::move(*said);
+  said_bytes_ = said_.size();
+  return ok();
+}
+
+Result<std::vector<std::byte>> ConfinedDialogue::ask(std::span<const std::byte> question,
+                                                     double seconds) {
+  if (pid_ <= 0) return fail(Code::kRuntime, "the " + child_.called + " answers one question");
+  const Clock::time_point deadline = after(seconds);
+  if (send_all(socket_, question, deadline)) shutdown(socket_, SHUT_WR);
+  const End end = wait_for(std::exchange(pid_, 0), milliseconds_to(deadline) * 1e-3);
+  if (!end.well()) return fail(Code::kInvalidInput, reason_of_end(end, child_, seconds));
+  struct stat info {};
+  if (fstat(answer_, &info) != 0) return system_error("cannot read the importer's answer");
+  return answer_from(said_bytes_, static_cast<std::size_t>(info.st_size));
+}
+
+// It said nothing, and ended or is ended.
+Error ConfinedDialogue::end_of_child(double seconds_left, double seconds) {
+  const End end = wait_for(std::exchange(pid_, 0), seconds_left);
+  return fail(Code::kInvalidInput, reason_of_end(end, child_, seconds));
+}
+
+// A copy: the child still runs, and could write there while it is read.
+Result<std::vector<std::byte>> ConfinedDialogue::answer_from(std::size_t begin,
+                                                             std::size_t end) const {
+  struct stat info {};
+  const bool known = fstat(answer_, &info) == 0;
+  if (!known || begin > end || end > static_cast<std::size_t>(info.st_size))
+    return fail(Code::kRuntime, "the " + child_.called + " answered with less than it said");
+  std::vector<std::byte> bytes(end - begin);
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n =
+        pread(answer_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(begin + done));
+    if (n <= 0) return system_error("cannot read the importer's answer");
+    done += static_cast<std::size_t>(n);
+  }
+  return bytes;
 }
 
 }  // namespace mortise

@@ -50,4 +50,33 @@ std::filesystem::path program_beside(const char* variable, const char* name);
 /// line. The process has ended when this returns.
 Result<MappedBytes> run_confined(const ConfinedChild& child);
 
+/// A child that says one thing by itself, keeps what it read, and answers one question about it. It
+/// ends when it has answered, or with its owner. Its stdin is a socket: it writes there how long
+/// its first answer is once stdout holds it (8 bytes), and reads the question to its end; the
+/// second answer follows the first on stdout.
+class ConfinedDialogue {
+ public:
+  /// `child.question` is not used.
+  static Result<ConfinedDialogue> start(const ConfinedChild& child);
+  ConfinedDialogue(ConfinedDialogue&& other) noexcept;
+  ConfinedDialogue& operator=(ConfinedDialogue&&) = delete;
+  ~ConfinedDialogue();
+
+  /// Its first answer, once.
+  std::vector<std::byte> take_said() { return std::move(said_); }
+  /// Waits at most so long. Fails when it was asked before.
+  Result<std::vector<std::byte>> ask(std::span<const std::byte> question, double seconds);
+
+ private:
+  explicit ConfinedDialogue(ConfinedChild child) : child_(std::move(child)) {}
+  Status begin();
+  Error end_of_child(double seconds_left, double seconds);
+  Result<std::vector<std::byte>> answer_from(std::size_t begin, std::size_t end) const;
+
+  ConfinedChild child_;
+  int pid_ = 0, answer_ = -1, socket_ = -1;
+  std::vector<std::byte> said_;
+  std::size_t said_bytes_ = 0;
+};
+
 }  // namespace mortise

@@ -240,13 +240,15 @@ void add_assembly(ScenarioReading& reading, std::span<const std::byte> sent) {
 void add_assembly(ScenarioReading& reading) {
   if (!reading.scenario.assembly || !reading.usable()) return;
   const std::filesystem::path folder = std::filesystem::path(reading.scenario.file).parent_path();
-  Result<StepAssembly> assembly = import_step(folder / reading.scenario.assembly->file);
+  Result<StepAssembly> assembly =
+      import_step(folder / reading.scenario.assembly->file, reading.assembly);
   if (!assembly) {
     fail_with(reading, assembly.error().text);
     return;
   }
   reading.scenario.assembly->sent =
       std::make_shared<const std::vector<std::byte>>(std::move(assembly->bytes));
+  reading.exact = std::move(assembly->exact);
   AssemblyPlacer(reading, assembly->document).run();
 }
 

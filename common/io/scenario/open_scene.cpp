@@ -15,6 +15,7 @@ Result<OpenedScene> opened_of(ScenarioReading reading) {
   OpenedScene opened;
   opened.findings = std::move(reading.findings);
   opened.scenario = std::move(reading.scenario);
+  opened.exact = std::move(reading.exact);
   if (!opened.usable()) return opened;
   Result<LoadedScene> scene = load_scene(opened.scenario, default_meshes());
   if (!scene) return scene.error();
@@ -51,6 +52,7 @@ Status grant(const AssemblyWishes& wishes, ScenarioReading& reading) {
 Result<OpenedScene> opened_with(Result<ScenarioReading> reading, const AssemblyWishes& wishes) {
   if (!reading) return reading.error();
   if (const Status granted = grant(wishes, *reading); !granted) return granted.error();
+  reading->assembly = wishes.then;
   add_assembly(*reading);
   return opened_of(std::move(reading).value());
 }

@@ -13,7 +13,8 @@ struct OpenedScene {
   Scenario scenario;
   LoadedScene scene;
   std::vector<Finding> findings;
-  bool usable() const;  ///< no finding is an error
+  std::shared_ptr<ExactSolids> exact;  ///< of its assembly, where that is wished
+  bool usable() const;                 ///< no finding is an error
 };
 
 /// What is wished of an assembly beside what its file and a scenario say.
@@ -21,6 +22,7 @@ struct AssemblyWishes {
   std::string general;              ///< "ISO 2768-m"; empty: as the scenario says
   std::vector<std::string> bought;  ///< paths and products, see AssemblySpec
   std::vector<std::string> fixed;   ///< paths of what does not move
+  AfterReading then = AfterReading::kEnd;
 };
 
 /// Fails only when the file cannot be read, is a mesh or is no YAML.

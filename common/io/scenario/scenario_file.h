@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/io/step/step_import.h"
 #include "common/session/world/scenario.h"
 
 namespace mortise {
@@ -19,6 +20,8 @@ struct Finding {
 struct ScenarioReading {
   Scenario scenario;
   std::vector<Finding> findings;  ///< all of them, not only the first
+  AfterReading assembly = AfterReading::kEnd;
+  std::shared_ptr<ExactSolids> exact;  ///< of the assembly, where they are kept
   bool usable() const;
 };
 

@@ -101,7 +101,8 @@ Result<StepDocument> decode_step(std::span<const std::byte> bytes);
 
 /// What the importer is asked of two of its parts at a relative pose, and its answer: the volume
 /// that their exact solids have in common, and how thick it is: 2 V / F of a piece of it with the
-/// surface F, the largest of all pieces. A negative volume: the operation failed or was ended.
+/// surface F, the largest of all pieces. A negative volume: the operation failed, was ended, or
+/// came too late.
 struct StepCommonQuery {
   std::uint32_t part_a = 0, part_b = 0;
   Pose X_AB;
@@ -109,6 +110,8 @@ struct StepCommonQuery {
 struct StepCommon {
   double volume_mm3 = -1.0, thickness_mm = 0.0;
 };
+/// Of all operations for one list of queries.
+inline constexpr unsigned kCommons_s = 15;
 std::vector<std::byte> encode(std::span<const StepCommonQuery> queries);
 Result<std::vector<StepCommonQuery>> decode_step_queries(std::span<const std::byte> bytes);
 std::vector<std::byte> encode(std::span<const StepCommon> answers);

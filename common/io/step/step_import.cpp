@@ -11,6 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Processor time that reading may take.
+constexpr double kLeastReading_s = 10.0, kReadingOfMB_s = 20.0;
+// The importer waits for its last operations after its own limit.
+constexpr double kAfterCommons_s = 5.0;
+
 // Empty when the file may be given to the importer.
 std::string step_objection(const fs::path& file) {
   std::error_code error;
@@ -22,8 +27,7 @@ std::string step_objection(const fs::path& file) {
   return {};
 }
 
-Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
-                                 const ImportLimits& limits, std::span<const std::byte> question) {
+ConfinedChild importer_of(const fs::path& file, AfterReading then, const ImportLimits& limits) {
   std::error_code ignored;
   ConfinedChild child;
   child.called = "STEP importer";
@@ -32,11 +36,31 @@ Result<MappedBytes> ask_importer(const fs::path& file, const std::string& what,
       "mortise-step, or set MORTISE_STEP_IMPORTER";
   child.program = program_beside("MORTISE_STEP_IMPORTER", "mortise-import-step");
   child.file = file;
-  child.arguments = {what, fs::absolute(file, ignored).string()};
+  child.arguments = {then == AfterReading::kEnd ? "read" : "keep",
+                     fs::absolute(file, ignored).string()};
   child.limits = limits;
-  child.cpu = {question.empty() ? 10.0 : limits.seconds, 20.0};
-  child.question = question;
-  return run_confined(child);
+  child.cpu = {kLeastReading_s, kReadingOfMB_s};
+  return child;
+}
+
+// What the importer said, and the importer where it is kept.
+struct Said {
+  std::vector<std::byte> bytes;
+  std::shared_ptr<ExactSolids> exact;
+};
+
+Result<Said> ask_importer(const fs::path& file, AfterReading then, const ImportLimits& limits) {
+  const ConfinedChild child = importer_of(file, then, limits);
+  if (then == AfterReading::kEnd) {
+    const Result<MappedBytes> answer = run_confined(child);
+    if (!answer) return answer.error();
+    return Said{{answer->bytes().begin(), answer->bytes().end()}, nullptr};
+  }
+  Result<ConfinedDialogue> dialogue = ConfinedDialogue::start(child);
+  if (!dialogue) return dialogue.error();
+  Said said{dialogue->take_said(), nullptr};
+  said.exact = std::make_shared<ExactSolids>(std::move(*dialogue));
+  return said;
 }
 
 }  // namespace
@@ -47,15 +71,16 @@ bool is_step_name(const fs::path& file) {
   return extension == ".step" || extension == ".stp";
 }
 
-Result<StepAssembly> import_step(const fs::path& file, const ImportLimits& limits) try {
+Result<StepAssembly> import_step(const fs::path& file, AfterReading then,
+                                 const ImportLimits& limits) try {
   if (const std::string no = step_objection(file); !no.empty()) {
     std::error_code ignored;
     return fail(fs::exists(file, ignored) ? Code::kInvalidInput : Code::kNotFound,
                 file.string() + ": " + no);
   }
-  const Result<MappedBytes> answer = ask_importer(file, "read", limits, {});
-  if (!answer) return fail(answer.error().code, file.string() + ": " + answer.error().text);
-  Result<StepDocument> document = decode_step(answer->bytes());
+  Result<Said> said = ask_importer(file, then, limits);
+  if (!said) return fail(said.error().code, file.string() + ": " + said.error().text);
+  Result<StepDocument> document = decode_step(said->bytes);
   if (!document) return fail(document.error().code, file.string() + ": " + document.error().text);
   std::error_code ignored;
   if (document->refusal.find("bad_alloc") != std::string::npos)
@@ -66,21 +91,18 @@ Result<StepAssembly> import_step(const fs::path& file, const ImportLimits& limit
             " MB of memory; the file is damaged, or too large");
   if (!document->refusal.empty())
     return fail(Code::kInvalidInput, file.string() + ": " + document->refusal);
-  const auto bytes = answer->bytes();
-  return StepAssembly{std::move(*document), {bytes.begin(), bytes.end()}};
+  return StepAssembly{std::move(*document), std::move(said->bytes), std::move(said->exact)};
 } catch (const std::exception& error) {  // memory of our own, names that are no paths
   return fail(Code::kRuntime, file.string() + ": cannot be imported: " + error.what());
 }
 
-Result<std::vector<StepCommon>> step_commons(const fs::path& file,
-                                             std::span<const StepCommonQuery> queries,
-                                             const ImportLimits& limits) {
+Result<std::vector<StepCommon>> ExactSolids::commons(std::span<const StepCommonQuery> queries) {
   if (queries.empty()) return std::vector<StepCommon>{};
-  const Result<MappedBytes> answer = ask_importer(file, "common", limits, encode(queries));
-  if (!answer) return fail(answer.error().code, file.string() + ": " + answer.error().text);
-  Result<std::vector<StepCommon>> commons = decode_step_commons(answer->bytes());
+  const auto answer = importer_.ask(encode(queries), kCommons_s + kAfterCommons_s);
+  if (!answer) return answer.error();
+  Result<std::vector<StepCommon>> commons = decode_step_commons(*answer);
   if (commons && commons->size() != queries.size())
-    return fail(Code::kRuntime, file.string() + ": the importer answered another question");
+    return fail(Code::kRuntime, "the STEP importer answered another question");
   return commons;
 }
 

@@ -207,6 +207,43 @@ TEST(Feature, RangeOverAFacetIsItsSagitta) {
   }
 }
 
+// Of a cone in closed form: a facet between two generators is deepest in the middle of its wide
+// end, a triangle across the axis on it.
+TEST(Surface, TrianglesOfACone) {
+  Surface s;
+  s.kind = SurfaceKind::kCone;
+  s.half_angle_rad = 0.7;
+  const double r = 4.0, z = r / std::tan(0.7), a = 0.35;
+  const Vec3 p(r, 0, z), q(r * std::cos(a), r * std::sin(a), z);
+  const Interval facet = s.signed_distance_range_mm(p, q, 0.5 * q);
+  EXPECT_NEAR(facet.lo, -r * (1.0 - std::cos(0.5 * a)) * std::cos(0.7), 1e-12);
+  EXPECT_NEAR(facet.hi, 0.0, 1e-12);
+  const Interval across = s.signed_distance_range_mm({3, 0, 9}, {-1, 2, 9}, {-1, -2, 9});
+  EXPECT_NEAR(across.lo, -9.0 * std::sin(0.7), 1e-12);
+  s.inward = true;
+  EXPECT_NEAR(s.signed_distance_range_mm(p, q, 0.5 * q).hi, -facet.lo, 1e-12);
+}
+
+// In front of the apex, against dense samples: no wider than these leave between them.
+TEST(Surface, RangeOfAConeIsTight) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> near(-3.0, 3.0);
+  Surface s;
+  s.kind = SurfaceKind::kCone;
+  s.half_angle_rad = 0.5;
+  for (int i = 0; i < 200; ++i) {
+    const auto any = [&] { return Vec3(near(random), near(random), 14.0 + near(random)); };
+    const Vec3 a = any(), b = any(), c = any();
+    const Interval range = s.signed_distance_range_mm(a, b, c);
+    double lo = 1e9;
+    for (int u = 0; u <= 200; ++u)
+      for (int v = 0; u + v <= 200; ++v)
+        lo = std::min(lo, s.signed_distance_mm(a + (b - a) * (u / 200.0) + (c - a) * (v / 200.0)));
+    ASSERT_LE(range.lo, lo + 1e-12) << i;
+    ASSERT_GE(range.lo, lo - 0.03) << i;
+  }
+}
+
 // A facet with corners on a sphere of 10 whose circle has radius 1 lies 0.050125629 below it.
 TEST(Surface, FacetOfASphere) {
   Surface s;

@@ -72,6 +72,7 @@ TEST_P(IndependentReader, FindsWhatWasWritten) {
   EXPECT_GT(found["statistics"]["chunks"], 3);
   EXPECT_EQ(found["metadata"]["mortise.session"]["session"], "sample");
   EXPECT_EQ(found["attachments"].size(), 1u + 2u + 3u);
+  EXPECT_EQ(found["records"]["Attachment"], 2 * (1 + 2 + 3)) << "at the front and at the end";
   ASSERT_EQ(found["schemas"].size(), 4u);
   for (const json& schema : found["schemas"]) {
     if (schema["name"] == "mortise.Checkpoint") continue;  // not for others

@@ -7,41 +7,13 @@
 #include <new>
 
 #include "common/io/step/importer/common_volume.h"
-#include "common/io/step/importer/mesh_part.h"
+#include "common/io/step/importer/mesh_together.h"
 #include "common/io/step/importer/pmi.h"
-#include "common/io/step/importer/step_tree.h"
 
 namespace mortise {
 namespace {
 
 constexpr unsigned kSecondsEach = 10;  // of one Boolean operation
-
-StepDocument document_of(const std::filesystem::path& file) {
-  StepDocument document;
-  StepTree tree;
-  read_step_tree(file, tree);
-  document.refusal = tree.refusal;
-  if (!document.refusal.empty()) return document;
-  document.instances = std::move(tree.instances);
-  document.not_solid = std::move(tree.not_solid);
-  document.notes = std::move(tree.notes);
-  std::size_t triangles = 0;
-  for (std::size_t i = 0; i < tree.solids.size(); ++i) {
-    StepPart part = mesh_part(tree.solids[i], {});
-    part.name = tree.parts[i].name;
-    part.loose_faces = tree.parts[i].loose_faces;
-    part.mirrored = tree.parts[i].mirrored;
-    triangles += part.mesh.triangles.size();
-    if (triangles > kMostStepTriangles) {
-      StepDocument refused;
-      refused.refusal = "it needs more than " + std::to_string(kMostStepTriangles) + " triangles";
-      return refused;
-    }
-    document.parts.push_back(std::move(part));
-  }
-  read_pmi(file, tree, document);
-  return document;
-}
 
 std::vector<std::byte> refuse(const std::string& why) {
   StepDocument document;
@@ -59,9 +31,33 @@ std::vector<std::byte> read_all(int file) {
 
 }  // namespace
 
-std::vector<std::byte> answer_document(const std::filesystem::path& file) {
+StepDocument StepAnswers::read(const std::filesystem::path& file) {
+  StepDocument document;
+  read_step_tree(file, tree_);
+  document.refusal = tree_.refusal;
+  if (!document.refusal.empty()) return document;
+  document.instances = std::move(tree_.instances);
+  document.not_solid = std::move(tree_.not_solid);
+  document.notes = std::move(tree_.notes);
+  document.parts = mesh_together(tree_.solids, {});
+  if (document.parts.empty()) {
+    StepDocument refused;
+    refused.refusal = "it needs more than " + std::to_string(kMostStepTriangles) + " triangles";
+    return refused;
+  }
+  for (std::size_t i = 0; i < document.parts.size(); ++i) {
+    StepPart& part = document.parts[i];
+    part.name = tree_.parts[i].name;
+    part.loose_faces = tree_.parts[i].loose_faces;
+    part.mirrored = tree_.parts[i].mirrored;
+  }
+  read_pmi(file, tree_, document);
+  return document;
+}
+
+std::vector<std::byte> StepAnswers::document(const std::filesystem::path& file) {
   try {
-    return encode(document_of(file));
+    return encode(read(file));
   } catch (const std::bad_alloc&) {
     return refuse("std::bad_alloc");
   } catch (const Standard_Failure& failure) {
@@ -72,13 +68,12 @@ std::vector<std::byte> answer_document(const std::filesystem::path& file) {
   }
 }
 
-std::vector<std::byte> answer_commons(const std::filesystem::path& file, int queries) {
+std::vector<std::byte> StepAnswers::commons(int queries) const {
   const auto asked = decode_step_queries(read_all(queries));
   if (!asked) return {};
   try {
-    StepTree tree;
-    read_step_tree(file, tree);
-    return encode(std::span<const StepCommon>(common_volumes(tree, *asked, kSecondsEach)));
+    return encode(
+        std::span<const StepCommon>(common_volumes(tree_, *asked, {kSecondsEach, kCommons_s})));
   } catch (...) {
     return {};
   }

@@ -3,12 +3,24 @@
 #include <filesystem>
 #include <vector>
 
+#include "common/io/step/importer/step_tree.h"
+
 namespace mortise {
 
-/// The document of a STEP file, or its refusal, as bytes.
-std::vector<std::byte> answer_document(const std::filesystem::path& file);
+/// One STEP file, and what is said of it.
+class StepAnswers {
+ public:
+  /// The document of the file, or its refusal, as bytes.
+  std::vector<std::byte> document(const std::filesystem::path& file);
 
-/// Answers to the queries that stand in an open file; empty when they cannot be read.
-std::vector<std::byte> answer_commons(const std::filesystem::path& file, int queries);
+  /// Answers to the queries that stand in an open file, of the document's parts; empty when they
+  /// cannot be read.
+  std::vector<std::byte> commons(int queries) const;
+
+ private:
+  StepDocument read(const std::filesystem::path& file);
+
+  StepTree tree_;
+};
 
 }  // namespace mortise

@@ -1,5 +1,6 @@
 #include "common/io/step/importer/common_volume.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,12 +11,16 @@
 #include <gp_Quaternion.hxx>
 
 #include <algorithm>
-#include <deque>
+#include <cerrno>
+#include <chrono>
+#include <optional>
+#include <thread>
 
 namespace mortise {
 namespace {
 
-constexpr std::size_t kTogether = 2;  // processes
+constexpr std::size_t kTogether = 2, kMostTogether = 8;  // processes
+constexpr std::chrono::microseconds kLook(300);          // between looks for answers
 
 TopLoc_Location location_of(const Pose& X) {
   gp_Trsf placed;
@@ -69,14 +74,18 @@ Running start(const StepTree& tree, const StepCommonQuery& query, unsigned secon
   }
   close(ends[1]);
   running.answers = ends[0];
+  fcntl(running.answers, F_SETFL, O_NONBLOCK);
   return running;
 }
 
-StepCommon finish(const Running& running) {
+// Its answer, when it has one or has ended.
+std::optional<StepCommon> answer_of(const Running& running) {
   StepCommon answer;
   if (running.answers < 0) return answer;
-  if (running.child < 0 || read(running.answers, &answer, sizeof answer) != sizeof answer)
-    answer = {};
+  const ssize_t n =
+      running.child < 0 ? 0 : read(running.answers, &answer, sizeof answer);  // all at once
+  if (n < 0 && errno == EAGAIN) return std::nullopt;
+  if (n != sizeof answer) answer = {};
   close(running.answers);
   if (running.child > 0) waitpid(running.child, nullptr, 0);
   return answer;
@@ -86,21 +95,30 @@ StepCommon finish(const Running& running) {
 
 std::vector<StepCommon> common_volumes(const StepTree& tree,
                                        const std::vector<StepCommonQuery>& queries,
-                                       unsigned seconds_each) {
+                                       const CommonLimits& limits) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::seconds(limits.all_s);
+  const std::size_t together =
+      std::clamp<std::size_t>(std::thread::hardware_concurrency(), kTogether, kMostTogether);
   std::vector<StepCommon> answers(queries.size());
-  std::deque<Running> running;
-  const auto end_first = [&] {
-    answers[running.front().query] = finish(running.front());
-    running.pop_front();
-  };
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    if (queries[i].part_a >= tree.solids.size() || queries[i].part_b >= tree.solids.size())
-      continue;
-    if (running.size() == kTogether) end_first();
-    running.push_back(start(tree, queries[i], seconds_each));
-    running.back().query = i;
+  std::vector<Running> running;
+  // What still runs at the end of the time is ended with this process.
+  for (std::size_t next = 0; Clock::now() < deadline;) {
+    while (next < queries.size() && running.size() < together) {
+      const StepCommonQuery& query = queries[next++];
+      if (query.part_a >= tree.solids.size() || query.part_b >= tree.solids.size()) continue;
+      running.push_back(start(tree, query, limits.each_s));
+      running.back().query = next - 1;
+    }
+    if (running.empty()) break;
+    const std::size_t before = running.size();
+    std::erase_if(running, [&](const Running& one) {
+      const std::optional<StepCommon> answer = answer_of(one);
+      if (answer) answers[one.query] = *answer;
+      return answer.has_value();
+    });
+    if (running.size() == before) std::this_thread::sleep_for(kLook);
   }
-  while (!running.empty()) end_first();
   return answers;
 }
 

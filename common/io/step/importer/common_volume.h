@@ -5,10 +5,16 @@
 
 namespace mortise {
 
+/// Seconds of processor that one operation may take, and of the clock for all together.
+struct CommonLimits {
+  unsigned each_s, all_s;
+};
+
 /// The volume and surface that pairs of parts have in common by exact Boolean operations, each in a
-/// process of its own with so many seconds of processor: some never end, some crash.
+/// process of its own: some never end, some crash. Those whose turn does not come in time are not
+/// known.
 std::vector<StepCommon> common_volumes(const StepTree& tree,
                                        const std::vector<StepCommonQuery>& queries,
-                                       unsigned seconds_each);
+                                       const CommonLimits& limits);
 
 }  // namespace mortise
