@@ -74,7 +74,7 @@ bool fuzz_scenario(std::span<const std::uint8_t> input) {
   }
   for (const Finding& finding : reading->findings) need_line(finding.text);
   if (!reading->usable()) return false;
-  OpenedScene opened{std::move(reading->scenario), {}, std::move(reading->findings)};
+  OpenedScene opened{std::move(reading->scenario), {}, std::move(reading->findings), {}};
   check(opened.scenario);
   if (opened.scenario.parts.size() > kMostParts) return true;
   auto scene = load_scene(opened.scenario, mesh_of);
