@@ -121,7 +121,7 @@ TEST_F(ReplayProgram, RecoversOrLeavesNoFile) {
       EXPECT_EQ(outcome.document()["verified_to_tick"], outcome.document()["ticks"]);
     } else {
       ++refused;
-      EXPECT_EQ(outcome.exit_code, 3);
+      EXPECT_EQ(outcome.exit_code, 7);
       EXPECT_FALSE(std::filesystem::exists(out.path()));
     }
   }

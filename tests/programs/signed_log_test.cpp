@@ -58,7 +58,7 @@ class SignedLog : public testing::Test {
 
   fs::path file(const std::string& name) const { return folder_.path() / name; }
   void write(const fs::path& log, const std::string& signer) const {
-    LogOptions options{.chunk_bytes = 2048};
+    LogOptions options{.chunk_bytes = 1024};
     if (!signer.empty()) {
       const KeyFiles keys((*site_)[signer]);
       auto own = LogSigner::open(keys.certificate, keys.key);

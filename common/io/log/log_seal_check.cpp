@@ -23,8 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using openssl::Certificate;
 
+// Nothing of what is written in another way: one signature has one text.
 std::vector<unsigned char> of_hexadecimal(const std::string& text) {
   std::vector<unsigned char> bytes;
+  if (text.size() % 2 != 0 || text.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return bytes;
   for (std::size_t i = 0; i + 1 < text.size(); i += 2)
     bytes.push_back(
         static_cast<unsigned char>(std::strtoul(text.substr(i, 2).c_str(), nullptr, 16)));

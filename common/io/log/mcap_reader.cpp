@@ -49,6 +49,57 @@ std::uint64_t find_chunk(const InputFile& file, std::uint64_t from,
   return file.size();
 }
 
+// A record of another kind whose length is damaged may span chunks.
+bool is_of_chunks(std::uint8_t opcode) {
+  return opcode == mcap::kChunk || opcode == mcap::kMessageIndex || opcode == mcap::kMessage;
+}
+
+// Begins a record there, or ends the file?
+bool begins_record(const InputFile& file, std::uint64_t at, std::vector<std::byte>& buffer) {
+  if (at == file.size()) return true;
+  ByteReader reader(file.read(at, mcap::kRecordHeaderBytes, buffer));
+  const std::uint8_t opcode = reader.u8();
+  const std::uint64_t length = reader.u64();
+  return reader.ok() && opcode != 0 && opcode <= mcap::kDataEnd && length <= file.size() - at;
+}
+
+// False: it is damaged.
+bool tell_metadata(const McapHandler& handler, std::span<const std::byte> content) {
+  ByteReader reader(content);
+  const std::string name = reader.string();
+  const auto values = mcap::read_map(reader);
+  if (reader.ok() && handler.on_metadata) handler.on_metadata(name, values);
+  return reader.ok();
+}
+
+// `size` bytes in `into`; empty: they are damaged.
+std::span<const std::byte> decompressed(std::span<const std::byte> data, std::uint64_t size,
+                                        std::vector<std::byte>& into) {
+  const unsigned long long claimed = ZSTD_getFrameContentSize(data.data(), data.size());
+  if (claimed == ZSTD_CONTENTSIZE_ERROR || (claimed != ZSTD_CONTENTSIZE_UNKNOWN && claimed != size))
+    return {};
+  if (into.size() < size) into.resize(static_cast<std::size_t>(size));
+  const std::size_t got =
+      ZSTD_decompress(into.data(), static_cast<std::size_t>(size), data.data(), data.size());
+  if (ZSTD_isError(got) != 0 || got != size) return {};
+  return std::span<const std::byte>(into).first(got);
+}
+
+// Nothing where it is damaged.
+std::optional<McapAttachment> attachment_of(std::span<const std::byte> content) {
+  ByteReader reader(content);
+  McapAttachment attachment;
+  attachment.log_time_ns = reader.u64();
+  reader.u64();
+  attachment.name = reader.string();
+  attachment.media_type = reader.string();
+  attachment.data = reader.raw(reader.u64());
+  const std::uint32_t crc = reader.u32();
+  if (!reader.ok() || (crc != 0 && crc32(content.first(content.size() - 4)) != crc))
+    return std::nullopt;
+  return attachment;
+}
+
 class Scanner {
  public:
   Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits,
@@ -129,6 +180,9 @@ McapScan Scanner::run() {
       }
     }
     if (next == Next::kEnd) break;
+    if (next == Next::kGoOn && opcode < mcap::kDataEnd && !is_of_chunks(opcode) &&
+        !begins_record(file_, content_at + length, search_buffer_))
+      next = Next::kResync;
     if (next == Next::kGoOn) {
       if (handler_.is_enough && handler_.is_enough()) break;
       at_ = content_at + length;
@@ -175,16 +229,9 @@ Scanner::Next Scanner::record(std::uint8_t opcode, std::uint64_t length,
     case mcap::kAttachment:
       attachment(content);
       break;
-    case mcap::kMetadata: {
-      ByteReader reader(content);
-      const std::string name = reader.string();
-      const auto values = mcap::read_map(reader);
-      if (!reader.ok())
-        note("metadata record is damaged and left out");
-      else if (handler_.on_metadata)
-        handler_.on_metadata(name, values);
+    case mcap::kMetadata:
+      if (!tell_metadata(handler_, content)) note("metadata record is damaged and left out");
       break;
-    }
     case mcap::kFooter:
       note("a footer without end of data");
       return length == mcap::kFooterBytes ? Next::kEnd : Next::kResync;
@@ -256,15 +303,8 @@ bool Scanner::chunk(std::span<const std::byte> content) {
   if (size > expansion_left_) return lost("the file expands beyond the limit");
   expansion_left_ -= size;
   if (compression == "zstd") {
-    const unsigned long long claimed = ZSTD_getFrameContentSize(records.data(), records.size());
-    if (claimed == ZSTD_CONTENTSIZE_ERROR ||
-        (claimed != ZSTD_CONTENTSIZE_UNKNOWN && claimed != size))
-      return lost("its compressed data are damaged");
-    if (decompressed_.size() < size) decompressed_.resize(static_cast<std::size_t>(size));
-    const std::size_t got = ZSTD_decompress(decompressed_.data(), static_cast<std::size_t>(size),
-                                            records.data(), records.size());
-    if (ZSTD_isError(got) != 0 || got != size) return lost("its compressed data are damaged");
-    records = std::span<const std::byte>(decompressed_).first(got);
+    records = decompressed(records, size, decompressed_);
+    if (records.size() != size) return lost("its compressed data are damaged");
   } else if (!compression.empty()) {
     return lost("unknown compression");
   } else if (size != stored) {
@@ -360,20 +400,13 @@ void Scanner::message(std::span<const std::byte> content) {
 
 void Scanner::attachment(std::span<const std::byte> content) {
   ++scan_.attachments;
-  ByteReader reader(content);
-  McapAttachment attachment;
-  attachment.log_time_ns = reader.u64();
-  reader.u64();
-  attachment.name = reader.string();
-  attachment.media_type = reader.string();
-  attachment.data = reader.raw(reader.u64());
-  const std::uint32_t crc = reader.u32();
-  if (!reader.ok() || (crc != 0 && crc32(content.first(content.size() - 4)) != crc)) {
+  const std::optional<McapAttachment> attachment = attachment_of(content);
+  if (!attachment) {
     ++scan_.lost_attachments;
     note("attachment is damaged and left out");
-    return;
+  } else if (handler_.on_attachment) {
+    handler_.on_attachment(*attachment);
   }
-  if (handler_.on_attachment) handler_.on_attachment(attachment);
 }
 
 }  // namespace

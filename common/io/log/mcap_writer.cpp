@@ -47,6 +47,47 @@ void McapWriter::Counted::add(std::uint64_t time_ns) {
   ++messages;
 }
 
+namespace {
+
+ByteWriter attachment_of(std::string_view name, std::string_view media_type,
+                         std::span<const std::byte> data, std::uint64_t time_ns) {
+  ByteWriter content;
+  content.u64(time_ns);
+  content.u64(0);  // time of creation: not known
+  content.string(name);
+  content.string(media_type);
+  content.u64(data.size());
+  content.raw(data);
+  content.u32(crc32(content.bytes()));
+  return content;
+}
+
+// Times and offsets of the messages of one channel in a chunk.
+ByteWriter message_index_of(std::uint16_t channel,
+                            std::span<const std::pair<std::uint64_t, std::uint64_t>> entries) {
+  ByteWriter index;
+  index.u16(channel);
+  index.u32(static_cast<std::uint32_t>(entries.size() * 16));
+  for (const auto& [time_ns, offset] : entries) {
+    index.u64(time_ns);
+    index.u64(offset);
+  }
+  return index;
+}
+
+ByteWriter footer_of(std::uint64_t summary_start, std::uint64_t offsets_start, std::uint32_t crc) {
+  ByteWriter footer;
+  footer.u8(mcap::kFooter);
+  footer.u64(mcap::kFooterBytes);
+  footer.u64(summary_start);
+  footer.u64(offsets_start);
+  footer.u32(crc32(footer.bytes(), crc));
+  footer.raw(std::as_bytes(std::span(mcap::kMagic)));
+  return footer;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::filesystem::path& file,
                                                        McapWriterOptions options) {
   auto out = OutputFile::create(file);
@@ -120,14 +161,7 @@ std::uint16_t McapWriter::add_channel(std::string_view topic, std::string_view m
 void McapWriter::add_attachment(std::string_view name, std::string_view media_type,
                                 std::span<const std::byte> data, std::uint64_t time_ns) {
   end_chunk();
-  ByteWriter content;
-  content.u64(time_ns);
-  content.u64(0);  // time of creation: not known
-  content.string(name);
-  content.string(media_type);
-  content.u64(data.size());
-  content.raw(data);
-  content.u32(crc32(content.bytes()));
+  const ByteWriter content = attachment_of(name, media_type, data, time_ns);
   ByteWriter index;
   index.u64(bytes_written());
   index.u64(mcap::kRecordHeaderBytes + content.size());
@@ -221,14 +255,7 @@ void McapWriter::end_chunk() {
   std::map<std::uint16_t, std::uint64_t> index_offsets;
   for (const auto& [channel, entries] : chunk_index_) {
     index_offsets[channel] = bytes_written();
-    ByteWriter message_index;
-    message_index.u16(channel);
-    message_index.u32(static_cast<std::uint32_t>(entries.size() * 16));
-    for (const auto& [time_ns, offset] : entries) {
-      message_index.u64(time_ns);
-      message_index.u64(offset);
-    }
-    write_record(mcap::kMessageIndex, message_index);
+    write_record(mcap::kMessageIndex, message_index_of(channel, entries));
   }
   put_map(index, index_offsets);
   index.u64(bytes_written() - index_start);
@@ -289,14 +316,7 @@ void McapWriter::write_summary() {
   const std::uint64_t offsets_start = bytes_written();
   out_->write(offsets.bytes());
 
-  ByteWriter footer;
-  footer.u8(mcap::kFooter);
-  footer.u64(mcap::kFooterBytes);
-  footer.u64(summary_start);
-  footer.u64(offsets_start);
-  footer.u32(crc32(footer.bytes(), out_->crc()));
-  footer.raw(std::as_bytes(std::span(mcap::kMagic)));
-  out_->write(footer.bytes());
+  out_->write(footer_of(summary_start, offsets_start, out_->crc()).bytes());
 }
 
 Status McapWriter::close() {
