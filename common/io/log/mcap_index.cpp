@@ -55,6 +55,7 @@ std::optional<Index> read_index(const InputFile& file) {
   if (!tail.ok() || !is_footer || !is_end || crc == 0 || start == 0 || start > crc_end)
     return std::nullopt;
   Index index;
+  index.start = start;
   const auto summary = file.read(start, crc_end - start, index.bytes);
   if (crc32(summary) != crc) return std::nullopt;
   ByteReader reader(summary);

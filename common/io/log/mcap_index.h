@@ -22,6 +22,7 @@ struct Index {
   std::map<std::uint16_t, McapSchema> schemas;  ///< their data are in `bytes`
   std::map<std::uint16_t, McapChannel> channels;
   std::vector<std::byte> bytes;
+  std::uint64_t start = UINT64_MAX;  ///< the records before end below it
 };
 /// Nothing where the file has no index, or its checksum does not fit.
 std::optional<Index> read_index(const InputFile& file);

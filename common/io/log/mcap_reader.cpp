@@ -54,13 +54,14 @@ bool is_of_chunks(std::uint8_t opcode) {
   return opcode == mcap::kChunk || opcode == mcap::kMessageIndex || opcode == mcap::kMessage;
 }
 
-// Begins a record there, or ends the file?
+// Begins a record there, or ends the file? A footer stands behind the end of data alone.
 bool begins_record(const InputFile& file, std::uint64_t at, std::vector<std::byte>& buffer) {
   if (at == file.size()) return true;
   ByteReader reader(file.read(at, mcap::kRecordHeaderBytes, buffer));
   const std::uint8_t opcode = reader.u8();
   const std::uint64_t length = reader.u64();
-  return reader.ok() && opcode != 0 && opcode <= mcap::kDataEnd && length <= file.size() - at;
+  const bool known = opcode != 0 && opcode <= mcap::kDataEnd && opcode != mcap::kFooter;
+  return reader.ok() && known && length <= file.size() - at;
 }
 
 // False: it is damaged.
@@ -181,7 +182,8 @@ McapScan Scanner::run() {
     }
     if (next == Next::kEnd) break;
     if (next == Next::kGoOn && opcode < mcap::kDataEnd && !is_of_chunks(opcode) &&
-        !begins_record(file_, content_at + length, search_buffer_))
+        (content_at + length >= index_.start ||
+         !begins_record(file_, content_at + length, search_buffer_)))
       next = Next::kResync;
     if (next == Next::kGoOn) {
       if (handler_.is_enough && handler_.is_enough()) break;
@@ -219,9 +221,8 @@ Scanner::Next Scanner::record(std::uint8_t opcode, std::uint64_t length,
     case mcap::kChannel:
       channel(content);
       break;
-    case mcap::kMessage:
-      announce_missing();
-      message(content);
+    case mcap::kMessage:  // our messages stand in chunks: this was another record
+      note("a message outside of chunks is left out");
       break;
     case mcap::kChunk:
       announce_missing();

@@ -40,7 +40,9 @@ void flip(std::string& bytes, std::size_t at) {
 }
 
 void expect_as_written(const SessionLog& log, const SessionLog& whole, std::size_t at) {
-  SCOPED_TRACE("byte " + std::to_string(at));
+  std::string notes;
+  for (const std::string& note : log.notes) notes += "\n" + note;
+  SCOPED_TRACE("byte " + std::to_string(at) + notes);
   EXPECT_EQ(log.session, whole.session);
   EXPECT_EQ(log.scenario_name, whole.scenario_name);
   EXPECT_EQ(log.scenario_yaml, whole.scenario_yaml);
