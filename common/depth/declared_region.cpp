@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "common/depth/region_report.h"
 #include "common/math/rotation.h"
@@ -11,8 +13,11 @@
 namespace mortise {
 namespace {
 
-// Triangles of a pair of faces that are asked how far the meshes overlap.
-constexpr std::size_t kQuestions = 24;
+// Triangles of a face that are asked how far the meshes overlap: those nearest to where the closed
+// form is reached, and some all over it; more of these where the class hangs on whether the meshes
+// overlap at all.
+constexpr std::size_t kNearest = 4, kAllOver = 4, kAllOverMore = 24;
+constexpr std::size_t kMostSamples = 24;
 // Where a witness is looked for: shares of the way to the middle of the face.
 constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
 
@@ -52,7 +57,7 @@ class DeclaredSearch {
       if (!witness_W && query_.only_certain) return {true, std::nullopt};
       set_witness(pair_, witness_W, least, region);
     }
-    Bracket mesh = mesh_overlap_of(known);
+    Bracket mesh = mesh_overlap_of(known, region.possible_mm.hi > 0.0);
     // The meshes stand out of the true surfaces by no more than this.
     const double excess =
         std::max(0.0, -face_a.deviation_mm.lo) + std::max(0.0, -face_b.deviation_mm.lo);
@@ -109,28 +114,56 @@ class DeclaredSearch {
     return std::nullopt;
   }
 
-  Bracket mesh_overlap_of(const KnownFacePair& known) {
+  void ask(int role, std::uint32_t triangle, std::uint32_t& near, Bracket& found) {
+    for (const Vec3& x : probe_points(*pair_.s(role).mesh, triangle)) {
+      ++evaluations_;
+      const Sample sample = sample_at(pair_, Layer::kMesh, role, triangle, x, near);
+      near = sample.at.triangle;
+      if (sample.depth_mm > found.best.depth_mm) found.best = sample;
+      if (sample.depth_mm > pair_.touch_mm && found.samples.size() < kMostSamples)
+        found.samples.push_back(sample);
+    }
+  }
+
+  void ask_nearest(const KnownFacePair& known, Bracket& found) {
+    for (const int role : {0, 1}) {
+      if (!pair_.k(role).has_inside) continue;
+      const Vec3 named_S =
+          role == 0 ? Vec3(pair_.X_KS[1] * known.overlap.point_B) : known.overlap.point_B;
+      const TriangleMesh& mesh = *pair_.s(role).mesh;
+      std::vector<std::pair<double, std::uint32_t>> by_distance;
+      for (const std::uint32_t t : known.triangles[role]) {
+        const Vec3 middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0;
+        by_distance.emplace_back((middle - named_S).squaredNorm(), t);
+      }
+      const std::size_t count = std::min(kNearest, by_distance.size());
+      std::partial_sort(by_distance.begin(),
+                        by_distance.begin() + static_cast<std::ptrdiff_t>(count),
+                        by_distance.end());
+      std::uint32_t near = Topology::kNone;  // of the point before
+      for (std::size_t i = 0; i < count; ++i) ask(role, by_distance[i].second, near, found);
+    }
+  }
+
+  void ask_all_over(const KnownFacePair& known, std::size_t most, Bracket& found) {
+    for (const int role : {0, 1}) {
+      if (!pair_.k(role).has_inside) continue;
+      const std::vector<std::uint32_t>& triangles = known.triangles[role];
+      const double count = static_cast<double>(triangles.size());
+      const double step = std::max(1.0, count / static_cast<double>(most));
+      std::uint32_t near = Topology::kNone;
+      for (double i = 0.0; i < count; i += step)
+        ask(role, triangles[static_cast<std::size_t>(i)], near, found);
+    }
+  }
+
+  Bracket mesh_overlap_of(const KnownFacePair& known, bool is_possible) {
     Bracket found;
     found.hi_mm = std::numeric_limits<double>::infinity();
     if (!query_.want_delta) return found;
-    for (int role = 0; role < 2; ++role) {
-      if (!pair_.k(role).has_inside) continue;
-      const std::vector<std::uint32_t>& triangles = known.triangles[role];
-      std::uint32_t near = Topology::kNone;  // of the point before
-      const double step =
-          std::max(1.0, static_cast<double>(triangles.size()) / static_cast<double>(kQuestions));
-      for (double i = 0.0; i < static_cast<double>(triangles.size()); i += step) {
-        const std::uint32_t t = triangles[static_cast<std::size_t>(i)];
-        for (const Vec3& x : probe_points(*pair_.s(role).mesh, t)) {
-          ++evaluations_;
-          const Sample sample = sample_at(pair_, Layer::kMesh, role, t, x, near);
-          near = sample.at.triangle;
-          if (sample.depth_mm > found.best.depth_mm) found.best = sample;
-          if (sample.depth_mm > pair_.touch_mm && found.samples.size() < kQuestions)
-            found.samples.push_back(sample);
-        }
-      }
-    }
+    ask_nearest(known, found);
+    const bool decides = !is_possible && found.best.depth_mm <= pair_.touch_mm;
+    ask_all_over(known, decides ? kAllOverMore : kAllOver, found);
     if (query_.refinement != Refinement::kFull) return found;
     std::vector<Root> roots;
     for (int role = 0; role < 2; ++role)

@@ -13,6 +13,8 @@ namespace {
 constexpr double kAsDeep = 0.9;
 constexpr std::size_t kFirstPlaces = 3;
 
+std::size_t index_of(Layer layer) { return layer == Layer::kLower ? 0 : 1; }
+
 }  // namespace
 
 PairCovers::PairCovers(const PairFrame& pair, bool use, std::uint64_t& evaluations)
@@ -21,32 +23,44 @@ PairCovers::PairCovers(const PairFrame& pair, bool use, std::uint64_t& evaluatio
              cover_of(pair.bodies[1]).found()),
       evaluations_(evaluations) {}
 
+CoverPair PairCovers::cells_of(Layer layer) const {
+  const bool least = layer == Layer::kLower;
+  return {cover_of(pair_.bodies[0]).of(least), cover_of(pair_.bodies[1]).of(least)};
+}
+
+bool PairCovers::apart(Layer layer) {
+  std::optional<bool>& apart = apart_[index_of(layer)];
+  if (apart) return *apart;
+  if (!found_) return *(apart = false);
+  std::uint64_t work = 0;
+  apart = cells_of(layer).apart(pair_.X_KS[0], pair_.touch_mm, work);
+  evaluations_ += evaluations_of_bounds(work);
+  return *apart;
+}
+
 const CoverOverlap& PairCovers::overlap_of(Layer layer) {
-  std::optional<CoverOverlap>& overlap = overlap_[layer == Layer::kLower ? 0 : 1];
+  std::optional<CoverOverlap>& overlap = overlap_[index_of(layer)];
   if (overlap) return *overlap;
   overlap.emplace();
   if (!found_) return *overlap;
-  const auto of = [&](int i) -> const CoverLayer& {
-    return cover_of(pair_.bodies[i]).of(layer == Layer::kLower);
-  };
   std::uint64_t work = 0;
-  overlap = CoverPair(of(0), of(1)).overlap(pair_.X_KS[0], pair_.touch_mm, work);
+  overlap = cells_of(layer).overlap(pair_.X_KS[0], pair_.touch_mm, work);
   evaluations_ += evaluations_of_bounds(work);
   return *overlap;
 }
 
 double PairCovers::most_mm(Layer layer) {
+  if (apart(layer)) return pair_.touch_mm;
   const CoverOverlap& overlap = overlap_of(layer);
-  if (apart(layer)) return overlap.most_mm;
   return overlap.is_depth ? overlap.most_mm + pair_.touch_mm
                           : std::numeric_limits<double>::infinity();
 }
 
 // Where the cover is the part, its border is its surface; else what is nearest of the mesh counts.
 std::optional<Sample> PairCovers::deepest(Layer layer) {
-  const CoverOverlap& overlap = overlap_of(layer);
-  std::optional<Sample>& found = deepest_[layer == Layer::kLower ? 0 : 1];
+  std::optional<Sample>& found = deepest_[index_of(layer)];
   if (found || apart(layer)) return found;
+  const CoverOverlap& overlap = overlap_of(layer);
   const int role = overlap.role;
   const Body &s = pair_.s(role), &k = pair_.k(role);
   std::optional<Sample> off_mesh;
@@ -75,8 +89,9 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
 }
 
 std::optional<Sample> PairCovers::on_mesh(Layer layer) {
+  if (apart(layer)) return std::nullopt;
   const CoverOverlap& overlap = overlap_of(layer);
-  if (overlap.places_S.empty() || apart(layer)) return std::nullopt;
+  if (overlap.places_S.empty()) return std::nullopt;
   const Vec3& x_S = overlap.places_S[overlap.places_S.size() > 1 ? 1 : 0];
   const SurfacePoint at = nearest_surface(*pair_.s(overlap.role).solid, x_S);
   evaluations_ += 2;
@@ -184,22 +199,24 @@ void PairCovers::give_witness(std::vector<OverlapRegion>& regions) {
   }
 }
 
-void PairCovers::cap(Interval& bracket, Layer layer) {
-  const double most = apart(layer) ? 0.0 : most_mm(layer) + pair_.rounding_mm;
-  bracket.hi = std::min(bracket.hi, most);
+void PairCovers::cap(Interval& bracket, Layer layer, bool is_closed) {
+  if (apart(layer))
+    bracket.hi = std::min(bracket.hi, 0.0);
+  else if (!is_closed)
+    bracket.hi = std::min(bracket.hi, most_mm(layer) + pair_.rounding_mm);
   bracket.lo = std::min(bracket.lo, bracket.hi);
 }
 
 void PairCovers::tell(std::vector<OverlapRegion>& regions) {
   give_witness(regions);
   for (OverlapRegion& region : regions) {
-    cap(region.possible_mm, Layer::kUpper);
+    cap(region.possible_mm, Layer::kUpper, region.closed_form);
     if (!(region.certain_mm.hi > 0.0)) continue;
     if (region.has_witness && apart(Layer::kLower)) {
       region.has_witness = false;
       ++region.witnesses_refused;
     }
-    cap(region.certain_mm, Layer::kLower);
+    cap(region.certain_mm, Layer::kLower, region.closed_form);
     region.certain_mm.hi = std::min(region.certain_mm.hi, region.possible_mm.hi);
     region.certain_mm.lo = std::min(region.certain_mm.lo, region.certain_mm.hi);
   }

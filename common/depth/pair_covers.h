@@ -19,7 +19,7 @@ class PairCovers {
   /// No overlap of kLower or kUpper is deeper. Infinity: nothing is known.
   double most_mm(Layer layer);
   /// No point is in both parts of the layer deeper than touching.
-  bool apart(Layer layer) { return overlap_of(layer).most_mm <= pair_.touch_mm; }
+  bool apart(Layer layer);
   /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
   /// the covers name none that is deeper than touching.
   std::optional<Sample> deepest(Layer layer);
@@ -41,13 +41,16 @@ class PairCovers {
   std::optional<OverlapRegion> certain_region();
   std::optional<OverlapRegion> possible_region();
   void give_witness(std::vector<OverlapRegion>& regions);
-  void cap(Interval& bracket, Layer layer);
+  /// is_closed: the bracket is that of a closed form, which no bound of cells makes closer.
+  void cap(Interval& bracket, Layer layer, bool is_closed);
   const CoverOverlap& overlap_of(Layer layer);
+  CoverPair cells_of(Layer layer) const;
 
   const PairFrame& pair_;
   bool found_;
   std::uint64_t& evaluations_;
-  std::optional<CoverOverlap> overlap_[2];  // least, largest
+  std::optional<bool> apart_[2];            // least, largest
+  std::optional<CoverOverlap> overlap_[2];  // the same
   std::optional<Sample> deepest_[2];
 };
 

@@ -251,7 +251,7 @@ class RoundInWall {
 // where its edges pass a height. Heights are those at an end of the chord, widened by how much any
 // height changes.
 double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
-                        const Interval& along, std::uint64_t& work, std::vector<Vec3>& places) {
+                        const Interval& along, std::uint64_t& work, std::vector<Vec3>* places) {
   ++work;
   const std::size_t count = s.corners.size();
   std::vector<Vec3> x(count * static_cast<std::size_t>(chord.ends));
@@ -271,7 +271,7 @@ double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall&
   const auto take = [&](double far, const Vec3& x_S) {
     if (far <= most) return;
     most = far;
-    places = {x_S};
+    if (places) *places = {x_S};
   };
   for (int e = 0; e < chord.ends; ++e) {
     const std::size_t first = e * count;
@@ -302,7 +302,7 @@ double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace&
 
 double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
                       const Interval& along, double limit_mm, double useless_mm,
-                      std::uint64_t& work, std::vector<Vec3>& places) {
+                      std::uint64_t& work, std::vector<Vec3>* places) {
   if (!(along.lo <= along.hi)) return -kInfinity;
   if (chord.ends == 1) {
     const Vec3 x = chord.X_KS[0] * s.middle;
@@ -313,7 +313,7 @@ double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& w
   if (s.round) {
     RoundInWall in_wall(s, chord, wall, along, work);
     most = in_wall.run(limit_mm, useless_mm);
-    places = in_wall.places();
+    if (places) *places = in_wall.places();
   } else {
     most = polytope_in_wall(s, chord, wall, along, work, places);
   }

@@ -21,9 +21,10 @@ double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace&
 /// No point of S comes farther than this beyond the wall of a hole, where its height along the axis
 /// is in `along_mm`; minus infinity: none gets there. Looks no closer once it is not above
 /// limit_mm; infinity where it is seen to be above useless_mm. Adds what it has looked at to
-/// `work`. places: points of S that come about so far, the farthest first, where some are seen.
+/// `work`. places, unless null: points of S that come about so far, the farthest first, where some
+/// are seen.
 double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
                       const Interval& along_mm, double limit_mm, double useless_mm,
-                      std::uint64_t& work, std::vector<Vec3>& places);
+                      std::uint64_t& work, std::vector<Vec3>* places);
 
 }  // namespace mortise

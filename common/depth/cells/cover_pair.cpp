@@ -23,13 +23,17 @@ constexpr double kOpposite = 1.0 - 1e-12;
 constexpr double kAcross = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// What is asked of a pair of cells: whether it stays below a limit, or how deep it may be as well.
+enum class Asked { kWhether, kHowDeep };
+
 }  // namespace
 
 // The least bound of one pair of cells; looks no further once it is not above the limit.
 class CoverPair::Bound {
  public:
-  Bound(const CoverPair& pair, const Views& views, double limit_mm, std::uint64_t& work)
-      : pair_(pair), views_(views), limit_mm_(limit_mm), work_(work) {}
+  Bound(const CoverPair& pair, const Views& views, double limit_mm, Asked asked,
+        std::uint64_t& work)
+      : pair_(pair), views_(views), limit_mm_(limit_mm), asked_(asked), work_(work) {}
 
   double operator()(Cells& cells) {
     cells_ = &cells;
@@ -80,24 +84,24 @@ class CoverPair::Bound {
     const CoverLayer& part = *pair_.parts_[1 - role];
     const Void& hole = part.voids[v];
     const Chord& chord = views_.chord[role];
-    // Over a span only what excludes is of use, at a pose what is below the best bound so far.
-    const double useless_mm = chord.ends == 2 ? limit_mm_ : least_;
+    const bool how_deep = asked_ == Asked::kHowDeep;
+    const double useless_mm = how_deep ? least_ : limit_mm_;
     double most = -kInfinity;
     std::vector<Vec3> places_S;
     for (const HalfSpace& plane : hole.planes) {
       ++work_;
       const double beyond = beyond_plane_mm(s(role), chord, plane);
-      if (beyond >= least_) return false;
+      if (beyond >= least_ || (!how_deep && beyond > limit_mm_)) return false;
       if (beyond <= most) continue;
       most = beyond;
-      if (chord.ends == 1)
+      if (how_deep)
         places_S = {s(role).farthest_middle(-(chord.X_KS[0].q.conjugate() * plane.n), kAsFar_mm)};
     }
     if (hole.wall) {
       std::vector<Vec3> at_wall;
       const double beyond =
           beyond_wall_mm(s(role), chord, *hole.wall, part.heights_of(cells_->cell[1 - role], v),
-                         limit_mm_, useless_mm, work_, at_wall);
+                         limit_mm_, useless_mm, work_, how_deep ? &at_wall : nullptr);
       if (beyond > most) {
         most = beyond;
         places_S = std::move(at_wall);
@@ -144,6 +148,7 @@ class CoverPair::Bound {
   const CoverPair& pair_;
   const Views& views_;
   const double limit_mm_;
+  const Asked asked_;
   std::uint64_t& work_;
   Cells* cells_ = nullptr;
   double least_ = kInfinity;
@@ -178,13 +183,12 @@ class CoverPair::Whole {
   // What stands on an end of the material only touches it.
   double beyond_wall(std::size_t v) {
     double most = -kInfinity;
-    std::vector<Vec3> at;
     for (std::size_t j = 0; j < k().cells.size(); ++j) {
       const Interval& along = k().heights_of(j, v);
       const Interval inner{along.lo + least_mm_, along.hi - least_mm_};
       for (const ConvexCell& cell : s())
         most = std::max(most, beyond_wall_mm(cell, views_.chord[role_], *k().voids[v].wall, inner,
-                                             most_mm_, most_mm_, work_, at));
+                                             most_mm_, most_mm_, work_, nullptr));
     }
     return most;
   }
@@ -264,7 +268,7 @@ std::vector<CoverPair::Cells> CoverPair::all_cells() const {
 
 CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double accuracy_mm) const {
   CoverFree free;
-  if (overlap(path.pose(0, 0.0), limit_mm, free.work).most_mm > limit_mm) {
+  if (!apart(path.pose(0, 0.0), limit_mm, free.work)) {
     free.t_free = 0.0;
     return free;
   }
@@ -280,7 +284,7 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
     Open now = std::move(open.back());
     open.pop_back();
     const Views views = views_of(path, now.span);
-    Bound bound(*this, views, limit_mm, free.work);
+    Bound bound(*this, views, limit_mm, Asked::kWhether, free.work);
     std::erase_if(now.cells, [&](Cells& cells) { return bound(cells) <= limit_mm; });
     if (now.cells.empty()) continue;
     const double middle = 0.5 * (now.span.t0 + now.span.t1);
@@ -296,16 +300,29 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
   return free;
 }
 
-CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const {
+CoverPair::Views CoverPair::views_at(const Pose& X_BA) {
   Views views;
   views.chord[0].X_KS[0] = X_BA;
   views.chord[1].X_KS[0] = X_BA.inverse();
+  return views;
+}
+
+bool CoverPair::apart(const Pose& X_BA, double limit_mm, std::uint64_t& work) const {
+  const Views views = views_at(X_BA);
+  std::vector<Cells> all = all_cells();
+  Bound bound(*this, views, limit_mm, Asked::kWhether, work);
+  return std::all_of(all.begin(), all.end(),
+                     [&](Cells& cells) { return bound(cells) <= limit_mm; });
+}
+
+CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const {
+  const Views views = views_at(X_BA);
   CoverOverlap overlap;
   overlap.most_mm = least_mm;
   std::vector<Cells> all = all_cells();
   const Cells* deciding = nullptr;
   for (Cells& cells : all) {
-    const double bound = Bound(*this, views, overlap.most_mm, work)(cells);
+    const double bound = Bound(*this, views, overlap.most_mm, Asked::kHowDeep, work)(cells);
     if (!(bound > overlap.most_mm)) continue;
     overlap.most_mm = bound;
     deciding = &cells;

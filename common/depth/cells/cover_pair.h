@@ -46,6 +46,9 @@ class CoverPair {
   /// The time is looked for as closely as no point moves farther than accuracy_mm.
   CoverFree free_until(const PairPath& path, double limit_mm, double accuracy_mm) const;
 
+  /// No point is in both deeper than limit_mm: what overlap() says, without how deep.
+  bool apart(const Pose& X_BA, double limit_mm, std::uint64_t& work) const;
+
   /// Overlaps below least_mm count as that.
   CoverOverlap overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const;
 
@@ -67,6 +70,7 @@ class CoverPair {
   class Bound;
   class Whole;
 
+  static Views views_at(const Pose& X_BA);
   static Views views_of(const PairPath& path, const Span& span);
   std::vector<Cells> all_cells() const;
   /// Points of part cells.role where what kept its cell from the other one last is least far.

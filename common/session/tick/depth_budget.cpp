@@ -20,16 +20,20 @@ constexpr WorkRules kRules{.per_second = 300'000.0,
 constexpr std::uint64_t kVerdictShare = 3;
 
 // By stage: what a tick may have taken of the saved work by its end, and what one pair may have.
-// What the search for stops has taken is not there for the verdicts. kContact has its own budget.
-constexpr std::array<std::uint64_t, 3> kMostOfSaved{0, 2'000, 3'500}, kMostEffort{0, 4'000, 5'000};
+// What the search for stops has taken is not there for the verdicts, which may take all that is
+// saved. kContact has its own budget.
+constexpr std::array<std::uint64_t, 3> kMostOfSaved{0, 2'000, 20'000}, kMostEffort{0, 4'000, 5'000};
+// Of what is saved, one pair has no more.
+constexpr std::uint64_t kMostOfSavedForOne = 3'500;
 // The same where work is not limited.
 constexpr std::uint64_t kUnlimitedEffort = 10'000;
 // Evaluations of one pair the first time; and the fewest that are of use to a search for the stop:
 // parts that leave each other need no more.
 constexpr std::uint64_t kFirstEffort = 1'500, kGlance = 250;
 
-// What the times and the motion of an event may take: no less than a first, wide bracket does.
-constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 5'000;
+// What the times and the motion of an event may take: no less than a first, wide bracket does. So
+// much of what is saved is kept for the verdicts of later ticks.
+constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 5'000, kKeptForVerdicts = 10'000;
 
 // A search that has come to nothing is not repeated for so many ticks while nothing has changed;
 // nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
@@ -90,7 +94,8 @@ class Sharing {
         stage == WorkStage::kStop ? own - for_verdicts_ : own / kVerdictShare;
     const auto at = static_cast<std::size_t>(stage);
     limited_ = work.depth_budget.is_limited();
-    most_ = limited_ ? std::min(times_ * kMostEffort[at], own_most / 2 + times_ * kMostOfSaved[at])
+    const std::uint64_t saved_most = std::min(kMostOfSaved[at], kMostOfSavedForOne);
+    most_ = limited_ ? std::min(times_ * kMostEffort[at], own_most / 2 + times_ * saved_most)
                      : kUnlimitedEffort;
   }
 
@@ -209,8 +214,10 @@ void serve_in_turn(const World& world, Scratch::Impl& work, std::span<const std:
 void share_telling_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
   if (pairs.empty()) return;
   const bool limited = work.depth_budget.is_limited();
+  const Left left = left_of(work.depth_budget, spent(work));
+  const std::uint64_t for_telling = left.own + less(left.saved, kKeptForVerdicts);
   const std::uint64_t each =
-      limited ? std::clamp(depth_work_left(work) / pairs.size(), kLeastTelling, kMostTelling)
+      limited ? std::clamp(for_telling / pairs.size(), kLeastTelling, kMostTelling)
               : kUnlimitedEffort;
   for (const std::uint32_t i : pairs) {
     PairWork& pair = work.pairs[i];

@@ -216,6 +216,7 @@ void look_at_pair(const World& world, const Scratch::Impl& work, PairWork& pair,
     look_at_attempt(world, pair, ccd);
   } else {
     judge_at_end(world, pair, motion, ccd);
+    if (pair.seen.empty() && pair.touch_unasked) ask_touch(pair, ccd);
     if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start)))
       if (auto region = passing(world, pair, motion, ccd)) {
         region->passing = true;
@@ -300,7 +301,6 @@ void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdS
     put_off(pair);
     return;
   }
-  if (pair.touch_unasked) ask_touch(pair, ccd);
   const bool was_undecided = std::exchange(pair.undecided, false);
   look_at_pair(world, work, pair, ccd);
   settle(world, work, pair, ccd);
@@ -316,8 +316,12 @@ void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdS
   pair.undecided |= was_undecided;
 }
 
-// Times and the separating motion are needed only where somebody is told of them.
+// Contact, times and the separating motion are needed only where somebody is told of them.
 void complete(const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
+  if (pair.touch_unasked) {
+    ask_touch(pair, ccd);
+    pair.judged.t_contact = (pair.blocks ? as_asked(pair) : as_moved(work, pair)).t_contact;
+  }
   find_event_times(pair, end_of(work, pair), ccd);
   const std::uint64_t looked = pair.judgement.overlap.evaluations;
   pair.judged.whole_cap = looked + pair.left();
