@@ -20,7 +20,7 @@ import { Unexamined } from './unexamined.js';
  * @property {number} user @property {ClashClass} class @property {[number, number]} delta @property {[number, number]} gpd
  * @property {number} fake_below @property {number} real_above @property {number} margin @property {number | null} probability
  * @property {number} area @property {Vec3} point @property {Vec3} normal @property {Vec3 | null} witness
- * @property {{t: Vec3, r: Vec3, about: Vec3, moves: string, way: string, path: string}} separation @property {[string, string]} shapes @property {[string, string]} faces
+ * @property {{t: Vec3, r: Vec3, about: Vec3, moves: string, way: string, path: string, blocker: number}} separation @property {[string, string]} shapes @property {[string, string]} faces
  * @property {string} grade @property {string} explanation @property {number | null} t_contact @property {number | null} t_real
  * @property {number} begin_tick @property {ClashClass} worst_class @property {[number, number]} worst_delta @property {string} cause
  * @property {{status: string, comment: string, user: number, tick: number}} review @property {boolean} approval_lost
