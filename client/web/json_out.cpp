@@ -129,6 +129,11 @@ Json json_of(const Decision& decision) {
   if (!details.text.empty()) json["text"] = details.text;
   if (details.constraint.kind != ConstraintKind::kUnknown)
     json["constraint"] = constraint_json(details.constraint);
+  if (details.edit) {
+    json["mesh"] = details.edit->mesh_hash;
+    json["moving"] = details.edit->moving;
+    if (decision.kind == Decision::Kind::kAddPart) json["name"] = details.edit->name;
+  }
   if (details.constraint_id) json["constraint_id"] = details.constraint_id.value;
   return json;
 }

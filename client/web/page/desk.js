@@ -6,6 +6,7 @@ import { forgetToken, keptToken } from './session/link.js';
 import { readPoseFrame } from './session/frames.js';
 import { Mover } from './session/mover.js';
 import { Session } from './session/session.js';
+import { Uploads } from './session/uploads.js';
 import { Stops } from './session/stops.js';
 import { Stage } from './view/stage.js';
 import { Camera } from './view/camera.js';
@@ -43,6 +44,7 @@ export function makeDesk() {
       if (line.state === 'open' && state !== 'open') {
         session.lost();
         commands.lost();
+        uploads.lost();
         mover.dropAll();
       }
       if (told.trouble === 'token') forgetToken(connection.token, localStorage);
@@ -52,6 +54,7 @@ export function makeDesk() {
   });
   const send = (/** @type {object} */ message) => connection.send(message);
   const commands = new Commands(send, say);
+  const uploads = new Uploads(send, (path, file) => connection.post(path, file));
   const stops = new Stops();
   const mover = new Mover((part, increment) => {
     const known = session.parts.get(part);
@@ -71,7 +74,7 @@ export function makeDesk() {
   const labels = new Labels(stage, session, partsView, byId('labels'));
   labels.sources.push(() => marks.notes, () => way.notes);
   const flights = makeFlights({ session, choice, camera, partsView, section });
-  return { session, choice, line, connection, send, commands, mover, stops, stage, partsView, camera, marks, way, heat, section, handles, labels, say, ...flights };
+  return { session, choice, line, connection, send, commands, uploads, mover, stops, stage, partsView, camera, marks, way, heat, section, handles, labels, say, ...flights };
 }
 
 /** @typedef {ReturnType<typeof makeDesk>} Desk */

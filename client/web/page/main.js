@@ -1,5 +1,6 @@
 // The page begins here.
 import { makeDesk } from './desk.js';
+import { makeAddParts } from './panels/add_parts.js';
 import { makeAlign } from './panels/align.js';
 import { makeArrival } from './panels/arrive.js';
 import { makeAsks } from './panels/asks.js';
@@ -38,6 +39,7 @@ makeStatus(desk);
 followSession(desk);
 drawCompass(desk.stage, /** @type {HTMLCanvasElement} */ (byId('compass')), (side) => desk.showAll(side));
 makeTree(desk);
+makeAddParts(desk);
 makePeople(desk);
 makeAsks(desk);
 makePlaces(desk);

@@ -47,7 +47,7 @@ const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset']);
  * @property {void} users @property {any} decision @property {void} standing @property {any} pulse @property {void} server
  * @property {void} me @property {Array<{part: number, reason: string, count: number}>} refused @property {View[]} views
  * @property {void} features @property {any} timeline @property {any} replay @property {string} mesh @property {string} error
- * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {void} draining
+ * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {void} draining @property {import('./uploads.js').UploadTold} upload
  */
 
 /** @extends {Signals<Said>} */
@@ -201,6 +201,7 @@ export class Session extends Signals {
       this.remarks = m.remarks;
       this.emit('remarks', undefined);
     },
+    upload: (m) => this.emit('upload', m),
     pulse: (m) => this.#pulse(m),
     mesh: (m) => this.emit('mesh', m.hash),
     error: (m) => this.emit('error', m.text),
