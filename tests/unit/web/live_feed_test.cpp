@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
+#include <thread>
 
 #include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
@@ -304,6 +306,11 @@ std::vector<std::byte> stl_of_a_corner() {
   return {first, first + text.size()};
 }
 
+bool still_on_its_way(const Page& page) {
+  const Json state = page.last("upload")["state"];
+  return state == "open" || state == "sent";
+}
+
 std::string ticket_of(const Page& page) {
   const std::string path = page.last("upload").value("path", "");
   return path.substr(path.rfind('/') + 1);
@@ -326,14 +333,21 @@ TEST_F(PagesOnASession, BringAFileAndEverybodySeesItsPart) {
   EXPECT_FALSE(feed->begin_file(ticket)) << "it counts once";
   ASSERT_TRUE(feed->take_file(ticket, bytes));
   EXPECT_FALSE(feed->take_file(ticket, bytes));
-  for (int i = 0; i < 400 && ann.last("upload")["state"] != "ready"; ++i) turn();
+  // It is read in a program of its own, beside the ticks.
+  for (int i = 0; i < 4000 && still_on_its_way(ann); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   const Json ready = ann.last("upload");
   ASSERT_EQ(ready["state"], "ready") << ready;
   EXPECT_EQ(ready["id"], 7);
   const std::size_t scenes = bob.count("scene");
   say(ann, R"({"type":"command","id":8,"do":"add_part","name":"corner","moving":true,"mesh":)" +
                ready["mesh"].dump() + R"(,"p":[500,0,0]})");
-  for (int i = 0; i < 60 && ann.last("reply")["id"] != 8; ++i) turn();
+  for (int i = 0; i < 1000 && ann.last("reply").is_null(); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   turn(4);
   ASSERT_EQ(ann.last("reply")["done"], true) << ann.last("reply");
   EXPECT_GT(bob.count("scene"), scenes);
@@ -361,11 +375,11 @@ TEST_F(PagesOnASession, MayNotBringWhatIsTooMuchOrNotTheirs) {
     say(page, R"({"type":"upload","id":1,"name":"a.stl","bytes":)" + rest + "}");
     turn();
     const Json told = page.last("upload");
-    return told["state"] == "refused" ? told["refusal"].get<std::string>() : "";
+    return told["state"] == "refused" ? told["refusal"].get<std::string>() : std::string();
   };
-  EXPECT_EQ(refusal(eve, "10"), "observer");
+  EXPECT_EQ(refusal(eve, "10"), name_of(Refusal::kObserver));
   feed->enter(bob);
-  EXPECT_EQ(refusal(bob, "10"), "unknown user") << "who has not joined";
+  EXPECT_EQ(refusal(bob, "10"), name_of(Refusal::kUnknownUser)) << "who has not joined";
   come(ann, "ann");
   EXPECT_EQ(refusal(ann, "0"), name_of(Refusal::kUnreadableMesh));
   EXPECT_EQ(refusal(ann, "134217729"), name_of(Refusal::kUploadLimit));

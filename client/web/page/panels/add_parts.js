@@ -6,7 +6,7 @@ import { icon } from './icons.js';
 const WITHOUT_UNIT_READ_BYTES = 64 << 20; // larger ones are not searched for their extent
 
 /** @param {import('../desk.js').Desk} desk */
-export function makeAddParts({ session, commands, uploads }) {
+export function makeAddParts({ session, commands, uploads, showAll }) {
   const rows = byId('arriving');
   const button = byId('add_parts');
   const chooser = inputById('add_files');
@@ -78,15 +78,17 @@ export function makeAddParts({ session, commands, uploads }) {
       else if (text) row.refuse(text); // what was found in it stays until it has been read
       else row.end();
     } catch (error) {
-      row.refuse(error instanceof Error ? error.message : `${error}`);
+      const why = error instanceof Error ? error.message : `${error}`;
+      row.refuse(why.startsWith(`${file.name}: `) ? why.slice(file.name.length + 2) : why);
     }
     coming.delete(name);
   }
 
   unit.onchange = showExtents;
-  dialog.addEventListener('close', () => {
+  dialog.addEventListener('close', async () => {
     if (dialog.returnValue !== 'add') return;
-    for (const { file } of asked) bring(file, statedUnit(file.name) || unitOf(), moves.checked);
+    await Promise.all(asked.map(({ file }) => bring(file, statedUnit(file.name) || unitOf(), moves.checked)));
+    showAll();
   });
   byId('units_cancel').onclick = () => dialog.close('');
   button.onclick = () => chooser.click();

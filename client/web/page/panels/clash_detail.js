@@ -83,6 +83,7 @@ export function makeClashDetail(desk) {
     if (!part || !way.play(part, clash)) return;
     const small = way.pixels(part, clash) < 2 ? '. From here that is less than two pixels: fly nearer to see it' : '';
     setText(told, `${waySaid(clash, (id) => session.partName(id))}${small}`);
+    told.scrollIntoView({ block: 'nearest' });
     setPressed(out, true);
   }
 
