@@ -364,7 +364,10 @@ TEST_F(PagesOnASession, BringAFileAndEverybodySeesItsPart) {
   turn(4);
   ASSERT_EQ(bob.last("scene")["parts"].size(), parts.size() - 1);
   say(ann, R"({"type":"command","id":10,"do":"undo","part":)" + part + "}");
-  turn(4);
+  for (int i = 0; i < 400 && bob.last("scene")["parts"].size() < parts.size(); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   ASSERT_EQ(bob.last("scene")["parts"].size(), parts.size()) << ann.last("reply");
   EXPECT_EQ(feed->mesh(mesh).state, MeshAnswer::State::kHere);
 }
