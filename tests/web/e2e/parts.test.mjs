@@ -16,6 +16,7 @@ const SCENE = `
 name: empty
 units: mm
 policy: report
+deviation: recognized
 parts: []
 `;
 const began = Date.now();
@@ -113,6 +114,26 @@ test('a part is made to stand, is removed for everybody, and comes back', async 
   if (process.env.MORTISE_PICTURES) await eva.screenshot({ path: join(process.env.MORTISE_PICTURES, 'removed.png') });
   await eva.getByRole('button', { name: 'Undo: cover is removed' }).click();
   for (const page of [eva, tom]) await whenListed(page, 'clashes', 'real, bracket × cover');
+});
+
+test('fits of bores and shafts that were found are proposed, and set at once for all', async () => {
+  const plate = join(session.folder, 'plate.stl');
+  const peg = join(session.folder, 'peg.stl');
+  await session.run('generate', ['plate_with_bore', 'bore_mm=20', 'facets=32', '-o', plate]);
+  await session.run('generate', ['dowel', 'diameter_mm=20', 'length_mm=40', 'chamfer_mm=1', 'facets=32', 'phase_rad=0.098', '-o', peg]);
+  await tom.setInputFiles('#add_files', [plate, peg]);
+  await tom.click('#units_add');
+  await whenListed(tom, 'parts', 'peg');
+  await tom.click('#tab_rules');
+  await tom.getByLabel('Proposed fits').locator('li', { hasText: /^plate\..+ × peg\./ }).waitFor(PATIENCE);
+  const all = tom.getByRole('button', { name: 'Set for all' });
+  assert.ok(await all.isDisabled(), 'without a code there is nothing to set');
+  await tom.getByLabel('Fit for what is proposed').fill('H7/g6');
+  if (process.env.MORTISE_PICTURES) await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'proposed.png') });
+  await all.click();
+  if (process.env.MORTISE_PICTURES) { await tom.waitForTimeout(1500); await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'proposed_set.png') }); }
+  await tom.locator('#rules_panel li', { hasText: /plate\..+ × peg\..+ H7\/g6/ }).getByText('Tom').waitFor({ timeout: 6000 });
+  await all.waitFor({ ...PATIENCE, state: 'hidden' });
 });
 
 test('a file under no ticket, of a foreign page or without a token is not taken', async () => {

@@ -6,7 +6,7 @@ import { icon } from './icons.js';
 const WITHOUT_UNIT_READ_BYTES = 64 << 20; // larger ones are not searched for their extent
 
 /** @param {import('../desk.js').Desk} desk */
-export function makeAddParts({ session, commands, uploads, showAll }) {
+export function makeAddParts({ session, choice, partsView, commands, uploads, showAll }) {
   const rows = byId('arriving');
   const button = byId('add_parts');
   const chooser = inputById('add_files');
@@ -16,6 +16,8 @@ export function makeAddParts({ session, commands, uploads, showAll }) {
   const moves = inputById('units_move');
   /** Names of parts that are on their way. @type {Set<string>} */
   const coming = new Set();
+  /** Names of parts that are added and not in the picture yet. @type {Set<string>} */
+  const unseen = new Set();
   /** @type {Array<{file: File, extent: [number, number, number] | null}>} */
   let asked = [];
   chooser.accept = ACCEPTED;
@@ -73,7 +75,9 @@ export function makeAddParts({ session, commands, uploads, showAll }) {
     try {
       const { mesh, text } = await uploads.bring(file, unit_mm, (share) => row.say(`${Math.round(100 * share)} %`));
       row.say('is added');
+      unseen.add(name);
       const reply = await commands.ask('add_part', { name, mesh, moving });
+      if (!reply.done) unseen.delete(name);
       if (!reply.done) row.refuse(reply.text || reply.refusal);
       else if (text) row.refuse(text); // what was found in it stays until it has been read
       else row.end();
@@ -82,13 +86,13 @@ export function makeAddParts({ session, commands, uploads, showAll }) {
       row.refuse(why.startsWith(`${file.name}: `) ? why.slice(file.name.length + 2) : why);
     }
     coming.delete(name);
+    lookAtAdded();
   }
 
   unit.onchange = showExtents;
-  dialog.addEventListener('close', async () => {
+  dialog.addEventListener('close', () => {
     if (dialog.returnValue !== 'add') return;
-    await Promise.all(asked.map(({ file }) => bring(file, statedUnit(file.name) || unitOf(), moves.checked)));
-    showAll();
+    for (const { file } of asked) bring(file, statedUnit(file.name) || unitOf(), moves.checked);
   });
   byId('units_cancel').onclick = () => dialog.close('');
   button.onclick = () => chooser.click();
@@ -110,10 +114,19 @@ export function makeAddParts({ session, commands, uploads, showAll }) {
     take([...(event.dataTransfer?.files ?? [])]);
   });
 
+  /** Who has added parts looks at all of them once they are in the picture. */
+  function lookAtAdded() {
+    const seen = new Set([...partsView.shown.values()].map(({ part }) => part.name));
+    if (unseen.size === 0 || coming.size > 0 || [...unseen].some((name) => !seen.has(name))) return;
+    unseen.clear();
+    showAll();
+  }
+
   function refresh() {
     button.hidden = !session.mayAct;
     byId('no_parts').hidden = session.parts.size > 0 || !session.mayAct;
   }
+  choice.on('framed', lookAtAdded);
   session.on('upload', (told) => uploads.take(told));
   session.on('scene', refresh);
   session.on('me', refresh);
