@@ -67,14 +67,15 @@ export function makeAddParts({ session, choice, partsView, commands, uploads, sh
     dialog.showModal();
   }
 
-  /** @param {File} file @param {number} unit_mm @param {boolean} moving */
-  async function bring(file, unit_mm, moving) {
+  /** Files come at one time, parts in the order of their files. @param {File} file @param {number} unit_mm @param {boolean} moving @param {Promise<void>} before */
+  async function bring(file, unit_mm, moving, before) {
     const name = partNameOf(file.name, (taken) => coming.has(taken) || [...session.parts.values()].some((part) => part.name === taken));
     const row = addRow(name);
     coming.add(name);
     try {
       const { mesh, text } = await uploads.bring(file, unit_mm, (share) => row.say(`${Math.round(100 * share)} %`));
       row.say('is added');
+      await before;
       unseen.add(name);
       const reply = await commands.ask('add_part', { name, mesh, moving });
       if (!reply.done) unseen.delete(name);
@@ -92,7 +93,8 @@ export function makeAddParts({ session, choice, partsView, commands, uploads, sh
   unit.onchange = showExtents;
   dialog.addEventListener('close', () => {
     if (dialog.returnValue !== 'add') return;
-    for (const { file } of asked) bring(file, statedUnit(file.name) || unitOf(), moves.checked);
+    let before = Promise.resolve();
+    for (const { file } of asked) before = bring(file, statedUnit(file.name) || unitOf(), moves.checked, before);
   });
   byId('units_cancel').onclick = () => dialog.close('');
   button.onclick = () => chooser.click();
