@@ -358,6 +358,18 @@ TEST_F(PagesOnASession, BringAFileAndEverybodySeesItsPart) {
   EXPECT_EQ((*corner)["p"], Json::parse("[500.0, 0.0, 0.0]"));
   const std::string mesh = (*corner)["mesh"];
   EXPECT_EQ(feed->mesh(mesh).state, MeshAnswer::State::kHere);
+  // What the server alone knows of it is told as well.
+  const auto radius = [&] {
+    const Json told = bob.last("scene");
+    for (const Json& part : told["parts"])
+      if (part["name"] == "corner") return part["radius"].get<double>();
+    return 0.0;
+  };
+  for (int i = 0; i < 400 && radius() == 0.0; ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GT(radius(), 50.0);
   // Its mesh is there when it comes back: the server sends it once.
   const std::string part = (*corner)["id"].dump();
   say(ann, R"({"type":"command","id":9,"do":"remove_part","part":)" + part + "}");
