@@ -204,8 +204,8 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
     if (!top.has("parts") && !top.has("assembly"))
       top.error("parts is missing: a scenario needs at least one part, or an assembly");
     if (top.has("parts") && top.find("parts").IsSequence() && top.find("parts").size() == 0)
-      context.findings.push_back(
-          {false, name + ": parts is empty; a session of it waits for parts that users add"});
+      context.warning(top.find("parts"),
+                      "parts is empty; a session of it waits for parts that users add");
     if (reading.scenario.parts.size() > kMaxParts)
       top.error("parts", "more than " + std::to_string(kMaxParts) + " parts; split the scenario");
     check_names(context, "part", reading.scenario.parts);
