@@ -13,4 +13,4 @@ saw 'bore_1' my.yaml
 run ./mortise judge my.yaml -v
 saw 'plate × peg'
 run ./mortise open plate.stl peg.stl --seconds 3
-saw 'REAL +plate × peg'
+saw 'POTENTIAL +plate × peg'
