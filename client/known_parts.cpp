@@ -69,7 +69,10 @@ bool KnownParts::take(const Snapshot& snapshot) {
   const bool is_other = !std::ranges::equal(parts, parts_, [](const auto& x, const auto& y) {
     return x.first == y.first && x.second.info.name == y.second.info.name &&
            x.second.info.mesh_hash == y.second.info.mesh_hash &&
-           x.second.info.moving == y.second.info.moving;
+           x.second.info.moving == y.second.info.moving &&
+           // Of a part that was added, a snapshot alone tells these.
+           x.second.info.radius_mm == y.second.info.radius_mm &&
+           x.second.info.reference_P == y.second.info.reference_P;
   });
   parts_ = std::move(parts);
   return is_other;

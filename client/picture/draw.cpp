@@ -226,20 +226,17 @@ void draw_witness(Canvas& canvas, const Frame& frame, const DetailView& view) {
 void draw_way_out(Canvas& canvas, const Frame& frame, const DetailView& view,
                   const Verdict& verdict) {
   if (verdict.separation_way == SeparationWay::kNone) return;
-  const Vec3 way =
-      verdict.separation_translation_mm +
-      verdict.separation_rotation_rad.cross(verdict.point_W - verdict.separation_about_W);
-  const Vec2 seen(way.dot(view.plane.right_W), way.dot(view.plane.up_W));
+  const std::optional<Vec2> seen = way_seen(view.plane, verdict);
   const Color color{0.1, 0.5, 0.25, 1.0};
   const std::string label = (verdict.separation_of_b ? view.parts[1] : view.parts[0]).name +
                             " free after " + length_text(verdict.gpd_mm.hi);
   const Vec2 from = frame(view.point) + Vec2(-46.0, 0.0);
-  if (!(seen.norm() > 0.2 * way.norm())) {  // out of the plane of the picture
+  if (!seen) {
     canvas.circle(from, 5.0, {color, 1.6});
     canvas.circle(from, 1.0, {color, 1.6});
     return draw_label(canvas, from - Vec2(8.0, 0.0), label, true, color);
   }
-  const Vec2 d = Vec2(seen.x(), -seen.y()) / seen.norm(), side(-d.y(), d.x());
+  const Vec2 d(seen->x(), -seen->y()), side(-d.y(), d.x());
   const Vec2 tip = from + 34.0 * d;
   canvas.line({from, tip - 7.0 * d}, {color, 2.0});
   canvas.fill({{tip, tip - 10.0 * d + 4.0 * side, tip - 10.0 * d - 4.0 * side}}, color);
@@ -287,6 +284,15 @@ void draw_legend(Canvas& canvas, const Box2& box, const DetailView& view) {
 }
 
 }  // namespace
+
+std::optional<Vec2> way_seen(const CutPlane& plane, const Verdict& verdict) {
+  const Vec3 way =
+      verdict.separation_translation_mm +
+      verdict.separation_rotation_rad.cross(verdict.point_W - verdict.separation_about_W);
+  const Vec2 seen(way.dot(plane.right_W), way.dot(plane.up_W));
+  if (!(seen.norm() > 0.2 * way.norm())) return std::nullopt;
+  return seen / seen.norm();
+}
 
 void draw_scale_bar(Canvas& canvas, const Frame& frame, double share) {
   const double length = round_below(share * frame.x_mm.width());

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "client/picture/canvas.h"
@@ -34,6 +35,10 @@ struct Frame {
 
 /// The section near the deciding point with its zones, dimensions and scales; the legend below it.
 void draw_detail(Canvas& canvas, const Box2& box, const DetailView& view, const Verdict& verdict);
+
+/// Which way the deciding point sets off when its part is moved out, as the plane shows it (x
+/// right, y up, length 1); none where it mostly leaves the plane.
+std::optional<Vec2> way_seen(const CutPlane& plane, const Verdict& verdict);
 
 /// A section to scale, with a mark where the detail is.
 void draw_overview(Canvas& canvas, const Box2& box, const Overview& view);

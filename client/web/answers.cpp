@@ -12,6 +12,7 @@ namespace http = boost::beast::http;
 using http::status;
 
 constexpr char kJson[] = "application/json";
+constexpr std::string_view kUploads = "/upload/";
 constexpr std::string_view kMeshes = "/mesh/", kMeshEnding = ".bin";
 
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
@@ -130,8 +131,8 @@ Answer sentence(status code, const std::string& text) {
 Answer answer_to(GatewayState& state, const Request& request, bool tls, const std::string& from) {
   ++state.traffic.requests;
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
-    state.incidents.note(Incident::kBadRequest, from, "a method other than GET and HEAD",
-                         state.now_s());
+    state.incidents.note(Incident::kBadRequest, from,
+                         "a method other than GET, HEAD and POST of a file", state.now_s());
     Answer answer = sentence(status::method_not_allowed, "only GET and HEAD");
     answer.fields.emplace_back("Allow", "GET, HEAD");
     return answer;
@@ -145,6 +146,37 @@ Answer answer_to(GatewayState& state, const Request& request, bool tls, const st
   if (!is_mesh && target != "/statistics") return file(state, request, tls);
   if (auto refused = without_token(state, request, from)) return *refused;
   return is_mesh ? mesh(state, target.substr(kMeshes.size())) : statistics(state);
+}
+
+bool brings_file(const Request& request) {
+  return request.method() == http::verb::post && view_of(request.target()).starts_with(kUploads);
+}
+
+std::variant<std::string, Answer> admit_file(GatewayState& state, const Request& request,
+                                             std::optional<std::uint64_t> length, bool tls,
+                                             const std::string& from) {
+  ++state.traffic.requests;
+  if (!is_own(state, request, from)) return wrong_host();
+  const std::string_view origin = view_of(request[http::field::origin]);
+  if (!is_own_origin(origin, view_of(request[http::field::host]), tls, state.options.origins)) {
+    state.incidents.note(Incident::kWrongOrigin, from, "a file of a foreign page", state.now_s());
+    return sentence(status::forbidden, "a file of a foreign page; --origin allows it");
+  }
+  if (auto refused = without_token(state, request, from)) return *refused;
+  if (!length) return sentence(status::length_required, "how many bytes will come?");
+  const std::string ticket(view_of(request.target()).substr(kUploads.size()));
+  const std::optional<std::size_t> announced = state.feed.begin_file(ticket);
+  if (!announced) return sentence(status::not_found, "nobody waits for this file");
+  if (*announced == *length) return ticket;
+  state.feed.drop_file(ticket);
+  return sentence(status::bad_request, "the file has another length than was announced");
+}
+
+Answer answer_to_file(GatewayState& state, const std::string& ticket,
+                      std::vector<std::byte> bytes) {
+  const Status taken = state.feed.take_file(ticket, std::move(bytes));
+  return taken ? Answer{status::no_content, "text/plain; charset=utf-8", nullptr, {}}
+               : sentence(status::gone, taken.error().text);
 }
 
 bool asks_for_report(const Request& request) {

@@ -2,6 +2,8 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/status.hpp>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,6 +29,14 @@ Answer sentence(boost::beast::http::status status, const std::string& text);
 
 /// Everything but WebSockets. `from` names the asker in messages.
 Answer answer_to(GatewayState& state, const Request& request, bool tls, const std::string& from);
+
+/// A mesh file of a page, which begins to come: POST to /upload/TICKET.
+bool brings_file(const Request& request);
+/// Its ticket, which is then used up, or the answer that refuses it.
+std::variant<std::string, Answer> admit_file(GatewayState& state, const Request& request,
+                                             std::optional<std::uint64_t> length, bool tls,
+                                             const std::string& from);
+Answer answer_to_file(GatewayState& state, const std::string& ticket, std::vector<std::byte> bytes);
 
 /// The report takes seconds, so another thread makes it (report_maker.h). refusal_of_report() gives
 /// the answer when there is no report now.

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,16 @@ class Feed {
   virtual Status take(Viewer& viewer, const PageMessage& message) = 0;
   /// Sends news to the viewers. Called every few milliseconds with a monotonic clock.
   virtual void turn(double now_s) = 0;
+  /// A page was given this ticket for a file: how many bytes it announced. Each ticket counts once;
+  /// take_file() or drop_file() ends it.
+  virtual std::optional<std::size_t> begin_file(const std::string& /*ticket*/) {
+    return std::nullopt;
+  }
+  virtual bool awaits_file(const std::string& /*ticket*/) const { return false; }
+  virtual Status take_file(const std::string& /*ticket*/, std::vector<std::byte> /*bytes*/) {
+    return fail(Code::kInvalidInput, "nobody waits for this file");
+  }
+  virtual void drop_file(const std::string& /*ticket*/) {}
   virtual SharedBytes frame(const Viewer& viewer, const std::vector<PartId>& parts) const = 0;
   virtual MeshAnswer mesh(const std::string& hash) const = 0;
   virtual std::string trouble() const = 0;  ///< why there is no session; empty: there is one

@@ -73,14 +73,50 @@ void HttpConnection::read(double patience_s) {
   wait_in_line();
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(state_.options.limits.header_bytes));
-  parser_->body_limit(0);
+  parser_->body_limit(state_.options.limits.upload_bytes);  // of files; nothing else has a body
   stream_.next_layer().expires_after(in_ms(patience_s));
-  http::async_read(stream_, buffer_, *parser_,
-                   [self = shared_from_this()](beast::error_code error, std::size_t) {
-                     self->leave_line();
-                     if (error) return self->failed(error);
-                     self->take();
-                   });
+  http::async_read_header(stream_, buffer_, *parser_,
+                          [self = shared_from_this()](beast::error_code error, std::size_t) {
+                            self->leave_line();
+                            if (error) return self->failed(error);
+                            if (brings_file(self->parser_->get())) return self->begin_file();
+                            if (!self->parser_->is_done())
+                              return self->failed(http::error::unexpected_body);
+                            self->take();
+                          });
+}
+
+void HttpConnection::begin_file() {
+  const auto length = parser_->content_length();
+  auto admitted = admit_file(state_, parser_->get(),
+                             length ? std::optional<std::uint64_t>(*length) : std::nullopt,
+                             stream_.has_tls(), peer_);
+  if (const auto* refused = std::get_if<Answer>(&admitted)) return write(*refused);
+  ticket_ = std::get<std::string>(admitted);
+  file_.emplace(std::move(*parser_));
+  file_->eager(true);
+  parser_.emplace();  // its answer closes the connection
+  read_file();
+}
+
+// Each piece must come in time; who has left is not waited for.
+void HttpConnection::read_file() {
+  stream_.next_layer().expires_after(in_ms(state_.options.limits.stalled_s));
+  http::async_read_some(stream_, buffer_, *file_,
+                        [self = shared_from_this()](beast::error_code error, std::size_t) {
+                          if (!error && self->file_->is_done()) return self->end_file();
+                          if (!error && self->state_.feed.awaits_file(self->ticket_))
+                            return self->read_file();
+                          self->state_.feed.drop_file(self->ticket_);
+                          self->note(Incident::kSlowRequest, "a file that did not come whole");
+                          self->stream_.next_layer().close();
+                        });
+}
+
+void HttpConnection::end_file() {
+  const Answer answer = answer_to_file(state_, ticket_, std::move(file_->get().body()));
+  file_.reset();
+  write(answer);
 }
 
 void HttpConnection::failed(beast::error_code error) {

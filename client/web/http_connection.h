@@ -3,6 +3,7 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/vector_body.hpp>
 #include <list>
 #include <memory>
 #include <optional>
@@ -27,6 +28,9 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   using Response = beast::http::response<beast::http::span_body<const char>>;
   void read(double patience_s);
   void take();
+  void begin_file();
+  void read_file();
+  void end_file();
   void make_report();
   void write(const Answer& answer);
   void failed(beast::error_code error);
@@ -39,6 +43,9 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   const std::string peer_;
   beast::flat_buffer buffer_;
   std::optional<beast::http::request_parser<beast::http::empty_body>> parser_;
+  /// A file that comes, and its ticket.
+  std::optional<beast::http::request_parser<beast::http::vector_body<std::byte>>> file_;
+  std::string ticket_;
   SharedBytes body_;
   std::optional<Response> response_;
   std::optional<beast::http::response_serializer<beast::http::span_body<const char>>> serializer_;

@@ -20,6 +20,8 @@ using Json = nlohmann::json;
 constexpr std::size_t kMostNameBytes = kMostUserName_bytes;
 constexpr std::size_t kMostTextBytes = 4096;
 constexpr double kLargestId = 9007199254740992.0;  // 2^53, as far as a page counts exactly
+constexpr double kLeastUnit_mm = 1e-6, kLargestUnit_mm = 1e6;
+constexpr std::size_t kHashDigits = 32;
 constexpr double kSlowest = 0.1, kFastest = 16.0;
 
 // Thrown and caught in this file only: a message is wrong at one place, and nothing of it counts.
@@ -150,6 +152,12 @@ void read_review(Keys& keys, CommandWish& wish) {
   if (keys.has("assignee")) wish.details.other_user = keys.id<UserId>("assignee");
   read_any_text(keys, wish);
 }
+bool read_flag(Keys& keys, const char* key) {
+  if (!keys.at(key).is_boolean())
+    throw Wrong{std::string("'") + key + "' is neither true nor false"};
+  return keys.at(key).get<bool>();
+}
+
 void read_constraint(Keys& keys, CommandWish& wish) {
   Constraint& constraint = wish.details.constraint;
   constraint.kind = keys.named<ConstraintKind>("kind", 1, kConstraintKindCount);
@@ -157,8 +165,7 @@ void read_constraint(Keys& keys, CommandWish& wish) {
   constraint.other = {keys.id<PartId>("other"), keys.text("other_feature")};
   if (keys.has("distance")) constraint.distance_mm = keys.number("distance");
   if (keys.has("snap")) {
-    if (!keys.at("snap").is_boolean()) throw Wrong{"'snap' is neither true nor false"};
-    constraint.snap = keys.at("snap").get<bool>();
+    constraint.snap = read_flag(keys, "snap");
   }
   wish.part = constraint.held.part;
 }
@@ -172,6 +179,18 @@ void read_snap(Keys& keys, CommandWish& wish) {
   if (keys.has("kind"))
     constraint.kind = keys.named<ConstraintKind>("kind", 1, kConstraintKindCount);
   constraint.snap = true;
+}
+
+void read_added(Keys& keys, CommandWish& wish) {
+  PartEdit& edit = wish.details.edit.emplace();
+  edit.name = keys.text("name", kMostName_bytes);
+  edit.mesh_hash = keys.text("mesh", kHashDigits);
+  edit.moving = read_flag(keys, "moving");
+  if (keys.has("p")) edit.X_WP.p = keys.vector("p");
+}
+void read_moving(Keys& keys, CommandWish& wish) {
+  read_part(keys, wish);
+  wish.details.edit.emplace().moving = read_flag(keys, "moving");
 }
 
 struct CommandRow {
@@ -199,6 +218,9 @@ const std::vector<CommandRow>& command_rows() {
       {"review", kReview, {read_review}},
       {"constrain", kAddConstraint, {read_constraint}},
       {"snap", kSnap, {read_snap}},
+      {"add_part", kAddPart, {read_added}},
+      {"remove_part", kRemovePart, {read_part}},
+      {"set_moving", kSetMoving, {read_moving}},
       {"unconstrain",
        kDropConstraint,
        {read_part,
@@ -220,6 +242,16 @@ CommandWish command_of(Keys& keys) {
     return wish;
   }
   throw Wrong{"there is no command '" + what.substr(0, 40) + "'"};
+}
+
+UploadWish upload_of(Keys& keys) {
+  UploadWish wish{keys.count("id"), keys.text("name", kMostName_bytes), 1.0,
+                  static_cast<std::size_t>(keys.count("bytes"))};
+  if (!is_name(wish.name, kMostName_bytes)) throw Wrong{"'name' is empty, blank or not printable"};
+  if (keys.has("unit_mm")) wish.unit_mm = keys.number("unit_mm");
+  if (wish.unit_mm < kLeastUnit_mm || wish.unit_mm > kLargestUnit_mm)
+    throw Wrong{"'unit_mm' is not 1e-6 to 1e6"};
+  return wish;
 }
 
 ReplayWish replay_of(Keys& keys) {
@@ -253,6 +285,7 @@ PageMessage message_of(const std::string& type, Keys& keys) {
   if (type == "join") return join_of(keys);
   if (type == "move") return move_of(keys);
   if (type == "command") return command_of(keys);
+  if (type == "upload") return upload_of(keys);
   if (type == "view") return ViewWish{keys.vector("p"), keys.vector("target"), keys.vector("up")};
   if (type == "ping") return PingWish{keys.number("at")};
   if (type == "replay") return replay_of(keys);

@@ -24,6 +24,12 @@ struct CommandWish {
   PartId part;
   Details details;
 };
+struct UploadWish {      ///< a mesh file that is to come by HTTP
+  std::uint64_t id = 0;  ///< the page's own, for what is told of it
+  std::string name;
+  double unit_mm = 1.0;  ///< of the numbers in the file
+  std::size_t bytes = 0;
+};
 struct ViewWish {  ///< world frame, mm
   Vec3 p = Vec3::Zero(), target = Vec3::Zero(), up = Vec3::Zero();
 };
@@ -36,7 +42,8 @@ struct ReplayWish {
   std::uint64_t tick = 0;
   double speed = 1.0;
 };
-using PageMessage = std::variant<JoinWish, MoveWish, CommandWish, ViewWish, PingWish, ReplayWish>;
+using PageMessage =
+    std::variant<JoinWish, MoveWish, CommandWish, UploadWish, ViewWish, PingWish, ReplayWish>;
 
 /// The only place where messages of browsers are read. Fails with a sentence that names the error.
 Result<PageMessage> read_page_message(std::string_view text);

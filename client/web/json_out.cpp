@@ -52,7 +52,8 @@ void put_verdict(Json& json, const Verdict& verdict) {
                         {"about", json_of(verdict.separation_about_W)},
                         {"moves", verdict.separation_of_b ? "b" : "a"},
                         {"way", name_of(verdict.separation_way)},
-                        {"path", name_of(verdict.separation_path)}};
+                        {"path", name_of(verdict.separation_path)},
+                        {"blocker", verdict.separation_blocker.value}};
   json["shapes"] = {name_of(verdict.shape_a), name_of(verdict.shape_b)};
   json["faces"] = {verdict.face_a, verdict.face_b};
   json["grade"] = name_of(verdict.grade);
@@ -128,6 +129,11 @@ Json json_of(const Decision& decision) {
   if (!details.text.empty()) json["text"] = details.text;
   if (details.constraint.kind != ConstraintKind::kUnknown)
     json["constraint"] = constraint_json(details.constraint);
+  if (details.edit) {
+    json["mesh"] = details.edit->mesh_hash;
+    json["moving"] = details.edit->moving;
+    if (decision.kind == Decision::Kind::kAddPart) json["name"] = details.edit->name;
+  }
   if (details.constraint_id) json["constraint_id"] = details.constraint_id.value;
   return json;
 }

@@ -25,24 +25,26 @@ void LiveFeed::turn(double now_s) {
   take_meshes(update);
   tell_server();
   seats_.tell_joins(update);
-  if (update.resynced) {
+  // What is edited is told as a scene: which parts there are, and where.
+  const bool scene_is_new = update.resynced || (update.scene && has_scene_);
+  if (scene_is_new) {
     has_scene_ = true;
     with_changed_classes(update);
     const SharedBytes text = scene();
     seats_.each([&](Viewer& viewer) { viewer.show_scene(text); });
   }
   // After a scene pages want all that belongs to it.
-  if (has_scene_ && client_.features().told() && (update.features || update.resynced))
+  if (has_scene_ && client_.features().told() && (update.features || scene_is_new))
     seats_.tell_all(features_message(client_));
   seats_.tell_replies(update);
   if (has_scene_) {
     tell_decisions(update);
-    if (update.standing && !update.resynced)
+    if (update.standing && !scene_is_new)
       seats_.tell_all(message_of_list("standing", "standing", client_.standing()));
-    if (update.remarks && !update.resynced)
+    if (update.remarks && !scene_is_new)
       seats_.tell_all(message_of_list("remarks", "remarks", client_.remarks()));
     if (!update.events.empty()) seats_.tell_all(message_of_list("events", "events", update.events));
-    if (!update.resynced) tell_changes(update);
+    if (!scene_is_new) tell_changes(update);
   }
   seats_.end_turn(update);
 }
@@ -76,7 +78,7 @@ void LiveFeed::tell_changes(const ClientUpdate& update) {
 }
 
 std::vector<PartId> LiveFeed::with_changed_classes(const ClientUpdate& update) {
-  if (update.events.empty() && !update.resynced) return {};
+  if (update.events.empty() && !update.resynced && !update.scene) return {};
   std::vector<ClashEvent> open;
   for (const auto& [id, clash] : client_.open_clashes()) open.push_back(clash);
   ClassBits now = class_bits_of(open);

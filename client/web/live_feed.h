@@ -25,6 +25,16 @@ class LiveFeed final : public Feed {
     return seats_.take(viewer, message);
   }
   void turn(double now_s) override;
+  std::optional<std::size_t> begin_file(const std::string& ticket) override {
+    return seats_.uploads().begin_file(ticket);
+  }
+  bool awaits_file(const std::string& ticket) const override {
+    return seats_.uploads().awaits_file(ticket);
+  }
+  Status take_file(const std::string& ticket, std::vector<std::byte> bytes) override {
+    return seats_.uploads().take_file(ticket, std::move(bytes));
+  }
+  void drop_file(const std::string& ticket) override { seats_.uploads().drop_file(ticket); }
   SharedBytes frame(const Viewer& viewer, const std::vector<PartId>& parts) const override;
   MeshAnswer mesh(const std::string& hash) const override { return meshes_.find(hash); }
   std::string trouble() const override;

@@ -10,11 +10,11 @@ namespace mortise::web {
 /// Meshes of the scene in the form of the page, by content hash.
 class MeshStore {
  public:
-  /// Awaits the meshes of these parts and drops all others.
+  /// Awaits the meshes of these parts. What is here stays: a part that was removed may come back,
+  /// and the server keeps its mesh as long, but sends it once.
   void expect(const std::vector<PartInfo>& parts) {
     wanted_.clear();
     for (const PartInfo& part : parts) wanted_.insert(part.mesh_hash);
-    std::erase_if(meshes_, [&](const auto& row) { return !wanted_.contains(row.first); });
   }
   void put(const std::string& hash, const WireMesh& mesh) {
     meshes_[hash] = std::make_shared<const std::string>(page_mesh(mesh));

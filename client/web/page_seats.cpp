@@ -36,6 +36,7 @@ double unix_ms() {
 void PageSeats::leave(Viewer& viewer) {
   const auto found = seats_.find(&viewer);
   if (found == seats_.end()) return;
+  uploads_.leave(viewer);
   if (found->second.user) {
     client_.leave(*found->second.user);
     left_s_[found->second.name] = now_s_;
@@ -54,6 +55,8 @@ Status PageSeats::take(Viewer& viewer, const PageMessage& message) {
     move(viewer, seat, *increment);
   } else if (const auto* asked = std::get_if<CommandWish>(&message)) {
     command(viewer, seat, *asked);
+  } else if (const auto* file = std::get_if<UploadWish>(&message)) {
+    upload(viewer, seat, *file);
   } else if (const auto* view = std::get_if<ViewWish>(&message)) {
     seat.view =
         Json{{"p", json_of(view->p)}, {"target", json_of(view->target)}, {"up", json_of(view->up)}};
@@ -102,8 +105,17 @@ void PageSeats::command(Viewer& viewer, Seat& seat, const CommandWish& wish) {
   seat.asked[seq] = wish.id;
 }
 
+void PageSeats::upload(Viewer& viewer, Seat& seat, const UploadWish& wish) {
+  if (viewer.role() == Role::kObserver)
+    return PageUploads::refuse(viewer, wish.id, Refusal::kObserver, "this link is for looking on");
+  if (!seat.user || client_.join_state(*seat.user) != JoinState::kJoined)
+    return PageUploads::refuse(viewer, wish.id, Refusal::kUnknownUser, "join first");
+  uploads_.ask(viewer, *seat.user, wish, now_s_);
+}
+
 void PageSeats::begin_turn(double now_s) {
   now_s_ = now_s;
+  uploads_.drop_old(now_s);
   std::erase_if(left_s_, [&](const auto& row) { return now_s - row.second > kNameIsFreeAfter_s; });
 }
 
@@ -170,6 +182,7 @@ void PageSeats::tell_joins(const ClientUpdate& update) {
 }
 
 void PageSeats::tell_replies(const ClientUpdate& update) {
+  uploads_.tell(update.uploads);
   for (const Reply& reply : update.replies) {
     auto* row = seat_of(reply.user);
     if (row == nullptr) continue;

@@ -9,6 +9,7 @@
 #include "client/client.h"
 #include "client/web/feed.h"
 #include "client/web/limits.h"
+#include "client/web/page_uploads.h"
 
 namespace mortise::web {
 
@@ -17,7 +18,8 @@ namespace mortise::web {
 class PageSeats {
  public:
   /// The client must outlive this.
-  PageSeats(Client& client, const Limits& limits) : client_(client), limits_(limits) {}
+  PageSeats(Client& client, const Limits& limits)
+      : client_(client), limits_(limits), uploads_(client, limits) {}
 
   void enter(Viewer& viewer) { seats_[&viewer]; }
   void leave(Viewer& viewer);  ///< its user leaves as well
@@ -38,6 +40,8 @@ class PageSeats {
   void each(Action action) {
     for (auto& [viewer, seat] : seats_) action(*viewer);
   }
+  PageUploads& uploads() { return uploads_; }
+  const PageUploads& uploads() const { return uploads_; }
   bool empty() const { return seats_.empty(); }
   std::uint64_t foreign_names() const { return foreign_names_; }
 
@@ -58,6 +62,7 @@ class PageSeats {
 
   void join(Viewer& viewer, Seat& seat, const JoinWish& wish);
   void move(Viewer& viewer, Seat& seat, const MoveWish& wish);
+  void upload(Viewer& viewer, Seat& seat, const UploadWish& wish);
   void command(Viewer& viewer, Seat& seat, const CommandWish& wish);
   static void refuse(Viewer& viewer, const CommandWish& wish, Refusal refusal,
                      const std::string& text);
@@ -69,6 +74,7 @@ class PageSeats {
 
   Client& client_;
   Limits limits_;
+  PageUploads uploads_;
   std::map<Viewer*, Seat> seats_;
   std::uint64_t foreign_names_ = 0;       ///< joins under another name than that of the token
   std::map<std::string, double> left_s_;  ///< names that left lately, and when

@@ -12,3 +12,5 @@ run './mortise inspect plate.stl peg.stl >my.yaml'
 saw 'bore_1' my.yaml
 run ./mortise judge my.yaml -v
 saw 'plate × peg'
+run ./mortise open plate.stl peg.stl --seconds 3
+saw 'POTENTIAL +plate × peg'

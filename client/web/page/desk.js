@@ -6,6 +6,7 @@ import { forgetToken, keptToken } from './session/link.js';
 import { readPoseFrame } from './session/frames.js';
 import { Mover } from './session/mover.js';
 import { Session } from './session/session.js';
+import { Uploads } from './session/uploads.js';
 import { Stops } from './session/stops.js';
 import { Stage } from './view/stage.js';
 import { Camera } from './view/camera.js';
@@ -14,6 +15,7 @@ import { Handles } from './view/handles.js';
 import { Heat } from './view/heat.js';
 import { Labels } from './view/labels.js';
 import { PartsView } from './view/parts_view.js';
+import { WayGhost } from './view/way_ghost.js';
 import { SectionPlane } from './view/section_plane.js';
 import { makeFlights } from './view/flights.js';
 import { byId } from './panels/dom.js';
@@ -42,6 +44,7 @@ export function makeDesk() {
       if (line.state === 'open' && state !== 'open') {
         session.lost();
         commands.lost();
+        uploads.lost();
         mover.dropAll();
       }
       if (told.trouble === 'token') forgetToken(connection.token, localStorage);
@@ -51,6 +54,7 @@ export function makeDesk() {
   });
   const send = (/** @type {object} */ message) => connection.send(message);
   const commands = new Commands(send, say);
+  const uploads = new Uploads(send, (path, file) => connection.post(path, file));
   const stops = new Stops();
   const mover = new Mover((part, increment) => {
     const known = session.parts.get(part);
@@ -63,13 +67,14 @@ export function makeDesk() {
   const partsView = new PartsView(stage, (hash) => connection.mesh(hash), (text) => say(text, 'bad'));
   const camera = new Camera(stage, (view) => line.state === 'open' && send({ type: 'view', ...view }));
   const marks = new ClashMarks(stage);
+  const way = new WayGhost(stage, partsView);
   const heat = new Heat(stage, partsView, session);
   const section = new SectionPlane(partsView);
   const handles = new Handles(stage, camera, (part, increment) => mover.push(part.id, increment));
   const labels = new Labels(stage, session, partsView, byId('labels'));
-  labels.sources.push(() => marks.notes);
+  labels.sources.push(() => marks.notes, () => way.notes);
   const flights = makeFlights({ session, choice, camera, partsView, section });
-  return { session, choice, line, connection, send, commands, mover, stops, stage, partsView, camera, marks, heat, section, handles, labels, say, ...flights };
+  return { session, choice, line, connection, send, commands, uploads, mover, stops, stage, partsView, camera, marks, way, heat, section, handles, labels, say, ...flights };
 }
 
 /** @typedef {ReturnType<typeof makeDesk>} Desk */

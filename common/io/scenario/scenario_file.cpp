@@ -204,7 +204,8 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
     if (!top.has("parts") && !top.has("assembly"))
       top.error("parts is missing: a scenario needs at least one part, or an assembly");
     if (top.has("parts") && top.find("parts").IsSequence() && top.find("parts").size() == 0)
-      top.error("parts", "is empty; a scenario needs at least one part");
+      context.warning(top.find("parts"),
+                      "parts is empty; a session of it waits for parts that users add");
     if (reading.scenario.parts.size() > kMaxParts)
       top.error("parts", "more than " + std::to_string(kMaxParts) + " parts; split the scenario");
     check_names(context, "part", reading.scenario.parts);
@@ -223,6 +224,7 @@ bool ScenarioReading::usable() const {
 }
 
 std::optional<Finding> nothing_moves(const Scenario& scenario) {
+  if (scenario.parts.empty()) return std::nullopt;
   if (std::any_of(scenario.parts.begin(), scenario.parts.end(), [](auto& p) { return p.moving; }))
     return std::nullopt;
   return Finding{false, scenario.file + ": no part has moving: true; nobody can move anything"};

@@ -478,9 +478,6 @@ bool LoadedScene::usable() const {
 }
 
 Result<LoadedScene> load_scene(const Scenario& scenario, const MeshProvider& meshes) {
-  if (scenario.parts.empty())
-    return fail(Code::kInvalidInput,
-                place_of(scenario, {}) + "has no parts; a scenario needs at least one");
   return SceneLoader(scenario, meshes).run();
 }
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "common/io/scenario/scene_load.h"
+
 namespace mortise {
 namespace {
 
@@ -232,7 +234,6 @@ std::vector<Fault> faults() {
       {"name: a\nunits: inch\n" + good.substr(18), 2, "'inch' is not known; did you mean 'in'?"},
       {good + "a: 1\n", 7, "unknown key 'a'. Known: name, units"},
       {head(""), 1, "parts is missing"},
-      {head("parts: []\n"), 3, "is empty"},
       {head("parts: 5\n"), 3, "expected a list"},
       {"name: a\nunits: furlong\n" + good.substr(18), 2, "known: mm, cm, m, in, um"},
       {good + "polcy: stop\n", 7, "did you mean 'policy'"},
@@ -474,6 +475,18 @@ TEST(ScenarioDoor, DeepAndExpandingYamlIsRefused) {
     bomb += "a" + n + ": &a" + n + " [" + before + ", " + before + "]\n";
   }
   EXPECT_FALSE(read_scenario_text(bomb, "a.yaml"));
+}
+
+TEST(ScenarioFile, MayBeginWithoutParts) {
+  const auto reading = read_scenario_text(head("parts: []\n"), "empty.yaml");
+  ASSERT_TRUE(reading);
+  EXPECT_TRUE(reading->usable());
+  ASSERT_EQ(reading->findings.size(), 1u);
+  EXPECT_NE(reading->findings[0].text.find("parts is empty"), std::string::npos);
+  EXPECT_FALSE(nothing_moves(reading->scenario)) << "that is said already";
+  const auto scene = load_scene(reading->scenario, default_meshes());
+  ASSERT_TRUE(scene) << scene.error().text;
+  EXPECT_TRUE(scene->usable());
 }
 
 }  // namespace

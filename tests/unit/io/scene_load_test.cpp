@@ -243,8 +243,11 @@ TEST(SceneLoad, OpenMeshesAreNamed) {
   EXPECT_TRUE(named);
 }
 
-TEST(SceneLoad, AScenarioWithoutPartsIsRefused) {
-  EXPECT_FALSE(load_scene(Scenario{}, default_meshes()));
+TEST(SceneLoad, AScenarioWithoutPartsIsAnEmptyScene) {
+  const auto scene = load_scene(Scenario{}, default_meshes());
+  ASSERT_TRUE(scene) << scene.error().text;
+  EXPECT_TRUE(scene->usable());
+  EXPECT_TRUE(scene->findings.empty());
 }
 
 TEST(SceneLoad, AMirroredPartIsAnImageOfItself) {

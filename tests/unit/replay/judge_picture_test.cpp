@@ -7,6 +7,7 @@
 #include <random>
 
 #include "client/picture/detail_view.h"
+#include "client/picture/draw.h"
 #include "client/picture/picture.h"
 #include "client/picture/told_overlap.h"
 #include "common/io/scenario/open_scene.h"
@@ -169,6 +170,51 @@ TEST_F(FitsPicture, IsWrittenAsSvgAndPng) {
   ASSERT_TRUE(draw_regions(world, *report_, {2, 6}, file("b.png")));
   EXPECT_EQ(head(file("b.png")).substr(1, 3), "PNG");
   for (const char* name : {"a.svg", "b.png"}) std::filesystem::remove(file(name));
+}
+
+// The arrow of the way out: a way that turns takes the deciding point elsewhere than its shift
+// says.
+TEST(WayOut, IsSeenAsThePointOfTheClashSetsOff) {
+  const CutPlane plane{{0, 0, 0}, Vec3::UnitX(), Vec3::UnitZ()};
+  Verdict v;
+  v.point_W = {3, 0, 1};
+  v.separation_about_W = {3, 0, 0};
+  v.separation_translation_mm = {0, 0, 2};
+  const auto shifted = way_seen(plane, v);
+  ASSERT_TRUE(shifted);
+  EXPECT_LT((*shifted - Vec2(0, 1)).norm(), 1e-12);
+  v.separation_rotation_rad = {0, 2, 0};  // of an arm of 1 upwards: 2 to the right
+  const auto turned = way_seen(plane, v);
+  ASSERT_TRUE(turned);
+  EXPECT_LT((*turned - Vec2(1, 1).normalized()).norm(), 1e-12);
+  v.separation_rotation_rad = {0, 0, 0};
+  v.separation_translation_mm = {0.1, 2, 0};
+  EXPECT_FALSE(way_seen(plane, v)) << "it leaves the plane";
+  v.separation_translation_mm = {0, 0, 0};
+  EXPECT_FALSE(way_seen(plane, v));
+}
+
+// It is drawn, and with it its length.
+TEST_F(FitsPicture, ShowsTheWayOut) {
+  for (const NumberedRegion& region : numbered_regions(*report_)) {
+    Verdict v = *region.verdict;
+    const auto drawn = [&] {
+      auto svg = region_picture({&scene_->scene.world, region.pair->a, region.pair->b, &v},
+                                Canvas::Format::kSvg);
+      EXPECT_TRUE(svg);
+      return svg ? *svg : std::string();
+    };
+    v.separation_way = SeparationWay::kNone;
+    const std::string without = drawn();
+    v.separation_way = SeparationWay::kAxis;
+    v.separation_translation_mm = {0, 0, 5};
+    v.separation_rotation_rad = {0, 0, 0};
+    v.gpd_mm = {5, 5};
+    const std::string along = drawn();
+    EXPECT_GT(along.size(), without.size());
+    v.gpd_mm = {6, 6};
+    EXPECT_NE(drawn(), along) << "its length is not told";
+  }
 }
 
 // Where the bracket was left open the arrow is as long as the sentence says, not up to its middle.

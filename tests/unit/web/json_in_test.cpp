@@ -63,6 +63,20 @@ TEST(PageMessage, ReadsEveryCommand) {
   EXPECT_EQ(command(R"("do":"tolerance","part":1,"text":"±0.05")").details.text, "±0.05");
   EXPECT_EQ(command(R"("do":"exclude","part":1,"other":2,"text":"glued")").kind,
             CommandKind::kSetExclusion);
+  const auto added =
+      command(R"("do":"add_part","name":"cover","mesh":"0f","moving":true,"p":[1,2,3])");
+  EXPECT_EQ(added.kind, CommandKind::kAddPart);
+  ASSERT_TRUE(added.details.edit);
+  EXPECT_EQ(added.details.edit->name, "cover");
+  EXPECT_EQ(added.details.edit->mesh_hash, "0f");
+  EXPECT_TRUE(added.details.edit->moving);
+  EXPECT_EQ(added.details.edit->X_WP.p, Vec3(1, 2, 3));
+  EXPECT_EQ(command(R"("do":"remove_part","part":2)").kind, CommandKind::kRemovePart);
+  const auto stands = command(R"("do":"set_moving","part":2,"moving":false)");
+  EXPECT_EQ(stands.kind, CommandKind::kSetMoving);
+  EXPECT_EQ(stands.part, PartId{2});
+  ASSERT_TRUE(stands.details.edit);
+  EXPECT_FALSE(stands.details.edit->moving);
   EXPECT_EQ(command(R"("do":"include","part":1,"other":2)").kind, CommandKind::kDropExclusion);
   const auto review = command(R"("do":"review","clash":5,"status":"approved","text":"ok")");
   EXPECT_EQ(review.details.clash, ClashId{5});

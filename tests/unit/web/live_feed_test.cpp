@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
+#include <thread>
 
 #include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
@@ -291,6 +293,116 @@ TEST_F(PagesOnASession, ShowEachOtherWhereTheyLookFrom) {
   EXPECT_EQ(bob.last("views")["views"][0]["p"][2], 59.0);
   EXPECT_LE(bob.count("views"), 12u);
   EXPECT_EQ(ann.count("views"), 0u);
+}
+
+std::vector<std::byte> stl_of_a_corner() {
+  const std::string text =
+      "solid c\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 10 0\nvertex 10 0 0\n"
+      "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 10 0 0\n"
+      "vertex 0 0 10\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\n"
+      "vertex 0 0 10\nvertex 0 10 0\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\n"
+      "vertex 10 0 0\nvertex 0 10 0\nvertex 0 0 10\nendloop\nendfacet\nendsolid c\n";
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
+}
+
+bool still_on_its_way(const Page& page) {
+  const Json state = page.last("upload")["state"];
+  return state == "open" || state == "sent";
+}
+
+std::string ticket_of(const Page& page) {
+  const std::string path = page.last("upload").value("path", "");
+  return path.substr(path.rfind('/') + 1);
+}
+
+TEST_F(PagesOnASession, BringAFileAndEverybodySeesItsPart) {
+  come(ann, "ann");
+  come(bob, "bob");
+  const auto bytes = stl_of_a_corner();
+  const std::string wish = R"({"type":"upload","id":7,"name":"corner.stl","bytes":)" +
+                           std::to_string(bytes.size()) + R"(,"unit_mm":10})";
+  say(ann, wish);
+  turn();
+  ASSERT_EQ(ann.last("upload")["state"], "open") << ann.last("upload");
+  EXPECT_TRUE(bob.last("upload").is_null()) << "a ticket is its asker's alone";
+  const std::string ticket = ticket_of(ann);
+  EXPECT_EQ(ticket.size(), 32u);
+  EXPECT_FALSE(feed->begin_file("no such ticket"));
+  ASSERT_EQ(feed->begin_file(ticket), bytes.size());
+  EXPECT_FALSE(feed->begin_file(ticket)) << "it counts once";
+  ASSERT_TRUE(feed->take_file(ticket, bytes));
+  EXPECT_FALSE(feed->take_file(ticket, bytes));
+  // It is read in a program of its own, beside the ticks.
+  for (int i = 0; i < 4000 && still_on_its_way(ann); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const Json ready = ann.last("upload");
+  ASSERT_EQ(ready["state"], "ready") << ready;
+  EXPECT_EQ(ready["id"], 7);
+  const std::size_t scenes = bob.count("scene");
+  say(ann, R"({"type":"command","id":8,"do":"add_part","name":"corner","moving":true,"mesh":)" +
+               ready["mesh"].dump() + R"(,"p":[500,0,0]})");
+  for (int i = 0; i < 1000 && ann.last("reply").is_null(); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  turn(4);
+  ASSERT_EQ(ann.last("reply")["done"], true) << ann.last("reply");
+  EXPECT_GT(bob.count("scene"), scenes);
+  const Json parts = bob.last("scene")["parts"];
+  const auto corner = std::find_if(parts.begin(), parts.end(),
+                                   [](const Json& part) { return part["name"] == "corner"; });
+  ASSERT_NE(corner, parts.end()) << parts;
+  EXPECT_EQ((*corner)["p"], Json::parse("[500.0, 0.0, 0.0]"));
+  const std::string mesh = (*corner)["mesh"];
+  EXPECT_EQ(feed->mesh(mesh).state, MeshAnswer::State::kHere);
+  // What the server alone knows of it is told as well.
+  const auto radius = [&] {
+    const Json told = bob.last("scene");
+    for (const Json& part : told["parts"])
+      if (part["name"] == "corner") return part["radius"].get<double>();
+    return 0.0;
+  };
+  for (int i = 0; i < 400 && radius() == 0.0; ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GT(radius(), 50.0);
+  // Its mesh is there when it comes back: the server sends it once.
+  const std::string part = (*corner)["id"].dump();
+  say(ann, R"({"type":"command","id":9,"do":"remove_part","part":)" + part + "}");
+  turn(4);
+  ASSERT_EQ(bob.last("scene")["parts"].size(), parts.size() - 1);
+  say(ann, R"({"type":"command","id":10,"do":"undo","part":)" + part + "}");
+  for (int i = 0; i < 400 && bob.last("scene")["parts"].size() < parts.size(); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_EQ(bob.last("scene")["parts"].size(), parts.size()) << ann.last("reply");
+  EXPECT_EQ(feed->mesh(mesh).state, MeshAnswer::State::kHere);
+}
+
+TEST_F(PagesOnASession, MayNotBringWhatIsTooMuchOrNotTheirs) {
+  feed->enter(eve);
+  const auto refusal = [&](Page& page, const std::string& rest) {
+    say(page, R"({"type":"upload","id":1,"name":"a.stl","bytes":)" + rest + "}");
+    turn();
+    const Json told = page.last("upload");
+    return told["state"] == "refused" ? told["refusal"].get<std::string>() : std::string();
+  };
+  EXPECT_EQ(refusal(eve, "10"), name_of(Refusal::kObserver));
+  feed->enter(bob);
+  EXPECT_EQ(refusal(bob, "10"), name_of(Refusal::kUnknownUser)) << "who has not joined";
+  come(ann, "ann");
+  EXPECT_EQ(refusal(ann, "0"), name_of(Refusal::kUnreadableMesh));
+  EXPECT_EQ(refusal(ann, "134217729"), name_of(Refusal::kUploadLimit));
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(refusal(ann, "10"), "");
+  EXPECT_EQ(refusal(ann, "10"), name_of(Refusal::kUploadLimit)) << "four at a time";
+  const std::string ticket = ticket_of(ann);
+  feed->leave(ann);
+  EXPECT_FALSE(feed->begin_file(ticket)) << "who has left brings nothing";
 }
 
 TEST_F(PagesOnASession, AreToldWhenTheServerGoesAndComesBack) {

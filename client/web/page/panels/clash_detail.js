@@ -1,7 +1,8 @@
 // One clash in full: why it is of its class, the section through it, what people say of it, and the link to it.
 import { linkOf } from '../session/link.js';
+import { hasWay, pathSaid, waySaid } from '../session/way_out.js';
 import { bracket, percent, plain, small, span } from '../session/words.js';
-import { byId, el, setText } from './dom.js';
+import { byId, el, setPressed, setText } from './dom.js';
 import { makeClashFit } from './clash_fit.js';
 import { makeClashReview } from './clash_review.js';
 import { fillDepthBar, fillScale } from './depth_bar.js';
@@ -12,7 +13,7 @@ import { SectionDrawing } from './section_drawing.js';
 
 /** @param {import('../desk.js').Desk} desk */
 export function makeClashDetail(desk) {
-  const { session, choice, camera, flyToClash, cutAtClash, say } = desk;
+  const { session, choice, camera, way, flyToClash, cutAtClash, say } = desk;
   const panel = byId('clash');
   const title = el('span', { class: 'grow' });
   const mark = el('span');
@@ -28,10 +29,12 @@ export function makeClashDetail(desk) {
   const review = makeClashReview(desk);
   const fit = makeClashFit(desk);
   const fly = button('Fly there', 'zoom', () => flyToClash(choice.clash), 'Fly there (Enter)');
+  const out = button('Show the way out', 'play', showWay);
+  const told = el('p', { class: 'way', role: 'status' });
   const cut = button('Cut the view here', 'section', () => cutAtClash(choice.clash));
   const turn = button('Section across or along', 'rotate', () => drawing.turn());
   panel.append(el('h3', {}, mark, title, link, close), bar, scale, figures, drawing.canvas,
-    el('div', { class: 'row' }, drawing.caption, fly, cut, turn), review.thread, review.form, fit.form, why);
+    el('div', { class: 'row' }, drawing.caption, fly, out, cut, turn), told, review.thread, review.form, fit.form, why);
 
   function current() {
     return session.clashes.get(choice.clash) ?? null;
@@ -64,6 +67,33 @@ export function makeClashDetail(desk) {
   }
 
   /** @param {Clash} clash */
+  function comesFree(clash) {
+    if (clash.separation.way === 'none') return '';
+    return [`${bracket(clash.gpd)} ${clash.separation.way}`, pathSaid(clash, (part) => session.partName(part))].filter(Boolean).join('; ');
+  }
+
+  /** The part that moves goes its way as a ghost, or the ghost goes. */
+  function showWay() {
+    const clash = current();
+    if (way.part || !clash) {
+      endWay();
+      return;
+    }
+    const part = session.parts.get(clash.separation.moves === 'b' ? clash.b : clash.a);
+    if (!part || !way.play(part, clash)) return;
+    const small = way.pixels(part, clash) < 2 ? '. From here that is less than two pixels: fly nearer to see it' : '';
+    setText(told, `${waySaid(clash, (id) => session.partName(id))}${small}`);
+    told.scrollIntoView({ block: 'nearest' });
+    setPressed(out, true);
+  }
+
+  function endWay() {
+    if (way.part) way.stop();
+    setText(told, '');
+    setPressed(out, false);
+  }
+
+  /** @param {Clash} clash */
   function rows(clash) {
     const margin = { real: 'beyond the real threshold', fake: 'to spare', potential: 'to the nearer threshold', none: '' }[clash.class];
     const faces = clash.faces.map((face) => face || 'unnamed face').join(' × ');
@@ -73,7 +103,7 @@ export function makeClashDetail(desk) {
       ['Margin', `${small(clash.margin)} ${margin}`],
       ['Interference', clash.class === 'potential' && clash.probability !== null ? percent(clash.probability) : ''],
       ['Faces', faces],
-      ['Comes free', clash.separation.way === 'none' ? '' : `${bracket(clash.gpd)} ${clash.separation.way}`],
+      ['Comes free', comesFree(clash)],
       ['Worst so far', worst],
       ...people(clash),
     ].filter(([, text]) => text);
@@ -103,6 +133,7 @@ export function makeClashDetail(desk) {
     setText(why, clash.explanation);
     review.show(clash);
     fit.show(clash);
+    out.hidden = clash.ended === true || !hasWay(clash);
     drawing.show(clash);
   }
 
@@ -115,11 +146,17 @@ export function makeClashDetail(desk) {
   }
 
   choice.on('clash', () => {
+    endWay();
     refresh();
     // The list has become shorter.
     document.querySelector('#clashes [aria-selected="true"]')?.scrollIntoView({ block: 'nearest' });
   });
-  session.on('event', (event) => event.clash === choice.clash && refresh());
+  session.on('event', (event) => {
+    if (event.clash !== choice.clash) return;
+    if (event.kind !== 'review') endWay(); // it was the way out of what has changed
+    refresh();
+  });
+  session.on('scene', endWay);
   session.on('pulse', refreshTimes);
   session.on('replay', refreshTimes);
   for (const what of /** @type {const} */ (['scene', 'me', 'features', 'remarks', 'standing', 'users'])) session.on(what, refresh);

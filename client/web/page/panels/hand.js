@@ -3,6 +3,7 @@ import { coordinate, degrees, radians } from '../session/words.js';
 import { rotationVectorOf } from '../session/motion.js';
 import { byId, el, seldom, setText } from './dom.js';
 import { icon } from './icons.js';
+import { makePartEdit } from './part_edit.js';
 import { makeStopLine } from './stop_line.js';
 
 /** @typedef {import('../session/motion.js').Vec3} Vec3 */
@@ -23,6 +24,7 @@ export function makeHand(desk) {
   const small = (/** @type {string} */ name, /** @type {string} */ title, /** @type {() => void} */ onclick) => el('button', { type: 'button', class: 'small look', 'aria-label': title, title, onclick }, icon(name));
   const hide = small('hide', 'Hide it (D)', () => choice.hide(choice.together));
   const alone = small('isolate', 'Show it alone (I)', () => choice.isolate(choice.together, session.parts.keys()));
+  const edit = makePartEdit(desk);
   const grab = el('button', { type: 'button', class: 'primary' }, icon('grab'), el('span'));
   const ask = el('button', { type: 'button' }, 'Ask for it');
   const kind = el('select', { 'aria-label': 'Shift or turn' }, el('option', { value: 'translate' }, 'Shift, mm'), el('option', { value: 'rotate' }, 'Turn, °'));
@@ -32,7 +34,7 @@ export function makeHand(desk) {
   step.value = '1';
   const form = el('form', { class: 'fields' }, kind,
     ...['X', 'Y', 'Z'].flatMap((axis, i) => [el('label', {}, axis), fields[i]]), go, el('span', { class: 'gap' }), el('label', {}, 'Step'), step);
-  box.append(el('div', { class: 'title' }, name, state, pose, el('span', { class: 'spring' }), hide, alone, ask, grab), makeStopLine(desk), form);
+  box.append(el('div', { class: 'title' }, name, state, pose, el('span', { class: 'spring' }), ...edit.buttons, hide, alone, ask, grab), makeStopLine(desk), form);
 
   const part = () => session.parts.get(choice.part) ?? null;
   const asked = () => session.standing.find((d) => d.kind === 'ask for hand-over' && d.part === choice.part);
@@ -60,6 +62,7 @@ export function makeHand(desk) {
     setText(ask, waits ? 'Ask no longer' : 'Ask for it');
     ask.onclick = () => commands.ask(waits ? 'withdraw' : 'ask', { part: shown.id });
     form.hidden = !mine;
+    edit.refresh(shown);
     showPose();
   }
 

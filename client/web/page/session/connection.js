@@ -130,6 +130,16 @@ export class Connection {
     return answer.blob();
   }
 
+  /** A file. @param {string} path @param {Blob} file @returns {Promise<string>} why it was not taken; empty: it was */
+  async post(path, file) {
+    try {
+      const answer = await fetch(path, { method: 'POST', headers: { Authorization: `Bearer ${this.token}` }, body: file });
+      return answer.ok ? '' : (await answer.text()).trim() || `the file was refused: ${answer.status}`;
+    } catch {
+      return 'the connection broke before the file was there';
+    }
+  }
+
   /** @param {string} hash @returns {Promise<ArrayBuffer>} */
   async mesh(hash) {
     const headers = { Authorization: `Bearer ${this.token}` };

@@ -20,7 +20,7 @@ import { Unexamined } from './unexamined.js';
  * @property {number} user @property {ClashClass} class @property {[number, number]} delta @property {[number, number]} gpd
  * @property {number} fake_below @property {number} real_above @property {number} margin @property {number | null} probability
  * @property {number} area @property {Vec3} point @property {Vec3} normal @property {Vec3 | null} witness
- * @property {{t: Vec3, r: Vec3, about: Vec3, moves: string, way: string, path: string}} separation @property {[string, string]} shapes @property {[string, string]} faces
+ * @property {{t: Vec3, r: Vec3, about: Vec3, moves: string, way: string, path: string, blocker: number}} separation @property {[string, string]} shapes @property {[string, string]} faces
  * @property {string} grade @property {string} explanation @property {number | null} t_contact @property {number | null} t_real
  * @property {number} begin_tick @property {ClashClass} worst_class @property {[number, number]} worst_delta @property {string} cause
  * @property {{status: string, comment: string, user: number, tick: number}} review @property {boolean} approval_lost
@@ -39,7 +39,7 @@ import { Unexamined } from './unexamined.js';
 
 const MOST_ENDED = 200;
 /** Decisions that put a part somewhere: whoever made one has moved it. The others of an event change rules. */
-const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset']);
+const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset', 'add part']);
 
 /**
  * @typedef {object} Said
@@ -47,7 +47,7 @@ const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset']);
  * @property {void} users @property {any} decision @property {void} standing @property {any} pulse @property {void} server
  * @property {void} me @property {Array<{part: number, reason: string, count: number}>} refused @property {View[]} views
  * @property {void} features @property {any} timeline @property {any} replay @property {string} mesh @property {string} error
- * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {void} draining
+ * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {void} draining @property {import('./uploads.js').UploadTold} upload
  */
 
 /** @extends {Signals<Said>} */
@@ -201,6 +201,7 @@ export class Session extends Signals {
       this.remarks = m.remarks;
       this.emit('remarks', undefined);
     },
+    upload: (m) => this.emit('upload', m),
     pulse: (m) => this.#pulse(m),
     mesh: (m) => this.emit('mesh', m.hash),
     error: (m) => this.emit('error', m.text),

@@ -1,6 +1,7 @@
 // Clashes in the picture: a mark at each open one, and at the chosen one its witness point, its normal and the motion that separates.
 import * as THREE from 'three';
 import { CLASS_COLOURS, hex } from '../session/class_colours.js';
+import { displacement, hasWay } from '../session/way_out.js';
 import { rankOf } from '../session/words.js';
 
 /** @typedef {import('../session/session.js').Clash} Clash */
@@ -91,8 +92,7 @@ export class ClashMarks {
     if (!clash) return;
     this.#focus.position.set(...clash.point);
     this.#arrow(clash.normal, 0x8fd3ff, 'normal');
-    const { t, way } = clash.separation;
-    if (way !== 'none' && Math.hypot(...t) > 0) this.#arrow(t, 0x4fd08a, 'separates');
+    if (hasWay(clash)) this.#arrow(displacement(clash.separation, clash.point), 0x4fd08a, 'separates');
     if (clash.witness) {
       const ball = new THREE.Mesh(new THREE.OctahedronGeometry(5), onTop(0xffffff));
       ball.userData.offset = new THREE.Vector3(...clash.witness).sub(this.#focus.position);

@@ -37,7 +37,7 @@ export function followSession({ session, choice, partsView, marks, handles, labe
     showMarks();
     hand();
     // A new session is framed; the same one again (after a lost line, in a replay) leaves the eye where it is.
-    if (framed !== session.name) {
+    if (framed !== session.name && session.parts.size > 0) {
       framed = session.name;
       showAll('iso', true);
     }

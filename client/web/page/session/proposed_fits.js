@@ -1,0 +1,41 @@
+// Bores and shafts that may belong together as the parts stand: for fits that nobody has stated yet.
+import { placed, rotate } from './motion.js';
+
+/** @typedef {import('./session.js').Feature} Feature */
+/** @typedef {{bore: {part: number, feature: string}, shaft: {part: number, feature: string}, clearance: number}} ProposedFit clearance of diameters, as modelled, mm */
+
+const LIKE_SIZES = 0.03;
+const AXES = Math.cos(Math.PI / 180);
+const BESIDE = 0.1; // of the bore's radius
+
+/**
+ * Radii within 3 percent, axes within 1 degree and a tenth of the radius, of two parts of which one moves; not those that have a fit.
+ * @param {import('./session.js').Session} session @returns {ProposedFit[]}
+ */
+export function proposedFits({ parts, features, standing }) {
+  const stated = new Set(standing.filter((d) => d.kind === 'set tolerance' && d.other && d.text)
+    .flatMap((d) => [`${d.part} ${d.feature ?? ''} ${d.other} ${d.other_feature ?? ''}`, `${d.other} ${d.other_feature ?? ''} ${d.part} ${d.feature ?? ''}`]));
+  const round = [...parts.values()].flatMap((part) => (features.get(part.id) ?? []).filter(({ kind }) => kind === 'cylinder')
+    .map((feature) => ({ part, feature, axis: rotate(part.q, feature.axis), at: placed(part, feature.point) })));
+  const found = [];
+  for (const bore of round.filter(({ feature }) => feature.inward)) {
+    for (const shaft of round.filter(({ feature }) => !feature.inward)) {
+      if (bore.part === shaft.part || !(bore.part.moving || shaft.part.moving)) continue;
+      if (Math.abs(bore.feature.radius - shaft.feature.radius) > LIKE_SIZES * bore.feature.radius) continue;
+      if (Math.abs(dot(bore.axis, shaft.axis)) < AXES) continue;
+      const off = /** @type {[number, number, number]} */ (shaft.at.map((x, i) => x - bore.at[i]));
+      const along = dot(off, bore.axis);
+      if (Math.sqrt(Math.max(0, dot(off, off) - along * along)) > BESIDE * bore.feature.radius) continue;
+      const end = (/** @type {typeof bore} */ { part, feature }) => ({ part: part.id, feature: feature.name });
+      const keys = [[bore.feature.name, shaft.feature.name], ['', '']].map(([a, b]) => `${bore.part.id} ${a} ${shaft.part.id} ${b}`);
+      if (keys.some((key) => stated.has(key))) continue;
+      found.push({ bore: end(bore), shaft: end(shaft), clearance: 2 * (bore.feature.radius - shaft.feature.radius) });
+    }
+  }
+  return found;
+}
+
+/** @param {Readonly<number[]>} a @param {Readonly<number[]>} b */
+function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
