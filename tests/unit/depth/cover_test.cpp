@@ -138,7 +138,7 @@ const CoverLayer& layer_of(const DrawnPart& part, bool largest) {
 }
 
 struct Tally {
-  int poses = 0, overlap = 0, apart = 0, tight = 0, below = 0;
+  int poses = 0, overlap = 0, apart = 0, tight = 0, below = 0, differ = 0;
 };
 
 Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
@@ -157,6 +157,7 @@ Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
       ++tally.poses;
       tally.overlap += found > 0.0;
       tally.apart += most <= kNothing_mm;
+      tally.differ += CoverPair(a, b).apart(pair.X_BA, kNothing_mm, work) != (most <= kNothing_mm);
       tally.tight += found > 0.0 && most < 2.0 * found + 5e-3;
       if (2.0 * found <= std::min(most, other) + 1e-9) continue;
       if (++tally.below <= 3)
@@ -173,6 +174,7 @@ TEST(Cover, NoBoundIsBelowAPointInBoth) {
   std::printf("%d poses: %d overlap, %d proven apart, %d within 5 um\n", tally.poses, tally.overlap,
               tally.apart, tally.tight);
   EXPECT_EQ(tally.below, 0);
+  EXPECT_EQ(tally.differ, 0);  // whether they are apart, asked with and without how deep
   EXPECT_GT(tally.overlap, 700);
   EXPECT_GT(tally.apart, 900);
 }
