@@ -77,10 +77,17 @@ def test_scenarios(scenario):
 
 
 def test_what_is_wrong_with_a_scenario(tmp_path):
-    (tmp_path / "bad.yaml").write_text("name: bad\nunits: mm\nparts: []\n")
+    (tmp_path / "bad.yaml").write_text("name: bad\nunits: mm\n")
     document = said("lint", tmp_path / "bad.yaml", "--json", codes=(3,))
     hold("lint", document)
     assert not document["usable"] and document["findings"]
+
+
+def test_a_scenario_to_which_parts_are_added_later(tmp_path):
+    (tmp_path / "empty.yaml").write_text("name: empty\nunits: mm\nparts: []\n")
+    document = said("lint", tmp_path / "empty.yaml", "--json")
+    hold("lint", document)
+    assert document["usable"] and document["findings"]
 
 
 def test_meshes(meshes):
