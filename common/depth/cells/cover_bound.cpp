@@ -52,11 +52,18 @@ class RoundInWall {
     if (whole <= limit_mm || whole == -kInfinity) return whole;
     // Of a path only the number is asked, and beside a parallel axis that is exact.
     if (chord_.ends == 2 && too_far_mm_ <= kParallel_mm) return whole;
+    see_away_from_axis();
+    const auto is_useless = [&] { return best_ - chord_.spread_mm > useless_mm; };
+    const auto is_narrow = [&](double most) {
+      return most <= best_ + chord_.spread_mm + kNarrow_mm;
+    };
+    if (is_useless()) return kInfinity;
+    if (is_narrow(whole)) return whole;
     for (int i = 0; i < 4; ++i) add(kQuarters[i], kQuarters[(i + 1) % 4], whole);
     while (!heap_.empty() && work_here_ < kMostSectors) {
       const double most = heap_.front().hi;
-      if (most <= limit_mm || most <= best_ + chord_.spread_mm + kNarrow_mm) break;
-      if (best_ - chord_.spread_mm > useless_mm) return kInfinity;
+      if (most <= limit_mm || is_narrow(most)) break;
+      if (is_useless()) return kInfinity;
       std::pop_heap(heap_.begin(), heap_.end());
       const Sector sector = heap_.back();
       heap_.pop_back();
@@ -153,18 +160,16 @@ class RoundInWall {
     return p.r_mm + (q.r_mm - p.r_mm) * (z - p.z_mm) / (q.z_mm - p.z_mm);
   }
 
+  Rises all_rises() const { return {{-rise_[0], -rise_[1]}, {rise_[0], rise_[1]}}; }
+
   // All around at once: the centre of the circle, and its radius.
   double whole_circle() {
     ++work_;
     double most = -kInfinity;
-    Rises rises;
-    for (int e = 0; e < chord_.ends; ++e) {
-      rises.least[e] = -rise_[e];
-      rises.most[e] = rise_[e];
-    }
+    const Rises all = all_rises();
     for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
       double from, to;
-      if (!clip(k, rises, from, to)) continue;
+      if (!clip(k, all, from, to)) continue;
       for (int e = 0; e < chord_.ends; ++e)
         for (const double z : {from, to}) {
           const double r = radius(k, z);
@@ -175,6 +180,43 @@ class RoundInWall {
     return most + chord_.spread_mm;
   }
 
+  // Of each circle the point on the side to which its middle is off the axis of the wall: the
+  // farthest one where the axes are parallel, and about that where they are nearly so.
+  void see_away_from_axis() {
+    ++work_;
+    const Rises all = all_rises();
+    for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
+      double from, to;
+      if (!clip(k, all, from, to)) continue;
+      for (int e = 0; e < chord_.ends; ++e)
+        for (const double z : {from, to}) {
+          Vec3 off = point_[e] + z * axis_[e] - wall_.point;
+          off -= off.dot(wall_.axis) * wall_.axis;
+          const double c = off.dot(across_[e][0]), s = off.dot(across_[e][1]);
+          const double length = std::sqrt(c * c + s * s);
+          see(k, length > 0.0 ? Direction{c / length, s / length} : kQuarters[0]);
+        }
+    }
+  }
+
+  // The points of one generator at both heights of the wall.
+  void see(std::size_t segment, const Direction& d) {
+    std::array<Vec3, 2> u;
+    Rises rises;
+    for (int e = 0; e < chord_.ends; ++e) {
+      u[e] = d.c * across_[e][0] + d.s * across_[e][1];
+      rises.least[e] = rises.most[e] = u[e].dot(wall_.axis);
+    }
+    double a, b;
+    if (!clip(segment, rises, a, b)) return;
+    for (int e = 0; e < chord_.ends; ++e)
+      for (const double z : {a, b}) {
+        const double at = beyond(wall_, point_[e] + z * axis_[e] + radius(segment, z) * u[e]);
+        best_ = std::max(best_, at);
+        if (chord_.ends == 1 && at > place_.far) note(segment, z, z == a ? b : a, at, d);
+      }
+  }
+
   void add(const Direction& from, const Direction& to, double known) {
     ++work_;
     ++work_here_;
@@ -182,7 +224,7 @@ class RoundInWall {
     const double out = 1.0 / (from.c * middle.c + from.s * middle.s);
     const Direction corners[3] = {from, to, {out * middle.c, out * middle.s}};
     std::array<std::array<Vec3, 3>, 2> u;
-    Rises rises, at_middle;
+    Rises rises;
     for (int e = 0; e < chord_.ends; ++e) {
       rises.least[e] = kInfinity;
       rises.most[e] = -kInfinity;
@@ -192,7 +234,6 @@ class RoundInWall {
         rises.least[e] = std::min(rises.least[e], rise);
         rises.most[e] = std::max(rises.most[e], rise);
       }
-      at_middle.least[e] = at_middle.most[e] = u[e][2].dot(wall_.axis) / out;
     }
     double most = -kInfinity;
     for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
@@ -202,14 +243,7 @@ class RoundInWall {
         for (const double z : {a, b})
           for (int c = 0; c < 3; ++c)
             most = std::max(most, beyond(wall_, point_[e] + z * axis_[e] + radius(k, z) * u[e][c]));
-      if (!clip(k, at_middle, a, b)) continue;
-      for (int e = 0; e < chord_.ends; ++e)
-        for (const double z : {a, b}) {
-          const double r = radius(k, z);
-          const double at = beyond(wall_, point_[e] + z * axis_[e] + r / out * u[e][2]);
-          best_ = std::max(best_, at);
-          if (chord_.ends == 1 && at > place_.far) note(k, z, z == a ? b : a, at, middle);
-        }
+      see(k, middle);
     }
     if (most == -kInfinity) return;
     heap_.push_back({from, to, std::min(known, most + chord_.spread_mm)});
