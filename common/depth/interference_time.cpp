@@ -475,8 +475,10 @@ class InterferenceSearch {
 
 // Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
 constexpr int kLooks = 3;
-// The same by covers alone, which cost a hundredth: up to 0.0128 mm at an accuracy of 1e-4 mm.
-constexpr int kCoverLooks = 3;
+// Covers alone cost a hundredth. They look ahead as often where they do not say that both only
+// touch, and as long as they do: who slides along a wall becomes deeper long after that. Then so
+// often between the last two looks.
+constexpr int kCoverHalvings = 6;
 
 // Work of one look; at the brink of interfering it is not worth more.
 constexpr std::uint64_t kPossibleLookWorkCap = 600;
@@ -575,28 +577,80 @@ struct SoonAfter {
   CertainPlace certain_place;
 };
 
+class LookAhead {
+ public:
+  LookAhead(const SweptQuery& query, double t, Layer layer, std::uint64_t& evaluations)
+      : query_(query), layer_(layer), t_(t), spent_(evaluations) {
+    const PairPath path(query.motion_a, *query.at_target.a, query.motion_b, *query.at_target.b);
+    step_ = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
+    const bool certain = layer == Layer::kLower;
+    named_ = certain && !query.slides ? Named::kLeast : named_of(layer);
+    look_cap_ = certain ? kCertainLookWorkCap : kPossibleLookWorkCap;
+  }
+
+  SoonAfter run() {
+    const SoonAfter said = by_covers();
+    return said.interferes ? said : by_search();
+  }
+
+ private:
+  OverlapQuery at(double t) const {
+    OverlapQuery at = query_.at_target;
+    at.X_WA = query_.motion_a.pose_at(t);
+    at.X_WB = query_.motion_b.pose_at(t);
+    at.refinement = Refinement::kDecided;
+    at.want_delta = false;
+    return at;
+  }
+
+  SoonAfter by_covers() {
+    double before = t_;
+    int unclear = 0;
+    for (double step = step_; before < 1.0 && unclear < kLooks; step *= 2.0) {
+      const double t = std::min(t_ + step, 1.0);
+      const SaidByCovers said = said_by_covers(at(t), named_, spent_);
+      if (said.place) return between(before, {true, t, *said.place});
+      unclear += !said.apart;
+      before = t;
+    }
+    return {};
+  }
+
+  SoonAfter between(double before, SoonAfter found) {
+    if (before == t_) return found;
+    for (int i = 0; i < kCoverHalvings; ++i) {
+      const double middle = 0.5 * (before + found.t);
+      if (const auto place = said_by_covers(at(middle), named_, spent_).place)
+        found = {true, middle, *place};
+      else
+        before = middle;
+    }
+    return found;
+  }
+
+  SoonAfter by_search() {
+    const std::uint64_t most = spent_ + query_.at_target.work_cap;
+    double step = step_;
+    for (int i = 0; i < kLooks && t_ + step <= 1.0 && spent_ < most; ++i, step *= 2.0) {
+      OverlapQuery there = at(t_ + step);
+      there.work_cap = std::min(most - spent_, look_cap_);
+      if (const auto place = interferes_at(there, layer_, spent_)) return {true, t_ + step, *place};
+    }
+    return {};
+  }
+
+  const SweptQuery& query_;
+  const Layer layer_;
+  const double t_;
+  std::uint64_t& spent_;
+  double step_ = 0.0;
+  Named named_ = Named::kLeast;
+  std::uint64_t look_cap_ = 0;
+};
+
 SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,
                           std::uint64_t& evaluations) {
-  const PairPath path(query.motion_a, *query.at_target.a, query.motion_b, *query.at_target.b);
-  OverlapQuery at = query.at_target;
-  at.refinement = Refinement::kDecided;
-  at.want_delta = false;
-  at.work_cap =
-      std::min(at.work_cap, layer == Layer::kLower ? kCertainLookWorkCap : kPossibleLookWorkCap);
-  const double speed = std::max(path.speed_upper_bound(), 1e-300);
-  const Named named = layer == Layer::kLower && !query.slides ? Named::kLeast : named_of(layer);
-  for (const bool search : {false, true}) {
-    double step = query.accuracy_mm / speed;
-    const int looks = search ? kLooks : kCoverLooks;
-    for (int i = 0; i < looks && t + step <= 1.0; ++i, step *= 2.0) {
-      at.X_WA = query.motion_a.pose_at(t + step);
-      at.X_WB = query.motion_b.pose_at(t + step);
-      const auto place = search ? interferes_at(at, layer, evaluations)
-                                : said_by_covers(at, named, evaluations).place;
-      if (place) return {true, t + step, *place};
-    }
-  }
-  return {};
+  return LookAhead(query, t, layer, evaluations).run();
 }
 
 }  // namespace
@@ -637,7 +691,9 @@ SaidByCovers said_of_start(const SweptQuery& query, Layer layer, std::uint64_t& 
 // 3. Else the rest of the path is searched; all of it where they are not even apart at its start.
 InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
   check(query);
-  const CoverFree free = free_by_covers(query, Layer::kLower);
+  const CoverFree free = query.certain_free
+                             ? CoverFree{*query.certain_free, *query.certain_free >= 1.0, 0}
+                             : free_by_covers(query, Layer::kLower);
   InterferenceTime answer;
   if (free.all) {
     answer.evaluations = free.work;
@@ -760,15 +816,14 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   check(query);
   const CoverFree free = free_by_covers(query, Layer::kUpper);
   PossibleTime answer;
-  if (!free.all && free.t_free <= 0.0) {
-    if (said_of_start(query, Layer::kUpper, answer.evaluations).place) {
-      answer.becomes_possible = true;
-      answer.t_clear = answer.t_possible = 0.0;
-    } else {
-      answer = search_possible_time(query, scratch);
-    }
-  } else if (!free.all) {
-    const SoonAfter soon = look_soon_after(query, free.t_free, Layer::kUpper, answer.evaluations);
+  if (!free.all) {
+    SaidByCovers start;
+    if (free.t_free <= 0.0) start = said_of_start(query, Layer::kUpper, answer.evaluations);
+    SoonAfter soon;
+    if (start.place)
+      soon.interferes = true;
+    else if (free.t_free > 0.0 || start.apart)
+      soon = look_soon_after(query, free.t_free, Layer::kUpper, answer.evaluations);
     if (soon.interferes) {
       answer.becomes_possible = true;
       answer.t_clear = free.t_free;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "common/depth/overlap.h"
 
@@ -10,6 +11,8 @@ struct SweptQuery {
   Motion motion_a, motion_b;
   bool slides = true;         ///< the certain place is wanted where a part can slide along a face
   double accuracy_mm = 1e-4;  ///< how closely the answer is known, along the path of any point
+  /// What certain_free_until() says of this query; nullopt: nobody has asked.
+  std::optional<double> certain_free;
 };
 
 /// When the overlap becomes certain (real) in the tick.

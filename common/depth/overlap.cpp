@@ -27,6 +27,7 @@ namespace {
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of a region with one point: its two triangles decide it.
 OverlapRegion decided_there(const PairFrame& pair, OverlapRegion region) {
@@ -136,7 +137,7 @@ class Overlap {
       if (!told_by_another(known, candidates)) add_declared(known, candidates);
     regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
                              query_.refinement == Refinement::kDecided,
-                             !query_.only_certain && covers_.apart(Layer::kUpper)},
+                             query_.only_certain ? kInfinity : covers_.most_mm(Layer::kUpper)},
                             scratch_, result_.evaluations);
     if (regions_.count > 0) {
       if (query_.only_certain)
@@ -202,7 +203,7 @@ class Overlap {
   std::uint64_t glance() const { return kGlance + kGlancePerRoot * regions_.roots.size(); }
 
   std::vector<Bracket> search(Layer layer, bool sign_only, std::uint64_t work_cap,
-                              double ignore_below_mm = -std::numeric_limits<double>::infinity()) {
+                              double ignore_below_mm = -kInfinity) {
     if (regions_.count == 1)
       if (auto bracket = covers_.bracket(layer, query_.accuracy_mm, sign_only))
         return {std::move(*bracket)};

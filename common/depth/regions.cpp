@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/base/check.h"
+#include "common/depth/cells/cover_bound.h"
 
 namespace mortise {
 namespace {
@@ -138,7 +139,9 @@ class Grouping {
     if (!query_.known->rows.empty())
       for (const std::uint32_t n : pair_.s(role).sharp_neighbours(t))
         limit = std::max(limit, limit_[pair_.s(role).face_index(n)]);
-    if (!query_.apart && asked(role, t, widest(), limit)) {
+    // What is said to be deepest anywhere by bounds of the cells is what the closed form says.
+    const bool may_be_deeper = query_.most_mm > limit + kBoundAccuracy_mm;
+    if (may_be_deeper && asked(role, t, widest(), limit)) {
       asked_[role][t].may_interfere = true;
       return true;
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "common/base/flat_map.h"
@@ -25,7 +26,8 @@ struct RegionsQuery {
   std::uint64_t work_cap = 0;
   /// Where no real surfaces can interfere, spend little on whether the meshes overlap.
   bool brief = false;
-  bool apart = false;  ///< the largest parts do not interfere: only the meshes may
+  /// No point of the largest parts is deeper, proven.
+  double most_mm = std::numeric_limits<double>::infinity();
 };
 
 /// Decides for every candidate triangle whether it stays out of the other part, spreads over the

@@ -16,8 +16,6 @@ constexpr double kInner = 1.05;
 constexpr double kOffRim_mm = 0.1;
 // Places on a circle.
 constexpr int kAround = 16;
-// A bracket this narrow is good enough, mm.
-constexpr double kNarrow_mm = 2e-5;
 // The same of a path, where a part may slide along at the limit.
 constexpr double kParallel_mm = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -55,7 +53,7 @@ class RoundInWall {
     see_away_from_axis();
     const auto is_useless = [&] { return best_ - chord_.spread_mm > useless_mm; };
     const auto is_narrow = [&](double most) {
-      return most <= best_ + chord_.spread_mm + kNarrow_mm;
+      return most <= best_ + chord_.spread_mm + kBoundAccuracy_mm;
     };
     if (is_useless()) return kInfinity;
     if (is_narrow(whole)) return whole;

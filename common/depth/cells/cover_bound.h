@@ -7,6 +7,9 @@
 
 namespace mortise {
 
+/// A bound at a wall is no closer than this, mm.
+inline constexpr double kBoundAccuracy_mm = 2e-5;
+
 /// How a cell S is seen from the frame K of the other part, over a span of time: every point of it
 /// stays within spread_mm of the straight way from its place by X_KS[0] to that by X_KS[1].
 struct Chord {

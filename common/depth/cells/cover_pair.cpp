@@ -11,6 +11,8 @@ namespace {
 constexpr int kSteps = 24;
 // Spans that are looked at before what is proven so far has to do.
 constexpr int kMostSpans = 400;
+// A span longer than this share of the path is long.
+constexpr double kLongSpan = 0.2;
 // Onto each of two cells, to find a point of both.
 constexpr int kProjections = 6;
 // What comes so much less far is as good a place to look at.
@@ -36,9 +38,7 @@ class CoverPair::Bound {
       : pair_(pair), views_(views), limit_mm_(limit_mm), asked_(asked), work_(work) {}
 
   double operator()(Cells& cells) {
-    cells_ = &cells;
-    least_ = kInfinity;
-    if (cells.role >= 0 && again()) return least_;
+    if (by_what_it_was(cells)) return least_;
     if (by_direction(0, views_.chord[0].X_KS[0] * s(0).middle - k(0).middle)) return least_;
     for (const int role : {0, 1})
       for (const Vec3& n : k(role).normals)
@@ -52,6 +52,13 @@ class CoverPair::Bound {
       if (k(role).round && off_axis(role)) return least_;
     descend();
     return least_;
+  }
+
+  // The bound by what kept these cells apart before alone.
+  bool by_what_it_was(Cells& cells) {
+    cells_ = &cells;
+    least_ = kInfinity;
+    return cells.role >= 0 && again();
   }
 
  private:
@@ -266,9 +273,13 @@ std::vector<CoverPair::Cells> CoverPair::all_cells() const {
   return all;
 }
 
+// What keeps two cells apart where a span begins does so all over it, or else over a part of it:
+// the span is halved. Anything else is looked for where that is not so, over long spans, and over
+// the shortest ones before they are taken for the end.
 CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double accuracy_mm) const {
   CoverFree free;
-  if (!apart(path.pose(0, 0.0), limit_mm, free.work)) {
+  std::vector<Cells> all = all_cells();
+  if (!apart(views_at(path.pose(0, 0.0)), all, limit_mm, free.work)) {
     free.t_free = 0.0;
     return free;
   }
@@ -279,17 +290,25 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
     Span span;
     std::vector<Cells> cells;
   };
-  std::vector<Open> open{{{0.0, 1.0}, all_cells()}};
+  std::vector<Open> open;
+  open.push_back({{0.0, 1.0}, std::move(all)});
   for (int i = 0; !open.empty(); ++i) {
     Open now = std::move(open.back());
     open.pop_back();
     const Views views = views_of(path, now.span);
+    const Views at_start = views_at(views.chord[0].X_KS[0]);
+    const double length = now.span.t1 - now.span.t0;
+    const bool looks_for_others = length > kLongSpan || length <= moment;
     Bound bound(*this, views, limit_mm, Asked::kWhether, free.work);
-    std::erase_if(now.cells, [&](Cells& cells) { return bound(cells) <= limit_mm; });
+    Bound bound_at_start(*this, at_start, limit_mm, Asked::kWhether, free.work);
+    std::erase_if(now.cells, [&](Cells& cells) {
+      if (bound.by_what_it_was(cells)) return true;
+      if (!looks_for_others && bound_at_start.by_what_it_was(cells)) return false;
+      return bound(cells) <= limit_mm;
+    });
     if (now.cells.empty()) continue;
     const double middle = 0.5 * (now.span.t0 + now.span.t1);
-    if (i >= kMostSpans || now.span.t1 - now.span.t0 <= moment || !(middle > now.span.t0) ||
-        !(middle < now.span.t1)) {
+    if (i >= kMostSpans || length <= moment || !(middle > now.span.t0) || !(middle < now.span.t1)) {
       free.t_free = now.span.t0;
       return free;
     }
@@ -308,8 +327,12 @@ CoverPair::Views CoverPair::views_at(const Pose& X_BA) {
 }
 
 bool CoverPair::apart(const Pose& X_BA, double limit_mm, std::uint64_t& work) const {
-  const Views views = views_at(X_BA);
   std::vector<Cells> all = all_cells();
+  return apart(views_at(X_BA), all, limit_mm, work);
+}
+
+bool CoverPair::apart(const Views& views, std::vector<Cells>& all, double limit_mm,
+                      std::uint64_t& work) const {
   Bound bound(*this, views, limit_mm, Asked::kWhether, work);
   return std::all_of(all.begin(), all.end(),
                      [&](Cells& cells) { return bound(cells) <= limit_mm; });

@@ -73,6 +73,9 @@ class CoverPair {
   static Views views_at(const Pose& X_BA);
   static Views views_of(const PairPath& path, const Span& span);
   std::vector<Cells> all_cells() const;
+  /// Leaves with each pair of cells what keeps it apart.
+  bool apart(const Views& views, std::vector<Cells>& all, double limit_mm,
+             std::uint64_t& work) const;
   /// Points of part cells.role where what kept its cell from the other one last is least far.
   std::vector<Vec3> places_of(const Cells& cells, const Views& views) const;
 

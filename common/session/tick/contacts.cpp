@@ -115,6 +115,15 @@ void ask_banded(const World& world, PairWork& pair, CcdScratch& ccd) {
   find_stop_time(pair, touch);
 }
 
+// They interfere, or may. Contact of the meshes is asked only where an event is to be told.
+void ask_by_covers(const World& world, PairWork& pair) {
+  pair.near = pair.touch_unasked = true;
+  if (!holds_back(world.policy)) return;
+  FirstContact touch;
+  touch.state = ContactState::kOverlappingAtStart;
+  find_stop_time(pair, touch);
+}
+
 // Nothing but the meshes can meet.
 void ask_never_possible(PairWork& pair, CcdScratch& ccd) {
   const FirstContact touch = ask_touch(pair, ccd);
@@ -200,18 +209,16 @@ bool stays_held(const World& world, PairWork& pair) {
 }
 
 // Something is told of the pair, and covers prove that it goes on, or else how far the pair goes
-// before it is real. Contact is asked only where an event is to be told.
+// before it is real.
 bool go_on(const World& world, PairWork& pair, CcdScratch& ccd) {
   pair.goes_on = goes_on(pair, ccd);
   if (!pair.goes_on && !holds_back(world.policy)) return false;
-  pair.near = pair.touch_unasked = true;
-  pair.never_real = pair.goes_on;
-  FirstContact touch;
-  touch.state = ContactState::kOverlappingAtStart;
-  if (pair.goes_on)
-    ++pair.counts.pairs_held_again;
-  else
-    find_stop_time(pair, touch);
+  if (!pair.goes_on) {
+    ask_by_covers(world, pair);
+    return true;
+  }
+  pair.near = pair.touch_unasked = pair.never_real = true;
+  ++pair.counts.pairs_held_again;
   return true;
 }
 
@@ -234,6 +241,7 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
   pair.never_real = pair.held_again = pair.wants_stop_time = false;
   pair.stop_gave_up = pair.short_of_work = pair.stalled = pair.withdrawal_unsure = false;
   pair.place = {};
+  pair.certain_free.reset();
   pair.t_enter = pair.apart_at_end_mm = 0.0;
   pair.contact_waits = pair.goes_on = pair.touch_unasked = false;
   const bool cut_short = std::exchange(pair.contact_short, false);
@@ -256,6 +264,8 @@ void ask_pair(const World& world, const StepSwitches& switches, PairWork& pair, 
     ask_plain(world, pair, ccd);
   else if (switches.told_goes_on && !pair.open && is_never_possible(pair))
     ask_never_possible(pair, ccd);
+  else if (switches.told_goes_on && is_possible_at_end(pair))
+    ask_by_covers(world, pair);
   else
     ask_banded(world, pair, ccd);
   pair.short_of_work = pair.contact_short;

@@ -33,7 +33,7 @@ constexpr std::uint64_t kFirstEffort = 1'500, kGlance = 250;
 
 // What the times and the motion of an event may take: no less than a first, wide bracket does. So
 // much of what is saved is kept for the verdicts of later ticks.
-constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 5'000, kKeptForVerdicts = 10'000;
+constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 5'000, kKeptForVerdicts = 12'000;
 
 // A search that has come to nothing is not repeated for so many ticks while nothing has changed;
 // nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
@@ -144,7 +144,8 @@ class Sharing {
     if (!served && !at_rest && !is_last_chance) return false;
     is_first_ &= at_rest;
     if (served)
-      serve(pair, overdue ? most_ : std::min(most_, wanted + more_), expected(wanted));
+      serve(pair, overdue ? most_ : std::min(most_, std::max(wanted + more_, surprise())),
+            expected(wanted));
     else
       put_off(pair, at_rest);
     note_waiting(pair, stage_, served || pair.lingers);
@@ -156,6 +157,9 @@ class Sharing {
     left_.saved = less(left_.saved, less(taken, left_.own));
     left_.own = less(left_.own, taken);
   }
+
+  // What one pair may need beyond what it did before, as long as the tick has so much.
+  std::uint64_t surprise() const { return std::min(left_.own, kFirstEffort); }
 
   // A verdict that is cut short is discarded, and a push that came to nothing before comes to
   // nothing again; a short search is of use to others.

@@ -7,6 +7,7 @@
 #include "common/session/tick/clash_identity.h"
 #include "common/session/tick/contacts.h"
 #include "common/session/tick/pair_queries.h"
+#include "common/session/tick/stop_time.h"
 
 namespace mortise {
 namespace {
@@ -26,11 +27,6 @@ CollisionClass seen_class(const std::vector<OpenClash>& open) {
   return all ? seen : CollisionClass::kNone;
 }
 
-bool is_possible_at_end(PairWork& pair) {
-  std::uint64_t& evaluations = pair.counts.depth_evaluations;
-  return said_by_covers(overlap_query(pair, 1.0), Named::kLargest, evaluations).place.has_value();
-}
-
 // A clash of parts that come apart ends at some distance.
 bool is_as_near(PairWork& pair, CcdScratch& ccd) {
   const double limit_mm = pair.band_mm + kClashHysteresis_mm;
@@ -47,14 +43,12 @@ bool may_go_on(const World& world, const PairWork& pair) {
 }
 
 bool goes_on(PairWork& pair, CcdScratch& ccd) {
-  std::uint64_t& evaluations = pair.counts.depth_evaluations;
   switch (seen_class(*pair.open)) {
     case CollisionClass::kFake:
       return is_never_possible(pair) && is_as_near(pair, ccd);
     case CollisionClass::kPotential:
       // The point speaks of one place.
-      return pair.open->size() == 1 && certain_free_until(swept_query(pair), evaluations) >= 1.0 &&
-             is_possible_at_end(pair);
+      return pair.open->size() == 1 && free_by_covers(pair) >= 1.0 && is_possible_at_end(pair);
     default:
       return false;
   }
@@ -62,6 +56,11 @@ bool goes_on(PairWork& pair, CcdScratch& ccd) {
 
 bool is_never_possible(PairWork& pair) {
   return possible_free_until(swept_query(pair), pair.counts.depth_evaluations) >= 1.0;
+}
+
+bool is_possible_at_end(PairWork& pair) {
+  std::uint64_t& evaluations = pair.counts.depth_evaluations;
+  return said_by_covers(overlap_query(pair, 1.0), Named::kLargest, evaluations).place.has_value();
 }
 
 bool lingers(const World& world, PairWork& pair) {

@@ -21,6 +21,9 @@ bool goes_on(PairWork& pair, CcdScratch& ccd);
 /// Nothing is even possible in the whole segment.
 bool is_never_possible(PairWork& pair);
 
+/// A point is in both largest parts at the end of the segment.
+bool is_possible_at_end(PairWork& pair);
+
 /// Told is real; nothing is certain any more, but what holds is potential, and whether real is left
 /// by enough is for a look to say.
 bool lingers(const World& world, PairWork& pair);

@@ -22,6 +22,7 @@ inline SweptQuery swept_query(const PairWork& pair) {
   query.at_target = overlap_query(pair, 1.0);
   query.motion_a = pair.motion_a;
   query.motion_b = pair.motion_b;
+  query.certain_free = pair.certain_free;
   return query;
 }
 

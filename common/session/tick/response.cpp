@@ -66,6 +66,7 @@ void take_back(PairWork& pair, const AskedEarlier& asked) {
   pair.stop_gave_up = asked.stop_gave_up;
   pair.touch_unasked = asked.touch_unasked;
   pair.place = asked.place;
+  pair.certain_free.reset();
 }
 
 class Response {

@@ -335,7 +335,9 @@ bool is_stalled(const PairWork& pair) {
 
 double free_by_covers(PairWork& pair) {
   if (pair.plain() || pair.no_inside()) return 0.0;
-  const double t = certain_free_until(swept_query(pair), pair.counts.depth_evaluations);
+  if (!pair.certain_free)
+    pair.certain_free = certain_free_until(swept_query(pair), pair.counts.depth_evaluations);
+  const double t = *pair.certain_free;
   // Who has come out is not withdrawn any more.
   if (t > 0.0 && std::isfinite(pair.memo->allowed_depth_mm))
     pair.memo.change().allowed_depth_mm = kInfinity;

@@ -98,6 +98,8 @@ struct PairWork {
   bool blocks = false;           ///< the response stopped a part because of this pair
   bool held_again = false;       ///< at once, by the place that has held it back before
   CertainPlace place;            ///< a place that makes the pair real, where one is known
+  /// Of the segment: the covers prove until then that nothing is certain; nullopt: not asked.
+  std::optional<double> certain_free;
 
   bool goes_on = false;        ///< what is told of it, proven without a look
   bool lingers = false;        ///< what is told is perhaps left: to be seen when its parts rest

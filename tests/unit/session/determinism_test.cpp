@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, Determinism,
 TEST(HeldPlaces, ASearchHoldsWhoIsHeldByItsPlace) {
   struct Pushed {
     std::vector<std::uint64_t> digests;
-    std::uint64_t held = 0, first_contacts = 0;
+    std::uint64_t held = 0, evaluations = 0;
   };
   const auto push_down = [](std::uint64_t seed, bool held_places) {
     RandomPlay play(Policy::kStop, seed, 4, true);
@@ -89,7 +89,7 @@ TEST(HeldPlaces, ASearchHoldsWhoIsHeldByItsPlace) {
       const StepReport report = play_tick(play.session.world, increments, scratch);
       pushed.digests.push_back(digest(report));
       pushed.held += report.counters.pairs_held_again;
-      pushed.first_contacts += report.counters.first_contact_queries;
+      pushed.evaluations += report.counters.depth_evaluations;
     }
     return pushed;
   };
@@ -97,7 +97,7 @@ TEST(HeldPlaces, ASearchHoldsWhoIsHeldByItsPlace) {
     const Pushed with = push_down(seed, true), without = push_down(seed, false);
     EXPECT_EQ(with.digests, without.digests) << seed;
     EXPECT_GT(with.held, 5U) << seed;
-    EXPECT_LT(with.first_contacts, without.first_contacts) << seed;
+    EXPECT_LT(with.evaluations, without.evaluations) << seed;
   }
 }
 
