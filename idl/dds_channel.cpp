@@ -76,6 +76,7 @@ class DdsServerChannel final : public StandbyChannel {
   void lead_anew() override;
   std::uint64_t term_ms() const override { return term_; }
   std::string barred() const override;
+  ClientKey own_key() const override { return participant_->key(); }
 
   std::vector<ToldTick> follow() override;
   void await_told(std::int64_t at_most_ns) override { servers_.await_told(at_most_ns); }

@@ -111,7 +111,7 @@ TakenTicks FollowerTold::take(dds::DataReader& reader, std::uint64_t term,
                                 }
                                 if (follower_.empty() && servers.follows(key)) follower_ = key;
                                 if (key != follower_ || sample.tick() < taken.received) return;
-                                taken = {sample.tick(), sample.computed()};
+                                taken = {sample.tick(), sample.computed(), key};
                               });
   return taken;
 }

@@ -1,6 +1,7 @@
 #include "server/held_channel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace mortise {
 namespace {
@@ -62,13 +63,17 @@ void HeldChannel::let_go() {
   if (taken.received == kTakenAll) {
     waited_for_ = false;
     backlog_.forget();
-    say_up_to(kTakenAll);
+    if (fencing_) fencing_->ask({});
   } else if (taken.received != 0) {
     // Only one that is near is waited for: it may have the ticks of seconds to take first.
     waited_for_ = waited_for_ || taken.received + kNear_ticks >= tick_;
+    follower_ = taken.by;
+    if (fencing_ && waited_for_ && taken.received >= said_) fencing_->ask(follower_);
+    if (waited_for_) to_lead_anew_ = false;
     note_backlog(taken);
-    say_up_to(taken.received);
+    say_up_to(taken.received, follower_);
   }
+  if (taken.received == kTakenAll || (fencing_ && !waited_for_)) say_alone();
   const std::int64_t now_ns = clock_.now_ns();
   const double turn_s = std::min(static_cast<double>(now_ns - turned_ns_) * 1e-9, kTurn_s);
   turned_ns_ = now_ns;
@@ -96,9 +101,10 @@ void HeldChannel::wait_on(double turn_s) {
         "fewer than half of the users have come: they may be with the server of "
         "before, and what is done here may be lost when that one is met again");
   }
-  if (!waited_for_) return say_up_to(kTakenAll);
+  if (!waited_for_) return say_alone();
   if (waited_s_ < kPatience_s) return;
-  const bool heard_by_most = most_users_are_heard();
+  // Whoever else might lead, it does not while the etcd of the site says so.
+  const bool heard_by_most = fencing_ || most_users_are_heard();
   if (heard_by_most || waited_s_ >= kPatienceCutOff_s) go_alone(heard_by_most);
 }
 
@@ -122,17 +128,25 @@ void HeldChannel::go_alone(bool heard_by_most) {
   backlog_.forget();
   // Whoever took over meanwhile, and has most of the users against it, is not to lead when it is
   // met again.
-  if (heard_by_most) inner_.lead_anew();
+  to_lead_anew_ = heard_by_most;
+  if (fencing_) fencing_->ask({});
   notes_.push_back(heard_by_most
                        ? "the server that stands by is silent: it is not waited for any more"
                        : "neither the server that stands by nor most users are heard: going on "
                          "without them; what is done here may be lost when they are met again");
-  say_up_to(kTakenAll);
+  say_alone();
 }
 
-void HeldChannel::say_up_to(std::uint64_t tick) {
-  if (!awaited_.empty()) return;
+void HeldChannel::say_alone() {
+  if (!may_say({})) return;
+  if (std::exchange(to_lead_anew_, false)) inner_.lead_anew();
+  say_up_to(kTakenAll, {});
+}
+
+void HeldChannel::say_up_to(std::uint64_t tick, const ClientKey& has_it) {
+  if (!awaited_.empty() || !may_say(has_it)) return;
   for (; !kept_.empty() && kept_.front().tick <= tick; kept_.pop_front()) {
+    said_ = kept_.front().tick;
     kept_.front().say();
     waited_s_ = 0.0;
     heard_.clear();
@@ -141,7 +155,10 @@ void HeldChannel::say_up_to(std::uint64_t tick) {
 }
 
 void HeldChannel::say(std::function<void()> what) {
-  if (!keeps()) return what();
+  if (!keeps() && may_say({})) {
+    said_ = tick_;
+    return what();
+  }
   if (kept_.empty()) {
     waited_s_ = 0.0;
     heard_.clear();
@@ -155,9 +172,9 @@ bool HeldChannel::hand_over(const std::function<bool()>& goes_on) {
   while (static_cast<double>(clock_.now_ns() - begun_ns) * 1e-9 < kHandOver_s) {
     // Not given up as let_go() does: who raises its term now would lead against the other.
     const std::uint64_t taken = inner_.taken_up_to().received;
-    if (taken != kTakenAll) say_up_to(taken);
+    if (taken != kTakenAll) say_up_to(taken, follower_);
     if (heard().superseded) {
-      say_up_to(kTakenAll);
+      say_up_to(kTakenAll, follower_);
       return true;
     }
     if (!inner_.has_follower() || !goes_on()) break;
@@ -172,7 +189,7 @@ void HeldChannel::finish() {
   for (int turn = 0; turn < 100 && rest(kLook_ns); ++turn) {
   }
   awaited_.clear();
-  say_up_to(kTakenAll);
+  say_alone();
 }
 
 void HeldChannel::publish_tick(const ToldTick& told) {

@@ -10,6 +10,7 @@
 #include "common/messages/channel.h"
 #include "server/backlog.h"
 #include "server/clock.h"
+#include "server/fencing.h"
 #include "server/tick_bytes.h"
 
 namespace mortise {
@@ -26,9 +27,11 @@ class HeldChannel final : public ServerChannel {
   /// Across a net that loses, Fast DDS tells of new topics again each second or so.
   static constexpr double kHandOver_s = 8.0;
 
-  /// All must outlive this. `users` says how many are in the session.
-  HeldChannel(ServerChannel& inner, Clock& clock, std::function<std::size_t()> users)
-      : inner_(inner), clock_(clock), users_(std::move(users)) {}
+  /// All must outlive this. `users` says how many are in the session. `fencing` may be null: then a
+  /// silent standby is given up by patience alone.
+  HeldChannel(ServerChannel& inner, Clock& clock, std::function<std::size_t()> users,
+              Fencing* fencing = nullptr)
+      : inner_(inner), clock_(clock), users_(std::move(users)), fencing_(fencing) {}
 
   /// Of one that has taken over: says nothing until half of `seats` have asked to join again, for
   /// at most kPatienceCutOff_s; those who do not may be with the server of before.
@@ -98,11 +101,18 @@ class HeldChannel final : public ServerChannel {
   void note_heard(UserId user);
   bool most_users_are_heard() const;
   void go_alone(bool heard_by_most);
-  void say_up_to(std::uint64_t tick);
+  bool may_say(const ClientKey& has_it) const { return !fencing_ || fencing_->may_say(has_it); }
+  /// `has_it`: the standby that has all up to that tick; empty: none.
+  void say_up_to(std::uint64_t tick, const ClientKey& has_it);
+  void say_alone();
 
   ServerChannel& inner_;
   Clock& clock_;
   std::function<std::size_t()> users_;
+  Fencing* fencing_;
+  ClientKey follower_;         ///< that spoke last
+  std::uint64_t said_ = 0;     ///< up to this tick, some of it perhaps
+  bool to_lead_anew_ = false;  ///< once it may speak alone
   std::deque<Kept> kept_;
   std::uint64_t tick_ = 0;   ///< the last that was told
   bool waited_for_ = false;  ///< one that stands by says what it has

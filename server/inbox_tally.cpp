@@ -25,12 +25,11 @@ UserCounters& InboxTally::of(UserId user) {
 void InboxTally::refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake) {
   ++all_.refused[static_cast<std::size_t>(reason)];
   ++of(tell).refused;
-  std::uint32_t& told = knows(tell) ? told_[tell.value - 1] : told_strangers_;
-  if (told >= limits_.refusals_told_per_tick) {
+  if (!can_tell(tell)) {
     ++all_.refusals_untold;
     return;
   }
-  ++told;
+  ++(knows(tell) ? told_[tell.value - 1] : told_strangers_);
   intake.refused.push_back({tell, increment.part, increment.seq, reason});
 }
 

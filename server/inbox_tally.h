@@ -20,6 +20,10 @@ class InboxTally {
   UserCounters& of(UserId user);  ///< shared counters for users who never joined
   /// Sends the refusal to user `tell`, up to the limit of this drain.
   void refuse(const Increment& increment, UserId tell, Refusal reason, Intake& intake);
+  /// Would this user be told of another refusal in this drain?
+  bool can_tell(UserId user) const {
+    return (knows(user) ? told_[user.value - 1] : told_strangers_) < limits_.refusals_told_per_tick;
+  }
   void count_refused_command(UserId user);
 
   const InboxCounters& counters() const { return all_; }

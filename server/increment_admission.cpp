@@ -85,21 +85,28 @@ void IncrementAdmission::take(const World& world, std::int64_t now_ns, Intake& i
     const Queue& of_user = queues_[i];
     const std::size_t before = intake.increments.size(), share = share_of(of_user, world);
     // Also what would be refused waits its turn: the sequence of a user never goes back.
-    while (!of_user.backlog.empty() && intake.increments.size() - before < share)
-      take_first(UserId{i + 1}, world, now_ns, intake);
+    while (!of_user.backlog.empty() && intake.increments.size() - before < share &&
+           take_first(UserId{i + 1}, world, now_ns, intake)) {
+    }
   }
   tally_.all().longest_backlog = std::max<std::uint64_t>(tally_.all().longest_backlog, waiting_);
 }
 
-void IncrementAdmission::take_first(UserId user, const World& world, std::int64_t now_ns,
+bool IncrementAdmission::take_first(UserId user, const World& world, std::int64_t now_ns,
                                     Intake& intake) {
+  const Refusal reason = refusal_of(world, queues_[user.value - 1].backlog.front().increment);
+  // An acknowledgement would say that it was taken.
+  if (reason != Refusal::kNone && !tally_.can_tell(user)) return false;
   const Increment increment = next(user, intake);
-  if (const Refusal reason = refusal_of(world, increment); reason != Refusal::kNone)
-    return tally_.refuse(increment, user, reason, intake);
+  if (reason != Refusal::kNone) {
+    tally_.refuse(increment, user, reason, intake);
+    return true;
+  }
   leases_.renew(increment.part, now_ns);
   ++tally_.all().accepted;
   ++tally_.of(user).accepted;
   intake.increments.push_back(increment);
+  return true;
 }
 
 Increment IncrementAdmission::next(UserId user, Intake& intake) {

@@ -46,7 +46,8 @@ class IncrementAdmission {
   };
   void queue(const ReceivedIncrement& received, std::int64_t now_ns, Intake& intake);
   std::size_t share_of(const Queue& queue, const World& world) const;
-  void take_first(UserId user, const World& world, std::int64_t now_ns, Intake& intake);
+  /// False: it is refused, and that cannot be told in this tick.
+  bool take_first(UserId user, const World& world, std::int64_t now_ns, Intake& intake);
   /// Removes the first increment of the backlog, and acknowledges it.
   Increment next(UserId user, Intake& intake);
   /// sent_ns 0: no latency can be told from this one.

@@ -14,6 +14,7 @@ struct ServerOptions {
   std::string standby_of;  ///< session to follow, and to go on with when its server is gone
   std::string restore;     ///< log to go on from, or folder of logs; empty: begin anew
   std::string log;         ///< file or existing folder; empty: sessions/<session>-<UTC>.mcap
+  std::string etcd;        ///< nodes of the site's etcd; empty: none
   bool no_log = false;
   double log_rotate_mb = 0.0;  ///< size at which the next file is begun; 0: never
   int threads = 1;

@@ -10,12 +10,14 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <random>
 
 #include "common/base/json_text.h"
 #include "idl/dds_channel.h"
 #include "server/announcer.h"
 #include "server/closing.h"
 #include "server/drain.h"
+#include "server/etcd_fencing.h"
 #include "server/held_channel.h"
 #include "server/memory.h"
 #include "server/metrics_endpoint.h"
@@ -35,6 +37,12 @@ std::atomic<bool> stop_asked{false}, drain_asked{false};  // lock-free: set in s
 
 void ask_to_stop(int) { stop_asked = true; }
 void ask_to_drain(int) { drain_asked = true; }
+
+// Of one server among all that ever lead a session.
+std::string random_name() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}{:08x}", random(), random(), random());
+}
 
 int say(const Error& error) {
   spdlog::error("{}", error.text);
@@ -114,7 +122,11 @@ class Service {
   std::int64_t term_ns() const {
     return static_cast<std::int64_t>(channel_->term_ms() * 1'000'000);
   }
-  bool barred() const { return !channel_->barred().empty(); }
+  std::string barred() const {
+    const std::string by_etcd = fencing_ ? fencing_->barred() : std::string();
+    return by_etcd.empty() ? channel_->barred() : by_etcd;
+  }
+  Status open_fencing(ClientKey own);
 
   Result<bool> find_leader();
   Status open_channel();
@@ -135,8 +147,9 @@ class Service {
   std::optional<Resumed> resumed_;
   NewLog log_;
   Closing closing_;
-  std::vector<SeatRecord> seats_;  ///< of the server that was followed
-  std::int64_t followed_ns_ = 0;   ///< wall clock of its last tick
+  std::vector<SeatRecord> seats_;         ///< of the server that was followed
+  std::int64_t followed_ns_ = 0;          ///< wall clock of its last tick
+  std::unique_ptr<EtcdFencing> fencing_;  ///< null: the site names no etcd
   std::optional<SystemClock> clock_;
   std::optional<HeldChannel> held_;
   std::optional<TickLoop> loop_;
@@ -149,6 +162,12 @@ Result<bool> Service::begin() {
   if (stands_by()) {
     const Result<bool> found = find_leader();
     if (!found || !*found) return found;
+  } else {
+    // Before its log is read: a server that still leads may write to it.
+    if (Status opened = open_fencing(random_name()); !opened) return opened.error();
+    if (fencing_)
+      if (Status leads = fencing_->lead([this] { return !beats_until_stop(); }); !leads)
+        return leads.error();
   }
   auto start = read_start(options_);
   if (!start) return start.error();
@@ -169,11 +188,21 @@ Result<bool> Service::begin() {
   return true;
 }
 
+Status Service::open_fencing(ClientKey own) {
+  if (options_.etcd.empty()) return ok();
+  auto etcd = EtcdClient::open(options_.etcd);
+  if (!etcd) return etcd.error();
+  fencing_ =
+      std::make_unique<EtcdFencing>(std::move(*etcd), options_.network.session, std::move(own));
+  return ok();
+}
+
 // 1. of one that stands by: a leader, and all of its ticks of before in its log
 Result<bool> Service::find_leader() {
   auto opened = open_standby_channel(options_.network);
   if (!opened) return opened.error();
   standby_ = std::move(*opened);
+  if (Status fencing = open_fencing(standby_->own_key()); !fencing) return fencing.error();
   spdlog::info("standing by: waiting for the server of session '{}'", options_.network.session);
   manager_.ready("standing by for session " + options_.network.session);
   auto found = await_leader(*standby_, told_, [this] { return beats_until_stop(); });
@@ -239,6 +268,9 @@ Result<bool> Service::follow_leader() {
   seats_ = follower.seats();
   followed_ns_ = follower.time_ns();
   run_as_others();  // and the threads of the endpoints
+  if (fencing_)
+    if (Status may = fencing_->take_over([this] { return !beats_until_stop(); }); !may)
+      return may.error();
   if (Status taken = line.take_over(); !taken) return taken.error();
   if (log_.writer)
     if (Status named = log_.writer->take_name(); !named) spdlog::error("{}", named.error().text);
@@ -262,11 +294,13 @@ void Service::open_loop() {
   options.session = options_.network.session;
   options.threads = options_.threads;
   options.inbox = options_.limits;
-  held_.emplace(*channel_, *clock_, [this] { return loop_->inbox().users_present(); });
+  held_.emplace(
+      *channel_, *clock_, [this] { return loop_->inbox().users_present(); }, fencing_.get());
   loop_.emplace(start_->scene.world, *held_, *clock_, log_.writer.get(), options);
   drain_.emplace(*loop_, *held_, *clock_);
   if (resumed_ && stands_by()) {
-    held_->await(seats_);
+    if (!fencing_)
+      held_->await(seats_);  // where it knows that nobody else leads, nobody is missing
     loop_->adopt(std::move(resumed_->statistics), seats_);
   } else if (resumed_) {
     loop_->resume(std::move(resumed_->statistics), std::move(resumed_->departures));
@@ -301,7 +335,7 @@ void Service::play() {
   Announcer announcer(options_.live, options_.quiet);
   loop_->run(
       [&] {
-        return stop_asked || loop_->superseded() || barred() ||
+        return stop_asked || loop_->superseded() || !barred().empty() ||
                (drain_asked && drain_->is_ready()) ||
                (options_.duration_s > 0.0 && loop_->seconds() >= options_.duration_s);
       },
@@ -323,7 +357,8 @@ void Service::after_tick(Announcer& announcer) {
 
 int Service::end() {
   manager_.ends();
-  const bool was_barred = barred();
+  const std::string bar = barred();
+  const bool was_barred = !bar.empty();
   if (drain_->begun() && !stop_asked && !loop_->superseded() && !was_barred) {
     drain_->finish([&] {
       if (metrics_) metrics_->beat();
@@ -336,9 +371,9 @@ int Service::end() {
                   options_.network.session, by.empty() ? "" : ", the one at " + by,
                   options_.network.session);
   } else if (was_barred) {
-    spdlog::error("{}", channel_->barred());
+    spdlog::error("{}", bar);
     // One that stands by goes on with the session, and takes nothing more from this one.
-    if (!held_->follower_in_step()) say_goodbye();
+    if (!fencing_ && !held_->follower_in_step()) say_goodbye();
   } else if (drain_->end() != Drain::End::kNone) {
     spdlog::info("{}", drain_->text(options_.network.session, closing_.log_file));
   } else {

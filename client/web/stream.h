@@ -45,8 +45,7 @@ class WhenDone {
   };
   template <class Handler>
   struct Held final : Any {
-    template <class From>
-    explicit Held(From&& from) : handler(std::forward<From>(from)) {}
+    explicit Held(Handler of) : handler(std::move(of)) {}
     void call(beast::error_code error, std::size_t bytes) override {
       if constexpr (std::is_invocable_v<Handler&, beast::error_code, std::size_t>)
         handler(error, bytes);

@@ -22,7 +22,7 @@ struct Simplex {
   // The point nearest to the origin within the hull of the points in `set`, if it lies inside of
   // their affine hull's face: barycentric coordinates all positive.
   bool foot(unsigned set, Vec3& at) const {
-    int index[4], n = 0;
+    int index[4] = {}, n = 0;
     for (int k = 0; k < count; ++k)
       if (set >> k & 1U) index[n++] = k;
     const Vec3& o = point[index[0]];

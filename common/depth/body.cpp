@@ -465,7 +465,8 @@ const FaceEnds& Body::ends_of(std::uint16_t face) const {
         ends[f].extent_mm.hi = std::max(ends[f].extent_mm.hi, z);
       }
     }
-    for (std::uint16_t f = 0; f < ends.size(); ++f) {
+    const auto faces = static_cast<std::uint16_t>(ends.size());
+    for (std::uint16_t f = 0; f < faces; ++f) {
       const auto& surface = band->faces[f].surface;
       if (surface && surface->kind == SurfaceKind::kSphere)
         for (const bool upper : {false, true})

@@ -370,8 +370,10 @@ void add_in_bore_rows(const PairFrame& pair, KnownOverlaps& known) {
   if (pair.trivial) return;
   const auto& faces_a = pair.bodies[0].band->faces;
   const auto& faces_b = pair.bodies[1].band->faces;
-  for (std::uint16_t i = 0; i < faces_a.size(); ++i)
-    for (std::uint16_t j = 0; j < faces_b.size(); ++j) {
+  const auto count_a = static_cast<std::uint16_t>(faces_a.size());
+  const auto count_b = static_cast<std::uint16_t>(faces_b.size());
+  for (std::uint16_t i = 0; i < count_a; ++i)
+    for (std::uint16_t j = 0; j < count_b; ++j) {
       const InBoreBound bound = in_bore_bound(pair, i, j, pair.near_mm);
       if (!std::isfinite(bound.face_mm)) continue;
       const auto row = std::find_if(known.rows.begin(), known.rows.end(), [&](const auto& r) {

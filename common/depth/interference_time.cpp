@@ -233,8 +233,10 @@ class InterferenceSearch {
   // ends the search when the pair is really certain there.
   void find_known() {
     if (trivial_) return;
-    for (std::uint16_t i = 0; i < bodies_[0].band->faces.size(); ++i)
-      for (std::uint16_t j = 0; j < bodies_[1].band->faces.size(); ++j) {
+    const auto count_a = static_cast<std::uint16_t>(bodies_[0].band->faces.size());
+    const auto count_b = static_cast<std::uint16_t>(bodies_[1].band->faces.size());
+    for (std::uint16_t i = 0; i < count_a; ++i)
+      for (std::uint16_t j = 0; j < count_b; ++j) {
         const Surface* sa = Body::surface_of(bodies_[0].band->faces[i], layer_);
         const Surface* sb = Body::surface_of(bodies_[1].band->faces[j], layer_);
         if (sa != nullptr && sb != nullptr && has_closed_form(*sa, *sb))

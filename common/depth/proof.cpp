@@ -256,7 +256,8 @@ class Neighbourhood {
   // Is the facet where the wall is one?
   bool is_along(std::uint32_t t, const Corners& c, const Facet& wall) const {
     const Interval& along = wall.covers_along_mm;
-    if (!std::isfinite(along.lo) || Body::surface_of(k_.face(t), proof_.layer) == wall.surface)
+    if (wall.surface == nullptr || !std::isfinite(along.lo) ||
+        Body::surface_of(k_.face(t), proof_.layer) == wall.surface)
       return true;
     for (const Vec3& x : c) {
       const double z = (x - wall.surface->point).dot(wall.surface->axis);

@@ -5,12 +5,13 @@
 namespace mortise {
 
 void make_body_ready(const Solid& solid, const SurfaceBand& band, int threads) {
+  const auto faces = static_cast<std::uint16_t>(band.faces.size());
   for (int i = 0; i < threads; ++i) {
     {
       const Body body(solid, band);
       (void)body.face_of_child();
       (void)body.plane_faces();
-      for (std::uint16_t face = 0; face < band.faces.size(); ++face) (void)body.ends_of(face);
+      for (std::uint16_t face = 0; face < faces; ++face) (void)body.ends_of(face);
       (void)cover_of(body);
     }
     lay_out_index(solid, band);

@@ -39,8 +39,10 @@ std::vector<Vec3> directions() {
     s = s * kCosGolden + c * kSinGolden;
     c = turned;
   }
-  for (int i = 0; i < 27; ++i)
-    if (i != 13) all.push_back(Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).normalized());
+  for (int i = 0; i < 27; ++i) {
+    const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+    if (i != 13) all.push_back(Vec3(x, y, z).normalized());
+  }
   return all;
 }
 

@@ -115,6 +115,7 @@ struct ToldTick {
 struct TakenTicks {
   std::uint64_t received = 0;  ///< it has all up to here; 0: it has not reported yet
   std::uint64_t computed = 0;  ///< computed up to here; the rest is computed before it leads
+  ClientKey by = {};           ///< which standby
 };
 /// Value of `received` of a standby that leaves and needs nothing more.
 inline constexpr std::uint64_t kTakenAll = ~std::uint64_t{0};
@@ -222,6 +223,9 @@ class ServerChannel {
   /// The term under which this server leads, ms since 1970 or later; 0: the transport knows no
   /// other servers.
   virtual std::uint64_t term_ms() const { return 0; }
+
+  /// The name of this server among those of the session; empty: the transport knows none.
+  virtual ClientKey own_key() const { return {}; }
 
   /// Why this server must end, as found by take() and follow(); empty: it may continue.
   virtual std::string barred() const { return {}; }

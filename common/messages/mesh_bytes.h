@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -36,13 +37,8 @@ inline std::vector<std::byte> mesh_to_bytes(
                                                static_cast<std::uint32_t>(triangles.size())};
   std::vector<std::byte> bytes(kMeshHeaderBytes + points_mm.size_bytes() + triangles.size_bytes());
   std::memcpy(bytes.data(), header.data(), kMeshHeaderBytes);
-  if (!points_mm.empty()) {
-    std::memcpy(bytes.data() + kMeshHeaderBytes, points_mm.data(), points_mm.size_bytes());
-  }
-  if (!triangles.empty()) {
-    std::memcpy(bytes.data() + kMeshHeaderBytes + points_mm.size_bytes(), triangles.data(),
-                triangles.size_bytes());
-  }
+  const auto behind = std::ranges::copy(std::as_bytes(points_mm), bytes.begin() + kMeshHeaderBytes);
+  std::ranges::copy(std::as_bytes(triangles), behind.out);
   return bytes;
 }
 

@@ -55,6 +55,43 @@ TEST(WireFuzz, EverySeedPasses) {
   for (const std::string& seed : inbox_seeds()) EXPECT_TRUE(feed(fuzz_inbox, seed));
 }
 
+/// What programs of before said stands in tests/golden/wire, a sample of each topic; written by
+/// MORTISE_RECORD_WIRE=FOLDER when a version is released, and never changed afterwards.
+class WireOfBefore : public testing::Test {
+ protected:
+  static std::filesystem::path file(const std::filesystem::path& folder, std::size_t topic) {
+    return folder / ("sample" + std::to_string(topic));
+  }
+  void SetUp() override {
+    const std::vector<std::string> now = wire_seeds();
+    if (const char* folder = std::getenv("MORTISE_RECORD_WIRE"))
+      for (std::size_t i = 0; i < now.size(); ++i)
+        std::ofstream(file(folder, i), std::ios::binary) << now[i];
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      std::ifstream in(file(std::filesystem::path(MORTISE_SOURCE_DIR) / "tests/golden/wire", i),
+                       std::ios::binary);
+      before_.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    }
+  }
+  std::vector<std::string> before_;
+};
+
+TEST_F(WireOfBefore, IsUnderstoodByThisBuild) {
+  for (const std::string& sample : before_) {
+    ASSERT_FALSE(sample.empty());
+    EXPECT_TRUE(feed(fuzz_wire, sample)) << "topic " << int{sample[0]};
+  }
+}
+
+/// New members stand at the end of a topic's struct: a reader of before finds all that it knows.
+TEST_F(WireOfBefore, UnderstandsThisBuild) {
+  const std::vector<std::string> now = wire_seeds();
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    ASSERT_FALSE(before_[i].empty()) << "topic " << i;
+    EXPECT_TRUE(now[i].starts_with(before_[i])) << "topic " << i << " says the same in another way";
+  }
+}
+
 /// Run by hand when the wire has changed: puts today's seeds into the kept corpus.
 TEST(WireFuzz, DISABLED_WriteSeeds) {
   const auto write = [](const std::string& name, const std::vector<std::string>& seeds) {

@@ -49,6 +49,11 @@ for wrong in 'demo --bogus' 'demo --seconds' 'demo --seconds x' 'test --sanitize
   [ ! -e called ] || fail "./mortise $wrong called something"
 done
 
+exits 0 help
+for code in 0 1 2 3 4 5 6 7; do
+  sed -n '/^Exit codes/,$p' said | tr '\n' ' ' | grep -qE "[ ,]$code [a-z]" || fail "help does not say what exit code $code is"
+done
+
 # 2. a program builds itself alone, without tests, and is not called stale
 exits 0 lint some.yaml
 grep -q 'ran mortise-lint some.yaml' said || fail "lint: $(cat said)"

@@ -34,7 +34,8 @@ std::filesystem::path program_path(const std::string& name) {
 Program::Program(const std::filesystem::path& folder, const std::string& name,
                  const std::vector<std::string>& arguments) {
   static std::atomic<int> count{0};
-  const std::string stem = name + "-" + std::to_string(++count);
+  const std::string stem =
+      std::filesystem::path(name).filename().string() + "-" + std::to_string(++count);
   out_ = folder / (stem + ".out");
   errors_ = folder / (stem + ".err");
   const std::string program = program_path(name).string();

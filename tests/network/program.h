@@ -13,7 +13,8 @@ namespace mortise::test {
 /// A program of the house in a process of its own; ended with the object, by its id.
 class Program {
  public:
-  /// `name` in the folder of the built programs. Output goes to files in `folder`.
+  /// `name` in the folder of the built programs, or with its path. Output goes to files in
+  /// `folder`.
   Program(const std::filesystem::path& folder, const std::string& name,
           const std::vector<std::string>& arguments);
   ~Program();

@@ -122,6 +122,7 @@ TEST_F(ReplayProgram, RecoversOrLeavesNoFile) {
     } else {
       ++refused;
       EXPECT_EQ(outcome.exit_code, 7);
+      EXPECT_NE(outcome.document()["not_replayable"], "");
       EXPECT_FALSE(std::filesystem::exists(out.path()));
     }
   }

@@ -1,9 +1,11 @@
 // mortise-replay verify --signed: whatever is done to a signed log shows.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
+#include "common/io/log/crc32.h"
 #include "common/io/log/log_seal_check.h"
 #include "common/io/log/mcap_format.h"
 #include "common/io/log/session_log_read.h"
@@ -148,6 +150,69 @@ TEST_F(SignedLog, NoBitOfTheDataChangesInSilence) {
     EXPECT_NE(*why_not, "") << "byte " << at;
   }
   EXPECT_GT(tried, 500U);
+}
+
+/// Each byte behind the last seal, by one bit; and an index that is whole and says something else.
+TEST_F(SignedLog, AnIndexThatWasChangedIsFound) {
+  const std::string whole = written("hall");
+  const auto records = records_of(whole);
+  const auto end = std::find_if(records.begin(), records.end(),
+                                [](const auto& r) { return r.opcode == mcap::kDataEnd; });
+  const std::vector<fs::path> files{file("log.mcap")};
+  const auto why_not = [&](const std::string& bytes) {
+    std::ofstream(files[0], std::ios::binary) << bytes;
+    return why_not_signed(files, (*site_)["anna"]).value();
+  };
+  EXPECT_EQ(why_not(whole), "");
+  ASSERT_GT(whole.size() - end->from, 1000U);
+  for (std::size_t at = end->from; at < whole.size(); at += at % 5 + 1) {
+    std::string flipped = whole;
+    flipped[at] = static_cast<char>(flipped[at] ^ (1 << (at % 8)));
+    EXPECT_NE(why_not(flipped), "") << "byte " << at;
+  }
+  // Increments are read as poses would be, that is not at all: with a checksum that fits.
+  std::string forged = whole;
+  for (const char* topic : {"/increments", "/incremenuz"}) {
+    const std::size_t at = forged.find("/increments", end->from);
+    ASSERT_NE(at, std::string::npos);
+    forged.replace(at, 11, topic);
+    const std::uint32_t crc = crc32(std::as_bytes(
+        std::span(forged).subspan(end->to, forged.size() - mcap::kMagic.size() - 4 - end->to)));
+    std::memcpy(forged.data() + forged.size() - mcap::kMagic.size() - 4, &crc, 4);
+    const std::string why = why_not(forged);
+    if (std::string(topic) == "/increments")
+      EXPECT_EQ(why, "") << "the same once more";
+    else
+      EXPECT_NE(why.find("the index was changed"), std::string::npos) << why;
+  }
+  EXPECT_NE(why_not(whole.substr(0, end->to)).find("cut off"), std::string::npos);
+}
+
+/// As a crash leaves it: what is covered, and what is not.
+TEST_F(SignedLog, OfOneThatWasNeverClosedIsToldWhatIsCovered) {
+  const std::string whole = written("hall");
+  std::vector<RecordPlace> chunks;
+  for (const RecordPlace& record : records_of(whole))
+    if (record.opcode == mcap::kChunk) chunks.push_back(record);
+  ASSERT_GT(chunks.size(), 4U);
+  const std::size_t cut = chunks[3].from;
+  expect_found(whole.substr(0, cut), "not closed");
+  const std::string covered =
+      "4 seals of hall cover its first " + std::to_string(cut) + " bytes, up to tick ";
+  expect_found(whole.substr(0, cut), covered);
+  expect_found(whole.substr(0, cut), "no byte stands behind them");
+  const auto read = read_session_log(file("log.mcap"));
+  ASSERT_TRUE(read) << read.error().text;
+  const std::string tick = std::to_string(read->ticks.back().tick) + "; ";
+  expect_found(whole.substr(0, cut), "up to tick " + tick);
+  expect_found(whole.substr(0, cut + 30), covered + tick + "the 30 bytes behind them are not");
+  const std::size_t behind = chunks[3].to - cut;  // a whole chunk whose seal was not written
+  expect_found(whole.substr(0, chunks[3].to), "behind the last seal is not sealed; " + covered +
+                                                  tick + "the " + std::to_string(behind) +
+                                                  " bytes");
+  std::string flipped = whole;
+  flipped[cut + 100] ^= 1;
+  expect_found(flipped, covered + tick);
 }
 
 TEST_F(SignedLog, WhoIsNoServerOfTheSiteProvesNothing) {

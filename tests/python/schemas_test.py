@@ -163,6 +163,16 @@ def test_logs(log, tmp_path):
     hold("replay-export", json.loads((tmp_path / "tables.json").read_text()))
 
 
+def test_a_log_of_which_nothing_is_replayable(tmp_path):
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(LOGS[0].read_bytes()[:400])
+    document = said("replay", "recover", cut, "--out", tmp_path / "new.mcap", "--json", codes=(7,))
+    hold("replay-recover", document)
+    assert document["not_replayable"] and not (tmp_path / "new.mcap").exists()
+    assert errors("replay-recover", document | {"ticks": 3}) != [], "one of the two documents"
+    assert errors("replay-recover", {"log": "a.mcap"}) != []
+
+
 def test_a_live_session(tmp_path):
     domain = str(random.randrange(140, 180))
 

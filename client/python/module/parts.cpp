@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include "client/python/module/values.h"
@@ -39,8 +40,7 @@ py::array_t<double> points_of(const api::Part& part) {
   const api::Mesh mesh = part.mesh();
   py::array_t<double> out({static_cast<py::ssize_t>(mesh.points_mm.size()), py::ssize_t{3}});
   if (!mesh.points_mm.empty())
-    std::memcpy(out.mutable_data(), mesh.points_mm.data(),
-                mesh.points_mm.size() * sizeof(api::Vec3));
+    std::copy_n(mesh.points_mm.front().data(), 3 * mesh.points_mm.size(), out.mutable_data());
   return out;
 }
 

@@ -171,6 +171,7 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
   double size = 0.0;
   for (const HalfSpace& plane : planes) size = std::max(size, std::fabs(plane.c_mm));
   const double same = kSameShare * size;
+  const auto count = static_cast<std::uint16_t>(planes.size());
   ConvexCell cell;
   std::vector<std::vector<std::uint16_t>> planes_of;
   const auto add = [&](const Vec3& x) {
@@ -180,7 +181,7 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
       if ((known - x).norm() <= same) return;
     cell.corners.push_back(x);
     planes_of.emplace_back();
-    for (std::uint16_t p = 0; p < planes.size(); ++p)
+    for (std::uint16_t p = 0; p < count; ++p)
       if (planes[p].n.dot(x) >= planes[p].c_mm - 4.0 * same) planes_of.back().push_back(p);
   };
   for (std::size_t i = 0; i < planes.size(); ++i)
@@ -195,8 +196,9 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
       }
     }
   if (cell.corners.size() < 4) return std::nullopt;
-  for (std::uint16_t a = 0; a < cell.corners.size(); ++a)
-    for (std::uint16_t b = a + 1; b < cell.corners.size(); ++b) {
+  const auto corners = static_cast<std::uint16_t>(cell.corners.size());
+  for (std::uint16_t a = 0; a < corners; ++a)
+    for (std::uint16_t b = a + 1; b < corners; ++b) {
       std::size_t shared = 0;
       for (const std::uint16_t p : planes_of[a])
         shared += std::count(planes_of[b].begin(), planes_of[b].end(), p);

@@ -126,7 +126,8 @@ class Turned {
       }
     }
     std::vector<double> levels{all.lo, all.hi};
-    for (std::uint16_t i = 0; i < band.size(); ++i) {
+    const auto faces = static_cast<std::uint16_t>(band.size());
+    for (std::uint16_t i = 0; i < faces; ++i) {
       const Surface* s = Body::surface_of(band[i], Layer::kUpper);
       if (!is_turned(s) || !(extent[i].lo < extent[i].hi)) continue;
       line_of_face_[i] = line_of(
@@ -142,7 +143,7 @@ class Turned {
             {slabs_.empty() ? levels[i] : slabs_.back().z1, levels[i + 1], {}, {}, {}});
     if (slabs_.empty() || slabs_.size() > kMostSlabs) return false;
     slabs_.back().z1 = std::max(slabs_.back().z1, all.hi);
-    for (std::uint16_t i = 0; i < band.size(); ++i)
+    for (std::uint16_t i = 0; i < faces; ++i)
       if (line_of_face_[i]) add_line(i, extent[i]);
     return true;
   }

@@ -271,8 +271,10 @@ class Search {
   // Translations: from where it would pay at most, back to the first contact.
   void sweep_back() {
     std::vector<Vec3> all = lines();
-    for (int i = 0; i < 13; ++i)
-      all.push_back(Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).normalized());
+    for (int i = 0; i < 13; ++i) {
+      const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+      all.push_back(Vec3(x, y, z).normalized());
+    }
     for (const Vec3& line : all)
       for (const double sign : {1.0, -1.0}) {
         if (out_of_work()) return;

@@ -10,10 +10,13 @@
 #include <vector>
 
 #include "common/io/log/input_file.h"
+#include "common/io/log/log_index_check.h"
 #include "common/io/log/log_layout.h"
+#include "common/io/log/log_records.h"
 #include "common/io/log/log_seal.h"
 #include "common/io/log/mcap_format.h"
 #include "common/io/log/mcap_index.h"
+#include "common/io/log/mcap_reader.h"
 #include "common/io/log/openssl_owner.h"
 #include "common/io/state/bytes.h"
 
@@ -116,7 +119,7 @@ class Walk {
   bool next();
   void record(std::uint8_t opcode, std::span<const std::byte> content);
   void seal(const Metadata& metadata);
-  void behind_last_seal(std::uint8_t opcode, std::uint64_t end);
+  void behind_last_seal();
   void stop(const std::string& why);
 
   const InputFile& file_;
@@ -125,7 +128,8 @@ class Walk {
   Certificate certificate_;
   RunningDigest digest_;
   std::uint64_t at_ = 0;
-  bool has_unsealed_ = false, last_sealed_ = false, data_ended_ = false;
+  bool has_unsealed_ = false, last_sealed_ = false;
+  ExpectedIndex index_;
   std::vector<std::byte> head_, content_;
 };
 
@@ -136,15 +140,15 @@ void Walk::stop(const std::string& why) {
 SealReport Walk::run() {
   digest_.add(file_.read(0, mcap::kMagic.size(), head_));
   at_ = mcap::kMagic.size();
-  while (report_.trouble.empty() && !report_.is_closed && next()) {
+  while (report_.trouble.empty() && !last_sealed_ && next()) {
   }
   if (!report_.trouble.empty()) return std::move(report_);
   if (report_.seals == 0)
     stop("there is no seal");
   else if (has_unsealed_)
     stop("what stands behind the last seal is not sealed");
-  else if (last_sealed_ && !report_.is_closed)
-    stop("it is cut off or was changed behind its last seal");
+  else if (last_sealed_)
+    behind_last_seal();
   return std::move(report_);
 }
 
@@ -157,14 +161,12 @@ bool Walk::next() {
   const std::uint64_t content_at = at_ + mcap::kRecordHeaderBytes;
   if (!reader.ok() || content_at > file_.size() || length > file_.size() - content_at) return false;
   const auto content = file_.read(content_at, length, content_);
-  if (last_sealed_) {
-    behind_last_seal(opcode, content_at + length);
-  } else {
-    record(opcode, content);
-    digest_.add(head);
-    digest_.add(content);
-  }
+  record(opcode, content);
+  digest_.add(head);
+  digest_.add(content);
+  index_.record(at_, opcode, content);
   at_ = content_at + length;
+  if (!has_unsealed_ && report_.trouble.empty()) report_.proven_bytes = at_;
   return true;
 }
 
@@ -198,24 +200,54 @@ void Walk::seal(const Metadata& metadata) {
                  of_hexadecimal(metadata["signature"])))
     return stop("the signature of seal " + number + " is not good");
   ++report_.seals;
-  report_.proven_bytes = at_;
   report_.digests.insert(digest);
   has_unsealed_ = false;
 }
 
-// Only the index may stand there, and the file ends with it.
-void Walk::behind_last_seal(std::uint8_t opcode, std::uint64_t end) {
-  const bool is_index = opcode == mcap::kSchema || opcode == mcap::kChannel ||
-                        opcode == mcap::kChunkIndex || opcode == mcap::kAttachmentIndex ||
-                        opcode == mcap::kMetadataIndex || opcode == mcap::kStatistics ||
-                        opcode == mcap::kSummaryOffset;
-  const bool may_stand =
-      data_ended_ ? is_index || opcode == mcap::kFooter : opcode == mcap::kDataEnd;
-  if (!may_stand) return stop("a record was added behind the last seal");
-  data_ended_ = true;
-  if (opcode != mcap::kFooter) return;
-  report_.is_closed = end + mcap::kMagic.size() == file_.size();
-  if (!report_.is_closed) stop("the file does not end behind its index");
+// Only the index may stand there, as it follows from what is sealed, and the file ends with it.
+void Walk::behind_last_seal() {
+  const std::vector<std::byte> expected = index_.end(at_);
+  const auto found = file_.read(at_, std::max(expected.size() + 1, head_.size()), content_);
+  const auto [differs, wanted] = std::ranges::mismatch(found, expected);
+  report_.is_closed = differs == found.end() && wanted == expected.end();
+  if (report_.is_closed) return;
+  if (differs == found.end()) return stop("it is cut off behind its last seal");
+  if (differs == found.begin()) return stop("a record was added behind the last seal");
+  at_ += static_cast<std::uint64_t>(differs - found.begin());
+  stop(wanted == expected.end() ? "the file does not end behind its index"
+                                : "the index was changed: it does not fit what is sealed");
+}
+
+// The last tick that ends in the first `bytes` of a file; 0: none.
+std::uint64_t last_tick_of(const fs::path& file, std::uint64_t bytes) {
+  std::error_code error;
+  const double share = static_cast<double>(bytes) / static_cast<double>(fs::file_size(file, error));
+  std::uint64_t last = 0;
+  bool is_beyond = false;
+  const McapHandler handler{.on_message =
+                                [&](const McapChannel& channel, const McapMessage& message) {
+                                  log_records::TickEnd end;
+                                  if (!is_beyond && channel.topic == log_layout::kTicks &&
+                                      log_records::decode(message.data, end))
+                                    last = end.tick;
+                                },
+                            .on_progress = [&](double read) { is_beyond = read >= share; },
+                            .is_enough = [&] { return is_beyond; }};
+  if (!scan_mcap(file, handler)) return 0;
+  return last;
+}
+
+// What is proven of a file of which not all is.
+std::string covered_of(const fs::path& file, const SealReport& report) {
+  if (report.seals == 0) return "nothing of it is covered by a seal";
+  std::error_code error;
+  const std::uint64_t behind = fs::file_size(file, error) - report.proven_bytes;
+  return std::to_string(report.seals) + " seals of " + report.signer + " cover its first " +
+         std::to_string(report.proven_bytes) + " bytes, up to tick " +
+         std::to_string(last_tick_of(file, report.proven_bytes)) + "; " +
+         (behind == 0 ? "no byte stands behind them"
+                      : "the " + std::to_string(behind) + " bytes behind them are not covered") +
+         ", and whether more was recorded cannot be told";
 }
 
 }  // namespace
@@ -237,11 +269,12 @@ Result<std::string> why_not_signed(std::span<const fs::path> files, const fs::pa
     const std::string name = files[i].string() + ": ";
     Result<SealReport> report = check_seals(files[i], site);
     if (!report) return report.error();
-    if (!report->trouble.empty()) return name + report->trouble;
+    if (!report->trouble.empty())
+      return name + report->trouble + "; " + covered_of(files[i], *report);
     if (before && !before->digests.contains(report->previous_seal))
       return name + "it does not go on from a seal of the file before";
     if (i + 1 == files.size() && !report->is_closed)
-      return name + "it was not closed: its end is missing";
+      return name + "it was not closed: its end is missing; " + covered_of(files[i], *report);
     before = std::move(*report);
   }
   return std::string();

@@ -12,7 +12,7 @@ namespace mortise {
 /// What the seals of one file prove; session_log_format.md, "Seals".
 struct SealReport {
   std::uint64_t seals = 0;         ///< whole and signed, from the front without a gap
-  std::uint64_t proven_bytes = 0;  ///< up to the last of them
+  std::uint64_t proven_bytes = 0;  ///< up to the last of them, with it
   bool is_closed = false;     ///< the last one says that it is the last, and the file ends there
   std::string signer;         ///< name of the server
   std::string previous_seal;  ///< of the file that this one continues

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "common/base/constants.h"
 #include "common/base/hash.h"
@@ -194,15 +195,18 @@ Result<std::string> walk(World& world, const SessionLog& log, int threads,
                          const std::function<bool(const ReplayedTick&)>& visit) {
   Scratch scratch(threads);
   const std::uint64_t begun_at = world.tick;
+  std::int64_t before_ns = log.begin ? log.begin->time_ns : 0;
   auto gap = log.gaps.begin();
   while (gap != log.gaps.end() && gap->until_tick != 0 && gap->until_tick <= begun_at) ++gap;
   for (const TickRecord& record : log.ticks) {
+    const std::int64_t from_ns = std::exchange(before_ns, record.time_ns);
     if (begun_at > 0 && record.tick <= begun_at) continue;
     // 1. What was lost before this tick cannot be computed, nor anything after it.
     if (gap != log.gaps.end() && gap->until_tick == record.tick)
       return "ticks between " + std::to_string(gap->after_tick) + " and " +
              std::to_string(gap->until_tick) + " are missing: " + gap->reason;
-    if (record.tick <= world.tick || record.tick - world.tick > kMostIdleTicks)
+    if (record.tick <= world.tick ||
+        record.tick - world.tick > most_idle_ticks(world.tick_rate_hz, from_ns, record.time_ns))
       return fail(Code::kInvalidInput, "tick " + std::to_string(record.tick) + " follows tick " +
                                            std::to_string(world.tick) + ": the log is damaged");
     // 2. Ticks in between had no input; they still count for how long a clash lasts.

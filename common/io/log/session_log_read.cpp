@@ -327,6 +327,12 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
 
 }  // namespace
 
+std::uint64_t most_idle_ticks(double rate_hz, std::int64_t from_ns, std::int64_t to_ns) {
+  constexpr double kUntold_s = 1200.0, kDay_s = 86'400.0;
+  const double told_s = (static_cast<double>(to_ns) - static_cast<double>(from_ns)) * 1e-9;
+  return static_cast<std::uint64_t>(rate_hz * (std::clamp(told_s, 0.0, kDay_s) + kUntold_s));
+}
+
 Result<ScenarioReading> scenario_of(const SessionLog& log) {
   Result<ScenarioReading> reading = read_scenario_text(log.scenario_yaml, log.scenario_name);
   if (!reading || !reading->scenario.assembly) return reading;

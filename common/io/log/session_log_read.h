@@ -10,6 +10,9 @@ namespace mortise {
 /// Ticks without a record between two records of a log, when nothing was sent: a day at 1000 a
 /// second. A longer pause is a damaged number, which must not keep anybody busy for ever.
 inline constexpr std::uint64_t kMostIdleTicks = 86'400'000;
+/// The same between two records of these times: they are computed again, and what a number alone
+/// claims is not worth it. A server writes a record each ten minutes, whatever its clock says.
+std::uint64_t most_idle_ticks(double rate_hz, std::int64_t from_ns, std::int64_t to_ns);
 
 /// Ticks that happened and are missing in the log.
 struct LogGap {

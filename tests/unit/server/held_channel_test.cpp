@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 namespace mortise {
 namespace {
@@ -21,6 +22,7 @@ struct Wire final : ServerChannel {
   StillClock* clock = nullptr;
   std::vector<std::uint64_t> said;  ///< ticks of pose batches
   std::uint64_t taken = 0, told = 0, not_computed = 0;
+  ClientKey by;  ///< who took it
   int led_anew = 0;
   ServerInput input;
   std::int64_t superseded_after_ns = 0;  ///< 0: never
@@ -49,7 +51,7 @@ struct Wire final : ServerChannel {
   void publish_tick(const ToldTick& tick) override { told = tick.tick; }
   TakenTicks taken_up_to() override {
     const std::uint64_t received = std::exchange(taken, 0);
-    return {received, received - std::min(received, not_computed)};
+    return {received, received - std::min(received, not_computed), by};
   }
   void await_taken(std::int64_t at_most_ns) override { clock->at_ns += at_most_ns; }
   void lead_anew() override { ++led_anew; }
@@ -334,6 +336,104 @@ TEST_F(Held, AtTheEndAllIsSaid) {
   tick(2);
   held_.finish();
   EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+}
+
+/// Says what the test lets it say.
+struct Word final : Fencing {
+  std::set<ClientKey> possible{ClientKey{}};
+  std::vector<ClientKey> asked;
+  bool holds = true;
+  bool may_say(const ClientKey& has_it) const override {
+    return holds && std::all_of(possible.begin(), possible.end(),
+                                [&](const ClientKey& who) { return who.empty() || who == has_it; });
+  }
+  void ask(const ClientKey& who) override {
+    if (!asked.empty() && asked.back() == who) return;
+    asked.push_back(who);
+    possible.insert(who);
+  }
+  std::string barred() const override { return {}; }
+  void grant() { possible = {asked.back()}; }
+};
+
+class HeldByWord : public Held {
+ protected:
+  HeldByWord() { wire_.by = "second"; }
+  Word word_;
+  HeldChannel fenced_{wire_, clock_, [this] { return users_; }, &word_};
+  void tell(std::uint64_t number) {
+    (void)fenced_.take();
+    fenced_.publish_tick({number, {}});
+    PoseBatch batch;
+    batch.tick = number;
+    fenced_.publish_poses(batch);
+  }
+  void second_has(std::uint64_t number) {
+    wire_.taken = number;
+    (void)fenced_.take();
+  }
+  void wait(double seconds) {
+    for (const std::int64_t end_ns = clock_.at_ns + static_cast<std::int64_t>(seconds * 1e9);
+         clock_.at_ns < end_ns && fenced_.rest(end_ns - clock_.at_ns);) {
+    }
+  }
+};
+
+TEST_F(HeldByWord, OneThatStandsByMayTakeOverOnceItHasAllThatWasSaid) {
+  tell(1);
+  tell(2);
+  second_has(1);
+  EXPECT_TRUE(word_.asked.empty()) << "it has not what was said";
+  tell(3);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2})) << "kept from now on";
+  second_has(2);
+  EXPECT_EQ(word_.asked, std::vector<ClientKey>{"second"});
+  second_has(3);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3})) << "whether or not it is granted: it has that";
+}
+
+TEST_F(HeldByWord, GoesOnAloneOnlyOnceNobodyMayTakeOver) {
+  tell(1);
+  second_has(1);
+  word_.grant();
+  tell(2);
+  wait(10.0);
+  EXPECT_EQ(word_.asked.back(), "");
+  EXPECT_EQ(wire_.said, Ticks{1}) << "the second may lead, for all that is known";
+  EXPECT_EQ(wire_.led_anew, 0);
+  word_.grant();
+  wait(0.1);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+  EXPECT_EQ(wire_.led_anew, 1);
+}
+
+TEST_F(HeldByWord, SaysNothingWithoutItsLease) {
+  word_.holds = false;
+  tell(1);
+  second_has(1);
+  wait(1.0);
+  EXPECT_TRUE(wire_.said.empty());
+  fenced_.finish();
+  EXPECT_TRUE(wire_.said.empty()) << "nor at its end";
+  word_.holds = true;
+  tell(2);
+  second_has(2);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2}));
+}
+
+TEST_F(HeldByWord, WhatAnotherStandbyHasIsNotSaidWhileTheFirstMayLead) {
+  tell(1);
+  second_has(1);
+  word_.grant();
+  wire_.by = "third";
+  tell(2);
+  second_has(2);
+  EXPECT_EQ(wire_.said, Ticks{1});
+  EXPECT_EQ(word_.asked.back(), "third");
+  word_.grant();
+  tell(3);
+  second_has(3);
+  EXPECT_EQ(wire_.said, (Ticks{1, 2, 3}));
 }
 
 }  // namespace

@@ -332,6 +332,27 @@ TEST(Inbox, OneParticipantDoesNotTakeEverySeat) {
   EXPECT_EQ(inbox.users_present(), 32U);
 }
 
+/// Who is told that an increment was taken, and not that it was refused, holds it for done.
+TEST(Inbox, WhatIsRefusedIsAcknowledgedOnceThatIsTold) {
+  World world = small_world();
+  Inbox inbox({.increments_per_tick = 100});
+  Intake intake;
+  ServerInput input;
+  input.joins.push_back({"a", 1, "anna", "designer"});
+  inbox.admit(std::move(input), world, 0, intake);
+  ServerInput late;  // of a part that she held before the others took her for gone
+  for (std::uint64_t seq = 1; seq <= 20; ++seq)
+    late.increments.push_back({"a", {UserId{1}, kRed, seq, Vec3(0.1, 0, 0), Vec3::Zero()}, 0});
+  std::uint64_t told = 0;
+  for (int tick = 0; tick < 4; ++tick) {
+    inbox.admit(std::exchange(late, {}), world, 0, intake);
+    told += intake.refused.size();
+    EXPECT_TRUE(intake.acks.empty() || intake.acks.front().seq == told) << tick;
+  }
+  EXPECT_EQ(told, 20U);
+  EXPECT_EQ(inbox.counters().refusals_untold, 0U);
+}
+
 TEST(Inbox, AFloodOfOneUserIsCutAndTheOthersGoOn) {
   World world = small_world();
   Inbox inbox({.messages_per_s = 100.0, .increments_per_tick = 1000});

@@ -252,7 +252,9 @@ TEST_F(Restore, ATickFarAheadIsDamageAndNoPause) {
 // A night of ticks without a record may be true: whoever does not want to wait may stop it.
 TEST_F(Restore, IsStoppedWithinTicksThatNobodyLogged) {
   const auto file = folder_.path() / "night.mcap";
-  session_->ticks.back().report.tick = session_->ticks.back().tick += 80'000'000;
+  constexpr std::int64_t kNight_s = 8 * 3600;
+  session_->ticks.back().report.tick = session_->ticks.back().tick += 60 * kNight_s;
+  session_->ticks.back().time_ns += kNight_s * 1'000'000'000;
   ASSERT_TRUE(write_log(*session_, file));
   const auto log = read_session_log(file);
   ASSERT_TRUE(log) << log.error().text;
@@ -264,6 +266,22 @@ TEST_F(Restore, IsStoppedWithinTicksThatNobodyLogged) {
   ASSERT_FALSE(resumed);
   EXPECT_NE(resumed.error().text.find("stopped while it was played again"), std::string::npos);
   EXPECT_EQ(asked, 1000);
+}
+
+// A number alone is no night: its times tell how long nothing happened.
+TEST_F(Restore, ATickFarAheadOfItsTimeIsNotComputedUpTo) {
+  const auto file = folder_.path() / "number.mcap";
+  session_->ticks.back().report.tick = session_->ticks.back().tick += 80'000'000;
+  ASSERT_TRUE(write_log(*session_, file));
+  const auto log = read_session_log(file);
+  ASSERT_TRUE(log) << log.error().text;
+  auto scene = scene_of(*log);
+  ASSERT_TRUE(scene);
+  int asked = 0;
+  const auto resumed = resume_from(*log, scene->world, 1, true, [&] { return ++asked, false; });
+  ASSERT_FALSE(resumed);
+  EXPECT_NE(resumed.error().text.find("the log is damaged"), std::string::npos);
+  EXPECT_LT(asked, 1000);
 }
 
 // What a log tells of ticks without a record is what computing them tells.
