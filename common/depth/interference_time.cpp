@@ -477,9 +477,9 @@ class InterferenceSearch {
 
 // Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
 constexpr int kLooks = 3;
-// Covers alone cost a hundredth. They look as far ahead as the search is content with where they do
-// not say that both only touch. Where they do there is no end to it, since who slides along a wall
-// becomes deeper long after that. Then so often between the last two looks.
+// Covers alone cost a hundredth. They look ahead as often where they do not say that both only
+// touch, and as long as they do: who slides along a wall becomes deeper long after that. Then so
+// often between the last two looks.
 constexpr int kCoverHalvings = 6;
 
 // Work of one look; at the brink of interfering it is not worth more.
@@ -584,9 +584,7 @@ class LookAhead {
   LookAhead(const SweptQuery& query, double t, Layer layer, std::uint64_t& evaluations)
       : query_(query), layer_(layer), t_(t), spent_(evaluations) {
     const PairPath path(query.motion_a, *query.at_target.a, query.motion_b, *query.at_target.b);
-    const double speed = std::max(path.speed_upper_bound(), 1e-300);
-    step_ = query.accuracy_mm / speed;
-    close_ = kCloseEnough_mm / speed;
+    step_ = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
     const bool certain = layer == Layer::kLower;
     named_ = certain && !query.slides ? Named::kLeast : named_of(layer);
     look_cap_ = certain ? kCertainLookWorkCap : kPossibleLookWorkCap;
@@ -609,12 +607,12 @@ class LookAhead {
 
   SoonAfter by_covers() {
     double before = t_;
-    bool only_touch = true;
-    for (double step = step_; before < 1.0 && (only_touch || step <= close_); step *= 2.0) {
+    int unclear = 0;
+    for (double step = step_; before < 1.0 && unclear < kLooks; step *= 2.0) {
       const double t = std::min(t_ + step, 1.0);
       const SaidByCovers said = said_by_covers(at(t), named_, spent_);
       if (said.place) return between(before, {true, t, *said.place});
-      only_touch &= said.apart;
+      unclear += !said.apart;
       before = t;
     }
     return {};
@@ -633,18 +631,21 @@ class LookAhead {
   }
 
   SoonAfter by_search() {
-    const double t = std::min(t_ + close_, 1.0);
-    OverlapQuery there = at(t);
-    there.work_cap = std::min(there.work_cap, look_cap_);
-    const auto place = interferes_at(there, layer_, spent_);
-    return place ? SoonAfter{true, t, *place} : SoonAfter{};
+    const std::uint64_t most = spent_ + query_.at_target.work_cap;
+    double step = step_;
+    for (int i = 0; i < kLooks && t_ + step <= 1.0 && spent_ < most; ++i, step *= 2.0) {
+      OverlapQuery there = at(t_ + step);
+      there.work_cap = std::min(most - spent_, look_cap_);
+      if (const auto place = interferes_at(there, layer_, spent_)) return {true, t_ + step, *place};
+    }
+    return {};
   }
 
   const SweptQuery& query_;
   const Layer layer_;
   const double t_;
   std::uint64_t& spent_;
-  double step_ = 0.0, close_ = 0.0;  ///< shares of the path
+  double step_ = 0.0;
   Named named_ = Named::kLeast;
   std::uint64_t look_cap_ = 0;
 };
@@ -682,7 +683,7 @@ SaidByCovers said_of_start(const SweptQuery& query, Layer layer, std::uint64_t& 
   OverlapQuery at = query.at_target;
   at.X_WA = query.motion_a.pose_at(0.0);
   at.X_WB = query.motion_b.pose_at(0.0);
-  return said_by_covers(at, layer == Layer::kLower ? Named::kLeast : Named::kLargest, evaluations);
+  return said_by_covers(at, named_of(layer), evaluations);
 }
 
 }  // namespace
@@ -700,17 +701,12 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
     answer.evaluations = free.work;
     return answer;
   }
-  SaidByCovers start;
-  if (free.t_free <= 0.0) start = said_of_start(query, Layer::kLower, answer.evaluations);
-  const bool free_at_start = free.t_free > 0.0 || start.apart;
+  const bool free_at_start =
+      free.t_free > 0.0 || said_of_start(query, Layer::kLower, answer.evaluations).apart;
   SoonAfter soon;
-  if (start.place)
-    soon = {true, 0.0, *start.place};
-  else if (free_at_start)
-    soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
+  if (free_at_start) soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
   const std::uint64_t looked = answer.evaluations + free.work;
   if (soon.interferes) {
-    answer.real_at_start = start.place.has_value();
     answer.becomes_real = true;
     answer.t_free = free.t_free;
     answer.t_real = soon.t;
