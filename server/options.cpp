@@ -22,8 +22,7 @@ void add_session(ProgramOptions& app, ServerOptions& o) {
           "names its log, or the folder of it"));
   add("--etcd", o.etcd,
       "Nodes of the site's etcd (v3), IPv4:PORT, comma between: it says which of two servers "
-      "leads, "
-      "and nothing that was acknowledged is lost; the same for both");
+      "leads; the same for both");
   add("--policy", o.policy, "Response to a real contact instead of the scenario's")
       .one_of({"stop", "slide", "report"});
   add("--rate", o.rate_hz, "Ticks a second instead of the scenario's").in_range(1.0, 1000.0);

@@ -538,6 +538,7 @@ SweptQuery rest_of(const SweptQuery& query, double t) {
   SweptQuery rest = query;
   rest.motion_a = rest_of(query.motion_a, t);
   rest.motion_b = rest_of(query.motion_b, t);
+  rest.certain_free.reset();
   return rest;
 }
 
@@ -631,11 +632,11 @@ class LookAhead {
   }
 
   SoonAfter by_search() {
-    const std::uint64_t most = spent_ + query_.at_target.work_cap;
+    const std::uint64_t before = spent_, most = query_.at_target.work_cap;
     double step = step_;
-    for (int i = 0; i < kLooks && t_ + step <= 1.0 && spent_ < most; ++i, step *= 2.0) {
+    for (int i = 0; i < kLooks && t_ + step <= 1.0 && spent_ - before < most; ++i, step *= 2.0) {
       OverlapQuery there = at(t_ + step);
-      there.work_cap = std::min(most - spent_, look_cap_);
+      there.work_cap = std::min(most - (spent_ - before), look_cap_);
       if (const auto place = interferes_at(there, layer_, spent_)) return {true, t_ + step, *place};
     }
     return {};

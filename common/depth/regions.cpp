@@ -139,8 +139,9 @@ class Grouping {
     if (!query_.known->rows.empty())
       for (const std::uint32_t n : pair_.s(role).sharp_neighbours(t))
         limit = std::max(limit, limit_[pair_.s(role).face_index(n)]);
-    // What is said to be deepest anywhere by bounds of the cells is what the closed form says.
-    const bool may_be_deeper = query_.most_mm > limit + kBoundAccuracy_mm;
+    // No deeper than a closed form tells, as closely as cells are bounded: it is told already.
+    const double same_mm = limit > pair_.touch_mm ? kBoundAccuracy_mm : 0.0;
+    const bool may_be_deeper = query_.most_mm > limit + same_mm;
     if (may_be_deeper && asked(role, t, widest(), limit)) {
       asked_[role][t].may_interfere = true;
       return true;

@@ -16,7 +16,7 @@ constexpr double kInner = 1.05;
 constexpr double kOffRim_mm = 0.1;
 // Places on a circle.
 constexpr int kAround = 16;
-// The same of a path, where a part may slide along at the limit.
+// Beside an axis as parallel as this the bound of a whole circle is taken for exact, mm.
 constexpr double kParallel_mm = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -158,23 +158,28 @@ class RoundInWall {
     return p.r_mm + (q.r_mm - p.r_mm) * (z - p.z_mm) / (q.z_mm - p.z_mm);
   }
 
-  Rises all_rises() const { return {{-rise_[0], -rise_[1]}, {rise_[0], rise_[1]}}; }
+  // Both ends of each segment that may be between the heights of the wall, at each end of the
+  // chord: visit(segment, end of the chord, z).
+  template <class Visit>
+  void for_each_circle(Visit&& visit) const {
+    const Rises all{{-rise_[0], -rise_[1]}, {rise_[0], rise_[1]}};
+    for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
+      double from, to;
+      if (!clip(k, all, from, to)) continue;
+      for (int e = 0; e < chord_.ends; ++e)
+        for (const double z : {from, to}) visit(k, e, z);
+    }
+  }
 
   // All around at once: the centre of the circle, and its radius.
   double whole_circle() {
     ++work_;
     double most = -kInfinity;
-    const Rises all = all_rises();
-    for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
-      double from, to;
-      if (!clip(k, all, from, to)) continue;
-      for (int e = 0; e < chord_.ends; ++e)
-        for (const double z : {from, to}) {
-          const double r = radius(k, z);
-          most = std::max(most, beyond(wall_, point_[e] + z * axis_[e]) +
-                                    wall_.cosine * r * (1.0 + std::fabs(wall_.slope) * rise_[e]));
-        }
-    }
+    for_each_circle([&](std::size_t k, int e, double z) {
+      const double r = radius(k, z);
+      most = std::max(most, beyond(wall_, point_[e] + z * axis_[e]) +
+                                wall_.cosine * r * (1.0 + std::fabs(wall_.slope) * rise_[e]));
+    });
     return most + chord_.spread_mm;
   }
 
@@ -182,19 +187,13 @@ class RoundInWall {
   // farthest one where the axes are parallel, and about that where they are nearly so.
   void see_away_from_axis() {
     ++work_;
-    const Rises all = all_rises();
-    for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
-      double from, to;
-      if (!clip(k, all, from, to)) continue;
-      for (int e = 0; e < chord_.ends; ++e)
-        for (const double z : {from, to}) {
-          Vec3 off = point_[e] + z * axis_[e] - wall_.point;
-          off -= off.dot(wall_.axis) * wall_.axis;
-          const double c = off.dot(across_[e][0]), s = off.dot(across_[e][1]);
-          const double length = std::sqrt(c * c + s * s);
-          see(k, length > 0.0 ? Direction{c / length, s / length} : kQuarters[0]);
-        }
-    }
+    for_each_circle([&](std::size_t k, int e, double z) {
+      Vec3 off = point_[e] + z * axis_[e] - wall_.point;
+      off -= off.dot(wall_.axis) * wall_.axis;
+      const double c = off.dot(across_[e][0]), s = off.dot(across_[e][1]);
+      const double length = std::sqrt(c * c + s * s);
+      see(k, length > 0.0 ? Direction{c / length, s / length} : kQuarters[0]);
+    });
   }
 
   // The points of one generator at both heights of the wall.

@@ -7,7 +7,7 @@
 
 namespace mortise {
 
-/// A bound at a wall is no closer than this, mm.
+/// A bound at a wall may be larger than the least one by so much, mm: nobody looks closer.
 inline constexpr double kBoundAccuracy_mm = 2e-5;
 
 /// How a cell S is seen from the frame K of the other part, over a span of time: every point of it

@@ -11,7 +11,7 @@ namespace {
 constexpr int kSteps = 24;
 // Spans that are looked at before what is proven so far has to do.
 constexpr int kMostSpans = 400;
-// A span longer than this share of the path is long.
+// Over a span longer than this share of the path anything that keeps cells apart is looked for.
 constexpr double kLongSpan = 0.2;
 // Onto each of two cells, to find a point of both.
 constexpr int kProjections = 6;
