@@ -49,9 +49,9 @@ std::uint64_t find_chunk(const InputFile& file, std::uint64_t from,
   return file.size();
 }
 
-// A record of another kind whose length is damaged may span chunks.
-bool is_of_chunks(std::uint8_t opcode) {
-  return opcode == mcap::kChunk || opcode == mcap::kMessageIndex || opcode == mcap::kMessage;
+// A record of any other kind whose length is damaged may span chunks; theirs is checked as such.
+bool has_own_check(std::uint8_t opcode) {
+  return opcode == mcap::kChunk || opcode == mcap::kMessage;
 }
 
 // Begins a record there, or ends the file? A footer stands behind the end of data alone.
@@ -181,7 +181,7 @@ McapScan Scanner::run() {
       }
     }
     if (next == Next::kEnd) break;
-    if (next == Next::kGoOn && opcode < mcap::kDataEnd && !is_of_chunks(opcode) &&
+    if (next == Next::kGoOn && opcode < mcap::kDataEnd && !has_own_check(opcode) &&
         (content_at + length >= index_.start ||
          !begins_record(file_, content_at + length, search_buffer_)))
       next = Next::kResync;
