@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/depth/inner_overlap.h"
+#include "common/depth/convex_overlap.h"
 
 namespace mortise {
 namespace {
@@ -28,8 +28,8 @@ OverlapRegion region_of(const PairFrame& pair, const SharedInside& shared) {
   return region;
 }
 
-void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, OverlapRegion& region,
-                        std::uint64_t& evaluations) {
+void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool layers_known,
+                        OverlapRegion& region, std::uint64_t& evaluations) {
   if (region.at_crack || region.delta_mm.lo < -pair.touch_mm) return;  // not known, or apart
   const bool full = query.refinement == Refinement::kFull;
   InnerStart start;
@@ -39,8 +39,10 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, Overla
   start.everywhere = full;
   start.accuracy_mm = query.accuracy_mm;
   const std::uint64_t left = query.work_cap - std::min(query.work_cap, evaluations);
-  const auto inner = find_inner_overlap(
-      pair, start, full ? kQuestions : std::min(kQuestionsLazily, left), evaluations);
+  auto inner = convex_overlap(pair, region.point_W, query.accuracy_mm, evaluations);
+  if (!inner)
+    inner = find_inner_overlap(pair, start, full ? kQuestions : std::min(kQuestionsLazily, left),
+                               evaluations);
   if (!inner) return;
   const Interval& delta = inner->depth_mm;
   region.delta_mm = delta;
@@ -49,7 +51,7 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, Overla
     const double reach_mm = pair.reach_mm(layer);
     const double by_mm = layer == Layer::kLower ? -reach_mm : reach_mm;
     // What the surfaces themselves say is known better; parts that do not meet meet nowhere inside.
-    if (region.closed_form || (!pair.trivial && known.hi <= 0.0)) return known;
+    if (region.closed_form || layers_known || (!pair.trivial && known.hi <= 0.0)) return known;
     if (pair.trivial) return Interval{delta.lo + by_mm, delta.hi + by_mm};
     // An edge or corner travels farther than its faces are offset: what was found there stays.
     const double lo_mm = std::max(known.lo, delta.lo - reach_mm);
@@ -57,7 +59,8 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, Overla
   };
   region.certain_mm = widened(region.certain_mm, Layer::kLower);
   region.possible_mm = widened(region.possible_mm, Layer::kUpper);
-  if (region.has_witness || inner->in_either_mm <= pair.reach_mm(Layer::kLower)) return;
+  if (region.has_witness || layers_known || inner->in_either_mm <= pair.reach_mm(Layer::kLower))
+    return;
   region.has_witness = true;
   region.witness_W = inner->point_W;
 }

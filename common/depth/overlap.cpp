@@ -79,6 +79,12 @@ Bracket moved(Bracket bracket, double by_mm) {
   return bracket;
 }
 
+Bracket capped(Bracket bracket, double most_mm) {
+  bracket.hi_mm = std::min(bracket.hi_mm, most_mm);
+  bracket.best.depth_mm = std::min(bracket.best.depth_mm, most_mm);
+  return bracket;
+}
+
 // A chamfer that keeps clear of the bore in which its shaft sits: one contact, told of the shaft.
 bool told_by_another(const KnownFacePair& known, const Candidates& candidates) {
   if (std::isfinite(known.overlap.lo_mm)) return false;
@@ -127,7 +133,7 @@ class Overlap {
       mark_cracks(pair_, !query_.only_certain, result_);
       return std::move(result_);
     }
-    planes_.emplace(pair_, query_.want_delta && !query_.only_certain);
+    planes_.emplace(pair_);
     result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
@@ -164,7 +170,8 @@ class Overlap {
                        return a.delta_mm.lo > b.delta_mm.lo;
                      });
     if (!result_.no_inside && query_.want_delta && !query_.only_certain && !result_.regions.empty())
-      tell_inner_overlap(pair_, query_, result_.regions.front(), result_.evaluations);
+      tell_inner_overlap(pair_, query_, planes_->has_brackets(), result_.regions.front(),
+                         result_.evaluations);
     return std::move(result_);
   }
 
@@ -265,16 +272,20 @@ class Overlap {
         lower = lower_lazily =
             search(Layer::kLower, true,
                    query_.prove_not_certain ? work_left() : std::min(glance(), work_left()));
-      if (!lazy) refine(found);
+      if (!lazy) refine(found, any_open);
     }
     return found;
   }
 
   // After the lazy answer, which a refined one must not leave for want of work.
-  void refine(Found& found) {
+  // Where no triangle may interfere, nothing that is found does so beyond what a closed form tells.
+  void refine(Found& found, bool any_open) {
     found.mesh = better_of(search(Layer::kMesh, false, work_left() / 3), found.mesh);
     found.upper = better_of(search(Layer::kUpper, false, work_left() / 2), found.upper);
     found.lower = better_of(search(Layer::kLower, false, work_left()), found.lower_lazily);
+    if (any_open) return;
+    for (std::vector<Bracket>* layer : {&found.upper, &found.lower, &found.lower_lazily})
+      for (Bracket& bracket : *layer) bracket = capped(std::move(bracket), 0.0);
   }
 
   void search_regions() {

@@ -51,9 +51,7 @@ class SharpSearch {
   SharpDecision run() {
     const auto decided = [&] { return decision_.state == SharpDecision::State::kDecided; };
     for (const auto& [layer, depth] : {std::pair{SharpLayer::kLeast, &decision_.least},
-                                       std::pair{SharpLayer::kLargest, &decision_.largest},
-                                       std::pair{SharpLayer::kModelled, &decision_.modelled}}) {
-      if (layer == SharpLayer::kModelled && !query_.modelled) continue;
+                                       std::pair{SharpLayer::kLargest, &decision_.largest}}) {
       if (decided()) find_margin(layer, *depth);
       if (decided() && depth->margin_mm.lo > 0.0) find_overlap(layer, *depth);
     }

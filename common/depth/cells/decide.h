@@ -18,7 +18,6 @@ struct SharpQuery {
   SharpPart a, b;
   Pose X_BA;
   double depth_mm = 0.0;  ///< deeper than this is told as at least so deep
-  bool modelled = false;  ///< the parts without offsets are asked for as well
 };
 
 /// The deepest common point of one layer of both parts. The depth of x in a body is the largest d
@@ -46,7 +45,6 @@ struct SharpDecision {
   };
   State state = State::kDecided;
   SharpDepth least, largest;
-  SharpDepth modelled;         ///< where it was asked for
   std::uint64_t programs = 0;  ///< linear programs solved
 };
 

@@ -10,7 +10,7 @@
 
 namespace mortise {
 
-enum class SharpLayer : std::uint8_t { kLeast, kLargest, kModelled };
+enum class SharpLayer : std::uint8_t { kLeast, kLargest };
 
 /// kMargin: twice the lesser depth of a point in both bodies, negative outside; kSum: the sum of
 /// both, where both are positive.
@@ -27,9 +27,7 @@ struct WindowPair {
     double c = 0.0;
     Interval offset_mm;
     double c_in(SharpLayer layer) const {
-      return layer == SharpLayer::kModelled  ? c
-             : layer == SharpLayer::kLargest ? c + offset_mm.hi
-                                             : c + offset_mm.lo;
+      return c + (layer == SharpLayer::kLargest ? offset_mm.hi : offset_mm.lo);
     }
   };
   SharpWindow part[2];

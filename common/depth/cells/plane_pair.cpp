@@ -49,24 +49,20 @@ bool is_convex(const Body& body, double nothing_mm) {
 
 }  // namespace
 
-PlanePair::PlanePair(const PairFrame& pair, bool delta) : pair_(pair) {
+PlanePair::PlanePair(const PairFrame& pair) : pair_(pair) {
   if (pair.trivial || !has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return;
   const bool convex =
       is_convex(pair.bodies[0], pair.touch_mm) && is_convex(pair.bodies[1], pair.touch_mm);
-  delta_ = delta && convex;
   look(kDepths * all_offsets_mm(pair));
   // Windows that reach farther may know less of the signs: what is known stays.
-  if (!decided_ || knows_all()) return;
-  SharpDecision near = decision_;
-  double near_mm = depth_mm_;
+  if (!decided_ || has_brackets()) return;
+  const SharpDecision near = decision_;
+  const double near_mm = depth_mm_;
   const double most_mm = convex ? kAnyDepth * pair.deepest_mm(Layer::kUpper) : 0.0;
   for (const double depth_mm : {kDeeper * near_mm, most_mm}) {
     if (!(depth_mm > near_mm)) continue;
     look(depth_mm);
-    if (knows_all()) return;
-    if (!has_brackets()) continue;
-    near = decision_;
-    near_mm = depth_mm_;
+    if (has_brackets()) return;
   }
   decision_ = near;
   depth_mm_ = near_mm;
@@ -81,7 +77,6 @@ void PlanePair::look(double depth_mm) {
   query.b = {pair_.bodies[1].solid, &pair_.bodies[1].plane_faces()};
   query.X_BA = pair_.X_KS[0];
   query.depth_mm = depth_mm;
-  query.modelled = delta_;
   decision_ = decide(query);
   const auto has_sign = [&](const SharpDepth& depth) {
     return depth.margin_mm.hi <= pair_.touch_mm ||
@@ -101,12 +96,6 @@ std::optional<Interval> PlanePair::bracket_mm(Layer layer) const {
   // A deeper point would show with as much.
   if (!(depth.overlap_mm.hi < depth_mm_)) return std::nullopt;
   return depth.overlap_mm;
-}
-
-bool PlanePair::knows_all() const {
-  const SharpDepth& modelled = decision_.modelled;
-  const bool delta = modelled.margin_mm.hi <= pair_.touch_mm || modelled.overlap_mm.hi < depth_mm_;
-  return has_brackets() && (!delta_ || delta);
 }
 
 double PlanePair::upper_mm(Layer layer) const {
@@ -156,18 +145,6 @@ void PlanePair::tell_largest(OverlapRegion& region) const {
   if (decision_.largest.has_point) name_faces(decision_.largest, region);
 }
 
-void PlanePair::tell_modelled(std::vector<OverlapRegion>& regions) const {
-  const SharpDepth& modelled = decision_.modelled;
-  if (!modelled.has_point || !(modelled.margin_mm.lo > pair_.touch_mm) ||
-      !(modelled.overlap_mm.hi < depth_mm_))
-    return;
-  for (OverlapRegion& region : regions) {
-    region.delta_mm.hi = std::min(region.delta_mm.hi, modelled.overlap_mm.hi);
-    region.delta_mm.lo = std::min(region.delta_mm.lo, region.delta_mm.hi);
-  }
-  nearest(regions, pair_.X_W[1] * modelled.point_B).delta_mm = modelled.overlap_mm;
-}
-
 Bracket PlanePair::told(const Bracket& mesh, Layer layer) const {
   const Interval bracket = *bracket_mm(layer);
   Bracket told = mesh;
@@ -197,7 +174,6 @@ void PlanePair::tell(bool only_certain, std::vector<OverlapRegion>& regions) con
   };
   tell_largest(place(decision_.largest));
   tell_least(place(certain() ? decision_.least : decision_.largest));
-  if (delta_) tell_modelled(regions);
   // Where no point of one mesh lies in the other, delta is the gap, found faster than by search.
   Interval& delta_mm = regions.front().delta_mm;
   if (regions.size() == 1 && delta_mm.lo <= 0.0 && delta_mm.width() > pair_.touch_mm)

@@ -12,8 +12,7 @@ namespace mortise {
 class PlanePair {
  public:
   /// Costs nothing where a part has no plane faces, and little where others are near the overlap.
-  /// delta: of convex parts that of the parts as modelled is asked for as well.
-  PlanePair(const PairFrame& pair, bool delta);
+  explicit PlanePair(const PairFrame& pair);
 
   /// Whether the least bodies interfere, and whether the largest do, is known.
   bool decided() const { return decided_; }
@@ -31,7 +30,6 @@ class PlanePair {
 
  private:
   void look(double depth_mm);
-  bool knows_all() const;
   bool certain() const { return decision_.least.margin_mm.lo > pair_.touch_mm; }
   bool possible() const { return decision_.largest.margin_mm.lo > pair_.touch_mm; }
   /// Of the overlap, or of minus the gap; nullopt: deeper than was looked.
@@ -45,12 +43,10 @@ class PlanePair {
   OverlapRegion& nearest(std::vector<OverlapRegion>& regions, const Vec3& x_W) const;
   void tell_least(OverlapRegion& region) const;
   void tell_largest(OverlapRegion& region) const;
-  void tell_modelled(std::vector<OverlapRegion>& regions) const;
   void name_faces(const SharpDepth& depth, OverlapRegion& region) const;
 
   const PairFrame& pair_;
   SharpDecision decision_;
-  bool delta_ = false;
   double depth_mm_ = 0.0;
   bool decided_ = false;  // whether the least bodies interfere, and whether the largest do
 };

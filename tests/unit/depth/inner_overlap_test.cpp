@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "common/depth/convex_overlap.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/overlap_case.h"
@@ -118,6 +119,39 @@ TEST(InnerOverlap, RandomOnesAgreeWithALattice) {
     EXPECT_NEAR(sum_mm, found->depth_mm.lo, 1e-9) << i;
   }
   EXPECT_GT(deep, test::effort(12) / 2);
+}
+
+// Cutting planes and boxes of space say the same of convex parts; the planes to the last digit.
+TEST(InnerOverlap, ConvexPartsByPlanesAsByBoxes) {
+  std::mt19937_64 rng(11);
+  const auto u = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(rng);
+  };
+  int deep = 0;
+  for (int i = 0; i < test::effort(40); ++i) {
+    Case c{solid(box({u(1, 3), u(1, 3), u(1, 3)})),
+           i % 2 ? solid(box({u(1, 3), u(1, 3), u(1, 3)})) : solid(peg({u(1, 3), 0.0, 4.0, 7}))};
+    c.X_WA = {rotation_exp(Vec3(u(-2, 2), u(-2, 2), u(-2, 2))), Vec3(u(-4, 4), u(-4, 4), u(-4, 4))};
+    const PairFrame frame = frame_of(c);
+    std::uint64_t evaluations = 0;
+    const auto planes = convex_overlap(frame, c.X_WA.p, 1e-6, evaluations);
+    const auto boxes =
+        find_inner_overlap(frame, {std::span(&c.X_WA.p, 1), 0.0, true, 0.02}, 100'000, evaluations);
+    ASSERT_EQ(planes.has_value(), boxes.has_value()) << i;
+    if (!planes) continue;
+    ++deep;
+    EXPECT_LE(planes->depth_mm.lo, boxes->depth_mm.hi) << i;
+    EXPECT_GE(planes->depth_mm.hi, boxes->depth_mm.lo) << i;
+    EXPECT_LE(planes->depth_mm.width(), 2e-6) << i;
+    // A lazy look says the same.
+    const OverlapResult result = overlap_of(c);
+    ASSERT_FALSE(result.regions.empty()) << i;
+    const Interval delta = result.regions.front().delta_mm;
+    EXPECT_LE(delta.lo, planes->depth_mm.hi) << i;
+    EXPECT_GE(delta.hi, planes->depth_mm.lo) << i;
+    EXPECT_LE(delta.width(), kDepthAccuracyDefault_mm + 2e-6) << i;
+  }
+  EXPECT_GT(deep, test::effort(40) / 4);
 }
 
 // Where the work ends the bracket stays wide, and true.

@@ -1,0 +1,119 @@
+#include "common/depth/convex_overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/depth/cells/linear_program.h"
+#include "common/geometry/outline.h"
+#include "common/geometry/signed_distance.h"
+
+namespace mortise {
+namespace {
+
+// Points asked. A pair of blocks needs about ten.
+constexpr int kMostPoints = 60;
+// Of points this close to the surface the direction to it is rounding, mm.
+constexpr double kOn_mm = 1e-9;
+
+// Variables: the point in frame B, about the middle of what both boxes have in common, and its
+// depth in either part.
+class CuttingPlanes {
+ public:
+  CuttingPlanes(const PairFrame& pair, std::uint64_t& evaluations)
+      : pair_(pair), evaluations_(evaluations), core_(core_of(pair)), origin_(core_.center()) {}
+
+  std::optional<InnerOverlap> run(const Vec3& start_B, double accuracy_mm) {
+    if (core_.empty()) return std::nullopt;
+    LinearProgram program = program_of();
+    LinearProgram::Optimum optimum;
+    program.maximize(optimum);
+    Vec3 x_B = start_B;
+    for (int i = 0; i < kMostPoints; ++i) {
+      bool cut = false;
+      for (const LinearProgram::Row& row : planes_at(x_B)) {
+        cut |= program.cuts_off(row, optimum);
+        if (!program.maximize_with(row, optimum)) return std::nullopt;
+      }
+      most_mm_ = std::min(most_mm_, program.upper_bound(optimum));
+      if (most_mm_ <= best_.depth_mm.lo + accuracy_mm || (!cut && i > 0)) break;
+      x_B = origin_ + Vec3(optimum.y[0], optimum.y[1], optimum.y[2]);
+    }
+    if (!(best_.depth_mm.lo > 0.0)) return std::nullopt;
+    best_.depth_mm.hi = std::max(best_.depth_mm.lo, most_mm_) + 2.0 * pair_.rounding_mm;
+    return best_;
+  }
+
+ private:
+  static Box core_of(const PairFrame& pair) {
+    const Box& a = pair.bodies[0].solid->bounds();
+    Box core;
+    for (int i = 0; i < 8; ++i)
+      core.add(pair.X_KS[0] * Vec3((i & 1 ? a.hi : a.lo).x(), (i & 2 ? a.hi : a.lo).y(),
+                                   (i & 4 ? a.hi : a.lo).z()));
+    const Box& b = pair.bodies[1].solid->bounds();
+    core.lo = core.lo.cwiseMax(b.lo);
+    core.hi = core.hi.cwiseMin(b.hi);
+    return core;
+  }
+
+  // No point of a part is farther from its surface than half its extent.
+  LinearProgram program_of() const {
+    const auto most_mm = [&](int body) {
+      const Box& box = pair_.bodies[body].solid->bounds();
+      return 0.5 * (box.hi - box.lo).minCoeff();
+    };
+    const Vec3 half = core_.hi - origin_;
+    return {5,
+            {-half.x(), -half.y(), -half.z(), 0.0, 0.0},
+            {half.x(), half.y(), half.z(), most_mm(0), most_mm(1)},
+            {0.0, 0.0, 0.0, 1.0, 1.0}};
+  }
+
+  // Of each part the plane that supports it in the direction from the point to its surface.
+  std::array<LinearProgram::Row, 2> planes_at(const Vec3& x_B) {
+    std::array<LinearProgram::Row, 2> rows;
+    double depth_mm[2];
+    for (int body = 0; body < 2; ++body) {
+      const Solid& solid = *pair_.bodies[body].solid;
+      const Vec3 x = body == 0 ? Vec3(pair_.X_KS[1] * x_B) : x_B;
+      const SurfacePoint at = nearest_surface(solid, x);
+      ++evaluations_;
+      depth_mm[body] = at.depth_mm;
+      const Vec3 n = at.depth_mm < -kOn_mm ? Vec3((x - at.point).stableNormalized()) : at.outward;
+      double h = n.dot(farthest_corner(solid.bvh(), solid.outline(), n));
+      Vec3 n_B = n;
+      if (body == 0) {
+        n_B = pair_.X_KS[0].q * n;
+        h += n_B.dot(pair_.X_KS[0].p);
+      }
+      rows[static_cast<std::size_t>(body)].g = {n_B.x(), n_B.y(), n_B.z(), 0.0, 0.0};
+      rows[static_cast<std::size_t>(body)].g[static_cast<std::size_t>(3 + body)] = 1.0;
+      rows[static_cast<std::size_t>(body)].h = h - n_B.dot(origin_);
+    }
+    const double sum_mm = depth_mm[0] + depth_mm[1];
+    if (sum_mm > best_.depth_mm.lo)
+      best_ = {{sum_mm, sum_mm}, pair_.X_W[1] * x_B, std::min(depth_mm[0], depth_mm[1])};
+    return rows;
+  }
+
+  const PairFrame& pair_;
+  std::uint64_t& evaluations_;
+  Box core_;
+  Vec3 origin_;
+  double most_mm_ = std::numeric_limits<double>::infinity();
+  InnerOverlap best_;
+};
+
+}  // namespace
+
+std::optional<InnerOverlap> convex_overlap(const PairFrame& pair, const Vec3& start_W,
+                                           double accuracy_mm, std::uint64_t& evaluations) {
+  for (const Body& body : pair.bodies) {
+    if (!(body.solid->outline().convex_slack_mm <= pair.touch_mm)) return std::nullopt;
+  }
+  return CuttingPlanes(pair, evaluations).run(pair.X_W[1].inverse() * start_W, accuracy_mm);
+}
+
+}  // namespace mortise
