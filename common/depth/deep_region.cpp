@@ -44,17 +44,21 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
     inner = find_inner_overlap(pair, start, full ? kQuestions : std::min(kQuestionsLazily, left),
                                evaluations);
   if (!inner) return;
-  const Interval& delta = inner->depth_mm;
+  const double at_surface_mm = region.delta_mm.lo;
+  const Interval delta{std::max(inner->depth_mm.lo, at_surface_mm),
+                       std::max(inner->depth_mm.hi, at_surface_mm)};
   region.delta_mm = delta;
-  region.point_W = inner->point_W;
+  if (inner->depth_mm.lo > at_surface_mm) region.point_W = inner->point_W;
   const auto widened = [&](const Interval& known, Layer layer) {
     const double reach_mm = pair.reach_mm(layer);
     const double by_mm = layer == Layer::kLower ? -reach_mm : reach_mm;
     // What the surfaces themselves say is known better; parts that do not meet meet nowhere inside.
     if (region.closed_form || layers_known || (!pair.trivial && known.hi <= 0.0)) return known;
     if (pair.trivial) return Interval{delta.lo + by_mm, delta.hi + by_mm};
-    // An edge or corner travels farther than its faces are offset: what was found there stays.
-    const double lo_mm = std::max(known.lo, delta.lo - reach_mm);
+    // An edge or corner travels farther than its faces are offset: what was found there stays, and
+    // a point less deep than that in one of the parts may be far outside of its least body.
+    const bool in_both = inner->in_either_mm > reach_mm;
+    const double lo_mm = in_both ? std::max(known.lo, inner->depth_mm.lo - reach_mm) : known.lo;
     return Interval{lo_mm, std::max(lo_mm, delta.hi + reach_mm)};
   };
   region.certain_mm = widened(region.certain_mm, Layer::kLower);
