@@ -16,6 +16,10 @@ namespace {
 constexpr int kMostPoints = 60;
 // Of points this close to the surface the direction to it is rounding, mm.
 constexpr double kOn_mm = 1e-9;
+// Faces of a part that one program takes.
+constexpr std::size_t kMostFaces = 400;
+// Common points are looked for within so many radii, which no tip leaves.
+constexpr double kFar = 100.0;
 
 // Variables: the point in frame B, about the middle of what both boxes have in common, and its
 // depth in either part.
@@ -106,14 +110,52 @@ class CuttingPlanes {
   InnerOverlap best_;
 };
 
+bool are_convex(const PairFrame& pair) {
+  return std::all_of(std::begin(pair.bodies), std::end(pair.bodies), [&](const Body& body) {
+    return body.solid->outline().convex_slack_mm <= pair.touch_mm;
+  });
+}
+
+bool has_plane_faces_alone(const Body& body) {
+  const PlaneFaces& planes = body.plane_faces();
+  return planes.faces.size() <= kMostFaces &&
+         std::none_of(planes.face_of_triangle.begin(), planes.face_of_triangle.end(),
+                      [](std::uint32_t face) { return face == PlaneFaces::kNone; });
+}
+
 }  // namespace
 
 std::optional<InnerOverlap> convex_overlap(const PairFrame& pair, const Vec3& start_W,
                                            double accuracy_mm, std::uint64_t& evaluations) {
-  for (const Body& body : pair.bodies) {
-    if (!(body.solid->outline().convex_slack_mm <= pair.touch_mm)) return std::nullopt;
-  }
+  if (!are_convex(pair)) return std::nullopt;
   return CuttingPlanes(pair, evaluations).run(pair.X_W[1].inverse() * start_W, accuracy_mm);
+}
+
+std::optional<double> most_of_convex_layer_mm(const PairFrame& pair, Layer layer) {
+  if (!are_convex(pair) || !has_plane_faces_alone(pair.bodies[0]) ||
+      !has_plane_faces_alone(pair.bodies[1]))
+    return std::nullopt;
+  const Vec3 origin_B = pair.bodies[1].solid->bounds().center();
+  const double far_mm = kFar * (pair.smaller_radius_mm() + pair.reach_mm(layer));
+  const double deep_mm = pair.deepest_mm(layer);
+  LinearProgram program(5, {-far_mm, -far_mm, -far_mm, 0.0, 0.0},
+                        {far_mm, far_mm, far_mm, deep_mm, deep_mm}, {0.0, 0.0, 0.0, 1.0, 1.0});
+  for (std::size_t body = 0; body < 2; ++body) {
+    const PlaneFaces& planes = pair.bodies[body].plane_faces();
+    for (const PlaneFace& face : planes.faces) {
+      const Pose X_BK = body == 0 ? pair.X_KS[0] : Pose();
+      const Vec3 n_B = X_BK.q * face.n;
+      LinearProgram::Row row;
+      row.g = {n_B.x(), n_B.y(), n_B.z(), 0.0, 0.0};
+      row.g[3 + body] = 1.0;
+      row.h = face.c + n_B.dot(X_BK.p - origin_B) + planes.noise_mm +
+              (layer == Layer::kLower ? face.offset_mm.lo : face.offset_mm.hi);
+      program.rows.push_back(row);
+    }
+  }
+  LinearProgram::Optimum optimum;
+  if (!program.maximize(optimum)) return 0.0;
+  return program.upper_bound(optimum) + 2.0 * pair.rounding_mm;
 }
 
 }  // namespace mortise

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "common/depth/overlap.h"
 #include "common/depth/pair_frame.h"
 #include "common/depth/region_report.h"
@@ -7,6 +9,17 @@ namespace mortise {
 
 /// Identical parts in one place: no surface lies inside the other, and yet the parts are one.
 OverlapRegion region_of(const PairFrame& pair, const SharedInside& shared);
+
+/// Are the parts of one mesh, and how far apart are twin points of them at most? Infinity: they are
+/// not of one mesh. No more than a hundredth of the radius: duplicates, nobody assembles so.
+double twins_apart_mm(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);
+bool are_duplicates(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);
+
+/// Duplicates that share a point of both least bodies: how deep at least, without a look at their
+/// surfaces, which nearly coincide everywhere. Lazily, and not where only what is certain is asked.
+/// Adds to `evaluations`.
+std::optional<OverlapRegion> find_duplicates(const PairFrame& pair, const OverlapQuery& query,
+                                             std::uint64_t& evaluations);
 
 /// Parts that lie deep in each other are deeper inside than at their surfaces. Tells that of their
 /// deepest region, and a witness where it has none; layers_known: that of the meshes alone. With

@@ -123,18 +123,31 @@ std::vector<Bracket> better_of(std::vector<Bracket> refined, const std::vector<B
   return refined;
 }
 
+// No admissible surfaces of the region interfere; how far from it at the deepest point of the
+// mesh.
+Bracket proven_apart(const PairFrame& pair, const Bracket& mesh, Layer layer) {
+  Bracket apart;
+  apart.hi_mm = 0.0;
+  apart.best = mesh.best;
+  if (std::isfinite(mesh.best.depth_mm))
+    apart.best = sample_at(pair, layer, mesh.best.role, mesh.best.triangle,
+                           pair.X_KS[1 - mesh.best.role] * mesh.best.point_K);
+  apart.best.depth_mm = std::min(apart.best.depth_mm, 0.0);
+  return apart;
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query)
       : query_(query), pair_(query), covers_(pair_, query.use_covers, result_.evaluations) {}
 
   OverlapResult run() {
-    if (told_by_covers()) {
+    if (told_by_covers() || told_as_duplicates()) {
       mark_cracks(pair_, !query_.only_certain, result_);
       return std::move(result_);
     }
     planes_.emplace(pair_);
-    result_.no_inside = !pair_.bodies[0].has_inside || !pair_.bodies[1].has_inside;
+    result_.no_inside = !pair_.has_insides();
     CandidateQuery near{&pair_, pair_.near_mm, result_.no_inside};
     near.want_meetings = pair_.trivial && !result_.no_inside;
     Candidates candidates = find_candidate_triangles(near);
@@ -176,6 +189,12 @@ class Overlap {
   }
 
  private:
+  bool told_as_duplicates() {
+    auto region = find_duplicates(pair_, query_, result_.evaluations);
+    if (region) result_.regions.push_back(std::move(*region));
+    return result_.meshes_cross = region.has_value();
+  }
+
   // What was asked for needs no triangle: the layer is apart, or the deepest region is known as
   // closely as it has to be. Those who want what is near, too, want all regions.
   bool told_by_covers() {
@@ -298,10 +317,10 @@ class Overlap {
   std::optional<OverlapRegion> region_from(const Found& found, std::size_t i) {
     const Bracket& d = found.mesh[i];
     const Bracket p = pair_.trivial         ? moved(d, pair_.reach_mm(Layer::kUpper))
-                      : found.upper.empty() ? proven_apart(d, Layer::kUpper)
+                      : found.upper.empty() ? proven_apart(pair_, d, Layer::kUpper)
                                             : found.upper[i];
     const Bracket c = pair_.trivial         ? moved(d, -pair_.reach_mm(Layer::kLower))
-                      : found.lower.empty() ? proven_apart(d, Layer::kLower)
+                      : found.lower.empty() ? proven_apart(pair_, d, Layer::kLower)
                                             : found.lower[i];
     if (d.best.depth_mm <= pair_.touch_mm && (pair_.trivial ? d : p).hi_mm <= pair_.touch_mm)
       return std::nullopt;
@@ -331,8 +350,8 @@ class Overlap {
 
   void search_certain() {
     const Layer layer = pair_.trivial ? Layer::kMesh : Layer::kLower;
-    const bool lazy = query_.refinement == Refinement::kDecided;
-    for (const Bracket& found : search(layer, lazy, work_left(), query_.ignore_below_mm)) {
+    for (const Bracket& found : search(layer, query_.refinement == Refinement::kDecided,
+                                       work_left(), query_.ignore_below_mm)) {
       const Bracket c = pair_.trivial ? moved(found, -pair_.reach_mm(Layer::kLower)) : found;
       if (c.hi_mm <= pair_.touch_mm + query_.certain_from_mm) continue;
       OverlapRegion region = region_of_certain(pair_, c.best, c.hi_mm);
@@ -341,19 +360,6 @@ class Overlap {
       region.capped = regions_.capped || c.undecided;
       result_.regions.push_back(std::move(region));
     }
-  }
-
-  // No admissible surfaces of the region interfere; how far from it at the deepest point of the
-  // mesh.
-  Bracket proven_apart(const Bracket& mesh, Layer layer) const {
-    Bracket apart;
-    apart.hi_mm = 0.0;
-    apart.best = mesh.best;
-    if (std::isfinite(mesh.best.depth_mm))
-      apart.best = sample_at(pair_, layer, mesh.best.role, mesh.best.triangle,
-                             pair_.X_KS[1 - mesh.best.role] * mesh.best.point_K);
-    apart.best.depth_mm = std::min(apart.best.depth_mm, 0.0);
-    return apart;
   }
 
   Interval bracket_of(const Bracket& bracket) const {

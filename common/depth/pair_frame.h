@@ -45,6 +45,7 @@ struct PairFrame {
     return bodies[0].largest_offset_mm[static_cast<int>(layer)] +
            bodies[1].largest_offset_mm[static_cast<int>(layer)];
   }
+  bool has_insides() const { return bodies[0].has_inside && bodies[1].has_inside; }
   double smaller_radius_mm() const {
     return std::min(bodies[0].solid->sphere().radius_mm, bodies[1].solid->sphere().radius_mm);
   }

@@ -11,6 +11,8 @@ namespace {
 
 // Triangles that are asked whether they lie on a face of the other part that looks the same way.
 constexpr std::size_t kMostCoincidenceQuestions = 64;
+// Triangles of a part below which its twin is looked for.
+constexpr std::uint32_t kTwinQuestions = 24;
 
 // Two normals look the same way.
 constexpr double kSameWay = 0.99;
@@ -196,6 +198,28 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
   return found && is_outside_of_least_bodies(pair, *found) ? std::nullopt : found;
 }
 
+namespace {
+
+// Below a triangle of A, by shares of its size, the largest first.
+std::optional<SharedInside> shared_below(const PairFrame& pair, std::uint32_t t,
+                                         std::uint32_t triangle_b, std::uint64_t& evaluations) {
+  const Body& a = pair.bodies[0];
+  const Vec3 x_A = (a.mesh->corner(t, 0) + a.mesh->corner(t, 1) + a.mesh->corner(t, 2)) / 3.0;
+  const double size = (a.mesh->corner(t, 1) - a.mesh->corner(t, 0)).norm();
+  for (const double share : {1.0, 0.3, 0.1, 0.03, 0.01}) {
+    const Vec3 w_A = x_A - share * size * a.normal(t);
+    const double depth_a = nearest_surface(*a.solid, w_A).depth_mm;
+    const double depth_b = nearest_surface(*pair.bodies[1].solid, pair.X_KS[0] * w_A).depth_mm;
+    evaluations += 2;
+    if (depth_a > pair.touch_mm && depth_b > pair.touch_mm)
+      return SharedInside{
+          pair.X_W[0] * w_A, depth_a + depth_b, std::min(depth_a, depth_b), {t, triangle_b}};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<SharedInside> find_shared_inside(const PairFrame& pair,
                                                const Candidates& candidates) {
   const Body& a = pair.bodies[0];
@@ -203,23 +227,30 @@ std::optional<SharedInside> find_shared_inside(const PairFrame& pair,
   if (!a.has_inside || !b.has_inside) return std::nullopt;
   const std::vector<std::uint32_t>& triangles = candidates.triangles[0];
   const std::size_t step = std::max<std::size_t>(1, triangles.size() / kMostCoincidenceQuestions);
+  std::uint64_t evaluations = 0;
   for (std::size_t i = 0; i < triangles.size(); i += step) {
     const std::uint32_t t = triangles[i];
     const Vec3 x_A = (a.mesh->corner(t, 0) + a.mesh->corner(t, 1) + a.mesh->corner(t, 2)) / 3.0;
     const SurfacePoint at = nearest_surface(*b.solid, pair.X_KS[0] * x_A);
-    const Vec3 n_A = a.normal(t);
     if (std::fabs(at.depth_mm) > pair.touch_mm) continue;
-    if ((pair.X_KS[0].q * n_A).dot(at.face_normal) < kSameWay) continue;
-    const double size = (a.mesh->corner(t, 1) - a.mesh->corner(t, 0)).norm();
-    for (const double share : {1.0, 0.3, 0.1, 0.03, 0.01}) {
-      const Vec3 w_A = x_A - share * size * n_A;
-      const double depth_a = nearest_surface(*a.solid, w_A).depth_mm;
-      const double depth_b = nearest_surface(*b.solid, pair.X_KS[0] * w_A).depth_mm;
-      if (depth_a > pair.touch_mm && depth_b > pair.touch_mm)
-        return SharedInside{pair.X_W[0] * w_A, depth_a + depth_b, {t, at.triangle}};
-    }
+    if ((pair.X_KS[0].q * a.normal(t)).dot(at.face_normal) < kSameWay) continue;
+    if (auto shared = shared_below(pair, t, at.triangle, evaluations)) return shared;
   }
   return std::nullopt;
+}
+
+std::optional<SharedInside> find_inside_of_twins(const PairFrame& pair,
+                                                 std::uint64_t& evaluations) {
+  const Body& a = pair.bodies[0];
+  if (!a.has_inside) return std::nullopt;
+  const auto count = static_cast<std::uint32_t>(a.mesh->triangles.size());
+  const std::uint32_t step = std::max<std::uint32_t>(1, count / kTwinQuestions);
+  std::optional<SharedInside> deepest;
+  for (std::uint32_t t = 0; t < count; t += step)
+    if (const auto shared = shared_below(pair, t, t, evaluations);
+        shared && !(deepest && deepest->depth_mm >= shared->depth_mm))
+      deepest = shared;
+  return deepest;
 }
 
 OverlapRegion region_of_certain(const PairFrame& pair, const Sample& deepest, double most_mm) {

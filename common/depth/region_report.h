@@ -27,14 +27,17 @@ std::optional<Vec3> find_witness(const PairFrame& pair, const Sample& least,
 /// no more than what is stated of that triangle. Asks no surface continued beyond its triangles.
 bool is_borne_out(const Body& body, const Vec3& x, double rounding_mm);
 
-/// A point inside both meshes below two coinciding faces with the same outward direction, and the
-/// sum of its depths in both.
+/// A point inside both meshes, below the faces named.
 struct SharedInside {
   Vec3 point_W = Vec3::Zero();
-  double depth_mm = 0.0;
+  double depth_mm = 0.0;      ///< the sum of its depths in both
+  double in_either_mm = 0.0;  ///< the smaller of the two
   std::uint32_t triangle[2] = {0, 0};
 };
+/// Below two coinciding faces with the same outward direction.
 std::optional<SharedInside> find_shared_inside(const PairFrame& pair, const Candidates& candidates);
+/// Of parts of one mesh of which each point lies near its twin: below some of their triangles.
+std::optional<SharedInside> find_inside_of_twins(const PairFrame& pair, std::uint64_t& evaluations);
 
 /// Fills in point, normal and faces of the region from the deepest sample.
 void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,

@@ -264,6 +264,7 @@ class Grouping {
 
   // Of the first triangle of the primary part that is nearest to a triangle of the other.
   std::uint32_t nearest_region(int other, std::uint32_t t) const {
+    if (regions_.count == 1) return 0;
     const Body& s = pair_.s(other);
     const Body& k = pair_.k(other);
     const Vec3 x = pair_.X_KS[other] *

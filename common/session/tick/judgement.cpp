@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/base/constants.h"
+#include "common/depth/deep_region.h"
 #include "common/evaluation/clash_line.h"
 #include "common/evaluation/explain.h"
 #include "common/evaluation/interference.h"
@@ -211,22 +212,16 @@ bool wants_depth(const Judgement& judgement, const OverlapRegion& region, const 
          !region.at_crack;
 }
 
-// Parts of one mesh whose points all lie within this share of its radius of their twins are
-// duplicates: nobody assembles so.
-constexpr double kDuplicateShare = 0.01;
-
 // "the same part twice in one place", "pin lies wholly inside block", or nothing.
 std::string placement_text(const JudgementQuery& query, const OverlapResult& overlap) {
   const Part &a = *query.a, &b = *query.b;
   const double radius_mm = a.solid->sphere().radius_mm;
-  if (a.solid == b.solid) {
-    const Pose X_AB = query.motion_a.X_W1.inverse() * query.motion_b.X_W1;
-    const double apart_mm =
-        (X_AB * a.solid->sphere().center_mm - a.solid->sphere().center_mm).norm() +
-        2.0 * X_AB.q.vec().norm() * radius_mm;
-    if (apart_mm <= kAccuracyDefault_mm) return kSamePartTwice + " in one place";
-    if (apart_mm <= kDuplicateShare * radius_mm)
-      return kSamePartTwice + ", " + length_text(apart_mm) + " apart";
+  const Pose &X_WA = query.motion_a.X_W1, &X_WB = query.motion_b.X_W1;
+  if (are_duplicates(*a.solid, X_WA, *b.solid, X_WB)) {
+    const double apart_mm = twins_apart_mm(*a.solid, X_WA, *b.solid, X_WB);
+    return kSamePartTwice + (apart_mm <= kAccuracyDefault_mm
+                                 ? " in one place"
+                                 : ", " + length_text(apart_mm) + " apart");
   }
   if (!overlap.contained) return "";
   const bool a_is_inner = radius_mm < b.solid->sphere().radius_mm;
