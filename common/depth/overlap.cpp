@@ -238,6 +238,7 @@ class Overlap {
     search.layer = layer;
     search.known = &known_;
     search.roots = &regions_.roots;
+    if (layer == Layer::kMesh) search.middles = &regions_.middles;
     search.regions = regions_.count;
     search.region_of_triangle = &regions_.region_of_triangle;
     search.primary = regions_.primary;

@@ -43,6 +43,7 @@ struct Asked {
   bool may_interfere = false;
   std::uint32_t met = Topology::kNone;  // triangle of the other part
   std::uint32_t number = 0;             // in the list of kept ones
+  std::int32_t middle = -1;             // of Regions::middles
 };
 
 class Grouping {
@@ -127,7 +128,10 @@ class Grouping {
     ++evaluations_;
     asked_of.met = near_[role] = sample.at.triangle;
     asked_of.may_interfere = sample.depth_mm > pair_.touch_mm;
-    return asked_of.may_interfere;
+    if (!asked_of.may_interfere) return false;
+    asked_of.middle = static_cast<std::int32_t>(regions_.middles.size());
+    regions_.middles.push_back(sample.at);
+    return true;
   }
 
   bool may_interfere(int role, std::uint32_t t) {
@@ -242,7 +246,7 @@ class Grouping {
     for (const std::uint32_t t : kept_[primary]) {
       const std::uint32_t region = region_of_leader(sets.find(kept(primary, t)->number));
       regions_.region_of_triangle[t] = region;
-      regions_.roots.push_back({primary, t, region});
+      regions_.roots.push_back({primary, t, region, kept(primary, t)->middle});
     }
     const int other = 1 - primary;
     for (const std::uint32_t t : kept_[other]) {
@@ -255,7 +259,7 @@ class Grouping {
       else
         region = regions_.count > 0 ? nearest_region(other, t)
                                     : region_of_leader(sets.find(mine->number));
-      regions_.roots.push_back({other, t, region});
+      regions_.roots.push_back({other, t, region, mine->middle});
     }
     regions_.may_interfere.assign(regions_.count, false);
     for (const Root& root : regions_.roots)

@@ -12,6 +12,7 @@ namespace mortise {
 /// The triangles of both parts that may interfere, or whose meshes overlap, in connected regions.
 struct Regions {
   std::vector<Root> roots;
+  std::vector<SurfacePoint> middles;  ///< see SearchQuery
   std::size_t count = 0;
   int primary = 0;  ///< the part whose connected triangles make the regions
   FlatMap<std::uint32_t> region_of_triangle;  ///< of the primary part; of those in a region

@@ -60,7 +60,9 @@ struct Looked {
   double bound_mm;
 };
 
-Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece, std::uint32_t near) {
+// known: what is nearest to the middle of the piece; null: it is asked.
+Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece, std::uint32_t near,
+            const SurfacePoint* known = nullptr) {
   const Body& k = pair.k(role);
   Looked looked{make_patch(pair.s(role), layer, piece, pair.X_KS[role]), {}, 0.0};
   looked.sample.role = role;
@@ -68,7 +70,8 @@ Looked look(const PairFrame& pair, Layer layer, int role, const Piece& piece, st
   looked.bound_mm = -std::numeric_limits<double>::infinity();
   if (looked.patch.count == 0) return looked;  // cut away by its neighbours
   looked.sample.point_K = looked.patch.center;
-  looked.sample.at = nearest_surface(*k.solid, looked.patch.center, near);
+  looked.sample.at =
+      known != nullptr ? *known : nearest_surface(*k.solid, looked.patch.center, near);
   looked.sample.depth_mm = k.depth_in(looked.patch.center, looked.sample.at, layer);
   looked.bound_mm = looked.sample.at.depth_mm + looked.patch.radius_mm +
                     k.largest_offset_mm[static_cast<int>(layer)];
@@ -103,6 +106,7 @@ class Search {
         best_of_role_(query.regions) {}
 
   std::vector<Bracket> run() {
+    heap_.reserve(query_.roots->size());
     for (const Root& root : *query_.roots) add_root(root);
     std::make_heap(heap_.begin(), heap_.end(), worse);
     if (query_.sign_only)
@@ -140,7 +144,9 @@ class Search {
     const Body& s = pair_.s(root.role);
     const Piece piece = whole(s, root.triangle);
     std::uint32_t& near = near_[root.role];  // roots beside each other follow each other
-    push(piece, root.role, root.region, std::numeric_limits<double>::infinity(), near);
+    const bool known = query_.middles != nullptr && root.middle >= 0;
+    push(piece, root.role, root.region, std::numeric_limits<double>::infinity(), near,
+         known ? &(*query_.middles)[static_cast<std::size_t>(root.middle)] : nullptr);
     if (!heap_.empty() && heap_.back().role == root.role) near = heap_.back().at.triangle;
     int inside = !heap_.empty() && heap_.back().at.depth_mm > pair_.touch_mm ? 1 : 0;
     // Depth is often reached at a corner. Where there are many, some are enough to know the class.
@@ -211,10 +217,11 @@ class Search {
   }
 
   void push(const Piece& piece, int role, std::uint32_t region, double parent_bound,
-            std::uint32_t near) {
-    const Looked looked = look(pair_, query_.layer, role, piece, near);
-    ++work_;
-    ++evaluations_;
+            std::uint32_t near, const SurfacePoint* known = nullptr) {
+    const Looked looked = look(pair_, query_.layer, role, piece, near, known);
+    const int asked = known == nullptr ? 1 : 0;
+    work_ += asked;
+    evaluations_ += asked;
     if (looked.patch.count == 0) return;
     Item item;
     item.bound_mm = std::min(parent_bound, looked.bound_mm);

@@ -26,6 +26,7 @@ struct Root {
   int role = 0;
   std::uint32_t triangle = 0;
   std::uint32_t region = 0;
+  std::int32_t middle = -1;  ///< of SearchQuery::middles; below 0: not known
 };
 
 /// Bracket of the largest depth of one region in one layer.
@@ -42,6 +43,8 @@ struct SearchQuery {
   Layer layer = Layer::kMesh;
   const KnownOverlaps* known = nullptr;
   const std::vector<Root>* roots = nullptr;
+  /// Of roots on the mesh: what is nearest to the middle of the triangle. Null: none is known.
+  const std::vector<SurfacePoint>* middles = nullptr;
   std::size_t regions = 1;
   /// Regions by triangle of the primary part: pieces of the other part belong to the region of the
   /// triangle that they meet. Null: pieces stay in their root's region.
