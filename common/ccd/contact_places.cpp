@@ -150,7 +150,7 @@ class Places {
 
 }  // namespace
 
-std::vector<ContactPlace> contact_places(const ContactPlacesQuery& query, CcdScratch& scratch) {
+ContactPlaces contact_places(const ContactPlacesQuery& query, CcdScratch& scratch) {
   MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
   MORTISE_CHECK(query.reach_mm >= 0.0 && query.most_pairs > 0, "a reach must be a length");
   const Solid &a = *query.a, &b = *query.b;
@@ -168,8 +168,9 @@ std::vector<ContactPlace> contact_places(const ContactPlacesQuery& query, CcdScr
                                   });
       });
   // From the origin of B's tree to the world.
-  std::vector<ContactPlace> found = places.outermost();
-  for (ContactPlace& place : found) {
+  ContactPlaces found{{}, left > 0};
+  if (found.all || !query.all_or_none) found.places = places.outermost();
+  for (ContactPlace& place : found.places) {
     place.point_W = query.X_WB * Vec3(place.point_W + b.bvh().origin);
     place.normal_W = query.X_WB.q * place.normal_W;
   }

@@ -103,7 +103,8 @@ class Search {
         scratch_(scratch),
         evaluations_(evaluations),
         brackets_(query.regions),
-        best_of_role_(query.regions) {}
+        best_of_role_(query.regions),
+        kept_(query.regions) {}
 
   std::vector<Bracket> run() {
     heap_.reserve(query_.roots->size());
@@ -168,8 +169,7 @@ class Search {
       take(sample, region);
       if (sample.depth_mm <= pair_.touch_mm) continue;
       ++inside;
-      std::vector<Sample>& samples = brackets_[region].samples;
-      if (samples.size() < kMostSamples) samples.push_back(sample);
+      keep(sample, region);
     }
     if (root.role != query_.primary) return;
     const Vec3 n = (piece.corners[1] - piece.corners[0]).cross(piece.corners[2] - piece.corners[0]);
@@ -201,6 +201,18 @@ class Search {
       reached = std::max(reached, deepest);
       piece = next;
     }
+  }
+
+  // Some of all, evenly: of too many every other one is left away, and from then on of new ones.
+  void keep(const Sample& sample, std::uint32_t region) {
+    Kept& kept = kept_[region];
+    if (kept.seen++ % kept.step != 0) return;
+    std::vector<Sample>& samples = brackets_[region].samples;
+    samples.push_back(sample);
+    if (samples.size() < 2 * kMostSamples) return;
+    for (std::size_t i = 0; i < kMostSamples; ++i) samples[i] = samples[2 * i];
+    samples.resize(kMostSamples);
+    kept.step *= 2;
   }
 
   std::uint32_t region_of(int role, std::uint32_t inherited, std::uint32_t met) const {
@@ -302,6 +314,10 @@ class Search {
   std::uint64_t& evaluations_;
   std::vector<Bracket> brackets_;
   std::vector<std::array<Sample, 2>> best_of_role_;
+  struct Kept {
+    std::uint64_t seen = 0, step = 1;
+  };
+  std::vector<Kept> kept_;
   std::vector<Item> heap_;
   std::uint32_t near_[2] = {Topology::kNone, Topology::kNone};  // met by the root before, by role
   FlatMap<double> depth_at_[2];  // corners of the meshes that were asked

@@ -239,7 +239,7 @@ class Holds {
         kPlacesReach * std::min(query_.a->sphere().radius_mm, query_.b->sphere().radius_mm);
     query.most_pairs = kMostPlacePairs;
     work_ += 20;
-    for (const ContactPlace& p : contact_places(query, scratch_))
+    for (const ContactPlace& p : contact_places(query, scratch_).places)
       if (p.gap_mm < -kLeastHold_mm)
         for (const double share : {0.0, -0.5, 0.5})
           add(p.point_W + share * p.gap_mm * p.normal_W, p.normal_W, -1);

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/ccd/contact_places.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/start_state.h"
+#include "common/depth/gpd/contact_rows.h"
 #include "common/math/rotation.h"
 
 namespace mortise::gpd {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// Gap that a row of a contact place asks for, mm.
-constexpr double kMargin_mm = 1e-6;
+// Gap that a row of a contact place asks for, mm; and where that does not part them, as a share of
+// the reach, and how that grows.
+constexpr double kMargin_mm = 1e-6, kSettled = 0.2, kWider = 0.005, kMarginGrowth = 3.0;
 // A sweep ends in touch: so much farther it is apart, mm.
 constexpr double kBeyondTouch_mm = 1e-7;
 constexpr double kSweepAccuracy_mm = 1e-6;
@@ -32,7 +33,6 @@ constexpr int kIdleSteps = 2;
 // Starts no worse than this times the best are descended from, so many whose directions differ.
 constexpr double kWorthDescent = 2.5, kAlike = 0.05;
 constexpr std::size_t kDescents = 3, kThoroughDescents = 8;
-constexpr std::uint32_t kMostPlacePairs = 4096;
 // No more of a turn is looked at, rad.
 constexpr double kMostTurn_rad = 3.0;
 // Lengths tried along a twist grow by this factor.
@@ -41,10 +41,10 @@ constexpr double kScanGrowth = 1.7;
 constexpr double kFar = 20.0;
 constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
-constexpr std::uint64_t kFreeWork = 4, kPlacesWork = 20, kProgramWork = 10;
+constexpr std::uint64_t kFreeWork = 12, kProgramWork = 10;
 constexpr std::uint64_t kTestsAWorkUnit = 8;
-// In meshes of so many triangles together every question takes once as long again.
-constexpr std::uint64_t kLargeMesh = 8'192;
+// In meshes of so many triangles together a question of all of them takes once as long again.
+constexpr std::uint64_t kLargeMesh = 8'192, kManyUnits = 2;
 
 // Uniform numbers from a fixed seed (Knuth's 64-bit linear congruence).
 class Random {
@@ -74,18 +74,19 @@ class Search {
         size_mm_(2.0 * (query.a->sphere().radius_mm + query.b->sphere().radius_mm)),
         scale_mm_(std::max({query.least_mm, 1e-6 * size_mm_, 1e-6})),
         unit_(1 +
-              (query.a->mesh().triangles.size() + query.b->mesh().triangles.size()) / kLargeMesh) {}
+              (query.a->mesh().triangles.size() + query.b->mesh().triangles.size()) / kLargeMesh),
+        rows_(*query.a, query.X_WA, *query.b, query.X_WB, frame_, scratch) {}
 
   Separation run() {
     // Of several along one line the first that is free says it all.
     bool descended = query_.first_is_descended;
     for (const Vec6& start : query_.starts) {
-      if (length(start) < best_.length_mm && is_free(start)) offer(start, descended);
+      if (length(start) < best_.length_mm && (descended || is_free(start))) offer(start, descended);
       descended = false;
     }
     if (query_.looking != Looking::kFar) push_and_descend();
     if (query_.looking != Looking::kNear) look_far();
-    best_.work = work_ * unit_;
+    best_.work = work_;
     return best_;
   }
 
@@ -102,7 +103,7 @@ class Search {
     return corners;
   }
   bool done() const { return best_.length_mm <= query_.enough_mm || out_of_work(); }
-  bool out_of_work() const { return work_ * unit_ >= query_.work_cap; }
+  bool out_of_work() const { return work_ >= query_.work_cap; }
 
   double length(const Vec6& xi) const {
     return longest_path_mm(*query_.a, query_.X_WA, frame_, xi);
@@ -111,8 +112,10 @@ class Search {
   bool turns_too_far(const Vec6& xi) const { return !(frame_.turn_of(xi).norm() < kMostTurn_rad); }
 
   bool is_free(const Vec6& xi) {
-    work_ += kFreeWork;
-    return !turns_too_far(xi) && is_apart(*query_.a, pose_of(xi), *query_.b, query_.X_WB, scratch_);
+    if (turns_too_far(xi)) return false;
+    if (unit_ > kManyUnits && rows_.meet_at_corners(xi, work_)) return false;
+    work_ += kFreeWork * unit_;
+    return is_apart(*query_.a, pose_of(xi), *query_.b, query_.X_WB, scratch_);
   }
 
   void offer(const Vec6& xi, bool descended = false) {
@@ -138,7 +141,8 @@ class Search {
     sweep.accuracy_mm = kSweepAccuracy_mm;
     sweep.work_cap = kSweepCap;
     const FirstContact contact = first_contact(sweep, scratch_);
-    work_ += kFreeWork + (contact.work.box_tests + contact.work.leaf_tests) / kTestsAWorkUnit;
+    work_ +=
+        kFreeWork * unit_ + (contact.work.box_tests + contact.work.leaf_tests) / kTestsAWorkUnit;
     switch (contact.state) {
       case ContactState::kContact:
         return 1.0 - contact.t_contact;
@@ -153,38 +157,6 @@ class Search {
     }
   }
 
-  // Rows around xi: no contact place within reach may close beyond the margin.
-  std::vector<Row> rows_at(const Vec6& xi, double reach_mm) {
-    const Pose D = frame_.pose_of(xi);
-    ContactPlacesQuery query;
-    query.a = query_.a;
-    query.b = query_.b;
-    query.X_WA = D * query_.X_WA;
-    query.X_WB = query_.X_WB;
-    query.reach_mm = reach_mm;
-    query.most_pairs = kMostPlacePairs;
-    const std::vector<ContactPlace> places = contact_places(query, scratch_);
-    work_ += kPlacesWork + places.size();
-    // How the centre moves and A turns for a small change of each coordinate of the twist.
-    Vec3 shift[6], turn[6];
-    const double step = 1e-6 * frame_.radius_mm;
-    for (int k = 0; k < 6; ++k) {
-      Vec6 near = xi;
-      near[k] += step;
-      const Pose R = frame_.pose_of(near) * D.inverse();
-      turn[k] = rotation_log(R.q.normalized()) / step;
-      shift[k] = (R * frame_.center_W - frame_.center_W) / step;
-    }
-    std::vector<Row> rows(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const ContactPlace& p = places[i];
-      for (int k = 0; k < 6; ++k)
-        rows[i].g[k] = p.normal_W.dot(shift[k] + turn[k].cross(p.point_W - frame_.center_W));
-      rows[i].h = kMargin_mm - p.gap_mm + rows[i].g.dot(xi);
-    }
-    return rows;
-  }
-
   bool solve(const std::vector<Row>& rows, Vec6& to) {
     work_ += kProgramWork + rows.size() / 2;
     return program_.solve(rows, to);
@@ -192,14 +164,18 @@ class Search {
 
   // Programs from a pose that overlaps until it is free. False: not within the limit.
   bool push(Vec6& xi, double reach_mm, int programs, double limit_mm) {
+    double margin_mm = kMargin_mm;
     for (int i = 0; i < programs && !out_of_work(); ++i) {
-      const std::vector<Row> rows = rows_at(xi, reach_mm);
+      const std::vector<Row> rows = rows_.at(xi, reach_mm, margin_mm, work_);
       Vec6 to;
       if (rows.empty() || !solve(rows, to)) return false;
       const double step = length(to - xi), most = kStepOverReach * reach_mm;
       xi = step > most ? Vec6(xi + (to - xi) * (most / step)) : to;
       if (length(xi) >= limit_mm || step < 1e-9) return false;
       if (is_free(xi)) return true;
+      // The rows ask for no more, and yet they meet, between the places that are seen.
+      if (step < kSettled * length(xi))
+        margin_mm = std::max(kMarginGrowth * margin_mm, kWider * reach_mm);
     }
     return false;
   }
@@ -229,7 +205,7 @@ class Search {
     for (int i = 0; i < programs && idle < kIdleSteps && !out_of_work(); ++i) {
       if (!(reach_mm > least_share * best + kLeastReach_mm)) break;
       Vec6 to;
-      if (!solve(rows_at(xi, reach_mm), to)) {
+      if (!solve(rows_.at(xi, reach_mm, kMargin_mm, work_), to)) {
         reach_mm *= kShrink;
         continue;
       }
@@ -354,6 +330,7 @@ class Search {
   Minimax program_;
   const double size_mm_, scale_mm_;
   const std::uint64_t unit_;
+  ContactRows rows_;
   std::vector<Found> found_;
   Separation best_;
   std::uint64_t work_ = 0;

@@ -24,7 +24,7 @@ struct SeparationQuery {
   double enough_mm = 0.0;  ///< a motion of this length ends the search
   bool thorough = false;   ///< turns and random twists as well
   Looking looking = Looking::kEverywhere;
-  bool first_is_descended = false;  ///< the first start is the end of a descent
+  bool first_is_descended = false;  ///< the first start is the end of a descent, and parts them
   std::uint64_t work_cap = std::numeric_limits<std::uint64_t>::max();
 };
 

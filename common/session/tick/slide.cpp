@@ -141,7 +141,7 @@ void add_plain_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool is
   query.X_WA = X_WA;
   query.X_WB = X_WB;
   query.reach_mm = kReach_mm;
-  for (const ContactPlace& place : contact_places(query, ccd))
+  for (const ContactPlace& place : contact_places(query, ccd).places)
     holds.push_back(
         {place.point_W, is_a ? place.normal_W : Vec3(-place.normal_W), place.gap_mm - kLift_mm});
 }

@@ -198,14 +198,18 @@ TEST(GeneralizedDepth, TheShorterWayAlongTheAxisAnywhereInTheWorld) {
 // A slack peg that leans in its bore comes free by a small turn and shift, however many facets
 // stand for it: no motion of less than 0.199 mm does.
 TEST(GeneralizedDepth, ALeaningPegIsTurnedBack) {
-  for (const int facets : {24, 48, 96}) {
-    MovedPair s{solid(peg({9.95, 0, 40, facets, 3, 0})),
-                solid(ring({10, 0, 20, facets, 2, 0}, 20))};
+  struct Cut {
+    int facets, rows;
+  };
+  for (const auto& [facets, rows] :
+       {Cut{24, 3}, Cut{48, 3}, Cut{96, 3}, Cut{200, 3}, Cut{400, 24}}) {
+    MovedPair s{solid(peg({9.95, 0, 40, facets, rows, 0})),
+                solid(ring({10, 0, 20, facets, (rows + 1) / 2, 0}, 20))};
     s.motion_a = still_motion({rotation_exp({0.01, 0, 0}), {0, 0, -5}});
     s.refinement = Refinement::kDecided;
     const GeneralizedDepth gpd = depth_of(s);
     EXPECT_GT(gpd.gpd_mm.lo, 0.197) << facets;
-    EXPECT_LT(gpd.gpd_mm.hi, 0.281) << facets;
+    EXPECT_LT(gpd.gpd_mm.hi, facets < 100 ? 0.281 : 0.3) << facets;
     EXPECT_EQ(gpd.way, SeparationWay::kFitted) << facets;
     expect_parts(s, gpd);
   }

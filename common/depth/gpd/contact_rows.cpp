@@ -1,0 +1,153 @@
+#include "common/depth/gpd/contact_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/ccd/contact_places.h"
+#include "common/math/rotation.h"
+
+namespace mortise::gpd {
+namespace {
+
+constexpr std::uint32_t kMostPairs = 4096;
+// Of meshes of so many triangles together more are near.
+constexpr std::size_t kLarge = 40'000;
+constexpr std::uint64_t kPlacesWork = 20;
+// Corners of each part at which contact is seen, and of those that are carried into the frame of
+// the other part so many at the cost of one evaluation.
+constexpr std::size_t kMostCorners = 160, kCornersAWorkUnit = 256;
+// Of these the deepest and some others are asked first; deeper than rounding is deep, mm.
+constexpr std::size_t kDeepest = 20, kAllOver = 20;
+constexpr double kMeet_mm = 1e-9;
+
+}  // namespace
+
+ContactRows::ContactRows(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+                         const TwistFrame& frame, CcdScratch& scratch)
+    : parts_{&a, &b},
+      X_W_{X_WA, X_WB},
+      frame_(frame),
+      scratch_(scratch),
+      crowded_(a.mesh().triangles.size() + b.mesh().triangles.size() > kLarge) {}
+
+std::vector<Row> ContactRows::at(const Vec6& xi, double reach_mm, double margin_mm,
+                                 std::uint64_t& work) {
+  const Pose D = frame_.pose_of(xi);
+  const Pose X_WA = D * X_W_[0];
+  std::vector<Place> places;
+  crowded_ = crowded_ || !by_triangles(X_WA, reach_mm, places, work);
+  if (crowded_) places = by_corners(X_WA, reach_mm, work);
+  // How the centre moves and A turns for a small change of each coordinate of the twist.
+  Vec3 shift[6], turn[6];
+  const double step = 1e-6 * frame_.radius_mm;
+  for (int k = 0; k < 6; ++k) {
+    Vec6 near = xi;
+    near[k] += step;
+    const Pose R = frame_.pose_of(near) * D.inverse();
+    turn[k] = rotation_log(R.q.normalized()) / step;
+    shift[k] = (R * frame_.center_W - frame_.center_W) / step;
+  }
+  std::vector<Row> rows(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place& p = places[i];
+    for (int k = 0; k < 6; ++k)
+      rows[i].g[k] = p.normal_W.dot(shift[k] + turn[k].cross(p.point_W - frame_.center_W));
+    rows[i].h = margin_mm - p.gap_mm + rows[i].g.dot(xi);
+  }
+  return rows;
+}
+
+bool ContactRows::by_triangles(const Pose& X_WA, double reach_mm, std::vector<Place>& places,
+                               std::uint64_t& work) {
+  ContactPlacesQuery query;
+  query.a = parts_[0];
+  query.b = parts_[1];
+  query.X_WA = X_WA;
+  query.X_WB = X_W_[1];
+  query.reach_mm = reach_mm;
+  query.most_pairs = kMostPairs;
+  query.all_or_none = true;
+  const ContactPlaces found = contact_places(query, scratch_);
+  work += kPlacesWork + found.places.size();
+  for (const ContactPlace& place : found.places)
+    places.push_back({place.point_W, place.normal_W, place.gap_mm});
+  return found.all;
+}
+
+std::vector<Vec3> ContactRows::corners_near(int part, double reach_mm) const {
+  const Pose X = X_W_[1 - part].inverse() * X_W_[part];
+  const Box box = parts_[1 - part]->bounds().grown(reach_mm);
+  std::vector<Vec3> near;
+  for (const Vec3& x : parts_[part]->mesh().points_mm) {
+    const Vec3 y = X * x;
+    if ((y.array() >= box.lo.array()).all() && (y.array() <= box.hi.array()).all())
+      near.push_back(x);
+  }
+  // An odd stride, so that of a regular mesh not one row of corners alone is seen.
+  const std::size_t stride = (near.size() / kMostCorners) | 1U;
+  std::vector<Vec3> some;
+  for (std::size_t i = 0; i < near.size(); i += stride) some.push_back(near[i]);
+  return some;
+}
+
+void ContactRows::see_corners(double reach_mm, std::uint64_t& work) {
+  if (reach_mm <= corners_reach_mm_) return;
+  corners_reach_mm_ = 4.0 * reach_mm;
+  for (const int part : {0, 1}) {
+    corners_[part] = corners_near(part, corners_reach_mm_);
+    work += parts_[part]->mesh().points_mm.size() / kCornersAWorkUnit;
+  }
+}
+
+SurfacePoint ContactRows::corner_at(int part, const Vec3& x, const Pose& X_WA,
+                                    std::uint32_t near) const {
+  const Pose X = part == 0 ? X_W_[1].inverse() * X_WA : X_WA.inverse() * X_W_[1];
+  return nearest_surface(*parts_[1 - part], X * x, near);
+}
+
+std::vector<ContactRows::Place> ContactRows::by_corners(const Pose& X_WA, double reach_mm,
+                                                        std::uint64_t& work) {
+  see_corners(reach_mm, work);
+  const Pose X_W[2] = {X_WA, X_W_[1]};
+  std::vector<Place> places;
+  for (const int part : {0, 1}) {
+    std::uint32_t near = Topology::kNone;
+    for (const Vec3& x : corners_[part]) {
+      const SurfacePoint at = corner_at(part, x, X_WA, near);
+      near = at.triangle;
+      if (std::fabs(at.depth_mm) > reach_mm) continue;
+      const Vec3 outward_W = X_W[1 - part].q * at.outward;
+      places.push_back({X_W[part] * x, part == 0 ? outward_W : Vec3(-outward_W), -at.depth_mm});
+    }
+    work += corners_[part].size();
+  }
+  return places;
+}
+
+bool ContactRows::meet_at_corners(const Vec6& xi, std::uint64_t& work) {
+  if (corners_reach_mm_ < 0.0) {
+    see_corners(0.0, work);
+    for (const int part : {0, 1}) {
+      std::vector<std::pair<double, Vec3>> by_depth;
+      for (const Vec3& x : corners_[part])
+        by_depth.push_back({-corner_at(part, x, X_W_[0], Topology::kNone).depth_mm, x});
+      std::stable_sort(by_depth.begin(), by_depth.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
+      const std::size_t step = 1 + by_depth.size() / kAllOver;
+      for (std::size_t i = 0; i < by_depth.size(); ++i)
+        if (i < kDeepest || i % step == 0) asked_first_[part].push_back(by_depth[i].second);
+      work += corners_[part].size();
+    }
+    corners_reach_mm_ = 0.0;
+  }
+  const Pose X_WA = frame_.pose_of(xi) * X_W_[0];
+  for (const int part : {0, 1})
+    for (const Vec3& x : asked_first_[part]) {
+      ++work;
+      if (corner_at(part, x, X_WA, Topology::kNone).depth_mm > kMeet_mm) return true;
+    }
+  return false;
+}
+
+}  // namespace mortise::gpd
