@@ -702,13 +702,18 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
     answer.evaluations = free.work;
     return answer;
   }
-  const bool free_at_start =
-      free.t_free > 0.0 || said_of_start(query, Layer::kLower, answer.evaluations).apart;
+  SaidByCovers start;
+  if (free.t_free <= 0.0) start = said_of_start(query, Layer::kLower, answer.evaluations);
+  const bool free_at_start = free.t_free > 0.0 || start.apart;
   SoonAfter soon;
-  if (free_at_start) soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
+  if (start.place)
+    soon = {true, 0.0, *start.place};
+  else if (free_at_start)
+    soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
   const std::uint64_t looked = answer.evaluations + free.work;
   if (soon.interferes) {
     answer.becomes_real = true;
+    answer.real_at_start = start.place.has_value();
     answer.t_free = free.t_free;
     answer.t_real = soon.t;
     answer.certain_place = soon.certain_place;
