@@ -341,6 +341,7 @@ namespace {
 KnownOverlaps::Row row_of(const PairFrame& pair, const KnownFacePair& known, bool told) {
   KnownOverlaps::Row row{{known.face[0], known.face[1]}, known.overlap.near_hi_mm};
   row.told = told;
+  row.told_mm = known.overlap.hi_mm;
   // Of a torus the ends are angles: what is known of it holds everywhere, or of its faces alone.
   if (std::isfinite(known.overlap.continued_hi_mm)) {
     row.within_mm = row.along_mm = known.overlap.continued_hi_mm;

@@ -41,6 +41,7 @@ struct KnownOverlaps {
     Interval within_extent_mm = kEverywhere_mm;
     /// The pair is reported by its closed form. Otherwise the row serves proofs only.
     bool told = true;
+    double told_mm = std::numeric_limits<double>::infinity();  ///< no more than this is so reported
   };
   std::vector<Row> rows;
   /// Set when neither part moves: then a shaft in a bore and a ball in a socket are also bounded at

@@ -105,9 +105,11 @@ class Grouping {
       if (!row.told) continue;
       const std::uint16_t fs = row.face[role], fk = row.face[1 - role];
       known_face_[fs] = true;
-      limit_[fs] = std::max(limit_[fs],
-                            row.overlap_mm + Body::offset_of(s.band->faces[fs], Layer::kUpper) +
-                                Body::offset_of(k.band->faces[fk], Layer::kUpper) + pair_.touch_mm);
+      const double offsets_mm = Body::offset_of(s.band->faces[fs], Layer::kUpper) +
+                                Body::offset_of(k.band->faces[fk], Layer::kUpper);
+      // Of faces that keep apart nothing is told, whatever lies beside their ends.
+      if (row.told_mm + offsets_mm <= pair_.touch_mm) continue;
+      limit_[fs] = std::max(limit_[fs], row.overlap_mm + offsets_mm + pair_.touch_mm);
     }
   }
 
