@@ -71,9 +71,13 @@ int conclude(const BotOptions& options, Json document) {
   int exit_code = kExitOk;
   for (const LimitResult& result : results) {
     if (result.holds) continue;
+    exit_code = kExitThreshold;
+    if (result.limit.name == kExpectClash) {
+      spdlog::error("{}", result.meaning);
+      continue;
+    }
     spdlog::error("{}: {} is {:.3f}, above the limit of {:g}", result.limit.name, result.meaning,
                   result.figure, result.limit.bound);
-    exit_code = kExitThreshold;
   }
   return exit_code;
 }

@@ -38,6 +38,8 @@ double figure_of(const Json& d, const std::string& name) {
   if (name == "missed_poses") return d["lost"]["pose_batches"].get<double>();
   if (name == "unanswered") return d["unanswered_commands"].get<double>();
   if (name == "unacknowledged") return d["unacknowledged_increments"].get<double>();
+  if (name == "not_examined" || name == "missed_deadlines")
+    return d.contains("server") ? d["server"][name].get<double>() : std::nan("");
   if (name == "resyncs") return d["repaired"]["resyncs"].get<double>();
   if (name == "not_inserted" && d.contains("insertions") && d["insertions"]["tries"] > 0) {
     return d["insertions"]["tries"].get<double>() - d["insertions"]["inserted"].get<double>();
@@ -46,6 +48,37 @@ double figure_of(const Json& d, const std::string& name) {
     return d.contains("streams") ? d["streams"]["differing_blocks"].get<double>() : 0.0;
   }
   return std::nan("");
+}
+
+const char* const kClasses[] = {"none", "fake", "potential", "real"};
+
+std::size_t rank_of(const std::string& collision_class) {
+  return static_cast<std::size_t>(
+      std::find(std::begin(kClasses), std::end(kClasses), collision_class) - std::begin(kClasses));
+}
+
+// Of the same server and pairs: the most that any of them saw.
+void take_most(const Json& from, Json& all) {
+  if (from.contains("server"))
+    for (const auto& [key, value] : from["server"].items())
+      all["server"][key] =
+          std::max(value.get<std::uint64_t>(),
+                   all.contains("server") ? all["server"].value(key, std::uint64_t{0}) : 0);
+  if (!from.contains("worst_classes")) return;
+  for (const auto& [pair, told] : from["worst_classes"].items()) {
+    Json& worst = all["worst_classes"][pair];
+    if (worst.is_null() || rank_of(worst) < rank_of(told)) worst = told;
+  }
+}
+
+LimitResult expected_clash(const Json& document, const Limit& limit) {
+  const std::string pair = pair_key(limit.part_a, limit.part_b);
+  const std::string told = document.contains("worst_classes")
+                               ? document["worst_classes"].value(pair, std::string("none"))
+                               : "none";
+  const bool holds = told == limit.expected;
+  return {limit, pair + ": " + told + " is told, " + limit.expected + " expected",
+          holds ? 0.0 : 1.0, holds};
 }
 
 std::string escaped(const std::string& text) {
@@ -66,6 +99,10 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
+std::string pair_key(const std::string& part_a, const std::string& part_b) {
+  return std::min(part_a, part_b) + ", " + std::max(part_a, part_b);
+}
+
 const std::vector<std::pair<std::string, std::string>>& limit_names() {
   static const std::vector<std::pair<std::string, std::string>> names = {
       {"p50_ms", "increment to pose, median"},
@@ -79,6 +116,8 @@ const std::vector<std::pair<std::string, std::string>>& limit_names() {
       {"lost_events", "events that neither arrived nor were covered by a snapshot"},
       {"unanswered", "commands without an answer"},
       {"unacknowledged", "increments without an acknowledgement"},
+      {"not_examined", "pairs without a verdict, tick by tick, as the server tells it"},
+      {"missed_deadlines", "deadlines that ticks of the server ran past"},
       {"resyncs", "snapshots that replaced events"},
       {"missed_poses", "pose batches that did not arrive"},
       {"not_inserted", "attempts of the behaviour guided that did not insert the part"},
@@ -169,6 +208,7 @@ Json merged(const std::vector<ProcessReport>& reports) {
     // Percentiles do not add up.
     if (sums.contains("insertions")) sums["insertions"].erase("seconds");
     add_counts(counts, sums);
+    take_most(d, all);
     participants.push_back({{"names", d["names"]},
                             {"sent", d["sent"]},
                             {"latency_ms", d["latency_ms"]},
@@ -195,6 +235,10 @@ Json merged(const std::vector<ProcessReport>& reports) {
 std::vector<LimitResult> check_limits(const Json& document, const std::vector<Limit>& limits) {
   std::vector<LimitResult> results;
   for (const Limit& limit : limits) {
+    if (limit.name == kExpectClash) {
+      results.push_back(expected_clash(document, limit));
+      continue;
+    }
     LimitResult result{limit, {}, figure_of(document, limit.name), false};
     for (const auto& [name, meaning] : limit_names()) {
       if (name == limit.name) result.meaning = meaning;
@@ -234,6 +278,8 @@ std::string junit(const std::vector<LimitResult>& results, double seconds) {
       xml += fmt::format("<failure message=\"{}: {:g} is above the limit of {:g}\"/>",
                          escaped(r.meaning), r.figure, r.limit.bound);
     }
+    xml += fmt::format("<system-out>{}: {:g}, at most {:g}</system-out>", escaped(r.meaning),
+                       r.figure, r.limit.bound);
     xml += "</testcase>\n";
   }
   return xml + "</testsuite>\n";

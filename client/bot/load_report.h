@@ -33,6 +33,12 @@ nlohmann::ordered_json insertions_json(const std::vector<std::unique_ptr<Behavio
 /// `streams` says whether all saw the same sequence of events.
 nlohmann::ordered_json merged(const std::vector<ProcessReport>& reports);
 
+/// Two parts whatever comes first, as key of the document's `worst_classes`.
+std::string pair_key(const std::string& part_a, const std::string& part_b);
+
+/// The limit that expects a clash, besides limit_names().
+inline constexpr const char* kExpectClash = "expect_clash";
+
 /// Names that --limit knows, with their meaning.
 const std::vector<std::pair<std::string, std::string>>& limit_names();
 

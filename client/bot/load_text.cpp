@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "client/bot/load_report.h"
+
 namespace mortise {
 namespace {
 
@@ -86,9 +88,12 @@ std::string load_text(const Json& d) {
   }
   if (d.contains("limits")) {
     for (const Json& limit : d["limits"]) {
-      text += fmt::format("  limit        {} {:.3f}, at most {:g}: {}\n",
-                          limit["name"].get<std::string>(), limit["figure"].get<double>(),
-                          limit["bound"].get<double>(), limit["holds"].get<bool>() ? "ok" : "NO");
+      const std::string name = limit["name"], holds = limit["holds"].get<bool>() ? "ok" : "NO";
+      text +=
+          name == kExpectClash
+              ? fmt::format("  limit        {}: {}\n", limit["meaning"].get<std::string>(), holds)
+              : fmt::format("  limit        {} {:.3f}, at most {:g}: {}\n", name,
+                            limit["figure"].get<double>(), limit["bound"].get<double>(), holds);
     }
   }
   return text;

@@ -20,7 +20,26 @@ std::string known_limits() {
   return text;
 }
 
+// expect_clash A,B=CLASS
+Limit read_expected(const std::string& text) {
+  const std::size_t first = std::string(kExpectClash).size() + 1;
+  const std::size_t comma = text.find(',', first), sign = text.rfind('=');
+  Limit limit{kExpectClash, 0.0};
+  if (comma != std::string::npos && sign != std::string::npos && comma < sign) {
+    limit.part_a = text.substr(first, comma - first);
+    limit.part_b = text.substr(comma + 1, sign - comma - 1);
+    limit.expected = text.substr(sign + 1);
+  }
+  const bool is_class = limit.expected == "real" || limit.expected == "potential" ||
+                        limit.expected == "fake" || limit.expected == "none";
+  if (limit.part_a.empty() || limit.part_b.empty() || !is_class)
+    throw UsageError("--limit " + text +
+                     ": write 'expect_clash PART,PART=CLASS', CLASS real, potential, fake or none");
+  return limit;
+}
+
 Limit read_limit(const std::string& text) {
+  if (text.starts_with(std::string(kExpectClash) + " ")) return read_expected(text);
   const std::size_t sign = text.find('=');
   Limit limit{text.substr(0, sign), -1.0};
   const bool known = std::any_of(limit_names().begin(), limit_names().end(),
@@ -83,7 +102,9 @@ void add_report(ProgramOptions& app, BotOptions& o, std::vector<std::string>& li
   app.add_flag("--json", o.json, "Report as one JSON document");
   app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
   app.add("--limit", limits,
-          "NAME=VALUE, again for more: exit with 5 when the figure is above. " + known_limits())
+          "NAME=VALUE, again for more: exit with 5 when the figure is above; or 'expect_clash "
+          "PART,PART=CLASS', the worst told of them. " +
+              known_limits())
       .group(kLimitsGroup);
   app.add_number(
          "--max-p99-ms",

@@ -9,10 +9,13 @@
 
 namespace mortise {
 
-/// A figure of the report that must not be above `bound`; names: limit_names() of load_report.h.
+/// A figure of the report that must not be above `bound`, or a clash that is expected; names:
+/// limit_names() of load_report.h.
 struct Limit {
   std::string name;
   double bound = 0.0;
+  /// Of expect_clash: two parts, and the worst class that is told of them. "none": nothing is.
+  std::string part_a = {}, part_b = {}, expected = {};
 };
 
 struct BotOptions {

@@ -68,6 +68,7 @@ void Tally::add(const ClientUpdate& update, const Client& client) {
     ++events_by_kind_[static_cast<std::size_t>(event.kind) & 3U];
     CollisionClass& worst = worst_[event.clash];
     worst = std::max({worst, event.worst_class, event.verdict.collision_class});
+    add_pair(event, client);
     StateHash hash;
     hash.add(event_hash_);
     hash.add(event.seq);
@@ -84,10 +85,25 @@ void Tally::add(const ClientUpdate& update, const Client& client) {
     ++resyncs_;
     for (const auto& [id, clash] : client.open_clashes()) {
       worst_[id] = std::max(worst_[id], clash.worst_class);
+      add_pair(clash, client);
     }
   }
   if (update.server_lost) ++server_losses_;
+  if (update.pulse) {
+    // Another server counts from zero.
+    if (!first_pulse_ || update.pulse->not_examined < first_pulse_->not_examined ||
+        update.pulse->missed_deadlines < first_pulse_->missed_deadlines)
+      first_pulse_ = update.pulse;
+    last_pulse_ = update.pulse;
+  }
   meshes_ += update.meshes.size();
+}
+
+void Tally::add_pair(const ClashEvent& event, const Client& client) {
+  const auto a = client.parts().find(event.part_a), b = client.parts().find(event.part_b);
+  if (a == client.parts().end() || b == client.parts().end()) return;
+  CollisionClass& worst = worst_of_pair_[pair_key(a->second.info.name, b->second.info.name)];
+  worst = std::max({worst, event.worst_class, event.verdict.collision_class});
 }
 
 std::uint64_t Tally::refused() const {
@@ -119,6 +135,13 @@ nlohmann::ordered_json Tally::json() const {
   std::array<std::uint64_t, 4> by_class{};
   for (const auto& [id, worst] : worst_) ++by_class[static_cast<std::size_t>(worst) & 3U];
   json["clashes_seen"] = {{"real", by_class[3]}, {"potential", by_class[2]}, {"fake", by_class[1]}};
+  json["worst_classes"] = nlohmann::ordered_json::object();
+  for (const auto& [pair, worst] : worst_of_pair_)
+    json["worst_classes"][pair] = std::string(name_of(worst));
+  if (first_pulse_)
+    json["server"] = {
+        {"not_examined", last_pulse_->not_examined - first_pulse_->not_examined},
+        {"missed_deadlines", last_pulse_->missed_deadlines - first_pulse_->missed_deadlines}};
   json["resyncs"] = resyncs_;
   json["server_losses"] = server_losses_;
   json["meshes"] = meshes_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ class Tally {
   nlohmann::ordered_json json() const;
 
  private:
+  void add_pair(const ClashEvent& event, const Client& client);
   std::vector<double> latency_ms_, event_latency_ms_;
   EventDelay event_delay_;
   StreamDigest stream_;
@@ -41,6 +43,8 @@ class Tally {
   std::uint64_t events_ = 0, first_seq_ = 0, last_seq_ = 0;
   std::array<std::uint64_t, 4> events_by_kind_{};
   std::map<ClashId, CollisionClass> worst_;
+  std::map<std::string, CollisionClass> worst_of_pair_;  ///< see pair_key()
+  std::optional<SessionPulse> first_pulse_, last_pulse_;
   std::uint64_t event_hash_ = 0;
   std::uint64_t resyncs_ = 0, server_losses_ = 0, meshes_ = 0;
 };

@@ -133,6 +133,8 @@ ProcessReport report(const char* name, std::vector<double> latency_ms, std::uint
                 {"insertions", {{"tries", 5}, {"inserted", 4}, {"not_aligned", 0}, {"stuck", 1}}},
                 {"latency_ms", percentiles(r.latency_ms)},
                 {"events", {{"count", 200}}},
+                {"worst_classes", {{"bore, peg", changed == 0 ? "potential" : "real"}}},
+                {"server", {{"not_examined", 7}, {"missed_deadlines", 1}}},
                 {"state", {{"pose_hash", "a"}, {"clash_hash", "b"}}}};
   return r;
 }
@@ -192,10 +194,11 @@ TEST(LoadReportTest, InsertionsOfAllUsersAreAddedUp) {
 TEST(LoadReportTest, EveryLimitReadsItsFigure) {
   const Json document = merged({report("a", {1, 2, 30}), report("b", {10, 20}, 130)});
   const std::map<std::string, double> expected = {
-      {"p50_ms", 10.0},    {"p90_ms", 30.0},         {"p99_ms", 30.0},      {"max_ms", 30.0},
-      {"event_p50_ms", 1}, {"event_p99_ms", 1},      {"event_max_ms", 1},   {"refused", 4},
-      {"lost_events", 0},  {"unanswered", 0},        {"unacknowledged", 2}, {"resyncs", 2},
-      {"missed_poses", 6}, {"differing_streams", 1}, {"not_inserted", 2}};
+      {"p50_ms", 10.0},       {"p90_ms", 30.0},         {"p99_ms", 30.0},      {"max_ms", 30.0},
+      {"event_p50_ms", 1},    {"event_p99_ms", 1},      {"event_max_ms", 1},   {"refused", 4},
+      {"lost_events", 0},     {"unanswered", 0},        {"unacknowledged", 2}, {"resyncs", 2},
+      {"missed_poses", 6},    {"differing_streams", 1}, {"not_inserted", 2},   {"not_examined", 7},
+      {"missed_deadlines", 1}};
   ASSERT_EQ(expected.size(), limit_names().size());
   for (const auto& [name, meaning] : limit_names()) {
     const double figure = expected.at(name);
@@ -208,8 +211,23 @@ TEST(LoadReportTest, EveryLimitReadsItsFigure) {
   Json untried = document;
   untried.erase("insertions");
   EXPECT_FALSE(check_limits(untried, {{"not_inserted", 0.0}})[0].holds) << "nobody tried";
+  Json unheard = document;
+  unheard.erase("server");
+  EXPECT_FALSE(check_limits(unheard, {{"not_examined", 1000.0}})[0].holds) << "no pulse came";
   const Json nothing = merged({report("a", {})});
   EXPECT_FALSE(check_limits(nothing, {{"p99_ms", 1000.0}})[0].holds) << "nothing was measured";
+}
+
+TEST(LoadReportTest, AnExpectedClashIsTheWorstThatAnybodySaw) {
+  const Json document = merged({report("a", {1.0}), report("b", {1.0}, 130)});
+  const auto holds = [&](const char* a, const char* b, const char* expected) {
+    return check_limits(document, {{kExpectClash, 0.0, a, b, expected}})[0].holds;
+  };
+  EXPECT_TRUE(holds("peg", "bore", "real"));
+  EXPECT_TRUE(holds("bore", "peg", "real"));
+  EXPECT_FALSE(holds("bore", "peg", "potential"));
+  EXPECT_TRUE(holds("peg", "lid", "none"));
+  EXPECT_FALSE(holds("peg", "lid", "fake"));
 }
 
 TEST(LoadReportTest, JUnitNamesWhatFailed) {
@@ -219,10 +237,14 @@ TEST(LoadReportTest, JUnitNamesWhatFailed) {
   EXPECT_NE(xml.find("tests=\"2\" failures=\"1\""), std::string::npos) << xml;
   EXPECT_NE(
       xml.find("<testcase classname=\"limit\" name=\"p99_ms\"><failure message=\"increment to "
-               "pose, 99th percentile: 30 is above the limit of 22\"/>"),
+               "pose, 99th percentile: 30 is above the limit of 22\"/><system-out>"),
       std::string::npos)
       << xml;
-  EXPECT_NE(xml.find("name=\"lost_events\"></testcase>"), std::string::npos) << xml;
+  EXPECT_NE(
+      xml.find("name=\"lost_events\"><system-out>events that neither arrived nor were covered by a "
+               "snapshot: 0, at most 0</system-out></testcase>"),
+      std::string::npos)
+      << xml;
 }
 
 }  // namespace
