@@ -10,11 +10,9 @@ namespace mortise::stress {
 
 using namespace mortise::testing;
 
-namespace {
 double uniform(std::mt19937_64& random, double lo, double hi) {
   return std::uniform_real_distribution<double>(lo, hi)(random);
 }
-}  // namespace
 
 Vec3 random_vector(std::mt19937_64& random, double reach_mm) {
   const double x = uniform(random, -reach_mm, reach_mm), y = uniform(random, -reach_mm, reach_mm);

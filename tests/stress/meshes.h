@@ -22,6 +22,7 @@ SolidPtr random_shape(std::mt19937_64& random, int kind);
 
 /// Any direction, any angle up to the given one.
 Vec3 random_turn(std::mt19937_64& random, double largest_rad);
+double uniform(std::mt19937_64& random, double lo, double hi);
 Vec3 random_vector(std::mt19937_64& random, double reach_mm);
 
 }  // namespace mortise::stress

@@ -4,10 +4,6 @@
 
 namespace mortise::stress {
 
-double uniform(std::mt19937_64& random, double lo, double hi) {
-  return std::uniform_real_distribution<double>(lo, hi)(random);
-}
-
 Motion same_path(const Motion& like, const Pose& X_W0, const Pose& X_W1, const Vec3& reference_P) {
   if (like.kind == PathKind::kStill) return still_motion(X_W0);
   return like.kind == PathKind::kScrew ? screw_motion(X_W0, X_W1, reference_P)

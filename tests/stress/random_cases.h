@@ -19,6 +19,4 @@ Case moved(const Case& c, const Pose& G);
 /// The mesh of A far from its own frame, the frame as far back: the part stays where it was.
 Case with_far_mesh(const Case& c, const Vec3& away_mm);
 
-double uniform(std::mt19937_64& random, double lo, double hi);
-
 }  // namespace mortise::stress
