@@ -14,6 +14,7 @@ namespace {
 
 // Points asked. A pair of blocks needs about ten.
 constexpr int kMostPoints = 60;
+constexpr int kHalvings = 8;
 // Of points this close to the surface the direction to it is rounding, mm.
 constexpr double kOn_mm = 1e-9;
 // Faces of a part that one program takes.
@@ -45,11 +46,26 @@ class CuttingPlanes {
       x_B = origin_ + Vec3(optimum.y[0], optimum.y[1], optimum.y[2]);
     }
     if (!(best_.depth_mm.lo > 0.0)) return std::nullopt;
+    stay_near(start_B);
     best_.depth_mm.hi = std::max(best_.depth_mm.lo, most_mm_) + 2.0 * pair_.rounding_mm;
     return best_;
   }
 
  private:
+  // Many points may be as deep, of which the program names a corner. The sum of both depths is
+  // concave: of those on the way to the start the last one is told, that a clash keeps its place.
+  void stay_near(const Vec3& start_B) {
+    const Vec3 deepest_B = pair_.X_W[1].inverse() * best_.point_W;
+    const double enough_mm = best_.depth_mm.lo - pair_.rounding_mm;
+    double share = 1.0;
+    for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
+      best_.depth_mm.lo = enough_mm;  // what is as deep takes its place
+      planes_at(deepest_B + share * (start_B - deepest_B));
+      if (best_.depth_mm.lo > enough_mm) return;
+    }
+    planes_at(deepest_B);
+  }
+
   static Box core_of(const PairFrame& pair) {
     const Box& a = pair.bodies[0].solid->bounds();
     Box core;
