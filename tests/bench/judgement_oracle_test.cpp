@@ -130,6 +130,22 @@ TEST(JudgementOracle, TipsDeeperThanTheInnerOverlapHaveABracket) {
   }
 }
 
+// Overlaps that grow away from the surface, tips that travel far, a chamfer beside a face that
+// keeps apart: a bracket left out the truth.
+TEST(JudgementOracle, NumbersOfHardPairsAreInTheirBrackets) {
+  OracleRun run;
+  for (const std::uint64_t seed : {55u, 2170u, 4884u, 40511u, 60843u, 94188u})
+    run.add(draw_convex(seed), {"convex", false, true, true});
+  for (const std::uint64_t seed : {991u, 40020u})
+    run.add(draw_csg(seed).asked(seed, false), {"csg", false, true, true});
+  run.finish();
+  EXPECT_EQ(run.crashes(), 0);
+  EXPECT_EQ(run.contradictions(), 0);
+  EXPECT_EQ(run.class_changes(), 0);
+  for (const char* way : {"convex", "convex, full", "csg", "csg, full"})
+    EXPECT_EQ(run.score(way).false_numbers(), 0) << way;
+}
+
 TEST(JudgementOracle, CsgPairsAreJudgedRight) {
   OracleRun run;
   for (std::uint64_t seed = 0; seed < 8; ++seed)

@@ -41,7 +41,7 @@ constexpr double kScanGrowth = 1.7;
 constexpr double kFar = 20.0;
 constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
-constexpr std::uint64_t kFreeWork = 12, kProgramWork = 10;
+constexpr std::uint64_t kFreeWork = 12, kFreeWorkOfMany = 40, kProgramWork = 10;
 constexpr std::uint64_t kTestsAWorkUnit = 8;
 // In meshes of so many triangles together a question of all of them takes once as long again.
 constexpr std::uint64_t kLargeMesh = 8'192, kManyUnits = 2;
@@ -109,12 +109,17 @@ class Search {
     return longest_path_mm(*query_.a, query_.X_WA, frame_, xi);
   }
   Pose pose_of(const Vec6& xi) const { return frame_.pose_of(xi) * query_.X_WA; }
+  // Where thousands of triangles lie close along whole faces it takes longer to see that they do
+  // not cross.
+  std::uint64_t free_work() const {
+    return (unit_ > kManyUnits ? kFreeWorkOfMany : kFreeWork) * unit_;
+  }
   bool turns_too_far(const Vec6& xi) const { return !(frame_.turn_of(xi).norm() < kMostTurn_rad); }
 
   bool is_free(const Vec6& xi) {
     if (turns_too_far(xi)) return false;
     if (unit_ > kManyUnits && rows_.meet_at_corners(xi, work_)) return false;
-    work_ += kFreeWork * unit_;
+    work_ += free_work();
     return is_apart(*query_.a, pose_of(xi), *query_.b, query_.X_WB, scratch_);
   }
 
@@ -141,8 +146,7 @@ class Search {
     sweep.accuracy_mm = kSweepAccuracy_mm;
     sweep.work_cap = kSweepCap;
     const FirstContact contact = first_contact(sweep, scratch_);
-    work_ +=
-        kFreeWork * unit_ + (contact.work.box_tests + contact.work.leaf_tests) / kTestsAWorkUnit;
+    work_ += free_work() + (contact.work.box_tests + contact.work.leaf_tests) / kTestsAWorkUnit;
     switch (contact.state) {
       case ContactState::kContact:
         return 1.0 - contact.t_contact;

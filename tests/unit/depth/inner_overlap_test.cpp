@@ -56,6 +56,22 @@ TEST(InnerOverlap, PartsOnOnePlace) {
   }
 }
 
+// Their surfaces coincide everywhere, and nothing is learned from them.
+TEST(InnerOverlap, TheSamePartTwiceCostsLittle) {
+  const SolidPtr part = solid(ring({12, -10, 10, 256, 9, 0}, 25));
+  for (const double shift : {0.0, 0.005, 0.1}) {
+    SCOPED_TRACE(shift);
+    Case c{part, part};
+    c.X_WB = Pose::translation(Vec3(shift, 0, 0));
+    c.refinement = Refinement::kDecided;
+    const OverlapResult result = overlap_of(c);
+    ASSERT_EQ(result.regions.size(), 1U);
+    EXPECT_GT(result.regions.front().delta_mm.lo, 12.0 - shift);
+    EXPECT_TRUE(result.regions.front().has_witness);
+    EXPECT_LT(result.evaluations, 2'000U);
+  }
+}
+
 // A bar straight through a slab as thick as it is.
 TEST(InnerOverlap, CrossingBars) {
   expect_delta({solid(box({5, 5, 0.2})), solid(box({0.2, 0.2, 5}, {0.3, 0.1, 0.4}))}, 0.4);
