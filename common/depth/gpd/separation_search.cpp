@@ -41,7 +41,7 @@ constexpr double kScanGrowth = 1.7;
 constexpr double kFar = 20.0;
 constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
-constexpr std::uint64_t kFreeWork = 12, kFreeWorkOfMany = 40, kProgramWork = 10;
+constexpr std::uint64_t kFreeWork = 4, kFreeWorkOfMany = 40, kProgramWork = 10;
 constexpr std::uint64_t kTestsAWorkUnit = 8;
 // In meshes of so many triangles together a question of all of them takes once as long again.
 constexpr std::uint64_t kLargeMesh = 8'192, kManyUnits = 2;
