@@ -22,7 +22,7 @@ before(async () => {
   await moveBy(ann, [0, 0, -28]);
   await real;
   await ann.click('#hand button:has-text("Release")');
-}, { timeout: 90_000 });
+}, { timeout: 180_000 });
 
 const trouble = (page, kind) => page.locator(`#banner[data-trouble="${kind}"]`);
 

@@ -42,5 +42,6 @@ export async function openPage(browser, address, { scheme = 'dark', name, first,
 export async function joinAs(page, name) {
   await page.fill('#join_name', name);
   await page.click('#join_go');
-  await page.waitForFunction((n) => document.getElementById('status_server')?.textContent === `You are ${n}`, name);
+  // Several browsers draw without a graphics card on two cores: the first picture may take half a minute.
+  await page.waitForFunction((n) => document.getElementById('status_server')?.textContent === `You are ${n}`, name, { timeout: 90_000 });
 }
