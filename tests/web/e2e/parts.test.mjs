@@ -51,7 +51,7 @@ before(async () => {
   ({ browser, addresses } = await session.show());
   [eva, tom] = await session.join('Eva', 'Tom');
   await tom.locator('#no_parts').waitFor(PATIENCE);
-}, { timeout: 90_000 });
+}, { timeout: 180_000 });
 
 test('in an empty session two files become parts, units are asked once with the size shown, and everybody has the verdict within a minute', async (t) => {
   if (process.env.MORTISE_PICTURES) await eva.screenshot({ path: join(process.env.MORTISE_PICTURES, 'empty.png') });
