@@ -118,6 +118,8 @@ void OwnUsers::take(const RefusedIncrement& refused) {
 void OwnUsers::take(const Ack& ack, std::uint64_t tick, std::int64_t now_ns, ClientUpdate& update) {
   State* user = find(ack.user);
   if (user == nullptr || ack.seq <= user->acked_seq) return;
+  // Of whoever was this user before: a server may say late what it kept until it might.
+  if (ack.seq > user->increment_seq) return;
   user->acked_seq = ack.seq;
   user->unacknowledged.acknowledge(ack.seq);
   user->unacked_since_ns.reset();

@@ -151,10 +151,12 @@ UserId Inbox::longest_gone(const World& world) const {
 
 void Inbox::sit_down(UserId user, const Seat& seat, bool with_taken_id, std::int64_t now_ns) {
   if (user.value > seats_.size()) seats_.resize(user.value);
+  const Seat& before = seats_[user.value - 1];
+  const bool is_back = before.client == seat.client && before.nonce == seat.nonce;
   seats_[user.value - 1] = seat;
   tally_.begin(user, with_taken_id);
   rates_.begin(user, now_ns);
-  increments_.begin(user);
+  increments_.begin(user, is_back);
   commands_.begin(user);
 }
 

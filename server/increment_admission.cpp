@@ -13,25 +13,21 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 }  // namespace
 
-void IncrementAdmission::begin(UserId user) {
+void IncrementAdmission::begin(UserId user, bool is_back) {
   if (user.value > queues_.size()) queues_.resize(user.value);
-  queues_[user.value - 1] = Queue{};
+  const std::uint64_t handled = is_back ? queues_[user.value - 1].acknowledged : 0;
+  queues_[user.value - 1] = {};
+  queues_[user.value - 1].order = IncrementOrder::after(handled);
+  queues_[user.value - 1].acknowledged = handled;
 }
 
 void IncrementAdmission::receive(const ReceivedIncrement& received, std::int64_t now_ns,
                                  Intake& intake) {
   const Increment& increment = received.increment;
   Queue& of_user = queues_[increment.user.value - 1];
-  IncrementOrder& order = of_user.order;
-  const std::uint64_t lost = order.lost(), repaired = order.repaired();
-  ready_.clear();
-  const IncrementOrder::Arrival arrival = order.receive(received, ready_);
-  UserCounters& user = tally_.of(increment.user);
-  tally_.all().lost += order.lost() - lost;
-  tally_.all().repaired += order.repaired() - repaired;
-  user.lost += order.lost() - lost;
-  user.repaired += order.repaired() - repaired;
-  for (const ReceivedIncrement& next : ready_) queue(next, now_ns, intake);
+  const IncrementOrder::Arrival arrival = of_user.order.receive(received);
+  queue_next(increment.user, now_ns, intake);
+  if (arrival == IncrementOrder::Arrival::kNoRoom) return;  // it comes again
   const bool seen = arrival == IncrementOrder::Arrival::kSeen;
   if (seen && received.kept_from != 0) {
     ++tally_.all().repeats;
@@ -41,19 +37,47 @@ void IncrementAdmission::receive(const ReceivedIncrement& received, std::int64_t
     return;
   }
   ++tally_.all().increments;
-  ++user.received;
+  ++tally_.of(increment.user).received;
   if (arrival == IncrementOrder::Arrival::kNew) return;
   tally_.refuse(increment, increment.user, seen ? Refusal::kDuplicate : Refusal::kStale, intake);
 }
 
-void IncrementAdmission::queue(const ReceivedIncrement& received, std::int64_t now_ns,
-                               Intake& intake) {
+Refusal IncrementAdmission::refusal_at_queue(const ReceivedIncrement& received,
+                                             std::int64_t now_ns) {
+  if (received.at_door != Refusal::kNone) return received.at_door;
+  const UserId user = received.increment.user;
+  const bool is_full = queues_[user.value - 1].backlog.size() >= limits_.increments_waiting;
+  return is_full || !rates_.has_room(user, now_ns) ? Refusal::kRateTooHigh : Refusal::kNone;
+}
+
+void IncrementAdmission::queue_next(UserId user, std::int64_t now_ns, Intake& intake) {
+  IncrementOrder& order = queues_[user.value - 1].order;
+  while (const ReceivedIncrement* first = order.next()) {
+    const Refusal reason = refusal_at_queue(*first, now_ns);
+    // Later acknowledgements would say that it was taken. Who never repeats has given it up.
+    const bool repeats = first->kept_from != 0;
+    if (reason != Refusal::kNone && repeats && !tally_.can_tell(user)) break;
+    queue(order.take_next(), reason, now_ns, intake);
+  }
+  count(user);
+}
+
+void IncrementAdmission::count(UserId user) {
+  Queue& of_user = queues_[user.value - 1];
+  const std::uint64_t lost = of_user.order.lost(), repaired = of_user.order.repaired();
+  tally_.all().lost += lost - of_user.lost;
+  tally_.all().repaired += repaired - of_user.repaired;
+  tally_.of(user).lost += lost - of_user.lost;
+  tally_.of(user).repaired += repaired - of_user.repaired;
+  of_user.lost = lost;
+  of_user.repaired = repaired;
+}
+
+void IncrementAdmission::queue(const ReceivedIncrement& received, Refusal reason,
+                               std::int64_t now_ns, Intake& intake) {
   const Increment& increment = received.increment;
   Queue& of_user = queues_[increment.user.value - 1];
-  Refusal reason = received.at_door;
-  if (reason == Refusal::kNone && (!rates_.take(increment.user, now_ns) ||
-                                   of_user.backlog.size() >= limits_.increments_waiting))
-    reason = Refusal::kRateTooHigh;
+  if (received.at_door == Refusal::kNone) (void)rates_.take(increment.user, now_ns);
   if (reason != Refusal::kNone) {
     // An acknowledgement speaks of all before it, also of what waits.
     if (of_user.backlog.empty())
@@ -83,6 +107,7 @@ std::size_t IncrementAdmission::share_of(const Queue& queue, const World& world)
 void IncrementAdmission::take(const World& world, std::int64_t now_ns, Intake& intake) {
   for (std::uint32_t i = 0; i < queues_.size(); ++i) {
     const Queue& of_user = queues_[i];
+    queue_next(UserId{i + 1}, now_ns, intake);
     const std::size_t before = intake.increments.size(), share = share_of(of_user, world);
     // Also what would be refused waits its turn: the sequence of a user never goes back.
     while (!of_user.backlog.empty() && intake.increments.size() - before < share &&
@@ -111,19 +136,26 @@ bool IncrementAdmission::take_first(UserId user, const World& world, std::int64_
 
 Increment IncrementAdmission::next(UserId user, Intake& intake) {
   Queue& of_user = queues_[user.value - 1];
-  const ReceivedIncrement first = std::move(of_user.backlog.front());
+  const std::int64_t sent_ns = of_user.backlog.front().sent_ns;
+  const Increment first = pop(of_user);
+  acknowledge(user, first.seq, sent_ns, intake);
+  if (of_user.backlog.empty() && of_user.refused_up_to > first.seq)
+    acknowledge(user, of_user.refused_up_to, 0, intake);
+  return first;
+}
+
+Increment IncrementAdmission::pop(Queue& of_user) {
+  const Increment first = of_user.backlog.front().increment;
   of_user.backlog.pop_front();
   --waiting_;
-  acknowledge(user, first.increment.seq, first.sent_ns, intake);
-  if (of_user.backlog.empty() && of_user.refused_up_to > first.increment.seq)
-    acknowledge(user, of_user.refused_up_to, 0, intake);
-  return first.increment;
+  return first;
 }
 
 void IncrementAdmission::drop(UserId user) {
+  Queue& of_user = queues_[user.value - 1];
   Intake nobody;
-  while (!queues_[user.value - 1].backlog.empty())
-    tally_.refuse(next(user, nobody), user, Refusal::kUnknownUser, nobody);
+  while (!of_user.backlog.empty()) tally_.refuse(pop(of_user), user, Refusal::kUnknownUser, nobody);
+  begin(user, true);
 }
 
 bool IncrementAdmission::waits(UserId user, PartId part, std::uint64_t up_to_seq) const {

@@ -1,42 +1,52 @@
 #include "server/increment_order.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace mortise {
 
-void IncrementOrder::hand_out(std::vector<ReceivedIncrement>& ready) {
-  while (!held_.empty() && held_.begin()->first == newest_ + 1) {
-    newest_ = held_.begin()->first;
-    (void)handed_out_.admit(newest_);
-    ready.push_back(std::move(held_.begin()->second));
-    held_.erase(held_.begin());
-  }
+IncrementOrder IncrementOrder::after(std::uint64_t handled) {
+  IncrementOrder order;
+  order.newest_ = handled;
+  order.begun_ = handled != 0;
+  return order;
 }
 
-void IncrementOrder::skip_to(std::uint64_t seq, std::vector<ReceivedIncrement>& ready) {
-  hand_out(ready);
-  while (newest_ + 1 < seq) {
-    const std::uint64_t next = held_.empty() ? seq : std::min(held_.begin()->first, seq);
-    if (begun_) lost_ += next - newest_ - 1;
-    newest_ = next - 1;
-    hand_out(ready);
-  }
+ReceivedIncrement IncrementOrder::take_next() {
+  ReceivedIncrement next = std::move(held_.begin()->second);
+  held_.erase(held_.begin());
+  newest_ = next.increment.seq;
+  (void)handed_out_.admit(newest_);
+  skip_what_is_missing();
+  return next;
 }
 
-IncrementOrder::Arrival IncrementOrder::receive(const ReceivedIncrement& received,
-                                                std::vector<ReceivedIncrement>& ready) {
+void IncrementOrder::skip_what_is_missing() {
+  const std::uint64_t here = held_.empty() ? kept_from_ : held_.begin()->first;
+  const std::uint64_t next = std::min(here, kept_from_);
+  if (next <= newest_ + 1) return;
+  if (begun_) lost_ += next - newest_ - 1;
+  newest_ = next - 1;
+}
+
+IncrementOrder::Arrival IncrementOrder::receive(const ReceivedIncrement& received) {
   const std::uint64_t seq = received.increment.seq;
   if (seq <= newest_) {
     if (received.repeated) return Arrival::kSeen;
     return handed_out_.admit(seq) == Refusal::kDuplicate ? Arrival::kSeen : Arrival::kStale;
   }
-  // Below what the sender still keeps nothing will come any more.
-  skip_to(received.kept_from == 0 ? seq : received.kept_from, ready);
+  kept_from_ = std::max(kept_from_, received.kept_from == 0 ? seq : received.kept_from);
+  skip_what_is_missing();
   begun_ = true;
-  if (seq <= newest_ || !held_.emplace(seq, received).second) return Arrival::kSeen;
+  if (seq <= newest_ || held_.contains(seq)) return Arrival::kSeen;
+  if (has_next() && held_.size() >= kMaxKeptIncrements) return Arrival::kNoRoom;
+  held_.emplace(seq, received);
   repaired_ += received.repeated;
-  hand_out(ready);
-  if (held_.size() > kMaxKeptIncrements) skip_to(held_.begin()->first, ready);
+  // A hole that is never filled.
+  if (held_.size() > kMaxKeptIncrements) {
+    kept_from_ = std::max(kept_from_, held_.begin()->first);
+    skip_what_is_missing();
+  }
   return Arrival::kNew;
 }
 

@@ -17,6 +17,7 @@ class MessageRates {
   void begin(UserId user, std::int64_t now_ns);
   /// Counts one message of a user who has joined; false: it exceeds a limit.
   bool take(UserId user, std::int64_t now_ns);
+  bool has_room(UserId user, std::int64_t now_ns);  ///< would take() be true?
 
  private:
   struct Bucket {

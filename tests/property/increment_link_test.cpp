@@ -55,6 +55,10 @@ struct Outcome {
   bool in_order = true;
 };
 
+void take_all(IncrementOrder& order, std::vector<ReceivedIncrement>& ready) {
+  while (order.next() != nullptr) ready.push_back(order.take_next());
+}
+
 /// One turn is one period of the sender. A hand that moves, rests and moves again.
 Outcome play(const LinkFaults& faults, int turns, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -81,8 +85,8 @@ Outcome play(const LinkFaults& faults, int turns, std::uint64_t seed) {
     for (const IncrementBatch& batch : up.receive(now)) {
       for (const auto& [increment, sent_ns] : batch.increments) {
         (void)order.receive({"", increment, sent_ns, batch.kept_from,
-                             increment.seq < batch.fresh_from, Refusal::kNone},
-                            ready);
+                             increment.seq < batch.fresh_from, Refusal::kNone});
+        take_all(order, ready);
       }
       down.send(order.newest(), now);
     }
@@ -154,7 +158,9 @@ TEST(IncrementOrder, WaitsForNobodyWhoNeverRepeats) {
     ReceivedIncrement r;
     r.increment.seq = seq;
     r.kept_from = kept_from;
-    return order.receive(r, ready);
+    const IncrementOrder::Arrival arrival = order.receive(r);
+    take_all(order, ready);
+    return arrival;
   };
   using Arrival = IncrementOrder::Arrival;
   EXPECT_EQ(receive(5), Arrival::kNew);
@@ -179,11 +185,35 @@ TEST(IncrementOrder, ASenderThatFillsNoHoleCostsABoundedMemory) {
     ReceivedIncrement r;
     r.increment.seq = seq;
     r.kept_from = 1;
-    (void)order.receive(r, ready);
+    (void)order.receive(r);
+    take_all(order, ready);
     ASSERT_LE(order.held(), kMaxKeptIncrements);
   }
   EXPECT_GT(order.lost(), 3000u);
   EXPECT_GT(ready.size(), 3000u);
+}
+
+TEST(IncrementOrder, WhatIsNotTakenKeepsItsPlaceAndIsBounded) {
+  IncrementOrder order;
+  const auto receive = [&](std::uint64_t seq) {
+    ReceivedIncrement r;
+    r.increment.seq = seq;
+    r.kept_from = 1;
+    r.repeated = true;
+    return order.receive(r);
+  };
+  using Arrival = IncrementOrder::Arrival;
+  for (std::uint64_t seq = 1; seq <= kMaxKeptIncrements; ++seq)
+    ASSERT_EQ(receive(seq), Arrival::kNew);
+  EXPECT_EQ(receive(kMaxKeptIncrements + 1), Arrival::kNoRoom);
+  EXPECT_EQ(receive(7), Arrival::kSeen);
+  EXPECT_EQ(order.newest(), 0u);
+  EXPECT_EQ(order.take_next().increment.seq, 1u);
+  EXPECT_EQ(receive(kMaxKeptIncrements + 1), Arrival::kNew);
+  std::vector<ReceivedIncrement> ready;
+  take_all(order, ready);
+  EXPECT_EQ(ready.size(), kMaxKeptIncrements);
+  EXPECT_EQ(order.lost(), 0u);
 }
 
 }  // namespace

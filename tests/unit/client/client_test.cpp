@@ -128,6 +128,7 @@ struct OneClient : testing::Test {
       const ClientUpdate update = client->poll();
       append(all.events, update.events);
       append(all.joined, update.joined);
+      append(all.acks, update.acks);
       append(all.latency_ms, update.latency_ms);
       append(all.changed, update.changed);
       all.resynced |= update.resynced;
@@ -286,6 +287,19 @@ TEST_F(JoinedClient, JoinsAgainWhenTakenForGone) {
   }
   EXPECT_FALSE(bench.gone.contains(id));
   EXPECT_EQ(bench.joins, 3u);
+}
+
+// A server that kept what it had to say until it might: of whoever was this user before.
+TEST_F(JoinedClient, TakesNoAcknowledgementOfWhatItNeverSent) {
+  const UserId id = client->user_id(0);
+  client->send(0, PartId{1}, Vec3(1, 0, 0));
+  PoseBatch late;
+  late.tick = bench.tick;
+  late.acks.push_back({id, 500, 0});
+  bench.server->publish_poses(late);
+  const ClientUpdate update = run(10);
+  ASSERT_EQ(update.acks.size(), 1u);
+  EXPECT_EQ(update.acks.front().seq, 1u);
 }
 
 TEST_F(OneClient, HeartbeatsGoWhileNothingElseDoes) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "tests/unit/server/inbox_bench.h"
 
@@ -157,6 +159,97 @@ TEST_F(InboxBacklogTest, WhatWaitsOfSomebodyWhoIsGoneIsRefused) {
   EXPECT_EQ(refused(Refusal::kUnknownUser), waiting);
   EXPECT_TRUE(intake_.acks.empty() && intake_.refused.empty()) << "who has the id now hears of it";
   EXPECT_EQ(inbox_.users_present(), 2u);
+}
+
+/// A hand whose increments 1 to kMany come in one tick, behind a gap that is filled last.
+class InboxRepeatTest : public InboxTest {
+ protected:
+  static constexpr std::uint64_t kMany = kMaxKeptIncrements;
+  ServerInput all_at_once(const ClientKey& client = "a") {
+    ServerInput input;
+    for (std::uint64_t i = 0; i < kMany; ++i)
+      input.increments.push_back(repeated(client, i + 1 < kMany ? i + 2 : 1));
+    return input;
+  }
+  ReceivedIncrement repeated(const ClientKey& client, std::uint64_t seq) const {
+    ReceivedIncrement received = increment(client, anna_, kRed, seq, Vec3(0.01, 0, 0));
+    received.kept_from = 1;
+    received.repeated = true;
+    return received;
+  }
+  /// Goes on as a client does: what is not acknowledged is repeated.
+  void settle(const ClientKey& client = "a") {
+    for (int tick = 0; tick < 600; ++tick) {
+      note();
+      now_ns_ += kSecond_ns / 60;
+      ServerInput input;
+      for (std::uint64_t i = 1; i <= 16 && acked_ + i <= kMany; ++i)
+        input.increments.push_back(repeated(client, acked_ + i));
+      admit(std::move(input));
+    }
+    note();
+  }
+  void note() {
+    for (const Increment& one : intake_.increments) ++taken_[one.seq];
+    for (const RefusedIncrement& one : intake_.refused) told_.insert(one.seq);
+    for (const Ack& ack : intake_.acks)
+      if (ack.user == anna_) acked_ = std::max(acked_, ack.seq);
+    for (std::uint64_t seq = 1; seq <= acked_; ++seq)
+      silent_ += !taken_.contains(seq) && !told_.contains(seq);
+  }
+
+  std::map<std::uint64_t, int> taken_;
+  std::set<std::uint64_t> told_;
+  std::uint64_t acked_ = 0, silent_ = 0;
+};
+
+// More than may wait: whoever is told that all of it was taken holds it for done.
+TEST_F(InboxRepeatTest, NoAcknowledgementPassesARefusalThatWasNotTold) {
+  admit(all_at_once());
+  settle();
+  EXPECT_EQ(acked_, kMany);
+  EXPECT_EQ(silent_, 0u);
+  EXPECT_EQ(inbox_.counters().refusals_untold, 0u);
+  EXPECT_EQ(inbox_.counters().accepted + inbox_.counters().refused_in_all(), kMany);
+  EXPECT_EQ(inbox_.counters().repaired, kMany);
+  EXPECT_EQ(inbox_.counters().lost, 0u);
+}
+
+// The acknowledgements did not arrive before she was taken for gone.
+TEST_F(InboxRepeatTest, WhoComesBackIsNotTakenTwice) {
+  admit(all_at_once());
+  for (int tick = 0; tick < 9; ++tick) {
+    for (const Increment& one : intake_.increments) ++taken_[one.seq];
+    admit({});
+  }
+  for (const Increment& one : intake_.increments) ++taken_[one.seq];
+  ASSERT_GE(taken_.size(), 50u);
+  ServerInput gone;
+  gone.lost.push_back({UserId{}, "a", false});
+  gone.joins.push_back({"a", 1, "anna", "designer"});
+  admit(std::move(gone));
+  ASSERT_EQ(intake_.join_replies.front().user, anna_);
+  ASSERT_EQ(command("a", anna_, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
+  settle();
+  EXPECT_EQ(acked_, kMany);
+  EXPECT_EQ(silent_, 0u);
+  for (const auto& [seq, times] : taken_) EXPECT_EQ(times, 1) << seq;
+}
+
+// Somebody else under this name counts from 1.
+TEST_F(InboxRepeatTest, WhoComesInsteadBeginsAnew) {
+  admit(all_at_once());
+  ServerInput gone;
+  gone.lost.push_back({UserId{}, "a", false});
+  gone.joins.push_back({"c", 1, "anna", "designer"});
+  admit(std::move(gone));
+  ASSERT_EQ(intake_.join_replies.front().user, anna_);
+  ASSERT_EQ(command("c", anna_, kRed, CommandKind::kGrab).refusal, Refusal::kNone);
+  taken_.clear();
+  settle("c");
+  EXPECT_EQ(acked_, kMany);
+  EXPECT_EQ(silent_, 0u);
+  EXPECT_EQ(taken_.size(), kMany);
 }
 
 }  // namespace
