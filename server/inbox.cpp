@@ -151,12 +151,10 @@ UserId Inbox::longest_gone(const World& world) const {
 
 void Inbox::sit_down(UserId user, const Seat& seat, bool with_taken_id, std::int64_t now_ns) {
   if (user.value > seats_.size()) seats_.resize(user.value);
-  const Seat& before = seats_[user.value - 1];
-  const bool is_back = before.client == seat.client && before.nonce == seat.nonce;
-  seats_[user.value - 1] = seat;
+  const Seat before = std::exchange(seats_[user.value - 1], seat);
   tally_.begin(user, with_taken_id);
   rates_.begin(user, now_ns);
-  increments_.begin(user, is_back);
+  increments_.begin(user, before.client == seat.client && before.nonce == seat.nonce);
   commands_.begin(user);
 }
 
@@ -168,10 +166,9 @@ void Inbox::adopt(const std::vector<SeatRecord>& seats, std::int64_t now_ns) {
 
 std::vector<SeatRecord> Inbox::seats() const {
   std::vector<SeatRecord> records;
-  for (std::uint32_t i = 0; i < seats_.size(); ++i) {
-    const Seat& seat = seats_[i];
-    if (seat.present) records.push_back({UserId{i + 1}, seat.client, seat.nonce});
-  }
+  for (std::uint32_t i = 0; i < seats_.size(); ++i)
+    if (const Seat& seat = seats_[i]; seat.present)
+      records.push_back({UserId{i + 1}, seat.client, seat.nonce});
   return records;
 }
 
