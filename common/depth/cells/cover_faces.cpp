@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace mortise {
 namespace {
@@ -81,13 +82,18 @@ CoverFaces::Border CoverFaces::border(const Vec3& n, double c_mm) const {
   for (std::uint32_t t = 0; t < count(); ++t) {
     const std::uint32_t face = planes.face_of_triangle[t];
     if (face < planes.faces.size() && border.has_face[face]) continue;
-    const double reach = reach_mm(t, n);
-    if (reach == 0.0) continue;
+    double farthest = -std::numeric_limits<double>::infinity();
     for (const std::uint32_t p : mesh().triangles[t]) {
       const double out = n.dot(mesh().points_mm[p]) - c_mm;
-      if (out > same_mm || (border.has_point[p] && out > -same_mm)) continue;
-      for (double& offset : border.offsets) offset = std::max(offset, out + reach);
+      if (out <= same_mm && !(border.has_point[p] && out > -same_mm))
+        farthest = std::max(farthest, out);
     }
+    // Most are too far inside for their reach to any side; that towards n costs more.
+    const double least = std::min(border.offsets[0], border.offsets[1]);
+    if (reach_mm(t) == 0.0 || farthest + reach_mm(t) <= least) continue;
+    const double reach = reach_mm(t, n);
+    if (reach == 0.0) continue;
+    for (double& offset : border.offsets) offset = std::max(offset, farthest + reach);
   }
   return border;
 }

@@ -39,34 +39,70 @@ bool same_wall(const Surface& a, const Surface& b) {
          a.radius_mm == b.radius_mm && a.half_angle_rad == b.half_angle_rad;
 }
 
-// A ball about each triangle, and how far outside of a wall one must be to say nothing of its hole.
+struct Ball {
+  Vec3 middle;
+  double radius_mm = 0.0;
+};
+
+// Balls about runs of triangles, which mostly lie on one face, and how far outside of a wall one
+// must be to say nothing of its hole.
 struct Balls {
+  static constexpr std::uint32_t kRun = 16;
+
   explicit Balls(const CoverFaces& f) : far_mm(f.travel_mm) {
     for (const SurfaceBand::Face& face : f.body.band->faces)
       far_mm = std::max(far_mm, face.deviation_mm.hi);
     far_mm += kFarShare * f.body.solid->bvh().extent_mm;
-    for (std::uint32_t t = 0; t < f.count(); ++t) {
-      const Corners c = corners_of(f.mesh(), t);
-      middle.push_back((c[0] + c[1] + c[2]) / 3.0);
-      radius_mm.push_back(0.0);
-      for (const Vec3& x : c)
-        radius_mm.back() = std::max(radius_mm.back(), (x - middle.back()).norm());
+    for (std::uint32_t from = 0; from < f.count(); from += kRun) {
+      const std::uint32_t to = std::min(from + kRun, f.count());
+      Box box;
+      for (std::uint32_t t = from; t < to; ++t)
+        for (int k = 0; k < 3; ++k) box.add(f.mesh().corner(t, k));
+      of_run.push_back({box.center(), 0.0});
+      double& radius = of_run.back().radius_mm;
+      for (std::uint32_t t = from; t < to; ++t)
+        for (int k = 0; k < 3; ++k)
+          radius = std::max(radius, (f.mesh().corner(t, k) - box.center()).norm());
     }
   }
   double far_mm;
-  std::vector<Vec3> middle;
-  std::vector<double> radius_mm;
+  std::vector<Ball> of_run;
 };
 
-// The hole of one round inner face: along its axis up to what stands in it.
+// Round inner faces and their triangles; faces of one surface are one wall.
+struct Walls {
+  static constexpr std::size_t kNone = SIZE_MAX;
+
+  explicit Walls(const CoverFaces& f) {
+    for (const SurfaceBand::Face& face : f.body.band->faces)
+      of_face.push_back(wall_of(Body::surface_of(face, Layer::kUpper)));
+    triangles.resize(surfaces.size());
+    for (std::uint32_t t = 0; t < f.count(); ++t)
+      if (const std::size_t wall = of_face[f.body.face_index(t)]; wall != kNone)
+        triangles[wall].push_back(t);
+  }
+
+  std::vector<const Surface*> surfaces;
+  std::vector<std::vector<std::uint32_t>> triangles;
+  std::vector<std::size_t> of_face;
+
+ private:
+  std::size_t wall_of(const Surface* s) {
+    if (s == nullptr || !s->inward ||
+        (s->kind != SurfaceKind::kCylinder && s->kind != SurfaceKind::kCone))
+      return kNone;
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      if (same_wall(*surfaces[i], *s)) return i;
+    surfaces.push_back(s);
+    return surfaces.size() - 1;
+  }
+};
+
+// The hole of one wall: along its axis up to what stands in it.
 class Bore {
  public:
-  Bore(const CoverFaces& faces, const Balls& balls, const Surface& surface)
-      : f_(faces), balls_(balls), s_(surface) {
-    for (const SurfaceBand::Face& face : f_.body.band->faces) {
-      const Surface* own = Body::surface_of(face, Layer::kUpper);
-      own_face_.push_back(own != nullptr && same_wall(*own, s_));
-    }
+  Bore(const CoverFaces& faces, const Balls& balls, const Walls& walls, std::size_t own)
+      : f_(faces), balls_(balls), walls_(walls), own_wall_(own), s_(*walls.surfaces[own]) {
     wall_.point = s_.point;
     wall_.axis = s_.axis;
     wall_.r_mm = s_.radius_mm;
@@ -80,8 +116,13 @@ class Bore {
     find_own();
     const double from = std::max(own_.lo, s_.kind == SurfaceKind::kCone ? 0.0 : -kInfinity);
     if (!(from < own_.hi)) return std::nullopt;
-    for (std::uint32_t t = 0; t < f_.count(); ++t)
-      if (!is_far(t) && !is_own(t) && !see(t)) return std::nullopt;
+    for (std::uint32_t run = 0; run < balls_.of_run.size(); ++run) {
+      if (ball_clearance(balls_.of_run[run]) >= balls_.far_mm) continue;  // see() changes nothing
+      const std::uint32_t first = run * Balls::kRun,
+                          end = std::min(first + Balls::kRun, f_.count());
+      for (std::uint32_t t = first; t < end; ++t)
+        if (!is_own(t) && !see(t)) return std::nullopt;
+    }
     if (!(free_.lo < free_.hi)) return std::nullopt;
     const double lo = std::max(from, free_.lo), hi = std::min(own_.hi, free_.hi);
     if (!(lo < hi) || !is_outside(f_, s_.point + 0.5 * (lo + hi) * s_.axis)) return std::nullopt;
@@ -98,17 +139,11 @@ class Bore {
 
  private:
   double height(const Vec3& x) const { return (x - s_.point).dot(s_.axis); }
-  bool is_own(std::uint32_t t) const { return own_face_[f_.body.face_index(t)]; }
-  // So far outside that see() would change nothing.
-  bool is_far(std::uint32_t t) const {
-    return ball_clearance(balls_.middle[t], balls_.radius_mm[t]) >= balls_.far_mm;
-  }
-
+  bool is_own(std::uint32_t t) const { return walls_.of_face[f_.body.face_index(t)] == own_wall_; }
   void find_own() {
     own_point_.assign(f_.mesh().points_mm.size(), false);
     bool first = true;
-    for (std::uint32_t t = 0; t < f_.count(); ++t) {
-      if (!is_own(t)) continue;
+    for (const std::uint32_t t : walls_.triangles[own_wall_]) {
       offsets_ = first ? f_.offsets(t) : larger(offsets_, f_.offsets(t));
       first = false;
       chord_mm_ = std::max(chord_mm_, f_.chord_mm(t));
@@ -122,15 +157,15 @@ class Bore {
 
   // How far the nearest point of a triangle is outside of the wall, from below.
   double clearance(const Corners& c) const {
-    const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
-    double radius = 0.0;
-    for (const Vec3& x : c) radius = std::max(radius, (x - middle).norm());
-    return ball_clearance(middle, radius);
+    Ball ball{(c[0] + c[1] + c[2]) / 3.0, 0.0};
+    for (const Vec3& x : c) ball.radius_mm = std::max(ball.radius_mm, (x - ball.middle).norm());
+    return ball_clearance(ball);
   }
-  double ball_clearance(const Vec3& middle, double radius) const {
-    const Vec3 d = middle - s_.point;
+  double ball_clearance(const Ball& ball) const {
+    const Vec3 d = ball.middle - s_.point;
     const double z = d.dot(s_.axis);
-    return wall_.cosine * ((d - z * s_.axis).norm() - wall_.r_mm - wall_.slope * z) - radius;
+    return wall_.cosine * ((d - z * s_.axis).norm() - wall_.r_mm - wall_.slope * z) -
+           ball.radius_mm;
   }
 
   static std::array<Corners, 4> quarters(const Corners& c) {
@@ -204,9 +239,10 @@ class Bore {
 
   const CoverFaces& f_;
   const Balls& balls_;
+  const Walls& walls_;
+  std::size_t own_wall_;
   const Surface& s_;
   VoidWall wall_;
-  std::vector<bool> own_face_;
   std::vector<bool> own_point_;
   LayerOffsets offsets_{};
   double chord_mm_ = 0.0;
@@ -214,21 +250,36 @@ class Bore {
   Interval free_{-kInfinity, kInfinity};  // heights without material
 };
 
+// The borders of plane faces, each asked for once.
+class PlaneBorders {
+ public:
+  explicit PlaneBorders(const CoverFaces& faces) : f_(faces), known_(faces.planes.faces.size()) {}
+
+  const CoverFaces::Border& of(std::uint32_t face) {
+    const PlaneFace& plane = f_.planes.faces[face];
+    if (!known_[face]) known_[face] = f_.border(plane.n, plane.c);
+    return *known_[face];
+  }
+
+ private:
+  const CoverFaces& f_;
+  std::vector<std::optional<CoverFaces::Border>> known_;
+};
+
 // Above a floor and beside all faces that rise from it.
 class Pocket {
  public:
-  Pocket(const CoverFaces& faces, std::vector<std::uint32_t> of) : f_(faces), of_(std::move(of)) {}
+  Pocket(const CoverFaces& faces, PlaneBorders& borders, std::vector<std::uint32_t> of)
+      : f_(faces), of_(std::move(of)) {
+    for (const std::uint32_t face : of_) borders_.push_back(&borders.of(face));
+  }
 
   std::optional<LayerVoids> run() {
     const PlaneFace& floor = f_.planes.faces[of_.front()];
-    for (const std::uint32_t face : of_) {
-      const PlaneFace& plane = f_.planes.faces[face];
-      borders_.push_back(f_.border(plane.n, plane.c));
-    }
     own_point_.assign(f_.mesh().points_mm.size(), false);
-    for (const auto& border : borders_)
+    for (const auto* border : borders_)
       for (std::size_t p = 0; p < own_point_.size(); ++p)
-        own_point_[p] = own_point_[p] || border.has_point[p];
+        own_point_[p] = own_point_[p] || border->has_point[p];
     const double above = kAboveShare * f_.body.solid->bvh().extent_mm;
     const Corners seed = corners_of(f_.mesh(), floor.triangle);
     const Vec3 inside = (seed[0] + seed[1] + seed[2]) / 3.0 + above * floor.n;
@@ -242,7 +293,7 @@ class Pocket {
     for (int layer = 0; layer < 2; ++layer) {
       for (std::size_t i = 0; i < of_.size(); ++i) {
         const PlaneFace& plane = f_.planes.faces[of_[i]];
-        voids.of[layer].planes.push_back({plane.n, plane.c + borders_[i].offsets[layer]});
+        voids.of[layer].planes.push_back({plane.n, plane.c + borders_[i]->offsets[layer]});
       }
       if (std::isfinite(top_mm_))
         voids.of[layer].planes.push_back({-floor.n, -(top_mm_ - f_.travel_mm)});
@@ -255,7 +306,7 @@ class Pocket {
     const std::uint32_t face = f_.planes.face_of_triangle[t];
     if (face >= f_.planes.faces.size()) return face == PlaneFaces::kWithoutArea;
     return std::any_of(borders_.begin(), borders_.end(),
-                       [&](const auto& border) { return border.has_face[face]; });
+                       [&](const auto* border) { return border->has_face[face]; });
   }
 
   double bulge_mm(std::uint32_t t) const {
@@ -264,8 +315,14 @@ class Pocket {
 
   // Cuts a triangle down to what is in the pocket. What is left ends it.
   void see(std::uint32_t t) {
-    const bool touches = f_.touches(t, own_point_);
     const Corners c = corners_of(f_.mesh(), t);
+    const double most = std::max(bulge_mm(t), f_.reach_mm(t));
+    for (const std::uint32_t face : of_) {
+      const PlaneFace& plane = f_.planes.faces[face];
+      const double top = std::max({plane.n.dot(c[0]), plane.n.dot(c[1]), plane.n.dot(c[2])});
+      if (top <= plane.c + f_.same_mm - most) return;  // cut away, whatever it reaches
+    }
+    const bool touches = f_.touches(t, own_point_);
     polygon_.assign(c.begin(), c.end());
     for (const std::uint32_t face : of_) {
       const PlaneFace& plane = f_.planes.faces[face];
@@ -291,7 +348,7 @@ class Pocket {
 
   const CoverFaces& f_;
   std::vector<std::uint32_t> of_;  // plane faces, the floor first
-  std::vector<CoverFaces::Border> borders_;
+  std::vector<const CoverFaces::Border*> borders_;
   std::vector<bool> own_point_;
   double top_mm_ = kInfinity;
   std::vector<Vec3> polygon_, cut_;
@@ -331,11 +388,12 @@ void add_pockets(const CoverFaces& f, std::vector<LayerVoids>& voids) {
   });
   if (floors.size() > kMostFloors) floors.resize(kMostFloors);
   const std::size_t most = std::min(kMostVoids, voids.size() + kMostPockets);
+  PlaneBorders borders(f);
   for (const std::uint32_t floor : floors) {
     if (voids.size() >= most) return;
     std::vector<std::uint32_t> of{floor};
     of.insert(of.end(), hollow[floor].begin(), hollow[floor].end());
-    if (auto pocket = Pocket(f, std::move(of)).run()) voids.push_back(std::move(*pocket));
+    if (auto pocket = Pocket(f, borders, std::move(of)).run()) voids.push_back(std::move(*pocket));
   }
 }
 
@@ -343,19 +401,10 @@ void add_pockets(const CoverFaces& f, std::vector<LayerVoids>& voids) {
 
 std::vector<LayerVoids> find_voids(const CoverFaces& f) {
   std::vector<LayerVoids> voids;
-  std::vector<const Surface*> done;
   const Balls balls(f);
-  for (const SurfaceBand::Face& face : f.body.band->faces) {
-    const Surface* s = Body::surface_of(face, Layer::kUpper);
-    if (s == nullptr || !s->inward ||
-        (s->kind != SurfaceKind::kCylinder && s->kind != SurfaceKind::kCone) ||
-        std::any_of(done.begin(), done.end(),
-                    [&](const Surface* known) { return same_wall(*known, *s); }))
-      continue;
-    done.push_back(s);
-    if (voids.size() < kMostVoids)
-      if (auto bore = Bore(f, balls, *s).run()) voids.push_back(std::move(*bore));
-  }
+  const Walls walls(f);
+  for (std::size_t i = 0; i < walls.surfaces.size() && voids.size() < kMostVoids; ++i)
+    if (auto bore = Bore(f, balls, walls, i).run()) voids.push_back(std::move(*bore));
   add_pockets(f, voids);
   return voids;
 }
