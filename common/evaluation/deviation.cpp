@@ -308,14 +308,15 @@ Result<FeatureMatch> match_feature(const TriangleMesh& mesh, const FeatureDeclar
   return Matcher(mesh, declared).run();
 }
 
-Result<FeatureMatch> check_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared,
+Result<FeatureMatch> check_feature(const Solid& solid, const FeatureDeclaration& declared,
                                    std::span<const std::uint32_t> triangles) {
+  const TriangleMesh& mesh = solid.mesh();
   FeatureMatch match;
   match.feature.name = declared.name;
   match.feature.surface = declared.surface;
   match.feature.triangles.assign(triangles.begin(), triangles.end());
   double allowed_mm = 0.0;
-  const double of_plane_mm = kNearOfPlane * bounding_sphere(mesh).radius_mm;
+  const double of_plane_mm = kNearOfPlane * solid.sphere().radius_mm;
   for (const std::uint32_t t : triangles) {
     if (t >= mesh.triangles.size())
       return fail(Code::kMismatch, "its triangles are not those of this mesh; load the mesh again");

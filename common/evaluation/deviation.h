@@ -35,7 +35,7 @@ Result<FeatureMatch> match_feature(const TriangleMesh& mesh, const FeatureDeclar
 
 /// The same for known triangles (generated parts): only checks that their corners are near the
 /// surface.
-Result<FeatureMatch> check_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared,
+Result<FeatureMatch> check_feature(const Solid& solid, const FeatureDeclaration& declared,
                                    std::span<const std::uint32_t> triangles);
 
 /// Shape of every triangle's face for a declared chord error s: kConvex or kConcave when it meets

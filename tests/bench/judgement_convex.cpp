@@ -184,7 +184,7 @@ Part known_part(std::uint32_t id, const ConvexPart& part, int refinements, Dice&
       std::vector<std::uint32_t> triangles;
       for (std::uint32_t t = 0; t < face_of.size(); ++t)
         if (face_of[t] == f) triangles.push_back(t);
-      auto match = check_feature(judged.solid->mesh(), declared, triangles);
+      auto match = check_feature(*judged.solid, declared, triangles);
       MORTISE_CHECK(bool(match), "the faces of a hull are planes of its mesh");
       judged.features.push_back(std::move(match->feature));
       input.of_feature.push_back({part.faces[f].offset_mm, "zone"});

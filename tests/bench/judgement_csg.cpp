@@ -314,7 +314,7 @@ Part csg_known_part(std::uint32_t id, const CsgPart& part, bool recognized) {
       FeatureDeclaration declared;
       declared.name = part.faces[f].name;
       declared.surface = part.faces[f].surface();
-      auto match = check_feature(judged.solid->mesh(), declared, triangles);
+      auto match = check_feature(*judged.solid, declared, triangles);
       MORTISE_CHECK(bool(match), "a made part has the surfaces that it was made from");
       judged.features.push_back(std::move(match->feature));
       input.of_feature.push_back({part.faces[f].offset_mm, "zone"});

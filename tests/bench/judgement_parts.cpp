@@ -17,7 +17,7 @@ void add_feature(JudgedPart& part, const std::string& name, const Surface& surfa
   FeatureDeclaration declared;
   declared.name = name;
   declared.surface = surface;
-  auto match = check_feature(part.solid->mesh(), declared, triangles);
+  auto match = check_feature(*part.solid, declared, triangles);
   MORTISE_CHECK(bool(match), "a made part has the surfaces that it was made from");
   part.features.push_back(std::move(match->feature));
 }

@@ -106,7 +106,7 @@ Result<FeatureMatch> match_of(const Scenario::PartSpec& spec, const Scenario::Fe
   // The corners of a CAD file lie on its edges, which may be off its surfaces by what it states.
   if (spec.mesh.given)
     declaration.chord_error_mm = std::max(declaration.chord_error_mm, 1.001 * own->residual_mm);
-  return check_feature(mesh.solid->mesh(), declaration, own->triangles);
+  return check_feature(*mesh.solid, declaration, own->triangles);
 }
 
 // The file's features, those without a surface taking the generator's; then the generator's other

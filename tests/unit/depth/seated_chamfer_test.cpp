@@ -61,7 +61,7 @@ SurfaceBand band_of(const Disc& disc, Known known) {
       const FeatureDeclaration declared{"face", surface, std::nullopt, 0.0};
       const auto match = known == Known::kDeclared
                              ? match_feature(disc.solid->mesh(), declared)
-                             : check_feature(disc.solid->mesh(), declared,
+                             : check_feature(*disc.solid, declared,
                                              between(disc.solid->mesh(), lo_mm, hi_mm));
       EXPECT_TRUE(match);
       if (match) features.push_back(match->feature);
