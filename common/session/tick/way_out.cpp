@@ -18,14 +18,17 @@ SeparatingMotion way_out(const Verdict& verdict) {
 
 namespace {
 
-// The first part that a motion meets; none: kUnknown.
+// What a motion meets; none: kUnknown.
 struct Met {
   SeparationPath path = SeparationPath::kUnknown;
   PartId blocker;
 };
 
+// kFirst: the first part that is met. kAny: one of them.
+enum class Sought : std::uint8_t { kFirst = 0, kAny };
+
 Met look_along(const World& world, PartId a, PartId b, const OverlapQuery& start, double depth_mm,
-               const SeparatingMotion& motion, CcdScratch& scratch) {
+               const SeparatingMotion& motion, Sought sought, CcdScratch& scratch) {
   const Part& mover = *world.find(motion.of_b ? b : a);
   const Motion path = motion.path(mover.X_WP, *mover.solid);
   const Box swept =
@@ -42,6 +45,7 @@ Met look_along(const World& world, PartId a, PartId b, const OverlapQuery& start
     if (!at || !(*at < first)) continue;
     first = *at;
     met = {SeparationPath::kBlocked, other.id};
+    if (first <= 0.0 || sought == Sought::kAny) break;
   }
   if (met.path != SeparationPath::kBlocked)
     met.path = way_goes_deeper(start, depth_mm, motion, scratch) ? SeparationPath::kDeeper
@@ -74,13 +78,14 @@ void look_along_way(const World& world, PartId a, PartId b, double depth_mm, Ver
   start.b = world.find(b)->solid.get();
   start.X_WA = world.find(a)->X_WP;
   start.X_WB = world.find(b)->X_WP;
-  const Met met = look_along(world, a, b, start, depth_mm, motion, scratch);
+  const Met met = look_along(world, a, b, start, depth_mm, motion, Sought::kFirst, scratch);
   verdict.separation_path = met.path;
   verdict.separation_blocker = met.blocker;
   if (met.path == SeparationPath::kFree) return;
   // Among those that are as long one may be free.
   for (const SeparatingMotion& way : ways_as_long(start, motion, verdict.gpd_mm.hi, scratch)) {
-    if (look_along(world, a, b, start, depth_mm, way, scratch).path != SeparationPath::kFree)
+    if (look_along(world, a, b, start, depth_mm, way, Sought::kAny, scratch).path !=
+        SeparationPath::kFree)
       continue;
     verdict.separation_way = way_of(way, verdict);
     verdict.separation_translation_mm = way.translation_mm;
