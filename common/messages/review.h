@@ -20,7 +20,7 @@ inline constexpr std::uint8_t kReviewStatusCount = 5;
 struct Review {
   ReviewStatus status = ReviewStatus::kNew;
   std::string comment;
-  UserId user;             ///< who set it; none: never set, or an approval lapsed
+  UserId user;             ///< who set it; none: never set, by the scenario, or an approval lapsed
   std::uint64_t tick = 0;  ///< when, 0: never
 };
 

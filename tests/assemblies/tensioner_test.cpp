@@ -3,8 +3,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "client/tools/check/check_files.h"
 #include "client/tools/check/check_tables.h"
 #include "client/tools/check/check_text.h"
+#include "common/session/tick/step.h"
 #include "tests/assemblies/support.h"
 
 // scenarios/tensioner.step, the assembly that the README shows, and its kept report. To keep a new
@@ -49,6 +51,33 @@ TEST(Tensioner, ReportsAreTheSameWhereverTheThreadsRun) {
   four.threads = 4;
   test::Checked a = test::checked(file, one), b = test::checked(file, four);
   EXPECT_EQ(report_of(a), report_of(b));
+}
+
+// A session of it begins with what the check found: what is explained is approved, the clash is
+// new, and a part that was named stays where it is.
+TEST(Tensioner, ASessionBeginsWithTheResult) {
+  const test::TestFolder folder;
+  CheckCommand command;
+  command.files = {std::string(MORTISE_SOURCE_DIR) + "/scenarios/tensioner.step"};
+  command.session = folder.path() / "session.yaml";
+  command.fixed = {"base"};
+  test::Checked c = test::checked(command.files.front());
+  ASSERT_TRUE(write_check_files(c.opened, c.report, command));
+  auto session = open_scene(command.session);
+  ASSERT_TRUE(session && session->usable()) << (session ? "" : session.error().text);
+  World& world = session->scene.world;
+  for (const Part& part : world.parts) EXPECT_EQ(part.moving, part.name != "base") << part.name;
+  Scratch scratch(1);
+  std::map<std::string, std::size_t> reals;
+  for (int i = 0; i < 10; ++i)
+    for (const ClashEvent& event : step(world, {}, scratch).events)
+      if (event.verdict.collision_class == CollisionClass::kReal)
+        ++reals[event.review.comment.substr(0, event.review.comment.find(':'))];
+  EXPECT_EQ(reals[""], 1U);
+  reals.erase("");
+  std::size_t approved = 0;
+  for (const auto& [why, count] : reals) approved += count;
+  EXPECT_EQ(approved, c.report.counts.explained_real);
 }
 
 TEST(Tensioner, TreeHasNamesAndColours) {

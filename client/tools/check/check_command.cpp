@@ -14,8 +14,9 @@ Status coherent(const CheckCommand& o) {
                  o.files[1]);
   if (!meshes && (!o.fit.empty() || !o.unit.empty()))
     return wrong("--fit and --unit are of meshes; a scenario says them itself");
-  if (!step && (o.propose || !o.general.empty() || !o.bought.empty()))
-    return wrong("--propose, --general and --bought are of a STEP assembly");
+  if (!step && (o.propose || !o.general.empty() || !o.bought.empty() || !o.session.empty()))
+    return wrong("--propose, --general, --bought and --session are of a STEP assembly");
+  if (o.session.empty() && !o.fixed.empty()) return wrong("--fix is of --session FILE");
   if (o.fail_on == "new" && o.baseline.empty())
     return wrong("--fail-on new needs --baseline OLD.json");
   for (const std::string& relation : o.check.unexplained) {

@@ -12,8 +12,8 @@ struct CheckCommand {
   std::vector<std::string> files;  ///< one assembly or scenario, or meshes
   std::string unit, fit;           ///< of meshes
   std::string fail_on, baseline;
-  std::string csv, html, junit, sqlite, bcf;  ///< files to write; empty: none
-  std::vector<std::string> bought;
+  std::string csv, html, junit, sqlite, bcf, session;  ///< files to write; empty: none
+  std::vector<std::string> bought, fixed;
   std::string general;
   bool json = false, verbose = false, propose = false;
   CheckOptions check;

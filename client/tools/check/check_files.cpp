@@ -6,6 +6,8 @@
 #include "client/report/export_files.h"
 #include "client/report/export_sqlite.h"
 #include "client/tools/check/check_tables.h"
+#include "client/tools/check/open_check.h"
+#include "common/io/scenario/session_scenario.h"
 
 namespace mortise {
 namespace {
@@ -26,6 +28,25 @@ std::string now() {
   return text;
 }
 
+// A scenario for a session of the assembly: what is explained, and what the exact solids say is no
+// clash, is approved where it stands.
+Result<std::string> session_of(const OpenedScene& opened, const CheckReport& report,
+                               const CheckCommand& command) {
+  const std::filesystem::path step = command.files.front(), beside = statements_beside(step);
+  Result<std::string> text = assembly_yaml(step, {});
+  if (std::filesystem::exists(beside)) text = scenario_text(beside);
+  if (!text) return text.error();
+  std::vector<Scenario::PairReason> approvals;
+  for (const CheckedPair& pair : report.pairs) {
+    if (pair.reason.empty() || (!pair.explained && !pair.is_contact)) continue;
+    for (const auto& [a, b] : pair.all)
+      approvals.push_back(
+          {opened.scene.world.find(a)->name, opened.scene.world.find(b)->name, pair.reason, {}});
+  }
+  return session_scenario(*text, step.parent_path(),
+                          {command.general, command.bought, command.fixed, {}}, approvals);
+}
+
 }  // namespace
 
 Status write_check_files(const OpenedScene& opened, const CheckReport& report,
@@ -41,6 +62,10 @@ Status write_check_files(const OpenedScene& opened, const CheckReport& report,
   if (status && !command.sqlite.empty()) status = write_sqlite(tables, command.sqlite);
   if (status && !command.bcf.empty())
     status = write_bcf(check_bcf(opened, report, now()), command.bcf);
+  if (status && !command.session.empty()) {
+    const Result<std::string> text = session_of(opened, report, command);
+    status = text ? write(command.session, *text) : Status(text.error());
+  }
   return status;
 }
 

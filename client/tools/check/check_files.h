@@ -4,7 +4,8 @@
 
 namespace mortise {
 
-/// Writes the files that the command asks for: CSV, page, JUnit, database. The first that cannot be
+/// Writes the files that the command asks for: CSV, page, JUnit, database, BCF, scenario
+/// of a session. The first that cannot be
 /// written fails.
 Status write_check_files(const OpenedScene& opened, const CheckReport& report,
                          const CheckCommand& command);

@@ -53,6 +53,11 @@ void add_output(ProgramOptions& app, CheckCommand& o) {
   app.add_flag("--propose", o.propose,
                "write NAME.mortise.yaml beside the STEP file, with the fits to be filled in; it is "
                "read the next time");
+  app.add(
+      "--session", o.session,
+      "of a STEP assembly: write a scenario for a session of it to this file; the overlaps that "
+      "are explained begin approved");
+  app.add("--fix", o.fixed, "with --session: a path of what does not move; '*' allowed");
 }
 
 }  // namespace

@@ -111,19 +111,29 @@ void read_fit(YamlContext& context, const YAML::Node& node, Scenario& scenario) 
   scenario.fits.push_back(std::move(fit));
 }
 
-void read_exclusion(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
-  const YamlMap map(context, node, "exclusion", {"between", "reason"});
+void read_pair_reason(const YamlMap& map, const std::string& needed_for,
+                      std::vector<Scenario::PairReason>& list) {
   if (!map.usable()) return;
-  Scenario::Exclusion exclusion;
-  exclusion.at.line = map.line();
+  Scenario::PairReason pair;
+  pair.at.line = map.line();
   const auto between = read_between(map);
   const auto reason = map.text("reason");
   if (!map.has("reason"))
-    map.error("reason is missing: the report must say why the pair is left out");
+    map.error("reason is missing: the report must say why the pair is " + needed_for);
   if (!between || !reason) return;
-  exclusion.part_a = (*between)[0], exclusion.part_b = (*between)[1];
-  exclusion.reason = *reason;
-  scenario.exclusions.push_back(std::move(exclusion));
+  pair.part_a = (*between)[0], pair.part_b = (*between)[1];
+  pair.reason = *reason;
+  list.push_back(std::move(pair));
+}
+
+void read_exclusion(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
+  read_pair_reason({context, node, "exclusion", {"between", "reason"}}, "left out",
+                   scenario.exclusions);
+}
+
+void read_approval(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
+  read_pair_reason({context, node, "approval", {"between", "reason"}}, "approved",
+                   scenario.approvals);
 }
 
 void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
@@ -193,12 +203,13 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
   context.file = name;
   const YamlMap top(context, document, "scenario",
                     {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation",
-                     "min_gap", "assembly", "parts", "fits", "exclusions", "users"});
+                     "min_gap", "assembly", "parts", "fits", "exclusions", "approvals", "users"});
   if (top.usable()) {
     read_head(context, top, reading.scenario);
     read_list(context, top, "parts", reading.scenario, read_part);
     read_list(context, top, "fits", reading.scenario, read_fit);
     read_list(context, top, "exclusions", reading.scenario, read_exclusion);
+    read_list(context, top, "approvals", reading.scenario, read_approval);
     read_list(context, top, "users", reading.scenario, read_user);
     if (top.has("assembly")) read_assembly(context, top.find("assembly"), reading.scenario);
     if (!top.has("parts") && !top.has("assembly"))

@@ -67,6 +67,28 @@ class Names {
   std::span<const Part> named_;
 };
 
+// The pairs of which a rule speaks, each with the lower id first, and what is wrong with it.
+struct NamedPairs {
+  std::vector<std::pair<PartId, PartId>> pairs;
+  std::vector<std::string> objections;
+};
+
+NamedPairs named_pairs(const Names& names, const Scenario::PairReason& rule) {
+  NamedPairs named;
+  const auto ids_a = names.parts_matching(rule.part_a), ids_b = names.parts_matching(rule.part_b);
+  if (ids_a.empty()) named.objections.push_back(names.no_such_part(rule.part_a));
+  if (ids_b.empty()) named.objections.push_back(names.no_such_part(rule.part_b));
+  if (ids_a.size() * ids_b.size() > kMaxRulePairs)
+    named.objections.push_back("matches more than " + std::to_string(kMaxRulePairs) +
+                               " pairs; name parts more closely");
+  if (!named.objections.empty()) return named;
+  for (const PartId id_a : ids_a)
+    for (const PartId id_b : ids_b)
+      if (id_a != id_b) named.pairs.push_back(std::minmax(id_a, id_b));
+  if (named.pairs.empty()) named.objections.emplace_back("names one part only; a pair needs two");
+  return named;
+}
+
 // What an assembly has no longer after another export (unmatched) is told, and the rest is used.
 class RuleBook {
  public:
@@ -80,6 +102,7 @@ class RuleBook {
     note_what_is_tighter();
     if (input_.only) return std::move(out_);
     for (const auto& exclusion : scenario_.exclusions) apply_exclusion(exclusion);
+    for (const auto& approval : scenario_.approvals) apply_approval(approval);
     for (const auto& user : scenario_.users) check_user(user);
     return std::move(out_);
   }
@@ -320,30 +343,28 @@ class RuleBook {
 
   // 3. exclusions and users
 
-  void apply_exclusion(const Scenario::Exclusion& exclusion) {
-    const auto ids_a = names_.parts_matching(exclusion.part_a),
-               ids_b = names_.parts_matching(exclusion.part_b);
-    if (ids_a.empty()) error(exclusion.at, "exclusion: " + names_.no_such_part(exclusion.part_a));
-    if (ids_b.empty()) error(exclusion.at, "exclusion: " + names_.no_such_part(exclusion.part_b));
-    if (ids_a.empty() || ids_b.empty()) return;
-    if (ids_a.size() * ids_b.size() > kMaxRulePairs) {
-      error(exclusion.at, "exclusion: matches more than " + std::to_string(kMaxRulePairs) +
-                              " pairs; name parts more closely");
-      return;
+  std::vector<std::pair<PartId, PartId>> pairs_of(const char* what,
+                                                  const Scenario::PairReason& rule) {
+    auto [pairs, objections] = named_pairs(names_, rule);
+    for (const std::string& objection : objections)
+      error(rule.at, std::string(what) + ": " + objection);
+    return pairs;
+  }
+
+  // Of several rules of a pair the first reason stands.
+  void apply_exclusion(const Scenario::PairReason& exclusion) {
+    for (const auto& key : pairs_of("exclusion", exclusion)) {
+      PairRule& rule = out_.pair_rules[key];
+      rule.a = key.first, rule.b = key.second;
+      if (rule.excluded) continue;
+      rule.excluded = true;
+      rule.reason = exclusion.reason;
     }
-    bool any = false;
-    for (const PartId id_a : ids_a)
-      for (const PartId id_b : ids_b) {
-        if (id_a == id_b) continue;
-        const auto key = std::minmax(id_a, id_b);
-        PairRule& rule = out_.pair_rules[{key.first, key.second}];
-        rule.a = key.first, rule.b = key.second;
-        any = true;
-        if (rule.excluded) continue;  // the first reason stands
-        rule.excluded = true;
-        rule.reason = exclusion.reason;
-      }
-    if (!any) error(exclusion.at, "exclusion: names one part only; a pair needs two");
+  }
+
+  void apply_approval(const Scenario::PairReason& approval) {
+    for (const auto& key : pairs_of("approval", approval))
+      out_.approved_at_start.try_emplace(key, approval.reason);
   }
 
   void check_user(const Scenario::UserSpec& user) {

@@ -181,6 +181,7 @@ void begin(const World& world, SessionState& state, const PairWork& pair, const 
   clash.worst_class = seen.verdict.collision_class;
   clash.worst_delta_mm = seen.verdict.delta_mm;
   take_in(clash, seen);
+  approve_where_it_starts(world, state, clash);
   tell(world, state, clash, ClashEvent::Kind::kBegin, times, report);
   if (seen.passing)
     tell(world, state, clash, ClashEvent::Kind::kEnd, times, report);

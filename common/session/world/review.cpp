@@ -63,6 +63,17 @@ void review(World& world, const Decision& decision) {
   world.state->clashes_changed = true;
 }
 
+void approve_where_it_starts(const World& world, const SessionState& state, OpenClash& clash) {
+  const auto approval = world.approved_at_start.find({clash.last.part_a, clash.last.part_b});
+  if (approval == world.approved_at_start.end()) return;
+  for (const PartId id : {clash.last.part_a, clash.last.part_b})
+    if (const PartState& part = state.parts[id.value - 1]; part.last_tick + part.placements > 0)
+      return;
+  clash.last.review = {ReviewStatus::kApproved, approval->second, UserId{}, world.tick};
+  clash.approved_class = clash.now.collision_class;
+  clash.approved_delta_mm = clash.now.delta_mm;
+}
+
 void tell_reviews(const World& world, SessionState& state, StepReport& report) {
   for (ClashEvent& event : state.reviews) {
     event.seq = ++state.event_seq;

@@ -12,6 +12,10 @@ const OpenClash* find_open(const World& world, ClashId clash);
 /// not open.
 void review(World& world, const Decision& decision);
 
+/// A clash that begins where both parts have been since the start is approved where the scenario
+/// says so of the pair.
+void approve_where_it_starts(const World& world, const SessionState& state, OpenClash& clash);
+
 /// Publishes the reviews made since the last tick, before all other events of the tick.
 void tell_reviews(const World& world, SessionState& state, StepReport& report);
 

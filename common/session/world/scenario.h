@@ -150,7 +150,7 @@ struct Scenario {
     double nominal_mm = 0.0;  ///< 0: from the declared radius
     SourceLine at;
   };
-  struct Exclusion {
+  struct PairReason {
     std::string part_a, part_b;  ///< names, '*' allowed
     std::string reason;
     SourceLine at;
@@ -176,8 +176,9 @@ struct Scenario {
   std::optional<AssemblySpec> assembly;
   double min_gap_mm = 0.0;  ///< clearance that parts must keep; 0: none is asked for
   std::vector<FitSpec> fits;
-  std::vector<Exclusion> exclusions;
-  std::vector<UserSpec> users;  ///< empty: anyone may hold any moving part
+  std::vector<PairReason> exclusions;
+  std::vector<PairReason> approvals;  ///< of clashes that the parts have where they start
+  std::vector<UserSpec> users;        ///< empty: anyone may hold any moving part
 };
 
 }  // namespace mortise

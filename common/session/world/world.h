@@ -86,6 +86,8 @@ struct World {
   std::vector<Part> parts;  ///< parts[i].id.value == i + 1
   std::vector<User> users;  ///< users[i].id.value == i + 1
   std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
+  /// Pairs whose clashes are approved by the scenario while neither part has moved, and why.
+  std::map<std::pair<PartId, PartId>, std::string> approved_at_start;
   std::vector<Scenario::UserSpec> may_hold;  ///< who may hold and change what, see rights.h
   /// Fits and exclusions of the scenario, as decisions of nobody. They hold until a decision about
   /// the same takes their place.

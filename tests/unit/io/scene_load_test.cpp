@@ -92,6 +92,15 @@ exclusions:
   EXPECT_EQ(bands.size(), 2U);  // one for all pins, and none where only excluded
 }
 
+TEST(SceneLoad, ApprovalsAreOfPairsWithTheirFirstReason) {
+  const LoadedScene scene = load(std::string(kPegInHole) +
+                                 "approvals:\n  - {between: [pin, plate], reason: pressed in}\n"
+                                 "  - {between: [plate, pin], reason: glued}\n");
+  ASSERT_TRUE(scene.usable());
+  ASSERT_EQ(scene.world.approved_at_start.size(), 1U);
+  EXPECT_EQ(scene.world.approved_at_start.begin()->second, "pressed in");
+}
+
 TEST(SceneLoad, WithoutAnyKnowledgeNothingIsEvaluated) {
   const LoadedScene scene = load(R"(name: plain
 units: mm
@@ -120,6 +129,7 @@ TEST(SceneLoad, RulesThatMatchNothingOrContradictAreErrors) {
                "matches no pair");
   expect_error(load(base + "exclusions:\n  - {between: [pin, lid], reason: r}\n"), 13, "no part");
   expect_error(load(base + "exclusions:\n  - {between: [pin, pin], reason: r}\n"), 13, "needs two");
+  expect_error(load(base + "approvals:\n  - {between: [pin, lid], reason: r}\n"), 13, "no part");
   expect_error(load(base + "users:\n  - {name: u, may_hold: [lid]}\n"), 13, "no part");
   expect_error(load(base + "users:\n  - {name: u, may_hold: [plate]}\n"), 13, "moving: true");
 }

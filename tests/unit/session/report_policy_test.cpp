@@ -48,6 +48,31 @@ TEST_F(ReportPolicy, APartThatNobodyGaveABandIsItsMesh) {
   EXPECT_NEAR(report.events[0].verdict.delta_mm.lo, 1.0, 1e-3);
 }
 
+// What a scenario approves it approves of where its parts start, and no deeper.
+TEST_F(ReportPolicy, AnOverlapAtTheStartCanBeApprovedByTheScenario) {
+  const PartId wall =
+      session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
+  const PartId peg = session.add("peg", cube_mesh(2), at(0, 0, 0), true);
+  const PartId other = session.add("other", cube_mesh(2), at(0, 20, 0), true);
+  session.world.approved_at_start[{wall, peg}] = "a thread";
+  const StepReport start = tick({});
+  ASSERT_EQ(start.events.size(), 2U);
+  EXPECT_EQ(start.events[0].review.status, ReviewStatus::kApproved);
+  EXPECT_EQ(start.events[0].review.comment, "a thread");
+  EXPECT_FALSE(start.events[0].approval_lost);
+  EXPECT_EQ(start.events[1].part_b, other);
+  EXPECT_EQ(start.events[1].review.status, ReviewStatus::kNew);
+  session.grab(ada, peg);
+  const StepReport deeper = tick({session.push(ada, peg, Vec3(0.5, 0, 0))});
+  ASSERT_EQ(deeper.events.size(), 1U);
+  EXPECT_TRUE(deeper.events[0].approval_lost);
+  tick({session.push(ada, peg, Vec3(-20, 0, 0))});
+  const StepReport again = tick({session.push(ada, peg, Vec3(19.5, 0, 0))});
+  ASSERT_EQ(again.events.size(), 1U);
+  EXPECT_EQ(again.events[0].kind, Kind::kBegin);
+  EXPECT_EQ(again.events[0].review.status, ReviewStatus::kNew);
+}
+
 // Through the open side of a bin no surface is met on the way in; what is in it is not called free.
 TEST_F(ReportPolicy, WhatMayLieInAnOpenPartIsCountedEveryTick) {
   TriangleMesh bin = box_mesh(Vec3(-20, -20, -20), Vec3(20, 20, 20));
