@@ -161,6 +161,17 @@ TEST(AssemblyOracle, NorDoesOneOfOurOwn) {
   }
 }
 
+// Cylinders, cones, spheres, tori, planes with fillets and chamfers, ellipses and free forms.
+TEST(AssemblyOracle, NorDoRandomOnes) {
+  const test::TestFolder folder;
+  const std::string file = folder.path() / "random.step";
+  for (int seed = 0; seed < test::effort(3); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::step_maker("random '" + file + "' " + std::to_string(seed));
+    EXPECT_GE(agrees_with_exact_solids(test::checked(file), exact_of(file)), 4U);
+  }
+}
+
 // The oracle itself finds a fault when there is one.
 TEST(AssemblyOracle, AWrongVerdictIsFound) {
   const test::TestFolder folder;
@@ -218,6 +229,33 @@ TEST(StepImport, MeshesAreWhatTheFilesSay) {
             << " faces not measured, " << named << " notes\n";
   EXPECT_GE(parts, 25U);
   EXPECT_LE(open, 1U);
+}
+
+// Odd names, a name twice, two solids in one product, an open shell, an edge, an empty assembly;
+// in millimetres, inches and metres.
+TEST(StepImport, WhatFilesFromElsewhereHave) {
+  const test::TestFolder folder;
+  const std::string file = folder.path() / "odd.step";
+  for (const char* unit : {"MM", "INCH", "M"}) {
+    SCOPED_TRACE(unit);
+    test::step_maker("odd '" + file + "' " + unit);
+    const test::Checked c = test::checked(file);
+    const World& world = c.opened.scene.world;
+    EXPECT_EQ(c.report.parts, 7U);
+    std::set<std::string> names;
+    for (const Part& part : world.parts) {
+      names.insert(part.name);
+      EXPECT_TRUE(std::none_of(part.name.begin(), part.name.end(), [](char ch) {
+        return static_cast<unsigned char>(ch) < 0x20;
+      })) << part.name;
+    }
+    EXPECT_EQ(names.size(), c.report.parts);
+    EXPECT_NEAR(signed_volume_mm3(world.parts.front().solid->mesh()), 32000.0 - 500.0 * M_PI, 10.0);
+    EXPECT_EQ(c.report.counts.unexplained_real, 2U);  // the thick pin in both others
+    EXPECT_EQ(c.report.counts.contacts, 2U);
+    EXPECT_EQ(c.report.not_judged.size(), 1U);
+    EXPECT_GE(agrees_with_exact_solids(c, exact_of(file)), 4U);
+  }
 }
 
 TEST(StepImport, HostileFilesAreOneLine) {

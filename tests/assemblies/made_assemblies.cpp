@@ -1,5 +1,10 @@
 #include "tests/assemblies/made_assemblies.h"
 
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRep_Builder.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
+
 #include "tests/assemblies/made_shapes.h"
 #include "tests/assemblies/product_tree.h"
 
@@ -158,6 +163,42 @@ bool write_arm(const std::string& file, int joints) {
     at = at * moved(60.0 + 5.0 * i, 0, 42) * turned(1, 0, 0.3, 20.0, 0, 0, 12);
   }
   return tree.write(file);
+}
+
+bool write_odd(const std::string& file, const std::string& unit) {
+  ProductTree tree;
+  const TDF_Label all = tree.assembly("odd \"assembly\": [1]");
+  const TopoDS_Shape plate = cut(block(-20, -20, -20, 40, 40, 20), rod(0, 0, -20, 10, 20));
+  tree.place(all, tree.part("plate/with 'a' slash", plate, 0x888888), "plate/1", moved(0, 0, 0));
+  // Two products of one name, one of them far too thick for the hole.
+  tree.place(all, tree.part("pin", rod(0, 0, -20, 10, 30), 0xdddddd), "pin", moved(0, 0, 0));
+  tree.place(all, tree.part("pin", rod(0, 0, -20, 14, 5), 0xdddddd), "pin", moved(0, 0, 0));
+  tree.place(all, tree.part("", block(0, 0, 0, 5, 5, 5), 0xdddddd), "", moved(100, 0, 0));
+  tree.place(all, tree.part("*", block(0, 0, 0, 5, 5, 5), 0xdddddd), "Ø10 µm – *.{}#\n\t%s",
+             moved(105, 0, 0));
+  const TDF_Label upper = tree.assembly("sub"), lower = tree.assembly("sub");
+  tree.place(lower, tree.part("deep", block(0, 0, 0, 2, 2, 2), 0xdddddd), "deep", moved(0, 0, 0));
+  tree.place(upper, lower, "sub", turned(0, 0, 1, 30, 0, 0, 5));
+  tree.place(all, upper, "sub", turned(1, 0, 0, 30, 200, 0, 0));
+  tree.place(all, tree.assembly("empty"), "empty", moved(0, 0, 0));
+  // A product of two solids, a box without a lid, an edge.
+  TopoDS_Compound two;
+  TopoDS_Shell open;
+  BRep_Builder builder;
+  builder.MakeCompound(two);
+  builder.Add(two, block(300, 0, 0, 4, 4, 4));
+  builder.Add(two, block(300, 0, 10, 4, 4, 4));
+  tree.place(all, tree.part("two", two, 0xdddddd), "two", moved(0, 0, 0));
+  builder.MakeShell(open);
+  int faces = 0;
+  for (TopExp_Explorer x(block(400, 0, 0, 4, 4, 4), TopAbs_FACE); x.More() && faces < 5; x.Next())
+    builder.Add(open, x.Current()), ++faces;
+  tree.place(all, tree.part("open", open, 0xdddddd), "open", moved(0, 0, 0));
+  tree.place(all,
+             tree.part("edge", BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(0, 0, 9)).Shape(),
+                       0xdddddd),
+             "edge", moved(0, 0, 0));
+  return tree.write(file, unit);
 }
 
 }  // namespace mortise::test

@@ -12,4 +12,12 @@ bool write_tensioner(const std::string& file);
 /// holes.
 bool write_arm(const std::string& file, int joints);
 
+/// Six pairs of parts with faces of every kind, one in the other or on it: of the same size, too
+/// large, with clearance.
+bool write_random(const std::string& file, int seed);
+
+/// What files from elsewhere have: odd names, a name twice, two solids in a product, an open shell,
+/// an edge, an empty assembly. `unit`: of the file, "MM", "INCH" or "M".
+bool write_odd(const std::string& file, const std::string& unit);
+
 }  // namespace mortise::test

@@ -93,9 +93,10 @@ void ProductTree::state_position(const TDF_Label& part, double diameter_mm, doub
   tool->SetGeomTolerance(face_of(part, diameter_mm), label);
 }
 
-bool ProductTree::write(const std::string& file) {
+bool ProductTree::write(const std::string& file, const std::string& unit) {
   shapes_->UpdateAssemblies();
   Interface_Static::SetCVal("write.step.schema", "AP242DIS");
+  Interface_Static::SetCVal("write.step.unit", unit.c_str());
   STEPCAFControl_Writer writer;
   writer.SetColorMode(true);
   writer.SetNameMode(true);

@@ -25,7 +25,7 @@ class ProductTree {
   void state_position(const TDF_Label& part, double diameter_mm, double zone_mm);
 
   /// AP242, without the hour of writing. False when the library fails.
-  bool write(const std::string& file);
+  bool write(const std::string& file, const std::string& unit = "MM");
 
  private:
   TDF_Label face_of(const TDF_Label& part, double diameter_mm);

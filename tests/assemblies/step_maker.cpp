@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
   bool well = false;
   if (is("tensioner", 1)) well = write_tensioner(argv[2]);
   if (is("arm", 2)) well = write_arm(argv[2], std::atoi(argv[3]));
+  if (is("random", 2)) well = write_random(argv[2], std::atoi(argv[3]));
+  if (is("odd", 2)) well = write_odd(argv[2], argv[3]);
   if (is("rewrite", 2)) well = rewrite(argv[2], argv[3]);
   if (is("exact", 1)) well = print_exact_pairs(argv[2]);
   std::fflush(stdout);
