@@ -18,6 +18,7 @@ void append(std::vector<Entry>& from, std::vector<Entry>& to) {
 }  // namespace
 
 void ClientReaders::open(Participant& participant, const DdsOptions& options, Status& status) {
+  participant_ = &participant;
   participant.open_reader<wire::PoseBatchPubSubType>(Topic::kPose, nullptr, poses_, status);
   participant.open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, nullptr, keyframes_, status);
   participant.open_reader<wire::EventBatchPubSubType>(Topic::kEvent, nullptr, events_, status);
@@ -60,6 +61,7 @@ void ClientReaders::take_each(dds::DataReader* reader, Action action) {
                        ++counters_.foreign;
                        return;
                      }
+                     participant_->note_spoke(writer);
                      if (writer.guidPrefix != server_) {
                        server_ = writer.guidPrefix;
                        begin_with_another_server();

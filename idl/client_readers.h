@@ -42,6 +42,7 @@ class ClientReaders {
   std::optional<Value> joined(const std::vector<Chunk>& chunks, Add add);
 
   ServerWatch& watch_;
+  Participant* participant_ = nullptr;
   dds::DataReader *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *pulses_ = nullptr, *meshes_ = nullptr,
                   *features_ = nullptr;

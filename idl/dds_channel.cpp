@@ -67,7 +67,7 @@ class DdsServerChannel final : public StandbyChannel {
   bool has_follower() const override { return servers_.has_follower(); }
   void publish_tick(const ToldTick& told) override;
   TakenTicks taken_up_to() override {
-    return follower_.take(*follows_, term_, servers_, identities());
+    return follower_.take(*follows_, term_, servers_, *participant_, identities());
   }
   void await_taken(std::int64_t at_most_ns) override { takings_.await(at_most_ns); }
   void note_progress(double next_within_s) override {
@@ -195,6 +195,7 @@ Status DdsServerChannel::open_endpoints() {
 
 ServerInput DdsServerChannel::take() {
   ServerInput input;
+  participant_->forget_silent();
   readers_.turn_away(*participant_, input);
   input.follower_came = servers_.take_came();
   (void)take_told(&input);
@@ -227,6 +228,7 @@ void DdsServerChannel::publish_tick(const ToldTick& told) {
 
 std::vector<ToldTick> DdsServerChannel::follow() {
   ServerInput nobody;
+  participant_->forget_silent();
   readers_.turn_away(*participant_, nobody);  // the one that leads may be revoked, too
   return take_told(nullptr);
 }
@@ -246,6 +248,7 @@ std::vector<ToldTick> DdsServerChannel::take_told(ServerInput* input) {
       *told_, [&](const wire::ServerTick& sample, const eprosima::fastrtps::rtps::GUID_t& writer) {
         ++readers_.counters().received;
         const ClientKey key = client_key(writer);
+        participant_->note_spoke(writer);
         const bool is_revoked =
             identities() != nullptr && identities()->is_revoked(key) && !leader_.may_be_ending(key);
         if (is_revoked || !leaders.contains(key) || sample.term() > kLatestTerm_ms) {
@@ -388,6 +391,7 @@ void DdsClientChannel::request_snapshot() {
 
 ClientInput DdsClientChannel::take() {
   ClientInput input;
+  participant_->forget_silent();
   input.server_lost = std::exchange(lost_, false);  // the input before had its last words
   readers_.take(key_, input);
   refuse_unsent(input);

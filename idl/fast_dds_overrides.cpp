@@ -13,7 +13,9 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 static_assert(FASTRTPS_VERSION_MAJOR == 2 && FASTRTPS_VERSION_MINOR == 9 &&
@@ -29,6 +31,34 @@ struct Uses {
 Uses uses;
 void count(std::atomic<std::uint64_t>& use) { use.fetch_add(1, std::memory_order_relaxed); }
 
+using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+
+/// Whom to forget; each is asked for anew where it is met anew.
+class Forgotten {
+ public:
+  void add(const Prefix& own, const Prefix& peer) {
+    const std::lock_guard lock(mutex_);
+    const Time now = Time::clock::now();
+    std::erase_if(asked_, [&](const auto& entry) { return now - entry.second > kGoodFor; });
+    asked_[{own, peer}] = now;
+  }
+  bool take(const Prefix& own, const Prefix& peer) {
+    const std::lock_guard lock(mutex_);
+    const auto found = asked_.find({own, peer});
+    if (found == asked_.end()) return false;
+    const bool counts = Time::clock::now() - found->second <= kGoodFor;
+    asked_.erase(found);
+    return counts;
+  }
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  static constexpr std::chrono::seconds kGoodFor{10};
+  std::mutex mutex_;
+  std::map<std::pair<Prefix, Prefix>, Time> asked_;
+};
+Forgotten forgotten;
+
 }  // namespace
 
 namespace eprosima::fastrtps::rtps {
@@ -43,8 +73,9 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_parti
   const std::chrono::duration<double, std::milli> left = remote.last_received_message_tm() +
                                                          remote.lease_duration() -
                                                          std::chrono::steady_clock::now();
-  if (left.count() < 0.0) {
-    const GUID_t guid = remote.m_guid;
+  const GUID_t guid = remote.m_guid;
+  if (left.count() < 0.0 ||
+      forgotten.take(getLocalParticipantProxyData()->m_guid.guidPrefix, guid.guidPrefix)) {
     lock.unlock();
     remove_remote_participant(guid, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
     return;
@@ -134,6 +165,8 @@ void kept_session_key(void* transform, Key& session_key, bool receiver_specific,
   }
   session_key = kept.key;
 }
+
+void forget(const GuidPrefix_t& own, const GuidPrefix_t& peer) { forgotten.add(own, peer); }
 
 bool overrides_in_force() {
   return is_own(MORTISE_LEASE_CHECK) && is_own(MORTISE_ENCODE) && is_own(MORTISE_SESSION_KEY);

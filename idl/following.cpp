@@ -99,10 +99,12 @@ bool LeaderTold::may_be_ending(const ClientKey& revoked) {
 }
 
 TakenTicks FollowerTold::take(dds::DataReader& reader, std::uint64_t term,
-                              const PeerServers& servers, const PeerIdentities* identities) {
+                              const PeerServers& servers, Participant& own,
+                              const PeerIdentities* identities) {
   TakenTicks taken;
   take_all<wire::ServerTaken>(reader,
                               [&](const wire::ServerTaken& sample, const rtps::GUID_t& writer) {
+                                own.note_spoke(writer);
                                 if (sample.term() != term) return;
                                 const ClientKey key = client_key(writer);
                                 if (identities != nullptr && identities->is_revoked(key)) {

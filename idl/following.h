@@ -103,7 +103,7 @@ class FollowerTold {
  public:
   /// What was said since the last call. `identities` may be null: no security.
   TakenTicks take(dds::DataReader& reader, std::uint64_t term, const PeerServers& servers,
-                  const PeerIdentities* identities);
+                  Participant& own, const PeerIdentities* identities);
   /// Empty: none.
   const ClientKey& follower(const PeerServers& servers);
 

@@ -18,9 +18,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 class LastDatagrams {
  public:
   bool has(std::span<const std::byte> datagram) {
-    constexpr std::size_t kHeader_bytes = 20;
-    constexpr std::byte kEncrypted{0x33};  // SRTPS_PREFIX
-    if (datagram.size() <= kHeader_bytes || datagram[kHeader_bytes] != kEncrypted) return false;
+    if (!is_encrypted(datagram)) return false;
     StateHash hash;
     hash.add(datagram);
     return places_[hash.value() % kPlaces].exchange(hash.value(), std::memory_order_relaxed) ==
@@ -56,6 +54,7 @@ class GuardTransport final : public eprosima::fastdds::rtps::ChainingTransport {
     const auto datagram = std::as_bytes(std::span(buffer, size));
     const bool is_repeat = last_ && last_->has(datagram);
     if (is_repeat) descriptor_.counts->repeated.fetch_add(1, std::memory_order_relaxed);
+    if (descriptor_.peers && !is_repeat) descriptor_.peers->note(datagram);
     const std::size_t length = is_repeat ? 0 : admissible_length(datagram);
     // Fast DDS hangs statistics on what it sends; that they are cut off is no sign of trouble.
     if (length == 0) descriptor_.counts->dropped.fetch_add(1, std::memory_order_relaxed);

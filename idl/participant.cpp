@@ -7,6 +7,7 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -131,7 +132,8 @@ Locator_t locator(const std::string& address, int port) {
 dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side side,
                                  const std::vector<std::string>& addresses,
                                  const std::vector<UdpPlace>& discovery_servers,
-                                 const std::shared_ptr<GuardCounts>& counts) {
+                                 const std::shared_ptr<GuardCounts>& counts,
+                                 const std::shared_ptr<PeersHeard>& peers) {
   dds::DomainParticipantQos qos;
   const bool is_server = serves(side);
   qos.name(is_server ? "mortise-server" : "mortise-client");
@@ -141,7 +143,7 @@ dds::DomainParticipantQos qos_of(const DdsOptions& options, Participant::Side si
   udp->receiveBufferSize = kSocketBuffer_bytes;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(
-      std::make_shared<GuardDescriptor>(udp, counts, is_server && !options.keys.empty()));
+      std::make_shared<GuardDescriptor>(udp, counts, is_server && !options.keys.empty(), peers));
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(options.participant_lease_s);
@@ -262,6 +264,20 @@ ClientKey client_key(const eprosima::fastrtps::rtps::GUID_t& guid) {
   return key;
 }
 
+void Participant::note_spoke(const eprosima::fastrtps::rtps::GUID_t& peer) {
+  if (peers_ && peer.guidPrefix != participant_->guid().guidPrefix)
+    peers_->watch(std::bit_cast<PeersHeard::Prefix>(peer.guidPrefix.value));
+}
+
+void Participant::forget_silent() {
+  if (!peers_) return;
+  for (const PeersHeard::Prefix& silent : peers_->take_silent()) {
+    eprosima::fastrtps::rtps::GuidPrefix_t peer;
+    std::memcpy(peer.value, silent.data(), silent.size());
+    forget(participant_->guid().guidPrefix, peer);
+  }
+}
+
 Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options, Side side,
                                                        dds::DomainParticipantListener* listener) {
   if (Status room = room_for_sockets(); !room) return room.error();
@@ -277,9 +293,12 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
     if (!identity) return identity.error();
     made->identity_ = *identity;
   }
+  if (!options.keys.empty())
+    made->peers_ = std::make_shared<PeersHeard>(
+        std::chrono::duration<double>(2.0 * options.participant_lease_s));
   made->participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<dds::DomainId_t>(options.domain),
-      qos_of(options, side, *addresses, *discovery_servers, made->guard_), listener,
+      qos_of(options, side, *addresses, *discovery_servers, made->guard_, made->peers_), listener,
       dds::StatusMask::none());
   if (made->participant_ == nullptr) {
     return broken("Fast DDS refused a participant on " + options.interface + ", domain " +

@@ -89,6 +89,10 @@ class Participant {
   ClientKey key() const { return client_key(participant_->guid()); }
   std::uint64_t refused() const { return refused_->load(std::memory_order_relaxed); }
   const std::optional<Identity>& identity() const { return identity_; }  ///< own; none: no security
+  /// One that is met said something that counts. With keys: where it falls silent for twice its
+  /// lease, it is forgotten by forget_silent(), and met anew; see PeersHeard.
+  void note_spoke(const eprosima::fastrtps::rtps::GUID_t& peer);
+  void forget_silent();
   std::uint64_t dropped() const { return guard_->dropped.load(std::memory_order_relaxed); }
   std::uint64_t repeated() const { return guard_->repeated.load(std::memory_order_relaxed); }
   std::uint64_t cut() const { return guard_->cut.load(std::memory_order_relaxed); }
@@ -120,6 +124,7 @@ class Participant {
   std::shared_ptr<std::atomic<std::uint64_t>> refused_ =
       std::make_shared<std::atomic<std::uint64_t>>(0);
   std::shared_ptr<GuardCounts> guard_ = std::make_shared<GuardCounts>();
+  std::shared_ptr<PeersHeard> peers_;  ///< null: no security
 };
 
 }  // namespace mortise

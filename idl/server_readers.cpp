@@ -13,6 +13,7 @@ void ServerReaders::know(std::unique_ptr<PeerIdentities> identities) {
 }
 
 void ServerReaders::open(Participant& participant, Status& status) {
+  participant_ = &participant;
   participant.open_reader<wire::PresencePubSubType>(Topic::kPresence, &doorman_, presence_, status);
   participant.open_reader<wire::RequestPubSubType>(Topic::kRequest, nullptr, requests_, status);
   participant.open_reader<wire::IncrementBatchPubSubType>(Topic::kIncrement, nullptr, increments_,
@@ -49,6 +50,7 @@ void ServerReaders::take_each(dds::DataReader& reader, Action action) {
                                const eprosima::fastrtps::rtps::GUID_t& writer) {
     ++counters_.received;
     const ClientKey key = client_key(writer);
+    participant_->note_spoke(writer);
     if (!identities_ || !identities_->is_revoked(key)) return action(sample, key);
     ++counters_.foreign;
     // Who asks to come in is told. Of anything else nobody can be: whose user it names, is not

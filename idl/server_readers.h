@@ -24,7 +24,7 @@ class ServerReaders {
   void know(std::unique_ptr<PeerIdentities> identities);
   Doorman& doorman() { return doorman_; }
   const PeerIdentities* identities() const { return identities_.get(); }  ///< null: no security
-  void open(Participant& participant, Status& status);
+  void open(Participant& participant, Status& status);  ///< which must outlive this
 
   /// Whom to turn away; first, so that who has to go does not come in by what is taken next.
   void turn_away(const Participant& participant, ServerInput& input);
@@ -47,6 +47,7 @@ class ServerReaders {
   bool owns(const ClientKey& client, UserId user);
 
   ServerWriters& writers_;
+  Participant* participant_ = nullptr;
   std::unique_ptr<PeerIdentities> identities_;
   Doorman doorman_;
   dds::DataReader *presence_ = nullptr, *requests_ = nullptr, *increments_ = nullptr;

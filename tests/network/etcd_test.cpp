@@ -41,9 +41,8 @@ class FaultSchedules : public EtcdSite {
   }
   int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
 
-  // A server dies, or stands still for long, as the first thing alone: one that went on alone and
-  // dies takes with it what only its log has, and the last second of that. And with keys, users do
-  // not meet a leader again that stood still for longer than their lease (README of server).
+  // A server dies as the first thing alone: one that went on alone and dies takes with it what only
+  // its log has, and the last second of that.
   std::string fault(bool is_first) {
     const int leading = std::max(0, leader());
     switch (below(is_first ? 7 : 5)) {
@@ -61,9 +60,9 @@ class FaultSchedules : public EtcdSite {
         return "node " + std::to_string(node) + " killed";
       }
       case 3:
-        return paused(leading, is_first);
+        return paused(leading, is_first || below(2) == 0);
       case 4:
-        return paused(1 - leading, is_first);
+        return paused(1 - leading, is_first || below(2) == 0);
       case 5:
         servers_[at(1 - leading)]->signal(SIGKILL);
         return "standby killed";

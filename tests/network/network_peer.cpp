@@ -46,14 +46,15 @@ int run_server(const DdsOptions& options, double stay_s) {
 
 int main(int count, char** words) {
   using namespace mortise;
-  if (count != 6) {
-    std::fprintf(stderr, "usage: network_peer client|server DOMAIN SESSION NAME STAY_S\n");
+  if (count != 7) {
+    std::fprintf(stderr, "usage: network_peer client|server DOMAIN SESSION NAME STAY_S KEYS\n");
     return 2;
   }
   DdsOptions options;
   options.domain = std::atoi(words[2]);
   options.session = words[3];
   const double stay_s = std::atof(words[5]);
+  options.keys = words[6];
   return std::string(words[1]) == "server" ? test::run_server(options, stay_s)
                                            : test::run_client(options, words[4], stay_s);
 }

@@ -142,10 +142,10 @@ ClashEvent some_event(std::uint64_t seq, std::uint64_t tick) {
 Child::Child(const std::string& role, const DdsOptions& options, const std::string& name,
              double stay_s) {
   std::string program = MORTISE_BIN_DIR "/network_peer";
-  std::string words[] = {role, std::to_string(options.domain), options.session, name,
-                         std::to_string(stay_s)};
+  std::string words[] = {role, std::to_string(options.domain), options.session,
+                         name, std::to_string(stay_s),         options.keys};
   char* arguments[] = {program.data(),  words[0].data(), words[1].data(), words[2].data(),
-                       words[3].data(), words[4].data(), nullptr};
+                       words[3].data(), words[4].data(), words[5].data(), nullptr};
   if (posix_spawn(&pid_, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
     std::perror(program.c_str());
     pid_ = 0;

@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "idl/peers_heard.h"
+#include "idl/rtps_bytes.h"
 
 namespace mortise {
 namespace {
@@ -365,6 +369,30 @@ TEST(Guard, MutatedDatagramsLeadNowhere) {
   }
   EXPECT_GT(dropped, 50'000u);
   EXPECT_GT(passed, 10'000u);
+}
+
+// Whoever says nothing encrypted has forgotten us, however it announces itself in plain words.
+TEST(PeersHeard, OneThatSpokeAndFallsSilentIsToldOnce) {
+  using std::chrono::seconds;
+  const PeersHeard::Time begun;
+  PeersHeard heard(seconds(4));
+  PeersHeard::Prefix peer, other{};
+  for (std::size_t i = 0; i < peer.size(); ++i) peer[i] = static_cast<std::byte>(i);
+  Datagram plain = header(), encrypted = header();
+  plain.push_back(rtps_wire::kDataSubmessage);
+  encrypted.push_back(0x33);
+  const auto note = [&](const Datagram& datagram, int s) {
+    heard.note(std::as_bytes(std::span(datagram)), begun + seconds(s));
+  };
+  note(encrypted, 0);  // nobody who counts
+  EXPECT_TRUE(heard.take_silent(begun + seconds(100)).empty());
+  heard.watch(peer, begun + seconds(100));
+  heard.watch(other, begun + seconds(103));
+  note(encrypted, 103);
+  EXPECT_TRUE(heard.take_silent(begun + seconds(106)).empty());
+  note(plain, 107);
+  EXPECT_EQ(heard.take_silent(begun + seconds(108)), (std::vector{other, peer}));
+  EXPECT_TRUE(heard.take_silent(begun + seconds(120)).empty());
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+// With keys, one of two stands still for longer than its lease, and is met again.
+#include <signal.h>
+
+#include "client/client.h"
+#include "tests/network/security_fixture.h"
+
+namespace mortise::test {
+namespace {
+
+class SecurityPause : public Security {
+ protected:
+  static constexpr double kPause_s = 3.0, kComesBack_s = 20.0;
+
+  /// Stands still for longer than its lease; the other goes on.
+  void pause(const Child& peer, const std::function<void()>& turn) {
+    peer.signal(SIGSTOP);
+    (void)test::until(
+        kPause_s, [] { return false; }, turn);
+    peer.signal(SIGCONT);
+  }
+};
+
+TEST_F(SecurityPause, AServerThatStoodStillIsMetAgain) {
+  Child server("server", options((*site_keys)["hall"]), "hall", 90.0);
+  auto channel = open_client_channel(options((*site_keys)["anna"]));
+  ASSERT_TRUE(channel) << channel.error().text;
+  Client client(**channel);
+  client.add_user("anna", "designer");
+  bool was_lost = false;
+  const auto turn = [&] { was_lost |= client.poll().server_lost; };
+  const auto is_in = [&] { return client.user_id(0) && client.synced(); };
+  ASSERT_TRUE(until(kPatience_s, is_in, turn));
+  was_lost = false;
+  pause(server, turn);
+  ASSERT_TRUE(was_lost && !is_in()) << "or nothing is tested";
+  const double begun_s = now_s();
+  EXPECT_TRUE(until(kComesBack_s, is_in, turn));
+  std::printf("met again %.1f s after a pause of %.0f s\n", now_s() - begun_s, kPause_s);
+}
+
+TEST_F(SecurityPause, AClientThatStoodStillIsMetAgain) {
+  auto channel = open_server_channel(options((*site_keys)["hall"]));
+  ASSERT_TRUE(channel) << channel.error().text;
+  SmallServer server(**channel, "test", 3);
+  Child client("client", options((*site_keys)["anna"]), "anna", 90.0);
+  std::uint64_t beats = 0;
+  const auto turn = [&] {
+    server.turn();
+    if (server.tick % 10 == 0) server.publish_events(1);
+    beats += server.last_input.heartbeats.size();
+  };
+  ASSERT_TRUE(until(
+      kPatience_s, [&] { return beats > 3; }, turn));
+  pause(client, turn);
+  ASSERT_FALSE(server.lost.empty()) << "or nothing is tested";
+  const double begun_s = now_s();
+  beats = 0;
+  EXPECT_TRUE(until(
+      kComesBack_s, [&] { return beats > 3; }, turn));
+  std::printf("met again %.1f s after a pause of %.0f s\n", now_s() - begun_s, kPause_s);
+}
+
+}  // namespace
+}  // namespace mortise::test
