@@ -66,6 +66,7 @@ ClientUpdate Client::poll() {
     forget_server();
   }
   for (const JoinReply& reply : input.join_replies) own_.take(reply, now_ns_, update);
+  own_.tell_given_up(update);
   for (const Reply& reply : input.replies) {
     if (reply.part) parts_.set_holder(reply.part, reply.holder);
     if (own_.owns(reply.user)) update.replies.push_back(reply);

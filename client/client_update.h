@@ -29,7 +29,16 @@ struct KnownPart {
   std::uint64_t tick = 0;  ///< of that pose
 };
 
-/// The server has taken increments of one of our users up to `seq`, in this tick.
+/// Increments of one of our users up to `seq` that were not acknowledged are not repeated any more:
+/// too many are under way, or the server is another. A later acknowledgement says nothing of them;
+/// they may have been taken or not.
+struct GivenUp {
+  LocalUser user = 0;
+  std::uint64_t seq = 0;
+};
+
+/// The server has taken increments of one of our users up to `seq`, in this tick, those excepted
+/// that it refused (`refused`) and those that were given up before.
 struct SeenAck {
   LocalUser user = 0;
   std::uint64_t seq = 0, tick = 0;
@@ -49,6 +58,7 @@ struct ClientUpdate {
   bool scene = false;                     ///< parts were added, removed or changed
   std::vector<LocalUser> joined;          ///< joined, or joined again
   std::vector<double> latency_ms;         ///< from send() to the ack seen here
+  std::vector<GivenUp> given_up;          ///< before what else is here
   std::vector<SeenAck> acks;              ///< new ones, in order
   std::int64_t at_ns = 0;                 ///< our clock when this was taken
   std::optional<SessionPulse> pulse;      ///< the latest

@@ -172,6 +172,14 @@ void OwnUsers::send_what_is_due(std::int64_t now_ns) {
   }
 }
 
+void OwnUsers::tell_given_up(ClientUpdate& update) {
+  for (State& user : users_) {
+    const std::uint64_t seq = user.unacknowledged.given_up_to();
+    if (std::exchange(user.given_up_seq, seq) < seq)
+      update.given_up.push_back({static_cast<LocalUser>(&user - users_.data()), seq});
+  }
+}
+
 void OwnUsers::add_to(ClientStatistics& statistics) const {
   for (const State& user : users_) {
     statistics.increments_repeated += user.unacknowledged.repeated();

@@ -38,6 +38,8 @@ class OwnUsers {
   void forget_server();
   /// Joins, heartbeats and repeated increments.
   void send_what_is_due(std::int64_t now_ns);
+  /// What was given up since the last call.
+  void tell_given_up(ClientUpdate& update);
   /// Adds the counts of all users.
   void add_to(ClientStatistics& statistics) const;
 
@@ -46,7 +48,8 @@ class OwnUsers {
     std::string name, role;
     JoinState state = JoinState::kUnknown;
     UserId id;
-    std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0;
+    std::uint64_t nonce = 0, increment_seq = 0, command_seq = 0, acked_seq = 0,
+                  given_up_seq = 0;  ///< told so far
     Unacknowledged unacknowledged;
     bool was_joined = false;     ///< joins again by itself, also when refused
     bool awaits_answer = false;  ///< left while a join was not answered yet

@@ -6,6 +6,7 @@ namespace mortise {
 
 IncrementBatch Unacknowledged::add(const SentIncrement& sent, std::int64_t now_ns) {
   if (kept_.size() == kMaxKeptIncrements) {
+    given_up_to_ = kept_.front().increment.seq;
     kept_.pop_front();
     ++given_up_;
   }
@@ -54,6 +55,7 @@ void Unacknowledged::acknowledge(std::uint64_t seq) {
 
 void Unacknowledged::clear() {
   given_up_ += kept_.size();
+  given_up_to_ = std::max(given_up_to_, newest());
   kept_.clear();
 }
 

@@ -28,6 +28,7 @@ class Unacknowledged {
   std::int64_t last_sent_ns() const { return last_sent_ns_; }
   std::uint64_t repeated() const { return repeated_; }
   std::uint64_t given_up() const { return given_up_; }
+  std::uint64_t given_up_to() const { return given_up_to_; }  ///< sequence of the last of them
 
  private:
   IncrementBatch batch(std::uint64_t fresh_from, std::int64_t now_ns);
@@ -35,7 +36,7 @@ class Unacknowledged {
   std::deque<SentIncrement> kept_;  ///< rising, without gap
   std::uint64_t next_older_ = 0;    ///< sequence of the next one to repeat
   std::int64_t last_sent_ns_ = 0;
-  std::uint64_t repeated_ = 0, given_up_ = 0;
+  std::uint64_t repeated_ = 0, given_up_ = 0, given_up_to_ = 0;
 };
 
 }  // namespace mortise

@@ -249,8 +249,9 @@ class EtcdSite : public ::testing::Test {
       const double begun_s = std::exchange(before_s, now_s());
       const ClientUpdate update = guest->listen();
       const std::lock_guard lock(mutex_);
-      // May be lost, and the client knows it: who joins again, to the same server too, begins anew.
-      if (update.server_lost || !update.joined.empty()) sent.clear();
+      // May be taken or lost, and the client says so.
+      for (const GivenUp& given_up : update.given_up)
+        sent.erase(sent.begin(), sent.upper_bound(given_up.seq));
       for (const SeenAck& ack : update.acks)
         for (; !sent.empty() && *sent.begin() <= ack.seq; sent.erase(sent.begin()))
           history.acknowledged(*sent.begin() | coming(side), now_s());

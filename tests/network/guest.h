@@ -34,9 +34,9 @@ struct Guest {
     ClientUpdate update = client->poll();
     for (const RefusedIncrement& r : update.refused) refused.push_back(r);
     for (const Reply& r : update.replies) replies.push_back(r);
-    // What a server that is gone had not acknowledged may be lost: the next one speaks of later
-    // ones.
-    if (update.server_lost) told_up_to_ = client->statistics().increments_sent;
+    // May be taken or lost: later acknowledgements do not speak of them.
+    for (const GivenUp& given_up : update.given_up)
+      told_up_to_ = std::max(told_up_to_, given_up.seq);
     const std::uint64_t sent = client->statistics().increments_sent;
     for (const SeenAck& ack : update.acks)
       while (told_up_to_ < std::min(ack.seq, sent)) taken.insert(++told_up_to_);

@@ -129,6 +129,7 @@ struct OneClient : testing::Test {
       append(all.events, update.events);
       append(all.joined, update.joined);
       append(all.acks, update.acks);
+      append(all.given_up, update.given_up);
       append(all.latency_ms, update.latency_ms);
       append(all.changed, update.changed);
       all.resynced |= update.resynced;
@@ -300,6 +301,22 @@ TEST_F(JoinedClient, TakesNoAcknowledgementOfWhatItNeverSent) {
   const ClientUpdate update = run(10);
   ASSERT_EQ(update.acks.size(), 1u);
   EXPECT_EQ(update.acks.front().seq, 1u);
+}
+
+// Of these a later acknowledgement says nothing: they are not repeated any more.
+TEST_F(JoinedClient, SaysWhatItGaveUp) {
+  const UserId id = client->user_id(0);
+  bench.gone.insert(id);  // nothing is taken
+  for (std::size_t i = 0; i < kMaxKeptIncrements + 3; ++i)
+    client->send(0, PartId{1}, Vec3(1, 0, 0));
+  ClientUpdate update = run(1);
+  ASSERT_EQ(update.given_up.size(), 1u);
+  EXPECT_EQ(update.given_up.front().seq, 3u);
+  EXPECT_TRUE(run(1).given_up.empty()) << "said once";
+  bench.restart();
+  update = run(10);
+  ASSERT_EQ(update.given_up.size(), 1u) << "another server knows none of them";
+  EXPECT_EQ(update.given_up.front().seq, kMaxKeptIncrements + 3);
 }
 
 TEST_F(OneClient, HeartbeatsGoWhileNothingElseDoes) {
