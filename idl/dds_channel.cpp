@@ -195,7 +195,6 @@ Status DdsServerChannel::open_endpoints() {
 
 ServerInput DdsServerChannel::take() {
   ServerInput input;
-  participant_->forget_silent();
   readers_.turn_away(*participant_, input);
   input.follower_came = servers_.take_came();
   (void)take_told(&input);
@@ -228,7 +227,6 @@ void DdsServerChannel::publish_tick(const ToldTick& told) {
 
 std::vector<ToldTick> DdsServerChannel::follow() {
   ServerInput nobody;
-  participant_->forget_silent();
   readers_.turn_away(*participant_, nobody);  // the one that leads may be revoked, too
   return take_told(nullptr);
 }
@@ -391,7 +389,6 @@ void DdsClientChannel::request_snapshot() {
 
 ClientInput DdsClientChannel::take() {
   ClientInput input;
-  participant_->forget_silent();
   input.server_lost = std::exchange(lost_, false);  // the input before had its last words
   readers_.take(key_, input);
   refuse_unsent(input);

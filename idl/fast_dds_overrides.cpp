@@ -10,10 +10,12 @@
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -33,31 +35,28 @@ void count(std::atomic<std::uint64_t>& use) { use.fetch_add(1, std::memory_order
 
 using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
-/// Whom to forget; each is asked for anew where it is met anew.
-class Forgotten {
+/// Of all participants of this process.
+class AllPeers {
  public:
-  void add(const Prefix& own, const Prefix& peer) {
+  void add(const Prefix& own, const std::shared_ptr<mortise::PeersHeard>& peers) {
     const std::lock_guard lock(mutex_);
-    const Time now = Time::clock::now();
-    std::erase_if(asked_, [&](const auto& entry) { return now - entry.second > kGoodFor; });
-    asked_[{own, peer}] = now;
+    std::erase_if(heard_, [](const auto& entry) { return entry.second.expired(); });
+    heard_[own] = peers;
   }
-  bool take(const Prefix& own, const Prefix& peer) {
+  std::shared_ptr<mortise::PeersHeard> of(const Prefix& own) {
     const std::lock_guard lock(mutex_);
-    const auto found = asked_.find({own, peer});
-    if (found == asked_.end()) return false;
-    const bool counts = Time::clock::now() - found->second <= kGoodFor;
-    asked_.erase(found);
-    return counts;
+    const auto found = heard_.find(own);
+    return found == heard_.end() ? nullptr : found->second.lock();
   }
 
  private:
-  using Time = std::chrono::steady_clock::time_point;
-  static constexpr std::chrono::seconds kGoodFor{10};
   std::mutex mutex_;
-  std::map<std::pair<Prefix, Prefix>, Time> asked_;
+  std::map<Prefix, std::weak_ptr<mortise::PeersHeard>> heard_;
 };
-Forgotten forgotten;
+AllPeers& all_peers() {
+  static auto* all = new AllPeers;  // threads of the library may ask while the process ends
+  return *all;
+}
 
 }  // namespace
 
@@ -74,8 +73,12 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_parti
                                                          remote.lease_duration() -
                                                          std::chrono::steady_clock::now();
   const GUID_t guid = remote.m_guid;
-  if (left.count() < 0.0 ||
-      forgotten.take(getLocalParticipantProxyData()->m_guid.guidPrefix, guid.guidPrefix)) {
+  const bool has_own = ParticipantProxiesBegin() != ParticipantProxiesEnd();  // the first is it
+  const auto peers =
+      has_own ? all_peers().of(getLocalParticipantProxyData()->m_guid.guidPrefix) : nullptr;
+  const auto peer = std::bit_cast<mortise::PeersHeard::Prefix>(guid.guidPrefix.value);
+  if (left.count() < 0.0 || (peers && peers->is_silent(peer))) {
+    if (peers) peers->part(peer);
     lock.unlock();
     remove_remote_participant(guid, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
     return;
@@ -166,7 +169,9 @@ void kept_session_key(void* transform, Key& session_key, bool receiver_specific,
   session_key = kept.key;
 }
 
-void forget(const GuidPrefix_t& own, const GuidPrefix_t& peer) { forgotten.add(own, peer); }
+void know_peers(const GuidPrefix_t& own, const std::shared_ptr<PeersHeard>& peers) {
+  all_peers().add(own, peers);
+}
 
 bool overrides_in_force() {
   return is_own(MORTISE_LEASE_CHECK) && is_own(MORTISE_ENCODE) && is_own(MORTISE_SESSION_KEY);

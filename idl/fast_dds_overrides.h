@@ -1,13 +1,16 @@
 #pragma once
 #include <cstdint>
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <memory>
+
+#include "idl/peers_heard.h"
 
 // Three functions of Fast DDS 2.9.1 as the linker names them, with what takes their place here.
 
 /// PDP::check_remote_participant_liveliness(ParticipantProxyData*): the look at a lease. The
 /// library's ends the process (an assertion) where its participant has just left: seen when sixteen
-/// left at once. Here nothing is done then; and who is to be forgotten is, as if its lease had
-/// ended: see forget().
+/// left at once. Here nothing is done then; and who has forgotten us is gone as if its lease had
+/// ended: see know_peers().
 #define MORTISE_LEASE_CHECK                                                 \
   "_ZN8eprosima8fastrtps4rtps3PDP35check_remote_participant_livelinessEPNS" \
   "1_20ParticipantProxyDataE"
@@ -37,10 +40,10 @@ namespace mortise {
 /// when it was built (Debian's does): see override_uses().
 bool overrides_in_force();
 
-/// Whatever `peer` says of itself, `own` does not know it any more when it next looks at its lease,
-/// which it does within that; asked for too long ago, nothing happens.
-void forget(const eprosima::fastrtps::rtps::GuidPrefix_t& own,
-            const eprosima::fastrtps::rtps::GuidPrefix_t& peer);
+/// Who is silent of `peers` is forgotten by the participant `own` when it next looks at its lease,
+/// which it does within that.
+void know_peers(const eprosima::fastrtps::rtps::GuidPrefix_t& own,
+                const std::shared_ptr<PeersHeard>& peers);
 
 /// How often the library came by, in this process.
 struct OverrideUses {

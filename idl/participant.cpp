@@ -269,15 +269,6 @@ void Participant::note_spoke(const eprosima::fastrtps::rtps::GUID_t& peer) {
     peers_->watch(std::bit_cast<PeersHeard::Prefix>(peer.guidPrefix.value));
 }
 
-void Participant::forget_silent() {
-  if (!peers_) return;
-  for (const PeersHeard::Prefix& silent : peers_->take_silent()) {
-    eprosima::fastrtps::rtps::GuidPrefix_t peer;
-    std::memcpy(peer.value, silent.data(), silent.size());
-    forget(participant_->guid().guidPrefix, peer);
-  }
-}
-
 Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options, Side side,
                                                        dds::DomainParticipantListener* listener) {
   if (Status room = room_for_sockets(); !room) return room.error();
@@ -305,6 +296,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
                   std::to_string(options.domain) +
                   (options.keys.empty() ? "" : ", with the keys in " + options.keys));
   }
+  if (made->peers_) know_peers(made->participant_->guid().guidPrefix, made->peers_);
   const std::string partition = partition_of(options.session);
   dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
   publisher_qos.partition().push_back(partition.c_str());

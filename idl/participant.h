@@ -90,9 +90,8 @@ class Participant {
   std::uint64_t refused() const { return refused_->load(std::memory_order_relaxed); }
   const std::optional<Identity>& identity() const { return identity_; }  ///< own; none: no security
   /// One that is met said something that counts. With keys: where it falls silent for twice its
-  /// lease, it is forgotten by forget_silent(), and met anew; see PeersHeard.
+  /// lease, it is forgotten, and met anew; see PeersHeard.
   void note_spoke(const eprosima::fastrtps::rtps::GUID_t& peer);
-  void forget_silent();
   std::uint64_t dropped() const { return guard_->dropped.load(std::memory_order_relaxed); }
   std::uint64_t repeated() const { return guard_->repeated.load(std::memory_order_relaxed); }
   std::uint64_t cut() const { return guard_->cut.load(std::memory_order_relaxed); }

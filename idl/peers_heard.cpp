@@ -17,8 +17,12 @@ bool is_encrypted(std::span<const std::byte> datagram) {
 }
 
 void PeersHeard::watch(const Prefix& peer, Time now) {
+  constexpr int kLongGone = 16;
   const std::lock_guard lock(mutex_);
-  heard_.emplace(peer, now);
+  if (!heard_.emplace(peer, now).second) return;
+  std::erase_if(heard_, [&](const auto& entry) {
+    return now - entry.second > kLongGone * silent_for_;  // said goodbye
+  });
 }
 
 void PeersHeard::note(std::span<const std::byte> datagram, Time now) {
@@ -29,15 +33,15 @@ void PeersHeard::note(std::span<const std::byte> datagram, Time now) {
   if (const auto found = heard_.find(peer); found != heard_.end()) found->second = now;
 }
 
-std::vector<PeersHeard::Prefix> PeersHeard::take_silent(Time now) {
-  std::vector<Prefix> silent;
+bool PeersHeard::is_silent(const Prefix& peer, Time now) const {
   const std::lock_guard lock(mutex_);
-  std::erase_if(heard_, [&](const auto& entry) {
-    const bool is_silent = now - entry.second > silent_for_;
-    if (is_silent) silent.push_back(entry.first);
-    return is_silent;
-  });
-  return silent;
+  const auto found = heard_.find(peer);
+  return found != heard_.end() && now - found->second > silent_for_;
+}
+
+void PeersHeard::part(const Prefix& peer) {
+  const std::lock_guard lock(mutex_);
+  heard_.erase(peer);
 }
 
 }  // namespace mortise

@@ -5,7 +5,6 @@
 #include <map>
 #include <mutex>
 #include <span>
-#include <vector>
 
 namespace mortise {
 
@@ -26,12 +25,14 @@ class PeersHeard {
   void watch(const Prefix& peer, Time now = Time::clock::now());
   /// Any datagram that came.
   void note(std::span<const std::byte> datagram, Time now = Time::clock::now());
-  /// Who of the watched has been silent for so long; is not watched from then on.
-  std::vector<Prefix> take_silent(Time now = Time::clock::now());
+  /// Is watched, and has been silent for so long.
+  bool is_silent(const Prefix& peer, Time now = Time::clock::now()) const;
+  /// It is gone, or forgotten: not watched until it says something again.
+  void part(const Prefix& peer);
 
  private:
   const Time::duration silent_for_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<Prefix, Time> heard_;
 };
 
