@@ -83,6 +83,17 @@ TEST_F(WireOfBefore, IsUnderstoodByThisBuild) {
   }
 }
 
+/// A program of before lacks what was appended since. Of these seeds the last member is empty.
+TEST_F(WireOfBefore, IsUnderstoodWithoutItsLastMember) {
+  int understood = 0;
+  for (const std::string& sample : wire_seeds()) {
+    if (!sample.ends_with(std::string(4, '\0'))) continue;
+    EXPECT_TRUE(feed(fuzz_wire, sample.substr(0, sample.size() - 4))) << "topic " << int{sample[0]};
+    ++understood;
+  }
+  EXPECT_GE(understood, 3);
+}
+
 /// New members stand at the end of a topic's struct: a reader of before finds all that it knows.
 TEST_F(WireOfBefore, UnderstandsThisBuild) {
   const std::vector<std::string> now = wire_seeds();
