@@ -13,6 +13,7 @@
 #include <random>
 
 #include "common/base/json_text.h"
+#include "common/session/world/ready_world.h"
 #include "idl/dds_channel.h"
 #include "server/announcer.h"
 #include "server/closing.h"
@@ -172,6 +173,7 @@ Result<bool> Service::begin() {
   auto start = read_start(options_);
   if (!start) return start.error();
   start_ = std::move(*start);
+  make_world_ready(start_->scene.world, options_.threads);
   if (Status opened = open_channel(); !opened) return opened.error();
   if (Status opened = open_log(); !opened) {
     if (!is_to_stop()) return opened.error();

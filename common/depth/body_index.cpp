@@ -10,7 +10,8 @@ namespace mortise {
 namespace {
 
 // Parts with their bands of which an index is held; the one that was not asked for longest goes.
-constexpr std::size_t kMostHeld = 64;
+// A large assembly has some hundreds of kinds: one that is not held is made anew in each tick.
+constexpr std::size_t kMostHeld = 1024;
 
 bool same_surface(const Surface& a, const Surface& b) {
   return a.kind == b.kind && a.inward == b.inward && a.point == b.point && a.axis == b.axis &&

@@ -1,6 +1,7 @@
 // Same world, same increments, same build: the same report bit for bit, however it was worked out.
 #include <gtest/gtest.h>
 
+#include "common/session/world/ready_world.h"
 #include "tests/unit/session/random_play.h"
 
 namespace mortise {
@@ -10,6 +11,7 @@ struct Way {
   int threads = 1;
   bool known_distances = true;
   bool brute_force_pairs = false;
+  bool made_ready = false;
 };
 
 struct Record {
@@ -21,6 +23,7 @@ struct Record {
 Record record(Policy policy, std::uint64_t seed, bool bands, const Way& way) {
   RandomPlay play(policy, seed, 8, bands);
   Scratch scratch(way.threads);
+  if (way.made_ready) make_world_ready(play.session.world, way.threads);
   scratch.impl().switches.known_distances = way.known_distances;
   scratch.impl().switches.brute_force_pairs = way.brute_force_pairs;
   Record result;
@@ -51,6 +54,7 @@ TEST_P(Determinism, ThreadsTreeAndBudgetChangeNothing) {
     EXPECT_EQ(record(policy, seed, bands, {.threads = 2}).digests, one.digests);
     EXPECT_EQ(record(policy, seed, bands, {.threads = 4}).digests, one.digests);
     EXPECT_EQ(record(policy, seed, bands, {.brute_force_pairs = true}).digests, one.digests);
+    EXPECT_EQ(record(policy, seed, bands, {.threads = 2, .made_ready = true}).digests, one.digests);
     const Record plain = record(policy, seed, bands, {.known_distances = false});
     EXPECT_EQ(plain.digests, one.digests) << "known distances";
     EXPECT_EQ(plain.sum.pairs_budget, 0U);
