@@ -19,7 +19,7 @@ namespace {
 // What step_maker says of an assembly: OpenCASCADE alone, without a line of the importer.
 struct ExactPair {
   std::size_t a = 0, b = 0;
-  double volume_mm3 = 0.0, thickness_mm = 0.0, seconds = 0.0;
+  double volume_mm3 = 0.0, thickness_mm = 0.0, seconds = 0.0, depth_mm = 0.0;
 };
 struct Exact {
   std::vector<Vec3> centres;
@@ -39,7 +39,8 @@ Exact exact_of(const std::filesystem::path& file) {
       exact.volumes.push_back(volume);
     } else {
       ExactPair pair;
-      lines >> pair.a >> pair.b >> pair.volume_mm3 >> pair.thickness_mm >> pair.seconds;
+      lines >> pair.a >> pair.b >> pair.volume_mm3 >> pair.thickness_mm >> pair.seconds >>
+          pair.depth_mm;
       exact.pairs.push_back(pair);
     }
   }
@@ -80,6 +81,8 @@ std::vector<PartId> matched(const World& world, const Exact& exact) {
   return ids;
 }
 
+constexpr double kMeshes_mm = 0.05;
+
 // Exact Booleans of all pairs whose boxes meet: nothing that is empty is real, nothing that is
 // thick is passed over, and an explanation is complete. Returns the pairs that were compared.
 std::size_t agrees_with_exact_solids(const test::Checked& c, const Exact& exact) {
@@ -103,6 +106,14 @@ std::size_t agrees_with_exact_solids(const test::Checked& c, const Exact& exact)
     }
     if (pair.thickness_mm > 0.02) {
       EXPECT_EQ(klass, CollisionClass::kReal) << names << " " << pair.thickness_mm;
+    }
+    if (found != said.end() && !found->second->verdicts.empty() && pair.depth_mm > 0.0) {
+      Interval told;
+      for (const Verdict& v : found->second->verdicts)
+        told = {std::max(told.lo, v.delta_mm.lo), std::max(told.hi, v.delta_mm.hi)};
+      // Sought points come near the deepest; meshes stand off the surfaces by their error.
+      EXPECT_GE(told.hi, pair.depth_mm - kMeshes_mm) << names;
+      EXPECT_LE(told.lo, 1.1 * pair.depth_mm + kMeshes_mm) << names;
     }
     if (found != said.end() && found->second->explained &&
         found->second->mating.relation != MatingKind::kFitStated) {

@@ -2,6 +2,9 @@
 
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
@@ -27,10 +30,14 @@
 #include <ctime>
 #include <functional>
 #include <map>
+#include <random>
 #include <vector>
 
 namespace mortise::test {
 namespace {
+
+// The depth of thinner overlaps is not asked.
+constexpr double kThick_mm = 0.02;
 
 bool read_document(const std::string& file, Handle(TDocStd_Document) & document) {
   Message::DefaultMessenger()->ChangePrinters().Clear();
@@ -73,9 +80,40 @@ GProp_GProps volume_of(const TopoDS_Shape& shape) {
   return properties;
 }
 
+// The deepest that was found of points in a piece that two solids have in common: their distances
+// from the surfaces of both, added. From below.
+double depth_of(const TopoDS_Shape& piece, const TopoDS_Shape& a, const TopoDS_Shape& b) {
+  constexpr int kTries = 120;
+  const TopoDS_Shape shell_a = TopExp_Explorer(a, TopAbs_SHELL).Current(),
+                     shell_b = TopExp_Explorer(b, TopAbs_SHELL).Current();
+  Bnd_Box box;
+  BRepBndLib::AddOptimal(piece, box, false, false);
+  const gp_Pnt lo = box.CornerMin(), hi = box.CornerMax();
+  BRepClass3d_SolidClassifier inside(piece);
+  std::mt19937 random(1);
+  const auto near = [&](double x, double half) {
+    return std::uniform_real_distribution<double>(x - half, x + half)(random);
+  };
+  gp_Pnt best((lo.XYZ() + hi.XYZ()) / 2.0), found = best;
+  gp_XYZ half = (hi.XYZ() - lo.XYZ()) / 2.0;
+  double deepest = 0.0;
+  for (int i = 0; i < 2 * kTries; ++i) {
+    const gp_Pnt x(near(best.X(), half.X()), near(best.Y(), half.Y()), near(best.Z(), half.Z()));
+    inside.Perform(x, 1e-7);
+    if (inside.State() != TopAbs_IN) continue;
+    const TopoDS_Shape point = BRepBuilderAPI_MakeVertex(x).Shape();
+    const double depth = BRepExtrema_DistShapeShape(point, shell_a).Value() +
+                         BRepExtrema_DistShapeShape(point, shell_b).Value();
+    if (depth > deepest) deepest = depth, found = x;
+    if (i >= kTries) best = found, half *= 0.97;
+  }
+  return deepest;
+}
+
 void print_pair(std::size_t i, std::size_t j, const TopoDS_Shape& a, const TopoDS_Shape& b) {
   const std::clock_t begin = std::clock();
   double volume = -1.0, thickness = 0.0;
+  TopoDS_Shape thickest;
   try {
     BRepAlgoAPI_Common common(a, b);
     if (common.IsDone() && !common.HasErrors()) {
@@ -85,14 +123,18 @@ void print_pair(std::size_t i, std::size_t j, const TopoDS_Shape& a, const TopoD
         BRepGProp::SurfaceProperties(x.Current(), surface);
         const double own = volume_of(x.Current()).Mass();
         volume += std::max(0.0, own);
-        if (surface.Mass() > 0.0) thickness = std::max(thickness, 2.0 * own / surface.Mass());
+        if (surface.Mass() > 0.0 && 2.0 * own / surface.Mass() > thickness) {
+          thickness = 2.0 * own / surface.Mass();
+          thickest = x.Current();
+        }
       }
     }
   } catch (const Standard_Failure&) {
     volume = -1.0;
   }
-  std::printf("pair %zu %zu %.9g %.9g %.6f\n", i, j, volume, thickness,
-              static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const double depth = thickness > kThick_mm ? depth_of(thickest, a, b) : 0.0;
+  std::printf("pair %zu %zu %.9g %.9g %.6f %.9g\n", i, j, volume, thickness, seconds, depth);
   std::fflush(stdout);
 }
 
