@@ -39,6 +39,7 @@ struct CheckedPair {
 struct NearPair {
   PartId a, b;
   Interval gap_mm;  ///< of the real surfaces
+  double required_mm = 0.0;
 };
 
 struct CheckCounts {
@@ -49,7 +50,8 @@ struct CheckCounts {
 struct CheckReport {
   std::vector<CheckedPair> pairs;  ///< in the order in which a designer reads them
   std::vector<NearPair> near;      ///< nearest first
-  double min_gap_mm = 0.0;
+  double min_gap_mm = 0.0;         ///< of pairs without one of their own; 0: none is asked
+  bool asks_gaps = false;
   std::vector<std::string> not_judged;  ///< bodies and pairs, with why
   std::vector<std::string> notes;
   std::size_t parts = 0, products = 0, candidate_pairs = 0, judged_pairs = 0;

@@ -111,10 +111,15 @@ std::vector<Table> check_tables(const OpenedScene& opened, const CheckReport& re
   std::vector<Table> tables{clash_table(opened, report)};
   Table near{"near",
              "pairs that are nearer than asked",
-             {{"part_a"}, {"part_b"}, {"gap_lo_mm", Type::kNumber}, {"gap_hi_mm", Type::kNumber}},
+             {{"part_a"},
+              {"part_b"},
+              {"gap_lo_mm", Type::kNumber},
+              {"gap_hi_mm", Type::kNumber},
+              {"required_mm", Type::kNumber}},
              {}};
   for (const NearPair& pair : report.near)
-    near.rows.push_back({names.part(pair.a), names.part(pair.b), pair.gap_mm.lo, pair.gap_mm.hi});
+    near.rows.push_back(
+        {names.part(pair.a), names.part(pair.b), pair.gap_mm.lo, pair.gap_mm.hi, pair.required_mm});
   Table bodies{"not_judged", "what could not be judged, and why", {{"what"}}, {}};
   for (const std::string& what : report.not_judged) bodies.rows.push_back({what});
   Table statements{"statements",

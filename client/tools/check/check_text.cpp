@@ -88,7 +88,7 @@ class TextWriter {
         c.potential, c.contacts, c.fake);
     if (c.explained_potential > 0)
       text_ += fmt::format(", {} explained potential", c.explained_potential);
-    if (report_.min_gap_mm > 0.0) text_ += fmt::format(", {} too near", c.near);
+    if (report_.asks_gaps) text_ += fmt::format(", {} too near", c.near);
     text_ += fmt::format(", {} not judged", c.not_judged);
     if (c.muted > 0) text_ += fmt::format(", {} muted inside of what is bought", c.muted);
     text_ += "\n";
@@ -196,12 +196,13 @@ class TextWriter {
   }
 
   void near() {
-    if (!(report_.min_gap_mm > 0.0)) return;
-    text_ += title(fmt::format("Nearer than {}", length_text(report_.min_gap_mm)), 33);
+    if (!report_.asks_gaps) return;
+    text_ += title("Nearer than required", 33);
     if (report_.near.empty()) text_ += "  none\n";
     for (const NearPair& pair : report_.near)
-      text_ += fmt::format("  {} × {}: {} to {}\n", name(pair.a), name(pair.b),
-                           length_text(pair.gap_mm.lo), length_text(pair.gap_mm.hi));
+      text_ += fmt::format("  {} × {}: {} to {}, {} required\n", name(pair.a), name(pair.b),
+                           length_text(pair.gap_mm.lo), length_text(pair.gap_mm.hi),
+                           length_text(pair.required_mm));
   }
 
   void not_judged() {
@@ -318,8 +319,10 @@ Json check_json(const OpenedScene& opened, const CheckReport& report) {
   json["min_gap_mm"] = report.min_gap_mm;
   json["near"] = Json::array();
   for (const NearPair& near : report.near)
-    json["near"].push_back(
-        {{"a", names.part(near.a)}, {"b", names.part(near.b)}, {"gap_mm", json_of(near.gap_mm)}});
+    json["near"].push_back({{"a", names.part(near.a)},
+                            {"b", names.part(near.b)},
+                            {"gap_mm", json_of(near.gap_mm)},
+                            {"required_mm", near.required_mm}});
   json["not_judged"] = report.not_judged;
   json["statements"] = Json::array();
   if (opened.scenario.assembly)

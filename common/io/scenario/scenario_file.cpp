@@ -136,6 +136,16 @@ void read_approval(YamlContext& context, const YAML::Node& node, Scenario& scena
                    scenario.approvals);
 }
 
+void read_min_gap(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
+  const YamlMap map(context, node, "min_gap", {"between", "min_gap"});
+  if (!map.usable()) return;
+  const auto between = read_between(map);
+  const auto gap_mm = map.positive_length_mm("min_gap");
+  if (!map.has("min_gap")) map.error("min_gap is missing: how far apart must the parts be?");
+  if (between && gap_mm)
+    scenario.min_gaps.push_back({(*between)[0], (*between)[1], *gap_mm, {map.line()}});
+}
+
 void read_user(YamlContext& context, const YAML::Node& node, Scenario& scenario) {
   const YamlMap map(context, node, "user", {"name", "may_hold", "may", "role"});
   if (!map.usable()) return;
@@ -201,15 +211,17 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
   reading.scenario.file = name;
   YamlContext context;
   context.file = name;
-  const YamlMap top(context, document, "scenario",
-                    {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation",
-                     "min_gap", "assembly", "parts", "fits", "exclusions", "approvals", "users"});
+  const YamlMap top(
+      context, document, "scenario",
+      {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation", "min_gap",
+       "min_gaps", "assembly", "parts", "fits", "exclusions", "approvals", "users"});
   if (top.usable()) {
     read_head(context, top, reading.scenario);
     read_list(context, top, "parts", reading.scenario, read_part);
     read_list(context, top, "fits", reading.scenario, read_fit);
     read_list(context, top, "exclusions", reading.scenario, read_exclusion);
     read_list(context, top, "approvals", reading.scenario, read_approval);
+    read_list(context, top, "min_gaps", reading.scenario, read_min_gap);
     read_list(context, top, "users", reading.scenario, read_user);
     if (top.has("assembly")) read_assembly(context, top.find("assembly"), reading.scenario);
     if (!top.has("parts") && !top.has("assembly"))

@@ -178,6 +178,7 @@ class SceneLoader {
       RuleOutcome rules = rules_of({scenario_, world.parts, stated_});
       world.pair_rules = std::move(rules.pair_rules);
       world.approved_at_start = std::move(rules.approved_at_start);
+      scene_.min_gaps_mm = std::move(rules.min_gaps_mm);
       scene_.fits = std::move(rules.fits);
       scene_.findings.insert(scene_.findings.end(), rules.findings.begin(), rules.findings.end());
       declare();

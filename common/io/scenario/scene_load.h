@@ -33,6 +33,8 @@ struct LoadedScene {
     std::vector<std::string> tighter;
   };
   std::vector<ResolvedFit> fits;
+  /// Clearances that pairs must keep, instead of that of the scenario.
+  std::map<std::pair<PartId, PartId>, double> min_gaps_mm;
   /// What the importer said of the assembly of the scenario; null: it has none.
   std::shared_ptr<const std::vector<std::byte>> assembly;
   bool usable() const;

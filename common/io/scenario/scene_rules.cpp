@@ -73,11 +73,11 @@ struct NamedPairs {
   std::vector<std::string> objections;
 };
 
-NamedPairs named_pairs(const Names& names, const Scenario::PairReason& rule) {
+NamedPairs named_pairs(const Names& names, const std::string& part_a, const std::string& part_b) {
   NamedPairs named;
-  const auto ids_a = names.parts_matching(rule.part_a), ids_b = names.parts_matching(rule.part_b);
-  if (ids_a.empty()) named.objections.push_back(names.no_such_part(rule.part_a));
-  if (ids_b.empty()) named.objections.push_back(names.no_such_part(rule.part_b));
+  const auto ids_a = names.parts_matching(part_a), ids_b = names.parts_matching(part_b);
+  if (ids_a.empty()) named.objections.push_back(names.no_such_part(part_a));
+  if (ids_b.empty()) named.objections.push_back(names.no_such_part(part_b));
   if (ids_a.size() * ids_b.size() > kMaxRulePairs)
     named.objections.push_back("matches more than " + std::to_string(kMaxRulePairs) +
                                " pairs; name parts more closely");
@@ -103,6 +103,11 @@ class RuleBook {
     if (input_.only) return std::move(out_);
     for (const auto& exclusion : scenario_.exclusions) apply_exclusion(exclusion);
     for (const auto& approval : scenario_.approvals) apply_approval(approval);
+    for (const auto& gap : scenario_.min_gaps)  // of several the larger holds
+      for (const auto& pair : pairs_of("min_gap", gap)) {
+        double& gap_mm = out_.min_gaps_mm[pair];
+        gap_mm = std::max(gap_mm, gap.gap_mm);
+      }
     for (const auto& user : scenario_.users) check_user(user);
     return std::move(out_);
   }
@@ -343,9 +348,8 @@ class RuleBook {
 
   // 3. exclusions and users
 
-  std::vector<std::pair<PartId, PartId>> pairs_of(const char* what,
-                                                  const Scenario::PairReason& rule) {
-    auto [pairs, objections] = named_pairs(names_, rule);
+  std::vector<std::pair<PartId, PartId>> pairs_of(const char* what, const auto& rule) {
+    auto [pairs, objections] = named_pairs(names_, rule.part_a, rule.part_b);
     for (const std::string& objection : objections)
       error(rule.at, std::string(what) + ": " + objection);
     return pairs;

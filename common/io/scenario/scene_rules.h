@@ -53,6 +53,7 @@ struct RuleInput {
 struct RuleOutcome {
   std::map<std::pair<PartId, PartId>, PairRule> pair_rules;
   std::map<std::pair<PartId, PartId>, std::string> approved_at_start;  ///< and why
+  std::map<std::pair<PartId, PartId>, double> min_gaps_mm;
   std::vector<LoadedScene::ResolvedFit> fits;
   std::vector<Finding> findings;
 };

@@ -155,6 +155,11 @@ struct Scenario {
     std::string reason;
     SourceLine at;
   };
+  struct MinGap {
+    std::string part_a, part_b;  ///< names, '*' allowed
+    double gap_mm = 0.0;
+    SourceLine at;
+  };
   struct UserSpec {
     std::string name;
     std::vector<std::string> may_hold;  ///< part names, '*' allowed; empty: nothing (observer)
@@ -174,7 +179,8 @@ struct Scenario {
   UndeclaredSurface undeclared = UndeclaredSurface::kNominal;  ///< of parts without their own
   std::vector<PartSpec> parts;
   std::optional<AssemblySpec> assembly;
-  double min_gap_mm = 0.0;  ///< clearance that parts must keep; 0: none is asked for
+  double min_gap_mm = 0.0;       ///< clearance that parts must keep; 0: none is asked for
+  std::vector<MinGap> min_gaps;  ///< of pairs, instead of that
   std::vector<FitSpec> fits;
   std::vector<PairReason> exclusions;
   std::vector<PairReason> approvals;  ///< of clashes that the parts have where they start

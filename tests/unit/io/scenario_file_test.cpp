@@ -248,6 +248,7 @@ std::vector<Fault> faults() {
       {good + "users:\n  - {name: u, may_hold: []}\n  - {name: u, may_hold: []}\n", 9, "twice"},
       {good + "exclusions:\n  - {between: [p, p]}\n", 8, "reason is missing"},
       {good + "approvals:\n  - {between: [p, p]}\n", 8, "reason is missing"},
+      {good + "min_gaps:\n  - {between: [p, p]}\n", 8, "min_gap is missing"},
       {good + "exclusions:\n  - {between: [p], reason: r}\n", 8, "expected two names"},
       {good + "fits:\n  - {code: H7/g6}\n", 8, "between is missing"},
       {good + "fits:\n  - {between: [p.a, p.b]}\n", 8, "say what holds"},

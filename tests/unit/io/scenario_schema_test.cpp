@@ -69,6 +69,7 @@ TEST(ScenarioSchema, KnowsTheKeysThatTheReaderKnows) {
   EXPECT_EQ(properties(defs.at("fit")), known_to_reader(list("fits", "{zzz: 1}")));
   EXPECT_EQ(properties(defs.at("exclusion")), known_to_reader(list("exclusions", "{zzz: 1}")));
   EXPECT_EQ(properties(defs.at("exclusion")), known_to_reader(list("approvals", "{zzz: 1}")));
+  EXPECT_EQ(properties(defs.at("min_gap")), known_to_reader(list("min_gaps", "{zzz: 1}")));
   EXPECT_EQ(properties(defs.at("assembly")), known_to_reader(head + "assembly: {zzz: 1}\n"));
   EXPECT_EQ(properties(defs.at("assembly_statement")),
             known_to_reader(head + "assembly: {file: a.step, statements: [{zzz: 1}]}\n"));
