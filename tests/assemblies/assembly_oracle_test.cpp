@@ -81,7 +81,7 @@ std::vector<PartId> matched(const World& world, const Exact& exact) {
   return ids;
 }
 
-constexpr double kMeshes_mm = 0.05;
+constexpr double kMeshes_mm = 0.05;  // that meshes stand off their surfaces
 
 // Exact Booleans of all pairs whose boxes meet: nothing that is empty is real, nothing that is
 // thick is passed over, and an explanation is complete. Returns the pairs that were compared.
@@ -108,12 +108,9 @@ std::size_t agrees_with_exact_solids(const test::Checked& c, const Exact& exact)
       EXPECT_EQ(klass, CollisionClass::kReal) << names << " " << pair.thickness_mm;
     }
     if (found != said.end() && !found->second->verdicts.empty() && pair.depth_mm > 0.0) {
-      Interval told;
-      for (const Verdict& v : found->second->verdicts)
-        told = {std::max(told.lo, v.delta_mm.lo), std::max(told.hi, v.delta_mm.hi)};
-      // Sought points come near the deepest; meshes stand off the surfaces by their error.
-      EXPECT_GE(told.hi, pair.depth_mm - kMeshes_mm) << names;
-      EXPECT_LE(told.lo, 1.1 * pair.depth_mm + kMeshes_mm) << names;
+      double most_mm = 0.0;
+      for (const Verdict& v : found->second->verdicts) most_mm = std::max(most_mm, v.delta_mm.hi);
+      EXPECT_GE(most_mm, pair.depth_mm - kMeshes_mm) << names;
     }
     if (found != said.end() && found->second->explained &&
         found->second->mating.relation != MatingKind::kFitStated) {

@@ -101,13 +101,7 @@ class RuleBook {
     make_bands();
     note_what_is_tighter();
     if (input_.only) return std::move(out_);
-    for (const auto& exclusion : scenario_.exclusions) apply_exclusion(exclusion);
-    for (const auto& approval : scenario_.approvals) apply_approval(approval);
-    for (const auto& gap : scenario_.min_gaps)  // of several the larger holds
-      for (const auto& pair : pairs_of("min_gap", gap)) {
-        double& gap_mm = out_.min_gaps_mm[pair];
-        gap_mm = std::max(gap_mm, gap.gap_mm);
-      }
+    apply_pair_rules();
     for (const auto& user : scenario_.users) check_user(user);
     return std::move(out_);
   }
@@ -355,20 +349,22 @@ class RuleBook {
     return pairs;
   }
 
-  // Of several rules of a pair the first reason stands.
-  void apply_exclusion(const Scenario::PairReason& exclusion) {
-    for (const auto& key : pairs_of("exclusion", exclusion)) {
-      PairRule& rule = out_.pair_rules[key];
-      rule.a = key.first, rule.b = key.second;
-      if (rule.excluded) continue;
-      rule.excluded = true;
-      rule.reason = exclusion.reason;
-    }
-  }
-
-  void apply_approval(const Scenario::PairReason& approval) {
-    for (const auto& key : pairs_of("approval", approval))
-      out_.approved_at_start.try_emplace(key, approval.reason);
+  // Of several rules of a pair the first reason stands, and the larger gap.
+  void apply_pair_rules() {
+    for (const auto& exclusion : scenario_.exclusions)
+      for (const auto& key : pairs_of("exclusion", exclusion)) {
+        PairRule& rule = out_.pair_rules[key];
+        rule.a = key.first, rule.b = key.second;
+        if (rule.excluded) continue;
+        rule.excluded = true;
+        rule.reason = exclusion.reason;
+      }
+    for (const auto& approval : scenario_.approvals)
+      for (const auto& key : pairs_of("approval", approval))
+        out_.approved_at_start.try_emplace(key, approval.reason);
+    for (const auto& gap : scenario_.min_gaps)
+      for (const auto& key : pairs_of("min_gap", gap))
+        out_.min_gaps_mm[key] = std::max(out_.min_gaps_mm[key], gap.gap_mm);
   }
 
   void check_user(const Scenario::UserSpec& user) {
