@@ -11,8 +11,11 @@ namespace {
 
 using namespace rtps_wire;
 
+// Above it RTPS has no port for a domain.
 constexpr int kMaxDomain = 232;
+// Twice the length of a valid name.
 constexpr std::size_t kMostOfSession = 128;
+// More than a host has interfaces; bounds what a stranger can make us keep.
 constexpr std::size_t kMostPlaces = 8;
 const std::string kBegin = "mortise ", kServer = "server ", kClient = "client ";
 

@@ -15,6 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPeriod(5);  // between two looks for news
 constexpr double kAnswer_s = 5.0;                // for the answer to a request
+// The longest wait that a caller may ask for: beyond it the sum with the clock could overflow.
 constexpr double kLongest_s = 3600.0;
 
 Clock::time_point after(double seconds) {

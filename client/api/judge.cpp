@@ -13,6 +13,7 @@
 namespace mortise::api {
 namespace {
 
+// More than any machine has cores; a larger number is a mistake of the caller.
 constexpr int kMostThreads = 256;
 
 Error no_pose(const std::string& which) {

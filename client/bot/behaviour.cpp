@@ -40,6 +40,7 @@ class InsertPath : public Path {
   }
 
  private:
+  // There and back: as long as a person takes to try a fit.
   static constexpr double kPeriod_s = 4.0;
   Vec3 way_ = Vec3::Zero();
 };
@@ -74,6 +75,7 @@ class SwingPath : public Path {
   }
 
  private:
+  // Three swings of unlike periods: their sum does not repeat within a test.
   static constexpr int kSwings = 3;
   struct Swing {
     Vec3 direction = Vec3::Zero(), turn = Vec3::Zero();

@@ -16,6 +16,7 @@ using SteadyClock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr double kPollEvery_s = 0.002;  // what latency figures are rounded up to
+// An observer measures no latency, and costs a fifth so.
 constexpr double kObserverPollEvery_s = 0.010;
 constexpr double kGoodbye_s = 0.2;  // for leave messages to go out
 

@@ -18,8 +18,10 @@ constexpr double kLongestBeat_s = 0.05;  // after a stall of the machine a part 
 constexpr double kSpeed_mm_s = 60.0;     // of a hand
 constexpr double kAim_mm = 1.0, kAim_rad = 0.035;  // as well as a hand holds a part: 2 degrees
 constexpr double kGap_mm = 2.0;                    // before the mouth of the bore
+// Of the shorter of both: the last fifth may be a shoulder or a chamfer.
 constexpr double kInserted_share = 0.8;
 constexpr double kOffAxis_mm = 0.5;  // a part beside its bore is not in it
+// No deeper by kProgress_mm for so long: a try has failed. A hand pushes several mm in that time.
 constexpr double kStuck_s = 2.0, kProgress_mm = 0.05;
 constexpr double kAlike = 0.02;  // radii of a fit differ by less, of the larger
 constexpr double kEye = 0.1;     // share of what is seen wrong that a beat puts right

@@ -7,6 +7,7 @@ namespace mortise {
 namespace {
 
 constexpr double kAnswer_s = 0.5;  // an answer takes a tick and a round trip; then ask again
+// After a stall a hand goes on from where it was, not from where it would have been.
 constexpr double kLongestBeat_s = 0.05;
 
 std::vector<PartId> moving_parts(const View& view) {
@@ -102,6 +103,8 @@ class Revise : public Behaviour {
       : first_(first), only_(only), hand_(std::move(path)) {}
 
   Wish beat(const View& view) override {
+    // Long enough for a part to be moved, short enough that all get a turn within a test of
+    // seconds.
     constexpr double kLead_s = 1.0;
     Wish wish;
     const std::vector<PartId> moving = moving_parts(view);
@@ -158,6 +161,7 @@ class Reviewer : public Behaviour {
   explicit Reviewer(std::unique_ptr<Behaviour> hands) : hands_(std::move(hands)) {}
 
   Wish beat(const View& view) override {
+    // A review a second, as a person who reads it.
     constexpr double kPause_s = 1.0;
     Wish wish = hands_->beat(view);
     if (view.clashes == nullptr || view.clashes->empty()) return wish;

@@ -19,8 +19,11 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr double kFastest = 100.0;  // what lies before the piece that is asked for
 constexpr double kPollEvery_s = 0.002;
 constexpr double kLeastPeriod_s = 1.0 / 120;  // between two increments of one user for one part
+// A reply takes a tick and a round trip. After this the play goes on without it.
 constexpr double kReplyWait_s = 1.0;
+// Three ticks of 60 Hz. Who is later goes on from now instead of catching up in a burst.
 constexpr double kMostLate_s = 0.05;
+// As many as a person reads.
 constexpr std::size_t kMostNotes = 10;
 
 // The command that a user gave, where the decision came from one.

@@ -8,6 +8,7 @@
 namespace mortise {
 namespace {
 
+// Often enough to be seen to move, and too seldom to cost anything.
 constexpr auto kEvery = std::chrono::milliseconds(200);
 
 }  // namespace

@@ -21,7 +21,9 @@ namespace mortise {
 namespace {
 
 constexpr const char* kSystem = "mortise";
+// Seen from three times its size away, the place fills a third of the height.
 constexpr double kAspectRatio = 1.5, kFieldOfView_deg = 50.0;
+// A place of some micrometres is shown with the parts around it.
 constexpr double kLeastDistance_mm = 20.0;
 constexpr double kMetresPerMm = 1e-3;
 

@@ -13,6 +13,7 @@
 namespace mortise {
 namespace {
 
+// Bounds the page; CSV and SQLite have all rows.
 constexpr std::size_t kMostRows = 2000;
 
 std::string base64(const std::string& bytes) {

@@ -18,6 +18,7 @@ namespace {
 using tcp = asio::ip::tcp;
 
 constexpr double kQuietTurn_s = 0.020;  // nobody looks on; below the heartbeat of a client
+// Between two looks for pages that are too slow or too quiet: far below their limits of seconds.
 constexpr double kCheckEvery_s = 0.5;
 constexpr double kGoodbye_s = 1.0;                       // for pages to hear that the gateway ends
 constexpr double kLastTurns_s = 0.2;                     // for the session to hear who left

@@ -18,9 +18,12 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostNameBytes = kMostUserName_bytes;
+// More than any field of a person needs; the session bounds each further.
 constexpr std::size_t kMostTextBytes = 4096;
 constexpr double kLargestId = 9007199254740992.0;  // 2^53, as far as a page counts exactly
+// A nanometre to a kilometre.
 constexpr double kLeastUnit_mm = 1e-6, kLargestUnit_mm = 1e6;
+// 128 bits as hexadecimal digits.
 constexpr std::size_t kHashDigits = 32;
 constexpr double kSlowest = 0.1, kFastest = 16.0;
 

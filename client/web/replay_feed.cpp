@@ -8,6 +8,7 @@
 namespace mortise::web {
 namespace {
 
+// The position of the timeline; the page moves its hand in between by itself.
 constexpr double kTellEvery_s = 0.25;
 
 }  // namespace

@@ -15,6 +15,7 @@
 namespace mortise::web {
 namespace {
 
+// 128 bits: not to be guessed.
 constexpr std::size_t kRandomBytes = 16;
 constexpr std::size_t kShortest = 16, kLongest = 128;
 

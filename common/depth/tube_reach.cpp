@@ -14,6 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTubeAccuracy_mm = 1e-5;
 constexpr int kMostHalvings = 20'000;
 
+// To begin with; they are halved where their bound is too loose.
 constexpr int kFirstArcs = 8;
 
 // The law by which a ray leaves a ball holds where the ball is this many radii from the axis.
@@ -235,6 +236,7 @@ class Reach {
   }
 
   bool faces_have(double rad, const Vec3& n, const Vec3& x) const {
+    // Far above the rounding of an arc tangent, far below what a part shows.
     constexpr double kSame_rad = 1e-9;
     const Vec3 radial = std::cos(rad) * e1_ + std::sin(rad) * e2_;
     if (tube_.circle_mm > 0.0 &&

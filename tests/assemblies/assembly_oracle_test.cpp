@@ -122,39 +122,34 @@ std::size_t agrees_with_exact_solids(const test::Checked& c, const Exact& exact)
   return compared;
 }
 
-struct Expected {
-  const char* file;
+// What is known of published assemblies: real clashes that nothing explains, and explained ones.
+struct Known {
   std::size_t unexplained, explained;
 };
-class Assemblies : public testing::TestWithParam<Expected> {};
-
-TEST_P(Assemblies, AsTheExactSolidsSay) {
-  const auto file = test::data_folder() / "assemblies" / GetParam().file;
-  MORTISE_NEEDS_DATA(file);
-  const test::Checked c = test::checked(file);
-  EXPECT_EQ(c.report.counts.unexplained_real, GetParam().unexplained);
-  EXPECT_EQ(c.report.counts.explained_real, GetParam().explained);
-  EXPECT_EQ(c.report.counts.potential, 0U);
-}
-
-INSTANTIATE_TEST_SUITE_P(Open, Assemblies,
-                         testing::Values(Expected{"framework_threadedinsert.stp", 0, 2},
-                                         Expected{"framework_selftapping.stp", 0, 2},
-                                         Expected{"framework_hinge_r.stp", 0, 0},
-                                         Expected{"aero_assembly.step", 2, 0}));
+const std::map<std::string, Known> kKnown{{"framework_threadedinsert.stp", {0, 2}},
+                                          {"framework_selftapping.stp", {0, 2}},
+                                          {"framework_hinge_r.stp", {0, 0}},
+                                          {"aero_assembly.step", {2, 0}}};
 
 TEST(AssemblyOracle, NoPairOfAnOpenFileContradictsTheExactSolids) {
   const auto files = test::open_files();
   if (files.empty()) GTEST_SKIP() << "data absent: published assemblies; set MORTISE_DATA";
-  std::size_t pairs = 0;
+  std::size_t pairs = 0, known = 0;
   for (const auto& file : files) {
     SCOPED_TRACE(file.filename());
     const test::Checked c = test::checked(file);
+    if (const auto expected = kKnown.find(file.filename()); expected != kKnown.end()) {
+      ++known;
+      EXPECT_EQ(c.report.counts.unexplained_real, expected->second.unexplained);
+      EXPECT_EQ(c.report.counts.explained_real, expected->second.explained);
+      EXPECT_EQ(c.report.counts.potential, 0U);
+    }
     if (c.report.parts < 2) continue;
     const std::size_t compared = agrees_with_exact_solids(c, exact_of(file));
     std::cout << file.filename().string() << ": " << compared << " pairs\n";
     pairs += compared;
   }
+  if (known < kKnown.size()) GTEST_SKIP() << "data absent: some of the published assemblies";
   EXPECT_GE(pairs, 30U);
 }
 

@@ -17,6 +17,7 @@ namespace {
 
 using Type = Table::Type;
 
+// Bounds the page; the worst come first.
 constexpr std::size_t kMostPictures = 20;
 
 Json known(double x, bool is_known) { return is_known ? Json(x) : Json(nullptr); }

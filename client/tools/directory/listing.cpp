@@ -11,6 +11,7 @@
 namespace mortise {
 namespace {
 
+// Keeps a row on one line of a terminal; a name may have 64 letters.
 constexpr std::size_t kMostOfName = 40;
 
 const char* name_of(KnownServer::Place place) {

@@ -6,6 +6,7 @@
 
 namespace {
 
+// Between two looks at what has answered: far below --wait.
 constexpr std::chrono::milliseconds kTurn{20};
 
 int fail(const std::string& text, int exit_code) {

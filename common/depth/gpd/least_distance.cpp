@@ -7,6 +7,7 @@
 namespace mortise::gpd {
 namespace {
 
+// Six unknowns and a multiplier: no basis has more rows.
 constexpr int kSeven = 7;
 constexpr int kMostSteps = 60;
 constexpr int kMostDrops = 20;

@@ -272,6 +272,7 @@ Surface surface_of(SurfaceKind kind, const Model& m, const Scaled& frame, bool i
 // nothing when there is none.
 template <SurfaceKind kind>
 std::optional<double> take_step(const Scaled& frame, Model& m, Sums<kind>& sums, double& damping) {
+  // Each try damps more; what six do not lower is at its least, to rounding.
   constexpr int kTries = 6;
   for (int tries = 0; tries < kTries; ++tries) {
     auto damped = sums.normal;

@@ -10,6 +10,7 @@ namespace mortise {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x32'50'55'4f'53'54'52'4dULL;  // "MRTSOUP2"
+// Some sentences; a broken answer cannot ask for more memory.
 constexpr std::uint64_t kLongestText = 4096;
 
 struct Header {

@@ -9,7 +9,9 @@
 namespace mortise {
 namespace {
 
+// Of the bore: holds H9/d9 from 3 mm on and H11/c11 from 10 mm on.
 constexpr double kLikeRadii = 0.03;
+// One degree: parts that are drawn in place lie far closer.
 constexpr double kLikeAxes_rad = std::numbers::pi / 180.0;
 constexpr double kBesideAxis = 0.1;  // of the radius
 /// Modelled diameters within this are one nominal size: recognized ones differ by their residuals.

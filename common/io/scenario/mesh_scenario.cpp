@@ -14,6 +14,7 @@
 namespace mortise {
 namespace {
 
+// Leaves room for numbers behind it below the 128 bytes of a name.
 constexpr std::size_t kLongestName = 100;
 
 std::string number(double x) {

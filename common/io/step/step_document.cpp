@@ -9,6 +9,7 @@ namespace mortise {
 namespace {
 
 constexpr std::uint32_t kDocument = 0x32535453, kQueries = 0x31515453, kAnswers = 0x31415453;
+// Longer than names and notes are; a file cannot fill memory with them.
 constexpr std::size_t kLongestStepText = 4096;
 constexpr double kLargestStepNumber =
     1e9;  // of any number that is a length; beyond it a unit is wrong

@@ -221,6 +221,7 @@ AssemblyJudgement judge(World& world, Scratch& scratch, const Closeness& closene
 }  // namespace
 
 PairStanding standing_of(const Part& a, const Part& b) {
+  // Standings that agree to the distance at which meshes count as touching are the same.
   constexpr double kStep_mm = 1e-6;
   const Pose X_AB = a.X_WP.inverse() * b.X_WP;
   const double reach_mm = std::max(1.0, b.solid->sphere().radius_mm);

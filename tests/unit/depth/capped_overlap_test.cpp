@@ -6,6 +6,7 @@
 #include <random>
 
 #include "common/depth/overlap.h"
+#include "tests/support/effort.h"
 #include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {
@@ -62,7 +63,7 @@ Interval deepest(const OverlapResult& result, Interval OverlapRegion::*bracket) 
 TEST(CappedOverlap, BracketsHoldTheDepthThatMoreWorkFinds) {
   std::mt19937_64 random(5);
   int capped = 0, deep = 0;
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < test::effort(12); ++i) {
     const Scene scene = random_scene(random, i);
     const OverlapResult whole_with_inside = overlap_of(scene, Refinement::kFull, 40'000, false);
     // What is certain is asked of the surfaces alone.
@@ -88,8 +89,8 @@ TEST(CappedOverlap, BracketsHoldTheDepthThatMoreWorkFinds) {
         }
     deep += deepest(whole_with_inside, &OverlapRegion::delta_mm).lo > 0.5;
   }
-  EXPECT_GT(capped, 50);
-  EXPECT_GT(deep, 8);
+  EXPECT_GT(capped, test::effort(25));
+  EXPECT_GT(deep, test::effort(4));
 }
 
 }  // namespace

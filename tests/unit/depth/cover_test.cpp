@@ -11,6 +11,7 @@
 #include "common/depth/interference_time.h"
 #include "common/depth/search.h"
 #include "common/math/rotation.h"
+#include "tests/support/effort.h"
 #include "tests/unit/depth/cover_parts.h"
 
 namespace mortise {
@@ -170,13 +171,13 @@ Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
 }
 
 TEST(Cover, NoBoundIsBelowAPointInBoth) {
-  const Tally tally = judge_poses(7001, 1600, [](CoverLayer&) {});
+  const Tally tally = judge_poses(7001, test::effort(400), [](CoverLayer&) {});
   std::printf("%d poses: %d overlap, %d proven apart, %d within 5 um\n", tally.poses, tally.overlap,
               tally.apart, tally.tight);
   EXPECT_EQ(tally.below, 0);
   EXPECT_EQ(tally.differ, 0);  // whether they are apart, asked with and without how deep
-  EXPECT_GT(tally.overlap, 700);
-  EXPECT_GT(tally.apart, 900);
+  EXPECT_GT(tally.overlap, test::effort(175));
+  EXPECT_GT(tally.apart, test::effort(225));
 }
 
 // The test sees a wall that is 20 um off, and planes that are.
@@ -229,7 +230,7 @@ SweptQuery any_sweep(Random& random, const DrawnPair& pair) {
 TEST(Cover, NothingIsInBothBeforeTheTimeThatIsProvenFree) {
   Random random(7004);
   int free = 0, later = 0, never = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < test::effort(400); ++i) {
     const DrawnPair pair = any_pair(random);
     const SweptQuery query = any_sweep(random, pair);
     const PairPath path(query.motion_a, *pair.a.solid, query.motion_b, *pair.b.solid);
@@ -250,15 +251,15 @@ TEST(Cover, NothingIsInBothBeforeTheTimeThatIsProvenFree) {
     }
   }
   std::printf("%d free, %d later, %d not at all\n", free, later, never);
-  EXPECT_GT(free, 500);
-  EXPECT_GT(later, 300);
+  EXPECT_GT(free, test::effort(134));
+  EXPECT_GT(later, test::effort(80));
 }
 
 // With covers and without them: the search may know less of what is free, never the opposite.
 TEST(Cover, SearchesAgreeWithThoseWithoutCovers) {
   Random random(7005);
   int settled = 0, both_real = 0, less = 0, opposite = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::effort(120); ++i) {
     const DrawnPair pair = any_pair(random);
     SweptQuery query = any_sweep(random, pair);
     CcdScratch scratch;
@@ -279,8 +280,8 @@ TEST(Cover, SearchesAgreeWithThoseWithoutCovers) {
   }
   std::printf("%d settled by covers, %d real in both, %d proven for less long, %d opposite\n",
               settled, both_real, less, opposite);
-  EXPECT_GT(settled, 50);
-  EXPECT_GT(both_real, 20);
+  EXPECT_GT(settled, test::effort(20));
+  EXPECT_GT(both_real, test::effort(8));
   EXPECT_EQ(opposite, 0);
 }
 
@@ -333,7 +334,7 @@ TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
   Random random(7006);
   Words words;
   int refused = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < test::effort(150); ++i) {
     const DrawnPair pair = any_pair(random);
     OverlapQuery query = overlap_of(pair);
     query.refinement = Refinement::kDecided;
@@ -380,7 +381,7 @@ double deepest_of_surfaces(const PairFrame& pair, Layer layer, Random& random, i
 TEST(Cover, NoSurfaceIsDeeperThanADepth) {
   Random random(7007);
   int depths = 0, deeper = 0;
-  for (int i = 0; i < 1200; ++i) {
+  for (int i = 0; i < test::effort(400); ++i) {
     const DrawnPair pair = any_pair(random);
     const PairFrame frame(look_at(pair));
     for (const bool largest : {false, true}) {
@@ -399,7 +400,7 @@ TEST(Cover, NoSurfaceIsDeeperThanADepth) {
   }
   std::printf("%d depths by covers\n", depths);
   EXPECT_EQ(deeper, 0);
-  EXPECT_GT(depths, 200);
+  EXPECT_GT(depths, test::effort(67));
 }
 
 // Looks at certain and possible alone, lazily and in full: brackets of the deepest region that have
@@ -407,8 +408,9 @@ TEST(Cover, NoSurfaceIsDeeperThanADepth) {
 TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
   Random random(7008);
   Words words;
+  const int looks = test::effort(150);
   int told = 0, apart = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < looks; ++i) {
     const DrawnPair pair = any_pair(random);
     OverlapQuery query = look_at(pair);
     query.refinement = i % 2 == 0 ? Refinement::kDecided : Refinement::kFull;
@@ -438,11 +440,11 @@ TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
     compare(&OverlapRegion::possible_mm, true);
     words.compare(with, without);
   }
-  std::printf("%d of 400 looks with a quarter of the work or less\n", told);
+  std::printf("%d of %d looks with a quarter of the work or less\n", told, looks);
   EXPECT_EQ(apart, 0);
   EXPECT_EQ(words.opposite, 0);
   EXPECT_EQ(words.less, 0);
-  EXPECT_GT(told, 150);
+  EXPECT_GT(told, test::effort(57));
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TipTally tried_tips(int pairs, std::uint64_t seed) {
 }
 
 TEST(TipReach, NothingIsSaidToBeApartThatMeets) {
-  const TipTally tally = tried_tips(test::effort(300), 20261125);
+  const TipTally tally = tried_tips(test::effort(120), 20261125);
   EXPECT_EQ(tally.false_apart, 0);
   EXPECT_GT(tally.said_apart, tally.pairs / 4);
   EXPECT_LT(tally.left_open, tally.apart / 8);

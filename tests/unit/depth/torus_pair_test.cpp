@@ -298,7 +298,7 @@ class TorusPair : public testing::TestWithParam<Kind> {};
 
 TEST_P(TorusPair, IsDecidedAsTheExactSurfacesAre) {
   const int cases = test::effort(18);
-  constexpr int kFullEvery = 9;
+  constexpr int kFullEvery = 18;
   constexpr double kDoubt_mm = 5e-4, kClose_mm = 2e-4;
   int real = 0, apart = 0;
   for (int i = 0; i < cases; ++i) {

@@ -68,7 +68,7 @@ TEST(Triangulation, RefiningAMeshMustNotChangeTheDepth) {
 
 TEST(Triangulation, NorDoesCuttingItAtRandom) {
   std::mt19937_64 random(32);
-  for (int round = 0; round < test::effort(3); ++round)
+  for (int round = 0; round < test::effort(1); ++round)
     for (const KnownDepth& known : known_depths(1)) {
       const SolidPtr a = solid(refined(known.a, 60, random));
       const SolidPtr b = solid(refined(known.b, 60, random));

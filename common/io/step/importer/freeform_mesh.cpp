@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kSteps = 4;   // samples a side of a triangle
 constexpr int kRounds = 6;  // of refinement
+// Bounds what refinement adds: triangles of a face, times this.
 constexpr std::size_t kMostGrowth = 4;
 
 struct Sample {

@@ -14,6 +14,7 @@
 namespace mortise {
 namespace {
 
+// The memory of the importer is limited, and each thread needs its own.
 constexpr unsigned kMostThreads = 8;
 
 // Numbers of shapes that hang together by what they share.
