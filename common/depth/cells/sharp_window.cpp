@@ -122,9 +122,14 @@ bool SharpWindow::solid_inside() const { return is_inside(box_.center()); }
 
 bool SharpWindow::is_inside(const Vec3& x) const { return inside(solid_, x); }
 
-bool SharpWindow::take_facet(std::uint32_t triangle) {
+// Facets beside each other are mostly cut off by the same plane.
+bool SharpWindow::take_facet(std::uint32_t triangle, const PlaneFace* cuts_off) {
   const TriangleMesh& mesh = solid_.mesh();
   polygon_ = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
+  if (cuts_off != nullptr && std::all_of(polygon_.begin(), polygon_.end(), [&](const Vec3& corner) {
+        return cuts_off->n.dot(corner) - (cuts_off->c - 2.0 * apart_mm_) > 0.0;
+      }))
+    return false;
   return clip_to_box();
 }
 
@@ -141,6 +146,7 @@ bool SharpWindow::clip_to(FaceSet half_spaces, bool outside) {
   for (FaceSet rest = half_spaces; rest != 0 && !polygon_.empty(); rest &= rest - 1) {
     const PlaneFace& face = planes_.faces[faces_[static_cast<std::size_t>(std::countr_zero(rest))]];
     clip(polygon_, spare_, side * face.n, side * face.c - 2.0 * apart_mm_);
+    if (polygon_.empty()) cuts_off_ = &face;
   }
   return !polygon_.empty() && area(polygon_) > kLeastArea_mm2;
 }
@@ -178,8 +184,9 @@ std::vector<FaceSet> SharpWindow::find_clauses(FaceSet held) {
   std::vector<FaceSet> found;
   for (std::size_t g = 0; g < faces_.size(); ++g) {
     if (held >> g & 1) continue;
+    cuts_off_ = nullptr;
     for (const std::uint32_t t : triangles_[g])
-      if (take_facet(t) && clip_to(held, false)) clauses_of_facet(g, found);
+      if (take_facet(t, cuts_off_) && clip_to(held, false)) clauses_of_facet(g, found);
   }
   std::sort(found.begin(), found.end(), shorter);
   if (found.size() > kMostClauses) found.resize(kMostClauses);
@@ -201,7 +208,7 @@ bool SharpWindow::find_least(FaceSet held) {
   for (std::size_t g = 0; g < faces_.size(); ++g) {
     if (!(held >> g & 1)) continue;
     for (const std::uint32_t t : triangles_[g]) {
-      if (!take_facet(t) || !clip_to(failed, true)) continue;
+      if (!take_facet(t, nullptr) || !clip_to(failed, true)) continue;
       if (is_inside(middle_of(polygon_) - apart_mm_ * planes_.faces[faces_[g]].n)) return true;
     }
   }

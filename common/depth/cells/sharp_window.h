@@ -58,9 +58,10 @@ class SharpWindow {
   std::vector<FaceSet> find_clauses(FaceSet held);
   bool find_least(FaceSet held);
   void clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const;
-  // What is left of polygon_ in the box; of a facet; inside of the half-spaces, or outside of them.
+  // What is left of polygon_ in the box; of a facet, unless a plane that all must hold cuts it off;
+  // inside of the half-spaces, or outside of them.
   bool clip_to_box();
-  bool take_facet(std::uint32_t triangle);
+  bool take_facet(std::uint32_t triangle, const PlaneFace* cuts_off);
   bool clip_to(FaceSet half_spaces, bool outside);
   FaceSet outside_of(const Vec3& x) const;
   bool is_inside(const Vec3& x) const;
@@ -78,7 +79,8 @@ class SharpWindow {
   FaceSet all_ = 0;
   std::map<FaceSet, std::vector<FaceSet>> clauses_of_;  // by faces held
   std::map<FaceSet, bool> least_of_;
-  std::vector<Vec3> polygon_, spare_;  // at work
+  std::vector<Vec3> polygon_, spare_;    // at work
+  const PlaneFace* cuts_off_ = nullptr;  // the last one that cut all of a facet off
 };
 
 }  // namespace mortise
