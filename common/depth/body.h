@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "common/depth/body_index.h"
@@ -85,7 +86,7 @@ struct Body {
 };
 
 /// Calls visit(triangle, corners) for every triangle whose box is within the given box (part
-/// frame).
+/// frame). A visit that tells false ends it.
 template <class Visit>
 void for_each_triangle_in(const Bvh& bvh, const Box& box, Visit&& visit) {
   std::array<std::int32_t, Bvh::kMostWaiting> stack;
@@ -104,10 +105,15 @@ void for_each_triangle_in(const Bvh& bvh, const Box& box, Visit&& visit) {
           const double hi = std::max(c[k], std::max(c[3 + k], c[6 + k]));
           apart |= lo > box.hi[k] || hi < box.lo[k];
         }
-        if (!apart)
-          visit(bvh.triangle_order[i],
-                std::array<Vec3, 3>{Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5]),
-                                    Vec3(c[6], c[7], c[8])});
+        if (apart) continue;
+        const std::array<Vec3, 3> corners = {Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5]),
+                                             Vec3(c[6], c[7], c[8])};
+        if constexpr (std::is_same_v<std::invoke_result_t<Visit, std::uint32_t, decltype(corners)>,
+                                     bool>) {
+          if (!visit(bvh.triangle_order[i], corners)) return;
+        } else {
+          visit(bvh.triangle_order[i], corners);
+        }
       }
       continue;
     }

@@ -585,15 +585,18 @@ class LookAhead {
   LookAhead(const SweptQuery& query, double t, Layer layer, std::uint64_t& evaluations)
       : query_(query), layer_(layer), t_(t), spent_(evaluations) {
     const PairPath path(query.motion_a, *query.at_target.a, query.motion_b, *query.at_target.b);
-    step_ = query.accuracy_mm / std::max(path.speed_upper_bound(), 1e-300);
+    const double speed_mm = std::max(path.speed_upper_bound(), 1e-300);
+    step_ = query.accuracy_mm / speed_mm;
+    close_ = kCloseEnough_mm / speed_mm;
     const bool certain = layer == Layer::kLower;
     named_ = certain && !query.slides ? Named::kLeast : named_of(layer);
     look_cap_ = certain ? kCertainLookWorkCap : kPossibleLookWorkCap;
   }
 
   SoonAfter run() {
-    const SoonAfter said = by_covers();
-    return said.interferes ? said : by_search();
+    SoonAfter soon = by_covers();
+    if (!soon.interferes) soon = by_search();
+    return soon.interferes ? soon : by_covers_closely();
   }
 
  private:
@@ -617,6 +620,13 @@ class LookAhead {
       before = t;
     }
     return {};
+  }
+
+  // So close behind that the search would end there, too.
+  SoonAfter by_covers_closely() {
+    const double last = std::min(t_ + close_, 1.0);
+    const auto place = said_by_covers(at(last), named_, spent_).place;
+    return place ? between(t_ + step_, {true, last, *place}) : SoonAfter{};
   }
 
   SoonAfter between(double before, SoonAfter found) {
@@ -646,7 +656,7 @@ class LookAhead {
   const Layer layer_;
   const double t_;
   std::uint64_t& spent_;
-  double step_ = 0.0;
+  double step_ = 0.0, close_ = 0.0;  // the first one, and what is close enough
   Named named_ = Named::kLeast;
   std::uint64_t look_cap_ = 0;
 };

@@ -241,6 +241,7 @@ class Grouping {
   void number_regions(int primary, UnionFind& sets) {
     FlatMap<std::uint32_t> region_of_set;
     const auto region_of_leader = [&](std::uint32_t leader) {
+      if (regions_.capped) leader = 0;  // what is connected is not known: all is one
       if (region_of_set.find(leader) == nullptr)
         region_of_set[leader] = static_cast<std::uint32_t>(regions_.count++);
       return *region_of_set.find(leader);

@@ -17,7 +17,7 @@ struct Regions {
   int primary = 0;  ///< the part whose connected triangles make the regions
   FlatMap<std::uint32_t> region_of_triangle;  ///< of the primary part; of those in a region
   std::vector<bool> may_interfere;            ///< by region: false: only the meshes overlap, proven
-  bool capped = false;
+  bool capped = false;  ///< the work ended: what was not asked counts as interfering, in one region
 };
 
 struct RegionsQuery {

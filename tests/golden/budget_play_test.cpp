@@ -67,11 +67,16 @@ TEST(BudgetPlay, TheDemoTellsWhatItTellsWithout) {
   EXPECT_EQ(report->ticks_compared, with->ticks.size());
 }
 
-// However the increments arrive: the press fit is told real, and the bearing stays at the mouth.
+// However the increments arrive: the press fit is told real, the bearing stays at the mouth, and no
+// pair is left unexamined.
 TEST(BudgetPlay, ThePressFitIsToldHoweverIncrementsArrive) {
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(5)); ++seed) {
     const auto played = gearbox(true, seed);
     ASSERT_TRUE(played) << played.error().text;
+    std::uint64_t not_examined = 0;
+    for (const TickRecord& record : played->ticks)
+      not_examined += record.report.counters.not_examined;
+    EXPECT_EQ(not_examined, 0U) << "seed " << seed;
     const Told told = told_in(*played);
     const auto pair = told.find("cover - bearing_out_upper");
     ASSERT_NE(pair, told.end()) << "seed " << seed << " " << testing::PrintToString(told);

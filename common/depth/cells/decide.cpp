@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/depth/cells/deepest.h"
+#include "common/depth/cells/tight_box.h"
 
 namespace mortise {
 namespace {
@@ -18,6 +19,9 @@ constexpr std::uint64_t kMostPrograms = 1000;
 // Windows of a query, and how often one is halved.
 constexpr std::size_t kMostWindows = 96;
 constexpr int kMostHalvings = 30;
+// How often a window is made tighter at most; again where it got shorter than this share.
+constexpr int kTightenings = 4;
+constexpr double kWorthTightening = 0.8;
 // A window is not halved when it is narrower than this share of the reach.
 constexpr double kNarrow = 0.5;
 // A wider window is made with room, so that it is wide enough for what it newly contains.
@@ -84,10 +88,12 @@ class SharpSearch {
     return {best_, std::max({best_, upper_, deepest.nothing_mm()})};
   }
 
-  void search_core(const DeepestPoint& deepest, const Box& core, int level) {
+  void search_core(const DeepestPoint& deepest, const Box& wide, int level) {
     if (decision_.state != SharpDecision::State::kDecided) return;
-    WindowPair* windows = windows_of(core);
-    if (windows == nullptr) return;
+    Window* window = window_of(wide);
+    if (window == nullptr) return;
+    const Box& core = window->core;
+    WindowPair* windows = &*window->pair;
     const bool narrow =
         (core.hi - core.lo).maxCoeff() < kNarrow * reach_mm_ || level >= kMostHalvings;
     bool crowded = false;
@@ -131,25 +137,44 @@ class SharpSearch {
     search_core(deepest, halves[1 - first], level + 1);
   }
 
-  // Null, and given up: there are too many, or it cannot be judged.
-  WindowPair* windows_of(const Box& core) {
-    const std::array<double, 6> key = {core.lo.x(), core.lo.y(), core.lo.z(),
-                                       core.hi.x(), core.hi.y(), core.hi.z()};
-    const auto known = windows_.find(key);
-    if (known != windows_.end()) return &known->second;
-    if (windows_.size() == kMostWindows) {
+  // The part of a box where both bodies may have points, and what they look like from there.
+  struct Window {
+    Box core;
+    std::optional<WindowPair> pair;  // none: one of them has no points
+  };
+
+  // Null: no common point is there; or given up, since there are too many windows, or it cannot be
+  // judged.
+  Window* window_of(const Box& wide) {
+    const std::array<double, 6> key = {wide.lo.x(), wide.lo.y(), wide.lo.z(),
+                                       wide.hi.x(), wide.hi.y(), wide.hi.z()};
+    const auto [place, fresh] = windows_.try_emplace(key);
+    Window& window = place->second;
+    if (!fresh) return window.pair ? &window : nullptr;
+    if (windows_.size() > kMostWindows) {
       give_up(SharpDecision::State::kTooMuch);
       return nullptr;
     }
-    WindowPair& windows =
-        windows_.emplace(key, WindowPair(query_, reach_mm_, core, origin_)).first->second;
-    for (const SharpWindow& part : windows.part) {
+    window.core = tightened(wide);
+    if (window.core.empty()) return nullptr;
+    window.pair.emplace(query_, reach_mm_, window.core, origin_);
+    for (const SharpWindow& part : window.pair->part) {
       if (part.state() == SharpWindow::State::kNotPlane) give_up(SharpDecision::State::kNotPlane);
       if (part.state() != SharpWindow::State::kTooSharp) continue;
       give_up(SharpDecision::State::kTooSharp);
       needed_reach_mm_ = std::max(needed_reach_mm_, part.needed_reach_mm());
     }
-    return decision_.state == SharpDecision::State::kDecided ? &windows : nullptr;
+    return decision_.state == SharpDecision::State::kDecided ? &window : nullptr;
+  }
+
+  Box tightened(Box core) const {
+    for (int i = 0; i < kTightenings && !core.empty(); ++i) {
+      const double length = (core.hi - core.lo).sum();
+      core = tight_box(query_.a, query_.X_BA, core, query_.depth_mm);
+      if (!core.empty()) core = tight_box(query_.b, Pose(), core, query_.depth_mm);
+      if (core.empty() || (core.hi - core.lo).sum() > kWorthTightening * length) break;
+    }
+    return core;
   }
 
   void take(const DeepestPoint& deepest, const WindowPair& windows,
@@ -173,7 +198,7 @@ class SharpSearch {
   double reach_mm_, needed_reach_mm_ = 0.0;
   Box core_;  // where common points are looked for, frame of B
   Vec3 origin_;
-  std::map<std::array<double, 6>, WindowPair> windows_;
+  std::map<std::array<double, 6>, Window> windows_;
   double best_ = -kInfinity, upper_ = -kInfinity;
   std::optional<Vec3> point_;
   double facing_ = 1.0;

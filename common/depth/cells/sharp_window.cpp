@@ -21,20 +21,6 @@ constexpr double kTowardsCorner = 0.98;
 // Clauses that are kept of one question; the shortest.
 constexpr std::size_t kMostClauses = 8;
 
-void clip(std::vector<Vec3>& polygon, const Vec3& n, double c) {
-  std::vector<Vec3> left;
-  left.reserve(polygon.size() + 1);
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double at_a = n.dot(a) - c, at_b = n.dot(b) - c;
-    if (at_a <= 0.0) left.push_back(a);
-    if ((at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0))
-      left.push_back(a + at_a / (at_a - at_b) * (b - a));
-  }
-  if (left.size() < 3) left.clear();
-  polygon.swap(left);
-}
-
 double area(const std::vector<Vec3>& polygon) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 2; i < polygon.size(); ++i)
@@ -55,6 +41,26 @@ bool shorter(FaceSet a, FaceSet b) {
 
 }  // namespace
 
+void clip(std::vector<Vec3>& polygon, std::vector<Vec3>& spare, const Vec3& n, double c) {
+  bool any_above = false, any_below = false;
+  for (const Vec3& corner : polygon) {
+    const double at = n.dot(corner) - c;
+    any_above |= at > 0.0;
+    any_below |= at < 0.0;
+  }
+  if (!any_above) return;
+  spare.clear();
+  for (std::size_t i = 0; any_below && i < polygon.size(); ++i) {
+    const Vec3 &a = polygon[i], &b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+    const double at_a = n.dot(a) - c, at_b = n.dot(b) - c;
+    if (at_a <= 0.0) spare.push_back(a);
+    if ((at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0))
+      spare.push_back(a + at_a / (at_a - at_b) * (b - a));
+  }
+  if (spare.size() < 3) spare.clear();
+  polygon.swap(spare);
+}
+
 SharpWindow::SharpWindow(const Solid& solid, const PlaneFaces& planes, const Box& core,
                          double reach_mm, double depth_mm)
     : solid_(solid), planes_(planes), box_(core.grown(reach_mm)) {
@@ -68,24 +74,25 @@ SharpWindow::SharpWindow(const Solid& solid, const PlaneFaces& planes, const Box
 void SharpWindow::gather() {
   for_each_triangle_in(solid_.bvh(), box_, [&](std::uint32_t t, const std::array<Vec3, 3>& c) {
     const std::uint32_t face = planes_.face_of_triangle[t];
-    if (state_ != State::kReady || face == PlaneFaces::kWithoutArea) return;
-    Polygon polygon(c.begin(), c.end());
-    if (!clip_to_box(polygon)) return;
+    if (face == PlaneFaces::kWithoutArea) return true;
+    polygon_.assign(c.begin(), c.end());
+    if (!clip_to_box()) return true;
     if (face == PlaneFaces::kNone) {
       state_ = State::kNotPlane;
-      return;
+      return false;
     }
     const auto known = std::find(faces_.begin(), faces_.end(), face);
     const auto index = static_cast<std::size_t>(known - faces_.begin());
     if (known == faces_.end()) {
       if (faces_.size() == kMostFaces) {
         state_ = State::kCrowded;
-        return;
+        return false;
       }
       faces_.push_back(face);
       triangles_.emplace_back();
     }
     triangles_[index].push_back(t);
+    return true;
   });
   all_ = faces_.size() == kMostFaces ? ~FaceSet{0} : (FaceSet{1} << faces_.size()) - 1;
 }
@@ -115,35 +122,33 @@ bool SharpWindow::solid_inside() const { return is_inside(box_.center()); }
 
 bool SharpWindow::is_inside(const Vec3& x) const { return inside(solid_, x); }
 
-SharpWindow::Polygon SharpWindow::facet(std::uint32_t triangle) const {
+// Facets beside each other are mostly cut off by the same plane.
+bool SharpWindow::take_facet(std::uint32_t triangle, const PlaneFace* cuts_off) {
   const TriangleMesh& mesh = solid_.mesh();
-  return {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
+  polygon_ = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
+  if (cuts_off != nullptr && std::all_of(polygon_.begin(), polygon_.end(), [&](const Vec3& corner) {
+        return cuts_off->n.dot(corner) - (cuts_off->c - 2.0 * apart_mm_) > 0.0;
+      }))
+    return false;
+  return clip_to_box();
 }
 
-bool SharpWindow::clip_to_box(Polygon& polygon) const {
-  for (int k = 0; k < 3 && !polygon.empty(); ++k) {
-    clip(polygon, Vec3::Unit(k), box_.hi[k] - apart_mm_);
-    if (!polygon.empty()) clip(polygon, -Vec3::Unit(k), -box_.lo[k] - apart_mm_);
+bool SharpWindow::clip_to_box() {
+  for (int k = 0; k < 3 && !polygon_.empty(); ++k) {
+    clip(polygon_, spare_, Vec3::Unit(k), box_.hi[k] - apart_mm_);
+    if (!polygon_.empty()) clip(polygon_, spare_, -Vec3::Unit(k), -box_.lo[k] - apart_mm_);
   }
-  return !polygon.empty();
+  return !polygon_.empty();
 }
 
-bool SharpWindow::clip_to_held(Polygon& polygon, FaceSet held) const {
-  for (std::size_t i = 0; i < faces_.size() && !polygon.empty(); ++i)
-    if (held >> i & 1) {
-      const PlaneFace& face = planes_.faces[faces_[i]];
-      clip(polygon, face.n, face.c - 2.0 * apart_mm_);
-    }
-  return !polygon.empty() && area(polygon) > kLeastArea_mm2;
-}
-
-bool SharpWindow::clip_to_failed(Polygon& polygon, FaceSet failed) const {
-  for (std::size_t i = 0; i < faces_.size() && !polygon.empty(); ++i)
-    if (failed >> i & 1) {
-      const PlaneFace& face = planes_.faces[faces_[i]];
-      clip(polygon, -face.n, -face.c - 2.0 * apart_mm_);
-    }
-  return !polygon.empty() && area(polygon) > kLeastArea_mm2;
+bool SharpWindow::clip_to(FaceSet half_spaces, bool outside) {
+  const double side = outside ? -1.0 : 1.0;
+  for (FaceSet rest = half_spaces; rest != 0 && !polygon_.empty(); rest &= rest - 1) {
+    const PlaneFace& face = planes_.faces[faces_[static_cast<std::size_t>(std::countr_zero(rest))]];
+    clip(polygon_, spare_, side * face.n, side * face.c - 2.0 * apart_mm_);
+    if (polygon_.empty()) cuts_off_ = &face;
+  }
+  return !polygon_.empty() && area(polygon_) > kLeastArea_mm2;
 }
 
 FaceSet SharpWindow::outside_of(const Vec3& x) const {
@@ -156,8 +161,8 @@ FaceSet SharpWindow::outside_of(const Vec3& x) const {
 }
 
 // Points just outside of a facet and inside of all faces that are held.
-void SharpWindow::clauses_of_facet(std::size_t face, const Polygon& left,
-                                   std::vector<FaceSet>& found) const {
+void SharpWindow::clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const {
+  const std::vector<Vec3>& left = polygon_;
   const Vec3 outwards = apart_mm_ * planes_.faces[faces_[face]].n;
   const Vec3 middle = middle_of(left);
   FaceSet best = 0;
@@ -166,7 +171,10 @@ void SharpWindow::clauses_of_facet(std::size_t face, const Polygon& left,
                        ? middle
                        : Vec3(kTowardsCorner * left[i] + (1.0 - kTowardsCorner) * middle);
     const FaceSet clause = outside_of(z) | FaceSet{1} << face;
-    if ((best == 0 || shorter(clause, best)) && !is_inside(z + outwards)) best = clause;
+    if (best != 0 && !shorter(clause, best)) continue;
+    // One point is enough for a clause.
+    if (std::find(found.begin(), found.end(), clause) != found.end() || !is_inside(z + outwards))
+      best = clause;
   }
   if (best != 0 && std::find(found.begin(), found.end(), best) == found.end())
     found.push_back(best);
@@ -176,10 +184,9 @@ std::vector<FaceSet> SharpWindow::find_clauses(FaceSet held) {
   std::vector<FaceSet> found;
   for (std::size_t g = 0; g < faces_.size(); ++g) {
     if (held >> g & 1) continue;
-    for (const std::uint32_t t : triangles_[g]) {
-      Polygon polygon = facet(t);
-      if (clip_to_box(polygon) && clip_to_held(polygon, held)) clauses_of_facet(g, polygon, found);
-    }
+    cuts_off_ = nullptr;
+    for (const std::uint32_t t : triangles_[g])
+      if (take_facet(t, cuts_off_) && clip_to(held, false)) clauses_of_facet(g, found);
   }
   std::sort(found.begin(), found.end(), shorter);
   if (found.size() > kMostClauses) found.resize(kMostClauses);
@@ -201,9 +208,8 @@ bool SharpWindow::find_least(FaceSet held) {
   for (std::size_t g = 0; g < faces_.size(); ++g) {
     if (!(held >> g & 1)) continue;
     for (const std::uint32_t t : triangles_[g]) {
-      Polygon polygon = facet(t);
-      if (!clip_to_box(polygon) || !clip_to_failed(polygon, failed)) continue;
-      if (is_inside(middle_of(polygon) - apart_mm_ * planes_.faces[faces_[g]].n)) return true;
+      if (!take_facet(t, nullptr) || !clip_to(failed, true)) continue;
+      if (is_inside(middle_of(polygon_) - apart_mm_ * planes_.faces[faces_[g]].n)) return true;
     }
   }
   Vec3 y;

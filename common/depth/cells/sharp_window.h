@@ -9,6 +9,9 @@
 
 namespace mortise {
 
+/// Cuts away what of a polygon lies above n · x = c. `spare` is overwritten.
+void clip(std::vector<Vec3>& polygon, std::vector<Vec3>& spare, const Vec3& n, double c);
+
 /// A set of faces of one window, a bit each.
 using FaceSet = std::uint64_t;
 
@@ -50,18 +53,18 @@ class SharpWindow {
   bool in_least(FaceSet held);
 
  private:
-  using Polygon = std::vector<Vec3>;
   void gather();
   void need_reach(const Box& core, double depth_mm);
   std::vector<FaceSet> find_clauses(FaceSet held);
   bool find_least(FaceSet held);
-  void clauses_of_facet(std::size_t face, const Polygon& left, std::vector<FaceSet>& found) const;
-  bool clip_to_box(Polygon& polygon) const;
-  bool clip_to_held(Polygon& polygon, FaceSet held) const;
-  bool clip_to_failed(Polygon& polygon, FaceSet failed) const;
+  void clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const;
+  // What is left of polygon_ in the box; of a facet, unless a plane that all must hold cuts it off;
+  // inside of the half-spaces, or outside of them.
+  bool clip_to_box();
+  bool take_facet(std::uint32_t triangle, const PlaneFace* cuts_off);
+  bool clip_to(FaceSet half_spaces, bool outside);
   FaceSet outside_of(const Vec3& x) const;
   bool is_inside(const Vec3& x) const;
-  Polygon facet(std::uint32_t triangle) const;
   /// A point well inside the half-spaces (outside of them) and the box.
   bool middle(FaceSet half_spaces, bool outside, Vec3& at) const;
 
@@ -76,6 +79,8 @@ class SharpWindow {
   FaceSet all_ = 0;
   std::map<FaceSet, std::vector<FaceSet>> clauses_of_;  // by faces held
   std::map<FaceSet, bool> least_of_;
+  std::vector<Vec3> polygon_, spare_;    // at work
+  const PlaneFace* cuts_off_ = nullptr;  // the last one that cut all of a facet off
 };
 
 }  // namespace mortise

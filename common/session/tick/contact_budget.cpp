@@ -67,6 +67,17 @@ std::size_t share_contact_work(Scratch::Impl& work, std::span<const std::uint32_
   return count;
 }
 
+void share_touch_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
+  const auto is_unasked = [&](std::uint32_t i) { return work.pairs[i].touch_unasked; };
+  const auto count =
+      static_cast<std::uint64_t>(std::count_if(pairs.begin(), pairs.end(), is_unasked));
+  if (count == 0) return;
+  const std::uint64_t each =
+      std::clamp(work.contact_budget.left(spent(work)) / count, kFirstShare, kMostContactTests);
+  for (const std::uint32_t i : pairs)
+    if (is_unasked(i)) work.pairs[i].contact_cap = each;
+}
+
 bool note_contact_effort(PairWork& pair) {
   note_effort(pair, WorkStage::kContact,
               {pair.contact_tests - pair.contact_start, pair.contact_cap, pair.contact_short, 0});

@@ -22,6 +22,10 @@ void close_contact_budget(SessionState& state, const Scratch::Impl& work);
 /// once: as many as the tick has work for, at least two. 0: the tick has no work left.
 std::size_t share_contact_work(Scratch::Impl& work, std::span<const std::uint32_t> order);
 
+/// The same of those of these pairs whose meshes are asked for their contact only now, for what is
+/// seen or told of them: equal parts of what the tick has left, no less than a first share.
+void share_touch_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs);
+
 /// Notes what the pair used. True: that was not enough, and the pair may have more.
 bool note_contact_effort(PairWork& pair);
 /// Notes whether the pair was asked in this tick with all the work that it wanted.

@@ -7,6 +7,7 @@
 
 #include "common/base/constants.h"
 #include "common/session/tick/clash_identity.h"
+#include "common/session/tick/contact_budget.h"
 #include "common/session/tick/contacts.h"
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/event_times.h"
@@ -16,8 +17,8 @@ namespace mortise {
 namespace {
 
 // Evaluations of one overlap within a tick at most, whatever work there is. A pair at the very
-// brink of a threshold can take any number; where it ends, brackets stay wide, the verdict is
-// potential and the pair is counted as not examined to the end.
+// brink of a threshold can take any number; where it ends, brackets stay wide. Without a witness
+// the verdict is potential then, and the pair is counted as not examined to the end.
 constexpr std::uint64_t kTickOverlapCap = 10'000;
 // Tests of the look back from the end of a motion that passes through something.
 constexpr std::uint64_t kLeastWorkBack = 2'000;
@@ -57,11 +58,16 @@ JudgementQuery query_at_end(const World& world, const PairWork& pair, const Segm
   return query;
 }
 
+// Nothing that is left to look at can change its class.
+bool is_certain(const OverlapRegion& region) {
+  return region.has_witness && region.certain_mm.lo > 0.0;
+}
+
 Judgement judge(PairWork& pair, const JudgementQuery& query, CcdScratch& ccd) {
   Judgement judgement = judge_pair(query, ccd);
   count(query, judgement, pair.counts);
   for (const OverlapRegion& region : judgement.overlap.regions)
-    if (region.capped) pair.undecided = true;
+    if (region.capped && !is_certain(region)) pair.undecided = true;
   return judgement;
 }
 
@@ -368,10 +374,12 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
     else
       look_at_clear_pair(world, work, pair, work.ccd[static_cast<std::size_t>(thread)]);
   });
+  share_touch_work(work, work.asked);
   serve_in_turn(world, work, work.asked, WorkStage::kVerdict,
                 [&](PairWork& pair, CcdScratch& ccd) { examine(world, work, pair, ccd); });
   std::erase_if(work.asked, [&](std::uint32_t i) { return !work.pairs[i].tells; });
   share_telling_work(work, work.asked);
+  share_touch_work(work, work.asked);
   work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
     complete(work, work.pairs[work.asked[i]], work.ccd[static_cast<std::size_t>(thread)]);
   });

@@ -67,6 +67,11 @@ struct Sockets {
         return true;
     return false;
   }
+  double moved_mm(const ClashEvent& event) {
+    for (std::size_t i = 0; i < balls.size(); ++i)
+      if (event.part_a == balls[i] || event.part_b == balls[i]) return moved_mm(i);
+    return 0.0;
+  }
   double moved_mm(std::size_t i) {
     const Part& ball = *session.world.find(balls[i]);
     return (ball.X_WP.p - ball.X_WP_scenario.p).norm();
@@ -87,7 +92,8 @@ TEST(ContactBudget, ATickSpendsNoMoreThanItMayAndSaysWhatItLeftOut) {
     EXPECT_LT(with.tests, 3U * 2'000U + 2U * 22'000U);
     EXPECT_GT(report.counters.not_examined, 0U);
     EXPECT_GE(report.counters.not_examined, report.counters.pairs_waiting);
-    EXPECT_TRUE(report.events.empty()) << "who had no work has met nothing";
+    for (const ClashEvent& event : report.events)
+      EXPECT_GT(with.moved_mm(event), 0.9 * kGap_mm) << "who had no work has met nothing";
     ASSERT_FALSE(with.any_crossing()) << i;
   }
   // What a tick takes beyond, the next ones do not have.
