@@ -11,6 +11,7 @@
 #include "client/web/addresses.h"
 #include "client/web/live_feed.h"
 #include "client/web/replay_feed.h"
+#include "client/web/step_reader.h"
 #include "common/messages/names.h"
 #include "idl/dds_channel.h"
 
@@ -84,7 +85,7 @@ int serve_session(const WebOptions& options, StopSignal& stop_signal) {
   auto channel = open_client_channel(options.network);
   if (!channel) return fail_with(channel.error());
   Client client(**channel);
-  LiveFeed feed(client, options.gateway.limits);
+  LiveFeed feed(client, options.gateway.limits, read_brought_step);
   spdlog::info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.network.session,
                options.network.domain);
   return serve(options, feed, stop_signal);
