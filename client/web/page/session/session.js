@@ -56,6 +56,7 @@ export class Session extends Signals {
   mode = 'live';
   role = 'designer';
   hasReport = false;
+  hasLog = false;
   boundName = ''; // the only one that this link lets us join under; empty: any
   policy = '';
   tick = 0;
@@ -162,6 +163,7 @@ export class Session extends Signals {
       this.mode = m.mode;
       this.role = m.role;
       this.hasReport = m.report === true;
+      this.hasLog = m.log === true;
       this.boundName = m.name ?? '';
       this.emit('me', undefined);
       this.emit('welcome', undefined);
