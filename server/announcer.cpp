@@ -1,11 +1,10 @@
 #include "server/announcer.h"
 
 #include <spdlog/spdlog.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <utility>
 
 #include "common/evaluation/clash_line.h"
 #include "common/messages/names.h"
@@ -22,31 +21,46 @@ constexpr double kLineEveryWithoutTty_s = 5;    // in a file, a line is kept for
 
 std::string live_line(const SessionPulse& pulse, double seconds) {
   std::string line = fmt::format(
-      "{:.1f} s, tick {}, {} users | open: {} real, {} potential, {} fake | tick p99 {:.1f} ms",
-      seconds, pulse.tick, pulse.users, pulse.clashes_open[3], pulse.clashes_open[2],
-      pulse.clashes_open[1], pulse.tick_p99_us * 1e-3);
+      "{:.1f} s, {} | open: {} real, {} potential, {} fake | tick p99 {:.1f} ms", seconds,
+      pulse.users == 1 ? "1 user" : fmt::format("{} users", pulse.users), pulse.clashes_open[3],
+      pulse.clashes_open[2], pulse.clashes_open[1], pulse.tick_p99_us * 1e-3);
   if (pulse.refused > 0) line += fmt::format(" | {} refused", pulse.refused);
   if (pulse.missed_deadlines > 0)
     line += fmt::format(" | {} deadlines missed", pulse.missed_deadlines);
   return line;
 }
 
-Announcer::Announcer(bool live, bool quiet)
-    : live_(live), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+std::vector<std::string> address_lines(std::istream& written) {
+  std::vector<std::string> lines;
+  std::string to_take_part;
+  for (std::string line; std::getline(written, line);) {
+    std::istringstream words(line);
+    std::string role, address, more;
+    words >> role >> address;
+    if (words >> more) {  // of persons: each knows who
+      lines.push_back(line);
+    } else if (role == "designer") {
+      to_take_part = "open in a browser:  " + address;
+    } else if (!address.empty()) {
+      lines.push_back("to look on only:    " + address);
+    }
+  }
+  if (!to_take_part.empty()) lines.push_back(to_take_part);
+  return lines;
+}
 
-void Announcer::clear_line() {
-  if (!line_open_) return;
-  std::fputs("\r\033[K", stderr);
-  line_open_ = false;
+Announcer::Announcer(AnnouncerOptions options, Console* console)
+    : options_(std::move(options)), console_(console) {
+  if (console_ != nullptr) style_ = style_of_stderr();
 }
 
 void Announcer::after_tick(const TickLoop& loop) {
-  if (!quiet_) {
+  if (!options_.quiet) {
     say_people(loop);
     say_clashes(loop);
   }
   say_trouble(loop);
-  if (live_) say_live(loop);
+  if (options_.live) say_live(loop);
 }
 
 void Announcer::say_people(const TickLoop& loop) {
@@ -55,7 +69,6 @@ void Announcer::say_people(const TickLoop& loop) {
     const User* user = world.find(decision.user);
     const Part* part = decision.part ? world.find(decision.part) : nullptr;
     const std::string name = user != nullptr ? user->name : "?";
-    clear_line();
     switch (decision.kind) {
       case Decision::Kind::kJoin:
         spdlog::info("{} joined", decision.user_name);
@@ -82,97 +95,106 @@ void Announcer::say_clashes(const TickLoop& loop) {
   if (report.events.empty()) return;
   const SessionNames names = names_of(loop.world());
   for (const ClashEvent& event : report.events) {
-    const PairRule* rule = loop.world().rule(event.part_a, event.part_b);
-    ClashLine line{names.part(event.part_a),
-                   names.part(event.part_b),
-                   &event.verdict,
-                   rule != nullptr ? rule->fit : "",
-                   0,
-                   fmt::format("clash {}", event.clash.value)};
-    clear_line();
-    if (event.kind == ClashEvent::Kind::kBegin) {
-      if (event.user) line.note += " by " + names.user(event.user);
-      spdlog::info("{}", clash_line(line));
-      spdlog::debug("clash {}: {}", event.clash.value, event.verdict.explanation);
-    } else if (event.kind == ClashEvent::Kind::kEnd) {
-      spdlog::info("clash {} ends: {} × {}, worst {}, {:.1f} s", event.clash.value, line.part_a,
-                   line.part_b, name_of(event.worst_class),
-                   static_cast<double>(event.tick - event.begin_tick) / loop.world().tick_rate_hz);
+    if (event.kind == ClashEvent::Kind::kEnd) {
+      say_end(event, loop.world(), names);
+      worst_said_.erase(event.clash);
     } else {
-      spdlog::debug("{}", clash_line(line));
+      say_clash(event, loop.world(), names);
     }
   }
+}
+
+// One that begins, or is worse than all that was said of it.
+void Announcer::say_clash(const ClashEvent& event, const World& world, const SessionNames& names) {
+  const CollisionClass now = event.verdict.collision_class;
+  CollisionClass& said = worst_said_[event.clash];
+  if (now <= said) return;
+  const PairRule* rule = world.rule(event.part_a, event.part_b);
+  ClashLine line{names.part(event.part_a),
+                 names.part(event.part_b),
+                 &event.verdict,
+                 rule != nullptr ? rule->fit : "",
+                 0,
+                 fmt::format("clash {}", event.clash.value)};
+  if (event.user) line.note += " by " + names.user(event.user);
+  said = now;
+  say_line(clash_line(line), now);
+}
+
+// That parts which may touch are apart again is no news.
+void Announcer::say_end(const ClashEvent& event, const World& world, const SessionNames& names) {
+  if (event.worst_class <= CollisionClass::kFake) return;
+  const std::string how_long = fmt::format(
+      "was {} for {:.1f} s   clash {}", name_of(event.worst_class),
+      static_cast<double>(event.tick - event.begin_tick) / world.tick_rate_hz, event.clash.value);
+  say_line(pair_line("ENDED", names.part(event.part_a), names.part(event.part_b), how_long),
+           CollisionClass::kNone);
+}
+
+void Announcer::say_line(const std::string& line, CollisionClass collision_class) const {
+  spdlog::info("{}", style_.color ? coloured_line(line, collision_class) : line);
 }
 
 void Announcer::say_trouble(const TickLoop& loop) {
   for (const std::string& who : loop.last_intake().turned_away) {
     if (++turned_away_said_ > kMostTurnedAway) break;  // counted in the closing document
-    clear_line();
     spdlog::warn("{}", who);
   }
+  if (const std::string news = waiting_.after_tick(loop.last_report(), loop.world()); !news.empty())
+    spdlog::warn("{}", news);
   if (loop.seconds() - trouble_at_s_ < kTroubleEvery_s) return;
   trouble_at_s_ = loop.seconds();
   const SessionPulse pulse = loop.pulse();
   const TickMetrics& metrics = loop.metrics();
   if (metrics.overloads > overloads_) {
-    clear_line();
     spdlog::warn(
         "overload: {} ticks ran past their deadline, {} deadlines missed (tick p99 {:.1f} ms of "
         "{:.1f} ms)",
         metrics.overloads - overloads_, metrics.missed_deadlines - missed_,
         pulse.tick_p99_us * 1e-3, 1e3 / loop.world().tick_rate_hz);
   }
-  if (pulse.refused > refused_) {
-    clear_line();
+  if (pulse.refused > refused_)
     spdlog::warn("{} increments refused ({} in all)", pulse.refused - refused_, pulse.refused);
-  }
-  if (pulse.not_examined > not_examined_) {
-    clear_line();
-    spdlog::warn("{} pairs not examined to the end; they are not reported as clear",
-                 pulse.not_examined - not_examined_);
-  }
+  say_log(loop);
+  overloads_ = metrics.overloads;
+  missed_ = metrics.missed_deadlines;
+  refused_ = pulse.refused;
+}
+
+void Announcer::say_log(const TickLoop& loop) {
   if (loop.log() != nullptr && !log_failed_) {
     if (const Status status = loop.log()->status(); !status) {
       log_failed_ = true;
-      clear_line();
       spdlog::error("{}; the session continues, and unrecorded ticks are counted",
                     status.error().text);
     }
   }
-  if (!log_failed_ && loop.log_dropped_ticks() > dropped_) {
-    clear_line();
+  if (!log_failed_ && loop.log_dropped_ticks() > dropped_)
     spdlog::warn("the log's disk is too slow: {} ticks are missing in it (marked as a gap)",
                  loop.log_dropped_ticks() - dropped_);
-  }
-  overloads_ = metrics.overloads;
-  missed_ = metrics.missed_deadlines;
-  refused_ = pulse.refused;
-  not_examined_ = pulse.not_examined;
   dropped_ = loop.log_dropped_ticks();
 }
 
 void Announcer::say_live(const TickLoop& loop) {
-  const double every_s = terminal_ ? kTerminalRefresh_s : kLineEveryWithoutTty_s;
+  const double every_s = style_.terminal ? kTerminalRefresh_s : kLineEveryWithoutTty_s;
   if (loop.seconds() - live_at_s_ < every_s) return;
   live_at_s_ = loop.seconds();
-  std::string line = live_line(loop.pulse(), loop.seconds());
-  if (terminal_) {
-    // A line that wraps could not be overwritten.
-    winsize window{};
-    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) {
-      line.resize(std::min<std::size_t>(line.size(), window.ws_col - 1));
-    }
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
-    line_open_ = true;
-  } else {
-    std::fprintf(stderr, "%s\n", line.c_str());
+  const std::string line = live_line(loop.pulse(), loop.seconds());
+  if (!style_.terminal) {
+    spdlog::info("{}", line);
+    return;
   }
-  std::fflush(stderr);
+  if (addresses_.empty() && !options_.addresses.empty()) {
+    std::ifstream written(options_.addresses);  // renamed to its name when it is whole
+    addresses_ = address_lines(written);
+  }
+  std::vector<std::string> lines{line};
+  lines.insert(lines.end(), addresses_.begin(), addresses_.end());
+  console_->stay(std::move(lines));
 }
 
 void Announcer::finish() {
-  if (line_open_) std::fputs("\n", stderr);
-  line_open_ = false;
+  if (console_ != nullptr) console_->leave();
 }
 
 }  // namespace mortise

@@ -1,4 +1,7 @@
+#include <memory>
+
 #include "common/io/progress_log.h"
+#include "server/console.h"
 #include "server/json_lines.h"
 #include "server/options.h"
 #include "server/serve.h"
@@ -7,7 +10,13 @@ int main(int argc, char** argv) {
   const mortise::CommandLine line = mortise::read_command_line(argc, argv);
   if (line.exit_code >= 0) return line.exit_code;
 
-  mortise::begin_progress_log("mortise-server", line.options.quiet,
-                              line.options.messages == "json" ? mortise::json_lines() : nullptr);
-  return mortise::serve(line.options);
+  const mortise::ServerOptions& options = line.options;
+  std::shared_ptr<mortise::Console> console;
+  if (options.messages == "json") {
+    mortise::begin_progress_log("mortise-server", options.quiet, mortise::json_lines());
+  } else {
+    console = std::make_shared<mortise::Console>();
+    mortise::begin_progress_log("mortise-server", options.quiet, console);
+  }
+  return mortise::serve(options, console.get());
 }

@@ -26,6 +26,7 @@ void DurationHistogram::add(std::int64_t duration_ns) {
   ++buckets_[bucket_of(ns)];
   ++count_;
   max_ns_ = std::max(max_ns_, ns);
+  sum_s_ += static_cast<double>(ns) * 1e-9;
 }
 
 void DurationHistogram::clear() { *this = DurationHistogram{}; }
@@ -41,6 +42,13 @@ double DurationHistogram::percentile_us(double fraction) const {
     }
   }
   return max_us();
+}
+
+std::uint64_t DurationHistogram::count_up_to(std::int64_t ns) const {
+  std::uint64_t seen = 0;
+  for (std::size_t i = 0; i < buckets_.size() && top_of(i) <= static_cast<std::uint64_t>(ns); ++i)
+    seen += buckets_[i];
+  return seen;
 }
 
 }  // namespace mortise

@@ -14,6 +14,9 @@ class DurationHistogram {
   /// Upper bound of the smallest duration that a `fraction` of all do not exceed; 0 when empty.
   double percentile_us(double fraction) const;
   double max_us() const { return static_cast<double>(max_ns_) * 1e-3; }
+  double sum_s() const { return sum_s_; }
+  /// How many are certainly not longer: those less than 3.2 % below `ns` may be missing.
+  std::uint64_t count_up_to(std::int64_t ns) const;
 
  private:
   static constexpr int kPerOctave = 32;
@@ -24,6 +27,7 @@ class DurationHistogram {
   std::array<std::uint32_t, kPerOctave * kOctaves> buckets_{};
   std::uint64_t count_ = 0;
   std::uint64_t max_ns_ = 0;
+  double sum_s_ = 0.0;
 };
 
 /// Where the time of the ticks went.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "common/messages/names.h"
@@ -11,10 +12,10 @@ namespace mortise {
 namespace {
 
 DurationFigures figures_of(const DurationHistogram& histogram) {
-  constexpr double kSecondsPerUs = 1e-6;
-  return {histogram.count(), histogram.percentile_us(0.5) * kSecondsPerUs,
-          histogram.percentile_us(0.9) * kSecondsPerUs,
-          histogram.percentile_us(0.99) * kSecondsPerUs, histogram.max_us() * kSecondsPerUs};
+  DurationFigures figures{histogram.count(), histogram.sum_s(), {}};
+  for (std::size_t i = 0; i < kDurationBounds_s.size(); ++i)
+    figures.up_to[i] = histogram.count_up_to(std::llround(kDurationBounds_s[i] * 1e9));
+  return figures;
 }
 
 /// Backslash, quote and line feed are what the format escapes in a label.
@@ -44,11 +45,15 @@ class Text {
     value(number);
   }
   void durations(const char* name, const char* help, const DurationFigures& d) {
-    family(name, "gauge", help);
-    value(d.p50_s, "quantile=\"0.5\"");
-    value(d.p90_s, "quantile=\"0.9\"");
-    value(d.p99_s, "quantile=\"0.99\"");
-    value(d.max_s, "quantile=\"1\"");
+    family(name, "histogram", help);
+    name_ = std::string(name) + "_bucket";
+    for (std::size_t i = 0; i < kDurationBounds_s.size(); ++i)
+      value(d.up_to[i], fmt::format("le=\"{:g}\"", kDurationBounds_s[i]));
+    value(d.count, "le=\"+Inf\"");
+    name_ = std::string(name) + "_sum";
+    value(d.sum_s);
+    name_ = std::string(name) + "_count";
+    value(d.count);
   }
   std::string take() { return std::move(text_); }
 
@@ -68,8 +73,7 @@ void add_ticks(Text& out, const SessionFigures& f) {
           f.overloads);
   out.one("mortise_missed_deadlines_total", "counter", "Deadlines passed over because of them",
           f.missed_deadlines);
-  out.durations("mortise_tick_seconds", "Time of a tick, drain to publish; since the start",
-                f.tick_s);
+  out.durations("mortise_tick_seconds", "Time of a tick, drain to publish", f.tick_s);
   out.durations("mortise_step_seconds", "The engine's part of it", f.step_s);
   out.durations("mortise_lateness_seconds", "Begin of a tick after its deadline", f.lateness_s);
   out.durations("mortise_delay_seconds",

@@ -10,10 +10,16 @@
 
 namespace mortise {
 
-/// Summary of a distribution of durations, s.
+/// Bounds of the buckets of durations, s: a session of 60 Hz has 16.7 ms for a tick.
+inline constexpr std::array<double, 15> kDurationBounds_s = {50e-6,  100e-6, 250e-6, 500e-6, 1e-3,
+                                                             2.5e-3, 5e-3,   10e-3,  15e-3,  25e-3,
+                                                             50e-3,  0.1,    0.25,   0.5,    1.0};
+
+/// Distribution of durations since the start.
 struct DurationFigures {
   std::uint64_t count = 0;
-  double p50_s = 0.0, p90_s = 0.0, p99_s = 0.0, max_s = 0.0;
+  double sum_s = 0.0;
+  std::array<std::uint64_t, kDurationBounds_s.size()> up_to{};  ///< cumulative
 };
 
 /// The figures of a running session at one time: plain values, so that another thread may read them

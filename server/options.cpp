@@ -73,7 +73,10 @@ void add_output(ProgramOptions& app, ServerOptions& o) {
   app.add("--stats", o.stats, "Write the closing statistics to this file (JSON)");
   app.add_flag("--json", o.json, "Closing statistics as one JSON document instead of tables");
   app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
-  app.add_flag("--live", o.live, "Status line: ticks, users, open clashes, tick time");
+  app.add_flag("--live", o.live, "Status line: time, users, open clashes, tick time");
+  app.add("--addresses", o.addresses,
+          "With --live on a terminal, what mortise-web writes to this file stays below the status "
+          "line");
   app.add("--messages", o.messages, "Messages on stderr: text, or json, one object a line")
       .one_of({"text", "json"})
       .shows_default();

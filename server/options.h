@@ -21,8 +21,9 @@ struct ServerOptions {
   double duration_s = 0.0;  ///< 0: until a signal
   std::string stats;        ///< file for the closing JSON document
   bool json = false, quiet = false, live = false;
-  std::string policy;    ///< empty: the scenario's
-  double rate_hz = 0.0;  ///< 0: the scenario's
+  std::string addresses;  ///< file of the gateway for browsers; empty: none
+  std::string policy;     ///< empty: the scenario's
+  double rate_hz = 0.0;   ///< 0: the scenario's
   InboxLimits limits;
   std::string metrics_address = "127.0.0.1";
   std::optional<int> metrics_port;  ///< none: no metrics; 0: a free one

@@ -104,7 +104,7 @@ int close_session(const ServerOptions& options, Closing closing, SessionLogWrite
 /// A server from its start to its end, in steps.
 class Service {
  public:
-  explicit Service(const ServerOptions& options) : options_(options) {}
+  Service(const ServerOptions& options, Console* console) : options_(options), console_(console) {}
   /// 1 to 5. False: it was to end before it led a session.
   Result<bool> begin();
   /// 6. Ticks until it is to end.
@@ -140,6 +140,7 @@ class Service {
   void say_goodbye();
 
   const ServerOptions& options_;
+  Console* console_;
   ServiceManager manager_;
   std::optional<SessionStart> start_;
   std::unique_ptr<StandbyChannel> standby_;  ///< until it is the channel
@@ -313,10 +314,10 @@ void Service::open_loop() {
 
 void Service::say_session() const {
   const World& world = start_->scene.world;
-  spdlog::info("session '{}' of {} on domain {}, {}: {} parts, {:g} Hz, policy {}{}",
-               options_.network.session, start_->source, options_.network.domain,
-               options_.network.interface, world.parts.size(), world.tick_rate_hz, closing_.policy,
-               closing_.log_file.empty() ? std::string() : ", log " + closing_.log_file);
+  spdlog::info("session '{}' of {}: {} parts, {:g} Hz, policy {}, domain {} on {}",
+               options_.network.session, start_->source, world.parts.size(), world.tick_rate_hz,
+               closing_.policy, options_.network.domain, options_.network.interface);
+  if (!closing_.log_file.empty()) spdlog::info("log {}", closing_.log_file);
   for (const std::string& part : closing_.parts_without_inside)
     spdlog::warn(
         "'{}' has no inside (it is open): crossing is found, depth is not, and what lies within it "
@@ -334,7 +335,7 @@ Status Service::open_metrics() {
 }
 
 void Service::play() {
-  Announcer announcer(options_.live, options_.quiet);
+  Announcer announcer({options_.live, options_.quiet, options_.addresses}, console_);
   loop_->run(
       [&] {
         return stop_asked || loop_->superseded() || !barred().empty() ||
@@ -394,12 +395,12 @@ void Service::say_goodbye() {
 
 }  // namespace
 
-int serve(const ServerOptions& options) {
+int serve(const ServerOptions& options, Console* console) {
   give_back_large_memory();
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
   std::signal(SIGUSR1, ask_to_drain);
-  Service service(options);
+  Service service(options, console);
   const Result<bool> begun = service.begin();
   if (!begun) return say(begun.error());
   if (!*begun) return kExitOk;

@@ -179,28 +179,39 @@ Answer answer_to_file(GatewayState& state, const std::string& ticket,
                : sentence(status::gone, taken.error().text);
 }
 
-bool asks_for_report(const Request& request) {
-  return request.method() == http::verb::get && request.target() == "/report.html";
+Download download_of(const Request& request) {
+  if (request.method() != http::verb::get) return Download::kNone;
+  if (request.target() == "/report.html") return Download::kReport;
+  return request.target() == "/session.mcap" ? Download::kLog : Download::kNone;
 }
 
-std::optional<Answer> refusal_of_report(GatewayState& state, const Request& request,
-                                        const std::string& from) {
+std::optional<Answer> refusal_of(Download download, GatewayState& state, const Request& request,
+                                 const std::string& from) {
   ++state.traffic.requests;
   if (!is_own(state, request, from)) return wrong_host();
   if (auto refused = without_token(state, request, from)) return refused;
-  if (!state.options.report)
-    return sentence(status::not_found, "there is no log to report on; see --log");
+  if (!(download == Download::kLog ? state.options.log : state.options.report))
+    return sentence(status::not_found, "this gateway knows no log; see --log");
   if (!state.reports.is_busy() && !state.ending) return std::nullopt;
-  Answer answer = sentence(status::service_unavailable, "a report is being made; ask again");
+  Answer answer =
+      sentence(status::service_unavailable, "another download is being made; ask again");
   answer.fields.emplace_back("Retry-After", "2");
   return answer;
 }
 
-Answer answer_with_report(Result<std::string> page) {
-  if (!page) return sentence(status::internal_server_error, "no report: " + page.error().text);
+Answer answer_with(Download download, Result<std::string> bytes) {
+  if (!bytes) return sentence(status::internal_server_error, "not made: " + bytes.error().text);
+  auto body = std::make_shared<const std::string>(std::move(*bytes));
+  if (download == Download::kLog) {
+    return {status::ok,
+            "application/octet-stream",
+            std::move(body),
+            {{"Cache-Control", "no-store"},
+             {"Content-Disposition", "attachment; filename=\"session.mcap\""}}};
+  }
   return {status::ok,
           "text/html; charset=utf-8",
-          std::make_shared<const std::string>(std::move(*page)),
+          std::move(body),
           {{"Cache-Control", "no-store"},
            {"Content-Disposition", "attachment; filename=\"report.html\""},
            // It is a page of its own, wherever somebody opens it.

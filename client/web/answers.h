@@ -38,12 +38,14 @@ std::variant<std::string, Answer> admit_file(GatewayState& state, const Request&
                                              const std::string& from);
 Answer answer_to_file(GatewayState& state, const std::string& ticket, std::vector<std::byte> bytes);
 
-/// The report takes seconds, so another thread makes it (report_maker.h). refusal_of_report() gives
-/// the answer when there is no report now.
-bool asks_for_report(const Request& request);
-std::optional<Answer> refusal_of_report(GatewayState& state, const Request& request,
-                                        const std::string& from);
-Answer answer_with_report(Result<std::string> page);
+/// The report takes seconds, so another thread makes it (report_maker.h). refusal_of() gives
+/// the answer when there is none now.
+/// The same holds for the session's log.
+enum class Download : std::uint8_t { kNone = 0, kReport, kLog };
+Download download_of(const Request& request);
+std::optional<Answer> refusal_of(Download download, GatewayState& state, const Request& request,
+                                 const std::string& from);
+Answer answer_with(Download download, Result<std::string> bytes);
 
 /// The bearer as whom this request may become a WebSocket, or the answer that refuses it.
 std::variant<Bearer, Answer> admit_browser(GatewayState& state, const Request& request, bool tls,

@@ -64,6 +64,7 @@ void Browser::start(Request request) {
                        {"role", name_of(self->bearer_.role)},
                        {"name", self->bearer_.name},
                        {"report", static_cast<bool>(self->state_.options.report)},
+                       {"log", static_cast<bool>(self->state_.options.log)},
                        {"limits",
                         {{"message_bytes", l.message_bytes},
                          {"messages_per_s", l.messages_per_s},

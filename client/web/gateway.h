@@ -22,6 +22,8 @@ struct GatewayOptions {
   /// Makes the report of the session for download; called in another thread, one call at a time.
   /// Empty: no report.
   std::function<Result<std::string>()> report;
+  /// The same of the session's log up to now, from which it can go on.
+  std::function<Result<std::string>()> log;
   double turn_s = 0.004;  ///< time between two turns of the feed while a browser is connected
 };
 

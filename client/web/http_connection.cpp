@@ -139,7 +139,8 @@ void HttpConnection::take() {
     note(Incident::kBadRequest, "a request with no Host field, or with several");
     return write(sentence(http::status::bad_request, "one Host field is expected"));
   }
-  if (asks_for_report(request)) return make_report();
+  if (const Download download = download_of(request); download != Download::kNone)
+    return make(download);
   if (!beast::websocket::is_upgrade(request))
     return write(answer_to(state_, request, stream_.has_tls(), peer_));
   auto admitted = admit_browser(state_, request, stream_.has_tls(), peer_);
@@ -148,12 +149,14 @@ void HttpConnection::take() {
       ->start(parser_->release());
 }
 
-void HttpConnection::make_report() {
-  if (auto refused = refusal_of_report(state_, parser_->get(), peer_)) return write(*refused);
+void HttpConnection::make(Download download) {
+  if (auto refused = refusal_of(download, state_, parser_->get(), peer_)) return write(*refused);
   stream_.next_layer().expires_never();
-  state_.reports.start(stream_.get_executor(), state_.options.report,
-                       [self = shared_from_this()](Result<std::string> page) {
-                         self->write(answer_with_report(std::move(page)));
+  const GatewayOptions& options = state_.options;
+  state_.reports.start(stream_.get_executor(),
+                       download == Download::kLog ? options.log : options.report,
+                       [self = shared_from_this(), download](Result<std::string> bytes) {
+                         self->write(answer_with(download, std::move(bytes)));
                        });
 }
 

@@ -31,7 +31,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void begin_file();
   void read_file();
   void end_file();
-  void make_report();
+  void make(Download download);
   void write(const Answer& answer);
   void failed(beast::error_code error);
   void wait_in_line();

@@ -96,6 +96,18 @@ class Keys {
     }
     return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
   }
+  /// A unit quaternion: x, y, z, w.
+  Quat rotation(const char* key) {
+    const Json& list = at(key);
+    const auto number = [](const Json& value) { return value.is_number(); };
+    if (!list.is_array() || list.size() != 4 || !std::all_of(list.begin(), list.end(), number))
+      throw Wrong{std::string("'") + key + "' is not four numbers"};
+    Quat q;
+    for (int i = 0; i < 4; ++i) q.coeffs()[i] = list[static_cast<std::size_t>(i)].get<double>();
+    if (!valid(Pose{q, Vec3::Zero()}))
+      throw Wrong{std::string("'") + key + "' is not a unit quaternion"};
+    return q;
+  }
   /// The value of an enum by its name; 0 is never meant, but for `first`.
   template <class Enum>
   Enum named(const char* key, std::uint8_t first, std::uint8_t count) {
@@ -190,6 +202,7 @@ void read_added(Keys& keys, CommandWish& wish) {
   edit.mesh_hash = keys.text("mesh", kHashDigits);
   edit.moving = read_flag(keys, "moving");
   if (keys.has("p")) edit.X_WP.p = keys.vector("p");
+  if (keys.has("q")) edit.X_WP.q = keys.rotation("q");
 }
 void read_moving(Keys& keys, CommandWish& wish) {
   read_part(keys, wish);

@@ -15,8 +15,10 @@ namespace mortise::web {
 /// leaves at once, without waiting for a lease.
 class LiveFeed final : public Feed {
  public:
-  /// The client must outlive the feed; nobody else polls it.
-  LiveFeed(Client& client, const Limits& limits) : client_(client), seats_(client, limits) {}
+  /// The client must outlive the feed; nobody else polls it. `read_step` may be empty: no STEP
+  /// files are taken.
+  LiveFeed(Client& client, const Limits& limits, ReadAssembly read_step = {})
+      : client_(client), seats_(client, limits, std::move(read_step)) {}
 
   const char* mode() const override { return "live"; }
   void enter(Viewer& viewer) override;

@@ -115,7 +115,7 @@ void PageSeats::upload(Viewer& viewer, Seat& seat, const UploadWish& wish) {
 
 void PageSeats::begin_turn(double now_s) {
   now_s_ = now_s;
-  uploads_.drop_old(now_s);
+  uploads_.turn(now_s);
   std::erase_if(left_s_, [&](const auto& row) { return now_s - row.second > kNameIsFreeAfter_s; });
 }
 

@@ -18,8 +18,8 @@ namespace mortise::web {
 class PageSeats {
  public:
   /// The client must outlive this.
-  PageSeats(Client& client, const Limits& limits)
-      : client_(client), limits_(limits), uploads_(client, limits) {}
+  PageSeats(Client& client, const Limits& limits, ReadAssembly read_step)
+      : client_(client), limits_(limits), uploads_(client, limits, std::move(read_step)) {}
 
   void enter(Viewer& viewer) { seats_[&viewer]; }
   void leave(Viewer& viewer);  ///< its user leaves as well

@@ -45,15 +45,17 @@ void PageUploads::ask(Viewer& viewer, LocalUser user, const UploadWish& wish, do
 void PageUploads::leave(Viewer& viewer) {
   std::erase_if(tickets_, [&](const auto& row) { return row.second.viewer == &viewer; });
   std::erase_if(sent_, [&](const auto& row) { return row.second.viewer == &viewer; });
+  step_.leave(viewer);
 }
 
-void PageUploads::drop_old(double now_s) {
+void PageUploads::turn(double now_s) {
   std::erase_if(tickets_, [&](const auto& row) {
     if (now_s < row.second.until_s) return false;
     refuse(*row.second.viewer, row.second.wish.id, Refusal::kUploadLimit,
            "the file did not come in time");
     return true;
   });
+  step_.turn();
 }
 
 std::optional<std::size_t> PageUploads::begin_file(const std::string& ticket) {
@@ -68,6 +70,10 @@ Status PageUploads::take_file(const std::string& ticket, std::vector<std::byte> 
   if (found == tickets_.end()) return fail(Code::kInvalidInput, "nobody waits for this file");
   const Ticket taken = std::move(found->second);
   tickets_.erase(found);
+  if (step_.takes(taken.wish.name)) {
+    step_.begin({taken.viewer, taken.user, taken.wish.id}, taken.wish.name, std::move(bytes));
+    return ok();
+  }
   const std::uint64_t number =
       client_.upload(taken.user, taken.wish.name, taken.wish.unit_mm, std::move(bytes));
   if (number == 0) {
@@ -89,6 +95,7 @@ void PageUploads::drop_file(const std::string& ticket) {
 
 void PageUploads::tell(const std::vector<UploadState>& states) {
   for (const UploadState& state : states) {
+    if (step_.tell(state)) continue;
     const auto found = sent_.find(state.upload);
     if (found == sent_.end()) continue;
     const Sent sent = found->second;

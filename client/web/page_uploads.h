@@ -10,21 +10,25 @@
 #include "client/client.h"
 #include "client/web/feed.h"
 #include "client/web/limits.h"
+#include "client/web/step_uploads.h"
 
 namespace mortise::web {
 
-/// Mesh files of pages. A page asks over its WebSocket, gets a ticket that counts once, and sends
-/// the bytes by HTTP under that ticket; from here they go to the server as its user's upload.
+/// Mesh and STEP files of pages. A page asks over its WebSocket, gets a ticket that counts once,
+/// and sends the bytes by HTTP under that ticket; from here they go to the server as its user's
+/// upload.
 class PageUploads {
  public:
   /// The client must outlive this.
-  PageUploads(Client& client, const Limits& limits) : client_(client), limits_(limits) {}
+  PageUploads(Client& client, const Limits& limits, ReadAssembly read_step)
+      : client_(client), limits_(limits), step_(client, std::move(read_step)) {}
 
   /// Answers the page with a ticket or a refusal.
   void ask(Viewer& viewer, LocalUser user, const UploadWish& wish, double now_s);
   static void refuse(Viewer& viewer, std::uint64_t id, Refusal refusal, const std::string& text);
   void leave(Viewer& viewer);
-  void drop_old(double now_s);
+  /// Drops what did not come in time, and goes on with STEP files.
+  void turn(double now_s);
 
   /// See Feed.
   std::optional<std::size_t> begin_file(const std::string& ticket);
@@ -49,6 +53,7 @@ class PageUploads {
 
   Client& client_;
   Limits limits_;
+  StepUploads step_;
   std::map<std::string, Ticket> tickets_;
   std::map<std::uint64_t, Sent> sent_;  ///< by the client's number of the upload
 };

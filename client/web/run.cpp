@@ -5,12 +5,15 @@
 #include <spdlog/spdlog.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "client/report/report.h"
 #include "client/web/addresses.h"
 #include "client/web/live_feed.h"
 #include "client/web/replay_feed.h"
+#include "client/web/step_reader.h"
 #include "common/messages/names.h"
 #include "idl/dds_channel.h"
 
@@ -59,11 +62,31 @@ void warn_without_three(const PageFiles& page) {
   }
 }
 
+// A log as it is now, also while a server writes it.
+Result<std::string> bytes_of(const std::string& log) try {
+  constexpr std::uintmax_t kMost_bytes = std::uintmax_t{1} << 30;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(log, error);
+  if (error) return fail(Code::kRuntime, "the log cannot be read: " + error.message());
+  if (size > kMost_bytes)
+    return fail(Code::kRuntime, "the log has more than 1 GB: take it from " + log);
+  std::string bytes(size, '\0');
+  std::ifstream in(log, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (!in) return fail(Code::kRuntime, "the log cannot be read");
+  return bytes;
+} catch (const std::exception& e) {  // memory
+  return fail(Code::kRuntime, std::string("the log cannot be read: ") + e.what());
+}
+
 // Serves a feed until a signal comes.
 int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   GatewayOptions gateway_options = options.gateway;
-  if (const std::string& log = options.replay.empty() ? options.log : options.replay; !log.empty())
+  if (const std::string& log = options.replay.empty() ? options.log : options.replay;
+      !log.empty()) {
     gateway_options.report = [log] { return report_page(log); };
+    gateway_options.log = [log] { return bytes_of(log); };
+  }
   auto page = PageFiles::open(options.page);
   if (!page) return fail_with(page.error());
   auto tokens = tokens_of(options);
@@ -84,7 +107,7 @@ int serve_session(const WebOptions& options, StopSignal& stop_signal) {
   auto channel = open_client_channel(options.network);
   if (!channel) return fail_with(channel.error());
   Client client(**channel);
-  LiveFeed feed(client, options.gateway.limits);
+  LiveFeed feed(client, options.gateway.limits, read_brought_step);
   spdlog::info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.network.session,
                options.network.domain);
   return serve(options, feed, stop_signal);

@@ -143,4 +143,23 @@ std::vector<std::string> clash_lines(std::span<const ClashLine> clashes) {
 
 std::string clash_line(const ClashLine& clash) { return clash_lines(std::span(&clash, 1)).front(); }
 
+std::string pair_line(const std::string& word, const std::string& part_a, const std::string& part_b,
+                      const std::string& said) {
+  const std::size_t taken = columns_of(word) + 2 + 3 + columns_of(said);
+  const std::size_t room = kClashLineColumns - std::min(kClashLineColumns, taken);
+  const ClashLine pair{part_a, part_b, nullptr, "", 0, ""};
+  const std::size_t whole = columns_of(part_a) + 3 + columns_of(part_b);
+  const std::size_t columns = std::min(whole, std::max(room, kLeastPairColumns));
+  return shortened(word + "  " + pair_text(pair, columns) + "   " + said, kClashLineColumns);
+}
+
+std::string coloured_line(const std::string& line, CollisionClass collision_class) {
+  int code = 2;  // faint: no class
+  if (collision_class == CollisionClass::kReal) code = 31;
+  if (collision_class == CollisionClass::kPotential) code = 33;
+  if (collision_class == CollisionClass::kFake) code = 34;
+  const std::size_t end = std::min(line.find(' '), line.size());
+  return "\033[" + std::to_string(code) + "m" + line.substr(0, end) + "\033[0m" + line.substr(end);
+}
+
 }  // namespace mortise

@@ -24,6 +24,11 @@ inline const std::string kWhollyInside = " lies wholly inside ";
 /// kClashLineColumns columns each; names that are too long lose their middle.
 std::vector<std::string> clash_lines(std::span<const ClashLine> clashes);
 std::string clash_line(const ClashLine& clash);
+/// The same form of another word: "ENDED  cover × bearing   was real for 1.8 s".
+std::string pair_line(const std::string& word, const std::string& part_a, const std::string& part_b,
+                      const std::string& said);
+/// Its first word in the colour of the class on a terminal.
+std::string coloured_line(const std::string& line, CollisionClass collision_class);
 inline constexpr std::size_t kClashLineColumns = 100;
 
 /// Columns of UTF-8 text on a terminal: code points.

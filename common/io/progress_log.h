@@ -1,4 +1,5 @@
 #pragma once
+#include <spdlog/common.h>
 #include <spdlog/formatter.h>
 
 #include <memory>
@@ -10,5 +11,7 @@ namespace mortise {
 /// In colours on a terminal, unless NO_COLOR is set. quiet: warnings and errors only.
 void begin_progress_log(const std::string& program, bool quiet,
                         std::unique_ptr<spdlog::formatter> form = nullptr);
+/// The same to a sink of the program's own.
+void begin_progress_log(const std::string& program, bool quiet, spdlog::sink_ptr sink);
 
 }  // namespace mortise

@@ -72,6 +72,18 @@ rm build/release/fresh
 exits 0 demo --seconds 3
 called "^ninja -C $work/build/release mortise-server mortise-bot\$"
 
+# a session that was saved goes on, the last one of a folder as well
+touch saved.mcap
+exits 0 open saved.mcap --seconds 3
+grep -q "^ran mortise-server --restore saved.mcap --session assembly .* --log sessions/saved-.*[.]mcap" said || fail "open a saved session: $(cat said)"
+mkdir kept
+exits 1 open kept
+touch -d '2 hours ago' kept/b.mcap
+touch -d '1 hour ago' kept/a.mcap
+exits 0 open kept --seconds 3
+grep -q "^ran mortise-server --restore kept/a.mcap --session assembly " said || fail "open a folder: $(cat said)"
+rm -r saved.mcap kept
+
 # packages are made with all that they may contain: STEP and Python as well
 mkdir -p build/release/packages
 touch build/release/packages/some.deb

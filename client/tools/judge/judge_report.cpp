@@ -19,14 +19,6 @@ namespace {
 // A round fit touches at every facet; the worst few explain it. --json has them all.
 constexpr std::size_t kMostRegions = 4;
 
-// The first word of the line is its class.
-std::string colored(const std::string& line, CollisionClass c, bool color) {
-  if (!color) return line;
-  const int code = c == CollisionClass::kReal ? 31 : c == CollisionClass::kPotential ? 33 : 34;
-  const std::size_t end = line.find(' ');
-  return fmt::format("\033[{}m{}\033[0m{}", code, line.substr(0, end), line.substr(end));
-}
-
 std::string vector(const Vec3& v, int digits) {
   const double least = 0.5 * std::pow(10.0, -digits);  // no "-0.000"
   const auto shown = [&](double x) { return std::fabs(x) < least ? 0.0 : x; };
@@ -217,7 +209,8 @@ std::string judge_text(const OpenedScene& opened, const JudgeReport& report, Jud
   const std::vector<std::string> lines = clash_lines(rows);
   std::string text;
   for (std::size_t i = 0; i < clashes.size(); ++i) {
-    text += colored(lines[i], rows[i].verdict->collision_class, style.color) + "\n";
+    text +=
+        (style.color ? coloured_line(lines[i], rows[i].verdict->collision_class) : lines[i]) + "\n";
     if (style.verbose) text += places_text(world, clashes[i]);
   }
   for (const PairVerdicts& pair : report.pairs)

@@ -129,6 +129,23 @@ TEST(ClashLine, ColumnsOfAListAreAligned) {
                                    "POTENTIAL  Käfig × Ø   P(interference) 31.4 %"}));
 }
 
+TEST(ClashLine, HasTheSameFormForOtherWords) {
+  EXPECT_EQ(pair_line("ENDED", "a", "b", "was real for 1.8 s"),
+            "ENDED  a × b   was real for 1.8 s");
+  for (const std::size_t length : {30U, 60U, 500U}) {
+    const std::string name(length, 'x');
+    const std::string text = pair_line("ENDED", name, name, "was real for 1.8 s   clash 1");
+    EXPECT_LE(columns_of(text), kClashLineColumns) << text;
+    EXPECT_TRUE(text.ends_with("   was real for 1.8 s   clash 1")) << text;
+  }
+}
+
+TEST(ClashLine, IsColouredAtTheWordOfItsClass) {
+  EXPECT_EQ(coloured_line("REAL  a × b", CollisionClass::kReal), "\033[31mREAL\033[0m  a × b");
+  EXPECT_EQ(coloured_line("FAKE  a × b", CollisionClass::kFake), "\033[34mFAKE\033[0m  a × b");
+  EXPECT_EQ(coloured_line("ENDED", CollisionClass::kNone), "\033[2mENDED\033[0m");
+}
+
 TEST(ClashLine, IsNeverLongerThanATerminal) {
   const Verdict v = verdict_of(CollisionClass::kPotential, 1e300, "of a fit with a long name");
   for (const std::size_t length : {1U, 30U, 60U, 500U})

@@ -63,8 +63,7 @@ TEST_F(Endpoint, AnswersNothingElse) {
 TEST_F(Endpoint, ARequestNamesOneHost) {
   for (const char* hosts : {"", "Host: x\r\nHost: y\r\n", "Host: x\r\nhost: x\r\n"}) {
     const Connection connection(endpoint_->port());
-    connection.send(std::string("GET /metrics HTTP/1.1\r\n") + hosts +
-                    "Connection: close\r\n\r\n");
+    connection.send(std::string("GET /metrics HTTP/1.1\r\n") + hosts + "Connection: close\r\n\r\n");
     EXPECT_EQ(connection.rest().rfind("HTTP/1.1 400", 0), 0U) << hosts;
   }
 }

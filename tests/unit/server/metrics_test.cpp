@@ -38,6 +38,28 @@ TEST(DurationHistogram, PercentilesAreNeverTooLowAndAtMostAThirtySecondTooHigh) 
   }
 }
 
+TEST(DurationHistogram, CountsNothingBelowABoundThatIsAboveIt) {
+  std::mt19937_64 random(12);
+  DurationHistogram histogram;
+  std::vector<std::int64_t> values;
+  double sum_s = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    values.push_back(static_cast<std::int64_t>(random() % 100'000'000));
+    histogram.add(values.back());
+    sum_s += static_cast<double>(values.back()) * 1e-9;
+  }
+  for (const std::int64_t bound : {50'000, 1'000'000, 16'000'000, 50'000'000}) {
+    const auto up_to = [&](std::int64_t ns) {
+      return static_cast<std::uint64_t>(
+          std::ranges::count_if(values, [ns](std::int64_t v) { return v <= ns; }));
+    };
+    EXPECT_LE(histogram.count_up_to(bound), up_to(bound));
+    EXPECT_GE(histogram.count_up_to(bound), up_to(bound - bound / 32));
+  }
+  EXPECT_EQ(histogram.count_up_to(100'000'000'000), 5000U);
+  EXPECT_NEAR(histogram.sum_s(), sum_s, 1e-9);
+}
+
 TEST(DurationHistogram, TakesWhatNoClockShouldSay) {
   DurationHistogram histogram;
   histogram.add(-5);

@@ -23,10 +23,12 @@ struct Exposition {
 // The format as its own documents give it, read strictly.
 Exposition read(const std::string& text) {
   static const std::regex help("# HELP ([a-z_]+) \\S.*");
-  static const std::regex type("# TYPE ([a-z_]+) (counter|gauge)");
+  static const std::regex type("# TYPE ([a-z_]+) (counter|gauge|histogram)");
   static const std::regex sample(
       "([a-z_]+)(\\{[a-z_]+=\"(?:[^\"\\\\\n]|\\\\.)*\"(?:,[a-z_]+=\"(?:[^\"\\\\\n]|\\\\.)*\")*\\})?"
       " ([-+0-9.e]+|inf|nan)");
+  // What a sample of a histogram adds to the name of its family.
+  static const std::regex part("(_bucket|_sum|_count)$");
   Exposition read;
   std::istringstream lines(text);
   std::string line, family, helped;
@@ -39,7 +41,9 @@ Exposition read(const std::string& text) {
       EXPECT_EQ(helped, family);
       EXPECT_TRUE(read.kinds.emplace(family, m[2]).second) << "told twice: " << family;
     } else if (std::regex_match(line, m, sample)) {
-      EXPECT_EQ(m[1], family) << "a sample outside of its family";
+      const bool histogram = read.kinds[family] == "histogram";
+      EXPECT_EQ(histogram ? std::regex_replace(m[1].str(), part, "") : m[1].str(), family)
+          << "a sample outside of its family";
       EXPECT_TRUE(read.values.emplace(m[1].str() + m[2].str(), m[3]).second) << line;
     } else {
       ADD_FAILURE() << "no line of this format: " << line;
@@ -109,8 +113,31 @@ TEST(MetricsText, TellsWhatTheSessionKnows) {
     ASSERT_TRUE(told.values.contains(name)) << name << "\n" << whole;
     EXPECT_EQ(told.values.at(name), value) << name;
   }
-  EXPECT_GT(std::stod(told.values.at("mortise_tick_seconds{quantile=\"1\"}")), 0.0);
+  EXPECT_EQ(told.kinds.at("mortise_tick_seconds"), "histogram");
+  EXPECT_EQ(told.values.at("mortise_tick_seconds_bucket{le=\"+Inf\"}"), "4");
+  EXPECT_EQ(told.values.at("mortise_tick_seconds_count"), "4");
+  EXPECT_GT(std::stod(told.values.at("mortise_tick_seconds_sum")), 0.0);
   EXPECT_GT(resident_bytes(), 1'000'000U);
+}
+
+TEST(MetricsText, ToldDurationsAreCumulative) {
+  SessionFigures figures;
+  figures.tick_s.count = 9;
+  figures.tick_s.sum_s = 0.25;
+  for (std::size_t i = 0; i < kDurationBounds_s.size(); ++i) figures.tick_s.up_to[i] = i / 2;
+  const std::string text = metrics_text(figures, 0);
+  EXPECT_NE(text.find("# TYPE mortise_tick_seconds histogram\n"
+                      "mortise_tick_seconds_bucket{le=\"5e-05\"} 0\n"
+                      "mortise_tick_seconds_bucket{le=\"0.0001\"} 0\n"
+                      "mortise_tick_seconds_bucket{le=\"0.00025\"} 1\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("mortise_tick_seconds_bucket{le=\"1\"} 7\n"
+                      "mortise_tick_seconds_bucket{le=\"+Inf\"} 9\n"
+                      "mortise_tick_seconds_sum 0.25\n"
+                      "mortise_tick_seconds_count 9\n"),
+            std::string::npos)
+      << text;
 }
 
 }  // namespace

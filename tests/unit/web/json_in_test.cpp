@@ -71,6 +71,15 @@ TEST(PageMessage, ReadsEveryCommand) {
   EXPECT_EQ(added.details.edit->mesh_hash, "0f");
   EXPECT_TRUE(added.details.edit->moving);
   EXPECT_EQ(added.details.edit->X_WP.p, Vec3(1, 2, 3));
+  EXPECT_EQ(added.details.edit->X_WP.q.w(), 1.0);
+  const auto turned = command(
+      R"("do":"add_part","name":"a","mesh":"0f","moving":false,"p":[1,2,3],"q":[0,0,0.6,0.8])");
+  EXPECT_EQ(turned.details.edit->X_WP.q.coeffs(), Eigen::Vector4d(0, 0, 0.6, 0.8));
+  for (const char* q : {"[0,0,0,2]", "[0,0,1]", "7", "[0,0,0,\"1\"]"})
+    EXPECT_FALSE(read_page_message(
+        std::string(R"({"type":"command","id":9,"do":"add_part","name":"a","mesh":"0f",)") +
+        R"("moving":false,"q":)" + q + "}"))
+        << q;
   EXPECT_EQ(command(R"("do":"remove_part","part":2)").kind, CommandKind::kRemovePart);
   const auto stands = command(R"("do":"set_moving","part":2,"moving":false)");
   EXPECT_EQ(stands.kind, CommandKind::kSetMoving);

@@ -10,6 +10,7 @@
 
 #include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
+#include "common/messages/mesh_bytes.h"
 #include "common/messages/names.h"
 #include "server/tick_loop.h"
 #include "tests/support/small_scenarios.h"
@@ -308,7 +309,7 @@ std::vector<std::byte> stl_of_a_corner() {
 
 bool still_on_its_way(const Page& page) {
   const Json state = page.last("upload")["state"];
-  return state == "open" || state == "sent";
+  return state == "open" || state == "sent" || state == "parts";
 }
 
 std::string ticket_of(const Page& page) {
@@ -382,6 +383,77 @@ TEST_F(PagesOnASession, BringAFileAndEverybodySeesItsPart) {
   }
   ASSERT_EQ(bob.last("scene")["parts"].size(), parts.size()) << ann.last("reply");
   EXPECT_EQ(feed->mesh(mesh).state, MeshAnswer::State::kHere);
+}
+
+// A gateway that takes this for every STEP file.
+std::unique_ptr<LiveFeed> feed_with_step(Client& client, const Result<BroughtAssembly>& read) {
+  return std::make_unique<LiveFeed>(client, Limits{},
+                                    [read](auto& /*name*/, auto& /*bytes*/) { return read; });
+}
+
+std::vector<std::byte> corner_bytes(double edge_mm) {
+  const std::vector<Vec3> points{{0, 0, 0}, {edge_mm, 0, 0}, {0, edge_mm, 0}, {0, 0, edge_mm}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{
+      {0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh_to_bytes(points, triangles);
+}
+
+TEST_F(PagesOnASession, BringAStepFileAndHearOfAllItsParts) {
+  const Pose turned{Quat(0.8, 0, 0, 0.6), Vec3(7, 8, 9)};
+  BroughtAssembly assembly;
+  assembly.meshes = {corner_bytes(10.0), corner_bytes(20.0)};
+  assembly.places = {{"box/a", 0, {}}, {"box/b", 1, turned}, {"box/c", 0, turned}};
+  assembly.notes = {"a surface was left out"};
+  feed = feed_with_step(*client, assembly);
+  come(ann, "ann");
+  say(ann, R"({"type":"upload","id":5,"name":"box.STEP","bytes":3})");
+  turn();
+  ASSERT_TRUE(feed->take_file(ticket_of(ann), std::vector<std::byte>(3)));
+  for (int i = 0; i < 4000 && ann.last("upload")["state"] != "ready"; ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const Json ready = ann.last("upload");
+  ASSERT_EQ(ready["state"], "ready") << ready;
+  EXPECT_EQ(ready["id"], 5);
+  EXPECT_EQ(ready["text"], "a surface was left out");
+  ASSERT_EQ(ready["parts"].size(), 3u) << ready;
+  EXPECT_EQ(ready["parts"][0]["mesh"], ready["parts"][2]["mesh"]);
+  EXPECT_NE(ready["parts"][0]["mesh"], ready["parts"][1]["mesh"]);
+  Json edit = ready["parts"][1];
+  edit.update({{"type", "command"}, {"id", 6}, {"do", "add_part"}, {"moving", true}});
+  say(ann, edit.dump());
+  for (int i = 0; i < 1000 && ann.last("reply").is_null(); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  turn(4);
+  ASSERT_EQ(ann.last("reply")["done"], true) << ann.last("reply");
+  const Json part = ann.last("scene")["parts"].back();
+  EXPECT_EQ(part["name"], "box/b");
+  EXPECT_EQ(part["p"], Json::parse("[7.0,8.0,9.0]"));
+  EXPECT_EQ(part["q"], Json::parse("[0.0,0.0,0.6,0.8]"));
+}
+
+TEST_F(PagesOnASession, HearWhyAStepFileCannotBeRead) {
+  feed = feed_with_step(*client, fail(Code::kInvalidInput, "box.step: is torn"));
+  come(ann, "ann");
+  come(bob, "bob");
+  const auto bring = [&](Page& page) {
+    say(page, R"({"type":"upload","id":5,"name":"box.step","bytes":3})");
+    turn();
+    ASSERT_TRUE(feed->take_file(ticket_of(page), std::vector<std::byte>(3)));
+  };
+  bring(bob);
+  feed->leave(bob);  // while it waits, or is read
+  bring(ann);
+  for (int i = 0; i < 4000 && still_on_its_way(ann); ++i) {
+    turn();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(ann.last("upload")["state"], "refused");
+  EXPECT_EQ(ann.last("upload")["text"], "box.step: is torn");
+  EXPECT_EQ(bob.last("upload")["state"], "parts") << "nothing is told to who has left";
 }
 
 TEST_F(PagesOnASession, MayNotBringWhatIsTooMuchOrNotTheirs) {

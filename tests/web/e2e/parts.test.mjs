@@ -1,7 +1,7 @@
 // People bring their parts as files: everybody sees them and the verdict, and the way out of it; what is refused says why; what was done is taken back.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
@@ -89,9 +89,12 @@ test('the way out of a clash is told with its length, and goes as a ghost', asyn
 
 test('files that cannot be parts say why in their row', async () => {
   const row = (text) => tom.locator('#arriving > li', { hasText: text });
-  await drop(tom, [['frame.step', 'ISO-10303-21;'], ['notes.txt', 'x']]);
-  await row('frame.step').getByText('mortise open').waitFor(PATIENCE);
-  await row('notes.txt').getByText('not a mesh').waitFor(PATIENCE);
+  await drop(tom, [['notes.txt', 'x']]);
+  await row('notes.txt').getByText('neither a mesh').waitFor(PATIENCE);
+  await drop(tom, [['frame.step', 'ISO-10303-21;']]);
+  await tom.click('#units_add');
+  await row('frame').locator('button').waitFor(PATIENCE);
+  assert.doesNotMatch(await row('frame').textContent(), /frame: (…|is read|\d.*parts)$/);
   await drop(tom, [['torn.stl', 'solid torn\nfacet normal 0 0 0\n']]);
   await tom.click('#units_add');
   await row('torn').locator('button').waitFor(PATIENCE);
@@ -134,6 +137,18 @@ test('fits of bores and shafts that were found are proposed, and set at once for
   if (process.env.MORTISE_PICTURES) { await tom.waitForTimeout(1500); await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'proposed_set.png') }); }
   await tom.locator('#rules_panel li', { hasText: /plate\..+ × peg\..+ H7\/g6/ }).getByText('Tom').waitFor({ timeout: 6000 });
   await all.waitFor({ ...PATIENCE, state: 'hidden' });
+});
+
+test('a STEP file becomes all its parts, each where the file has it', async () => {
+  await tom.setInputFiles('#add_files', resolve(import.meta.dirname, '../../../scenarios/tensioner.step'));
+  await tom.locator('#units_list li', { hasText: 'tensioner.step' }).waitFor(PATIENCE);
+  await tom.click('#units_add');
+  const row = tom.locator('#arriving > li', { hasText: 'tensioner' });
+  await row.waitFor(PATIENCE);
+  await tom.waitForFunction(() => ![...document.querySelectorAll('#arriving > li')].some((li) => !li.classList.contains('bad')), undefined, { timeout: 60_000 });
+  for (const page of [eva, tom]) assert.equal(await page.locator('#parts > li').count(), 4 + 19, await page.locator('#parts').textContent());
+  if (process.env.MORTISE_PICTURES) await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'step.png') });
+  for (const left of await tom.locator('#arriving button').all()) await left.click();
 });
 
 test('a file under no ticket, of a foreign page or without a token is not taken', async () => {

@@ -67,6 +67,16 @@ test('it plays and pauses', async () => {
   await whenListed(page, 'clashes', 'real');
 });
 
+test('the session is saved as a file', async () => {
+  const [download] = await Promise.all([page.waitForEvent('download', PATIENCE), page.click('#do_save')]);
+  assert.match(download.suggestedFilename(), /\.mcap$/);
+  const begin = Buffer.alloc(8);
+  const stream = await download.createReadStream();
+  for await (const piece of stream) { piece.copy(begin); break; }
+  assert.equal(begin.toString('latin1'), '\x89MCAP0\r\n');
+  await page.getByText('goes on from here').waitFor(PATIENCE);
+});
+
 test('the report is downloaded, and opens by itself', async () => {
   const [download] = await Promise.all([page.waitForEvent('download', PATIENCE), page.click('#do_report')]);
   assert.match(download.suggestedFilename(), /report\.html$/);

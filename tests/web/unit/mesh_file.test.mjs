@@ -26,7 +26,9 @@ test('the size of a mesh file is read of its corners, binary or text', () => {
 test('units are asked for where a file has none, and shown in mm', () => {
   assert.equal(statedUnit('x.glb'), 1000);
   assert.equal(statedUnit('x.stl'), 0);
-  assert.equal(formatOf('x.step'), '');
+  assert.equal(formatOf('x.igs'), '');
+  assert.equal(formatOf('x.STEP'), 'step');
+  assert.equal(statedUnit('x.stp'), 1);
   assert.equal(extentSaid([1, 0.5, 2], 25.4), '25.4 × 12.7 × 50.8 mm');
   assert.equal(extentSaid(null, 1), 'of unknown size');
 });
@@ -49,13 +51,20 @@ test('a file goes as it is allowed to, and each end of it is told', async () => 
   uploads.take({ id: 1, state: 'open', path: 'upload/t' });
   uploads.take({ id: 1, state: 'sent', received: 50 });
   uploads.take({ id: 1, state: 'ready', mesh: 'h', text: 'open' });
-  assert.deepEqual(await good, { mesh: 'h', text: 'open' });
-  assert.deepEqual([posted, shares], [['upload/t'], [0.25]]);
+  assert.deepEqual(await good, { mesh: 'h', parts: undefined, text: 'open' });
+  assert.deepEqual([posted, shares], [['upload/t'], ['25 %']]);
+  const said = [];
+  const assembly = uploads.bring({ name: 'a.step', size: 9 }, 1, (text) => said.push(text));
+  const parts = [{ name: 'a/b', mesh: 'h', p: [0, 0, 0], q: [0, 0, 0, 1] }];
+  for (const done of [0, 1]) uploads.take({ id: 2, state: 'parts', done, of: 2 * done });
+  uploads.take({ id: 2, state: 'ready', parts, text: '' });
+  assert.deepEqual(await assembly, { mesh: '', parts, text: '' });
+  assert.deepEqual(said, ['is read', '1 of 2 parts']);
   const refused = uploads.bring(file, 1, () => {});
-  uploads.take({ id: 2, state: 'refused', refusal: 'no right', text: 'the scenario does not let you add parts' });
+  uploads.take({ id: 3, state: 'refused', refusal: 'no right', text: 'the scenario does not let you add parts' });
   await assert.rejects(refused, /does not let you/);
   const torn = uploads.bring(file, 1, () => {});
-  uploads.take({ id: 3, state: 'open', path: 'upload/bad' });
+  uploads.take({ id: 4, state: 'open', path: 'upload/bad' });
   await assert.rejects(torn, /nobody waits/);
   const lost = uploads.bring(file, 1, () => {});
   uploads.lost();

@@ -86,6 +86,23 @@ test('what waits is gone when it is told no more; what was given up stays until 
   assert.equal(unexamined.take({ tick: 240 }), false);
 });
 
+test('a pair that waits longer than half a second is told once, and again only after nothing has waited', () => {
+  const session = new Session();
+  const told = [];
+  session.on('waits', (row) => told.push(`${row.a} ${row.b}`));
+  const pulse = (...rows) => session.apply({ type: 'pulse', tick: 1, unexamined: rows.map(([a, b, ticks]) => ({ a, b, why: 'waits for depth', ticks })) });
+  pulse([1, 2, 20]);
+  assert.deepEqual(told, []);
+  pulse([1, 2, 10]); // 30 ticks of 60 a second: not longer
+  assert.deepEqual(told, []);
+  pulse([1, 2, 1], [3, 4, 9]);
+  pulse([1, 2, 60], [3, 4, 60]);
+  assert.deepEqual(told, ['1 2']);
+  pulse();
+  pulse([3, 4, 60]);
+  assert.deepEqual(told, ['1 2', '3 4']);
+});
+
 test('saved views belong to their session; one of the same name is replaced, and what cannot be read is none', () => {
   const kept = new Map();
   const views = new SavedViews({ getItem: (key) => kept.get(key) ?? null, setItem: (key, value) => kept.set(key, value) });

@@ -1,5 +1,5 @@
 // Parts that people bring as files: dropped on the page or chosen; units are asked once, and what comes of each file is told in its row.
-import { ACCEPTED, UNITS, extentOf, extentSaid, formatOf, partNameOf, statedUnit } from '../session/mesh_file.js';
+import { ACCEPTED, UNITS, extentOf, extentSaid, formatOf, freeName, partNameOf, statedUnit } from '../session/mesh_file.js';
 import { byId, el, inputById, selectById, setText } from './dom.js';
 import { icon } from './icons.js';
 
@@ -55,7 +55,7 @@ export function makeAddParts({ session, choice, partsView, commands, uploads, sh
     const good = [];
     for (const file of files) {
       if (formatOf(file.name)) good.push(file);
-      else addRow(file.name).refuse(/\.(step|stp)$/i.test(file.name) ? 'a STEP file is opened from a shell: mortise open FILE' : 'not a mesh: STL, OBJ or GLB');
+      else addRow(file.name).refuse('neither a mesh nor an assembly: STL, OBJ, GLB or STEP');
     }
     if (good.length === 0) return;
     asked = await Promise.all(good.map(async (file) => ({ file, extent: file.size <= WITHOUT_UNIT_READ_BYTES ? extentOf(file.name, await file.arrayBuffer()) : null })));
@@ -67,20 +67,38 @@ export function makeAddParts({ session, choice, partsView, commands, uploads, sh
     dialog.showModal();
   }
 
+  const isTaken = (/** @type {string} */ name) => coming.has(name) || unseen.has(name) || [...session.parts.values()].some((part) => part.name === name);
+
+  /** @param {{name: string, mesh: string}} part @param {boolean} moving @returns {Promise<string>} why not; empty: it is there */
+  async function add(part, moving) {
+    unseen.add(part.name);
+    const reply = await commands.ask('add_part', { ...part, moving });
+    if (!reply.done) unseen.delete(part.name);
+    return reply.done ? '' : reply.text || reply.refusal || 'refused';
+  }
+
+  /** Of one file, each where the file has it. @param {import('../session/uploads.js').Brought[]} parts @param {boolean} moving @param {(said: string) => void} say */
+  async function addAll(parts, moving, say) {
+    for (const [i, part] of parts.entries()) {
+      say(`part ${i + 1} of ${parts.length} is added`);
+      const name = freeName(part.name, isTaken);
+      const why = await add({ ...part, name }, moving);
+      if (why) return `${name}: ${why}`;
+    }
+    return '';
+  }
+
   /** Files come at one time, parts in the order of their files. @param {File} file @param {number} unit_mm @param {boolean} moving @param {Promise<void>} before */
   async function bring(file, unit_mm, moving, before) {
-    const name = partNameOf(file.name, (taken) => coming.has(taken) || [...session.parts.values()].some((part) => part.name === taken));
+    const name = partNameOf(file.name, isTaken);
     const row = addRow(name);
     coming.add(name);
     try {
-      const { mesh, text } = await uploads.bring(file, unit_mm, (share) => row.say(`${Math.round(100 * share)} %`));
+      const { mesh, parts, text } = await uploads.bring(file, unit_mm, row.say);
       row.say('is added');
       await before;
-      unseen.add(name);
-      const reply = await commands.ask('add_part', { name, mesh, moving });
-      if (!reply.done) unseen.delete(name);
-      if (!reply.done) row.refuse(reply.text || reply.refusal);
-      else if (text) row.refuse(text); // what was found in it stays until it has been read
+      const why = parts ? await addAll(parts, moving, row.say) : await add({ name, mesh }, moving);
+      if (why || text) row.refuse(why || text); // what was found in it stays until it has been read
       else row.end();
     } catch (error) {
       const why = error instanceof Error ? error.message : `${error}`;

@@ -28,6 +28,7 @@ const PATHS = {
   add: 'M10 4v12M4 10h12',
   close: 'M5 5l10 10M15 5L5 15',
   link: 'M8 12l4-4M7 9L5 11a2.8 2.8 0 0 0 4 4l2-2M13 11l2-2a2.8 2.8 0 0 0-4-4L9 7',
+  save: 'M4 4h9.5L16 6.5V16H4zM7 4v4h5.5V4M7 16v-5h6v5',
   download: 'M10 3v9M6.5 8.8L10 12.3l3.5-3.5M4 16.5h12',
   statistics: 'M4 16V9M8 16V5M12 16v-4M16 16V7',
   play: 'M6 4l10 6-10 6z',

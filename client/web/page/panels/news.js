@@ -1,4 +1,5 @@
 // What others do and what the session decides, as short sentences.
+import { wordsOf } from '../session/unexamined.js';
 import { plain, small } from '../session/words.js';
 
 /** @param {import('../desk.js').Desk} desk */
@@ -55,6 +56,7 @@ export function makeNews({ session, say }) {
     else real.delete(event.clash);
     if (event.approval_lost) say(`${pair} got worse: its approval is lost`, 'bad');
   });
+  session.on('waits', ({ a, b, why }) => say(`${session.partName(a)} × ${session.partName(b)} ${wordsOf(why)}. It may clash.`, 'bad'));
   session.on('refused', (increments) => {
     for (const { part, reason } of increments) say(`${session.partName(part)} did not move: ${plain(reason)}`, 'bad');
   });

@@ -1,25 +1,37 @@
-// The report of the session as one page, to be kept.
+// What is kept of a session as a file: its report as one page, and the session itself, from which `mortise open` goes on.
 import { byId } from './dom.js';
 
 /** @param {import('../desk.js').Desk} desk */
 export function makeReport({ session, connection, say }) {
-  const button = /** @type {HTMLButtonElement} */ (byId('do_report'));
+  const report = /** @type {HTMLButtonElement} */ (byId('do_report'));
+  const save = /** @type {HTMLButtonElement} */ (byId('do_save'));
   session.on('welcome', () => {
-    button.hidden = !session.hasReport;
+    report.hidden = !session.hasReport;
+    save.hidden = !session.hasLog;
   });
-  button.onclick = async () => {
+
+  /** @param {HTMLButtonElement} button @param {'report.html' | 'session.mcap'} file @param {string} name @param {string} done */
+  async function download(button, file, name, done) {
     button.disabled = true;
-    say('The report is being made');
     try {
       const link = document.createElement('a');
-      link.href = URL.createObjectURL(await connection.report());
-      link.download = `${session.name || 'session'} report.html`;
+      link.href = URL.createObjectURL(await connection.download(file));
+      link.download = name;
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-      say('The report is downloaded', 'good');
+      say(done, 'good');
     } catch (error) {
       say(error instanceof Error ? error.message : `${error}`, 'bad');
     }
     button.disabled = false;
+  }
+
+  report.onclick = () => {
+    say('The report is being made');
+    download(report, 'report.html', `${session.name || 'session'} report.html`, 'The report is downloaded');
+  };
+  save.onclick = () => {
+    const name = `${session.name || 'session'}.mcap`;
+    download(save, 'session.mcap', name, `Saved: mortise open ${name} goes on from here`);
   };
 }

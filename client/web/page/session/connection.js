@@ -123,10 +123,10 @@ export class Connection {
     return true;
   }
 
-  /** The report of the session. @returns {Promise<Blob>} */
-  async report() {
-    const answer = await fetch('report.html', { headers: { Authorization: `Bearer ${this.token}` } });
-    if (!answer.ok) throw new Error((await answer.text()).trim() || `no report: ${answer.status}`);
+  /** What the gateway makes of the session's log. @param {'report.html' | 'session.mcap'} file @returns {Promise<Blob>} */
+  async download(file) {
+    const answer = await fetch(file, { headers: { Authorization: `Bearer ${this.token}` } });
+    if (!answer.ok) throw new Error((await answer.text()).trim() || `no ${file}: ${answer.status}`);
     return answer.blob();
   }
 

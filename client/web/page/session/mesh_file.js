@@ -1,11 +1,11 @@
-// Mesh files that somebody brings: which format, how large in the numbers of the file, and what those numbers may mean.
+// Files that somebody brings: which format, how large in the numbers of the file, and what those numbers may mean.
 
 /** mm of one unit. */
 export const UNITS = /** @type {const} */ ([['mm', 1], ['cm', 10], ['m', 1000], ['inch', 25.4]]);
 
 /** Of formats that say it; else it must be asked for. @type {Record<string, number>} */
-const STATED_MM = { glb: 1000, gltf: 1000 };
-const FORMATS = ['stl', 'obj', 'glb'];
+const STATED_MM = { glb: 1000, gltf: 1000, step: 1, stp: 1 };
+const FORMATS = ['stl', 'obj', 'glb', 'step', 'stp'];
 export const ACCEPTED = FORMATS.map((format) => `.${format}`).join(',');
 
 /** @param {string} name of a file */
@@ -21,7 +21,11 @@ export function statedUnit(name) {
 
 /** A name for a part of this file that no other part has. @param {string} file @param {(name: string) => boolean} taken */
 export function partNameOf(file, taken) {
-  const stem = file.replace(/\.[^.]*$/, '').replace(/[^A-Za-z0-9_-]+/g, '_').slice(0, 60) || 'part';
+  return freeName(file.replace(/\.[^.]*$/, '').replace(/[^A-Za-z0-9_-]+/g, '_').slice(0, 60) || 'part', taken);
+}
+
+/** @param {string} stem @param {(name: string) => boolean} taken */
+export function freeName(stem, taken) {
   let name = stem;
   for (let i = 2; taken(name); ++i) name = `${stem}_${i}`;
   return name;

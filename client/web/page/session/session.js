@@ -47,7 +47,7 @@ const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset', 'add part']);
  * @property {void} users @property {any} decision @property {void} standing @property {any} pulse @property {void} server
  * @property {void} me @property {Array<{part: number, reason: string, count: number}>} refused @property {View[]} views
  * @property {void} features @property {any} timeline @property {any} replay @property {string} mesh @property {string} error
- * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {void} draining @property {import('./uploads.js').UploadTold} upload
+ * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {import('./unexamined.js').Told} waits @property {void} draining @property {import('./uploads.js').UploadTold} upload
  */
 
 /** @extends {Signals<Said>} */
@@ -56,6 +56,7 @@ export class Session extends Signals {
   mode = 'live';
   role = 'designer';
   hasReport = false;
+  hasLog = false;
   boundName = ''; // the only one that this link lets us join under; empty: any
   policy = '';
   tick = 0;
@@ -162,6 +163,7 @@ export class Session extends Signals {
       this.mode = m.mode;
       this.role = m.role;
       this.hasReport = m.report === true;
+      this.hasLog = m.log === true;
       this.boundName = m.name ?? '';
       this.emit('me', undefined);
       this.emit('welcome', undefined);
@@ -267,6 +269,8 @@ export class Session extends Signals {
   #pulse(m) {
     this.tick = Math.max(this.tick, m.tick ?? 0);
     if (this.unexamined.take(m)) this.emit('unexamined', undefined);
+    const waits = this.unexamined.news(m, this.tickRate);
+    if (waits) this.emit('waits', waits);
     const begins = m.draining === true && !this.draining;
     this.draining = m.draining === true;
     if (begins) this.emit('draining', undefined);

@@ -14,6 +14,9 @@ const WORDS = {
   'no inside': 'a mesh is open, so that what lies inside of it is not known; repair it',
 };
 
+/** Who waits longer, in consecutive pulses together, is told of. */
+const TELL_S = 0.5;
+
 /** @param {string} why */
 export function wordsOf(why) {
   return WORDS[why] ?? why;
@@ -25,6 +28,9 @@ export class Unexamined {
   leftOut = 0;
   /** Parts that have moved since the last pulse. @type {Set<number>} */
   #moved = new Set();
+  /** Ticks in consecutive pulses, by pair. @type {Map<string, number>} */
+  #waited = new Map();
+  #told = false;
 
   /** @param {Iterable<{id: number}>} parts */
   moved(parts) {
@@ -34,7 +40,21 @@ export class Unexamined {
   clear() {
     this.rows.clear();
     this.#moved.clear();
+    this.#waited.clear();
+    this.#told = false;
     this.leftOut = 0;
+  }
+
+  /** The pair that has waited longest: once, and again only after a pulse without any. @param {{unexamined?: Told[]}} pulse @param {number} tickRate @returns {Told | null} */
+  news(pulse, tickRate) {
+    const rows = pulse.unexamined ?? [];
+    this.#waited = new Map(rows.map((row) => [`${row.a} ${row.b}`, (this.#waited.get(`${row.a} ${row.b}`) ?? 0) + row.ticks]));
+    if (rows.length === 0) this.#told = false;
+    const ticks = (/** @type {Told} */ row) => this.#waited.get(`${row.a} ${row.b}`) ?? 0;
+    const longest = rows.reduce((/** @type {Told | null} */ most, row) => (!most || ticks(row) > ticks(most) ? row : most), null);
+    if (!longest || this.#told || ticks(longest) <= TELL_S * tickRate) return null;
+    this.#told = true;
+    return longest;
   }
 
   /** @param {{tick: number, unexamined?: Told[], unexamined_left_out?: number}} pulse @returns {boolean} is it another list? */

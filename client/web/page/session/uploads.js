@@ -1,6 +1,7 @@
 // Files on their way to the session: asked for over the line, sent by HTTP, told of until the session has read them.
 
-/** @typedef {{id: number, state: string, path?: string, received?: number, mesh?: string, text?: string, refusal?: string}} UploadTold */
+/** @typedef {{name: string, mesh: string, p: [number, number, number], q: [number, number, number, number]}} Brought a part of a STEP file */
+/** @typedef {{id: number, state: string, path?: string, received?: number, mesh?: string, parts?: Brought[], done?: number, of?: number, text?: string, refusal?: string}} UploadTold */
 
 export class Uploads {
   #next = 1;
@@ -14,8 +15,8 @@ export class Uploads {
   }
 
   /**
-   * @param {File} file @param {number} unit mm @param {(share: number) => void} progress 0 … 1
-   * @returns {Promise<{mesh: string, text: string}>} fails with a sentence
+   * @param {File} file @param {number} unit mm @param {(said: string) => void} progress
+   * @returns {Promise<{mesh: string, parts?: Brought[], text: string}>} fails with a sentence
    */
   bring(file, unit, progress) {
     const id = this.#next++;
@@ -28,9 +29,11 @@ export class Uploads {
         if (told.state === 'open' && told.path) {
           this.post(told.path, file).then((why) => why && end(() => fail(new Error(why))));
         } else if (told.state === 'sent') {
-          progress((told.received ?? 0) / file.size);
+          progress(`${Math.round((100 * (told.received ?? 0)) / file.size)} %`);
+        } else if (told.state === 'parts') {
+          progress(told.of ? `${told.done} of ${told.of} parts` : 'is read');
         } else if (told.state === 'ready') {
-          end(() => done({ mesh: told.mesh ?? '', text: told.text ?? '' }));
+          end(() => done({ mesh: told.mesh ?? '', parts: told.parts, text: told.text ?? '' }));
         } else {
           end(() => fail(new Error(told.text || told.refusal || 'refused')));
         }

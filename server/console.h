@@ -1,0 +1,50 @@
+#pragma once
+#include <spdlog/sinks/base_sink.h>
+
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace mortise {
+
+struct ConsoleStyle {
+  bool terminal = false;    ///< else a file or a pipe: each line begins with the time of day
+  bool color = false;       ///< of warnings, errors and classes
+  std::size_t columns = 0;  ///< of the terminal; 0: not known
+};
+
+/// Of stderr as it is now. Colours only on a terminal, and not where NO_COLOR is set.
+ConsoleStyle style_of_stderr();
+
+/// News begins with its own first word, warnings and errors with theirs.
+std::unique_ptr<spdlog::formatter> console_lines(const ConsoleStyle& style);
+
+/// Messages on stderr. On a terminal, lines that stay are below all of them.
+class Console : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  using StyleNow = std::function<ConsoleStyle()>;
+  explicit Console(std::FILE* out = stderr, StyleNow style = style_of_stderr);
+
+  /// In the place of the lines that stayed before. Nothing where `out` is no terminal.
+  void stay(std::vector<std::string> lines);
+  /// The lines that stay are left where they are, and what is printed next goes below them.
+  void leave();
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override;
+  void flush_() override { std::fflush(out_); }
+
+ private:
+  void clear();
+  void draw();
+
+  std::FILE* out_;
+  StyleNow style_;
+  std::vector<std::string> lines_;
+  std::size_t rows_ = 0;  ///< on the terminal now
+};
+
+}  // namespace mortise
