@@ -116,6 +116,7 @@ void Announcer::say_clash(const ClashEvent& event, const World& world, const Ses
                  rule != nullptr ? rule->fit : "",
                  0,
                  fmt::format("clash {}", event.clash.value)};
+  if (event.review.status == ReviewStatus::kApproved) line.note += ", approved";
   if (event.user) line.note += " by " + names.user(event.user);
   said = now;
   say_line(clash_line(line), now);

@@ -89,13 +89,8 @@ class FaultSchedules : public EtcdSite {
   int changes_ = 0;
 };
 
-/// Run by hand: this does not hold yet. In one of some twenty schedules a few increments are
-/// acknowledged and in no log, of users who were taken for gone and came in again
-/// (server/README.md, Limitations).
-TEST_F(FaultSchedules, DISABLED_NothingThatWasAcknowledgedIsLost) { play(effort(2), 31); }
-TEST_F(FaultSchedules, DISABLED_SoakNothingThatWasAcknowledgedIsLost) {
-  play(effort(8), 1'000'003);
-}
+TEST_F(FaultSchedules, NothingThatWasAcknowledgedIsLost) { play(effort(2), 31); }
+TEST_F(FaultSchedules, SoakNothingThatWasAcknowledgedIsLost) { play(effort(8), 1'000'003); }
 
 /// Both halves have users; with patience alone both servers would speak, and one of them in vain.
 TEST_F(EtcdSite, OfTwoHalvesOneSpeaks) {
