@@ -67,6 +67,15 @@ test('it plays and pauses', async () => {
   await whenListed(page, 'clashes', 'real');
 });
 
+test('at 390 pixels the timeline has a row of its own, and what filters says which', async () => {
+  const phone = await openPage(session.browser, session.addresses.observer, { touch: true, view: { width: 390, height: 844 } });
+  const slider = phone.locator('#timeline input[type="range"]');
+  await slider.waitFor(PATIENCE);
+  assert.ok((await slider.boundingBox()).width > 300, `${(await slider.boundingBox()).width} pixels`);
+  for (const select of await phone.locator('#clash_filters select').all()) assert.ok((await select.boundingBox()).width >= 100, `${(await select.boundingBox()).width} pixels`);
+  await phone.context().close();
+});
+
 test('the session is saved as a file', async () => {
   const [download] = await Promise.all([page.waitForEvent('download', PATIENCE), page.click('#do_save')]);
   assert.match(download.suggestedFilename(), /\.mcap$/);
