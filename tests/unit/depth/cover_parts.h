@@ -100,7 +100,9 @@ inline DrawnPart shaft(Random& random, double fit_r_mm) {
     p["key_offset_mm"] = ko;
     p["key_length_mm"] = kl;
   }
-  DrawnPart part = finish(random, *generate("shaft", p), 0.03);
+  const auto made = generate("shaft", p);
+  if (!made) return shaft(random, fit_r_mm);  // one of thousands cannot be made
+  DrawnPart part = finish(random, *made, 0.03);
   part.round_mm = r[0];
   for (const double one : l) part.length_mm += one;
   part.depth = [=](const Vec3& x, const OffsetOf& o) {
