@@ -142,6 +142,11 @@ struct Tally {
   int poses = 0, overlap = 0, apart = 0, tight = 0, below = 0, differ = 0;
 };
 
+// What is no depth bounds none, unless nothing is in both.
+double bound_of(const CoverOverlap& overlap) {
+  return overlap.is_depth || overlap.most_mm <= kNothing_mm ? overlap.most_mm : 1e9;
+}
+
 Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
   Random random(seed);
   Tally tally;
@@ -152,8 +157,9 @@ Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
       spoil(a);
       spoil(b);
       std::uint64_t work = 0;
-      const double most = CoverPair(a, b).overlap(pair.X_BA, kNothing_mm, work).most_mm;
-      const double other = CoverPair(b, a).overlap(pair.X_BA.inverse(), kNothing_mm, work).most_mm;
+      const double most = bound_of(CoverPair(a, b).overlap(pair.X_BA, kNothing_mm, work));
+      const double other =
+          bound_of(CoverPair(b, a).overlap(pair.X_BA.inverse(), kNothing_mm, work));
       const double found = Deepest(pair, pair.X_BA, largest).find(random, 400);
       ++tally.poses;
       tally.overlap += found > 0.0;
@@ -356,6 +362,59 @@ TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
 // Behind a chamfer a depth by the mesh is as good as its chords.
 constexpr double kMeshDepth_mm = 1e-3;
 
+// By the drawings, climbing from a place: how deep the most of `value` is, and where.
+template <class Value>
+double climb_from(Random& random, Vec3 x, double step, const Value& value) {
+  double at = value(x);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 next = x + step * any_direction(random);
+    const double there = value(next);
+    if (there > at) {
+      at = there;
+      x = next;
+      step *= 1.5;
+    } else {
+      step = std::max(1e-9, 0.97 * step);
+    }
+  }
+  return at;
+}
+
+// How deep a point that is in one of both drawn parts lies in the other, at most, from below.
+double deepest_of_drawings(const DrawnPair& pair, bool largest) {
+  const Pose X_AB = pair.X_BA.inverse();
+  Random random(11);
+  double most = -1e9;
+  for (int i = 0; i < 80; ++i) {
+    const bool of_a = i % 2 == 0;
+    const TriangleMesh& mesh = (of_a ? pair.a : pair.b).solid->mesh();
+    const Vec3 x = mesh.corner(
+        static_cast<std::uint32_t>(below(random, int(mesh.triangles.size()))), below(random, 3));
+    most = std::max(most, climb_from(random, of_a ? pair.X_BA * x : x, 0.3, [&](const Vec3& y) {
+                      const double a = pair.a.depth_in(X_AB * y, largest),
+                                   b = pair.b.depth_in(y, largest);
+                      return (of_a ? b : a) + 50.0 * std::min(0.0, of_a ? a : b);
+                    }));
+  }
+  return most;
+}
+
+// The most that the depths in both drawn parts add up to near a place of both, from below.
+double overlap_of_drawings(const DrawnPair& pair, bool largest, const Vec3& near_B) {
+  const Pose X_AB = pair.X_BA.inverse();
+  Random random(12);
+  double most = -1e9;
+  for (int i = 0; i < 60; ++i)
+    most =
+        std::max(most, climb_from(random, near_B + uniform(random, 0, 0.05) * any_direction(random),
+                                  0.02, [&](const Vec3& y) {
+                                    const double a = pair.a.depth_in(X_AB * y, largest),
+                                                 b = pair.b.depth_in(y, largest);
+                                    return a + b + 100.0 * std::min({0.0, a, b});
+                                  }));
+  return most;
+}
+
 // A point of either surface of the layer, drawn anew; how deep it lies in the other part.
 double deepest_of_surfaces(const PairFrame& pair, Layer layer, Random& random, int points) {
   double most = -1e9;
@@ -393,6 +452,8 @@ TEST(Cover, NoSurfaceIsDeeperThanADepth) {
       const double found =
           deepest_of_surfaces(frame, largest ? Layer::kUpper : Layer::kLower, random, 3000);
       if (found <= overlap.most_mm + kMeshDepth_mm) continue;
+      // A depth by the mesh may be said too deep: the drawings decide.
+      if (deepest_of_drawings(pair, largest) <= overlap.most_mm + 1e-5) continue;
       if (++deeper <= 3)
         std::printf("pair %d (%s, %s) layer %d: %.6f deep, said %.6f\n", i, pair.a.what.c_str(),
                     pair.b.what.c_str(), int(largest), found, overlap.most_mm);
@@ -428,10 +489,12 @@ TEST(Cover, LooksAgreeWithThoseWithoutCovers) {
       }
       return found;
     };
-    // Faces beyond moved neighbours are too deep for the search: the drawings decide.
+    // Faces beyond moved neighbours are too deep for the search, and its upper ends were seen
+    // 0.12 um below the truth: the drawings decide.
     const auto compare = [&](Interval OverlapRegion::*of, bool largest) {
       const Interval x = most(with, of), y = most(without, of);
-      if (y.hi < x.lo - 1e-5) ++apart;
+      if (y.hi < x.lo - 1e-5)
+        apart += overlap_of_drawings(pair, largest, with.regions.front().witness_W) < x.lo - 1e-6;
       if (x.hi < y.lo - 1e-5)
         apart += 2.0 * Deepest(pair, pair.X_BA, largest).find(random, 800) > x.hi + 1e-5;
     };
