@@ -27,9 +27,24 @@ std::string number_text(double value) {
   return text;
 }
 
+// A sentence that is too long for a line of its table ends with "…".
+constexpr std::size_t kCellLength = 100;
+
+std::string cut(const std::string& text) {
+  if (length_of(text) <= kCellLength) return text;
+  std::string kept;
+  std::size_t length = 0;
+  for (const char c : text) {
+    length += (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
+    if (length == kCellLength) break;
+    kept.push_back(c);
+  }
+  return kept + "…";
+}
+
 std::string cell_text(const Json& cell) {
   if (cell.is_null()) return "-";
-  if (cell.is_string()) return cell.get<std::string>();
+  if (cell.is_string()) return cut(cell.get<std::string>());
   if (cell.is_number_float()) return number_text(cell.get<double>());
   return cell.dump();
 }
