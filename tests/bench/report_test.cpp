@@ -77,7 +77,7 @@ TEST(Figures, TheTableOfTheReadmeIsWhatTheKeptRunsSay) {
   EXPECT_NE(made.find("<!-- figures -->\n| question |"), std::string::npos);
 }
 
-TEST(Figures, WideTablesAreCutAndLongNotesAreWrapped) {
+TEST(Figures, WideTablesAndSentencesAreCutAndLongNotesAreWrapped) {
   Report report;
   std::vector<std::string> columns;
   std::vector<Cell> cells;
@@ -89,6 +89,8 @@ TEST(Figures, WideTablesAreCutAndLongNotesAreWrapped) {
   report.row(cells);
   std::string words;
   for (int i = 0; i < 60; ++i) words += "word ";
+  report.table("long", {"what", "sentence"});
+  report.row({std::string("a verdict"), words});
   report.note(words);
   report.bar("fast", 0.5, 1.0, BoundKind::kAtMost);
   const KeptRun run = kept_run("example", "./mortise bench example", report.json());
