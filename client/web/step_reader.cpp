@@ -49,6 +49,10 @@ BroughtAssembly brought(const StepDocument& document) {
   for (const StepInstance& instance : document.instances)
     assembly.places.push_back({part_name_of(instance.path), instance.part, instance.X_WP});
   assembly.notes = document.notes;
+  if (!document.statements.empty())
+    assembly.notes.push_back(std::to_string(document.statements.size()) +
+                             " tolerances that the file states are not used here; `mortise open` "
+                             "of the file uses them");
   for (const std::string& path : document.not_solid)
     assembly.notes.push_back(path + " is no solid: left out");
   return assembly;
@@ -59,13 +63,14 @@ BroughtAssembly brought(const StepDocument& document) {
 Result<BroughtAssembly> read_brought_step(const std::string& name,
                                           const std::vector<std::byte>& bytes) try {
   const FolderOfOne folder;
+  if (folder.path().empty())
+    return fail(Code::kRuntime, name + ": this gateway cannot make a folder to read it in");
   const fs::path path = folder.path() / "assembly.step";
   std::ofstream out(path, std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()),
             static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (folder.path().empty() || !out)
-    return fail(Code::kRuntime, name + ": this gateway has no room to read it");
+  if (!out) return fail(Code::kRuntime, name + ": this gateway has no room to read it");
   const Result<StepAssembly> read = import_step(path);
   if (!read) return fail(read.error().code, without_path(read.error().text, path.string(), name));
   BroughtAssembly assembly = brought(read->document);
