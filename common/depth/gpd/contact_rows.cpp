@@ -75,18 +75,19 @@ bool ContactRows::by_triangles(const Pose& X_WA, double reach_mm, std::vector<Pl
   return found.all;
 }
 
-std::vector<Vec3> ContactRows::corners_near(int part, double reach_mm) const {
+std::vector<ContactRows::Corner> ContactRows::corners_near(int part, double reach_mm) const {
   const Pose X = X_W_[1 - part].inverse() * X_W_[part];
+  const Mat3 R = X.rotation();
   const Box box = parts_[1 - part]->bounds().grown(reach_mm);
-  std::vector<Vec3> near;
+  std::vector<Corner> near;
   for (const Vec3& x : parts_[part]->mesh().points_mm) {
-    const Vec3 y = X * x;
+    const Vec3 y = R * x + X.p;
     if ((y.array() >= box.lo.array()).all() && (y.array() <= box.hi.array()).all())
-      near.push_back(x);
+      near.push_back({x});
   }
   // An odd stride, so that of a regular mesh not one row of corners alone is seen.
   const std::size_t stride = (near.size() / kMostCorners) | 1U;
-  std::vector<Vec3> some;
+  std::vector<Corner> some;
   for (std::size_t i = 0; i < near.size(); i += stride) some.push_back(near[i]);
   return some;
 }
@@ -100,10 +101,13 @@ void ContactRows::see_corners(double reach_mm, std::uint64_t& work) {
   }
 }
 
-SurfacePoint ContactRows::corner_at(int part, const Vec3& x, const Pose& X_WA,
+SurfacePoint ContactRows::corner_at(int part, Corner& corner, const Pose& X_WA,
                                     std::uint32_t near) const {
   const Pose X = part == 0 ? X_W_[1].inverse() * X_WA : X_WA.inverse() * X_W_[1];
-  return nearest_surface(*parts_[1 - part], X * x, near);
+  const SurfacePoint at = nearest_surface(*parts_[1 - part], X * corner.x,
+                                          corner.near == Topology::kNone ? near : corner.near);
+  corner.near = at.triangle;
+  return at;
 }
 
 std::vector<ContactRows::Place> ContactRows::by_corners(const Pose& X_WA, double reach_mm,
@@ -113,12 +117,12 @@ std::vector<ContactRows::Place> ContactRows::by_corners(const Pose& X_WA, double
   std::vector<Place> places;
   for (const int part : {0, 1}) {
     std::uint32_t near = Topology::kNone;
-    for (const Vec3& x : corners_[part]) {
-      const SurfacePoint at = corner_at(part, x, X_WA, near);
+    for (Corner& corner : corners_[part]) {
+      const SurfacePoint at = corner_at(part, corner, X_WA, near);
       near = at.triangle;
       if (std::fabs(at.depth_mm) > reach_mm) continue;
       const Vec3 outward_W = X_W[1 - part].q * at.outward;
-      places.push_back({X_W[part] * x, part == 0 ? outward_W : Vec3(-outward_W), -at.depth_mm});
+      places.push_back({X_W[part] * corner.x, part == 0 ? outward_W : Vec3(-outward_W), -at.depth_mm});
     }
     work += corners_[part].size();
   }
@@ -129,9 +133,13 @@ bool ContactRows::meet_at_corners(const Vec6& xi, std::uint64_t& work) {
   if (corners_reach_mm_ < 0.0) {
     see_corners(0.0, work);
     for (const int part : {0, 1}) {
-      std::vector<std::pair<double, Vec3>> by_depth;
-      for (const Vec3& x : corners_[part])
-        by_depth.push_back({-corner_at(part, x, X_W_[0], Topology::kNone).depth_mm, x});
+      std::vector<std::pair<double, Corner>> by_depth;
+      std::uint32_t near = Topology::kNone;
+      for (Corner& corner : corners_[part]) {
+        const SurfacePoint at = corner_at(part, corner, X_W_[0], near);
+        near = at.triangle;
+        by_depth.push_back({-at.depth_mm, corner});
+      }
       std::stable_sort(by_depth.begin(), by_depth.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
       const std::size_t step = 1 + by_depth.size() / kAllOver;
@@ -143,9 +151,9 @@ bool ContactRows::meet_at_corners(const Vec6& xi, std::uint64_t& work) {
   }
   const Pose X_WA = frame_.pose_of(xi) * X_W_[0];
   for (const int part : {0, 1})
-    for (const Vec3& x : asked_first_[part]) {
+    for (Corner& corner : asked_first_[part]) {
       ++work;
-      if (corner_at(part, x, X_WA, Topology::kNone).depth_mm > kMeet_mm) return true;
+      if (corner_at(part, corner, X_WA).depth_mm > kMeet_mm) return true;
     }
   return false;
 }

@@ -33,11 +33,17 @@ class ContactRows {
   bool by_triangles(const Pose& X_WA, double reach_mm, std::vector<Place>& places,
                     std::uint64_t& work);
   std::vector<Place> by_corners(const Pose& X_WA, double reach_mm, std::uint64_t& work);
+  /// A corner, in the frame of its part, and the triangle of the other part that was nearest last.
+  struct Corner {
+    Vec3 x;
+    std::uint32_t near = Topology::kNone;
+  };
   void see_corners(double reach_mm, std::uint64_t& work);
-  /// How deep a corner of a part lies in the other one.
-  SurfacePoint corner_at(int part, const Vec3& x, const Pose& X_WA, std::uint32_t near) const;
-  /// Some corners of one part, its own frame, of those near the box of the other.
-  std::vector<Vec3> corners_near(int part, double reach_mm) const;
+  /// How deep a corner of a part lies in the other one. near: of a corner beside it, or none.
+  SurfacePoint corner_at(int part, Corner& corner, const Pose& X_WA,
+                         std::uint32_t near = Topology::kNone) const;
+  /// Some corners of one part, of those near the box of the other.
+  std::vector<Corner> corners_near(int part, double reach_mm) const;
 
   const Solid* parts_[2];
   Pose X_W_[2];
@@ -45,8 +51,8 @@ class ContactRows {
   CcdScratch& scratch_;
   bool crowded_ = false;  ///< too many triangles are near
   double corners_reach_mm_ = -1.0;
-  std::vector<Vec3> corners_[2];
-  std::vector<Vec3> asked_first_[2];
+  std::vector<Corner> corners_[2];
+  std::vector<Corner> asked_first_[2];
 };
 
 }  // namespace mortise::gpd

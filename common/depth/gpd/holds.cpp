@@ -132,10 +132,13 @@ class Holds {
     return program_.lower_bound_mm(rows_of(r), limit) > limit;
   }
 
+  // Points that are asked one after the other lie close together.
   SurfacePoint at(int part, const Vec3& x_W) {
     ++work_;
-    return part == 0 ? nearest_surface(*query_.a, back_A_ * x_W)
-                     : nearest_surface(*query_.b, back_B_ * x_W);
+    const SurfacePoint found = part == 0 ? nearest_surface(*query_.a, back_A_ * x_W, near_[0])
+                                         : nearest_surface(*query_.b, back_B_ * x_W, near_[1]);
+    near_[part] = found.triangle;
+    return found;
   }
   // Outward normal of the face of the part that is nearest.
   Vec3 normal_W(int part, const Vec3& x_W) {
@@ -253,6 +256,7 @@ class Holds {
   const std::vector<Vec3> corners_;
   Minimax program_;
   double arm_mm_ = 0.0, across_mm_ = 0.0;
+  std::uint32_t near_[2] = {Topology::kNone, Topology::kNone};  // see nearest_surface()
   std::vector<Line> lines_;
 };
 
