@@ -145,10 +145,14 @@ class Holds {
     ++work_;
     const Solid& solid = part == 0 ? *query_.a : *query_.b;
     const std::uint32_t t = nearest_point(solid, (part == 0 ? back_A_ : back_B_) * x_W).triangle;
-    const TriangleMesh& mesh = solid.mesh();
-    const Vec3 across =
-        (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
-    return (part == 0 ? query_.X_WA.q : query_.X_WB.q) * across.stableNormalized();
+    return (part == 0 ? query_.X_WA.q : query_.X_WB.q) * normal_of(solid.mesh(), t);
+  }
+
+  // Outward; zero where the triangle has no area.
+  static Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t t) {
+    return (mesh.corner(t, 1) - mesh.corner(t, 0))
+        .cross(mesh.corner(t, 2) - mesh.corner(t, 0))
+        .stableNormalized();
   }
 
   // way: out for A. owner: the part whose surface x is on, -1: not known.
@@ -184,42 +188,46 @@ class Holds {
   }
 
   struct Look {
-    Vec3 x = Vec3::Zero(), n = Vec3::Zero();  // n: outward normal of its own face; zero at a corner
+    Vec3 x = Vec3::Zero();
+    std::uint32_t triangle = Topology::kNone;  // whose face it is on; none: a corner
     double depth_mm = 0.0;
   };
 
   std::vector<Look> looks_of(int part) const {
     const TriangleMesh& mesh = (part == 0 ? query_.a : query_.b)->mesh();
-    const Pose& X = part == 0 ? query_.X_WA : query_.X_WB;
-    const Pose& back = part == 0 ? back_B_ : back_A_;
+    const Pose X = (part == 0 ? back_B_ : back_A_) * (part == 0 ? query_.X_WA : query_.X_WB);
+    const Mat3 R = X.rotation();
     const Box& other = (part == 0 ? query_.b : query_.a)->bounds();
     std::vector<Look> looks;
     // Of a large mesh every so many are enough.
     const std::size_t every =
         std::max<std::size_t>(1, (mesh.points_mm.size() + 4 * mesh.triangles.size()) / kMostSeen);
-    const auto look = [&](const Vec3& x_W, const Vec3& n) {
-      const Vec3 y = back * x_W;
+    const auto look = [&](const Vec3& x, std::uint32_t t) {
+      const Vec3 y = R * x + X.p;
       if ((y.array() >= other.lo.array()).all() && (y.array() <= other.hi.array()).all())
-        looks.push_back({x_W, n, 0.0});
+        looks.push_back({x, t, 0.0});
     };
     for (std::size_t i = 0; i < mesh.points_mm.size(); i += every)
-      look(X * mesh.points_mm[i], Vec3::Zero());
+      look(mesh.points_mm[i], Topology::kNone);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); t += static_cast<std::uint32_t>(every)) {
-      const Vec3 p = X * mesh.corner(t, 0), q = X * mesh.corner(t, 1), r = X * mesh.corner(t, 2);
-      const Vec3 n = (q - p).cross(r - p).stableNormalized();
+      const Vec3 &p = mesh.corner(t, 0), &q = mesh.corner(t, 1), &r = mesh.corner(t, 2);
       for (const Vec3& x :
            {Vec3((p + q + r) / 3.0), Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)), Vec3(0.5 * (r + p))})
-        look(x, n);
+        look(x, t);
     }
     return looks;
   }
 
   void collect_from_surface(int part) {
+    const TriangleMesh& mesh = (part == 0 ? query_.a : query_.b)->mesh();
+    const Pose& X = part == 0 ? query_.X_WA : query_.X_WB;
     std::vector<Look> looks = looks_of(part), deep;
     const std::size_t every = std::max<std::size_t>(1, looks.size() / kMostLooks);
     for (std::size_t i = 0; i < looks.size(); i += every) {
-      looks[i].depth_mm = at(1 - part, looks[i].x).depth_mm;
-      if (looks[i].depth_mm > kLeastHold_mm) deep.push_back(looks[i]);
+      Look& look = looks[i];
+      look.x = X * look.x;
+      look.depth_mm = at(1 - part, look.x).depth_mm;
+      if (look.depth_mm > kLeastHold_mm) deep.push_back(look);
     }
     std::stable_sort(deep.begin(), deep.end(),
                      [](const Look& x, const Look& y) { return x.depth_mm > y.depth_mm; });
@@ -228,7 +236,9 @@ class Holds {
       const Look& look = deep[i];
       const Vec3 theirs = normal_W(1 - part, look.x);
       add(look.x, part == 0 ? theirs : Vec3(-theirs), part);
-      add(look.x, part == 0 ? Vec3(-look.n) : look.n, part);
+      if (look.triangle == Topology::kNone) continue;
+      const Vec3 own = X.q * normal_of(mesh, look.triangle);
+      add(look.x, part == 0 ? Vec3(-own) : own, part);
     }
   }
 
