@@ -14,11 +14,11 @@ constexpr std::uint32_t kMostPairs = 4096;
 // Of meshes of so many triangles together more are near.
 constexpr std::size_t kLarge = 40'000;
 constexpr std::uint64_t kPlacesWork = 20;
-// Corners of each part at which contact is seen, and of those that are carried into the frame of
-// the other part so many at the cost of one evaluation.
-constexpr std::size_t kMostCorners = 160, kCornersAWorkUnit = 256;
-// Of these the deepest and some others are asked first; deeper than rounding is deep, mm.
-constexpr std::size_t kDeepest = 20, kAllOver = 20;
+// Corners of each part at which contact is seen; of those that are carried into the frame of the
+// other part to find them at most so many, of a large mesh every so-manyth, and so many at the cost
+// of one evaluation.
+constexpr std::size_t kMostCorners = 160, kMostCarried = 16'384, kCornersAWorkUnit = 256;
+// Deeper than rounding is deep, mm.
 constexpr double kMeet_mm = 1e-9;
 
 }  // namespace
@@ -79,11 +79,13 @@ std::vector<ContactRows::Corner> ContactRows::corners_near(int part, double reac
   const Pose X = X_W_[1 - part].inverse() * X_W_[part];
   const Mat3 R = X.rotation();
   const Box box = parts_[1 - part]->bounds().grown(reach_mm);
+  const std::vector<Vec3>& points = parts_[part]->mesh().points_mm;
+  const std::size_t every = points.size() > kMostCarried ? (points.size() / kMostCarried) | 1U : 1;
   std::vector<Corner> near;
-  for (const Vec3& x : parts_[part]->mesh().points_mm) {
-    const Vec3 y = R * x + X.p;
+  for (std::size_t i = 0; i < points.size(); i += every) {
+    const Vec3 y = R * points[i] + X.p;
     if ((y.array() >= box.lo.array()).all() && (y.array() <= box.hi.array()).all())
-      near.push_back({x});
+      near.push_back({points[i]});
   }
   // An odd stride, so that of a regular mesh not one row of corners alone is seen.
   const std::size_t stride = (near.size() / kMostCorners) | 1U;
@@ -97,7 +99,7 @@ void ContactRows::see_corners(double reach_mm, std::uint64_t& work) {
   corners_reach_mm_ = 4.0 * reach_mm;
   for (const int part : {0, 1}) {
     corners_[part] = corners_near(part, corners_reach_mm_);
-    work += parts_[part]->mesh().points_mm.size() / kCornersAWorkUnit;
+    work += std::min(parts_[part]->mesh().points_mm.size(), kMostCarried) / kCornersAWorkUnit;
   }
 }
 
@@ -122,7 +124,8 @@ std::vector<ContactRows::Place> ContactRows::by_corners(const Pose& X_WA, double
       near = at.triangle;
       if (std::fabs(at.depth_mm) > reach_mm) continue;
       const Vec3 outward_W = X_W[1 - part].q * at.outward;
-      places.push_back({X_W[part] * corner.x, part == 0 ? outward_W : Vec3(-outward_W), -at.depth_mm});
+      places.push_back(
+          {X_W[part] * corner.x, part == 0 ? outward_W : Vec3(-outward_W), -at.depth_mm});
     }
     work += corners_[part].size();
   }
@@ -142,16 +145,14 @@ bool ContactRows::meet_at_corners(const Vec6& xi, std::uint64_t& work) {
       }
       std::stable_sort(by_depth.begin(), by_depth.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
-      const std::size_t step = 1 + by_depth.size() / kAllOver;
-      for (std::size_t i = 0; i < by_depth.size(); ++i)
-        if (i < kDeepest || i % step == 0) asked_first_[part].push_back(by_depth[i].second);
+      for (const auto& [depth_mm, corner] : by_depth) deepest_first_[part].push_back(corner);
       work += corners_[part].size();
     }
     corners_reach_mm_ = 0.0;
   }
   const Pose X_WA = frame_.pose_of(xi) * X_W_[0];
   for (const int part : {0, 1})
-    for (Corner& corner : asked_first_[part]) {
+    for (Corner& corner : deepest_first_[part]) {
       ++work;
       if (corner_at(part, corner, X_WA).depth_mm > kMeet_mm) return true;
     }

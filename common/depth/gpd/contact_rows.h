@@ -19,8 +19,8 @@ class ContactRows {
   /// those of contact_places(); where too many triangles are near, corners of both parts. Adds to
   /// `work`, in about evaluations of the overlap search.
   std::vector<Row> at(const Vec6& xi, double reach_mm, double margin_mm, std::uint64_t& work);
-  /// Does a corner of one part lie in the other, A moved by exp(ξ)? Looks at few, the deepest where
-  /// they stand and some others: a quick no to a motion that does not part them.
+  /// Does a corner of one part lie in the other, A moved by exp(ξ)? Looks at some, first at the
+  /// deepest where the parts stand: a quick no to a motion that does not part them.
   bool meet_at_corners(const Vec6& xi, std::uint64_t& work);
 
  private:
@@ -52,7 +52,7 @@ class ContactRows {
   bool crowded_ = false;  ///< too many triangles are near
   double corners_reach_mm_ = -1.0;
   std::vector<Corner> corners_[2];
-  std::vector<Corner> asked_first_[2];
+  std::vector<Corner> deepest_first_[2];
 };
 
 }  // namespace mortise::gpd

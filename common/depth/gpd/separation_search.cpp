@@ -41,7 +41,7 @@ constexpr double kScanGrowth = 1.7;
 constexpr double kFar = 20.0;
 constexpr int kRandomTwists = 24, kDisturbed = 16;
 // Work of one question, about evaluations of the overlap search.
-constexpr std::uint64_t kFreeWork = 4, kFreeWorkOfMany = 40, kProgramWork = 10;
+constexpr std::uint64_t kFreeWork = 4, kFreeWorkOfMany = 100, kProgramWork = 10;
 constexpr std::uint64_t kTestsAWorkUnit = 8;
 // In meshes of so many triangles together a question of all of them takes once as long again.
 constexpr std::uint64_t kLargeMesh = 8'192, kManyUnits = 2;
@@ -111,14 +111,16 @@ class Search {
   Pose pose_of(const Vec6& xi) const { return frame_.pose_of(xi) * query_.X_WA; }
   // Where thousands of triangles lie close along whole faces it takes longer to see that they do
   // not cross.
-  std::uint64_t free_work() const {
-    return (unit_ > kManyUnits ? kFreeWorkOfMany : kFreeWork) * unit_;
-  }
+  std::uint64_t free_work() const { return (is_large() ? kFreeWorkOfMany : kFreeWork) * unit_; }
   bool turns_too_far(const Vec6& xi) const { return !(frame_.turn_of(xi).norm() < kMostTurn_rad); }
 
+  bool is_large() const { return unit_ > kManyUnits; }
+  // Of large parts some corners are asked first.
+  bool seems_free(const Vec6& xi) {
+    return !turns_too_far(xi) && !(is_large() && rows_.meet_at_corners(xi, work_));
+  }
   bool is_free(const Vec6& xi) {
-    if (turns_too_far(xi)) return false;
-    if (unit_ > kManyUnits && rows_.meet_at_corners(xi, work_)) return false;
+    if (!seems_free(xi)) return false;
     work_ += free_work();
     return is_apart(*query_.a, pose_of(xi), *query_.b, query_.X_WB, scratch_);
   }
@@ -166,7 +168,11 @@ class Search {
     return program_.solve(rows, to);
   }
 
-  // Programs from a pose that overlaps until it is free. False: not within the limit.
+  // On the way to a shorter motion what seems free of large parts is enough; its end is asked.
+  bool is_free_on_the_way(const Vec6& xi) { return is_large() ? seems_free(xi) : is_free(xi); }
+
+  // Programs from a pose that overlaps until it is free, as is_free_on_the_way. False: not within
+  // the limit.
   bool push(Vec6& xi, double reach_mm, int programs, double limit_mm) {
     double margin_mm = kMargin_mm;
     for (int i = 0; i < programs && !out_of_work(); ++i) {
@@ -176,7 +182,7 @@ class Search {
       const double step = length(to - xi), most = kStepOverReach * reach_mm;
       xi = step > most ? Vec6(xi + (to - xi) * (most / step)) : to;
       if (length(xi) >= limit_mm || step < 1e-9) return false;
-      if (is_free(xi)) return true;
+      if (is_free_on_the_way(xi)) return true;
       // The rows ask for no more, and yet they meet, between the places that are seen.
       if (step < kSettled * length(xi))
         margin_mm = std::max(kMarginGrowth * margin_mm, kWider * reach_mm);
@@ -194,14 +200,24 @@ class Search {
     for (const double times : kPushReach) {
       Vec6 xi = Vec6::Zero();
       if (push(xi, times * scale_mm_ + 1e-5, kPushPrograms, kWorthDescent * best_.length_mm)) {
-        offer(xi);
-        if (!done()) offer(descend(xi, kShortDescent), true);
+        if (!is_large()) offer(xi);
+        if (!done()) descend_from(xi, kShortDescent);
       }
       if (done()) return;
     }
   }
 
-  // From a free twist to a shorter one, within a trust region that is the reach of the places.
+  // Offers the end, or where it meets something and cannot be mended the start.
+  void descend_from(const Vec6& start, int programs) {
+    const Vec6 end = descend(start, programs);
+    if (!is_large() || is_free(end))
+      offer(end, true);
+    else if (is_free(start))
+      offer(start, true);
+  }
+
+  // From a twist that is free on the way to a shorter one, within a trust region that is the reach
+  // of the places.
   Vec6 descend(Vec6 xi, int programs) {
     double best = length(xi), reach_mm = kFirstReach * best;
     const double least_share = query_.thorough ? kLeastReachThorough : kLeastReachShare;
@@ -216,7 +232,7 @@ class Search {
       const double step = length(to - xi), enough = best * (1.0 - kGain);
       if (step > reach_mm) to = xi + (to - xi) * (reach_mm / step);
       const bool shorter = length(to) < enough;
-      if (shorter && (is_free(to) || push(to, reach_mm, kRepairs, enough))) {
+      if (shorter && (is_free_on_the_way(to) || push(to, reach_mm, kRepairs, enough))) {
         const double now = length(to);
         idle = best - now < kIdleGain * best ? idle + 1 : 0;
         xi = to;
@@ -307,7 +323,9 @@ class Search {
       const double l = std::ldexp(scale_mm_, 1 + i % 5);
       if (l > best_.length_mm) continue;
       Vec6 xi = twist * (l / length(twist));
-      if (is_free(xi) || push(xi, 1.5 * l, 8, 1.5 * best_.length_mm)) offer(xi);
+      if (is_free(xi) ||
+          (push(xi, 1.5 * l, 8, 1.5 * best_.length_mm) && (!is_large() || is_free(xi))))
+        offer(xi);
     }
   }
 
@@ -325,7 +343,7 @@ class Search {
       if (starts.size() == (query_.thorough ? kThoroughDescents : kDescents)) break;
     }
     for (const Found& start : starts)
-      if (!done()) offer(descend(start.xi, kLongDescent), true);
+      if (!done()) descend_from(start.xi, kLongDescent);
   }
 
   const SeparationQuery& query_;
