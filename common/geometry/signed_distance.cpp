@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "common/base/check.h"
@@ -79,19 +80,52 @@ Vec3 corner_of(const Bvh& bvh, std::uint32_t i, int k) {
 // which of two triangles at the same distance is found does not depend on what was asked first.
 constexpr double kRounding = 1e-14;
 
+// A point as the boxes of children see it, in float, so that all of a node are looked at together.
+// Rounding of the point and of two differences is below four units in the last place, 2.4e-7, of
+// its coordinates and those of the box; rounding of squares and sums is below 1e-6 of them.
+struct FloatPoint {
+  float x[3];
+  float slack_mm;
+  FloatPoint(const Vec3& local, double radius_mm)
+      : x{static_cast<float>(local[0]), static_cast<float>(local[1]), static_cast<float>(local[2])},
+        slack_mm(static_cast<float>(4e-7 * (radius_mm + local.norm()))) {}
+
+  // None is above the squared distance from the box.
+  void distances2(const Bvh::Node& node, float (&distance2)[Bvh::kWidth]) const {
+    constexpr int kQuad = 4;
+    typedef float Quad __attribute__((vector_size(16)));
+    const Quad zero{}, most = zero + std::numeric_limits<float>::max();
+    for (int begin = 0; begin < Bvh::kWidth; begin += kQuad) {
+      Quad sum{};
+      for (int c = 0; c < 3; ++c) {
+        Quad center, half;
+        std::memcpy(&center, node.local_center[c] + begin, sizeof center);
+        std::memcpy(&half, node.half[c] + begin, sizeof half);
+        const Quad from = x[c] - center, gap = (from > zero ? from : -from) - half - slack_mm;
+        const Quad outside = gap > zero ? gap : zero;
+        sum += outside * outside;
+      }
+      sum *= 1.0F - 1e-6F;
+      sum = sum < most ? sum : most;
+      std::memcpy(distance2 + begin, &sum, sizeof sum);
+    }
+  }
+};
+
 // Nearest first, so that the best found so far (`found`) discards most of the tree.
 Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
   struct Item {
-    double distance2;
+    float distance2;
     std::int32_t child;
   };
   std::array<Item, Bvh::kMostWaiting> stack;
   int top = 0;
-  stack[top++] = {0.0, bvh.root};
+  stack[top++] = {0.0F, bvh.root};
   const Vec3 local = x - bvh.origin;
+  const FloatPoint point(local, bvh.radius_mm);
   const double size = kRounding * (bvh.radius_mm + local.norm()), tiny = size * size;
-  const auto discards = [&found, tiny](double distance2) {
-    return distance2 * (1.0 - kRounding) > found.distance2 + tiny;
+  const auto discards = [&found, tiny](float distance2) {
+    return static_cast<double>(distance2) * (1.0 - kRounding) > found.distance2 + tiny;
   };
   while (top > 0) {
     const Item item = stack[--top];
@@ -105,14 +139,8 @@ Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
       continue;
     }
     const Bvh::Node& node = bvh.nodes[item.child];
-    double distance2[Bvh::kWidth] = {};
-    for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < Bvh::kWidth; ++k) {
-        const double gap =
-            std::max(0.0, std::fabs(local[c] - static_cast<double>(node.local_center[c][k])) -
-                              static_cast<double>(node.half[c][k]));
-        distance2[k] += gap * gap;
-      }
+    float distance2[Bvh::kWidth];
+    point.distances2(node, distance2);
     const int begin = top;
     for (int k = 0; k < node.count; ++k) {
       if (discards(distance2[k])) continue;
