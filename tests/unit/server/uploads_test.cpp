@@ -102,7 +102,8 @@ class UploadTest : public ::testing::Test {
   /// Ticks until then; what is made beside them takes its time.
   template <class Done>
   bool turn_until(Done done) {
-    for (int i = 0; i < 2000; ++i) {
+    // A child reads the file, on a machine that may be busy.
+    for (int i = 0; i < 30'000; ++i) {
       turn();
       if (done()) return true;
       std::this_thread::sleep_for(1ms);
