@@ -21,7 +21,7 @@ using gpd::TwistFrame;
 using gpd::Vec6;
 
 // Gap beyond touch at the end of a motion that parts two hulls, mm, and as a share of the
-// coordinates; tried again ten times as large where rounding leaves them in touch.
+// coordinates; tried again ten times as large where rounding leaves them in touch, up to 0.01 mm.
 constexpr double kGap_mm = 1e-7, kGapShare = 1e-13;
 constexpr int kGapsTried = 6;
 // Accuracy of the depth of hulls, mm; where they only give a start, as a share of the size.
@@ -128,13 +128,19 @@ class PairDepth {
     search(gpd::Looking::kFar, starts, query_.work_cap);
   }
 
-  void search(gpd::Looking looking, const std::vector<Vec6>& starts, std::uint64_t cap) {
-    if (evaluations_ >= cap) return;
-    gpd::SeparationQuery query;
+  template <class Query>
+  Query query_of() const {
+    Query query;
     query.a = &mover_;
     query.b = &other_;
     query.X_WA = X_mover_;
     query.X_WB = X_other_;
+    return query;
+  }
+
+  void search(gpd::Looking looking, const std::vector<Vec6>& starts, std::uint64_t cap) {
+    if (evaluations_ >= cap) return;
+    auto query = query_of<gpd::SeparationQuery>();
     std::vector<Vec3> directions = starts_.normals;
     directions.insert(directions.end(), starts_.axes.begin(), starts_.axes.end());
     query.directions = directions;
@@ -177,11 +183,7 @@ class PairDepth {
   void hold_by_pieces() {
     if (!can_hold()) return;
     const std::vector<Vec3> points = deepest_points();
-    gpd::PiecesQuery query;
-    query.a = &mover_;
-    query.b = &other_;
-    query.X_WA = X_mover_;
-    query.X_WB = X_other_;
+    auto query = query_of<gpd::PiecesQuery>();
     query.points_W = points;
     query.most_points = full_ ? kPiecePointsFull : kPiecePoints;
     query.most_planes = full_ ? kPiecePlanesFull : kPiecePlanes;
@@ -191,11 +193,7 @@ class PairDepth {
   void hold_by_balls() {
     if (!can_hold()) return;
     const std::vector<Vec3> points = deepest_points();
-    gpd::HoldsQuery query;
-    query.a = &mover_;
-    query.b = &other_;
-    query.X_WA = X_mover_;
-    query.X_WB = X_other_;
+    auto query = query_of<gpd::HoldsQuery>();
     query.points_W = points;
     query.known_mm = std::min(lo_mm_, hi_mm_);
     query.limit_mm = hi_mm_;

@@ -19,6 +19,8 @@ constexpr double kOwnPlane = 0.7;
 constexpr int kClimbs = 14;
 // Larger meshes are not cut into pieces, triangles; a unit of work for so many.
 constexpr std::size_t kMostTriangles = 4096, kTrianglesAWorkUnit = 32;
+// The depth of two pieces is a lower end in any case: how closely it is found, as a share of their
+// radius, and the steps after which what is found has to do.
 constexpr double kAccuracyShare = 1e-4;
 constexpr int kMostSupports = 200;
 

@@ -9,6 +9,7 @@
 namespace mortise::gpd {
 namespace {
 
+// Of reweighting. A twist is valid, and a bound holds, after any of them.
 constexpr int kMostRounds = 40, kMostBoundRounds = 60;
 // Rounds without gain after which the program ends, and what counts as one.
 constexpr int kIdleRounds = 6;
