@@ -81,7 +81,7 @@ void add_main_normals(const TriangleMesh& mesh, Outline& outline) {
     Vec3 area = facet_area(mesh, t);
     const double size = area.norm();
     if (!(size > 0.0)) continue;
-    Cell cell;
+    Cell cell;  // of the unit sphere, three degrees wide
     for (std::size_t k = 0; k < 3; ++k)
       cell.key[k] = static_cast<int>(std::lround(20.0 * area[static_cast<int>(k)] / size));
     if (cell.key < std::array<int, 3>{}) {

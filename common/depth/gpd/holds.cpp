@@ -129,6 +129,7 @@ class Holds {
 
   // Does every motion that moves no point by more than r leave an overlap?
   bool excludes(double r) {
+    // Beyond, the turn may exceed 90 degrees, and the terms of second order grow without bound.
     if (!(r < 0.7 * across_mm_)) return false;
     work_ += 20;
     const double limit = r + second_of(r) * arm_mm_;

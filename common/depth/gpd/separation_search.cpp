@@ -236,7 +236,7 @@ class Search {
     const auto add = [&](const Vec3& d) {
       if (!(d.norm() > 0.5)) return;
       for (const Vec3& other : lines)
-        if (std::fabs(other.dot(d)) > 0.9995 * d.norm()) return;
+        if (std::fabs(other.dot(d)) > 0.9995 * d.norm()) return;  // within two degrees
       lines.push_back(d.normalized());
     };
     for (const Vec3& d : query_.directions) add(d);
