@@ -20,7 +20,8 @@ constexpr std::uint64_t kPlacesWork = 20;
 // Corners of each part at which contact is seen, and of those that are carried into the frame of
 // the other part so many at the cost of one evaluation.
 constexpr std::size_t kMostCorners = 160, kCornersAWorkUnit = 256;
-// Of these the deepest and some others are asked first; deeper than rounding is deep, mm.
+// Of these the deepest and some others are asked first, which spares a question of all triangles
+// where they meet; deeper than rounding is deep, mm.
 constexpr std::size_t kDeepest = 20, kAllOver = 20;
 constexpr double kMeet_mm = 1e-9;
 
