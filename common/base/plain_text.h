@@ -7,8 +7,7 @@
 /// JSON, XML, HTML, a terminal or a log as it is. All functions are linear in the bytes.
 namespace mortise {
 
-/// Longest name of a part or a feature, and of a user, bytes. Chosen; what the wire promises
-/// (idl/README.md), so that every reader knows how much room a name needs.
+/// Longest name of a part or a feature, and of a user, bytes: chosen; idl/README.md promises them.
 inline constexpr std::size_t kMostName_bytes = 128;
 inline constexpr std::size_t kMostUserName_bytes = 64;
 

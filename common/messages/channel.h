@@ -87,10 +87,8 @@ struct UploadPiece {
   std::uint64_t offset = 0;  ///< of this piece
   std::vector<std::byte> bytes;
 };
-/// With its names a piece fits into one sample of 60,000 bytes (idl/topics.h). Eight on the way are
-/// chosen: they bound what a user may make the server keep in a tick.
-inline constexpr std::size_t kUploadPiece_bytes = 49'152;
-inline constexpr std::uint64_t kUploadAhead_bytes = 8 * kUploadPiece_bytes;
+inline constexpr std::size_t kUploadPiece_bytes = 49'152;  ///< fits a sample (idl/topics.h)
+inline constexpr std::uint64_t kUploadAhead_bytes = 8 * kUploadPiece_bytes;  ///< chosen
 
 struct ReceivedPiece {
   ClientKey client;
