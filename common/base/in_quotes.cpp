@@ -5,7 +5,7 @@
 namespace mortise {
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kMost = 120;
+  constexpr std::size_t kMost = 120;  // bytes; chosen: a line or two of a terminal
   std::size_t size = text.size();
   if (size > kMost) {
     size = kMost;

@@ -9,6 +9,7 @@ namespace {
 
 /// A shorter beginning is shared by chance.
 constexpr std::size_t kLeastBeginning = 2;
+/// Known words in one sentence; chosen: a line or two of a terminal.
 constexpr std::size_t kMostListed = 12;
 
 std::string lower(std::string_view text) {

@@ -7,7 +7,7 @@
 /// JSON, XML, HTML, a terminal or a log as it is. All functions are linear in the bytes.
 namespace mortise {
 
-/// Longest name of a part, a feature or a user, bytes: what a sample on the wire has room for.
+/// Longest name of a part or a feature, and of a user, bytes: chosen; idl/README.md promises them.
 inline constexpr std::size_t kMostName_bytes = 128;
 inline constexpr std::size_t kMostUserName_bytes = 64;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/base/check.h"
 #include "common/ccd/pair_tree.h"
@@ -128,7 +129,7 @@ class Places {
     const Across across(places_[alike.front()].normal_W);
     std::vector<std::size_t> chosen;
     for (int k = 0; k < kOutermost; ++k) {
-      const double angle = 2.0 * 3.14159265358979323846 * (k + 0.3) / kOutermost;
+      const double angle = 2.0 * std::numbers::pi * (k + 0.3) / kOutermost;
       const Eigen::Vector2d way(std::cos(angle), std::sin(angle));
       std::size_t best = alike.front();
       for (const std::size_t j : alike)

@@ -14,6 +14,7 @@ namespace {
 
 // Points asked. A pair of blocks needs about ten.
 constexpr int kMostPoints = 60;
+// Places on the way to the start: the last one is 2^-7 of it.
 constexpr int kHalvings = 8;
 // Of points this close to the surface the direction to it is rounding, mm.
 constexpr double kOn_mm = 1e-9;

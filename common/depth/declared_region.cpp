@@ -17,6 +17,7 @@ namespace {
 // form is reached, and some all over it; more of these where the class hangs on whether the meshes
 // overlap at all.
 constexpr std::size_t kNearest = 4, kAllOver = 4, kAllOverMore = 24;
+// Contact points kept for the fitted separating motion, which looks at 32 of all regions.
 constexpr std::size_t kMostSamples = 24;
 // Where a witness is looked for: shares of the way to the middle of the face.
 constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};

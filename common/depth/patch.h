@@ -25,7 +25,7 @@ struct Patch {
   bool bulges_both = false;    ///< ... or both ways (torus)
   double slip_mm = 0.0;        ///< and sideways on a cone, across its axis
   double spread_mm = 0.0;      ///< and in any direction (paths of rotation, neighbours left out)
-  static constexpr int kMostPlus = 1 + static_cast<int>(Body::kMostSharp);
+  static constexpr int kMostPlus = 1 + static_cast<int>(Body::kMostSharp);  ///< own and neighbours
   std::array<Plus, kMostPlus> plus;  ///< outward offsets: of the face, and of sharp neighbours
   int plus_count = 0;
   bool plus_is_own = false;      ///< plus[0] is of the face itself

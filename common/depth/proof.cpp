@@ -160,7 +160,7 @@ class Neighbourhood {
     Vec3 sum = up_;
     for (const ProofScratch::Near& open : scratch_.open) {
       const Vec3 n = k_.normal(open.triangle);
-      if (n.dot(up_) > kSameSide && n.dot(up_) < 1.0 - 1e-9) sum += n;
+      if (n.dot(up_) > kSameSide && n.dot(up_) < 1.0 - kOnePlane) sum += n;
     }
     if (sum.isApprox(up_)) return false;
     up_ = sum.normalized();

@@ -25,7 +25,8 @@ constexpr double kWitnessShares[] = {0.5, 0.25, 0.1, 0.02, 2e-3, 2e-4, 2e-5, 2e-
 // this.
 constexpr double kOblique = 1.1;
 
-// Steps uphill to a witness start at so many times the overlap and are halved so many times.
+// Steps uphill to a witness start at so many times the overlap and are halved so many times, down
+// to a 4096th of it.
 constexpr double kFirstClimb = 8.0;
 constexpr int kWitnessHalvings = 16;
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numeric>
 
 #include "common/base/check.h"
+#include "common/base/union_find.h"
 #include "common/depth/cells/cover_bound.h"
 
 namespace mortise {
@@ -16,24 +16,6 @@ constexpr std::size_t kMostRegions = 16;
 
 // Points asked in a brief look at the meshes.
 constexpr std::uint64_t kBriefWork = 3000;
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // The lower index leads, so that numbering does not depend on the order of calls.
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // kNear: a candidate; kReached: from a neighbour that was kept, or a shell inside.
 enum class State : std::uint8_t { kUnseen = 0, kNear, kReached, kDropped, kKept };
@@ -211,7 +193,7 @@ class Grouping {
     std::size_t count = 0;
     for (const std::uint32_t t : kept_[role]) {
       const std::uint32_t number = kept(role, t)->number;
-      count += sets.find(number) == number;
+      count += sets.leads(number);
     }
     return count;
   }
@@ -247,7 +229,7 @@ class Grouping {
       return *region_of_set.find(leader);
     };
     for (const std::uint32_t t : kept_[primary]) {
-      const std::uint32_t region = region_of_leader(sets.find(kept(primary, t)->number));
+      const std::uint32_t region = region_of_leader(sets.leader_of(kept(primary, t)->number));
       regions_.region_of_triangle[t] = region;
       regions_.roots.push_back({primary, t, region, kept(primary, t)->middle});
     }
@@ -261,7 +243,7 @@ class Grouping {
         region = *met;
       else
         region = regions_.count > 0 ? nearest_region(other, t)
-                                    : region_of_leader(sets.find(mine->number));
+                                    : region_of_leader(sets.leader_of(mine->number));
       regions_.roots.push_back({other, t, region, mine->middle});
     }
     regions_.may_interfere.assign(regions_.count, false);

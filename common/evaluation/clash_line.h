@@ -29,7 +29,7 @@ std::string pair_line(const std::string& word, const std::string& part_a, const 
                       const std::string& said);
 /// Its first word in the colour of the class on a terminal.
 std::string coloured_line(const std::string& line, CollisionClass collision_class);
-inline constexpr std::size_t kClashLineColumns = 100;
+inline constexpr std::size_t kClashLineColumns = 100;  ///< chosen: the width of most terminals
 
 /// Columns of UTF-8 text on a terminal: code points.
 std::size_t columns_of(const std::string& text);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/union_find.h"
 #include "common/evaluation/tolerance.h"
 
 namespace mortise {
@@ -297,11 +298,6 @@ bool may_be_smooth(const TriangleMesh& mesh, const Topology& topology, std::uint
   return 0.5 * width_mm * std::tan(0.25 * angle_rad) <= chord_error_mm;
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 }  // namespace
 
 Result<FeatureMatch> match_feature(const TriangleMesh& mesh, const FeatureDeclaration& declared) {
@@ -341,22 +337,18 @@ std::vector<FaceShape> face_shapes(const Solid& solid, double chord_error_mm) {
   const Topology& topology = solid.topology();
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   // 1. flat groups
-  std::vector<std::uint32_t> parent(count);
-  for (std::uint32_t t = 0; t < count; ++t) parent[t] = t;
+  UnionFind flat(count);
   for (std::uint32_t t = 0; t < count; ++t)
     for (int k = 0; k < 3; ++k)
-      if (topology.edge_kind[t][k] == EdgeKind::kFlat &&
-          topology.neighbor[t][k] != Topology::kNone) {
-        const std::uint32_t a = root_of(parent, t), b = root_of(parent, topology.neighbor[t][k]);
-        parent[std::max(a, b)] = std::min(a, b);
-      }
+      if (topology.edge_kind[t][k] == EdgeKind::kFlat && topology.neighbor[t][k] != Topology::kNone)
+        flat.join(t, topology.neighbor[t][k]);
   // 2. how each group meets its neighbours
   struct Meets {
     bool convex = false, concave = false, unknown = false;
   };
   std::vector<Meets> meets(count);
   for (std::uint32_t t = 0; t < count; ++t) {
-    Meets& group = meets[root_of(parent, t)];
+    Meets& group = meets[flat.leader_of(t)];
     for (int k = 0; k < 3; ++k) {
       const EdgeKind kind = topology.edge_kind[t][k];
       if (kind == EdgeKind::kBoundary || kind == EdgeKind::kNonManifold) group.unknown = true;
@@ -368,7 +360,7 @@ std::vector<FaceShape> face_shapes(const Solid& solid, double chord_error_mm) {
   // 3. one shape a triangle
   std::vector<FaceShape> shapes(count);
   for (std::uint32_t t = 0; t < count; ++t) {
-    const Meets& group = meets[root_of(parent, t)];
+    const Meets& group = meets[flat.leader_of(t)];
     if (group.unknown || (group.convex && group.concave))
       shapes[t] = FaceShape::kUnknown;
     else

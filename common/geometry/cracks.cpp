@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 
+#include "common/base/union_find.h"
 #include "common/geometry/border.h"
 #include "common/geometry/signed_distance.h"
 
@@ -96,18 +96,10 @@ bool Cracks::cover(const Vec3& x) const {
 
 Cracks find_cracks(const TriangleMesh& mesh) {
   const std::vector<BorderEdge> border = border_of(mesh.triangles);
-  std::vector<std::uint32_t> parent(border.empty() ? 0 : mesh.points_mm.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const BorderEdge& edge : border) {
-    const std::uint32_t a = root(edge.from), b = root(edge.to);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
+  UnionFind loops(border.empty() ? 0 : mesh.points_mm.size());
+  for (const BorderEdge& edge : border) loops.join(edge.from, edge.to);
   std::map<std::uint32_t, std::vector<BorderEdge>> pieces;
-  for (const BorderEdge& edge : border) pieces[root(edge.from)].push_back(edge);
+  for (const BorderEdge& edge : border) pieces[loops.leader_of(edge.from)].push_back(edge);
   Cracks cracks;
   for (const auto& [first, edges] : pieces) close_crack(mesh, edges, cracks);
   return cracks;

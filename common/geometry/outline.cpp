@@ -15,6 +15,7 @@ constexpr std::size_t kFewPoints = 128;
 // Directions along which the corners of a larger one are taken, beside 26 to the faces, edges and
 // corners of a cube.
 constexpr int kDirections = 96;
+// Normals of the largest faces: a block has three lines of them, a prism of a triangle four.
 constexpr std::size_t kMainNormals = 4;
 // Two lines of normals are one when they differ by less (sine).
 constexpr double kSameLine = 0.03;
@@ -29,6 +30,7 @@ constexpr double kHollowShare = 1e-4;
 
 // A spiral of even density around the sphere: each direction turned on by the golden angle.
 std::vector<Vec3> directions() {
+  // Of pi (3 - sqrt 5).
   constexpr double kCosGolden = -0.73736887807831985, kSinGolden = 0.67549029426152364;
   std::vector<Vec3> all;
   double c = 1.0, s = 0.0;
@@ -79,7 +81,7 @@ void add_main_normals(const TriangleMesh& mesh, Outline& outline) {
     Vec3 area = facet_area(mesh, t);
     const double size = area.norm();
     if (!(size > 0.0)) continue;
-    Cell cell;
+    Cell cell;  // of the unit sphere, three degrees wide
     for (std::size_t k = 0; k < 3; ++k)
       cell.key[k] = static_cast<int>(std::lround(20.0 * area[static_cast<int>(k)] / size));
     if (cell.key < std::array<int, 3>{}) {

@@ -46,7 +46,7 @@ struct PlaneFaces {
 
   /// Corners that may travel more than kUsualTravel times as far as any face.
   std::vector<std::uint32_t> sharp_points;
-  static constexpr double kUsualTravel = 2.0;
+  static constexpr double kUsualTravel = 2.0;  ///< an edge of 60 degrees: 1 / sin 30
   /// An edge or corner counts that travels at most so many times as far as the faces of it: an edge
   /// of 6 degrees. Nobody makes a tip beyond that.
   static constexpr double kMostTravel = 20.0;

@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/base/constants.h"
+#include "common/base/union_find.h"
 
 namespace mortise {
 namespace {
@@ -21,21 +22,6 @@ struct Side {
   std::uint32_t id;    ///< 3 * triangle + edge
   bool forward;        ///< from the smaller index to the larger
 };
-
-/// Root of `i`, with the path halved on the way.
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
-
-void join(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  parent[std::max(a, b)] = std::min(a, b);
-}
 
 /// Twice the area vector of a triangle.
 Vec3 area_vector(const TriangleMesh& mesh, std::uint32_t t) {
@@ -126,8 +112,7 @@ void record_edge(const TriangleMesh& mesh, double extent_mm, const Side* sides, 
 
 /// The corners of triangles at one point fall into fans, connected across edges of two triangles.
 std::uint64_t count_pinched_points(const TriangleMesh& mesh, const Topology& topology) {
-  std::vector<std::uint32_t> parent(3 * mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0U);
+  UnionFind corners(3 * mesh.triangles.size());
   const auto corner_at = [&](std::uint32_t t, std::uint32_t point) {
     std::uint32_t k = 0;
     while (k < 2 && mesh.triangles[t][k] != point) ++k;
@@ -137,18 +122,12 @@ std::uint64_t count_pinched_points(const TriangleMesh& mesh, const Topology& top
     for (std::uint32_t k = 0; k < 3; ++k)
       if (const std::uint32_t other = topology.neighbor[t][k]; other != Topology::kNone)
         for (const std::uint32_t at : {k, (k + 1) % 3})
-          join(parent, 3 * t + at, corner_at(other, mesh.triangles[t][at]));
+          corners.join(3 * t + at, corner_at(other, mesh.triangles[t][at]));
   std::vector<std::uint32_t> fans(mesh.points_mm.size(), 0);
-  for (std::uint32_t i = 0; i < parent.size(); ++i)
-    if (parent[i] == i) ++fans[mesh.triangles[i / 3][i % 3]];
+  for (std::uint32_t i = 0; i < corners.size(); ++i)
+    if (corners.leads(i)) ++fans[mesh.triangles[i / 3][i % 3]];
   return static_cast<std::uint64_t>(
       std::count_if(fans.begin(), fans.end(), [](std::uint32_t n) { return n > 1; }));
-}
-
-std::uint32_t count_components(std::vector<std::uint32_t>& parent) {
-  std::uint32_t components = 0;
-  for (std::uint32_t i = 0; i < parent.size(); ++i) components += parent[i] == i ? 1 : 0;
-  return components;
 }
 
 }  // namespace
@@ -174,8 +153,7 @@ Topology build_topology(const TriangleMesh& mesh) {
     }
 
   // 2. Within a bucket the sides of one edge stand together; ties by triangle.
-  std::vector<std::uint32_t> parent(count);
-  std::iota(parent.begin(), parent.end(), 0U);
+  UnionFind components(count);
   for (std::uint32_t low = 0; low < mesh.points_mm.size(); ++low) {
     const auto first = sides.begin() + begin[low];
     const auto last = sides.begin() + begin[low + 1];
@@ -184,13 +162,13 @@ Topology build_topology(const TriangleMesh& mesh) {
     });
     for (auto run = first; run != last;) {
       auto end = run;
-      while (end != last && end->high == run->high) join(parent, run->id / 3, (end++)->id / 3);
+      while (end != last && end->high == run->high) components.join(run->id / 3, (end++)->id / 3);
       record_edge(mesh, extent_mm, &*run, static_cast<std::size_t>(end - run), run->high == low,
                   topology);
       run = end;
     }
   }
-  topology.components = count_components(parent);
+  topology.components = components.count_sets();
   topology.pinched_points = count_pinched_points(mesh, topology);
   return topology;
 }
@@ -200,8 +178,7 @@ Topology build_topology_brute_force(const TriangleMesh& mesh) {
   Topology topology = without_edges(mesh);
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   const double extent_mm = extent_of(mesh);
-  std::vector<std::uint32_t> parent(count);
-  std::iota(parent.begin(), parent.end(), 0U);
+  UnionFind components(count);
   for (std::uint32_t t = 0; t < count; ++t)
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t from = mesh.triangles[t][k];
@@ -214,10 +191,10 @@ Topology build_topology_brute_force(const TriangleMesh& mesh) {
           same.push_back({std::max(a, b), id, a < b});
       }
       if (same.front().id != 3 * t + k) continue;  // recorded when its first side came
-      for (const Side& side : same) join(parent, t, side.id / 3);
+      for (const Side& side : same) components.join(t, side.id / 3);
       record_edge(mesh, extent_mm, same.data(), same.size(), from == to, topology);
     }
-  topology.components = count_components(parent);
+  topology.components = components.count_sets();
   topology.pinched_points = count_pinched_points(mesh, topology);
   return topology;
 }

@@ -87,8 +87,8 @@ struct UploadPiece {
   std::uint64_t offset = 0;  ///< of this piece
   std::vector<std::byte> bytes;
 };
-inline constexpr std::size_t kUploadPiece_bytes = 49'152;
-inline constexpr std::uint64_t kUploadAhead_bytes = 8 * kUploadPiece_bytes;
+inline constexpr std::size_t kUploadPiece_bytes = 49'152;  ///< fits a sample (idl/topics.h)
+inline constexpr std::uint64_t kUploadAhead_bytes = 8 * kUploadPiece_bytes;  ///< chosen
 
 struct ReceivedPiece {
   ClientKey client;

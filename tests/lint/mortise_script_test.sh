@@ -164,4 +164,9 @@ case $said in
   'mortise: 1 passed, 2 failed, 2 skipped: 1 data <absent>, 1 not root' | 'mortise: 1 passed, 2 failed, 2 skipped: 1 not root, 1 data <absent>') ;;
   *) fail "summary: $said" ;;
 esac
+awk -v report='Tests under a sanitizer' -f tests/summary.awk results.xml results.xml >report.json
+for part in '{"room":"b","tests":2,"passed":0,"skipped":2,"failed":0,"seconds":0.2}' '"tests":10,"passed":2,"skipped":4,"failed":4,"seconds":0.8}' \
+  '"notes":\["failed: d",' '"figure":4,"kind":"at most","bound":0,"holds":false'; do
+  grep -q "$part" report.json || fail "report: no $part in $(cat report.json)"
+done
 echo "the script calls what it should"

@@ -12,6 +12,7 @@ constexpr double kParallel = 1e-9;
 // Edges of round faces are not sharper than 60 degrees; what is drawn outwards by both faces of
 // one comes twice as far.
 constexpr double kTravelOfRound = 2.0;
+// Lengths that differ by less than this share of the part are one, but for rounding.
 constexpr double kSameShare = 1e-9;
 
 }  // namespace

@@ -9,6 +9,8 @@
 namespace mortise {
 namespace {
 
+// Holes of a cover, and pockets among them. A hole that is left out makes the cover larger, and so
+// more pairs are asked by their triangles.
 constexpr std::size_t kMostVoids = 48, kMostPockets = 12;
 // A facet between two corners on a rim is no farther inside of it than a chord, and this.
 constexpr double kChordMargin = 1.1;
@@ -47,7 +49,7 @@ struct Ball {
 // Balls about runs of triangles, which mostly lie on one face, and how far outside of a wall one
 // must be to say nothing of its hole.
 struct Balls {
-  static constexpr std::uint32_t kRun = 16;
+  static constexpr std::uint32_t kRun = 16;  // chosen
 
   explicit Balls(const CoverFaces& f) : far_mm(f.travel_mm) {
     for (const SurfaceBand::Face& face : f.body.band->faces)

@@ -16,7 +16,7 @@ namespace {
 
 // Linear programs of a query.
 constexpr std::uint64_t kMostPrograms = 1000;
-// Windows of a query, and how often one is halved.
+// Windows of a query, and how often one is halved: ten times along each axis, to a thousandth.
 constexpr std::size_t kMostWindows = 96;
 constexpr int kMostHalvings = 30;
 // How often a window is made tighter at most; again where it got shorter than this share.

@@ -10,7 +10,7 @@ namespace mortise {
 /// time linear in the rows, deterministic, without tolerance in what it returns as bound.
 class LinearProgram {
  public:
-  static constexpr int kMostVariables = 5;
+  static constexpr int kMostVariables = 5;  ///< a point and its depth in either part
   using Vector = std::array<double, kMostVariables>;
   struct Row {
     Vector g{};

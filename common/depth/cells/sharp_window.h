@@ -20,7 +20,7 @@ using FaceSet = std::uint64_t;
 /// Which faces are held is all that the answers depend on: neither offsets nor pose count.
 class SharpWindow {
  public:
-  static constexpr std::size_t kMostFaces = 64;
+  static constexpr std::size_t kMostFaces = 64;  ///< bits of a FaceSet
   enum class State : std::uint8_t {
     kReady,
     kCrowded,   ///< more than kMostFaces: a smaller window may have less

@@ -10,9 +10,12 @@
 namespace mortise::gpd {
 namespace {
 
+// Where more pairs of triangles are near, corners all over both parts say more than the first of
+// these, which lie in one place (README, section 7).
 constexpr std::uint32_t kMostPairs = 4096;
 // Of meshes of so many triangles together more are near.
 constexpr std::size_t kLarge = 40'000;
+// Evaluations that one search of the trees for near triangles counts for.
 constexpr std::uint64_t kPlacesWork = 20;
 // Corners of each part at which contact is seen; of those that are carried into the frame of the
 // other part to find them at most so many, of a large mesh every so-manyth, and so many at the cost

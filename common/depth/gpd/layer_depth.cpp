@@ -69,7 +69,7 @@ bool meet(const std::vector<Moved>& planes, bool outer, Vec3& d) {
     least = std::min(least, plane.n.dot(mean));
   }
   if (lack <= kMissShare * most) return true;
-  if (!(least > 0.3)) return false;
+  if (!(least > 0.3)) return false;  // the corner would go more than three times as far as planes
   d += (outer ? 1.0 : -1.0) * lack / least * mean;
   return true;
 }

@@ -9,10 +9,13 @@ namespace {
 
 // Six unknowns and a multiplier: no basis has more rows.
 constexpr int kSeven = 7;
+// A row enters in each step, seven stay at most. The bound holds for the multipliers of any step.
 constexpr int kMostSteps = 60;
+// Each drop takes a row away: there are no more than seven.
 constexpr int kMostDrops = 20;
 // A row whose multiplier would gain less is left out.
 constexpr double kLeastGain = 1e-11;
+// A multiplier that is zero but for rounding.
 constexpr double kLeastMultiplier = 1e-14;
 // Remainder below which the rows contradict each other.
 constexpr double kContradiction = 1e-9;

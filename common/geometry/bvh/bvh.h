@@ -11,8 +11,8 @@ namespace mortise {
 /// triangles stay double. Boxes may only discard; every number that leaves a query comes from the
 /// double triangles. Built once per distinct mesh (binned SAH), shared by all instances.
 struct Bvh {
-  static constexpr int kWidth = 8;
-  static constexpr int kLeafSize = 4;
+  static constexpr int kWidth = 8;     ///< boxes tested at once: one AVX register of floats
+  static constexpr int kLeafSize = 4;  ///< two leaves are sixteen pairs of triangles (ccd/kernels)
   /// No leaf is below more nodes than this: after 32 levels sets are halved, three times a level,
   /// which leaves eleven levels of 2^32 triangles.
   static constexpr int kMostLevels = 32 + 11;

@@ -127,6 +127,7 @@ double flat_allowance_mm(const Solid& solid, double quantum_mm) {
 }
 
 double grid_quantum_mm(const TriangleMesh& mesh) {
+  // Last decimals of a file. A finer one is less than a nanometre.
   constexpr std::array<double, 4> kSteps_mm{1e-3, 1e-4, 1e-5, 1e-6};
   // Beyond this share of a step a coordinate lies beside the grid; floats are off by less.
   constexpr double kOnGrid = 0.02;

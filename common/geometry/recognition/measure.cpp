@@ -82,7 +82,7 @@ class CornerViews {
   }
 
  private:
-  static constexpr std::size_t kPlaces = 1024;
+  static constexpr std::size_t kPlaces = 1024;  // what falls out is worked out again
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   const TriangleMesh& mesh_;

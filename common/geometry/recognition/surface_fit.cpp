@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/geometry/surface_at.h"
 
@@ -246,7 +247,7 @@ bool sound(SurfaceKind kind, const Model& m) {
   if (!m.p.allFinite() || !m.a.allFinite() || !std::isfinite(m.size + m.other)) return false;
   if (kind == SurfaceKind::kCone)
     return std::fabs(m.other) > kLeastHalfAngle_rad &&
-           std::fabs(m.other) < 1.57079632679489662 - kLeastHalfAngle_rad;
+           std::fabs(m.other) < 0.5 * std::numbers::pi - kLeastHalfAngle_rad;
   if (!(m.size > 0.0) || m.size > kFlatRadius) return false;
   return kind != SurfaceKind::kTorus || (m.other > 0.0 && m.other < m.size);
 }

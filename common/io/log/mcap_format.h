@@ -6,6 +6,7 @@
 /// Names of the MCAP container (https://mcap.dev/spec): an open format of recorded messages.
 namespace mortise::mcap {
 
+/// At both ends of a file; fixed by the specification.
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', 0x30, '\r', '\n'};
 
 enum Opcode : std::uint8_t {

@@ -16,7 +16,8 @@
 namespace mortise {
 namespace {
 
-// Logged poses are rounded to floats and to 2e-6 rad: a part is called moved away beyond this.
+// A part is called moved away beyond this. Logged places are rounded to floats, which is less up to
+// 80 m from the origin.
 constexpr double kRoundedPose_mm = 1e-2;
 
 // Of a coordinate that was rounded to a float, as a share of it.

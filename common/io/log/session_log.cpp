@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using log_json::Gap;
 
-// The writer looks so often for ticks, or is woken when there are so many.
+// The writer looks so often for ticks, or is woken when there are so many. Chosen: three ticks of
+// 60 Hz at once.
 constexpr auto kCollect = std::chrono::milliseconds(50);
 constexpr std::size_t kWakeTicks = 64;
 // Ticks that may stay with the caller while the writer has the queue, which it never has for long.

@@ -328,7 +328,9 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
 }  // namespace
 
 std::uint64_t most_idle_ticks(double rate_hz, std::int64_t from_ns, std::int64_t to_ns) {
-  constexpr double kUntold_s = 1200.0, kDay_s = 86'400.0;
+  // Twice the ten minutes in which a server writes a record whatever its clock says.
+  constexpr double kUntold_s = 1200.0;
+  constexpr double kDay_s = 86'400.0;  // a longer pause is a damaged number
   const double told_s = (static_cast<double>(to_ns) - static_cast<double>(from_ns)) * 1e-9;
   return static_cast<std::uint64_t>(rate_hz * (std::clamp(told_s, 0.0, kDay_s) + kUntold_s));
 }

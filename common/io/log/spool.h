@@ -14,7 +14,7 @@ namespace mortise {
 /// full, they stay in memory.
 class Spool {
  public:
-  static constexpr std::size_t kBlockBytes = 1 << 12;
+  static constexpr std::size_t kBlockBytes = 1 << 12;  ///< a page of memory
 
   /// The file is in `folder` and disappears with the process.
   explicit Spool(const std::filesystem::path& folder);

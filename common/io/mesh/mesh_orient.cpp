@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/union_find.h"
 #include "common/geometry/border.h"
 #include "common/geometry/signed_distance.h"
 #include "common/geometry/solid.h"
@@ -42,20 +43,19 @@ std::pair<Corners, bool> sorted_corners(const Corners& t) {
 /// The shells of a mesh: which triangle is of which, and which of them are closed.
 class Shells {
  public:
-  explicit Shells(const TriangleMesh& mesh) : mesh_(mesh), of_(mesh.triangles.size()) {
-    std::iota(of_.begin(), of_.end(), 0U);
+  explicit Shells(const TriangleMesh& mesh) : mesh_(mesh), patches_(mesh.triangles.size()) {
     list_sides();
     // 1. Across edges of two triangles that fit, patches grow.
     each_edge([&](std::span<const Side> sides) {
       if (sides.size() == 2 && sides[0].forward != sides[1].forward)
-        join(sides[0].triangle, sides[1].triangle);
+        patches_.join(sides[0].triangle, sides[1].triangle);
     });
     // 2. Patches that do not balance an edge of more alone belong together.
     each_edge([&](std::span<const Side> sides) {
       const auto balance = balance_of(sides);
       std::uint32_t first = kNone;
       for (const auto& [patch, more] : balance)
-        if (more != 0) first = first == kNone ? patch : (join(first, patch), first);
+        if (more != 0) first = first == kNone ? patch : (patches_.join(first, patch), first);
     });
     number();
     closed_.assign(count_, true);
@@ -104,37 +104,26 @@ class Shells {
   std::map<std::uint32_t, int> balance_of(std::span<const Side> sides) {
     std::map<std::uint32_t, int> balance;
     for (const Side& side : sides)
-      balance[numbered_ ? of_[side.triangle] : root(side.triangle)] += side.forward ? 1 : -1;
+      balance[of_.empty() ? patches_.leader_of(side.triangle) : of_[side.triangle]] +=
+          side.forward ? 1 : -1;
     return balance;
   }
 
-  std::uint32_t root(std::uint32_t t) {
-    while (of_[t] != t) t = of_[t] = of_[of_[t]];
-    return t;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    of_[std::max(a, b)] = std::min(a, b);
-  }
   void number() {
-    std::vector<std::uint32_t> numbers(of_.size(), kNone);
-    for (std::uint32_t t = 0; t < of_.size(); ++t) {
-      std::uint32_t& n = numbers[root(t)];
+    std::vector<std::uint32_t> number_of(patches_.size(), kNone);
+    for (std::uint32_t t = 0; t < patches_.size(); ++t) {
+      std::uint32_t& n = number_of[patches_.leader_of(t)];
       if (n == kNone) n = count_++;
+      of_.push_back(n);
     }
-    std::vector<std::uint32_t> numbered(of_.size());
-    for (std::uint32_t t = 0; t < of_.size(); ++t) numbered[t] = numbers[root(t)];
-    of_ = std::move(numbered);
-    numbered_ = true;
   }
 
   const TriangleMesh& mesh_;
   std::vector<Side> sides_;
-  std::vector<std::uint32_t> of_;
+  UnionFind patches_;
+  std::vector<std::uint32_t> of_;  // once they are numbered
   std::vector<bool> closed_;
   std::uint32_t count_ = 0;
-  bool numbered_ = false;
 };
 
 /// One shell as a mesh of its own.

@@ -5,6 +5,7 @@
 namespace mortise {
 namespace {
 
+// ISO 2768-1:1989, table 1.
 struct Row {
   double up_to_mm;
   std::array<double, 4> deviation_mm;  // f, m, c, v; 0: none

@@ -26,6 +26,7 @@ constexpr const char* kMergeKey = "<<";
 
 /// Findings that are told of one file, and unknown keys of one mapping: more is read by nobody.
 constexpr std::size_t kMostFindings = 200, kMostUnknownKeys = 20;
+/// Longer ones quote long values; they are cut.
 constexpr std::size_t kLongestFinding_bytes = 1000;
 /// A word of a list: the names of a part and a feature with a dot between.
 constexpr std::size_t kLongestWord_bytes = 2 * kMostName_bytes + 1;

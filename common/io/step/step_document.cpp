@@ -8,6 +8,7 @@
 namespace mortise {
 namespace {
 
+// "STS2", "STQ1", "STA1".
 constexpr std::uint32_t kDocument = 0x32535453, kQueries = 0x31515453, kAnswers = 0x31415453;
 // Longer than names and notes are; a file cannot fill memory with them.
 constexpr std::size_t kLongestStepText = 4096;

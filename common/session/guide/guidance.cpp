@@ -30,7 +30,7 @@ GuidedDisplacement as_it_stands(const World& world, const MovingGroup& group,
                                 const Relation* added) {
   std::vector<Relation> relations = relations_of(world, group);
   if (added) relations.push_back(*added);
-  return guided({relations, group.reference_W, std::max(group.radius_mm, 1e-3), {}});
+  return guided({relations, group.reference_W, group.lever_mm(), {}});
 }
 
 // The relation in the frames of the parts, with the nearer of both directions; or why there is
@@ -208,7 +208,7 @@ GuidedState guided_state(const World& world, PartId part) {
   const MovingGroup group = moving_group_of(world, part.value - 1);
   const std::vector<Relation> relations = relations_of(world, group);
   if (relations.empty()) return {};
-  const double lever_mm = std::max(group.radius_mm, 1e-3);
+  const double lever_mm = group.lever_mm();
   GuidedState state;
   state.freedom = guided({relations, group.reference_W, lever_mm, {}}).freedom;
   state.residual_mm = violation_mm({relations, group.reference_W, lever_mm, {}});

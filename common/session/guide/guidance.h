@@ -47,7 +47,8 @@ GuidedState guided_state(const World& world, PartId part);
 
 /// A feature of a part by name: of the scenario or the generator, else a recognized one ("bore_1").
 /// Meshes up to kRecognizedOnDemand triangles are searched on demand; larger ones must be
-/// recognized when the scene is loaded. Null: no such feature.
+/// recognized when the scene is loaded: at that size it holds up the tick for a fraction of a
+/// second (tests/bench/FIGURES.md, "Recognition beside the import"). Null: no such feature.
 const Feature* find_feature(const World& world, PartId part, const std::string& name);
 inline constexpr std::size_t kRecognizedOnDemand = 20'000;
 

@@ -268,6 +268,7 @@ GuidedDisplacement guided(const GuideQuery& query) {
     const Eigen::VectorXd z = least_norm_solution(rows.J.topRows(rows.count),
                                                   -rows.r.head(rows.count), kGuideRankShare, &rank);
     result.freedom = 6 - rank;
+    // Near the solution a step of Newton's leaves far less than nine tenths.
     const bool stuck = step > 3 && off_mm > 0.9 * best_mm;
     best_mm = std::min(best_mm, off_mm);
     if (off_mm == 0.0 || stuck) break;

@@ -28,9 +28,11 @@ double slide_upper_bound_mm(const Solid& solid, const Motion& motion) {
   const BoundingSphere& sphere = solid.sphere();
   const double arm_mm = (sphere.center_mm - motion.reference_P).norm() + sphere.radius_mm;
   const double turn_mm = motion.w_W.norm() * arm_mm;
-  const double least_lever_mm = std::max(1e-3, sphere.radius_mm);
+  const double least_lever_mm = std::max(1e-3, sphere.radius_mm);  // see MovingGroup::lever_mm
   const double length_mm = std::hypot(motion.v_W.norm(), turn_mm);
-  return length_mm * (1.0 + arm_mm / least_lever_mm) + motion.w_W.squaredNorm() * arm_mm + 0.01;
+  constexpr double kLifts_mm = 0.01;  // of all legs of a tick: four of kBandLift_mm are 0.006
+  return length_mm * (1.0 + arm_mm / least_lever_mm) + motion.w_W.squaredNorm() * arm_mm +
+         kLifts_mm;
 }
 
 Box box_at_start(const Solid& solid, const Motion& motion) {

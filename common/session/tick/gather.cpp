@@ -102,7 +102,7 @@ void spread(const World& world, std::size_t at, Scratch::Impl& work) {
   const std::vector<Relation> relations = relations_of(world, group);
   Displacement by = wanted_of(work.moves[at]);
   if (!relations.empty()) {
-    by = guided({relations, group.reference_W, std::max(group.radius_mm, 1e-3), by}).displacement;
+    by = guided({relations, group.reference_W, group.lever_mm(), by}).displacement;
     by = within_a_jump(world, by);
   }
   const Vec3 center_W = straight_point(group, relations);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/base/constants.h"
 #include "common/depth/body.h"
@@ -117,7 +118,7 @@ std::vector<HoldPlace> hold_places(const OverlapQuery& query, const OverlapRegio
   const Pose &X_WE = follows_b ? query.X_WB : query.X_WA,
              &X_WS = follows_b ? query.X_WA : query.X_WB;
   for (int i = 1; i < kAround; ++i) {
-    const Vec3 turn = 2.0 * 3.14159265358979323846 * i / kAround * round->axis;
+    const Vec3 turn = 2.0 * std::numbers::pi * i / kAround * round->axis;
     const Vec3 x_E = round->point + rotation_exp(turn) * (followed.place() - round->point);
     const Vec3 x_S = X_WS.inverse() * (X_WE * x_E);
     const double depth_mm = smooth.face().depth_mm(x_S);

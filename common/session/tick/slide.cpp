@@ -183,6 +183,7 @@ TangentMove on_arc(TangentQuery query, double& lift_mm) {
   const double turn_rad = straight.twist.turn_rad.norm();
   if (!straight.possible || turn_rad == 0.0) return straight;
   for (Hold& hold : query.holds) {
+    // Half, and a tenth of that for the rest of the arc.
     const double off_mm = 0.55 * turn_rad * turn_rad * (hold.point_W - query.center_W).norm();
     hold.gap_mm -= off_mm;
     lift_mm = std::max(lift_mm, off_mm);
@@ -196,7 +197,7 @@ bool set_out(const World& world, Scratch::Impl& work, SlidingGroup& sliding, con
              const std::vector<Relation>& relations, double t) {
   Displacement by = displacement_of(sliding.given);
   if (!relations.empty())
-    by = guided({relations, center_W, std::max(sliding.group.radius_mm, 1e-3), by}).displacement;
+    by = guided({relations, center_W, sliding.group.lever_mm(), by}).displacement;
   std::vector<Motion> legs;
   for (const std::int32_t index : sliding.moves) {
     const Move& move = move_at(work, index);
@@ -262,7 +263,7 @@ TangentQuery tangent_query(const SlidingGroup& sliding, const Motion& wanted, co
   TangentQuery query;
   query.wanted = {(1.0 - t) * wanted.v_W, (1.0 - t) * wanted.w_W};
   query.center_W = center_W;
-  query.lever_mm = std::max(sliding.group.radius_mm, 1e-3);
+  query.lever_mm = sliding.group.lever_mm();
   // A hand that does not turn the part keeps it from turning.
   query.may_turn = !wanted.w_W.isZero(0.0);
   query.holds = std::move(plain);

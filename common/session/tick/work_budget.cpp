@@ -13,6 +13,7 @@ namespace {
 constexpr int kHeldLead_ticks = 30;
 // An estimate stays within these: fewer are used by any question, more are given to none.
 constexpr std::uint64_t kLeastWanted = 100, kMostWanted = 100'000;
+// It is kept in 8 bits.
 constexpr int kLongestNoted_ticks = 250;
 
 PairMemo::Effort& effort_of(PairWork& pair, WorkStage stage) {

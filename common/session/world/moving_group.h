@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct MovingGroup {
   Vec3 reference_W = Vec3::Zero();   ///< of a part: centre of its bounding sphere; of a group: mean
                                      ///< of its parts' reference points
   double radius_mm = 0.0;            ///< all points of the group are this near to reference_W
+
+  /// What a turn is weighed by against a shift: the radius, of a mere point a micrometre.
+  double lever_mm() const { return std::max(radius_mm, 1e-3); }
 };
 
 /// The group that part `index` moves with, as it stands. O(1) for a part without a group, else

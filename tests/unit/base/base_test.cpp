@@ -12,6 +12,7 @@
 #include "common/base/plain_text.h"
 #include "common/base/ranges.h"
 #include "common/base/result.h"
+#include "common/base/union_find.h"
 
 namespace mortise {
 namespace {
@@ -21,6 +22,21 @@ TEST(Ids, ZeroIsNoneAndKindsDoNotMix) {
   EXPECT_TRUE(PartId{1});
   EXPECT_LT(PartId{1}, PartId{2});
   static_assert(!std::is_convertible_v<PartId, UserId>);
+}
+
+TEST(UnionFind, TheLeastNumberLeadsHoweverSetsWereJoined) {
+  UnionFind one(5), other(4);
+  other.add();
+  one.join(4, 2);
+  one.join(2, 1);
+  other.join(1, 2);
+  other.join(4, 1);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(one.leader_of(i), other.leader_of(i)) << i;
+    EXPECT_EQ(one.leads(i), i != 2 && i != 4) << i;
+  }
+  EXPECT_EQ(one.leader_of(4), 1U);
+  EXPECT_EQ(one.count_sets(), 3U);
 }
 
 TEST(Result, HoldsAValueOrAReason) {

@@ -13,6 +13,7 @@ namespace {
 
 /// More than any file; sums of a few products of these fit into 64 bits.
 constexpr std::uint64_t kMost = std::uint64_t{1} << 32U;
+/// Of a header; chosen: those of programs have some tens. What has no end by then is refused.
 constexpr std::size_t kMostLines = 1000;
 
 std::vector<std::string_view> words_of(std::string_view line) {

@@ -13,6 +13,7 @@
 namespace mortise {
 namespace {
 
+// Of a binary file: a text of 80 bytes and a count of 4; a triangle of twelve floats and 2 bytes.
 constexpr std::size_t kHeader = 80, kFront = 84, kRecord = 50;
 // As far as a file is looked at to tell text from binary: the count of a binary file, which has a
 // zero byte, and its first triangle.

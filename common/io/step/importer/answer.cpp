@@ -13,7 +13,8 @@
 namespace mortise {
 namespace {
 
-constexpr unsigned kSecondsEach = 10;  // of one Boolean operation
+// Of one Boolean operation; most take some hundredths of a second.
+constexpr unsigned kSecondsEach = 10;
 
 std::vector<std::byte> refuse(const std::string& why) {
   StepDocument document;

@@ -19,8 +19,10 @@
 namespace mortise {
 namespace {
 
-constexpr std::size_t kTogether = 2, kMostTogether = 8;  // processes
-constexpr std::chrono::microseconds kLook(300);          // between looks for answers
+// Processes: as many as there are cores, within these. At least two, so that one that hangs does
+// not hold up the rest; not more than eight, chosen, as each takes memory.
+constexpr std::size_t kTogether = 2, kMostTogether = 8;
+constexpr std::chrono::microseconds kLook(300);  // between looks for answers
 
 TopLoc_Location location_of(const Pose& X) {
   gp_Trsf placed;

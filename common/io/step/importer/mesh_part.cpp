@@ -20,6 +20,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/base/union_find.h"
 #include "common/io/step/importer/freeform_mesh.h"
 #include "common/io/step/importer/known_surface.h"
 
@@ -38,26 +39,6 @@ void tessellate(const TopoDS_Shape& shape, const MeshOptions& options) {
   mesher.ChangeParameters() = parameters;
   mesher.Perform();
 }
-
-class Classes {
- public:
-  std::uint32_t add() {
-    parent_.push_back(static_cast<std::uint32_t>(parent_.size()));
-    return parent_.back();
-  }
-  std::uint32_t root(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);  // the node that came first keeps its place
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // Joins the nodes of one solid's faces along its edges and at its vertices: the k-th node of an
 // edge is the same in every face that has it. Joining by place would join edges that touch.
@@ -148,7 +129,7 @@ class SolidMesher {
   }
 
   std::uint32_t point_of(std::uint32_t node) {
-    const std::uint32_t root = classes_.root(node);
+    const std::uint32_t root = classes_.leader_of(node);
     if (point_of_[root] == kNone) {
       point_of_[root] = static_cast<std::uint32_t>(part_.mesh.points_mm.size());
       part_.mesh.points_mm.push_back(places_[root]);
@@ -227,7 +208,7 @@ class SolidMesher {
   std::vector<TopoDS_Face> faces_;
   std::vector<std::uint32_t> first_node_;
   std::vector<Vec3> places_;
-  Classes classes_;
+  UnionFind classes_;
   TopTools_IndexedMapOfShape vertices_, edges_;
   std::vector<std::uint32_t> node_of_vertex_, point_of_;
   std::vector<std::vector<std::uint32_t>> nodes_of_edge_;

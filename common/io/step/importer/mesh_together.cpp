@@ -7,9 +7,10 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <numeric>
 #include <thread>
 #include <unordered_map>
+
+#include "common/base/union_find.h"
 
 namespace mortise {
 namespace {
@@ -19,22 +20,16 @@ constexpr unsigned kMostThreads = 8;
 
 // Numbers of shapes that hang together by what they share.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<TopoDS_Shape>& solids) {
-  std::vector<std::size_t> first(solids.size());
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (first[i] != i) i = first[i];
-    return i;
-  };
-  std::unordered_map<const void*, std::size_t> owner;
-  for (std::size_t i = 0; i < solids.size(); ++i)
+  UnionFind together(solids.size());
+  std::unordered_map<const void*, std::uint32_t> owner;
+  for (std::uint32_t i = 0; i < solids.size(); ++i)
     for (const TopAbs_ShapeEnum kind : {TopAbs_FACE, TopAbs_EDGE})
       for (TopExp_Explorer x(solids[i], kind); x.More(); x.Next()) {
         const auto [known, fresh] = owner.try_emplace(x.Current().TShape().get(), i);
-        const std::size_t a = root(known->second), b = root(i);
-        if (!fresh && a != b) first[std::max(a, b)] = std::min(a, b);
+        if (!fresh) together.join(known->second, i);
       }
   std::vector<std::vector<std::size_t>> of_root(solids.size()), groups;
-  for (std::size_t i = 0; i < solids.size(); ++i) of_root[root(i)].push_back(i);
+  for (std::uint32_t i = 0; i < solids.size(); ++i) of_root[together.leader_of(i)].push_back(i);
   for (auto& group : of_root)
     if (!group.empty()) groups.push_back(std::move(group));
   return groups;
