@@ -113,34 +113,54 @@ bool CommandQueue::must_wait(const Waiting& waiting, std::int64_t now_ns) {
 
 void CommandQueue::carry_out(const Command& command, World& world, std::int64_t now_ns,
                              Intake& intake) {
-  if (names_mesh(command))
-    carry_out_edit(command, world, now_ns, intake);
-  else
-    apply(command, world, now_ns, intake);
+  if (!names_mesh(command) && !wanted_mesh(world, command))
+    return apply(command, world, now_ns, intake);
+  Command edit = command;
+  if (names_mesh(edit)) edit.details.text.clear();  // it is ours: what is found in the mesh
+  carry_out_edit(std::move(edit), world, now_ns, intake);
 }
 
 void CommandQueue::carry_out_edit(Command command, World& world, std::int64_t now_ns,
                                   Intake& intake) {
   // What is refused anyway does not wait.
   const User* user = world.find(command.user);
-  if (user == nullptr || !user->present || user->role == Role::kObserver ||
-      check_edit(world, *user, command).refusal != Refusal::kNone)
+  if (user == nullptr || !user->present || user->role == Role::kObserver)
     return apply(command, world, now_ns, intake);
-  std::string& name = command.details.edit->mesh_hash;
-  Uploads::Mesh mesh = uploads_.find(command.user, name, world);
+  if (names_mesh(command)) {
+    if (check_edit(world, *user, command).refusal != Refusal::kNone)
+      return apply(command, world, now_ns, intake);
+    std::string& name = command.details.edit->mesh_hash;
+    Uploads::Mesh mesh = uploads_.find(command.user, name, world);
+    if (!is_here(mesh, command, world, intake)) return;
+    // What was found in a file is told once; from then on the mesh goes by its own name.
+    if (name != mesh.hash) command.details.text = std::move(mesh.text);
+    name = mesh.hash;
+  }
+  if (const auto wanted = wanted_mesh(world, command); wanted && wanted->as)
+    if (!is_here(uploads_.find(wanted->hash, *wanted->as, world), command, world, intake)) return;
+  apply(command, world, now_ns, intake);
+}
+
+bool CommandQueue::is_here(const Uploads::Mesh& mesh, Command& command, const World& world,
+                           Intake& intake) {
   switch (mesh.is) {
     case Uploads::Mesh::Is::kUnknown:
-      return answer_refused(command, Refusal::kUnknownMesh,
-                            "no mesh '" + name + "' was uploaded: send it first", world, intake);
+      answer_refused(command, Refusal::kUnknownMesh,
+                     "no mesh '" + mesh.hash + "' was uploaded: send it first", world, intake);
+      return false;
     case Uploads::Mesh::Is::kUnusable:
-      return answer_refused(command, Refusal::kUnreadableMesh, std::move(mesh.text), world, intake);
+      answer_refused(command, Refusal::kUnreadableMesh, mesh.text, world, intake);
+      return false;
     case Uploads::Mesh::Is::kComing:
-      break;
+      wait_for_mesh(std::move(command), world, intake);
+      return false;
     case Uploads::Mesh::Is::kHere:
-      name = mesh.hash;
-      command.details.text = std::move(mesh.text);
-      return apply(command, world, now_ns, intake);
+      break;
   }
+  return true;
+}
+
+void CommandQueue::wait_for_mesh(Command command, const World& world, Intake& intake) {
   const auto waiting = std::ranges::count_if(
       edits_, [&](const Command& other) { return other.user == command.user; });
   if (waiting >= limits_.edits_waiting)

@@ -55,8 +55,12 @@ class CommandQueue {
   void carry_out(const Command& command, World& world, std::int64_t now_ns, Intake& intake);
   /// The same where no mesh is missing.
   void apply(const Command& command, World& world, std::int64_t now_ns, Intake& intake);
-  /// Of an edit that names a mesh: carries it out, lets it wait, or refuses it.
+  /// Of an edit that needs a mesh: carries it out, lets it wait, or refuses it.
   void carry_out_edit(Command command, World& world, std::int64_t now_ns, Intake& intake);
+  /// Is the mesh usable that an edit needs? If not, the edit waits or is refused.
+  bool is_here(const Uploads::Mesh& mesh, Command& command, const World& world, Intake& intake);
+  /// Until the mesh is ready.
+  void wait_for_mesh(Command command, const World& world, Intake& intake);
   void answer_refused(const Command& command, Refusal reason, std::string text, const World& world,
                       Intake& intake);
   /// Does a grab, request or consent give a user more parts than the limit?

@@ -124,6 +124,7 @@ struct PartMaker::Work {
     Made ready;
     ready.key = wish.key;
     ready.quantum_mm = wish.quantum_mm;
+    ready.as = wish.as;
     const bool is_file = !wish.solid;
     if (is_file) {
       if (content_hash(wish.file) != wish.hash) {
@@ -142,7 +143,8 @@ struct PartMaker::Work {
       wish.solid = std::make_shared<const Solid>(std::move(mesh->mesh));
     }
     const Solid& solid = *wish.solid;
-    ready.shape = std::make_shared<const PartShape>(make(wish.solid, ready.quantum_mm));
+    const PartShapes::Make& make_it = wish.as ? wish.as->make : make;
+    ready.shape = std::make_shared<const PartShape>(make_it(wish.solid, ready.quantum_mm));
     build_derived(*ready.shape, threads);
     if (solid.mesh().triangles.size() <= kRecognizedOnDemand)
       ready.recognized =

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,11 +26,13 @@ class PartMaker {
     // or a mesh.
     SolidPtr solid;
     double quantum_mm = 0.0;
+    std::optional<PartShapes::AsPart> as = {};  ///< what it is to be; nothing: a part of its own
   };
   struct Made {
     std::string key;
     PartShapePtr shape;  ///< null: it could not be made, and `text` says why
     double quantum_mm = 0.0;
+    std::optional<PartShapes::AsPart> as = {};
     std::string text;  ///< else what was found in the file; may be empty
     std::shared_ptr<const std::vector<Feature>> recognized;    ///< null: not searched
     std::shared_ptr<const std::vector<std::byte>> mesh_bytes;  ///< of a file: see mesh_bytes.h

@@ -151,13 +151,20 @@ void Uploads::settle(World& world, Intake& intake) {
 }
 
 void Uploads::take_made(PartMaker::Made made, World& world) {
+  making_.erase(made.key);
+  if (made.as) {
+    if (made.shape)
+      world.shapes->add(made.shape, *made.as);
+    else
+      failed_[made.key] = std::move(made.text);
+    return;
+  }
   if (made.shape) {
     const std::string hash = made.shape->solid->hash();
     world.shapes->add(made.shape, made.quantum_mm);
     if (made.recognized) world.recognized.try_emplace(hash, made.recognized);
     if (made.mesh_bytes && !used_.contains(hash))
       unused_.try_emplace(hash, Telling{hash, made.quantum_mm, made.mesh_bytes, 0});
-    making_.erase(hash);
   }
   for (auto& [key, upload] : uploads_) {
     if (key_text(key.first, key.second) != made.key) continue;
@@ -171,8 +178,8 @@ void Uploads::take_made(PartMaker::Made made, World& world) {
 }
 
 Uploads::Mesh Uploads::find(UserId user, const std::string& name, World& world) {
-  if (!world.shapes) return {};
-  Mesh mesh;
+  Mesh mesh{Mesh::Is::kUnknown, name, ""};
+  if (!world.shapes) return mesh;
   for (const auto& [key, upload] : uploads_) {  // the last one counts
     if (key.first != user || upload.head.hash != name) continue;
     const UploadState& state = upload.state;
@@ -182,7 +189,7 @@ Uploads::Mesh Uploads::find(UserId user, const std::string& name, World& world) 
   }
   if (mesh.is == Mesh::Is::kUnknown) {
     const PartShapes::Mesh known = world.shapes->find(name);
-    if (!known.solid) return {};
+    if (!known.solid) return mesh;
     mesh = {Mesh::Is::kHere, name, ""};
     if (!world.shapes->is_made(name, known.quantum_mm)) {
       mesh.is = Mesh::Is::kComing;
@@ -196,6 +203,22 @@ Uploads::Mesh Uploads::find(UserId user, const std::string& name, World& world) 
   }
   if (mesh.is == Mesh::Is::kHere && !is_told(mesh.hash)) mesh.is = Mesh::Is::kComing;
   return mesh;
+}
+
+Uploads::Mesh Uploads::find(const std::string& mesh_hash, const PartShapes::AsPart& as,
+                            World& world) {
+  const PartShapes::Mesh known = world.shapes->find(mesh_hash);
+  if (!known.solid) return {Mesh::Is::kUnknown, mesh_hash, ""};
+  if (world.shapes->is_made(mesh_hash, as)) return {Mesh::Is::kHere, mesh_hash, ""};
+  PartMaker::Wish wish;
+  wish.key = mesh_hash + "/" + std::to_string(as.part.value) + "/" + std::to_string(as.said);
+  wish.solid = known.solid;
+  wish.quantum_mm = known.quantum_mm;
+  wish.as = as;
+  if (const auto failed = failed_.find(wish.key); failed != failed_.end())
+    return {Mesh::Is::kUnusable, mesh_hash, failed->second};
+  if (making_.insert(wish.key).second) maker(world).make(std::move(wish));
+  return {Mesh::Is::kComing, mesh_hash, ""};
 }
 
 // 3. the one that stands by

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/messages/channel.h"
+#include "common/session/world/part_shapes.h"
 #include "common/session/world/world.h"
 #include "server/intake.h"
 #include "server/part_maker.h"
@@ -48,6 +49,8 @@ class Uploads {
   /// `name`: of the bytes of a file that the user has sent, or of a mesh of the session. One that
   /// can be made usable is, from now on.
   Mesh find(UserId user, const std::string& name, World& world);
+  /// The same of a mesh of the session that is to be that part.
+  Mesh find(const std::string& mesh_hash, const PartShapes::AsPart& as, World& world);
   /// A decision has named the mesh: it is in the log from now on.
   void note_used(const std::string& mesh_hash) {
     used_.insert(mesh_hash);
@@ -90,8 +93,9 @@ class Uploads {
   int threads_ = 1;
   std::unique_ptr<PartMaker> maker_;  ///< once it is needed
   std::map<Key, Upload> uploads_;
-  std::map<UserId, std::uint64_t> bytes_of_;  ///< that each user has sent or announced
-  std::set<std::string> making_;              ///< meshes of the session, for copies
+  std::map<UserId, std::uint64_t> bytes_of_;   ///< that each user has sent or announced
+  std::set<std::string> making_;               ///< keys of wishes: meshes of the session
+  std::map<std::string, std::string> failed_;  ///< why, by key of the wish
   bool has_follower_ = false;
   std::set<std::string> used_, told_;      ///< meshes: in the log; with the one that stands by
   std::map<std::string, Telling> unused_;  ///< meshes that no decision has named yet

@@ -204,6 +204,10 @@ void read_added(Keys& keys, CommandWish& wish) {
   if (keys.has("p")) edit.X_WP.p = keys.vector("p");
   if (keys.has("q")) edit.X_WP.q = keys.rotation("q");
 }
+void read_replaced(Keys& keys, CommandWish& wish) {
+  read_part(keys, wish);
+  wish.details.edit.emplace().mesh_hash = keys.text("mesh", kHashDigits);
+}
 void read_moving(Keys& keys, CommandWish& wish) {
   read_part(keys, wish);
   wish.details.edit.emplace().moving = read_flag(keys, "moving");
@@ -235,6 +239,7 @@ const std::vector<CommandRow>& command_rows() {
       {"constrain", kAddConstraint, {read_constraint}},
       {"snap", kSnap, {read_snap}},
       {"add_part", kAddPart, {read_added}},
+      {"replace_part", kReplacePart, {read_replaced}},
       {"remove_part", kRemovePart, {read_part}},
       {"set_moving", kSetMoving, {read_moving}},
       {"unconstrain",

@@ -132,7 +132,7 @@ Json json_of(const Decision& decision) {
   if (details.edit) {
     json["mesh"] = details.edit->mesh_hash;
     json["moving"] = details.edit->moving;
-    if (decision.kind == Decision::Kind::kAddPart) json["name"] = details.edit->name;
+    if (!details.edit->name.empty()) json["name"] = details.edit->name;
   }
   if (details.constraint_id) json["constraint_id"] = details.constraint_id.value;
   return json;

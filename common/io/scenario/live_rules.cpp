@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <tuple>
+#include <utility>
 
 #include "common/evaluation/band.h"
+#include "common/io/scenario/revised_part.h"
 #include "common/io/scenario/scenario_parts.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/io/scenario/scenario_yaml.h"
@@ -121,7 +124,52 @@ class LiveRules final : public SurfaceRules {
     stated.of_feature.resize(part.features.size());
   }
 
+  PartShapes::AsPart as_part(const Part& part) const override {
+    const std::uint64_t said = said_of(part.id);
+    Remembered& known = remembered_[part.id];
+    if (known.memory && known.as.said == said) return known.as;
+    known.memory = std::make_shared<const PartMemory>(memory_of(part));
+    known.as = {part.id, said, [memory = known.memory](SolidPtr solid, double quantum_mm) {
+                  return revised(*memory, std::move(solid), quantum_mm);
+                }};
+    return known.as;
+  }
+
+  Change revise(const World& world, PartId id, const PartShape& shape) override {
+    memories_[id] = remembered_.at(id).memory;  // of the part as it was: the shape came of it
+    ++said_[id];
+    revised_ = true;
+    StatedPart& stated = stated_[id.value - 1];
+    stated = *shape.stated;
+    stated.kind = world.find(id)->kind;
+    for (LiveFit& live : live_) {
+      auto& [a, fa, b, fb] = live.ends;
+      if (a == id) fa = index_now(world, a, live.name_a);
+      if (b == id) fb = index_now(world, b, live.name_b);
+    }
+    Change change;
+    for (auto& [ids, rule] : outcome(world, id).pair_rules) change.pairs.push_back(std::move(rule));
+    return change;
+  }
+
  private:
+  std::uint64_t said_of(PartId part) const {
+    const auto said = said_.find(part);
+    return said == said_.end() ? 1 : said->second + 1;
+  }
+
+  // What was remembered when the part was revised last, and what has been said since.
+  PartMemory memory_of(const Part& part) const {
+    const auto known = memories_.find(part.id);
+    PartMemory memory = known == memories_.end() ? PartMemory{} : *known->second;
+    const std::size_t i = part.id.value - 1;
+    const bool is_named = i < named_;
+    memory.undeclared = is_named ? scenario_.parts[i].undeclared : scenario_.undeclared;
+    if (is_named) memory.chord_error_mm = scenario_.parts[i].chord_error_mm;
+    remember(memory, part, stated_[i]);
+    return memory;
+  }
+
   Result<Change> restate_part(const World& world, const Target& target, const std::string& text,
                               YamlContext& context) {
     const Part& part = *world.find(target.part);
@@ -135,6 +183,7 @@ class LiveRules final : public SurfaceRules {
       stated = before;
       return change;
     }
+    ++said_[target.part];
     change->bands.emplace_back(target.part,
                                with_statements(part.band, *part.solid, for_band(stated.rest),
                                                for_band(stated.of_feature)));
@@ -205,8 +254,14 @@ class LiveRules final : public SurfaceRules {
     if (!a) return a.error();
     const auto b = feature_index(world, target.other_part, target.other_feature);
     if (!b) return b.error();
-    LiveFit live{{target.part, *a, target.other_part, *b}, std::nullopt};
-    if (target.other_part < target.part) live.ends = {target.other_part, *b, target.part, *a};
+    LiveFit live{{target.part, *a, target.other_part, *b},
+                 std::nullopt,
+                 target.feature,
+                 target.other_feature};
+    if (target.other_part < target.part) {
+      live.ends = {target.other_part, *b, target.part, *a};
+      std::swap(live.name_a, live.name_b);
+    }
     if (!text.empty()) {
       const auto fit = fit_of_text(text, context);
       if (!fit) return fit.error();
@@ -235,17 +290,34 @@ class LiveRules final : public SurfaceRules {
 
   // The fits of every pair with the part, under what is stated now.
   Result<Change> change_of(const World& world, PartId part) const {
-    RuleOutcome rules = rules_of({scenario_, world.parts, stated_, live_, named_, part});
+    RuleOutcome rules = outcome(world, part);
     if (has_error(rules.findings)) return first_error(rules.findings);
     Change change;
     for (auto& [ids, rule] : rules.pair_rules) change.pairs.push_back(std::move(rule));
     return change;
   }
 
+  RuleOutcome outcome(const World& world, PartId part) const {
+    return rules_of({scenario_, world.parts, stated_, live_, named_, part, revised_});
+  }
+
+  static std::size_t index_now(const World& world, PartId id, const std::string& name) {
+    const auto index = feature_index(world, id, name);
+    return index ? *index : kNoFace;
+  }
+
   Scenario scenario_;
   std::vector<StatedPart> stated_;
   std::size_t named_;  ///< parts of the scenario
   std::vector<LiveFit> live_;
+  struct Remembered {
+    PartShapes::AsPart as;
+    std::shared_ptr<const PartMemory> memory;
+  };
+  bool revised_ = false;                  ///< some part has taken another mesh
+  std::map<PartId, std::uint64_t> said_;  ///< how often what is stated of a part changed
+  std::map<PartId, std::shared_ptr<const PartMemory>> memories_;  ///< of parts that were revised
+  mutable std::map<PartId, Remembered> remembered_;               ///< a cache, by said_of()
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "common/io/scenario/scene_features.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mortise {
 
@@ -44,6 +45,22 @@ std::vector<Feature> undeclared_features(const Recognition& recognition,
     rest.push_back(std::move(feature));
   }
   return rest;
+}
+
+std::vector<std::int32_t> owners_of(const std::vector<Feature>& features,
+                                    const TriangleMesh& mesh) {
+  constexpr double kTie_mm = 1e-9;  // above the rounding of a distance, below any other
+  std::vector<std::int32_t> owner(mesh.triangles.size(), -1);
+  const auto off_mm = [&](std::int32_t f, std::uint32_t t) {
+    double most = 0.0;
+    for (int k = 0; k < 3; ++k)
+      most = std::max(most, std::fabs(features[f].surface.signed_distance_mm(mesh.corner(t, k))));
+    return most;
+  };
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(features.size()); ++f)
+    for (const std::uint32_t t : features[f].triangles)
+      if (owner[t] < 0 || off_mm(f, t) < off_mm(owner[t], t) - kTie_mm) owner[t] = f;
+  return owner;
 }
 
 std::optional<Interval> estimated_deviation_of(const SurfaceBand& band) {

@@ -33,6 +33,10 @@ std::vector<Feature> undeclared_features(const Recognition& recognition,
                                          const std::vector<Feature>& declared,
                                          std::size_t triangles);
 
+/// For each triangle the feature that has it: of those that name it the one to which it lies
+/// closer, the earlier one on a tie; -1: none.
+std::vector<std::int32_t> owners_of(const std::vector<Feature>& features, const TriangleMesh& mesh);
+
 /// The summary of all estimated faces of a band: their hull. Nothing when there are none.
 std::optional<Interval> estimated_deviation_of(const SurfaceBand& band);
 

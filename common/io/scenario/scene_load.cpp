@@ -400,19 +400,7 @@ class SceneLoader {
   // A triangle that lies on two declared surfaces (a thin rim, or one round declared twice) belongs
   // to the one it lies closer to, the earlier one on a tie.
   bool share_out_triangles(const Scenario::PartSpec& spec, PartKind& kind) {
-    constexpr double kTie_mm = 1e-9;  // above the rounding of a distance, below any other
-    const TriangleMesh& mesh = kind.solid->mesh();
-    std::vector<std::int32_t> owner(mesh.triangles.size(), -1);
-    const auto off = [&](std::int32_t f, std::uint32_t t) {
-      double most = 0.0;
-      for (int k = 0; k < 3; ++k)
-        most = std::max(most,
-                        std::fabs(kind.features[f].surface.signed_distance_mm(mesh.corner(t, k))));
-      return most;
-    };
-    for (std::int32_t f = 0; f < static_cast<std::int32_t>(kind.features.size()); ++f)
-      for (const std::uint32_t t : kind.features[f].triangles)
-        if (owner[t] < 0 || off(f, t) < off(owner[t], t) - kTie_mm) owner[t] = f;
+    const std::vector<std::int32_t> owner = owners_of(kind.features, kind.solid->mesh());
     bool good = true;
     for (std::int32_t f = 0; f < static_cast<std::int32_t>(kind.features.size()); ++f) {
       auto& mine = kind.features[f].triangles;
@@ -462,7 +450,7 @@ PartShape shape_of(SolidPtr solid, double quantum_mm, UndeclaredSurface undeclar
   const bool recognizes = undeclared != UndeclaredSurface::kNominal;
   RecognizedMeshes recognized;
   if (recognizes) add_undeclared(recognized.of(*solid, quantum_mm), kind);
-  PartShape shape{solid, kind.features, {}};
+  PartShape shape{solid, kind.features, {}, {}};
   shape.band = build_band({solid.get(),
                            kind.features,
                            std::nullopt,

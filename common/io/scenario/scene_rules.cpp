@@ -89,7 +89,8 @@ NamedPairs named_pairs(const Names& names, const std::string& part_a, const std:
   return named;
 }
 
-// What an assembly has no longer after another export (unmatched) is told, and the rest is used.
+// What an assembly has no longer after another export, or a part with another mesh (unmatched), is
+// told, and the rest is used.
 class RuleBook {
  public:
   explicit RuleBook(const RuleInput& in)
@@ -123,7 +124,9 @@ class RuleBook {
   void say(bool is_error, SourceLine at, const std::string& text) {
     out_.findings.push_back({is_error, place_of(scenario_, at) + text});
   }
-  void unmatched(SourceLine at, const std::string& text) { say(!scenario_.assembly, at, text); }
+  void unmatched(SourceLine at, const std::string& text) {
+    say(!scenario_.assembly && !input_.revised, at, text);
+  }
   const Part& part(PartId id) const { return names_.part(id); }
 
   // 1. fits
@@ -187,7 +190,7 @@ class RuleBook {
 
   void apply_live(const LiveFit& live) {
     const auto [a, fa, b, fb] = live.ends;
-    if (!live.fit || !is_asked(a, b)) return;
+    if (!live.fit || !is_asked(a, b) || fa == kNoFace || fb == kNoFace) return;
     in_live_ = true;
     state_pair(*live.fit, a, fa, b, fb);
     in_live_ = false;

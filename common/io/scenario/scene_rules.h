@@ -38,7 +38,10 @@ using FeaturePair = std::tuple<PartId, std::size_t, PartId, std::size_t>;
 struct LiveFit {
   FeaturePair ends;
   std::optional<Scenario::FitSpec> fit;  ///< nothing: no fit
+  std::string name_a, name_b;            ///< of the features; empty: the whole part
 };
+/// In place of the index of a feature that the present mesh of its part does not have.
+inline constexpr std::size_t kNoFace = kWholePart - 1;
 
 struct RuleInput {
   const Scenario& scenario;
@@ -48,6 +51,7 @@ struct RuleInput {
   /// So many parts, from the first on, are those that the scenario speaks of; others were added.
   std::size_t named = static_cast<std::size_t>(-1);
   std::optional<PartId> only = {};  ///< only pairs with this part, and no more than their fits
+  bool revised = false;  ///< some part has another mesh: a fit may speak of a face that is gone
 };
 
 struct RuleOutcome {

@@ -116,14 +116,21 @@ bool fits(const World& world) {
   });
 }
 
-Status state_rules(World& world, const std::vector<Decision>& restated,
-                   const std::vector<PairStatement>& statements) {
-  for (const Decision& decision : restated)
+// Parts that came, meshes that parts took, and tolerances, in their order: what is stated of a part
+// may speak of a face that only one of its meshes has.
+Status say_again(World& world, const std::vector<Decision>& restated) {
+  for (const Decision& decision : restated) {
     if (edits_scene(decision.kind)) {
-      world.restated.push_back(decision);
+      if (!restate_edit(world, decision))
+        return fail(Code::kInvalidInput, "the mesh of an added or replaced part is missing");
     } else if (Status said = set_tolerance(world, decision); !said) {
       return said;
     }
+  }
+  return ok();
+}
+
+Status state_rules(World& world, const std::vector<PairStatement>& statements) {
   std::map<std::pair<PartId, PartId>, PairRule> rules;
   for (const PairStatement& statement : statements) {
     const auto found = world.pair_rules.find({statement.a, statement.b});
@@ -158,10 +165,7 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   // 1. What the scene does not say.
   std::vector<Decision> restated, standing;
   in(world.tick, world.policy, world.edits, restated);
-  for (const Decision& added : restated)
-    if (edits_scene(added.kind) && append_part(world, added) == nullptr)
-      return bad("the mesh of an added part is missing");
-  world.restated.clear();  // said again below, in their order
+  if (Status said = say_again(world, restated); !said) return said;
   if (in.count(0) != world.parts.size() || !in.ok()) return bad("it has another number of parts");
   for (Part& part : world.parts) in(part);
   std::vector<PairStatement> statements;
@@ -179,8 +183,8 @@ Status restore_state(World& world, std::span<const std::byte> bytes) {
   }
   if (!in.at_end()) return bad("its bytes are not a state");
   if (!fits(world) || !fits(world, *state)) return bad("it does not fit the scene");
-  // 2. Rules, said again; what is judged anew for them is in the state already.
-  if (Status said = state_rules(world, restated, statements); !said) return said;
+  // 2. Rules; what is judged anew for them is in the state already.
+  if (Status said = state_rules(world, statements); !said) return said;
   if (world.evaluates != evaluates) return bad("its rules are not those of the scene");
   world.standing = std::move(standing);
   // 3. What follows from the rest.

@@ -86,14 +86,15 @@ void fields(A& a, ClashEvent& x) {
 }
 template <class A>
 void fields(A& a, OpenClash& x) {
-  auto& [last, now, worst_class, worst_delta_mm, p_A, p_B, approved_class, approved_delta_mm] = x;
-  a(last, now, worst_class, worst_delta_mm, p_A, p_B, approved_class, approved_delta_mm);
+  auto& [last, now, worst_class, worst_delta_mm, p_A, p_B, approved_class, approved_delta_mm,
+         revised] = x;
+  a(last, now, worst_class, worst_delta_mm, p_A, p_B, approved_class, approved_delta_mm, revised);
 }
 
 template <class A>
 void fields(A& a, PartForm& x) {
-  auto& [present, moving] = x;
-  a(present, moving);
+  auto& [present, moving, mesh, notes] = x;
+  a(present, moving, mesh, notes);
 }
 template <class A>
 void fields(A& a, MoveHistory::Done& x) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "common/geometry/same_face.h"
 #include "common/session/guide/guidance.h"
 
 namespace mortise {
@@ -40,22 +41,14 @@ FeatureInfo told(const Feature& feature, const TriangleMesh& mesh) {
   info.radius_mm = feature.surface.radius_mm;
   info.tube_radius_mm = feature.surface.tube_radius_mm;
   info.half_angle_rad = feature.surface.half_angle_rad;
-  info.middle_P = info.point_P;
-  double area = 0.0;  // twice the area, as the weight of a facet
+  info.middle_P = middle_of(feature, mesh);
   Interval along{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  Vec3 moment = Vec3::Zero();
-  for (const std::uint32_t t : feature.triangles) {
-    const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
-    const double weight = (b - a).cross(c - a).norm();
-    area += weight;
-    moment += weight / 3.0 * (a + b + c);
-    for (const Vec3& x : {a, b, c}) {
-      const double z_mm = (x - info.point_P).dot(info.axis_P);
+  for (const std::uint32_t t : feature.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const double z_mm = (mesh.corner(t, k) - info.point_P).dot(info.axis_P);
       along = hull(along, {z_mm, z_mm});
     }
-  }
   if (along.lo <= along.hi) info.along_mm = along;
-  if (area > 0.0) info.middle_P = moment / area;
   return info;
 }
 

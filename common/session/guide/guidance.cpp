@@ -136,11 +136,16 @@ const Feature* find_feature(const World& world, PartId part_id, const std::strin
     return it == features.end() ? nullptr : &*it;
   };
   if (const Feature* feature = among(part->features)) return feature;
-  if (part->solid->mesh().triangles.size() > kRecognizedOnDemand) return nullptr;
-  std::shared_ptr<const std::vector<Feature>>& known = world.recognized[part->solid->hash()];
+  const std::vector<Feature>* shown = recognized_in(world, *part->solid);
+  return shown != nullptr ? among(*shown) : nullptr;
+}
+
+const std::vector<Feature>* recognized_in(const World& world, const Solid& solid) {
+  if (solid.mesh().triangles.size() > kRecognizedOnDemand) return nullptr;
+  std::shared_ptr<const std::vector<Feature>>& known = world.recognized[solid.hash()];
   if (!known)
-    known = std::make_shared<const std::vector<Feature>>(recognize_features(*part->solid).features);
-  return among(*known);
+    known = std::make_shared<const std::vector<Feature>>(recognize_features(solid).features);
+  return known.get();
 }
 
 GuidanceReply check_constraint(const World& world, UserId user, const Constraint& constraint) {
@@ -175,6 +180,15 @@ GuidanceReply drop_constraint(World& world, UserId user_id, ConstraintId id) {
   reply.freedom = guided_state(world, part).freedom;
   reply.text = freedom_text(reply.freedom);
   return reply;
+}
+
+bool resolve_again(const World& world, Guide& guide, const Constraint& constraint) {
+  Resolved resolved = resolve(world, constraint);
+  if (resolved.reply.refusal != Refusal::kNone) return false;
+  resolved.relation.opposed = guide.relation.opposed;
+  guide.constraint = constraint;
+  guide.relation = resolved.relation;
+  return true;
 }
 
 std::vector<ConstraintId> drop_constraints_of(World& world, PartId part) {

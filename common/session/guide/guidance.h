@@ -38,6 +38,10 @@ void rest_guides_of(World& world, PartId part);
 /// one that was held back waits to be pushed.
 void settle_guides(World& world, std::span<const PartId> moved, std::span<const PartId> held_back);
 
+/// The faces of a constraint in force are others from now on, or have another place in their parts.
+/// False: it cannot hold between them; then nothing has changed.
+bool resolve_again(const World& world, Guide& guide, const Constraint& constraint);
+
 /// How far the part (its group) is off its constraints, and the freedom that they leave.
 struct GuidedState {
   double residual_mm = 0.0;
@@ -51,5 +55,7 @@ GuidedState guided_state(const World& world, PartId part);
 /// second (tests/bench/FIGURES.md, "Recognition beside the import"). Null: no such feature.
 const Feature* find_feature(const World& world, PartId part, const std::string& name);
 inline constexpr std::size_t kRecognizedOnDemand = 20'000;
+/// All that are recognized in a mesh; null: it is larger than that, and nobody has searched it.
+const std::vector<Feature>* recognized_in(const World& world, const Solid& solid);
 
 }  // namespace mortise

@@ -209,6 +209,23 @@ void note_form(World& world, std::uint32_t index, const Decision& by) {
   if (part.present) judge_anew(world, part.id, PartId{}, by);
 }
 
+void note_mesh(World& world, std::uint32_t index) {
+  if (!world.state) return;
+  SessionState& state = *world.state;
+  for (auto& [key, memo] : state.memos) {  // in any order: all become alike
+    if (key >> 32 != index && (key & 0xffffffff) != index) continue;
+    state.touch(key, memo);
+    PairMemo fresh;
+    fresh.touched = memo.touched;
+    fresh.touched_tick = memo.touched_tick;
+    memo = std::move(fresh);
+  }
+  std::erase_if(state.kept, [&](const KeptPush& push) { return push.part == index; });
+  for (auto& [ids, clashes] : state.open)
+    if (ids.first.value == index + 1 || ids.second.value == index + 1)
+      for (OpenClash& clash : clashes) clash.revised = true;
+}
+
 void note_surface(World& world, PartId part, PartId other, const Decision& by) {
   if (!world.state) return;
   SessionState& state = *world.state;

@@ -97,6 +97,8 @@ struct OpenClash {
   /// Class and depth at the last review.
   CollisionClass approved_class = CollisionClass::kNone;
   Interval approved_delta_mm;
+  bool revised =
+      false;  ///< what was told of it is of another mesh: it is told anew when it is seen
 };
 
 /// State of a part beside the record in World.
@@ -185,6 +187,8 @@ void note_holder(World& world, std::uint32_t index);
 /// The form of part `index` changed, or it is new: lists and boxes follow, and where it is present
 /// its pairs are judged again in the next tick.
 void note_form(World& world, std::uint32_t index, const Decision& by);
+/// The mesh of part `index` is another one: drops what is known of the old one. Before note_form().
+void note_mesh(World& world, std::uint32_t index);
 /// The statements about the surface of `part` changed, or, with `other`, those of this pair alone:
 /// drops what depends on them, and has the pairs judged again in the next tick.
 void note_surface(World& world, PartId part, PartId other, const Decision& by);

@@ -98,6 +98,7 @@ bool is_left(CollisionClass told, const Verdict& now) {
 // Worth an event? A worse class always, a better one when it is beyond the threshold for certain or
 // judged anew by decision (nothing trembles there), a growing depth now and then.
 bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick, bool anew) {
+  if (clash.revised) return true;
   const CollisionClass told = clash.last.verdict.collision_class;
   if (verdict.collision_class > told) return true;
   if (anew && verdict.collision_class < told) return true;
@@ -154,6 +155,7 @@ void tell(const World& world, SessionState& state, OpenClash& clash, ClashEvent:
   event.tick = world.tick;
   event.user = last_mover(state, event.part_a.value - 1, event.part_b.value - 1);
   event.verdict = clash.now;
+  clash.revised = false;
   event.t_contact = times.contact;
   event.t_potential = times.potential;
   event.t_real = times.real;

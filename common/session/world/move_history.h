@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/math/pose.h"
@@ -11,6 +12,8 @@ namespace mortise {
 /// What a part is, as far as scene edits change it.
 struct PartForm {
   bool present = true, moving = false;
+  std::string mesh = {};                ///< hash
+  std::vector<std::string> notes = {};  ///< what was found in the mesh
   friend bool operator==(const PartForm&, const PartForm&) = default;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -6,17 +7,22 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/geometry/feature.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
 
 namespace mortise {
 
-/// A mesh, and what its surface is as long as nobody has stated anything of it.
+struct StatedPart;  ///< io/scenario/scene_rules.h
+
+/// A mesh, and what its surface is: as long as nobody has stated anything of it, or as a part of
+/// which something was stated.
 struct PartShape {
   SolidPtr solid;
   std::vector<Feature> features;
   SurfaceBand band;
+  std::shared_ptr<const StatedPart> stated = {};  ///< what was stated; null: nothing
 };
 using PartShapePtr = std::shared_ptr<const PartShape>;
 
@@ -44,6 +50,10 @@ class PartShapes {
     double quantum_mm = 0.0;
   };
   Mesh find(const std::string& mesh_hash) const;
+  /// How exact a mesh that is here is: a log has it in the decisions alone.
+  void note_quantum(const std::string& mesh_hash, double quantum_mm) {
+    meshes_.at(mesh_hash).quantum_mm = quantum_mm;
+  }
   const std::map<std::string, Mesh>& meshes() const { return meshes_; }  ///< by hash
 
   /// The shape, made now where it was not before; null: no such mesh is here.
@@ -52,10 +62,26 @@ class PartShapes {
     return shapes_.contains({mesh_hash, quantum_mm});
   }
 
+  /// A part that takes other meshes, with what was stated of it so far.
+  struct AsPart {
+    PartId part;
+    std::uint64_t said = 0;  ///< another number: something else was stated
+    Make make;               ///< any thread, also after the part has changed
+  };
+  /// The same of a mesh as that part. One made for it is kept until something else is stated.
+  PartShapePtr shape(const std::string& mesh_hash, const AsPart& as);
+  bool is_made(const std::string& mesh_hash, const AsPart& as) const;
+  void add(const PartShapePtr& shape, const AsPart& as);
+
  private:
+  struct Taken {
+    std::uint64_t said = 0;
+    std::map<std::string, PartShapePtr> shapes;  ///< by mesh
+  };
   Make make_;
   std::map<std::string, Mesh> meshes_;
   std::map<std::pair<std::string, double>, PartShapePtr> shapes_;
+  std::map<PartId, Taken> taken_;
 };
 
 }  // namespace mortise

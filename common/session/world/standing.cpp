@@ -28,10 +28,19 @@ bool replaces(const Decision& later, const Decision& declared) {
   return same_target(turned, declared);
 }
 
-// What is said of a part that was removed holds again when it comes back.
+// What is said of a part that was removed, or of a face that its mesh no longer has, holds again
+// when it comes back.
 bool is_of_present(const World& world, const Decision& decision) {
-  const auto is_gone = [&](PartId id) { return id && world.find_present(id) == nullptr; };
-  return !is_gone(decision.part) && !is_gone(decision.details.other_part);
+  const auto is_gone = [&](PartId id, const std::string& feature) {
+    if (!id) return false;
+    const Part* part = world.find_present(id);
+    if (part == nullptr) return true;
+    return part->edits > 0 && !feature.empty() &&
+           std::ranges::none_of(part->features, [&](auto& f) { return f.name == feature; });
+  };
+  const Details& details = decision.details;
+  return !is_gone(decision.part, details.feature) &&
+         !is_gone(details.other_part, details.other_feature);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "common/base/result.h"
 #include "common/geometry/surface_band.h"
+#include "common/session/world/part_shapes.h"
 #include "common/session/world/world.h"
 
 namespace mortise {
@@ -38,6 +39,12 @@ class SurfaceRules {
   /// A part was added: nothing is stated of it yet, and the patterns of the scenario do not mean
   /// it.
   virtual void add_part(const Part& part) = 0;
+  /// How a mesh is to be this part: where it has a face of the same geometry, the face keeps its
+  /// name and what was stated of it.
+  virtual PartShapes::AsPart as_part(const Part& part) const = 0;
+  /// The part has taken a shape that was made so: what is stated of its pairs is what holds of the
+  /// faces that it has now. What is stated of others waits until they are there again.
+  virtual Change revise(const World& world, PartId part, const PartShape& shape) = 0;
 };
 
 /// Does some part, or pair, have deviation or tolerance?

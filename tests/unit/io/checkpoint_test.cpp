@@ -120,8 +120,8 @@ TEST(Checkpoint, OfEditedScenesTheyGoOnToTheSameEnd) {
   }
   EXPECT_GT(gone, 3U);
   EXPECT_GT(added, 10U);
-  for (const CommandKind kind :
-       {CommandKind::kAddPart, CommandKind::kRemovePart, CommandKind::kSetMoving})
+  for (const CommandKind kind : {CommandKind::kAddPart, CommandKind::kReplacePart,
+                                 CommandKind::kRemovePart, CommandKind::kSetMoving})
     EXPECT_GT(accepted[static_cast<std::size_t>(kind)], 0U) << static_cast<int>(kind);
 }
 

@@ -128,7 +128,12 @@ class RandomSession {
     const bool is_floor_or_plate = some.id.value <= 2;
     Details details;
     PartEdit& said = details.edit.emplace();
-    switch (below(6)) {
+    switch (below(7)) {
+      case 6: {
+        said.mesh_hash = below(2) == 0 ? new_mesh() : parts[below(parts.size())].solid->hash();
+        return some.id.value == 1 ? void()
+                                  : ask(user(), CommandKind::kReplacePart, some.id, details);
+      }
       case 0:
         if (is_floor_or_plate || parts.size() > 14) return;
         said = {"extra_" + std::to_string(parts.size()),

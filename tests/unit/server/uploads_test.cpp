@@ -180,6 +180,34 @@ TEST_F(UploadTest, APartIsMadeOfAFileAndEverybodySeesIt) {
   EXPECT_EQ(meshes, 1U);
 }
 
+TEST_F(UploadTest, AFileTakesThePlaceOfAMeshForEverybody) {
+  begin();
+  Person& ada = join("ada");
+  Person& bob = join("bob");
+  const std::string before = world_.parts[kBlue.value - 1].solid->hash();
+  const std::vector<std::byte> file = test::cube_file(4.0);
+  ada.client->upload(ada.user, "blue_b.stl", 1.0, file);
+  const std::uint64_t seq = ada.client->replace_part(ada.user, kBlue, content_hash(file));
+  EXPECT_FALSE(ada.replies.contains(seq)) << "the tick does not wait for it";
+  ASSERT_TRUE(answered(ada, seq));
+  EXPECT_EQ(ada.replies[seq].refusal, Refusal::kNone) << ada.replies[seq].text;
+  const std::string after = ada.uploads.back().mesh_hash;
+  EXPECT_NE(before, after);
+  for (int i = 0; i < 12; ++i) turn();
+  Person& late = join("late");
+  for (Person* person : {&ada, &bob, &late}) {
+    const PartInfo& info = person->client->parts().at(kBlue).info;
+    EXPECT_EQ(info.mesh_hash, after);
+    EXPECT_EQ(info.name, "blue");
+    EXPECT_LT(info.radius_mm, 7.0);
+  }
+  EXPECT_TRUE(bob.was_decided(Decision::Kind::kReplacePart));
+  const std::uint64_t back = ada.client->undo(ada.user, kBlue);
+  ASSERT_TRUE(answered(ada, back));
+  EXPECT_EQ(ada.replies[back].refusal, Refusal::kNone) << ada.replies[back].text;
+  EXPECT_TRUE(turn_until([&] { return bob.client->parts().at(kBlue).info.mesh_hash == before; }));
+}
+
 TEST_F(UploadTest, AMeshOfTheSessionNeedsNoUpload) {
   begin();
   Person& ada = join("ada");

@@ -30,6 +30,12 @@ class SceneEdit : public ::testing::Test {
     });
     world().shapes->add(std::make_shared<const Solid>(cube_mesh(10.0)), 0.0);
     cube_hash = world().shapes->meshes().begin()->first;
+    const auto cube = [this](double edge_mm) {
+      const auto solid = std::make_shared<const Solid>(cube_mesh(edge_mm));
+      world().shapes->add(solid, 0.0);
+      return solid->hash();
+    };
+    small_hash = cube(2.0), larger_hash = cube(28.0), large_hash = cube(70.0);
     tick();
   }
   World& world() { return session.world; }
@@ -60,7 +66,7 @@ class SceneEdit : public ::testing::Test {
   UserId ada = session.join("ada"), bob = session.join("bob");
   UserId bot = session.join("bot", Role::kBot);
   Scratch scratch{1};
-  std::string cube_hash;
+  std::string cube_hash, small_hash, larger_hash, large_hash;
 };
 
 TEST_F(SceneEdit, NeedsTheRight) {
@@ -71,7 +77,6 @@ TEST_F(SceneEdit, NeedsTheRight) {
     EXPECT_EQ(refusal(ada, kind, red, moving(false)), Refusal::kNoRight) << name_of(kind);
     world().may_hold = {};
   }
-  EXPECT_EQ(refusal(ada, CommandKind::kReplacePart, red, moving(true)), Refusal::kNotAllowed);
   world().may_hold = {{"ada", {}, {}, std::vector<Right>{Right::kParts}}};
   EXPECT_EQ(refusal(ada, CommandKind::kRemovePart, red), Refusal::kNone);
 }
@@ -240,6 +245,86 @@ TEST_F(SceneEdit, WhatIsNoPartIsRefusedInOneLine) {
   EXPECT_EQ(reply.refusal, Refusal::kTooManyParts);
   EXPECT_EQ(reply.text.find('\n'), std::string::npos);
 }
+
+// 4. to be another one
+
+TEST_F(SceneEdit, AReplacedPartIsTheSamePartWithAnotherMesh) {
+  const auto replace = [&](PartId part, const std::string& hash) {
+    return ask(ada, CommandKind::kReplacePart, part, edit_of({"", hash, {}, false, 0.0}));
+  };
+  ASSERT_EQ(session.grab(ada, red).refusal, Refusal::kNone);
+  tick({session.push(ada, red, Vec3(1, 0, 0))});
+  const Pose X_WP = world().find(red)->X_WP;
+  const ClashId clash = snapshot_of(world()).open_clashes[0].clash;
+  Details said;
+  said.clash = clash;
+  said.text = "known";
+  said.status = ReviewStatus::kActive;
+  ASSERT_EQ(refusal(ada, CommandKind::kReview, PartId{}, said), Refusal::kNone);
+  EXPECT_EQ(
+      session
+          .command(bob, red, CommandKind::kReplacePart, edit_of({"", large_hash, {}, false, 0.0}))
+          .refusal,
+      Refusal::kHeldByOther);
+  ASSERT_EQ(replace(red, large_hash).refusal, Refusal::kNone);
+  EXPECT_EQ(replace(red, large_hash).refusal, Refusal::kBadPart) << "it has this mesh";
+  StepReport report = tick();
+  const Part& part = *world().find(red);
+  EXPECT_EQ(part.name, "red");
+  EXPECT_EQ(part.holder, ada);
+  EXPECT_TRUE(identical(part.X_WP, X_WP));
+  EXPECT_EQ(part.solid->hash(), large_hash);
+  for (const PartInfo& info : snapshot_of(world()).parts)
+    if (info.part == red) {
+      EXPECT_EQ(info.mesh_hash, large_hash);
+    }
+  // The clash with the wall goes on and is told anew, with all that was said of it; the one with
+  // blue is new.
+  const auto event_with = [&](PartId other, ClashEvent::Kind kind) {
+    return std::ranges::any_of(report.events, [&](const ClashEvent& event) {
+      return event.kind == kind && (event.part_a == other || event.part_b == other) &&
+             event.cause == Decision::Kind::kReplacePart;
+    });
+  };
+  EXPECT_TRUE(event_with(wall, ClashEvent::Kind::kChange));
+  EXPECT_TRUE(event_with(blue, ClashEvent::Kind::kBegin));
+  EXPECT_EQ(report.events.size(), 3U) << "and the review is told";
+  EXPECT_EQ(world().remarks.size(), 1U);
+  // Another one far from everything it touched: its clashes are gone.
+  ASSERT_EQ(replace(red, small_hash).refusal, Refusal::kNone);
+  report = tick();
+  EXPECT_TRUE(event_with(wall, ClashEvent::Kind::kEnd));
+  EXPECT_TRUE(event_with(blue, ClashEvent::Kind::kEnd));
+  // Undo and redo take it as any other edit.
+  ASSERT_EQ(refusal(ada, CommandKind::kUndo, red), Refusal::kNone);
+  EXPECT_EQ(world().find(red)->solid->hash(), large_hash);
+  EXPECT_EQ(tick().events.size(), 2U);
+  ASSERT_EQ(refusal(ada, CommandKind::kUndo, red), Refusal::kNone);
+  EXPECT_EQ(world().find(red)->solid->hash(), cube_hash);
+  tick();
+  ASSERT_EQ(refusal(ada, CommandKind::kRedo, red), Refusal::kNone);
+  EXPECT_EQ(world().find(red)->solid->hash(), large_hash);
+  EXPECT_EQ(replace(red, "feed").refusal, Refusal::kUnknownMesh);
+}
+
+// What was known of the distance of the old mesh says nothing of the new one, also where the part
+// stands and others come from afar.
+TEST_F(SceneEdit, NothingIsKnownOfTheDistancesOfAReplacedPart) {
+  const PartId post = session.add("post", cube_mesh(10.0), at(0, 0, 480), false);
+  world().state.reset();  // one of the larger scene
+  ASSERT_EQ(session.grab(ada, far).refusal, Refusal::kNone);
+  tick({session.push(ada, far, Vec3(0.5, 0, 0))});
+  tick({session.push(ada, far, Vec3(0.5, 0, 0))});
+  const Details larger = edit_of({"", larger_hash, {}, false, 0.0});
+  ASSERT_EQ(refusal(ada, CommandKind::kReplacePart, post, larger), Refusal::kNone);
+  EXPECT_TRUE(tick().events.empty());
+  const StepReport report = tick({session.push(ada, far, Vec3(0, 0, -2))});
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].part_a, far);
+  EXPECT_EQ(report.events[0].part_b, post);
+}
+
+// 5. counts
 
 // Counts of pairs stay those of the parts that are there.
 TEST_F(SceneEdit, PairsAreCountedOfWhatIsThere) {

@@ -81,6 +81,11 @@ TEST(PageMessage, ReadsEveryCommand) {
         R"("moving":false,"q":)" + q + "}"))
         << q;
   EXPECT_EQ(command(R"("do":"remove_part","part":2)").kind, CommandKind::kRemovePart);
+  const auto replaced = command(R"("do":"replace_part","part":2,"mesh":"0f")");
+  EXPECT_EQ(replaced.kind, CommandKind::kReplacePart);
+  EXPECT_EQ(replaced.part, PartId{2});
+  ASSERT_TRUE(replaced.details.edit);
+  EXPECT_EQ(replaced.details.edit->mesh_hash, "0f");
   const auto stands = command(R"("do":"set_moving","part":2,"moving":false)");
   EXPECT_EQ(stands.kind, CommandKind::kSetMoving);
   EXPECT_EQ(stands.part, PartId{2});

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { PATIENCE, choose, grab, moveBy, position, settled, whenListed } from '../support/people.mjs';
+import { PATIENCE, choose, drawn, grab, moveBy, settled, settledElsewhere, ticksPass, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
 
 const session = new BrowserSession('hands');
@@ -25,7 +25,7 @@ test('"Move by" clears its numbers after use', async () => {
   await moveBy(ann, [0, 0, 7]);
   const values = await ann.locator('#hand input').evaluateAll((fields) => fields.map((field) => field.value));
   assert.deepEqual(values, ['0', '0', '0']);
-  const to = await settled(ann);
+  const to = await settledElsewhere(ann, from);
   assert.ok(Math.abs(to[2] - from[2] - 7) < 1e-3);
   await ann.locator('#hand input').first().press('Enter');
   assert.deepEqual(await settled(ann), to);
@@ -35,9 +35,9 @@ test('a part is dragged by itself in the plane of the view', async () => {
   await ann.click('#tool_move');
   await ann.focus('#canvas');
   await ann.keyboard.press('2'); // from the front: the plane of the view is that of X and Z
-  await ann.waitForTimeout(500);
+  await drawn(ann);
   await ann.keyboard.press('z');
-  await ann.waitForTimeout(500);
+  await drawn(ann);
   const from = await settled(ann);
   const box = await ann.locator('#canvas').boundingBox();
   // Beside its handles, which stand in the middle and along the axes.
@@ -46,8 +46,7 @@ test('a part is dragged by itself in the plane of the view', async () => {
   await ann.mouse.down();
   await ann.mouse.move(x + 40, y + 30, { steps: 8 });
   await ann.mouse.up();
-  await ann.waitForTimeout(400);
-  const to = await settled(ann);
+  const to = await settledElsewhere(ann, from);
   assert.ok(to[0] > from[0] + 1 && to[2] < from[2] - 1, `dragged from ${from} to ${to}`);
   assert.ok(Math.abs(to[1] - from[1]) < 1e-3, `out of the plane of the view: from ${from} to ${to}`);
   await release(ann);
@@ -96,8 +95,7 @@ test('twenty typed moves along an axis go all the way', async () => {
   for (let i = 0; i < 20; ++i) {
     const from = await settled(bob);
     await moveBy(bob, [0, 0, i % 2 ? -20 : 20]);
-    await bob.waitForTimeout(600);
-    const to = await settled(bob);
+    const to = await settledElsewhere(bob, from);
     assert.ok(Math.abs(Math.abs(to[2] - from[2]) - 20) < 1e-3, `move ${i}: from ${from} to ${to}`);
   }
   await bob.click('#tool_select');
@@ -113,7 +111,7 @@ test('who asks for a part sees that for as long as it takes, whatever is chosen,
   await asks(ann, 'bob asks you for block').waitFor(PATIENCE);
   await choose(bob, 'peg_g6');
   await choose(ann, 'peg_g6');
-  await bob.waitForTimeout(7000); // longer than a lease
+  await ticksPass(bob, 420); // longer than a lease
   assert.ok(await asks(bob, 'You ask ann for block').isVisible());
   assert.ok(await asks(ann, 'bob asks you for block').isVisible());
   await asks(bob, 'You ask ann for block').getByText('Ask no longer').click();
@@ -148,7 +146,7 @@ test('parts are hidden, shown alone, and shown again; what is hidden is not hit'
   await choose(ann, 'block');
   await ann.focus('#canvas');
   await ann.keyboard.press('z');
-  await ann.waitForTimeout(700);
+  await drawn(ann);
   const box = await ann.locator('#canvas').boundingBox();
   const middle = [box.x + box.width / 2, box.y + box.height / 2];
   await ann.keyboard.press('d');
@@ -169,9 +167,9 @@ test('what is between two faces is measured, with what the session has judged of
   await ann.focus('#canvas');
   await ann.keyboard.press('k');
   await ann.keyboard.press('1');
-  await ann.waitForTimeout(500);
+  await drawn(ann);
   await ann.keyboard.press('z');
-  await ann.waitForTimeout(500);
+  await drawn(ann);
   const box = await ann.locator('#canvas').boundingBox();
   const middle = [box.x + box.width / 2, box.y + box.height / 2];
   await ann.mouse.move(middle[0] + 3, middle[1] + 3);
@@ -179,9 +177,9 @@ test('what is between two faces is measured, with what the session has judged of
   await ann.mouse.click(...middle); // its top
   await ann.focus('#canvas');
   await ann.keyboard.press('2');
-  await ann.waitForTimeout(500);
+  await drawn(ann);
   await ann.keyboard.press('z');
-  await ann.waitForTimeout(500);
+  await drawn(ann);
   await ann.mouse.click(...middle); // its front
   await ann.locator('#measure_bar', { hasText: 'Angle 90.0000°' }).waitFor(PATIENCE);
   await ann.click('#measure_bar button:has-text("Measure anew")');
@@ -193,16 +191,16 @@ test('a side of the cube looks from there, and the view is saved as a picture', 
   const eye = () => ann.evaluate(() => document.getElementById('compass')?.toDataURL());
   await ann.focus('#canvas');
   await ann.keyboard.press('0');
-  await ann.waitForTimeout(700);
+  await drawn(ann);
   const before = await eye();
   const cube = await ann.locator('#compass').boundingBox();
   await ann.mouse.click(cube.x + cube.width / 2, cube.y + cube.height / 2 - 14); // its top
-  await ann.waitForTimeout(900);
+  await drawn(ann);
   const top = await eye();
   assert.notEqual(top, before);
   await ann.focus('#canvas');
   await ann.keyboard.press('1');
-  await ann.waitForTimeout(900);
+  await drawn(ann);
   assert.equal(await eye(), top);
   const [download] = await Promise.all([ann.waitForEvent('download'), ann.click('#view_picture')]);
   const bytes = readFileSync(await download.path());

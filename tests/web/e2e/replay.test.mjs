@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { PATIENCE, choose, position, whenListed } from '../support/people.mjs';
+import { PATIENCE, choose, drawn, position, until, whenListed } from '../support/people.mjs';
 
 const session = new BrowserSession();
 let page;
@@ -41,16 +41,16 @@ test('parts and clashes are those of the moment', async () => {
   await choose(page, moving);
   await seek(0);
   await page.waitForFunction(() => document.querySelector('#clashes')?.textContent?.includes('No clash is open'), undefined, PATIENCE);
-  await page.waitForTimeout(500);
+  await drawn(page);
   const begin = await position(page);
   await seek(1e6);
   await whenListed(page, 'clashes', 'real');
-  await page.waitForTimeout(500);
+  await drawn(page);
   const end = await position(page);
   assert.ok(Math.hypot(...end.map((x, i) => x - begin[i])) > 1, `${begin} and ${end}`);
   await seek(0);
   await page.waitForFunction(() => document.querySelector('#clashes')?.textContent?.includes('No clash is open'), undefined, PATIENCE);
-  await page.waitForTimeout(500);
+  await drawn(page);
   assert.deepEqual(await position(page), begin);
 });
 
@@ -59,8 +59,7 @@ test('it plays and pauses', async () => {
   await page.click('#timeline button[aria-label="Play"]');
   await page.locator('#timeline button[aria-label="Pause"]').waitFor(PATIENCE);
   const from = await tick();
-  await page.waitForTimeout(1500);
-  assert.ok((await tick()) > from);
+  await until(async () => (await tick()) > from, () => `a tick after ${from}`);
   await page.click('#timeline button[aria-label="Pause"]');
   await page.locator('#timeline button[aria-label="Play"]').waitFor(PATIENCE);
   await page.getByRole('button', { name: 'Clash ▸' }).click();

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { PATIENCE, choose, grab, moveBy, settled, whenListed } from '../support/people.mjs';
+import { PATIENCE, drawn, grab, moveBy, until, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
 
 const session = new BrowserSession('review');
@@ -74,16 +74,14 @@ test('who moved, who reviewed, what was said and whose task it is are told apart
 test('"since" counts while nothing happens', async () => {
   const since = async () => Number(/(\d+) s$/.exec(await figure(eva, 'Since'))?.[1]);
   const first = await since();
-  await eva.waitForTimeout(3200);
-  const passed = ((await since()) - first + 60) % 60;
-  assert.ok(passed >= 2 && passed <= 5, `${passed} s have passed`);
+  await until(async () => ((await since()) - first + 60) % 60 >= 2, () => `two seconds beyond ${first} s`);
 });
 
 test('a link leads a colleague to the clash and the view, with the address of their own', async () => {
   await row(eva, 'plate_k6 × peg_k6').click();
   await eva.focus('#canvas');
   await eva.keyboard.press('3');
-  await eva.waitForTimeout(600);
+  await drawn(eva);
   await eva.click('#clash button[aria-label="Copy the link to this clash"]');
   await eva.getByText('The link to clash').first().waitFor(PATIENCE);
   const link = await eva.evaluate(() => navigator.clipboard.readText());
@@ -96,12 +94,11 @@ test('a link leads a colleague to the clash and the view, with the address of th
   await tab.click('#join_go');
   await tab.locator('#clash h3 .grow', { hasText: /^#\d+ plate_k6 × peg_k6/ }).waitFor(PATIENCE);
   const compass = (page) => page.evaluate(() => document.getElementById('compass')?.toDataURL());
-  await tab.waitForTimeout(800);
   await eva.click('#do_theme'); // Tom's is light
   await eva.focus('#canvas');
   await eva.keyboard.press('+');
-  await eva.waitForTimeout(600);
-  assert.equal(await compass(tab), await compass(eva));
+  await drawn(eva);
+  await until(async () => (await compass(tab)) === (await compass(eva)), () => 'both see it from the same place');
   await eva.click('#do_theme');
   await tab.close();
   // One who was never here is told what is missing.
@@ -158,7 +155,7 @@ test('the fits of the scenario are listed among the rules, and those that were s
 test('a view is saved, found again, and forgotten', async () => {
   await eva.focus('#canvas');
   await eva.keyboard.press('1');
-  await eva.waitForTimeout(600);
+  await drawn(eva);
   const compass = () => eva.evaluate(() => document.getElementById('compass')?.toDataURL());
   const top = await compass();
   await eva.getByLabel('Look from').selectOption({ label: 'Save this view…' });
@@ -167,10 +164,10 @@ test('a view is saved, found again, and forgotten', async () => {
   await eva.click('#views button:has-text("Close")');
   await eva.focus('#canvas');
   await eva.keyboard.press('0');
-  await eva.waitForTimeout(600);
+  await drawn(eva);
   assert.notEqual(await compass(), top);
   await eva.getByLabel('Look from').selectOption({ label: 'from above' });
-  await eva.waitForTimeout(600);
+  await drawn(eva);
   assert.equal(await compass(), top);
   await eva.getByLabel('Look from').selectOption({ label: 'Save this view…' });
   await eva.click('#views button[aria-label="Forget from above"]');

@@ -6,7 +6,7 @@ import { before, test } from 'node:test';
 import { joinAs, openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
 import { cutOff, paleTexts, smallTargets } from '../support/looks.mjs';
-import { PATIENCE, choose, grab, moveBy, settled, whenListed } from '../support/people.mjs';
+import { PATIENCE, choose, drawn, grab, moveBy, settled, until, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
 
 const session = new BrowserSession('states');
@@ -38,7 +38,7 @@ test('at 1440, 1280, 1024 and 800 pixels nothing is cut off, covered or out of r
         const place = page.locator(`#place_${side}`);
         if (await place.isVisible()) await place.click();
         else if (side === 'left') assert.ok(await page.locator('#parts').isVisible() && await page.locator('#clashes').isVisible());
-        await page.waitForTimeout(150);
+        await drawn(page);
         assert.deepEqual(await cutOff(page), [], `${scheme} ${width} × ${height}, ${side}`);
         assert.ok(await page.locator(side === 'left' ? '#parts' : '#clashes').isVisible(), `${side} at ${width}`);
       }
@@ -56,7 +56,7 @@ test('text stands out from its ground by 4.5 or more, in both themes', async () 
     await page.locator('#clashes > li').first().click();
     for (const tab of ['clashes', 'rules', 'statistics']) {
       await page.click(`#tab_${tab}`);
-      await page.waitForTimeout(300);
+      await drawn(page);
       assert.deepEqual(await paleTexts(page), [], `${scheme}, ${tab}`);
     }
     await page.context().close();
@@ -90,7 +90,7 @@ test('an address without a token, and one with a wrong token, say what to do', a
   const wrong = await openPage(browser, addresses.designer.replace(/token=.*/, 'token=wrong'));
   await trouble(wrong, 'token').getByText('wrong or has expired').waitFor(PATIENCE);
   assert.equal(await wrong.textContent('#line_text'), 'No access');
-  await wrong.waitForTimeout(2500);
+  await wrong.waitForTimeout(2500); // in which nothing is to happen
   assert.ok(wrong.complaints.filter((text) => /401/.test(text)).length <= 3, 'a token that is wrong is not tried over and over');
   for (const page of [without, wrong]) await page.context().close();
 });
@@ -132,8 +132,7 @@ test('a server that is killed: one that stands by takes over, and the page says 
   await trouble(ann, 'take_over').getByText('It has not said that it ends').waitFor(PATIENCE);
   const gone = async () => Number(/Since (\d+) s/.exec(await ann.textContent('#banner'))?.[1]);
   const first = await gone();
-  await ann.waitForTimeout(2100);
-  assert.ok(await gone() >= first + 2, 'the seconds since then are counted');
+  await until(async () => (await gone()) >= first + 2, () => `two seconds after ${first} s are counted`);
   await session.serve(PEGS);
   await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);
 });

@@ -1,7 +1,7 @@
 // What a person does at the page, by what a person sees: names, labels, keys.
 import assert from 'node:assert/strict';
 
-export const PATIENCE = { timeout: 30_000 };
+export const PATIENCE = { timeout: 60_000 }; // on a machine that does other things as well
 
 export const row = (page, list, text) => page.locator(`#${list} > li[aria-label*="${text}"], #${list} > li`).filter({ hasText: text }).first();
 
@@ -31,16 +31,46 @@ export async function position(page) {
   return numbers.slice(1).map(Number);
 }
 
-/** Waits until the chosen part stands still. */
+const TICKS_AT_REST = 60; // a second of the server, however busy the machine is
+
+/** Waits until the server has gone on by so many ticks and the page has heard of it. @param {import('playwright-core').Page} page @param {number} ticks */
+export async function ticksPass(page, ticks) {
+  const from = await page.evaluate(() => Number(/\d+/.exec(document.getElementById('status_tick')?.textContent ?? '')?.[0] ?? 0));
+  await page.waitForFunction((to) => Number(/\d+/.exec(document.getElementById('status_tick')?.textContent ?? '')?.[0] ?? 0) >= to, from + ticks, PATIENCE);
+}
+
+/** Waits until the chosen part has stood still for a second of the server. */
 export async function settled(page) {
   let last = await position(page);
-  for (let same = 0; same < 3;) {
-    await page.waitForTimeout(200);
+  for (;;) {
+    await ticksPass(page, TICKS_AT_REST);
     const now = await position(page);
-    same = now.every((x, i) => x === last[i]) ? same + 1 : 0;
+    if (now.every((x, i) => x === last[i])) return now;
     last = now;
   }
-  return last;
+}
+
+/** Where the chosen part stands once it has left `from`, and rests. */
+export async function settledElsewhere(page, from) {
+  await page.waitForFunction((before) => {
+    const now = /^(\S+), (\S+), (\S+) mm/.exec(document.querySelector('#hand .pose')?.textContent ?? '')?.slice(1).map(Number);
+    return now?.some((x, i) => x !== before[i]);
+  }, from, PATIENCE);
+  return settled(page);
+}
+
+/** Waits until what was done is drawn: flights of the eye are at once here (reduced motion), in the next picture. */
+export function drawn(page) {
+  return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(() => done(undefined))))));
+}
+
+/** Asks again until it is so. @param {() => Promise<boolean>} isSo @param {() => string} what is waited for, as it stands */
+export async function until(isSo, what) {
+  const end = Date.now() + PATIENCE.timeout;
+  while (!(await isSo())) {
+    assert.ok(Date.now() < end, `never: ${what()}`);
+    await new Promise((done) => setTimeout(done, 100));
+  }
 }
 
 /** When a row of this list first says this, by the clock of the machine. */
@@ -53,7 +83,7 @@ export function whenListed(page, list, text) {
     };
     const watch = new MutationObserver(look);
     watch.observe(document.getElementById(id), { childList: true, subtree: true, attributes: true });
-    setTimeout(() => fail(new Error(`${id} never said ${wanted}, but ${[...document.querySelectorAll(`#${id} > li`)].map((li) => li.getAttribute('aria-label') ?? li.textContent).join(' | ')}`)), 40_000);
+    setTimeout(() => fail(new Error(`${id} never said ${wanted}, but ${[...document.querySelectorAll(`#${id} > li`)].map((li) => li.getAttribute('aria-label') ?? li.textContent).join(' | ')}`)), 60_000);
     look();
   }), [list, text]);
 }

@@ -14,8 +14,8 @@ export const STEPS = /** @type {const} */ ([
   [0.001, 0.001, '1 µm'], [0.01, 0.01, '10 µm'], [0.1, 0.1, '0.1 mm'], [1, 1, '1 mm'], [10, 10, '10 mm'],
 ]);
 
-/** @param {import('../desk.js').Desk} desk */
-export function makeHand(desk) {
+/** @param {import('../desk.js').Desk} desk @param {ReturnType<typeof import('./arriving.js').makeArriving>} arriving */
+export function makeHand(desk, arriving) {
   const { session, choice, commands, mover } = desk;
   const box = byId('hand');
   const name = el('strong');
@@ -24,7 +24,7 @@ export function makeHand(desk) {
   const small = (/** @type {string} */ name, /** @type {string} */ title, /** @type {() => void} */ onclick) => el('button', { type: 'button', class: 'small look', 'aria-label': title, title, onclick }, icon(name));
   const hide = small('hide', 'Hide it (D)', () => choice.hide(choice.together));
   const alone = small('isolate', 'Show it alone (I)', () => choice.isolate(choice.together, session.parts.keys()));
-  const edit = makePartEdit(desk);
+  const edit = makePartEdit(desk, arriving);
   const grab = el('button', { type: 'button', class: 'primary' }, icon('grab'), el('span'));
   const ask = el('button', { type: 'button' }, 'Ask for it');
   const kind = el('select', { 'aria-label': 'Shift or turn' }, el('option', { value: 'translate' }, 'Shift, mm'), el('option', { value: 'rotate' }, 'Turn, °'));

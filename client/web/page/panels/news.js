@@ -2,6 +2,17 @@
 import { wordsOf } from '../session/unexamined.js';
 import { plain, small } from '../session/words.js';
 
+/** Once a second; what the tick after a decision judges is told in between. */
+const PULSES_TO_JUDGE = 2;
+
+/** What became of the clashes of a part that is another one now. @param {string} name @param {Set<number>} before @param {Set<number>} now */
+export function changeSaid(name, before, now) {
+  const kept = [...before].filter((clash) => now.has(clash)).length;
+  const [gone, fresh] = [before.size - kept, now.size - kept];
+  if (before.size + now.size === 0) return `${name}: no clashes, as before`;
+  return `Clashes of ${name}: ${[kept > 0 && `${kept} as before`, gone > 0 && `${gone} gone`, fresh > 0 && `${fresh} new`].filter(Boolean).join(', ')}`;
+}
+
 /** @param {import('../desk.js').Desk} desk */
 export function makeNews({ session, say }) {
   /** @param {any} d */
@@ -33,6 +44,12 @@ export function makeNews({ session, say }) {
         return `${who} leaves out ${part} × ${session.partName(d.other)}: ${d.text}`;
       case 'drop exclusion':
         return `${who} judges ${part} × ${session.partName(d.other)} again`;
+      case 'add part':
+        return mine ? '' : `${who} added ${d.name ?? part}`;
+      case 'replace part':
+        return `${who} replaced ${d.name ?? part}${d.text ? `: ${d.text}` : ''}`;
+      case 'remove part':
+        return mine ? '' : `${who} removed ${part}`;
       case 'undo':
       case 'redo':
       case 'reset':
@@ -45,6 +62,23 @@ export function makeNews({ session, say }) {
   session.on('decision', (decision) => {
     const text = sentence(decision);
     if (text) say(text);
+    if (decision.kind === 'replace part') follow(decision.part);
+  });
+
+  /** Parts that were replaced, with the clashes that they had, until they are judged again. @type {Array<{part: number, name: string, before: Set<number>, pulses: number}>} */
+  let replaced = [];
+  const clashesOf = (/** @type {number} */ part) => new Set(session.openClashes().filter(({ a, b }) => a === part || b === part).map(({ clash }) => clash));
+
+  /** @param {number} part */
+  function follow(part) {
+    const before = replaced.find((row) => row.part === part)?.before ?? clashesOf(part);
+    replaced = [...replaced.filter((row) => row.part !== part), { part, name: session.partName(part), before, pulses: 0 }];
+  }
+
+  session.on('pulse', () => {
+    for (const row of replaced) ++row.pulses;
+    for (const { part, name, before } of replaced.filter(({ pulses }) => pulses >= PULSES_TO_JUDGE)) say(changeSaid(name, before, clashesOf(part)));
+    replaced = replaced.filter(({ pulses }) => pulses < PULSES_TO_JUDGE);
   });
   /** Clashes that were said to be real: said once, and again when they come back. @type {Set<number>} */
   const real = new Set();

@@ -7,15 +7,16 @@ import { placed, rotate } from './motion.js';
 const LIKE_SIZES = 0.03;
 const AXES = Math.cos(Math.PI / 180);
 const BESIDE = 0.1; // of the bore's radius
+const HALF_TURN = 2 / Math.PI; // how far the middle of half a round is from its axis, of its radius
 
 /**
- * Radii within 3 percent, axes within 1 degree and a tenth of the radius, of two parts of which one moves; not those that have a fit.
+ * Rounds of more than half a turn (less holds no shaft: a fillet, a groove), radii within 3 percent, axes within 1 degree and a tenth of the radius, of two parts of which one moves; not those that have a fit.
  * @param {import('./session.js').Session} session @returns {ProposedFit[]}
  */
 export function proposedFits({ parts, features, standing }) {
   const stated = new Set(standing.filter((d) => d.kind === 'set tolerance' && d.other && d.text)
     .flatMap((d) => [`${d.part} ${d.feature ?? ''} ${d.other} ${d.other_feature ?? ''}`, `${d.other} ${d.other_feature ?? ''} ${d.part} ${d.feature ?? ''}`]));
-  const round = [...parts.values()].flatMap((part) => (features.get(part.id) ?? []).filter(({ kind }) => kind === 'cylinder')
+  const round = [...parts.values()].flatMap((part) => (features.get(part.id) ?? []).filter((feature) => feature.kind === 'cylinder' && isRound(feature))
     .map((feature) => ({ part, feature, axis: rotate(part.q, feature.axis), at: placed(part, feature.point) })));
   const found = [];
   for (const bore of round.filter(({ feature }) => feature.inward)) {
@@ -33,6 +34,13 @@ export function proposedFits({ parts, features, standing }) {
     }
   }
   return found;
+}
+
+/** By where the middle of its facets lies: that of a whole round lies on its axis. @param {Feature} feature */
+function isRound({ point, axis, middle, radius }) {
+  const off = middle.map((x, i) => x - point[i]);
+  const along = dot(off, axis);
+  return Math.sqrt(Math.max(0, dot(off, off) - along * along)) < HALF_TURN * radius;
 }
 
 /** @param {Readonly<number[]>} a @param {Readonly<number[]>} b */

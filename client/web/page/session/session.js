@@ -39,7 +39,7 @@ import { Unexamined } from './unexamined.js';
 
 const MOST_ENDED = 200;
 /** Decisions that put a part somewhere: whoever made one has moved it. The others of an event change rules. */
-const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset', 'add part']);
+const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset', 'add part', 'replace part']);
 
 /**
  * @typedef {object} Said
