@@ -311,7 +311,8 @@ class Hosts : public ::testing::Test {
     for (std::thread& thread : threads_) thread.join();
     threads_.clear();
   }
-  /// Places of the session's servers by their address, as the last host sees them.
+  /// Places of the session's servers by their address, as the last host sees them; none where
+  /// nobody has answered in time, as it may be over a net that loses and on a busy machine.
   std::map<std::string, std::string> directory() {
     std::map<std::string, std::string> places;
     const auto ask = [&] {
@@ -319,7 +320,9 @@ class Hosts : public ::testing::Test {
           folder_.path(), "mortise-directory",
           {"--server", options(4, "otto").server, "--interface", LossyLink::address(4), "--domain",
            std::to_string(kDomain), "--keys", (*keys_)["otto"], "--wait", "1.5", "--json"});
-      EXPECT_EQ(program.wait(kPatience_s), 0) << program.errors();
+      const int code = program.wait(kPatience_s);
+      const bool nobody = program.errors().find("answered at") != std::string::npos;
+      EXPECT_EQ(code, nobody ? 1 : 0) << program.errors();
       const auto seen = nlohmann::json::parse(program.out(), nullptr, false);
       if (!seen.is_object()) return;
       for (const auto& row : seen["servers"]) places[row["address"]] = row["place"];
