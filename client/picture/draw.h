@@ -12,7 +12,7 @@ namespace mortise {
 /// Colours of part A and part B, and of the classes.
 Color color_of_part(int part);
 Color color_of(CollisionClass collision_class);
-inline constexpr Color kInk{0.13, 0.13, 0.15}, kGrey{0.45, 0.45, 0.48}, kPale{0.90, 0.90, 0.92};
+inline constexpr Color kInk{0.13, 0.13, 0.15}, kGrey{0.45, 0.45, 0.48};
 
 /// 0xRRGGBB.
 Color color_of_hex(std::uint32_t hex);

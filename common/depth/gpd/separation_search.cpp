@@ -12,8 +12,6 @@
 namespace mortise::gpd {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
-
 // What the search finds is a local optimum, whatever its steps are. Values without a reason of
 // their own are chosen. With half or twice any of them, no way out of 400 random pairs (gpd_pairs
 // in tests/bench) is told that is longer or shorter by a percent; only the work differs.
