@@ -99,6 +99,8 @@ class SecondServer : public ::testing::Test {
       listen(*otto_, gaps_[2]);
       if (of_ben.server_lost) in_doubt();
       told_of_drain_ |= of_anna.pulse && of_anna.pulse->draining;
+      // What is refused is told before it is acknowledged, and is in no session.
+      for (const RefusedIncrement& refused : of_ben.refused) sent_.erase(refused.seq);
       for (const SeenAck& ack : of_ben.acks) acknowledge(ack.seq);
       if (moves_ && steady_s() - sent_s_ >= kEvery_s) {
         sent_s_ = steady_s();
