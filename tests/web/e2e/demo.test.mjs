@@ -11,7 +11,7 @@ before(async () => {
   await session.serve('gearbox.yaml');
   await session.show();
   await session.play('gearbox.play.yaml', 20, ['--for-people']);
-}, { timeout: 180_000 });
+}, { timeout: 240_000 });
 
 test('nothing moves while nobody has joined; who looks on is nobody', async () => {
   const looksOn = await openPage(session.browser, session.addresses.observer);
