@@ -29,6 +29,7 @@ void TickRecorder::begin(const Stepped& stepped) {
   record_ = log_->spare();
   record_.tick = stepped.tick;
   record_.time_ns = stepped.wall_ns;
+  record_.step_ns = stepped.step_ns;
   worked_ns_ += stepped.step_ns;
   changed_since_checkpoint_ |= stepped.changed;
   // The last one at once: there are no ticks any more over which it could be made.

@@ -44,14 +44,16 @@ int Crew::run(ProcessReport& report) {
                  client_.session(), client_.parts().size(), client_.tick_rate_hz(),
                  client_.policy());
   }
-  listen(options_.delay_s);
-  if (Status found = find_parts(); !found) {
-    spdlog::error("{}", found.error().text);
-    return exit_code_of(found.error().code);
+  if (!options_.for_people || wait_for_people()) {
+    listen(options_.delay_s);
+    if (Status found = find_parts(); !found) {
+      spdlog::error("{}", found.error().text);
+      return exit_code_of(found.error().code);
+    }
+    act();
+    release_all();
+    listen(options_.linger_s);
   }
-  act();
-  release_all();
-  listen(options_.linger_s);
   report.document = document();
   report.latency_ms = tally_.latency_ms();
   report.event_latency_ms = tally_.event_latency_ms();
@@ -101,6 +103,14 @@ bool Crew::wait_until_joined() {
     poll(kPollEvery_s);
   }
   return true;
+}
+
+bool Crew::wait_for_people() {
+  const auto is_person = [](const UserInfo& user) {
+    return user.present && user.role == Role::kDesigner;
+  };
+  while (!stop_asked && std::ranges::none_of(client_.users(), is_person)) poll(kPollEvery_s);
+  return !stop_asked;
 }
 
 void Crew::say_why_not_joined() const {

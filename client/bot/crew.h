@@ -30,6 +30,8 @@ class Crew {
   void add_users_due(double now_s);
   bool wait_until_joined();
   void say_why_not_joined() const;
+  /// Until somebody is there who is no bot. False: it was stopped before.
+  bool wait_for_people();
   Status find_parts();
   void poll(double pause_s);
   void listen(double seconds);

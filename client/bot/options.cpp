@@ -92,6 +92,8 @@ void add_times(ProgramOptions& app, BotOptions& o) {
   app.add("--duration,--seconds", o.duration_s, "Act for so many seconds; 0: until the script ends")
       .not_negative();
   app.add("--wait", o.wait_s, "Wait so long for the server").not_negative().shows_default();
+  app.add_flag("--for-people", o.for_people,
+               "Wait with the first act until somebody has joined who is no bot");
   app.add("--delay", o.delay_s, "Wait so long between joining and the first act").not_negative();
   app.add("--linger", o.linger_s, "Listen on for so long after the last act")
       .not_negative()

@@ -32,6 +32,7 @@ struct BotOptions {
   double rate_hz = 60.0;
   double duration_s = 0.0;  ///< 0: until the script ends or a signal comes
   double wait_s = 5.0;      ///< for the server
+  bool for_people = false;  ///< the first act waits for somebody who is no bot
   double delay_s = 0.0;     ///< between having joined and the first act
   double linger_s = 0.5;    ///< listening on after the last act
   bool observer = false, json = false, quiet = false;

@@ -1,6 +1,8 @@
 #include "client/replay/export_command.h"
 
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <thread>
 
@@ -12,12 +14,16 @@
 #include "client/report/export_html.h"
 #include "client/report/export_sqlite.h"
 #include "client/report/report.h"
+#include "client/tools/generate/write_mesh.h"
 #include "common/base/json_text.h"
 #include "common/io/log/replay.h"
+#include "common/io/scenario/saved_scenario.h"
 #include "common/session/tick/statistics.h"
 
 namespace mortise {
 namespace {
+
+namespace fs = std::filesystem;
 
 Result<StepCounters> coverage_of(const SessionLog& log) {
   auto scene = scene_of(log);
@@ -63,22 +69,64 @@ Result<std::vector<Table>> what_if_tables(const SessionLog& log, const ExportOpt
   return std::vector<Table>{table};
 }
 
-Status write_text(const std::filesystem::path& file, const std::string& text) {
+Status write_file(const fs::path& file, const std::function<void(std::ostream&)>& put) {
   std::ofstream out(file, std::ios::binary);
-  out << text;
+  put(out);
   return out.flush() ? ok() : Status(fail(Code::kRuntime, file.string() + " could not be written"));
+}
+Status write_text(const fs::path& file, const std::string& text) {
+  return write_file(file, [&](std::ostream& out) { out << text; });
+}
+
+// The folder is new or empty.
+Status write_scenario(const SavedScenario& saved, const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
+    return fail(Code::kInvalidInput, folder.string() + " is not empty; name a new folder");
+  fs::create_directories(folder / "meshes", error);
+  for (const SavedScenario::MeshFile& mesh : saved.meshes) {
+    const auto put = [&](std::ostream& out) { write_obj(mesh.solid->mesh(), {}, out); };
+    if (Status written = write_file(folder / mesh.name, put); !written) return written;
+  }
+  return write_text(folder / "scenario.yaml", saved.yaml);
+}
+
+// What a scenario cannot hold is said on stderr.
+Status save_scenario(const SessionLog& log, const std::filesystem::path& folder) {
+  auto scene = scene_of(log);
+  if (!scene) return scene.error();
+  const double last = log.ticks.empty() ? 1.0 : static_cast<double>(log.ticks.back().tick);
+  Progress progress("computing again", last);
+  const auto done = recompute(scene->world, log, 1, [&](const ReplayedTick& tick) {
+    progress.show(static_cast<double>(tick.computed.tick));
+  });
+  progress.end();
+  if (!done) return done.error();
+  if (!done->stopped_early.empty()) std::cerr << done->stopped_early << "\n";
+  const auto reading = scenario_of(log);
+  if (!reading) return reading.error();
+  const auto saved =
+      saved_scenario({log.scenario_yaml, reading->scenario, log.mesh_of_part}, scene->world);
+  if (!saved) return saved.error();
+  for (const std::string& line : saved->left_out) std::cerr << "not kept: " << line << "\n";
+  return write_scenario(*saved, folder);
 }
 
 }  // namespace
 
 int run_export(const ExportOptions& options) {
-  if (options.csv.empty() && options.sqlite.empty() && options.html.empty() &&
-      options.json.empty() && options.bcf.empty())
-    return say(fail(Code::kInvalidInput, "export what? --csv, --sqlite, --html, --json or --bcf"),
+  if (options.only_scenario() && options.scenario.empty())
+    return say(fail(Code::kInvalidInput,
+                    "export what? --csv, --sqlite, --html, --json, --bcf or --scenario"),
                kExitUsage);
   const auto log = read_files(options.log, options.more);
   if (!log) return say(log.error(), kExitBadInput);
   print_notes(*log);
+  if (!options.scenario.empty()) {
+    if (const Status saved = save_scenario(*log, options.scenario); !saved)
+      return say(saved.error(), kExitBadInput);
+    if (options.only_scenario()) return kExitOk;
+  }
   std::optional<StepCounters> coverage;
   if (options.recompute) {
     const auto counted = coverage_of(*log);

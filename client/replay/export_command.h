@@ -11,8 +11,12 @@ struct ExportOptions {
   std::vector<std::filesystem::path> more;
   std::filesystem::path csv;  ///< a folder
   std::filesystem::path sqlite, html, json, bcf;
+  std::filesystem::path scenario;  ///< a new folder
   std::vector<std::string> sweep;  ///< what-if of the page; see WhatIfOptions
   bool recompute = false;          ///< for coverage
+  bool only_scenario() const {
+    return csv.empty() && sqlite.empty() && html.empty() && json.empty() && bcf.empty();
+  }
 };
 int run_export(const ExportOptions& options);
 

@@ -84,6 +84,8 @@ void add_export(ProgramOptions& app, int& code) {
   command.add("--json", options->json, "one JSON document");
   command.add("--bcf", options->bcf,
               "a new BCF 3.0 archive: each clash as an issue, with a picture");
+  command.add("--scenario", options->scenario,
+              "a new folder for a scenario, with its meshes, that begins where the session stands");
   command
       .add("--what-if", options->sweep,
            "changes as behind --sweep of whatif; their table goes with the others")

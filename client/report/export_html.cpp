@@ -9,6 +9,7 @@
 #include "client/report/html_page.h"
 #include "client/report/html_sections.h"
 #include "client/report/pair_groups.h"
+#include "client/report/plots.h"
 #include "common/evaluation/threshold_text.h"
 #include "common/messages/length_text.h"
 
@@ -253,6 +254,7 @@ std::string html_of(const SessionReport& report) {
     html += "<p><b>Incomplete</b>: " + escaped(complete) + "</p>\n";
   html += cards(clashes);
   html += timeline(clashes, std::atof(session_value(tables, "duration_s").c_str()));
+  html += depth_section(report);
   html += clash_section(report);
   html += picture_section(report);
   html += part_section(report);
@@ -264,6 +266,7 @@ std::string html_of(const SessionReport& report) {
   html += plain_table(table_named(tables, "exclusions"), "Exclusions");
   html += plain_table(table_named(tables, "decisions"), "Decisions");
   html += plain_table(table_named(tables, "coverage"), "Coverage");
+  html += tick_time_section(report);
   html += limits_section(report);
   html += plain_table(table_named(tables, "session"), "Session");
   return html + "<script>" + std::string(report_script()) + "</script></body></html>\n";

@@ -79,6 +79,8 @@ class Session {
     add("first_tick", std::to_string(first.tick));
     add("last_tick", std::to_string(last.tick));
     add("duration_s", std::to_string(static_cast<double>(last.time_ns - first.time_ns) * 1e-9));
+    add("tick_rate_hz", std::to_string(scenario_.tick_rate_hz));
+    add("end_s", std::to_string(static_cast<double>(last.tick) / scenario_.tick_rate_hz));
     add("ticks_with_input", std::to_string(log_.ticks.size()));
     for (const LogGap& gap : log_.gaps)
       add("gap", "after tick " + std::to_string(gap.after_tick) + " until tick " +
@@ -120,6 +122,7 @@ class Session {
   std::vector<Json> clash_row(ClashId id, const SessionStatistics::ClashRow& clash,
                               const Group& group) const;
   Table events() const;
+  Table tick_times() const;
   Table decisions() const;
 
   Table sums(const char* name, const char* about, const char* thing,
@@ -327,16 +330,31 @@ Table Session::events() const {
          columns(Type::kText, {"kind", "class", "part_a", "part_b", "user", "cause", "status"}));
   append(table.columns,
          columns(Type::kNumber, {"overlap_lo_mm", "overlap_hi_mm", "margin_mm", "contact_in_tick",
-                                 "potential_in_tick", "real_in_tick"}));
+                                 "potential_in_tick", "real_in_tick", "fake_below_mm",
+                                 "real_above_mm", "time_s"}));
   for (const TickRecord& record : log_.ticks)
     for (const ClashEvent& e : record.report.events)
-      table.rows.push_back({e.seq, e.tick, e.clash.value, word(e.kind),
-                            word(e.verdict.collision_class), names_.part(e.part_a),
-                            names_.part(e.part_b), e.user ? names_.user(e.user) : "",
-                            e.cause == Decision::Kind::kUnknown ? Json("motion") : word(e.cause),
-                            word(e.review.status), number(e.verdict.delta_mm.lo),
-                            number(e.verdict.delta_mm.hi), number(e.verdict.margin_mm),
-                            number(e.t_contact), number(e.t_potential), number(e.t_real)});
+      table.rows.push_back(
+          {e.seq, e.tick, e.clash.value, word(e.kind), word(e.verdict.collision_class),
+           names_.part(e.part_a), names_.part(e.part_b), e.user ? names_.user(e.user) : "",
+           e.cause == Decision::Kind::kUnknown ? Json("motion") : word(e.cause),
+           word(e.review.status), number(e.verdict.delta_mm.lo), number(e.verdict.delta_mm.hi),
+           number(e.verdict.margin_mm), number(e.t_contact), number(e.t_potential),
+           number(e.t_real), number(e.verdict.fake_below_mm), number(e.verdict.real_above_mm),
+           static_cast<double>(e.tick) / scenario_.tick_rate_hz});
+  return table;
+}
+
+Table Session::tick_times() const {
+  Table table{"tick_times", "what the engine took for the ticks of about a second", {}, {}};
+  append(table.columns, columns(Type::kInteger, {"first_tick", "last_tick", "ticks"}));
+  append(table.columns, columns(Type::kNumber, {"begin_s", "end_s", "mean_us", "max_us"}));
+  for (const log_json::TickTimes& times : log_.times)
+    table.rows.push_back({times.first_tick, times.last_tick, times.ticks,
+                          static_cast<double>(times.first_tick) / scenario_.tick_rate_hz,
+                          static_cast<double>(times.last_tick) / scenario_.tick_rate_hz,
+                          number(times.sum_us / static_cast<double>(times.ticks)),
+                          number(times.max_us)});
   return table;
 }
 
@@ -387,9 +405,9 @@ Result<std::vector<Table>> tables_of(const SessionLog& log,
   const Session session(log, reading->scenario);
   const SessionNames& names = session.names();
   const SessionStatistics& sums = session.statistics();
-  std::vector<Table> tables{session.session(),    session.parts(),   session.users(),
-                            session.exclusions(), session.clashes(), session.events(),
-                            session.decisions()};
+  std::vector<Table> tables{session.session(),    session.parts(),     session.users(),
+                            session.exclusions(), session.clashes(),   session.events(),
+                            session.decisions(),  session.tick_times()};
   tables.push_back(session.sums("by_pair", "clashes by pair of parts, by worst class", "pair",
                                 Session::named(sums.by_pair(), [&](const auto& key) {
                                   return names.pair(key.first, key.second);

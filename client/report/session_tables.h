@@ -22,10 +22,10 @@ struct Table {
   std::vector<std::vector<Json>> rows;  ///< each as long as columns
 };
 
-/// session, parts, users, exclusions, clashes, events, decisions, by_pair, by_part, by_user,
-/// coverage: from the log, without computing it again. Coverage: the counters of a recomputation,
-/// or else those in the log. A clash is real until the zones of its faces are wider by
-/// real_until_widened_mm to each side (negative: it would be real if they were narrower by that
+/// session, parts, users, exclusions, clashes, events, decisions, tick_times, by_pair, by_part,
+/// by_user, coverage: from the log, without computing it again. Coverage: the counters of a
+/// recomputation, or else those in the log. A clash is real until the zones of its faces are wider
+/// by real_until_widened_mm to each side (negative: it would be real if they were narrower by that
 /// much), fake likewise. Costs one pass.
 Result<std::vector<Table>> tables_of(const SessionLog& log,
                                      const std::optional<StepCounters>& coverage);

@@ -54,7 +54,7 @@ const std::vector<Room> kRooms = {
     {"client/web/main", {"client/web/run"}},
     {"client/picture/", {"common/session/"}},
     {"client/report/", {"client/picture/", "common/io/"}},
-    {"client/replay/", {"client/", "client/report/", "common/io/"}},
+    {"client/replay/", {"client/", "client/report/", "client/tools/", "common/io/"}},
     {"client/tools/", {"client/", "client/picture/", "common/io/"}},
     {"client/tools/check/", {"client/tools/", "client/report/"}},
     {"client/api/",

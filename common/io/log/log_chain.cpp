@@ -92,6 +92,7 @@ Status join(SessionLog& log, SessionLog next, const std::string& file) {
   append(log.checkpoints, next.checkpoints);
   append(log.gaps, next.gaps);
   append(log.notes, next.notes);
+  append(log.times, next.times);
   for (const auto& [name, count] : next.counted) log.counted[name] += count;
   log.complete = next.complete;
   if (next.build_fingerprint != log.build_fingerprint) log.build_fingerprint = "several builds";

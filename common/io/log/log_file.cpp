@@ -169,7 +169,7 @@ void LogFile::write(const TickRecord& tick) {
     message(poses_, log_records::encode(tick.tick, std::span(tick.report.moved)));
   for (const ClashEvent& event : tick.report.events) message(clashes_, log_json::encode(event));
   message(ticks_, log_records::encode_end(tick.report, tick.tick));
-  sums_.add(tick.report);
+  sums_.add(tick.report, tick.step_ns);
   if (time_ns_ - statistics_time_ns_ >= kStatisticsPeriod_ns) write_statistics();
 }
 

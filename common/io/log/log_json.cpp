@@ -1,5 +1,6 @@
 #include "common/io/log/log_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -319,7 +320,9 @@ std::string first_difference(const ClashEvent& logged, const ClashEvent& compute
   return {};
 }
 
-void CounterSums::add(const StepReport& report) {
+void CounterSums::add(const StepReport& report, std::int64_t step_ns) {
+  step_ns_ += step_ns;
+  longest_ns_ = std::max(longest_ns_, step_ns);
   if (ticks_++ == 0) first_tick_ = report.tick;
   last_tick_ = report.tick;
   events_ += report.events.size();
@@ -332,7 +335,24 @@ std::string CounterSums::encode() const {
                          {"ticks", ticks_},
                          {"events", events_}};
   each_counter(sums_, [&](const char* name, std::uint64_t count) { object[name] = count; });
+  const auto in_us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+  object["step_us"] = {{"sum", in_us(step_ns_)}, {"max", in_us(longest_ns_)}};
   return dump(object);
+}
+
+bool decode(std::string_view text, TickTimes& times) {
+  const ordered_json object = parse(text);
+  Members in{object};
+  in.integer("first_tick", times.first_tick);
+  in.integer("last_tick", times.last_tick);
+  in.integer("ticks", times.ticks);
+  if (!in.ok || !object.contains("step_us")) return false;
+  const ordered_json& step = object["step_us"];
+  Members of_step{step};
+  of_step.real("sum", times.sum_us);
+  of_step.real("max", times.max_us);
+  return of_step.ok && times.ticks > 0 && times.max_us > 0.0 && times.sum_us >= times.max_us &&
+         std::isfinite(times.sum_us);
 }
 
 std::string encode(const Gap& gap) { return dump(json_of(gap)); }

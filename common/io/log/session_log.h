@@ -67,6 +67,7 @@ LogHeader log_header(const LoadedScene& scene, std::string session, std::string 
 struct TickRecord {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;      ///< server clock, for the reader's timeline only
+  std::int64_t step_ns = 0;      ///< what the engine took for it; 0: not measured
   std::vector<SolidPtr> meshes;  ///< that its decisions are the first to name
   std::vector<Decision> decisions;
   std::vector<Increment> increments;

@@ -214,6 +214,8 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
       loss("a record of " + channel.topic + " is not readable");
   } else if (channel.topic == kStatistics) {
     add_counts(nlohmann::json::parse(text_of(message.data), nullptr, false), log_.counted);
+    if (log_json::TickTimes times; log_json::decode(text_of(message.data), times))
+      log_.times.push_back(times);
   } else if (channel.topic == kCheckpoints) {
     checkpoint(message.data, time_ns);
   } else if (channel.topic == kTotals) {

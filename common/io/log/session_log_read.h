@@ -2,6 +2,7 @@
 #include <functional>
 #include <map>
 
+#include "common/io/log/log_json.h"
 #include "common/io/log/session_log.h"
 #include "common/io/scenario/scenario_file.h"
 
@@ -39,7 +40,8 @@ struct SessionLog {
   std::vector<LogGap> gaps;  ///< in the order of the log
   /// Sums of /statistics by name: what was examined and skipped, without lost parts of the log.
   std::map<std::string, std::uint64_t> counted;
-  std::vector<std::string> notes;  ///< what was lost or skipped, in words
+  std::vector<log_json::TickTimes> times;  ///< in their order; empty: not measured
+  std::vector<std::string> notes;          ///< what was lost or skipped, in words
 };
 
 /// Server clock of the last tick of a log, or of the tick that it begins with; 0: it has neither.

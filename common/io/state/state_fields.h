@@ -91,10 +91,11 @@ void fields(A& a, OpenClash& x) {
   a(last, now, worst_class, worst_delta_mm, p_A, p_B, approved_class, approved_delta_mm, revised);
 }
 
+/// But for what was found in its mesh, which is for people alone, as that of a part is.
 template <class A>
 void fields(A& a, PartForm& x) {
   auto& [present, moving, mesh, notes] = x;
-  a(present, moving, mesh, notes);
+  a(present, moving, mesh);
 }
 template <class A>
 void fields(A& a, MoveHistory::Done& x) {

@@ -20,8 +20,8 @@ using test::TestFolder;
 
 constexpr int kTicksOfSession = 120;
 
-std::unique_ptr<RandomSession> played(std::uint64_t seed) {
-  auto session = std::make_unique<RandomSession>(seed, 3, true);
+std::unique_ptr<RandomSession> played(std::uint64_t seed, bool replaces = true) {
+  auto session = std::make_unique<RandomSession>(seed, 3, true, replaces);
   for (int i = 1; i <= kTicksOfSession; ++i) {
     session->tick();
     if (i % 24 == 0)
@@ -170,7 +170,7 @@ std::string text_of(const PairVerdicts& pair) {
 TEST(EditedScene, ASceneThatBeginsAsItEndedIsJudgedAlike) {
   std::size_t verdicts = 0, added = 0;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::effort(4)); ++seed) {
-    const auto session = played(100 + seed);
+    const auto session = played(100 + seed, false);
     World& world = session->scene.world;
     Fresh fresh = fresh_scene(world);
     Scratch one(1), two(1);

@@ -15,7 +15,8 @@
 
 /// Sessions in which several users do everything that a session lets them do, at random: pushes,
 /// groups, undo, redo, reset, hand-over, constraints, reviews, and changes of policy, tolerances,
-/// fits and exclusions; where `edits`, parts also come, go, come back, and begin to move.
+/// fits and exclusions; where `edits`, parts also come, go, come back, begin to move, and take
+/// other meshes.
 namespace mortise::test {
 
 inline const std::string kRandomScenario = R"(
@@ -58,8 +59,9 @@ inline Result<LoadedScene> random_scene() {
 
 class RandomSession {
  public:
-  explicit RandomSession(std::uint64_t seed, int users = 3, bool edits = false)
-      : random_(seed), edits_(edits) {
+  explicit RandomSession(std::uint64_t seed, int users = 3, bool edits = false,
+                         bool replaces = true)
+      : random_(seed), edits_(edits), replaces_(replaces) {
     auto loaded = random_scene();
     EXPECT_TRUE(loaded && loaded->usable());
     for (const Finding& finding : loaded->findings) EXPECT_FALSE(finding.is_error) << finding.text;
@@ -128,7 +130,7 @@ class RandomSession {
     const bool is_floor_or_plate = some.id.value <= 2;
     Details details;
     PartEdit& said = details.edit.emplace();
-    switch (below(7)) {
+    switch (below(replaces_ ? 7 : 6)) {
       case 6: {
         said.mesh_hash = below(2) == 0 ? new_mesh() : parts[below(parts.size())].solid->hash();
         return some.id.value == 1 ? void()
@@ -268,7 +270,7 @@ class RandomSession {
   }
 
   std::mt19937_64 random_;
-  bool edits_;
+  bool edits_, replaces_;
   std::vector<PartId> movers_;
   std::vector<std::uint64_t> seq_;  ///< by user
   std::uint64_t commands_ = 0;

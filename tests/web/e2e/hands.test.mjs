@@ -15,7 +15,7 @@ before(async () => {
   [ann, bob] = await session.join('ann', 'bob');
   await whenListed(ann, 'parts', 'peg_k6');
   await whenListed(bob, 'parts', 'peg_k6');
-}, { timeout: 180_000 });
+}, { timeout: 240_000 });
 
 const release = (page) => page.click('#hand button:has-text("Release")');
 

@@ -63,7 +63,7 @@ before(async () => {
   worker.send(JSON.stringify({ type: 'join', name: 'worker' }));
   await heard(worker, (m) => m.type === 'joined');
   worker.scene = await heard(worker, (m) => m.type === 'scene');
-}, { timeout: 60_000 });
+}, { timeout: 240_000 });
 
 after(async () => {
   worker?.terminate();

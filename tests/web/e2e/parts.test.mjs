@@ -52,7 +52,7 @@ before(async () => {
   ({ browser, addresses } = await session.show());
   [eva, tom] = await session.join('Eva', 'Tom');
   await tom.locator('#no_parts').waitFor(PATIENCE);
-}, { timeout: 180_000 });
+}, { timeout: 240_000 });
 
 test('in an empty session two files become parts, units are asked once with the size shown, and everybody has the verdict within a minute', async (t) => {
   if (process.env.MORTISE_PICTURES) await eva.screenshot({ path: join(process.env.MORTISE_PICTURES, 'empty.png') });
@@ -167,7 +167,7 @@ test('fits of bores and shafts that were found are proposed, and set at once for
   if (process.env.MORTISE_PICTURES) await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'proposed.png') });
   await all.click();
   if (process.env.MORTISE_PICTURES) { await tom.waitForTimeout(1500); await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'proposed_set.png') }); }
-  await tom.locator('#rules_panel li', { hasText: /plate\..+ × peg\..+ H7\/g6/ }).getByText('Tom').waitFor({ timeout: 6000 });
+  await tom.locator('#rules_panel li', { hasText: /plate\..+ × peg\..+ H7\/g6/ }).getByText('Tom').waitFor(PATIENCE);
   await all.waitFor({ ...PATIENCE, state: 'hidden' });
 });
 
@@ -177,7 +177,7 @@ test('a STEP file becomes all its parts, each where the file has it', async () =
   await tom.click('#units_add');
   const row = tom.locator('#arriving > li', { hasText: 'tensioner' });
   await row.waitFor(PATIENCE);
-  await tom.waitForFunction(() => ![...document.querySelectorAll('#arriving > li')].some((li) => !li.classList.contains('bad')), undefined, { timeout: 60_000 });
+  await tom.waitForFunction(() => ![...document.querySelectorAll('#arriving > li')].some((li) => !li.classList.contains('bad')), undefined, { timeout: 240_000 });
   for (const page of [eva, tom]) assert.equal(await page.locator('#parts > li').count(), 4 + 19, await page.locator('#parts').textContent());
   assert.match(await tom.locator('#arriving').textContent() ?? '', /3 tolerances that the file states are not used here/);
   if (process.env.MORTISE_PICTURES) await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'step.png') });

@@ -14,7 +14,7 @@ let page;
 before(async () => {
   const { browser, addresses } = await session.show('tests/golden/thin_wall.mcap');
   page = await openPage(browser, addresses.designer);
-}, { timeout: 60_000 });
+}, { timeout: 240_000 });
 
 const tick = () => page.evaluate(() => Number(/** @type {HTMLInputElement} */ (document.querySelector('#timeline input')).value));
 

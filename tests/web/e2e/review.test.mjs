@@ -33,7 +33,7 @@ before(async () => {
   await grab(eva, 'peg_k6');
   await moveBy(eva, [0, 0, -28]);
   await whenListed(tom, 'clashes', 'potential, plate_k6 × peg_k6');
-}, { timeout: 180_000 });
+}, { timeout: 240_000 });
 
 const row = (page, pair) => page.locator(`#clashes > li[aria-label*="${pair}"]`);
 const figure = (page, name) => page.locator('#clash dl').evaluate((list, wanted) => {

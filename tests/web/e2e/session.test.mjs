@@ -13,7 +13,7 @@ before(async () => {
   await session.serve(PEGS);
   ({ browser, addresses } = await session.show());
   [ann, bob] = await session.join('ann', 'bob');
-}, { timeout: 180_000 });
+}, { timeout: 240_000 });
 
 test('two people join and see each other', async () => {
   await whenListed(ann, 'parts', 'peg_k6');

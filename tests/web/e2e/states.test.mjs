@@ -22,7 +22,7 @@ before(async () => {
   await moveBy(ann, [0, 0, -28]);
   await real;
   await ann.click('#hand button:has-text("Release")');
-}, { timeout: 180_000 });
+}, { timeout: 240_000 });
 
 const trouble = (page, kind) => page.locator(`#banner[data-trouble="${kind}"]`);
 
@@ -102,7 +102,7 @@ test('a gateway that is gone: seconds are counted down, and one can try now', as
   const left = async () => Number(/Trying again in (\d+) s/.exec(await ann.textContent('#banner'))?.[1] ?? 0);
   await ann.waitForFunction(() => /in [4-8] s/.test(document.getElementById('banner')?.textContent ?? ''), undefined, PATIENCE);
   const first = await left();
-  await ann.waitForFunction((n) => Number(/in (\d+) s/.exec(document.getElementById('banner')?.textContent ?? '')?.[1]) === n - 2, first, { timeout: 4000 });
+  await ann.waitForFunction((n) => Number(/in (\d+) s/.exec(document.getElementById('banner')?.textContent ?? '')?.[1]) <= n - 2, first, PATIENCE);
   await session.open(undefined, port);
   await ann.click('#banner button:has-text("Try now")');
   await ann.locator('#status_server', { hasText: 'You are ann' }).waitFor(PATIENCE);

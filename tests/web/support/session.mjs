@@ -67,9 +67,9 @@ export class LiveSession {
     return this.gateway.ready;
   }
 
-  /** @param {string} play a file of scenarios/ @param {number} seconds */
-  async play(play, seconds) {
-    const args = ['--session', this.name, '--domain', `${this.domain}`, '--wait', '10', '--behaviour', 'script', '--play', join(root, 'scenarios', play), '--quiet', '--duration', `${seconds}`];
+  /** @param {string} play a file of scenarios/ @param {number} seconds @param {string[]} [more] */
+  async play(play, seconds, more = []) {
+    const args = ['--session', this.name, '--domain', `${this.domain}`, '--wait', '10', '--behaviour', 'script', '--play', join(root, 'scenarios', play), '--quiet', '--duration', `${seconds}`, ...more];
     return this.start('bot', args);
   }
 
