@@ -19,6 +19,7 @@
 
 #include "common/base/in_quotes.h"
 #include "common/io/mesh/importer/folder_files.h"
+#include "common/io/mesh/importer/obj_lines.h"
 #include "common/io/mesh/importer/ply_header.h"
 #include "common/io/mesh/importer/stl_dialect.h"
 #include "common/io/mesh/importer/written_digits.h"
@@ -225,7 +226,9 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
     importer.ReadFileFromMemory(stl->bytes.data(), stl->bytes.size(), 0, "stl");
     note = std::move(stl->note);
   } else {
-    const std::string wrong = extension == ".ply" ? wrong_with_ply(bytes_of(file)) : "";
+    const std::string wrong = extension == ".ply"   ? wrong_with_ply(bytes_of(file))
+                              : extension == ".obj" ? wrong_with_obj(bytes_of(file))
+                                                    : "";
     if (!wrong.empty()) return refuse(wrong);
     importer.ReadFile(file.string(), 0);
   }
