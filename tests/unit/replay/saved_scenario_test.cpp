@@ -8,6 +8,8 @@
 #include "common/generators/generators.h"
 #include "common/io/log/replay.h"
 #include "common/io/scenario/open_scene.h"
+#include "common/io/scenario/scenario_file.h"
+#include "common/messages/names.h"
 #include "common/session/tick/step.h"
 #include "common/session/world/commands.h"
 #include "common/session/world/decisions.h"
@@ -153,7 +155,7 @@ TEST_F(Saved, TheScenarioBeginsWhereTheSessionStood) {
       test::run("mortise-replay", "export log.mcap --scenario kept", folder.path());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.err.find("not kept: 1 parts in somebody's hand"), std::string::npos) << run.err;
-  const auto reading = read_scenario_file(folder.path() / "kept" / "scenario.yaml");
+  const auto reading = read_scenario(folder.path() / "kept" / "scenario.yaml");
   ASSERT_TRUE(reading) << reading.error().text;
   const auto again = load_scene(reading->scenario, default_meshes());
   ASSERT_TRUE(again) << again.error().text;

@@ -2,6 +2,8 @@
 import { existsSync } from 'node:fs';
 
 const CHROMIUM = process.env.MORTISE_CHROMIUM ?? '/usr/bin/chromium';
+/** For a page to open, and for what is to be pressed: on a machine that does other things as well. */
+const PATIENCE_MS = 120_000;
 export const VIEW = { width: 1280, height: 720 };
 
 /** Why there can be no browser here; empty when there can. */
@@ -29,6 +31,7 @@ export async function openBrowser() {
 /** A page of its own profile. What it complains of is collected. @param {import('playwright-core').Browser} browser */
 export async function openPage(browser, address, { scheme = 'dark', name, first, view = VIEW, touch = false } = {}) {
   const context = await browser.newContext({ viewport: view, colorScheme: scheme, reducedMotion: 'reduce', hasTouch: touch });
+  context.setDefaultTimeout(PATIENCE_MS);
   const page = await context.newPage();
   if (first) await page.addInitScript(first);
   page.complaints = [];
@@ -43,5 +46,5 @@ export async function joinAs(page, name) {
   await page.fill('#join_name', name);
   await page.click('#join_go');
   // Several browsers draw without a graphics card on two cores: the first picture may take half a minute.
-  await page.waitForFunction((n) => document.getElementById('status_server')?.textContent === `You are ${n}`, name, { timeout: 90_000 });
+  await page.waitForFunction((n) => document.getElementById('status_server')?.textContent === `You are ${n}`, name, { timeout: PATIENCE_MS });
 }
