@@ -50,6 +50,42 @@ class RestoreAfterCrash : public ::testing::Test {
   TestFolder folder_;
 };
 
+/// A session that a program of 0.2.0 has played goes on here, with one that stands by, and there.
+TEST_F(RestoreAfterCrash, ALogOfAVersionBeforeGoesOnAndIsFollowed) {
+  const std::string logs = file("logs");
+  std::filesystem::create_directories(logs);
+  std::filesystem::copy(MORTISE_SOURCE_DIR "/tests/golden/before/0.2.0/moves.mcap",
+                        logs + "/default-20261127-120000.mcap");
+  auto first = serve({"--restore", logs, "--log", logs});
+  Guest anna(domain_, "anna");
+  ASSERT_TRUE(anna.joined()) << first->errors();
+  EXPECT_EQ(anna.client->user_id(anna.user), UserId{1}) << "she is who she was";
+  EXPECT_EQ(anna.x("red"), 8.0);
+  EXPECT_EQ(anna.x("blue"), 32.0);
+  auto second = serve({"--standby-of", "default", "--restore", logs, "--log", logs});
+  ASSERT_TRUE(anna.until(kPatience_s, [&] {
+    return second->errors().find("in step") != std::string::npos || !second->running();
+  }));
+  ASSERT_TRUE(second->running()) << second->errors();
+  const auto moves_to = [&](double x) {
+    anna.client->send(anna.user, anna.client->find_part("red"), {0.5, 0, 0});
+    return anna.until(kPatience_s, [&] { return anna.x("red") == x; });
+  };
+  ASSERT_TRUE(anna.grab("red"));
+  ASSERT_TRUE(moves_to(8.5)) << first->errors();
+  kill_and_wait(*first);
+  ASSERT_TRUE(anna.until(kPatience_s, [&] {
+    return anna.client->statistics().server_losses > 0 && anna.client->user_id(anna.user) &&
+           anna.client->synced();
+  })) << second->errors();
+  EXPECT_EQ(anna.client->user_id(anna.user), UserId{1});
+  EXPECT_EQ(anna.x("red"), 8.5);
+  ASSERT_TRUE(anna.grab("red")) << "a busy machine may have taken it";
+  EXPECT_TRUE(moves_to(9.0)) << second->errors();
+  second->signal(SIGTERM);
+  EXPECT_EQ(second->wait(kPatience_s), 0) << second->errors();
+}
+
 TEST_F(RestoreAfterCrash, PosesClashesNumbersAndUndoAreWhatTheyWere) {
   auto server = serve({scenario(), "--log", file("first.mcap")});
   Guest anna(domain_, "anna"), ben(domain_, "ben");
