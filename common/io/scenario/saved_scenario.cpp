@@ -19,7 +19,7 @@ namespace {
 std::string digits(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", x);
-  for (int precision = 1; precision < 17; ++precision) {
+  for (int precision = 6; precision < 17; ++precision) {
     char shorter[40];
     std::snprintf(shorter, sizeof shorter, "%.*g", precision, x);
     if (std::strtod(shorter, nullptr) == x) return shorter;
@@ -243,6 +243,15 @@ class Writer {
     return feature.empty() ? name : name + "." + feature;
   }
 
+  // What the scenario itself says is told in mm: "Ø20 H7/g6"; its file has a unit of its own.
+  std::string code_in_file(const std::string& text) const {
+    const std::string sign = "Ø";
+    if (!text.starts_with(sign)) return text;
+    char* rest = nullptr;
+    const double nominal_mm = std::strtod(text.c_str() + sign.size(), &rest);
+    return sign + digits(nominal_mm / scenario_.unit_mm) + rest;
+  }
+
   YAML::Node between(const std::string& a, const std::string& b) const {
     YAML::Node node;
     node["between"].push_back(a);
@@ -264,7 +273,7 @@ class Writer {
       if (said.kind != Decision::Kind::kSetTolerance) continue;
       const YAML::Node text = YAML::Load(d.text);
       if (names_class(text))
-        node["code"] = d.text;
+        node["code"] = said.user ? d.text : code_in_file(d.text);
       else if (text.IsMap())
         for (const auto& entry : text) node[entry.first] = entry.second;
       else

@@ -131,7 +131,7 @@ TEST_F(Saved, TheScenarioBeginsWhereTheSessionStood) {
   fit.feature = "bore";
   fit.other_part = other;
   fit.other_feature = "journal";
-  fit.text = "Ø20 H7/p6";
+  fit.text = "Ø2 H7/p6";
   ask(CommandKind::kSetTolerance, plate, fit);
   Details own;
   own.text = "±0.003";
