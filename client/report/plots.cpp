@@ -18,7 +18,7 @@ namespace {
 constexpr double kLeft = 300.0, kWidth = 780.0, kAll = 1100.0;
 // A clash has a row of its own; of many the worst.
 constexpr double kRow = 46.0, kHead = 18.0, kDeepest = 34.0;
-constexpr std::size_t kMostRows = 40;
+constexpr std::size_t kMostPlotRows = 40;
 // Columns of the plot of times: as many as can be told apart.
 constexpr std::size_t kMostColumns = 390;
 constexpr double kTimesHeight = 160.0;
@@ -177,7 +177,7 @@ std::string depth_section(const SessionReport& report) {
     rows.push_back(group.lead);
     rows.insert(rows.end(), group.others.begin(), group.others.end());
   }
-  const std::size_t shown = std::min(rows.size(), kMostRows);
+  const std::size_t shown = std::min(rows.size(), kMostPlotRows);
   const double height = kHead + kRow * static_cast<double>(shown) + 4.0;
   std::string html =
       "<h2>Depth over time</h2>\n<p class=\"dim\">One row a clash, the worst first, each to its "
