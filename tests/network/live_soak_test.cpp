@@ -152,6 +152,11 @@ ComesAndGoes crew(const TestFolder& folder, int number) {
           static_cast<unsigned>(number)};
 }
 
+void wait_until_up(Program& server) {
+  while (server.running() && server.errors().find("session 'default' of") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
 enum class Fault { kKilled, kTicksHang, kFrozen };
 constexpr std::array kFaults = {Fault::kKilled, Fault::kTicksHang, Fault::kFrozen};
 
@@ -244,8 +249,7 @@ TEST(LiveSoak, SoakAServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
     since_s = now_s;
     for (int i = 0; i < kCrews; ++i) all[i].not_before(now_s + kNamesHeld_s);
   };
-  while (server->running() && server->errors().find("session 'default' of") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  wait_until_up(*server);
   const double begin_s = steady_s();
   // Who was felled last is waited for.
   for (double now_s = 0.0, sample_s = 0.0; now_s < lasts_s + (after_fault ? kInStep_s : 0.0);
