@@ -130,7 +130,6 @@ class RuleBook {
   const Part& part(PartId id) const { return names_.part(id); }
 
   // 1. fits
-
   std::optional<std::vector<std::pair<PartId, std::size_t>>> ends_of(
       SourceLine at, const std::string& part_pattern, const std::string& feature_pattern) {
     const std::vector<PartId> ids = names_.parts_matching(part_pattern);

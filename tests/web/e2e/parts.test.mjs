@@ -121,8 +121,8 @@ test('a part is made to stand, is removed for everybody, and comes back', async 
 });
 
 test('a file replaces a part: everybody sees it and is told what became of its clashes; who comes later too; it is taken back', async () => {
+  await choose(eva, 'cover');
   const replace = async (name, size, at) => {
-    await choose(eva, 'cover');
     const [chooser] = await Promise.all([eva.waitForEvent('filechooser'), eva.getByRole('button', { name: 'Replace the part by a file' }).click()]);
     await chooser.setFiles(file(name, stl(size, at)));
     await eva.getByRole('heading', { name: 'Replace cover' }).waitFor(PATIENCE);

@@ -67,18 +67,13 @@ export function makeNews({ session, say }) {
 
   /** Parts that were replaced, with the clashes that they had, until they are judged again. @type {Array<{part: number, name: string, before: Set<number>, pulses: number}>} */
   let replaced = [];
-  /** Clashes that began or ended since the last pulse because a part was replaced: that comes before the decision. @type {Array<any>} */
-  let caused = [];
-  const clashesOf = (/** @type {number} */ part) => new Set(session.openClashes().filter(({ a, b }) => a === part || b === part).map(({ clash }) => clash));
+  /** Open at the last pulse: with a replaced part the scene as it is then may come before the decision. @type {Array<{clash: number, a: number, b: number}>} */
+  let open = [];
+  const clashesOf = (/** @type {number} */ part, among = session.openClashes()) => new Set(among.filter(({ a, b }) => a === part || b === part).map(({ clash }) => clash));
 
   /** @param {number} part */
   function follow(part) {
-    const before = replaced.find((row) => row.part === part)?.before ?? clashesOf(part);
-    for (const { clash, a, b, kind } of caused) {
-      if (a !== part && b !== part) continue;
-      if (kind === 'end') before.add(clash);
-      else before.delete(clash);
-    }
+    const before = replaced.find((row) => row.part === part)?.before ?? clashesOf(part, open);
     replaced = [...replaced.filter((row) => row.part !== part), { part, name: session.partName(part), before, pulses: 0 }];
   }
 
@@ -86,13 +81,12 @@ export function makeNews({ session, say }) {
     for (const row of replaced) ++row.pulses;
     for (const { part, name, before } of replaced.filter(({ pulses }) => pulses >= PULSES_TO_JUDGE)) say(changeSaid(name, before, clashesOf(part)));
     replaced = replaced.filter(({ pulses }) => pulses < PULSES_TO_JUDGE);
-    caused = [];
+    open = session.openClashes().map(({ clash, a, b }) => ({ clash, a, b }));
   });
   /** Clashes that were said to be real: said once, and again when they come back. @type {Set<number>} */
   const real = new Set();
   session.on('event', (event) => {
     const pair = `${session.partName(event.a)} × ${session.partName(event.b)}`;
-    if (event.cause === 'replace part' && ['begin', 'end'].includes(event.kind)) caused.push(event);
     const isReal = event.class === 'real' && !event.ended;
     if (isReal && !real.has(event.clash)) say(`Real clash: ${pair}, ${small(event.delta[1])}`, 'bad');
     if (isReal) real.add(event.clash);
