@@ -207,13 +207,14 @@ class Search {
       Vec6 xi = Vec6::Zero();
       if (push(xi, times * scale_mm_ + 1e-5, kPushPrograms, kWorthDescent * best_.length_mm)) {
         if (!is_large()) offer(xi);
-        if (!done()) descend_from(xi, kShortDescent);
+        if (is_large() || !done())
+          descend_from(xi, kShortDescent);  // what only seems free is asked
       }
       if (done()) return;
     }
   }
 
-  // Offers the end, or where it meets something and cannot be mended the start.
+  // Offers the end; of large parts, where that is not free, the start.
   void descend_from(const Vec6& start, int programs) {
     const Vec6 end = descend(start, programs);
     if (!is_large() || is_free(end))
