@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
+#include <charconv>
 #include <map>
 #include <numbers>
 #include <set>
@@ -15,16 +15,10 @@
 namespace mortise {
 namespace {
 
-// Reads back as the same double.
+// The shortest that reads back as the same double.
 std::string digits(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  for (int precision = 6; precision < 17; ++precision) {
-    char shorter[40];
-    std::snprintf(shorter, sizeof shorter, "%.*g", precision, x);
-    if (std::strtod(shorter, nullptr) == x) return shorter;
-  }
-  return text;
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
 }
 
 YAML::Node list_of(std::initializer_list<double> values) {
