@@ -27,6 +27,8 @@ static_assert(FASTRTPS_VERSION_MAJOR == 2 && FASTRTPS_VERSION_MINOR == 9 &&
 
 namespace {
 
+constexpr double kLookAgain_ms = 5.0;  // much shorter than a lease, longer than what holds the lock
+
 struct Uses {
   std::atomic<std::uint64_t> lease_checks = 0, encodings = 0, session_keys = 0;
 };
@@ -35,23 +37,28 @@ void count(std::atomic<std::uint64_t>& use) { use.fetch_add(1, std::memory_order
 
 using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
-/// Of all participants of this process.
+/// What a participant of this process knows of its peers.
+struct Peers {
+  std::weak_ptr<mortise::PeerRemovals> removals;
+  std::weak_ptr<mortise::PeersHeard> heard;
+};
+
 class AllPeers {
  public:
-  void add(const Prefix& own, const std::shared_ptr<mortise::PeersHeard>& peers) {
+  void add(const Prefix& own, Peers peers) {
     const std::lock_guard lock(mutex_);
-    std::erase_if(heard_, [](const auto& entry) { return entry.second.expired(); });
-    heard_[own] = peers;
+    std::erase_if(peers_, [](const auto& entry) { return entry.second.removals.expired(); });
+    peers_[own] = std::move(peers);
   }
-  std::shared_ptr<mortise::PeersHeard> of(const Prefix& own) {
+  Peers of(const Prefix& own) {
     const std::lock_guard lock(mutex_);
-    const auto found = heard_.find(own);
-    return found == heard_.end() ? nullptr : found->second.lock();
+    const auto found = peers_.find(own);
+    return found == peers_.end() ? Peers{} : found->second;
   }
 
  private:
   std::mutex mutex_;
-  std::map<Prefix, std::weak_ptr<mortise::PeersHeard>> heard_;
+  std::map<Prefix, Peers> peers_;
 };
 AllPeers& all_peers() {
   static auto* all = new AllPeers;  // threads of the library may ask while the process ends
@@ -62,25 +69,37 @@ AllPeers& all_peers() {
 
 namespace eprosima::fastrtps::rtps {
 
-// Called by a timer of each remote participant. Whoever left while the timer waited for the lock
-// has no GUID any more, and nothing is to be done.
+// Called by a timer of each remote participant. Whoever has left has no GUID any more, and nothing
+// is to be done. The thread of the timers does not wait here for whoever may wait for it.
 void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_participant) {
   count(uses.lease_checks);
-  std::unique_lock<std::recursive_mutex> lock(*getMutex());
   ParticipantProxyData& remote = *remote_participant;
+  std::unique_lock<std::recursive_mutex> lock(*getMutex(), std::try_to_lock);
+  if (!lock) {
+    remote.lease_duration_event->update_interval_millisec(kLookAgain_ms);
+    remote.lease_duration_event->restart_timer();
+    return;
+  }
   if (!remote.should_check_lease_duration || remote.m_guid == GUID_t::unknown()) return;
   const std::chrono::duration<double, std::milli> left = remote.last_received_message_tm() +
                                                          remote.lease_duration() -
                                                          std::chrono::steady_clock::now();
   const GUID_t guid = remote.m_guid;
   const bool has_own = ParticipantProxiesBegin() != ParticipantProxiesEnd();  // the first is it
-  const auto peers =
-      has_own ? all_peers().of(getLocalParticipantProxyData()->m_guid.guidPrefix) : nullptr;
+  const Peers known =
+      has_own ? all_peers().of(getLocalParticipantProxyData()->m_guid.guidPrefix) : Peers{};
+  const auto heard = known.heard.lock();
   const auto peer = std::bit_cast<mortise::PeersHeard::Prefix>(guid.guidPrefix.value);
-  if (left.count() < 0.0 || (peers && peers->is_silent(peer))) {
-    if (peers) peers->part(peer);
+  if (left.count() < 0.0 || (heard && heard->is_silent(peer))) {
+    if (heard) heard->part(peer);
     lock.unlock();
-    remove_remote_participant(guid, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
+    const auto remove = [this, guid] {
+      remove_remote_participant(guid, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
+    };
+    if (const auto removals = known.removals.lock())
+      removals->add(remove);
+    else
+      remove();
     return;
   }
   remote.lease_duration_event->update_interval_millisec(left.count());
@@ -169,8 +188,9 @@ void kept_session_key(void* transform, Key& session_key, bool receiver_specific,
   session_key = kept.key;
 }
 
-void know_peers(const GuidPrefix_t& own, const std::shared_ptr<PeersHeard>& peers) {
-  all_peers().add(own, peers);
+void know_peers(const GuidPrefix_t& own, const std::shared_ptr<PeerRemovals>& removals,
+                const std::shared_ptr<PeersHeard>& peers) {
+  all_peers().add(own, {removals, peers});
 }
 
 bool overrides_in_force() {

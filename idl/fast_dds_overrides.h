@@ -3,14 +3,15 @@
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
 #include <memory>
 
+#include "idl/peer_removals.h"
 #include "idl/peers_heard.h"
 
 // Three functions of Fast DDS 2.9.1 as the linker names them, with what takes their place here.
 
 /// PDP::check_remote_participant_liveliness(ParticipantProxyData*): the look at a lease. The
 /// library's ends the process (an assertion) where its participant has just left: seen when sixteen
-/// left at once. Here nothing is done then; and who has forgotten us is gone as if its lease had
-/// ended: see know_peers().
+/// left at once. Here nothing is done then; who has forgotten us is gone as if its lease had ended;
+/// and whoever is gone is removed in another thread: see know_peers().
 #define MORTISE_LEASE_CHECK                                                 \
   "_ZN8eprosima8fastrtps4rtps3PDP35check_remote_participant_livelinessEPNS" \
   "1_20ParticipantProxyDataE"
@@ -40,9 +41,11 @@ namespace mortise {
 /// when it was built (Debian's does): see override_uses().
 bool overrides_in_force();
 
-/// Who is silent of `peers` is forgotten by the participant `own` when it next looks at its lease,
-/// which it does within that.
+/// Whoever the participant `own` has to remove is given to `removals`. Who is silent of `peers`,
+/// which may be null, is removed when its lease is next looked at, which is within that. A
+/// participant of which this was not said removes in the thread of its timers.
 void know_peers(const eprosima::fastrtps::rtps::GuidPrefix_t& own,
+                const std::shared_ptr<PeerRemovals>& removals,
                 const std::shared_ptr<PeersHeard>& peers);
 
 /// How often the library came by, in this process.

@@ -296,7 +296,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
                   std::to_string(options.domain) +
                   (options.keys.empty() ? "" : ", with the keys in " + options.keys));
   }
-  if (made->peers_) know_peers(made->participant_->guid().guidPrefix, made->peers_);
+  know_peers(made->participant_->guid().guidPrefix, made->removals_, made->peers_);
   const std::string partition = partition_of(options.session);
   dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
   publisher_qos.partition().push_back(partition.c_str());
@@ -313,6 +313,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const DdsOptions& options
 Participant::~Participant() {
   if (participant_ == nullptr) return;
   participant_->set_listener(nullptr);
+  removals_->stop();
   participant_->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }

@@ -21,6 +21,8 @@
 #include "idl/dds_channel.h"
 #include "idl/guard_transport.h"
 #include "idl/identity.h"
+#include "idl/peer_removals.h"
+#include "idl/peers_heard.h"
 #include "idl/safe_type.h"
 #include "idl/terms.h"
 #include "idl/topics.h"
@@ -123,6 +125,7 @@ class Participant {
   std::shared_ptr<std::atomic<std::uint64_t>> refused_ =
       std::make_shared<std::atomic<std::uint64_t>>(0);
   std::shared_ptr<GuardCounts> guard_ = std::make_shared<GuardCounts>();
+  std::shared_ptr<PeerRemovals> removals_ = std::make_shared<PeerRemovals>();
   std::shared_ptr<PeersHeard> peers_;  ///< null: no security
 };
 

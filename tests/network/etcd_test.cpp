@@ -108,7 +108,7 @@ class FaultSchedules : public EtcdSite {
 
 TEST_F(FaultSchedules, NothingThatWasAcknowledgedIsLost) { play(effort(2), 31); }
 TEST_F(FaultSchedules, SoakNothingThatWasAcknowledgedIsLost) { play(effort(8), 1'000'003); }
-TEST_F(FaultSchedules, SoakUsersThatComeAnewLoseNothing) {
+TEST_F(FaultSchedules, UsersThatComeAnewLoseNothing) {
   const int count = effort(2);
   play(count, 47, First::kUserComesAnew);
   EXPECT_GE(came_anew(), count);

@@ -2,7 +2,9 @@
 #include <signal.h>
 
 #include "client/client.h"
+#include "tests/network/guest.h"
 #include "tests/network/security_fixture.h"
+#include "tests/support/effort.h"
 
 namespace mortise::test {
 namespace {
@@ -36,6 +38,41 @@ TEST_F(SecurityPause, AServerThatStoodStillIsMetAgain) {
   const double begun_s = now_s();
   EXPECT_TRUE(until(kComesBack_s, is_in, turn));
   std::printf("met again %.1f s after a pause of %.0f s\n", now_s() - begun_s, kPause_s);
+}
+
+/// When it goes on, goodbyes are waiting for it, and the leases of all others have ended: Fast DDS
+/// removes the first in the thread that receives, and the others in that of its timers, where each
+/// waited for the other for good.
+TEST_F(SecurityPause, AServerLivesThroughGoodbyesAndLeasesThatEndAtOnce) {
+  constexpr std::size_t kStay = 7, kLeave = 7;
+  Child server("server", options((*site_keys)["hall"]), "hall", 600.0);
+  std::vector<std::unique_ptr<Guest>> stay, leave;
+  const auto come = [&](auto& guests, std::size_t count) {
+    while (guests.size() < count)
+      guests.push_back(std::make_unique<Guest>(options((*site_keys)["anna"]), "anna"));
+  };
+  const auto listen = [&] {
+    for (auto* guests : {&stay, &leave})
+      for (auto& guest : *guests) guest->listen();
+  };
+  const auto is_in = [](const auto& guest) {
+    return guest->client->user_id(0) && guest->client->synced();
+  };
+  for (int i = 0; i <= effort(2); ++i) {
+    come(stay, kStay);
+    come(leave, kLeave);
+    ASSERT_TRUE(until(
+        kPatience_s,
+        [&] { return std::ranges::all_of(stay, is_in) && std::ranges::all_of(leave, is_in); },
+        listen))
+        << "after " << i << " pauses";
+    server.signal(SIGSTOP);
+    leave.clear();
+    (void)until(
+        kPause_s, [] { return false; }, listen);
+    server.signal(SIGCONT);
+    stay.clear();
+  }
 }
 
 TEST_F(SecurityPause, AClientThatStoodStillIsMetAgain) {

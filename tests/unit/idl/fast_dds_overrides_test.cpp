@@ -6,10 +6,15 @@
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/builtin/discovery/participant/PDP.h>
 #include <fastdds/rtps/common/CDRMessage_t.h>
+#include <fastdds/rtps/resources/ResourceEvent.h>
+#include <fastdds/rtps/resources/TimedEvent.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <future>
 #include <random>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace mortise {
@@ -82,6 +87,30 @@ TEST_F(ParticipantLease, OneWhoIsSilentIsRemoved) {
   look_at_lease(discovery_, remote_);  // never heard of, with a lease of 0 s
   ASSERT_EQ(discovery_.removed.size(), 1U);
   EXPECT_EQ(discovery_.removed[0], remote_.m_guid);
+}
+
+TEST_F(ParticipantLease, IsLookedAtAgainWhereAnotherHasTheLock) {
+  remote_.should_check_lease_duration = true;
+  remote_.m_guid.guidPrefix.value[0] = 7;
+  rtps::ResourceEvent timers;
+  timers.init_thread();
+  std::promise<void> looked_again;
+  remote_.lease_duration_event = new rtps::TimedEvent(
+      timers,
+      [&] {
+        look_at_lease(discovery_, remote_);
+        looked_again.set_value();
+        return false;
+      },
+      1.0);
+  {
+    const std::lock_guard lock(*discovery_.getMutex());
+    std::thread([&] { look_at_lease(discovery_, remote_); }).join();  // or it stands still here
+    EXPECT_TRUE(discovery_.removed.empty());
+  }
+  looked_again.get_future().wait();
+  EXPECT_EQ(discovery_.removed.size(), 1U);
+  delete std::exchange(remote_.lease_duration_event, nullptr);
 }
 
 TEST_F(ParticipantLease, WhereNoLeaseIsAskedForNobodyIsRemoved) {
