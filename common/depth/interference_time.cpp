@@ -36,7 +36,9 @@ constexpr std::uint64_t kFirstLook = 400, kLookWorkCap = 2'000;
 constexpr double kSoonShare = 4.0;
 
 // After this share of the work cap the proven time may stay this far, mm of path, before a time at
-// which the parts interfere: two rims that just meet take ten times the work for the rest.
+// which the parts interfere: two rims that just meet take ten times the work for the rest. And as
+// much farther as the square of the work beyond that: teeth that lie along a wall take all there
+// is.
 constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
 constexpr double kCloseEnough_mm = 0.02;
 
@@ -210,8 +212,10 @@ class InterferenceSearch {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
-      if (answer_.evaluations >= enough &&
-          (t_real_ - item.span.t0) * path_.speed_upper_bound() <= kCloseEnough_mm) {
+      const double effort = static_cast<double>(answer_.evaluations) / static_cast<double>(enough);
+      const double more = query_.slides ? 1.0 : effort * effort;
+      if (effort >= 1.0 &&
+          (t_real_ - item.span.t0) * path_.speed_upper_bound() <= kCloseEnough_mm * more) {
         free_until_ = std::min(free_until_, item.span.t0);
         break;
       }
@@ -548,28 +552,43 @@ double in_whole(double t0, double t) { return t >= 1.0 ? 1.0 : t0 + (1.0 - t0) *
 // A path ends where its covers are this deep in each other: who goes on from there is, rounded,
 // still no deeper than touching.
 constexpr double kPathEnds_mm = 0.5 * kAccuracyDefault_mm;
+// Paths that a search has ended are this deep at most, in accuracies: that of the depth, that of
+// the time, and by how much covers hold more than the parts. Looked for in steps of kCoarser.
+constexpr double kSearchEnds = 4.0, kCoarser = 4.0;
 
-CoverFree free_by_covers(const SweptQuery& query, Layer layer) {
+struct FreeByCovers {
+  FreeUntil until;
+  std::uint64_t work = 0;  // evaluations
+};
+
+FreeByCovers free_by_covers(const SweptQuery& query, Layer layer) {
   const OverlapQuery& at = query.at_target;
-  CoverFree nothing{0.0, false, 0};
-  if (!at.use_covers || (at.band_a->trivial && at.band_b->trivial)) return nothing;
+  FreeByCovers found;
+  if (!at.use_covers || (at.band_a->trivial && at.band_b->trivial)) return found;
   const Body a(*at.a, *at.band_a), b(*at.b, *at.band_b);
-  if (!cover_of(a).found() || !cover_of(b).found()) return nothing;
+  if (!cover_of(a).found() || !cover_of(b).found()) return found;
   const bool least = layer == Layer::kLower;
   const CoverPair pair(cover_of(a).of(least), cover_of(b).of(least));
   const PairPath path(query.motion_a, *at.a, query.motion_b, *at.b);
   // What is no deeper than touching is not in both; the rest of the accuracy is that of the time.
   const double moment_mm = kSmallestShare * query.accuracy_mm;
-  CoverFree free = pair.free_until(path, kPathEnds_mm, moment_mm);
-  if (!free.all && free.t_free <= 0.0) {
-    // Who stands where a path has ended may leave it again, and no farther than that.
-    CoverFree leaving = pair.free_until(path, kAccuracyDefault_mm, moment_mm);
-    leaving.work += free.work;
-    if (!leaving.all) leaving.t_free = 0.0;
-    free = leaving;
+  std::uint64_t bounds = 0;
+  const auto ask = [&](double ends_mm) {
+    const CoverFree free = pair.free_until(path, ends_mm, moment_mm);
+    bounds += free.work;
+    found.until = {free.all ? 1.0 : free.t_free, free.all || free.t_free > 0.0};
+  };
+  ask(kPathEnds_mm);
+  // Who stands where a path has ended may leave it again, and no farther than that.
+  const double deepest_mm =
+      least ? std::max(kAccuracyDefault_mm, kSearchEnds * query.accuracy_mm) : kAccuracyDefault_mm;
+  for (double ends_mm = kAccuracyDefault_mm; !found.until.touches; ends_mm *= kCoarser) {
+    ask(std::min(ends_mm, deepest_mm));
+    if (found.until.t < 1.0) found.until.t = 0.0;
+    if (ends_mm >= deepest_mm) break;
   }
-  free.work = evaluations_of_bounds(free.work);
-  return free;
+  found.work = evaluations_of_bounds(bounds);
+  return found;
 }
 
 // Up to t the covers of a layer keep both parts apart. Shortly behind that the parts often
@@ -668,23 +687,18 @@ SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,
 
 }  // namespace
 
-namespace {
-
-double free_until(const SweptQuery& query, Layer layer, std::uint64_t& evaluations) {
+FreeUntil certain_free_until(const SweptQuery& query, std::uint64_t& evaluations) {
   check(query);
-  const CoverFree free = free_by_covers(query, layer);
+  const FreeByCovers free = free_by_covers(query, Layer::kLower);
   evaluations += free.work;
-  return free.all ? 1.0 : free.t_free;
+  return free.until;
 }
 
-}  // namespace
-
-double certain_free_until(const SweptQuery& query, std::uint64_t& evaluations) {
-  return free_until(query, Layer::kLower, evaluations);
-}
-
-double possible_free_until(const SweptQuery& query, std::uint64_t& evaluations) {
-  return free_until(query, Layer::kUpper, evaluations);
+bool is_free_of_possible(const SweptQuery& query, std::uint64_t& evaluations) {
+  check(query);
+  const FreeByCovers free = free_by_covers(query, Layer::kUpper);
+  evaluations += free.work;
+  return free.until.t >= 1.0;
 }
 
 namespace {
@@ -704,33 +718,33 @@ SaidByCovers said_of_start(const SweptQuery& query, Layer layer, std::uint64_t& 
 // 3. Else the rest of the path is searched; all of it where they are not even apart at its start.
 InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
   check(query);
-  const CoverFree free = query.certain_free
-                             ? CoverFree{*query.certain_free, *query.certain_free >= 1.0, 0}
-                             : free_by_covers(query, Layer::kLower);
   InterferenceTime answer;
-  if (free.all) {
-    answer.evaluations = free.work;
-    return answer;
-  }
+  FreeUntil free;
+  if (query.certain_free)
+    free = *query.certain_free;
+  else
+    free = certain_free_until(query, answer.evaluations);
+  if (free.t >= 1.0) return answer;
   SaidByCovers start;
-  if (free.t_free <= 0.0) start = said_of_start(query, Layer::kLower, answer.evaluations);
-  const bool free_at_start = free.t_free > 0.0 || start.apart;
+  if (free.t <= 0.0) start = said_of_start(query, Layer::kLower, answer.evaluations);
+  // Who slides goes by the place that the search finds.
+  const bool free_at_start = start.apart || (query.slides ? free.t > 0.0 : free.touches);
   SoonAfter soon;
   if (start.place)
     soon = {true, 0.0, *start.place};
   else if (free_at_start)
-    soon = look_soon_after(query, free.t_free, Layer::kLower, answer.evaluations);
-  const std::uint64_t looked = answer.evaluations + free.work;
+    soon = look_soon_after(query, free.t, Layer::kLower, answer.evaluations);
+  const std::uint64_t looked = answer.evaluations;
   if (soon.interferes) {
     answer.becomes_real = true;
     answer.real_at_start = start.place.has_value();
-    answer.t_free = free.t_free;
+    answer.t_free = free.t;
     answer.t_real = soon.t;
     answer.certain_place = soon.certain_place;
   } else {
-    answer = first_interference(rest_of(query, free.t_free), Layer::kLower);
-    answer.t_free = in_whole(free.t_free, answer.t_free);
-    answer.t_real = in_whole(free.t_free, answer.t_real);
+    answer = first_interference(rest_of(query, free.t), Layer::kLower);
+    answer.t_free = in_whole(free.t, answer.t_free);
+    answer.t_real = in_whole(free.t, answer.t_real);
     answer.real_at_start &= !free_at_start;
   }
   answer.evaluations = looked + (soon.interferes ? 0 : answer.evaluations);
@@ -832,29 +846,29 @@ PossibleTime search_possible_time(const SweptQuery& query, CcdScratch& scratch) 
 
 PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   check(query);
-  const CoverFree free = free_by_covers(query, Layer::kUpper);
+  const auto [free, work] = free_by_covers(query, Layer::kUpper);
   PossibleTime answer;
-  if (!free.all) {
+  if (free.t < 1.0) {
     SaidByCovers start;
-    if (free.t_free <= 0.0) start = said_of_start(query, Layer::kUpper, answer.evaluations);
+    if (free.t <= 0.0) start = said_of_start(query, Layer::kUpper, answer.evaluations);
     SoonAfter soon;
     if (start.place)
       soon.interferes = true;
-    else if (free.t_free > 0.0 || start.apart)
-      soon = look_soon_after(query, free.t_free, Layer::kUpper, answer.evaluations);
+    else if (free.t > 0.0 || start.apart)
+      soon = look_soon_after(query, free.t, Layer::kUpper, answer.evaluations);
     if (soon.interferes) {
       answer.becomes_possible = true;
-      answer.t_clear = free.t_free;
+      answer.t_clear = free.t;
       answer.t_possible = soon.t;
     } else {
       const std::uint64_t looked = answer.evaluations;
-      answer = search_possible_time(rest_of(query, free.t_free), scratch);
-      answer.t_clear = in_whole(free.t_free, answer.t_clear);
-      answer.t_possible = in_whole(free.t_free, answer.t_possible);
+      answer = search_possible_time(rest_of(query, free.t), scratch);
+      answer.t_clear = in_whole(free.t, answer.t_clear);
+      answer.t_possible = in_whole(free.t, answer.t_possible);
       answer.evaluations += looked;
     }
   }
-  answer.evaluations += free.work;
+  answer.evaluations += work;
   return answer;
 }
 

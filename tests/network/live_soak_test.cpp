@@ -226,7 +226,7 @@ TEST(LiveSoak, SoakAServerWhoseUsersAndStandbyComeAndGoDoesNotGrow) {
   auto server = std::make_unique<Program>(
       folder.path(), "mortise-server",
       std::vector<std::string>{MORTISE_SOURCE_DIR "/scenarios/gearbox.yaml", "--domain", domain(),
-                               "--log", logs, "--log-rotate", "4", "--metrics-port", "0", "--quiet",
+                               "--log", logs, "--log-rotate", "4", "--metrics-port", "0",
                                "--json"});
   std::vector<ComesAndGoes> all;
   for (int i = 0; i < kCrews; ++i) all.push_back(crew(folder, i));

@@ -289,6 +289,8 @@ void search_stop_time(PairWork& pair, bool slides, CcdScratch& ccd) {
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
   note_depth_effort(pair, WorkStage::kStop, pair.undecided);
   pair.stop_gave_up = pair.undecided;
+  // Real for certain a little later: all that is open is how far the pair might still go.
+  if (!slides && pair.place.known()) pair.undecided = false;
   pair.short_of_work |= pair.undecided && pair.may_have_more();
   note_stalled(pair);
   pair.undecided |= was_undecided;

@@ -55,7 +55,7 @@ bool goes_on(PairWork& pair, CcdScratch& ccd) {
 }
 
 bool is_never_possible(PairWork& pair) {
-  return possible_free_until(swept_query(pair), pair.counts.depth_evaluations) >= 1.0;
+  return is_free_of_possible(swept_query(pair), pair.counts.depth_evaluations);
 }
 
 bool is_possible_at_end(PairWork& pair) {

@@ -337,7 +337,7 @@ double free_by_covers(PairWork& pair) {
   if (pair.plain() || pair.no_inside()) return 0.0;
   if (!pair.certain_free)
     pair.certain_free = certain_free_until(swept_query(pair), pair.counts.depth_evaluations);
-  const double t = *pair.certain_free;
+  const double t = pair.certain_free->t;
   // Who has come out is not withdrawn any more.
   if (t > 0.0 && std::isfinite(pair.memo->allowed_depth_mm))
     pair.memo.change().allowed_depth_mm = kInfinity;

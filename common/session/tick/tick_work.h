@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/depth/interference_time.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/tick/judgement.h"
 #include "common/session/tick/step.h"
@@ -99,7 +100,7 @@ struct PairWork {
   bool held_again = false;       ///< at once, by the place that has held it back before
   CertainPlace place;            ///< a place that makes the pair real, where one is known
   /// Of the segment: the covers prove until then that nothing is certain; nullopt: not asked.
-  std::optional<double> certain_free;
+  std::optional<FreeUntil> certain_free;
 
   bool goes_on = false;        ///< what is told of it, proven without a look
   bool lingers = false;        ///< what is told is perhaps left: to be seen when its parts rest
