@@ -314,6 +314,9 @@ TEST(Cover, WhoStandsWhereASearchHasEndedMayLeave) {
     if (within(hi, kTooDeep_mm)) continue;
     for (int k = 0; k < 50; ++k) (within(0.5 * (lo + hi), kDeep_mm) ? lo : hi) = 0.5 * (lo + hi);
     if (within(lo, 0.9 * kDeep_mm)) continue;
+    bool only_deepens = true;
+    for (int k = 1; k < 16; ++k) only_deepens &= within(lo + k / 16.0 * (free.t - lo), kDeep_mm);
+    if (!only_deepens) continue;
     SweptQuery out = in, on = in;
     on.slides = false;
     out.motion_a =
