@@ -110,5 +110,29 @@ TEST_F(RevisedPart, AConstraintFollowsItsFacesOrIsGone) {
   }
 }
 
+// Both fits may interfere or not; where the thresholds are, and how likely it is, are others.
+TEST_F(RevisedPart, AnotherFitIsToldAlsoWhereTheClassStays) {
+  begin("");
+  const auto open = snapshot_of(world()).open_clashes;
+  ASSERT_EQ(open.size(), 1U);
+  ASSERT_EQ(open[0].verdict.collision_class, CollisionClass::kPotential);
+  Details fit;
+  fit.feature = "bore";
+  fit.other_part = peg;
+  fit.other_feature = "journal";
+  fit.text = "Ø20 H7/n6";
+  ASSERT_EQ(ask(CommandKind::kSetTolerance, plate, fit).refusal, Refusal::kNone);
+  const StepReport report = tick();
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].kind, ClashEvent::Kind::kChange);
+  EXPECT_EQ(report.events[0].clash, open[0].clash);
+  EXPECT_EQ(report.events[0].verdict.collision_class, CollisionClass::kPotential);
+  EXPECT_NEAR(open[0].verdict.fake_below_mm - report.events[0].verdict.fake_below_mm, 0.0065, 1e-6);
+  // The same fit again is no news.
+  ASSERT_EQ(ask(CommandKind::kSetTolerance, plate, fit).refusal, Refusal::kNone);
+  EXPECT_TRUE(tick().events.empty());
+  expect_the_same_again();
+}
+
 }  // namespace
 }  // namespace mortise

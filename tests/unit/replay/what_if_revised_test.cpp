@@ -47,7 +47,7 @@ TEST_F(WhatIfRevised, StatementsHoldOfEachMeshThatThePartTakes) {
   const struct {
     const char *change, *from, *to;
   } lives[] = {
-      {"fit plate.bore, peg.journal = Ø20 H7/p6", "H7/k6", "H7/p6"},
+      {"fit plate.bore, peg.journal = Ø20 H7/h6", "H7/k6", "H7/h6"},
       {"tolerance peg = ±0.05", "±0.001", "±0.05"},
       {"policy = stop", "policy: report", "policy: stop"},
   };
