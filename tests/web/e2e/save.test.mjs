@@ -27,7 +27,7 @@ async function said(page) {
   if (await page.locator('#clash').isHidden()) await page.locator('#clashes > li[aria-label]').first().click();
   return page.evaluate(() => {
     const figures = [...document.querySelectorAll('#clash dl > dt')].map((at) => `${at.textContent}: ${at.nextElementSibling?.textContent}`);
-    return [...document.querySelectorAll('#clash .scale > *')].map((at) => at.textContent).concat(figures.filter((text) => !/^(Moved by|Since)/.test(text))).join('; ');
+    return [...document.querySelectorAll('#clash .scale > *')].map((at) => at.textContent).concat(figures.filter((text) => !/^(Moved by|Rule by|Since)/.test(text))).join('; ');
   });
 }
 
