@@ -9,6 +9,7 @@
 #include "common/io/build_info.h"
 #include "common/io/scenario/assembly_parts.h"
 #include "common/io/scenario/scene_meshes.h"
+#include "common/messages/names.h"
 
 namespace mortise::api {
 namespace {
@@ -16,9 +17,8 @@ namespace {
 constexpr double kLargestPoint_mm = 1e7;  // as of files
 
 Feature feature_of(const mortise::Feature& f) {
-  constexpr const char* kKinds[] = {"unknown", "plane", "cylinder", "cone", "sphere", "torus"};
   return {f.name,
-          kKinds[static_cast<int>(f.surface.kind)],
+          std::string(name_of(f.surface.kind)),
           f.surface.point,
           f.surface.axis,
           f.surface.radius_mm,

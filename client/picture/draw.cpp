@@ -101,11 +101,13 @@ namespace {
 
 const Canvas::Font kSmall{11.0, false, kGrey, Canvas::Align::kLeft};
 
-void draw_label(Canvas& canvas, const Vec2& at, const std::string& label, bool left,
-                const Color& color) {
+// Beside `at`, and within the box: words that are cut off cannot be read.
+void draw_label(Canvas& canvas, const Box2& box, const Vec2& at, const std::string& label,
+                bool left, const Color& color) {
   const Canvas::Font font{12.0, true, color, Canvas::Align::kLeft};
   const double width = canvas.text_width(label, font);
-  const double x = left ? at.x() - 7.0 - width : at.x() + 7.0;
+  const double beside = left ? at.x() - 7.0 - width : at.x() + 7.0;
+  const double x = std::max(box.x + 4.0, std::min(beside, box.right() - 4.0 - width));
   canvas.rectangle({x - 2.0, at.y() - 7.0, width + 4.0, 15.0}, Color{1, 1, 1, 0.82});
   canvas.text({x, at.y() + 4.0}, label, font);
 }
@@ -132,7 +134,7 @@ struct Dimension {
   bool label_left = false, label_high = false;
 };
 
-void draw_dimension(Canvas& canvas, const Dimension& d) {
+void draw_dimension(Canvas& canvas, const Box2& box, const Dimension& d) {
   const double top = std::min(d.y0, d.y1), bottom = std::max(d.y0, d.y1);
   const Pen pen{kInk, 1.1};
   if (bottom - top >= 22.0) {
@@ -146,8 +148,8 @@ void draw_dimension(Canvas& canvas, const Dimension& d) {
   }
   const bool inside = bottom - top >= 40.0;
   const double share = d.label_high ? 0.3 : 0.7, beside = d.label_high ? top - 18.0 : bottom + 18.0;
-  draw_label(canvas, {d.x, inside ? top + share * (bottom - top) : beside}, d.label, d.label_left,
-             kInk);
+  draw_label(canvas, box, {d.x, inside ? top + share * (bottom - top) : beside}, d.label,
+             d.label_left, kInk);
 }
 
 void draw_materials(Canvas& canvas, const Frame& frame, const DetailView& view) {
@@ -199,7 +201,7 @@ void draw_gaps(Canvas& canvas, const Frame& frame, const DetailView& view) {
     Dimension d{frame({s, 0.0}).x(), frame({s, from_h}).y(), frame({s, to_h}).y(),
                 what + " " + length_text(std::fabs(to_h - from_h))};
     d.label_high = share > 0.2;
-    draw_dimension(canvas, d);
+    draw_dimension(canvas, frame.box, d);
   };
   const double most = below->hi - above->lo, least = below->lo - above->hi;
   if (most <= 0.0) return between(0.12, above->lo, below->hi, "clearance ≥");
@@ -216,7 +218,7 @@ void draw_witness(Canvas& canvas, const Frame& frame, const DetailView& view) {
   canvas.line({at - Vec2(9, 0), at + Vec2(9, 0)}, {color, 1.2});
   canvas.line({at - Vec2(0, 9), at + Vec2(0, 9)}, {color, 1.2});
   draw_label(
-      canvas, at - Vec2(8.0, 13.0),
+      canvas, frame.box, at - Vec2(8.0, 13.0),
       view.witness_is_declared ? "inside both, however made" : "inside both, by their meshes", true,
       color);
 }
@@ -234,13 +236,13 @@ void draw_way_out(Canvas& canvas, const Frame& frame, const DetailView& view,
   if (!seen) {
     canvas.circle(from, 5.0, {color, 1.6});
     canvas.circle(from, 1.0, {color, 1.6});
-    return draw_label(canvas, from - Vec2(8.0, 0.0), label, true, color);
+    return draw_label(canvas, frame.box, from - Vec2(8.0, 0.0), label, true, color);
   }
   const Vec2 d(seen->x(), -seen->y()), side(-d.y(), d.x());
   const Vec2 tip = from + 34.0 * d;
   canvas.line({from, tip - 7.0 * d}, {color, 2.0});
   canvas.fill({{tip, tip - 10.0 * d + 4.0 * side, tip - 10.0 * d - 4.0 * side}}, color);
-  draw_label(canvas, tip + 6.0 * d - Vec2(8.0, 0.0), label, true, color);
+  draw_label(canvas, frame.box, tip + 6.0 * d - Vec2(8.0, 0.0), label, true, color);
 }
 
 std::string scales_text(const Frame& frame, const DetailView& view) {
@@ -316,9 +318,10 @@ void draw_detail(Canvas& canvas, const Box2& box, const DetailView& view, const 
   draw_heights(canvas, frame);
   canvas.clip(frame.box);
   draw_gaps(canvas, frame, view);
-  draw_dimension(canvas, {frame(view.point).x(), frame({0.0, view.overlap_h_mm.lo}).y(),
-                          frame({0.0, view.overlap_h_mm.hi}).y(),
-                          "meshes " + told_overlap_text(verdict), true});
+  draw_dimension(
+      canvas, frame.box,
+      {frame(view.point).x(), frame({0.0, view.overlap_h_mm.lo}).y(),
+       frame({0.0, view.overlap_h_mm.hi}).y(), "meshes " + told_overlap_text(verdict), true});
   draw_witness(canvas, frame, view);
   draw_way_out(canvas, frame, view, verdict);
   draw_scale_bar(canvas, frame, 0.22);

@@ -14,10 +14,9 @@
 #include "client/report/export_html.h"
 #include "client/report/export_sqlite.h"
 #include "client/report/report.h"
-#include "client/tools/generate/write_mesh.h"
+#include "client/saved/saved_session.h"
 #include "common/base/json_text.h"
 #include "common/io/log/replay.h"
-#include "common/io/scenario/saved_scenario.h"
 #include "common/session/tick/statistics.h"
 
 namespace mortise {
@@ -78,38 +77,19 @@ Status write_text(const fs::path& file, const std::string& text) {
   return write_file(file, [&](std::ostream& out) { out << text; });
 }
 
-// The folder is new or empty.
-Status write_scenario(const SavedScenario& saved, const fs::path& folder) {
-  std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
-    return fail(Code::kInvalidInput, folder.string() + " is not empty; name a new folder");
-  fs::create_directories(folder / "meshes", error);
-  for (const SavedScenario::MeshFile& mesh : saved.meshes) {
-    const auto put = [&](std::ostream& out) { write_obj(mesh.solid->mesh(), {}, out); };
-    if (Status written = write_file(folder / mesh.name, put); !written) return written;
-  }
-  return write_text(folder / "scenario.yaml", saved.yaml);
-}
-
 // What a scenario cannot hold is said on stderr.
 Status save_scenario(const SessionLog& log, const std::filesystem::path& folder) {
-  auto scene = scene_of(log);
-  if (!scene) return scene.error();
   const double last = log.ticks.empty() ? 1.0 : static_cast<double>(log.ticks.back().tick);
   Progress progress("computing again", last);
-  const auto done = recompute(scene->world, log, 1, [&](const ReplayedTick& tick) {
+  const auto saved = saved_session(log, [&](const ReplayedTick& tick) {
     progress.show(static_cast<double>(tick.computed.tick));
   });
   progress.end();
-  if (!done) return done.error();
-  if (!done->stopped_early.empty()) std::cerr << done->stopped_early << "\n";
-  const auto reading = scenario_of(log);
-  if (!reading) return reading.error();
-  const auto saved =
-      saved_scenario({log.scenario_yaml, reading->scenario, log.mesh_of_part}, scene->world);
   if (!saved) return saved.error();
-  for (const std::string& line : saved->left_out) std::cerr << "not kept: " << line << "\n";
-  return write_scenario(*saved, folder);
+  if (!saved->stopped_early.empty()) std::cerr << saved->stopped_early << "\n";
+  for (const std::string& line : saved->scenario.left_out)
+    std::cerr << "not kept: " << line << "\n";
+  return write_folder(saved->scenario, folder);
 }
 
 }  // namespace
@@ -154,6 +134,13 @@ int run_export(const ExportOptions& options) {
     status = write_text(options.json, json_text(json_of(tables), 1));
   if (status && !options.bcf.empty()) status = write_bcf(*report, *log, options.bcf);
   return status ? kExitOk : say(status.error(), kExitRuntime);
+}
+
+int run_unpack(const UnpackOptions& options) {
+  const Status done = unpack(options.archive, options.out);
+  return done ? kExitOk
+              : say(done.error(),
+                    done.error().code == Code::kRuntime ? kExitRuntime : kExitBadInput);
 }
 
 }  // namespace mortise

@@ -20,4 +20,10 @@ struct ExportOptions {
 };
 int run_export(const ExportOptions& options);
 
+/// A session that was saved as an archive (client/saved), as a folder.
+struct UnpackOptions {
+  std::filesystem::path archive, out;
+};
+int run_unpack(const UnpackOptions& options);
+
 }  // namespace mortise

@@ -94,6 +94,15 @@ void add_export(ProgramOptions& app, int& code) {
                    "compute the session again for what was examined and skipped");
 }
 
+void add_unpack(ProgramOptions& app, int& code) {
+  auto options = std::make_shared<UnpackOptions>();
+  auto command = app.add_command(
+      "unpack", "a session that was saved on the page, as a folder with its scenario",
+      [options, &code] { code = run_unpack(*options); });
+  command.add("archive", options->archive, "what Save wrote (.zip)").required();
+  command.add("--out", options->out, "a new folder").required();
+}
+
 void add_explain(ProgramOptions& app, int& code) {
   auto options = std::make_shared<ExplainOptions>();
   auto command = app.add_command(
@@ -167,6 +176,7 @@ int run_replay_program(int argc, char** argv) {
   add_info(app, code);
   add_recover(app, code);
   add_export(app, code);
+  add_unpack(app, code);
   add_explain(app, code);
   add_play(app, code);
   add_what_if(app, code);

@@ -243,17 +243,19 @@ std::string html_of(const SessionReport& report) {
   const std::vector<Table>& tables = report.tables;
   const std::string title = "Clashes of " + report.session;
   const Table& clashes = table_named(tables, "clashes");
+  const std::string duration =
+      fmt::format("{:.1f}", std::atof(session_value(tables, "duration_s").c_str()));
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>{0}</title><style>{1}</style></head><body>\n"
       "<h1>{0}</h1>\n<p class=\"dim\">Session {2}, scenario {3}, {4} s; engine {5}.</p>\n",
       escaped(title), report_style(), escaped(session_value(tables, "session")),
-      escaped(session_value(tables, "scenario")), escaped(session_value(tables, "duration_s")),
+      escaped(session_value(tables, "scenario")), duration,
       escaped(session_value(tables, "engine_version")));
   if (const std::string complete = session_value(tables, "complete"); complete != "yes")
     html += "<p><b>Incomplete</b>: " + escaped(complete) + "</p>\n";
   html += cards(clashes);
-  html += timeline(clashes, std::atof(session_value(tables, "duration_s").c_str()));
+  html += timeline(clashes, std::atof(session_value(tables, "end_s").c_str()));
   html += depth_section(report);
   html += clash_section(report);
   html += picture_section(report);

@@ -62,6 +62,9 @@ td a { color: inherit; }
   #clashes svg { width: 60px; } #clashes col:nth-child(1) { width: 4% !important; }
   #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9% !important; }
   #clashes col:nth-child(3) { width: 19% !important; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11% !important; }
+  .card { min-width: 0; padding: .3rem .8rem; } h2 + p { break-after: avoid; }
+  dl, dt, dd { display: inline; margin: 0; } dt::after { content: ": "; } dd:not(:last-child)::after { content: "; "; }
+  summary { display: none; } table th, .wide th { overflow-wrap: normal; } .wide td:first-child { min-width: 7em; }
   figure > svg { width: 100%; } .parts { grid-template-columns: 1fr 1fr; }
   th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
 )";

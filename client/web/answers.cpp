@@ -182,7 +182,14 @@ Answer answer_to_file(GatewayState& state, const std::string& ticket,
 Download download_of(const Request& request) {
   if (request.method() != http::verb::get) return Download::kNone;
   if (request.target() == "/report.html") return Download::kReport;
+  if (request.target() == "/scenario.zip") return Download::kScenario;
   return request.target() == "/session.mcap" ? Download::kLog : Download::kNone;
+}
+
+const std::function<Result<std::string>()>& maker_of(Download download,
+                                                     const GatewayOptions& options) {
+  if (download == Download::kScenario) return options.scenario;
+  return download == Download::kLog ? options.log : options.report;
 }
 
 std::optional<Answer> refusal_of(Download download, GatewayState& state, const Request& request,
@@ -190,7 +197,7 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
   ++state.traffic.requests;
   if (!is_own(state, request, from)) return wrong_host();
   if (auto refused = without_token(state, request, from)) return refused;
-  if (!(download == Download::kLog ? state.options.log : state.options.report))
+  if (!maker_of(download, state.options))
     return sentence(status::not_found, "this gateway knows no log; see --log");
   if (!state.reports.is_busy() && !state.ending) return std::nullopt;
   Answer answer =
@@ -202,12 +209,14 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
 Answer answer_with(Download download, Result<std::string> bytes) {
   if (!bytes) return sentence(status::internal_server_error, "not made: " + bytes.error().text);
   auto body = std::make_shared<const std::string>(std::move(*bytes));
-  if (download == Download::kLog) {
+  if (download != Download::kReport) {
+    const bool is_log = download == Download::kLog;
+    const std::string name = is_log ? "session.mcap" : "scenario.zip";
     return {status::ok,
-            "application/octet-stream",
+            is_log ? "application/octet-stream" : "application/zip",
             std::move(body),
             {{"Cache-Control", "no-store"},
-             {"Content-Disposition", "attachment; filename=\"session.mcap\""}}};
+             {"Content-Disposition", "attachment; filename=\"" + name + "\""}}};
   }
   return {status::ok,
           "text/html; charset=utf-8",

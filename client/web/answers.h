@@ -40,9 +40,11 @@ Answer answer_to_file(GatewayState& state, const std::string& ticket, std::vecto
 
 /// The report takes seconds, so another thread makes it (report_maker.h). refusal_of() gives
 /// the answer when there is none now.
-/// The same holds for the session's log.
-enum class Download : std::uint8_t { kNone = 0, kReport, kLog };
+/// The same holds for the session's log, and for the scenario that it is saved as.
+enum class Download : std::uint8_t { kNone = 0, kReport, kLog, kScenario };
 Download download_of(const Request& request);
+const std::function<Result<std::string>()>& maker_of(Download download,
+                                                     const GatewayOptions& options);
 std::optional<Answer> refusal_of(Download download, GatewayState& state, const Request& request,
                                  const std::string& from);
 Answer answer_with(Download download, Result<std::string> bytes);

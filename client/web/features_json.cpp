@@ -2,13 +2,13 @@
 
 #include <array>
 
+#include "common/messages/names.h"
+
 namespace mortise::web {
 namespace {
 
 constexpr std::array<const char*, kFeatureOriginCount> kOrigins = {"unknown", "declared",
                                                                    "generated", "recognized"};
-constexpr std::array<const char*, kSurfaceKindCount> kKinds = {"unknown", "plane",  "cylinder",
-                                                               "cone",    "sphere", "torus"};
 
 template <std::size_t n, class Enum>
 const char* name_in(const std::array<const char*, n>& names, Enum value) {
@@ -19,7 +19,7 @@ const char* name_in(const std::array<const char*, n>& names, Enum value) {
 Json feature_json(const FeatureInfo& feature) {
   return {{"name", feature.name},
           {"origin", name_in(kOrigins, feature.origin)},
-          {"kind", name_in(kKinds, feature.kind)},
+          {"kind", name_of(feature.kind)},
           {"inward", feature.inward},
           {"point", json_of(feature.point_P)},
           {"axis", json_of(feature.axis_P)},

@@ -24,6 +24,8 @@ struct GatewayOptions {
   std::function<Result<std::string>()> report;
   /// The same of the session's log up to now, from which it can go on.
   std::function<Result<std::string>()> log;
+  /// The same of the session as a scenario with its meshes, in an archive.
+  std::function<Result<std::string>()> scenario;
   double turn_s = 0.004;  ///< time between two turns of the feed while a browser is connected
 };
 

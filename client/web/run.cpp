@@ -4,16 +4,19 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "client/report/report.h"
+#include "client/saved/saved_session.h"
 #include "client/web/addresses.h"
 #include "client/web/live_feed.h"
 #include "client/web/replay_feed.h"
 #include "client/web/step_reader.h"
+#include "common/io/log/log_chain.h"
 #include "common/messages/names.h"
 #include "idl/dds_channel.h"
 
@@ -79,13 +82,43 @@ Result<std::string> bytes_of(const std::string& log) try {
   return fail(Code::kRuntime, std::string("the log cannot be read: ") + e.what());
 }
 
+// A server writes what was decided to its log within a second: what was before this call is read.
+void await_writing(const std::string& log) {
+  constexpr auto kWritten = std::chrono::milliseconds(1500), kTurn = std::chrono::milliseconds(20);
+  const auto after = std::filesystem::file_time_type::clock::now() + kTurn;
+  const auto until = std::chrono::steady_clock::now() + kWritten;
+  std::error_code error;
+  while (std::chrono::steady_clock::now() < until &&
+         std::filesystem::last_write_time(log, error) < after)
+    std::this_thread::sleep_for(kTurn);
+}
+
+Result<std::string> scenario_of(const std::string& log) try {
+  const auto read = read_session(log, {.keep_checkpoints = 2});
+  if (!read) return read.error();
+  const auto saved = saved_session(*read, [](const ReplayedTick&) {});
+  if (!saved) return saved.error();
+  if (!saved->stopped_early.empty()) return fail(Code::kInvalidInput, saved->stopped_early);
+  return zip_of(saved->scenario);
+} catch (const std::exception& e) {  // memory
+  return fail(Code::kRuntime, std::string("the session cannot be saved: ") + e.what());
+}
+
 // Serves a feed until a signal comes.
 int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   GatewayOptions gateway_options = options.gateway;
   if (const std::string& log = options.replay.empty() ? options.log : options.replay;
       !log.empty()) {
     gateway_options.report = [log] { return report_page(log); };
-    gateway_options.log = [log] { return bytes_of(log); };
+    const bool is_written = options.replay.empty();
+    gateway_options.log = [log, is_written] {
+      if (is_written) await_writing(log);
+      return bytes_of(log);
+    };
+    gateway_options.scenario = [log, is_written] {
+      if (is_written) await_writing(log);
+      return scenario_of(log);
+    };
   }
   auto page = PageFiles::open(options.page);
   if (!page) return fail_with(page.error());

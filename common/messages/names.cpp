@@ -40,6 +40,18 @@ std::string_view name_of(FaceShape value) {
   return "?";
 }
 
+std::string_view name_of(SurfaceKind value) {
+  switch (value) {
+    case SurfaceKind::kUnknown: return "unknown";
+    case SurfaceKind::kPlane: return "plane";
+    case SurfaceKind::kCylinder: return "cylinder";
+    case SurfaceKind::kCone: return "cone";
+    case SurfaceKind::kSphere: return "sphere";
+    case SurfaceKind::kTorus: return "torus";
+  }
+  return "?";
+}
+
 std::string_view name_of(SeparationWay value) {
   switch (value) {
     case SeparationWay::kNone: return "none";

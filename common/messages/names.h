@@ -4,6 +4,7 @@
 #include "common/messages/command.h"
 #include "common/messages/constraint.h"
 #include "common/messages/event.h"
+#include "common/messages/feature_info.h"
 #include "common/messages/report.h"
 
 namespace mortise {
@@ -12,6 +13,7 @@ namespace mortise {
 std::string_view name_of(CollisionClass value);
 std::string_view name_of(DeviationGrade value);
 std::string_view name_of(FaceShape value);
+std::string_view name_of(SurfaceKind value);
 std::string_view name_of(SeparationWay value);
 std::string_view name_of(SeparationPath value);
 std::string_view name_of(Refusal value);

@@ -83,6 +83,12 @@ touch -d '1 hour ago' kept/a.mcap
 exits 0 open kept --seconds 3
 grep -q "^ran mortise-server --restore kept/a.mcap --session assembly " said || fail "open a folder: $(cat said)"
 rm -r saved.mcap kept
+# and so does a scenario that was saved as an archive, from the folder that it is unpacked to
+touch saved.zip
+exits 0 open saved.zip --seconds 3
+grep -q "^ran mortise-replay unpack saved.zip --out sessions/saved-[0-9-]* in" said || fail "unpack a saved scenario: $(cat said)"
+grep -q "^ran mortise-server sessions/saved-[0-9-]*/scenario.yaml --session assembly " said || fail "open a saved scenario: $(cat said)"
+rm saved.zip
 
 # packages are made with all that they may contain: STEP and Python as well
 mkdir -p build/release/packages

@@ -34,18 +34,22 @@ TEST_F(GatewayFixture, OffersAReportToWhoHasAToken) {
   EXPECT_EQ(answer.body, "<!DOCTYPE html>report");
   EXPECT_NE(answer.field("Content-Disposition").find("attachment"), std::string::npos);
   EXPECT_EQ(http_request(port, "/report.html", bearer).status, 200);  // and again
+  EXPECT_EQ(http_request(port, "/scenario.zip", bearer).status, 404);
   EXPECT_EQ(http_request(port, "/session.mcap", bearer).status, 404);  // none is known here
 }
 
 TEST_F(GatewayFixture, GivesTheLogToWhoHasAToken) {
   const std::string log("\x89MCAP\0log", 9);
   options.log = [&]() -> Result<std::string> { return log; };
+  options.scenario = []() -> Result<std::string> { return std::string("PK"); };
   serve();
   const Fields bearer = {{"Authorization", "Bearer " + tokens.observer}};
   EXPECT_EQ(http_request(port, "/session.mcap").status, 401);
   const auto answer = http_request(port, "/session.mcap", bearer);
   EXPECT_EQ(answer.status, 200);
   EXPECT_EQ(answer.body, log);
+  EXPECT_EQ(http_request(port, "/scenario.zip").status, 401);
+  EXPECT_EQ(http_request(port, "/scenario.zip", bearer).body, "PK");
   EXPECT_EQ(http_request(port, "/report.html", bearer).status, 404);
 }
 

@@ -9,6 +9,7 @@
 #include "client/tools/inspect/propose.h"
 #include "common/io/scenario/mesh_scenario.h"
 #include "common/io/scenario/open_scene.h"
+#include "common/messages/names.h"
 
 namespace mortise {
 namespace {
@@ -16,11 +17,6 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 // A part of thousands of features is not read line by line; --json has them all.
 constexpr std::size_t kMostRows = 60;
-
-const char* kind_name(SurfaceKind kind) {
-  constexpr const char* kNames[] = {"unknown", "plane", "cylinder", "cone", "sphere", "torus"};
-  return kNames[static_cast<int>(kind)];
-}
 
 InspectedPart inspected(Scenario::PartSpec spec, SolidPtr solid, ImportReport report) {
   InspectedPart part;
@@ -164,7 +160,7 @@ Json inspect_json(const std::vector<InspectedPart>& parts) {
       const Feature& f = part.found.features[i];
       const FeatureMeasure& m = part.found.measures[i];
       p["features"].push_back({{"name", f.name},
-                               {"kind", kind_name(f.surface.kind)},
+                               {"kind", name_of(f.surface.kind)},
                                {"inward", f.surface.inward},
                                {"radius_mm", f.surface.radius_mm},
                                {"tube_radius_mm", f.surface.tube_radius_mm},

@@ -8,21 +8,13 @@
 #include <string>
 #include <tuple>
 
+#include "common/messages/names.h"
+
 namespace mortise {
 
-const char* stem_of(const Surface& s) {
-  switch (s.kind) {
-    case SurfaceKind::kCylinder:
-      return s.inward ? "bore" : "shaft";
-    case SurfaceKind::kCone:
-      return "cone";
-    case SurfaceKind::kSphere:
-      return "sphere";
-    case SurfaceKind::kTorus:
-      return "torus";
-    default:
-      return "plane";
-  }
+std::string stem_of(const Surface& s) {
+  if (s.kind == SurfaceKind::kCylinder) return s.inward ? "bore" : "shaft";
+  return std::string(name_of(s.kind == SurfaceKind::kUnknown ? SurfaceKind::kPlane : s.kind));
 }
 
 namespace {
@@ -61,7 +53,7 @@ void name_features(Recognition& recognition) {
     features.push_back(std::move(recognition.features[i]));
     measures.push_back(recognition.measures[i]);
     const Surface& s = features.back().surface;
-    features.back().name = std::string(stem_of(s)) + "_" + std::to_string(++number[rank_of(s)]);
+    features.back().name = stem_of(s) + "_" + std::to_string(++number[rank_of(s)]);
   }
   recognition.features = std::move(features);
   recognition.measures = std::move(measures);

@@ -5,7 +5,7 @@ namespace mortise {
 
 /// The word that names of features of this surface begin with: "bore", "shaft", "cone", "sphere",
 /// "torus" or "plane".
-const char* stem_of(const Surface& surface);
+std::string stem_of(const Surface& surface);
 
 /// Private to recognition: sorts features and measures into the order that Recognition promises,
 /// and names them.

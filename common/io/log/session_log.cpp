@@ -370,13 +370,12 @@ LogHeader log_header(const LoadedScene& scene, std::string session, std::string 
                    .scenario_name = std::move(scenario_name),
                    .scenario_yaml = std::move(scenario_yaml),
                    .meshes = {},
-                   .mesh_of_part = {},
+                   .mesh_of_part = scene.mesh_of_part,
                    .imports = scene.imports,
                    .assembly = scene.assembly};
   std::map<std::string, const TriangleMesh*> meshes;
-  // Parts of the scenario; what was added since is in the state that the log begins with.
-  for (std::size_t i = 0; i < scene.imports.size(); ++i)
-    header.mesh_of_part.push_back(scene.world.parts[i].solid->hash());
+  // Parts of the scenario as they began; what was added or replaced since is in the state that the
+  // log begins with.
   for (const Part& part : scene.world.parts)
     meshes.emplace(part.solid->hash(), &part.solid->mesh());
   if (scene.world.shapes)

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/world/standing.h"
 
@@ -29,24 +30,6 @@ YAML::Node list_of(std::initializer_list<double> values) {
 }
 
 YAML::Node vector_of(const Vec3& v) { return list_of({v.x(), v.y(), v.z()}); }
-
-const char* kind_word(SurfaceKind kind) {
-  switch (kind) {
-    case SurfaceKind::kPlane:
-      return "plane";
-    case SurfaceKind::kCylinder:
-      return "cylinder";
-    case SurfaceKind::kCone:
-      return "cone";
-    case SurfaceKind::kSphere:
-      return "sphere";
-    case SurfaceKind::kTorus:
-      return "torus";
-    case SurfaceKind::kUnknown:
-      break;
-  }
-  return "";
-}
 
 // Is it a class or a code ("H7", "Ø20 H7/g6"), and not a tolerance?
 bool names_class(const YAML::Node& node) {
@@ -187,7 +170,7 @@ class Writer {
       if (node.IsMap()) node.remove(key);
     const Surface& s = feature.surface;
     const double unit = scenario_.unit_mm;
-    node["kind"] = kind_word(s.kind);
+    node["kind"] = std::string(name_of(s.kind));
     node["point"] = vector_of(s.point / unit);
     if (s.kind != SurfaceKind::kSphere) node["axis"] = vector_of(s.axis);
     if (s.radius_mm > 0.0) node["radius"] = digits(s.radius_mm / unit);

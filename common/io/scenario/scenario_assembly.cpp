@@ -1,22 +1,16 @@
 #include "common/io/scenario/scenario_assembly.h"
 
-#include <array>
+#include <cstdint>
 #include <utility>
 
 #include "common/io/scenario/general_tolerance.h"
 #include "common/io/scenario/scenario_tolerance.h"
+#include "common/messages/names.h"
 
 namespace mortise {
 namespace {
 
 constexpr double kLeastLength = 1e-9;  // of a direction
-
-constexpr std::array<std::pair<std::string_view, SurfaceKind>, 5> kKinds = {
-    {{"plane", SurfaceKind::kPlane},
-     {"cylinder", SurfaceKind::kCylinder},
-     {"cone", SurfaceKind::kCone},
-     {"sphere", SurfaceKind::kSphere},
-     {"torus", SurfaceKind::kTorus}}};
 
 std::optional<Scenario::FaceAddress> read_face(YamlContext& context, const YAML::Node& node) {
   const YamlMap map(context, node, "face",
@@ -24,8 +18,8 @@ std::optional<Scenario::FaceAddress> read_face(YamlContext& context, const YAML:
   if (!map.usable()) return std::nullopt;
   Scenario::FaceAddress face;
   const std::string kind = map.text("kind").value_or("");
-  for (const auto& [name, value] : kKinds)
-    if (kind == name) face.kind = value;
+  for (std::uint8_t k = 1; k < kSurfaceKindCount; ++k)
+    if (kind == name_of(SurfaceKind{k})) face.kind = SurfaceKind{k};
   if (face.kind == SurfaceKind::kUnknown) {
     map.error("kind: write plane, cylinder, cone, sphere or torus");
     return std::nullopt;

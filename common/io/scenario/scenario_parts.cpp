@@ -13,6 +13,7 @@
 #include "common/generators/generators.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/math/rotation.h"
+#include "common/messages/names.h"
 
 namespace mortise {
 namespace {
@@ -185,18 +186,17 @@ Pose read_pose(YamlContext& context, const YAML::Node& node) {
 constexpr const char* kBadName = "a name is one word without '.' and '*', short and printable";
 
 struct KindKeys {
-  const char* name;
   SurfaceKind kind;
   std::vector<std::string_view> needs;  // a '|' separates ways to say the same
 };
 
 const std::vector<KindKeys>& surface_kinds() {
   static const std::vector<KindKeys> kinds{
-      {"plane", SurfaceKind::kPlane, {"point", "axis"}},
-      {"cylinder", SurfaceKind::kCylinder, {"point", "axis", "radius|diameter"}},
-      {"cone", SurfaceKind::kCone, {"point", "axis", "half_angle_deg"}},
-      {"sphere", SurfaceKind::kSphere, {"point", "radius|diameter"}},
-      {"torus", SurfaceKind::kTorus, {"point", "axis", "radius|diameter", "tube_radius"}}};
+      {SurfaceKind::kPlane, {"point", "axis"}},
+      {SurfaceKind::kCylinder, {"point", "axis", "radius|diameter"}},
+      {SurfaceKind::kCone, {"point", "axis", "half_angle_deg"}},
+      {SurfaceKind::kSphere, {"point", "radius|diameter"}},
+      {SurfaceKind::kTorus, {"point", "axis", "radius|diameter", "tube_radius"}}};
   return kinds;
 }
 
@@ -217,7 +217,7 @@ void read_surface(const YamlMap& map, Surface& surface) {
   if (!kind) return;
   const auto& kinds = surface_kinds();
   const auto found =
-      std::find_if(kinds.begin(), kinds.end(), [&](auto& k) { return *kind == k.name; });
+      std::find_if(kinds.begin(), kinds.end(), [&](auto& k) { return *kind == name_of(k.kind); });
   if (found == kinds.end()) {
     map.error("kind", "'" + *kind + "' is not known; write plane, cylinder, cone, sphere or torus");
     return;

@@ -253,6 +253,7 @@ class SceneLoader {
     part.notes = notes_of(kind->report);
     part.kind = static_cast<std::uint32_t>(known->second);
     scene_.imports.push_back(kind->report);
+    scene_.mesh_of_part.push_back(kind->solid->hash());
     resolve_for_report(part);
     scene_.world.parts.push_back(std::move(part));
     stated_.push_back(kind->stated);

@@ -15,8 +15,9 @@ namespace mortise {
 /// and checked, tolerances and fits resolved to offsets.
 struct LoadedScene {
   World world;
-  std::vector<ImportReport> imports;  ///< one per part spec
-  std::vector<Finding> findings;      ///< errors: the scene must not be played
+  std::vector<ImportReport> imports;      ///< one per part spec
+  std::vector<std::string> mesh_of_part;  ///< hash of the mesh with which each part spec begins
+  std::vector<Finding> findings;          ///< errors: the scene must not be played
   struct ResolvedTolerance {
     std::string part, feature, source;
     Interval offset_mm;

@@ -9,6 +9,7 @@
 #include "common/base/constants.h"
 #include "common/math/least_squares.h"
 #include "common/math/rotation.h"
+#include "common/messages/names.h"
 
 namespace mortise {
 namespace {
@@ -18,22 +19,8 @@ constexpr int kMostRows = 4 * static_cast<int>(kMostRelations);
 // Newton's steps from a near start are few; after so many the best of them counts.
 constexpr int kMostSteps = 40;
 
-const char* name_of_kind(SurfaceKind kind) {
-  switch (kind) {
-    case SurfaceKind::kPlane:
-      return "a plane";
-    case SurfaceKind::kCylinder:
-      return "a cylinder";
-    case SurfaceKind::kCone:
-      return "a cone";
-    case SurfaceKind::kSphere:
-      return "a sphere";
-    case SurfaceKind::kTorus:
-      return "a torus";
-    case SurfaceKind::kUnknown:
-      break;
-  }
-  return "an unknown surface";
+std::string name_of_kind(SurfaceKind kind) {
+  return (kind == SurfaceKind::kUnknown ? "a surface of kind " : "a ") + std::string(name_of(kind));
 }
 
 Element element_of(const Surface& surface) {

@@ -95,13 +95,22 @@ bool is_left(CollisionClass told, const Verdict& now) {
   return now.margin_mm >= h;
 }
 
+// Was what is stated of the faces another one when the clash was told last?
+bool thresholds_moved(const Verdict& told, const Verdict& now) {
+  const double h = hysteresis_mm(now);
+  return std::abs(now.fake_below_mm - told.fake_below_mm) > h ||
+         std::abs(now.real_above_mm - told.real_above_mm) > h;
+}
+
 // Worth an event? A worse class always, a better one when it is beyond the threshold for certain or
-// judged anew by decision (nothing trembles there), a growing depth now and then.
+// judged anew by decision (nothing trembles there), other thresholds by decision, a growing depth
+// now and then.
 bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick, bool anew) {
   if (clash.revised) return true;
   const CollisionClass told = clash.last.verdict.collision_class;
   if (verdict.collision_class > told) return true;
   if (anew && verdict.collision_class < told) return true;
+  if (anew && thresholds_moved(clash.last.verdict, verdict)) return true;
   if (verdict.collision_class < told) return is_left(told, verdict);
   if (tick < clash.last.tick + kClashQuietTicks) return false;
   const double told_mm = clash.last.worst_delta_mm.lo;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 #include <random>
+#include <regex>
 
 #include "client/picture/detail_view.h"
 #include "client/picture/draw.h"
@@ -170,6 +171,27 @@ TEST_F(FitsPicture, IsWrittenAsSvgAndPng) {
   ASSERT_TRUE(draw_regions(world, *report_, {2, 6}, file("b.png")));
   EXPECT_EQ(head(file("b.png")).substr(1, 3), "PNG");
   for (const char* name : {"a.svg", "b.png"}) std::filesystem::remove(file(name));
+}
+
+// A witness near the edge of what is drawn: its words are moved into the picture.
+TEST_F(FitsPicture, WordsAtTheEdgeAreNotCutOff) {
+  const Box2 box{60.0, 10.0, 500.0, 300.0};
+  Verdict verdict;
+  for (const double share : {0.01, 0.5, 0.99}) {
+    DetailView view = view_of("peg_p6");
+    ASSERT_TRUE(view.witness);
+    view.witness->x() = view.s_mm.lo + share * view.s_mm.width();
+    Canvas canvas(Canvas::Format::kSvg, 700.0, 400.0, 1.0);
+    draw_detail(canvas, box, view, verdict);
+    const auto svg = canvas.finish();
+    ASSERT_TRUE(svg);
+    std::smatch words;
+    ASSERT_TRUE(std::regex_search(
+        *svg, words,
+        std::regex("<text x=\"([-0-9.]+)\" y=\"[-0-9.]+\" textLength=\"([0-9.]+)\"[^>]*>inside")));
+    EXPECT_GE(std::stod(words[1]), box.x);
+    EXPECT_LE(std::stod(words[1]) + std::stod(words[2]), box.right());
+  }
 }
 
 // The arrow of the way out: a way that turns takes the deciding point elsewhere than its shift

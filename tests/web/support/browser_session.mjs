@@ -10,9 +10,9 @@ export class BrowserSession extends LiveSession {
     after(() => this.end());
   }
 
-  /** Opens the gateway and a browser. @param {string} [log] a recorded session; else the served one @returns {Promise<BrowserSession>} */
-  async show(log) {
-    this.addresses = await this.open(log);
+  /** Opens the gateway and a browser. @param {string} [log] a recorded session; else the served one @param {string[]} [more] for the gateway @returns {Promise<BrowserSession>} */
+  async show(log, more = []) {
+    this.addresses = await this.open(log, '0', more);
     this.browser = await openBrowser();
     return this;
   }

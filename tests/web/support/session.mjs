@@ -41,7 +41,7 @@ export class LiveSession {
 
   /** @param {string} scenario a file of scenarios/, or YAML @param {string[]} [more] */
   async serve(scenario, more = []) {
-    const file = scenario.includes('\n') ? join(this.folder, 'scenario.yaml') : join(root, 'scenarios', scenario);
+    const file = scenario.includes('\n') ? join(this.folder, 'scenario.yaml') : resolve(root, 'scenarios', scenario);
     if (scenario.includes('\n')) writeFileSync(file, scenario);
     this.server = await this.start('server', [file, '--session', this.name, '--domain', `${this.domain}`, ...more]);
   }
@@ -54,11 +54,11 @@ export class LiveSession {
 
   /**
    * @param {string} [log] a recorded session, from the root of the project; else the running one
-   * @param {string} [port] @returns the two addresses; their tokens stay the same
+   * @param {string} [port] @param {string[]} [more] @returns the two addresses; their tokens stay the same
    */
-  async open(log, port = '0') {
+  async open(log, port = '0', more = []) {
     const from = log ? ['--replay', join(root, log)] : ['--session', this.name, '--domain', `${this.domain}`];
-    const args = [...from, '--http-port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens'), '--addresses', '-'];
+    const args = [...from, '--http-port', port, '--page', join(root, 'client/web/page'), '--tokens', join(this.folder, 'tokens'), '--addresses', '-', ...more];
     this.gateway = await this.start('web', args, (text) => {
       const designer = /^designer (http\S+)$/m.exec(text);
       const observer = /^observer (http\S+)$/m.exec(text);

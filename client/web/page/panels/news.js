@@ -69,7 +69,7 @@ export function makeNews({ session, say }) {
   let replaced = [];
   /** Open at the last pulse: with a replaced part the scene as it is then may come before the decision. @type {Array<{clash: number, a: number, b: number}>} */
   let open = [];
-  const clashesOf = (/** @type {number} */ part, among = session.openClashes()) => new Set(among.filter(({ a, b }) => a === part || b === part).map(({ clash }) => clash));
+  const clashesOf = (/** @type {number} */ part, /** @type {typeof open} */ among = session.openClashes()) => new Set(among.filter(({ a, b }) => a === part || b === part).map(({ clash }) => clash));
 
   /** @param {number} part */
   function follow(part) {

@@ -1,4 +1,4 @@
-// What is kept of a session as a file: its report as one page, and the session itself, from which `mortise open` goes on.
+// What is kept of a session as a file: its report as one page, and the session itself, as a scenario or with all that was done, from which `mortise open` goes on.
 import { byId } from './dom.js';
 
 /** @param {import('../desk.js').Desk} desk */
@@ -10,7 +10,7 @@ export function makeReport({ session, connection, say }) {
     save.hidden = !session.hasLog;
   });
 
-  /** @param {HTMLButtonElement} button @param {'report.html' | 'session.mcap'} file @param {string} name @param {string} done */
+  /** @param {HTMLButtonElement} button @param {'report.html' | 'session.mcap' | 'scenario.zip'} file @param {string} name @param {string} done */
   async function download(button, file, name, done) {
     button.disabled = true;
     try {
@@ -30,8 +30,18 @@ export function makeReport({ session, connection, say }) {
     say('The report is being made');
     download(report, 'report.html', `${session.name || 'session'} report.html`, 'The report is downloaded');
   };
+  const dialog = /** @type {HTMLDialogElement} */ (byId('save_as'));
   save.onclick = () => {
-    const name = `${session.name || 'session'}.mcap`;
-    download(save, 'session.mcap', name, `Saved: mortise open ${name} goes on from here`);
+    dialog.returnValue = '';
+    dialog.showModal();
   };
+  byId('save_cancel').onclick = () => dialog.close('');
+  dialog.addEventListener('close', () => {
+    const asked = { scenario: /** @type {const} */ (['scenario.zip', 'zip']), log: /** @type {const} */ (['session.mcap', 'mcap']) }[dialog.returnValue];
+    if (!asked) return;
+    const [file, ending] = asked;
+    const name = `${session.name || 'session'}.${ending}`;
+    say('The session is being saved');
+    download(save, file, name, `Saved: mortise open ${name} goes on from here`);
+  });
 }

@@ -123,7 +123,7 @@ export class Connection {
     return true;
   }
 
-  /** What the gateway makes of the session's log. @param {'report.html' | 'session.mcap'} file @returns {Promise<Blob>} */
+  /** What the gateway makes of the session's log. @param {'report.html' | 'session.mcap' | 'scenario.zip'} file @returns {Promise<Blob>} */
   async download(file) {
     const answer = await fetch(file, { headers: { Authorization: `Bearer ${this.token}` } });
     if (!answer.ok) throw new Error((await answer.text()).trim() || `no ${file}: ${answer.status}`);

@@ -1,0 +1,137 @@
+// A saved session as an archive: what Save writes is taken back whole, and of strangers' archives
+// nothing but such files, to no other place.
+#include <gtest/gtest.h>
+#include <zip.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <memory>
+
+#include "client/saved/saved_session.h"
+#include "common/generators/generators.h"
+#include "tests/support/programs.h"
+#include "tests/support/test_folder.h"
+
+namespace mortise {
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::map<std::string, std::string>;
+
+SavedScenario sample() {
+  const auto made = generate("dowel", {{"diameter_mm", 20.0}, {"length_mm", 40}, {"facets", 48}});
+  EXPECT_TRUE(made) << made.error().text;
+  return {.yaml = "name: sample\n",
+          .meshes = {{"meshes/peg.obj", std::make_shared<const Solid>(made->mesh)}},
+          .left_out = {}};
+}
+
+Files files_in(const fs::path& folder) {
+  Files files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    files[entry.path().lexically_relative(folder).generic_string()] = {
+        std::istreambuf_iterator<char>(in), {}};
+  }
+  return files;
+}
+
+class SavedArchive : public ::testing::Test {
+ protected:
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  fs::path archive_of(const Files& files) const {
+    const fs::path file = path("given.zip");
+    fs::remove(file);
+    zip_t* zip = zip_open(file.c_str(), ZIP_CREATE | ZIP_EXCL, nullptr);
+    EXPECT_NE(zip, nullptr);
+    for (const auto& [name, text] : files) {
+      zip_source_t* source = zip_source_buffer(zip, text.data(), text.size(), 0);
+      EXPECT_GE(zip_file_add(zip, name.c_str(), source, ZIP_FL_ENC_UTF_8), 0) << name;
+    }
+    EXPECT_EQ(zip_close(zip), 0);
+    return file;
+  }
+  /// Refused in one line that says this; nothing is left of it, here or elsewhere.
+  void expect_refused(const fs::path& archive, const std::string& says, SavedLimits limits = {}) {
+    SCOPED_TRACE(says);
+    const Files before = files_in(folder_.path());
+    const Status status = unpack(archive, path("out"), limits);
+    ASSERT_FALSE(status);
+    const std::string& text = status.error().text;
+    EXPECT_NE(text.find(says), std::string::npos) << text;
+    EXPECT_NE(text.find("give an archive that Save wrote"), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    EXPECT_EQ(files_in(folder_.path()), before);
+    EXPECT_FALSE(fs::exists(path("out")));
+  }
+
+  test::TestFolder folder_;
+};
+
+TEST_F(SavedArchive, HoldsTheFilesOfTheFolder) {
+  const SavedScenario saved = sample();
+  ASSERT_TRUE(write_folder(saved, path("folder")));
+  const auto bytes = zip_of(saved);
+  ASSERT_TRUE(bytes) << bytes.error().text;
+  EXPECT_LT(bytes->size(), fs::file_size(path("folder") / "meshes" / "peg.obj"));
+  folder_.write("saved.zip", *bytes);
+  const Status done = unpack(path("saved.zip"), path("out"));
+  ASSERT_TRUE(done) << done.error().text;
+  EXPECT_EQ(files_in(path("out")), files_in(path("folder")));
+  EXPECT_EQ(files_in(path("out")).size(), 2U);
+}
+
+TEST_F(SavedArchive, NothingGoesElsewhere) {
+  for (const char* name :
+       {"../evil.obj", "/tmp/evil.obj", "meshes/../../evil.obj", "meshes/sub/evil.obj",
+        "meshes/.obj", "meshes/a.b.obj", "evil.sh", "meshes\\evil.obj", "Scenario.yaml"})
+    expect_refused(archive_of({{"scenario.yaml", "name: x\n"}, {name, "v 0 0 0\n"}}),
+                   "which no saved session has");
+}
+
+TEST_F(SavedArchive, WhatIsNoSavedSessionIsRefused) {
+  folder_.write("given.zip", "no archive");
+  expect_refused(path("given.zip"), "is no archive that can be read");
+  expect_refused(path("nowhere.zip"), "is no archive that can be read");
+  expect_refused(archive_of({{"meshes/peg.obj", "v 0 0 0\n"}}), "holds no scenario.yaml");
+  // Damaged where it lies packed.
+  std::string bytes = *zip_of(sample());
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x5a);
+  folder_.write("given.zip", bytes);
+  expect_refused(path("given.zip"), "is damaged");
+}
+
+TEST_F(SavedArchive, WhatUnpacksToMoreThanIsTakenIsRefused) {
+  const std::string large(std::size_t{1} << 20, 'x');
+  const fs::path bomb = archive_of({{"scenario.yaml", "name: x\n"}, {"meshes/x.obj", large}});
+  EXPECT_LT(fs::file_size(bomb), large.size() / 100);
+  expect_refused(bomb, "unpacks to more than 1000000 bytes", {.files = 10, .bytes = 1'000'000});
+  expect_refused(bomb, "holds 2 files, more than 1", {.files = 1, .bytes = 10'000'000});
+}
+
+TEST_F(SavedArchive, AFolderThatHoldsSomethingIsLeftAsItIs) {
+  fs::create_directories(path("out"));
+  folder_.write("out/mine.txt", "x");
+  const Status status = unpack(archive_of({{"scenario.yaml", "name: x\n"}}), path("out"));
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().text.find("is not empty; name a new folder"), std::string::npos);
+  EXPECT_EQ(files_in(path("out")).size(), 1U);
+}
+
+TEST_F(SavedArchive, TheProgramSaysWhatIsWrong) {
+  folder_.write("saved.zip", *zip_of(sample()));
+  const auto run = [&](const std::string& words) {
+    return test::run("mortise-replay", words, folder_.path());
+  };
+  EXPECT_EQ(run("unpack saved.zip --out kept").exit_code, 0);
+  EXPECT_EQ(files_in(path("kept")).size(), 2U);
+  const test::Outcome again = run("unpack saved.zip --out kept");
+  EXPECT_EQ(again.exit_code, 3);
+  EXPECT_NE(again.err.find("is not empty"), std::string::npos) << again.err;
+}
+
+}  // namespace
+}  // namespace mortise
