@@ -133,6 +133,16 @@ AxisAngles angles_of(const TriangleMesh& mesh, const Surface& s,
 
 }  // namespace
 
+double least_radius_mm(const Surface& s, const Vec3& a, const Vec3& b, const Vec3& c) {
+  // A torus bends both ways at once.
+  constexpr double kOfTube = 0.5;
+  if (s.kind == SurfaceKind::kTorus)
+    return kOfTube * std::min(s.tube_radius_mm, s.radius_mm - s.tube_radius_mm);
+  if (s.kind != SurfaceKind::kCone) return s.radius_mm;
+  return std::min(
+      {distance_from_axis_mm(s, a), distance_from_axis_mm(s, b), distance_from_axis_mm(s, c)});
+}
+
 double distance_from_axis_mm(const Surface& s, const Vec3& x) {
   const Vec3 d = x - s.point;
   return (d - d.dot(s.axis) * s.axis).norm();

@@ -37,6 +37,10 @@ Interval extent_along_mm(const TriangleMesh& mesh, const Surface& surface,
 double chord_error_mm(const TriangleMesh& mesh, const Surface& surface,
                       std::span<const std::uint32_t> triangles);
 
+/// Normals of the surface at two of these corners, which lie on it, differ by no more than normals
+/// of a ball of this radius at corners as far from each other. mm; not for planes.
+double least_radius_mm(const Surface& surface, const Vec3& a, const Vec3& b, const Vec3& c);
+
 double distance_from_axis_mm(const Surface& surface, const Vec3& x);
 
 /// Distance of a triangle from the surface at its middles, where it is largest or nearly so.

@@ -16,7 +16,7 @@ namespace {
 constexpr double kLooksAlong = 0.906;
 // A facet spans no more of the surface than this (50 degrees: the diagonal of a quad of 30 by 30).
 constexpr double kSpanCosine = 0.643;
-// A chord of this share of a radius, squared, spans 41 degrees.
+// A chord of this share of the least radius, squared, spans 41 degrees.
 constexpr double kNarrow = 0.5;
 // Over an edge as sharp as this (50 degrees) a ball still goes on: that all corners beyond lie on
 // it is no chance. The cap at the pole meets its neighbours more sharply than other rows meet.
@@ -27,8 +27,11 @@ constexpr double kDeepFacet = 9.0;
 // from its neighbours in shape.
 constexpr double kShareOfArcHeight = 2e-3;
 // Corners that a region needs: those that fix its surface, and as many more to bear it out.
-constexpr std::size_t kCornersOfCylinder = 8, kCornersOfCone = 10, kCornersOfSphere = 9,
-                      kCornersOfTorus = 15;
+constexpr std::size_t corners_needed(SurfaceKind kind) {
+  if (kind == SurfaceKind::kTorus) return 15;
+  if (kind == SurfaceKind::kSphere) return 9;
+  return kind == SurfaceKind::kCone ? 10 : 8;
+}
 // With fewer circles of corners than this a torus is told from unlike chamfers only by equal steps.
 constexpr std::size_t kLeastMeridianCircles = 5;
 constexpr double kEqualSteps = 0.02;
@@ -37,6 +40,8 @@ constexpr std::size_t kCornersOnTheWay = 1000, kAllCorners = 100'000;
 // A guess this many times as far off as corners may be from all that an earlier one reached would
 // reach the same: a fit on the way brings it there.
 constexpr double kSameGrowth = 30.0;
+// A ball whose corners may be off by less than this part of what a flat one allowed is another.
+constexpr double kMuchNearer = 0.25;
 // Corners kept of what a growth reached.
 constexpr std::size_t kCornersKept = 24;
 // A part of the mesh radius by which corners are off for rounding of doubles.
@@ -77,6 +82,22 @@ bool shows_enough_of_torus(const Region& region, const RegionMeasure& m) {
 }
 
 }  // namespace
+
+void FlatBalls::keep(const Region& ball, std::size_t triangles_of_mesh) {
+  of_triangle_.resize(triangles_of_mesh, 0);
+  balls_.push_back({ball.share, ball.allowed_mm});
+  for (const std::uint32_t t : ball.triangles)
+    of_triangle_[t] = static_cast<std::uint32_t>(balls_.size());
+}
+
+bool FlatBalls::hold(std::span<const std::uint32_t> seeds, const Region& start) const {
+  if (start.surface.kind != SurfaceKind::kSphere || balls_.empty()) return false;
+  const std::uint32_t id = of_triangle_[seeds.front()];
+  return id != 0 && balls_[id - 1].share == start.share &&
+         start.allowed_mm >= kMuchNearer * balls_[id - 1].allowed_mm &&
+         std::all_of(seeds.begin(), seeds.end(),
+                     [&](std::uint32_t t) { return of_triangle_[t] == id; });
+}
 
 RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm)
     : mesh_(solid.mesh()),
@@ -137,10 +158,8 @@ bool RegionGrower::belongs(std::uint32_t t, const SurfaceAt& at, double allowed_
     // Where edges are shorter than the radius, normals turn by less than 50 degrees along them.
     const double longest2 =
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-    const double radius = surface.radius_mm - allowed_mm;
-    const bool narrow =
-        (surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kSphere) &&
-        radius > 0.0 && longest2 < kNarrow * radius * radius;
+    const double radius = least_radius_mm(surface, a, b, c) - allowed_mm;
+    const bool narrow = radius > 0.0 && longest2 < kNarrow * radius * radius;
     std::array<Vec3, 3> outward;
     for (int k = 0; k < 3 && !narrow; ++k) {
       const Vec3& x = mesh_.corner(t, k);
@@ -167,9 +186,9 @@ void RegionGrower::spread(const Surface& surface, double allowed_mm, std::size_t
     for (std::size_t k = 0; k < 3; ++k) {
       if ((edges_[t][k] & way) == 0) continue;
       const std::uint32_t other = topology_.neighbor[t][k];
-      if (triangle_mark_[other] == mark_ || !belongs(other, at, allowed_mm)) continue;
-      triangle_mark_[other] = mark_;
-      triangles.push_back(other);
+      if (triangle_mark_[other] == mark_) continue;
+      triangle_mark_[other] = mark_;  // taken or refused: asked once
+      if (belongs(other, at, allowed_mm)) triangles.push_back(other);
     }
   }
 }
@@ -189,21 +208,18 @@ bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::
 
 bool RegionGrower::fit_all(Region& region) {
   const std::vector<Vec3> corners = points_of(region.triangles);
-  if (!refit(region, corners, kAllCorners)) return false;
+  if (corners.size() < corners_needed(region.surface.kind) || !refit(region, corners, kAllCorners))
+    return false;
   region.residual_mm = residual_of(region.surface, corners);
   return true;
 }
 
-bool RegionGrower::shows_enough(const Region& region) {
+bool RegionGrower::shows_enough(const Region& region) const {
   const Surface& s = region.surface;
-  const std::size_t corners = points_of(region.triangles).size();
-  if (s.kind == SurfaceKind::kSphere)
-    return corners >= kCornersOfSphere && shows_enough_of_sphere(region);
+  if (s.kind == SurfaceKind::kSphere) return shows_enough_of_sphere(region);
   const RegionMeasure m = measure_region(mesh_, s, region.triangles);
-  if (s.kind == SurfaceKind::kTorus)
-    return corners >= kCornersOfTorus && shows_enough_of_torus(region, m);
-  if (corners < (s.kind == SurfaceKind::kCone ? kCornersOfCone : kCornersOfCylinder) || m.steps < 3)
-    return false;
+  if (s.kind == SurfaceKind::kTorus) return shows_enough_of_torus(region, m);
+  if (m.steps < 3) return false;
   const double radius = size_mm(s, mesh_, region.triangles);
   return region.residual_mm <= kShareOfArcHeight * arc_height(radius, m.arc_rad);
 }
@@ -252,19 +268,24 @@ bool RegionGrower::starts(Region& region, std::span<const std::uint32_t> seeds) 
 }
 
 // What does not belong to the settled surface goes, until it is settled.
-std::optional<Region> RegionGrower::settled(Region region, std::size_t least) {
+bool RegionGrower::settles(Region& region, std::size_t least) {
   constexpr int kRounds = 4;  // what goes on losing facets is no surface
   for (int round = 0; round < kRounds; ++round) {
     drop_deep_facets(mesh_, region);
     const SurfaceAt at(region.surface);
     std::erase_if(region.triangles,
                   [&](std::uint32_t t) { return !belongs(t, at, region.allowed_mm); });
-    if (region.triangles.size() < least || !fit_all(region)) return std::nullopt;
+    if (region.triangles.size() < least || !fit_all(region)) return false;
     if (region.residual_mm <= region.allowed_mm) break;
   }
-  if (region.residual_mm > region.allowed_mm || !shows_enough(region)) return std::nullopt;
+  if (region.residual_mm > region.allowed_mm) return false;
+  if (!shows_enough(region)) {
+    if (region.surface.kind == SurfaceKind::kSphere)
+      flat_balls_.keep(region, mesh_.triangles.size());
+    return false;
+  }
   std::sort(region.triangles.begin(), region.triangles.end());
-  return region;
+  return true;
 }
 
 // The attempt that reached all seeds, if the guess runs through all of what that reached: it would
@@ -308,17 +329,21 @@ std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const s
   region.share = share;
   region.triangles.assign(seeds.begin(), seeds.end());
   region.allowed_mm = share * size_mm(guess, mesh_, seeds) + rounding_mm_;
+  if (flat_balls_.hold(seeds, region)) return std::nullopt;
+  const Attempt* before = grown_before(guess, seeds, region);
+  if (before && !before->outcome) return std::nullopt;
   if (!starts(region, seeds)) return std::nullopt;
-  if (const Attempt* before = grown_before(guess, seeds, region)) return before->outcome;
+  if (before) return before->outcome;
   // Outward in doubling steps, a fit after each.
   for (std::size_t limit = 2 * seeds.size();; limit *= 2) {
-    const std::size_t before = region.triangles.size();
+    const std::size_t size = region.triangles.size();
     spread(region.surface, region.allowed_mm, limit, region.triangles);
-    if (region.triangles.size() == before) break;
+    if (region.triangles.size() == size) break;
     if (!refit(region, points_of(region.triangles), kCornersOnTheWay)) return std::nullopt;
   }
   const std::vector<std::uint32_t> reached = region.triangles;
-  std::optional<Region> outcome = settled(std::move(region), seeds.size());
+  std::optional<Region> outcome;
+  if (settles(region, seeds.size())) outcome = std::move(region);
   keep(guess.kind, share, reached, outcome);
   return outcome;
 }

@@ -19,6 +19,22 @@ struct Region {
   double share = 0.0;       ///< of the size, without rounding
 };
 
+/// Balls that hold and are too flat to be told from a plane.
+class FlatBalls {
+ public:
+  void keep(const Region& ball, std::size_t triangles_of_mesh);
+  /// Do all seeds lie on one of them? Then another ball through them, of which this is the start,
+  /// is too flat as well, unless its corners are much nearer to it.
+  bool hold(std::span<const std::uint32_t> seeds, const Region& start) const;
+
+ private:
+  struct Ball {
+    double share = 0.0, allowed_mm = 0.0;
+  };
+  std::vector<Ball> balls_;
+  std::vector<std::uint32_t> of_triangle_;  // the last one, counted from one
+};
+
 /// Grows regions over smooth edges. Not thread safe: one per thread.
 class RegionGrower {
  public:
@@ -64,10 +80,10 @@ class RegionGrower {
   void keep(SurfaceKind kind, double share, std::span<const std::uint32_t> reached,
             const std::optional<Region>& outcome);
   bool starts(Region& region, std::span<const std::uint32_t> seeds);
-  std::optional<Region> settled(Region region, std::size_t least);
+  bool settles(Region& region, std::size_t least);
   bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
   bool fit_all(Region& region);
-  bool shows_enough(const Region& region);
+  bool shows_enough(const Region& region) const;
   bool shows_enough_of_sphere(const Region& region) const;
 
   const TriangleMesh& mesh_;
@@ -80,6 +96,7 @@ class RegionGrower {
   std::vector<Attempt> attempts_;
   // By kind of surface and triangle: the last attempt that reached it, counted from one.
   std::array<std::vector<std::uint32_t>, 6> attempt_of_;
+  FlatBalls flat_balls_;
 };
 
 }  // namespace mortise

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/geometry/recognition/surface_guess.h"
 #include "common/geometry/surface_at.h"
 
 namespace mortise {
@@ -17,6 +18,8 @@ constexpr int kIterations = 25;
 constexpr int kPatience = 3;
 // A root mean square residual that only rounding leaves, as a share of the extent.
 constexpr double kExact = 1e-15;
+// Damped by no more than this a step goes nearly all the way.
+constexpr double kHardlyDamped = 1e-3;
 // A radius this many times the extent of the points says that they are flat.
 constexpr double kFlatRadius = 1e4;
 // Below this half angle a cone is a cylinder, and above its complement a plane. rad
@@ -272,7 +275,8 @@ Surface surface_of(SurfaceKind kind, const Model& m, const Scaled& frame, bool i
 // Takes the largest step that lowers the cost, damping it as far as needed. Gives its length, or
 // nothing when there is none.
 template <SurfaceKind kind>
-std::optional<double> take_step(const Scaled& frame, Model& m, Sums<kind>& sums, double& damping) {
+std::optional<double> take_step(const Scaled& frame, Model& m, Sums<kind>& sums, double& damping,
+                                double worth_going_on) {
   // Each try damps more; what six do not lower is at its least, to rounding.
   constexpr int kTries = 6;
   for (int tries = 0; tries < kTries; ++tries) {
@@ -281,6 +285,9 @@ std::optional<double> take_step(const Scaled& frame, Model& m, Sums<kind>& sums,
       damped(k, k) = sums.normal(k, k) * (1.0 + damping) + 1e-300;
     const Step<kind> step = -solved(damped, sums.gradient);
     if (!step.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    // What the least squares of the slopes promise to win.
+    if (damping <= kHardlyDamped && -step.dot(sums.gradient) < worth_going_on * sums.cost)
+      return std::nullopt;
     const Model next = moved<kind>(m, step);
     const Sums<kind> then = sums_of<kind>(next, frame, sums.cost);
     if (then.cost < sums.cost) {
@@ -296,9 +303,18 @@ std::optional<double> take_step(const Scaled& frame, Model& m, Sums<kind>& sums,
 
 template <SurfaceKind kind>
 std::optional<Surface> fitted(const Surface& start, const Scaled& frame, double worth_going_on,
-                              double hopeless_mm) {
+                              double hopeless_mm,
+                              const std::optional<Surface>& nearer_start = std::nullopt) {
   Model m = model_of(start, frame);
   Sums<kind> sums = sums_of<kind>(m, frame, std::numeric_limits<double>::infinity());
+  if (nearer_start) {
+    const Model other = model_of(*nearer_start, frame);
+    const Sums<kind> then = sums_of<kind>(other, frame, sums.cost);
+    if (then.cost < sums.cost) {
+      m = other;
+      sums = then;
+    }
+  }
   double damping = 1e-6;
   const auto count = static_cast<double>(frame.count);
   const double exact = kExact * kExact * count;
@@ -306,7 +322,7 @@ std::optional<Surface> fitted(const Surface& start, const Scaled& frame, double 
   for (int i = 0; i < kIterations && sums.cost > exact && std::isfinite(sums.cost); ++i) {
     if (i >= kPatience && sums.cost > hopeless) return std::nullopt;
     const double cost_before = sums.cost;
-    const auto step_size = take_step<kind>(frame, m, sums, damping);
+    const auto step_size = take_step<kind>(frame, m, sums, damping, worth_going_on);
     if (step_size && std::isnan(*step_size)) return std::nullopt;
     if (!step_size || *step_size < 1e-15 || sums.cost > (1.0 - worth_going_on) * cost_before) break;
   }
@@ -323,7 +339,9 @@ std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3
   if (!(frame.extent > 0.0)) return std::nullopt;
   switch (start.kind) {
     case SurfaceKind::kSphere:
-      return fitted<SurfaceKind::kSphere>(start, frame, worth_going_on, hopeless_mm);
+      // The algebraic one is nearly there; on a flat region steps from afar win little each.
+      return fitted<SurfaceKind::kSphere>(start, frame, worth_going_on, hopeless_mm,
+                                          guess_sphere(points));
     case SurfaceKind::kCylinder:
       return fitted<SurfaceKind::kCylinder>(start, frame, worth_going_on, hopeless_mm);
     case SurfaceKind::kCone:

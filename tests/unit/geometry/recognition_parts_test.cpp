@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 
 #include "common/geometry/recognition/measure.h"
 #include "common/geometry/recognition/recognition.h"
+#include "common/geometry/recognition/region.h"
 #include "common/geometry/recognition/surface_fit.h"
 #include "tests/support/effort.h"
 #include "tests/support/numbers.h"
@@ -163,6 +165,73 @@ TEST(MeasureRegion, DoesNotDependOnTheOrderOfTheTriangles) {
     EXPECT_EQ(shuffled.meridian_rad, in_order.meridian_rad);
     EXPECT_EQ(shuffled.one_row, in_order.one_row);
   }
+}
+
+// The short cut of growing beside the whole test: where edges are short for the least radius, the
+// normals at the corners look alike.
+TEST(LeastRadius, NormalsAtCornersThatAreNearTurnByLessThan45Degrees) {
+  Dice dice(11);
+  int near = 0;
+  for (int i = 0; i < test::effort(20'000); ++i)
+    for (const SurfaceKind kind : kCurved) {
+      const Surface s = random_surface(kind, dice);
+      const double around = dice.between(0.0, 2.0 * kPi), share = dice.between(-1.0, 3.0);
+      const double wide = std::pow(10.0, dice.between(-2.0, 0.5));
+      std::array<Vec3, 3> x;
+      for (Vec3& corner : x)
+        corner = place_on(s, around + wide * dice.between(-1.0, 1.0),
+                          share + wide * dice.between(-1.0, 1.0), 0.0);
+      const double longest2 = std::max(
+          {(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()});
+      const double radius = least_radius_mm(s, x[0], x[1], x[2]);
+      if (!(longest2 < 0.5 * radius * radius)) continue;
+      ++near;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_GT(s.outward_normal(x[k]).dot(s.outward_normal(x[(k + 1) % 3])), std::sqrt(0.5))
+            << i << " kind " << static_cast<int>(kind);
+    }
+  EXPECT_GT(near, test::effort(20'000));
+}
+
+// What is kept by triangle beside a plain list of balls, of which the last one with a triangle
+// counts.
+TEST(FlatBalls, HoldWhatAPlainListHolds) {
+  constexpr std::uint32_t kTriangles = 12;
+  Dice dice(13);
+  const auto some = [&] {
+    Region r;
+    r.surface.kind = dice.between(0.0, 1.0) < 0.9 ? SurfaceKind::kSphere : SurfaceKind::kCylinder;
+    r.share = dice.between(0.0, 1.0) < 0.5 ? 1e-6 : 2e-5;
+    r.allowed_mm = std::pow(10.0, dice.between(-4.0, -3.0));
+    const auto from = static_cast<std::uint32_t>(dice.between(0.0, kTriangles - 1.0));
+    const auto count = static_cast<std::uint32_t>(dice.between(1.0, 6.0));
+    for (std::uint32_t t = from; t < std::min(from + count, kTriangles); ++t)
+      r.triangles.push_back(t);
+    return r;
+  };
+  int held = 0;
+  for (int i = 0; i < test::effort(300); ++i) {
+    FlatBalls fast;
+    std::vector<Region> plain;
+    for (int k = 0; k < 6; ++k) {
+      const Region start = some();
+      std::set<const Region*> last;
+      for (const std::uint32_t t : start.triangles) {
+        const auto found = std::find_if(plain.rbegin(), plain.rend(), [&](const Region& ball) {
+          return std::find(ball.triangles.begin(), ball.triangles.end(), t) != ball.triangles.end();
+        });
+        last.insert(found == plain.rend() ? nullptr : &*found);
+      }
+      const Region* ball = last.size() == 1 ? *last.begin() : nullptr;
+      const bool holds = start.surface.kind == SurfaceKind::kSphere && ball != nullptr &&
+                         ball->share == start.share && start.allowed_mm >= 0.25 * ball->allowed_mm;
+      EXPECT_EQ(fast.hold(start.triangles, start), holds) << i;
+      held += holds;
+      plain.push_back(some());
+      fast.keep(plain.back(), kTriangles);
+    }
+  }
+  EXPECT_GT(held, test::effort(30));
 }
 
 // Corners off by more than the strictest share: seeds fail, are given up for a kind, and are tried
