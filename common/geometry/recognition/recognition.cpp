@@ -15,9 +15,6 @@ namespace {
 
 // How far corners may stand off, as shares of the radius, exact meshes first.
 constexpr std::array<double, 3> kShares{1e-6, 2e-5, 4e-4};
-// With few seeds a region of that share is taken from so many triangles on: smaller ones wait until
-// all stricter ones are found, of which they may be parts.
-constexpr std::array<std::size_t, 3> kLarge{0, 64, 256};
 // A kind of more parameters must explain this much more than a simpler one.
 constexpr double kWorthMore = 1.2;
 // What a later region takes over whole is smaller by at least this.
@@ -51,24 +48,16 @@ class Recognizer {
   Recognition run() {
     given_up_.assign(facets_.count(), 0.0);
     known_off_.assign(facets_.count(), {});
-    // Sparse seeds first: large regions are found from a few, and their facets need not be tried
-    // at stricter shares, where each of them would fail at length.
-    for (std::size_t i = 0; i < kShares.size(); ++i) {
-      least_claim_ = kLarge[i];
-      for (const std::uint32_t stride : {64U, 8U}) try_each(stride, kShares[i]);
-    }
-    least_claim_ = 0;
+    // Sparse seeds first: large regions are found from a few, and their fringes
+    // need none.
     for (const double share : kShares)
-      for (const std::uint32_t stride : {64U, 8U, 1U}) try_each(stride, share);
+      for (const std::uint32_t stride : {64U, 8U, 1U})
+        for (std::uint32_t f = 0; f < facets_.count(); f += stride) try_facet(f, share);
     std::erase_if(regions_, [](const Region& r) { return r.triangles.empty(); });
     return finish_recognition(solid_, facets_, grower_, std::move(regions_), options_.planes);
   }
 
  private:
-  void try_each(std::uint32_t stride, double share) {
-    for (std::uint32_t f = 0; f < facets_.count(); f += stride) try_facet(f, share);
-  }
-
   void try_facet(std::uint32_t f, double share) {
     if (given_up_[f] >= share || owner_[facets_.triangles(f).front()] != kNobody ||
         !seeds_.bends_smoothly(f))
@@ -76,7 +65,6 @@ class Recognizer {
     SeedSets sets = seeds_.about(f);
     recall(f, sets);
     auto region = best_about(sets, share);
-    if (region && region->triangles.size() < least_claim_) return;  // tried again later
     given_up_[f] = std::max(given_up_[f], share);
     if (region) return claim(std::move(*region));
     // All seeds were tried, and fit nothing better than that: no use in trying
@@ -233,7 +221,6 @@ class Recognizer {
   RecognitionOptions options_;
   std::vector<std::int32_t> owner_;
   std::vector<Region> regions_;
-  std::size_t least_claim_ = 0;                 // triangles
   std::vector<double> given_up_;                // by facet: up to this share it need not be tried
   std::vector<std::vector<ByKind>> known_off_;  // by facet: of its seeds, as they come
 };
