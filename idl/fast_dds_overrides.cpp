@@ -8,6 +8,7 @@
 #include <fastrtps/config.h>
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -69,21 +70,44 @@ AllPeers& all_peers() {
 
 namespace eprosima::fastrtps::rtps {
 
+namespace {
+
+using Left = std::chrono::duration<double, std::milli>;
+
+// Of the lease.
+Left left_of(const ParticipantProxyData& remote) {
+  return remote.last_received_message_tm() + remote.lease_duration() -
+         std::chrono::steady_clock::now();
+}
+
+void look_after(const ParticipantProxyData& remote, Left wait) {
+  remote.lease_duration_event->update_interval_millisec(wait.count());
+  remote.lease_duration_event->restart_timer();
+}
+
+// Whoever stood still finds all leases ended before it has taken what was sent meanwhile. With keys
+// that is no reason to go on: the other has forgotten us, too, and both begin anew.
+bool was_heard_meanwhile(PDP& discovery, const GUID_t& guid) {
+  const std::lock_guard<std::recursive_mutex> lock(*discovery.getMutex());
+  const auto found =
+      std::find_if(discovery.ParticipantProxiesBegin(), discovery.ParticipantProxiesEnd(),
+                   [&](const ParticipantProxyData* remote) { return remote->m_guid == guid; });
+  if (found == discovery.ParticipantProxiesEnd() || left_of(**found).count() < 0.0) return false;
+  look_after(**found, left_of(**found));
+  return true;
+}
+
+}  // namespace
+
 // Called by a timer of each remote participant. Whoever has left has no GUID any more, and nothing
 // is to be done. The thread of the timers does not wait here for whoever may wait for it.
 void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_participant) {
   count(uses.lease_checks);
   ParticipantProxyData& remote = *remote_participant;
   std::unique_lock<std::recursive_mutex> lock(*getMutex(), std::try_to_lock);
-  if (!lock) {
-    remote.lease_duration_event->update_interval_millisec(kLookAgain_ms);
-    remote.lease_duration_event->restart_timer();
-    return;
-  }
+  if (!lock) return look_after(remote, Left(kLookAgain_ms));
   if (!remote.should_check_lease_duration || remote.m_guid == GUID_t::unknown()) return;
-  const std::chrono::duration<double, std::milli> left = remote.last_received_message_tm() +
-                                                         remote.lease_duration() -
-                                                         std::chrono::steady_clock::now();
+  const Left left = left_of(remote);
   const GUID_t guid = remote.m_guid;
   const bool has_own = ParticipantProxiesBegin() != ParticipantProxiesEnd();  // the first is it
   const Peers known =
@@ -93,7 +117,8 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_parti
   if (left.count() < 0.0 || (heard && heard->is_silent(peer))) {
     if (heard) heard->part(peer);
     lock.unlock();
-    const auto remove = [this, guid] {
+    const auto remove = [this, guid, may_go_on = heard == nullptr] {
+      if (may_go_on && was_heard_meanwhile(*this, guid)) return;
       remove_remote_participant(guid, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
     };
     if (const auto removals = known.removals.lock())
@@ -102,8 +127,7 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_parti
       remove();
     return;
   }
-  remote.lease_duration_event->update_interval_millisec(left.count());
-  remote.lease_duration_event->restart_timer();
+  look_after(remote, left);
 }
 
 }  // namespace eprosima::fastrtps::rtps
