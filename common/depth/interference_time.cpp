@@ -37,8 +37,8 @@ constexpr double kSoonShare = 4.0;
 
 // After this share of the work cap the proven time may stay this far, mm of path, before a time at
 // which the parts interfere: two rims that just meet take ten times the work for the rest. And as
-// much farther as the square of the work beyond that: teeth that lie along a wall take all there
-// is.
+// much farther as the fourth power of the work beyond that: teeth that lie along a wall take all
+// there is.
 constexpr std::uint64_t kEnoughOfCap = 8, kEnoughLeast = 1'000;
 constexpr double kCloseEnough_mm = 0.02;
 
@@ -213,7 +213,7 @@ class InterferenceSearch {
         break;
       }
       const double effort = static_cast<double>(answer_.evaluations) / static_cast<double>(enough);
-      const double more = query_.slides ? 1.0 : effort * effort;
+      const double more = query_.slides ? 1.0 : effort * effort * effort * effort;
       if (effort >= 1.0 &&
           (t_real_ - item.span.t0) * path_.speed_upper_bound() <= kCloseEnough_mm * more) {
         free_until_ = std::min(free_until_, item.span.t0);
