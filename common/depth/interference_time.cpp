@@ -576,7 +576,8 @@ FreeByCovers free_by_covers(const SweptQuery& query, Layer layer) {
   const auto ask = [&](double ends_mm) {
     const CoverFree free = pair.free_until(path, ends_mm, moment_mm);
     bounds += free.work;
-    found.until = {free.all ? 1.0 : free.t_free, free.all || free.t_free > 0.0};
+    found.until = {free.all ? 1.0 : free.t_free, free.all || free.t_free > 0.0,
+                   ends_mm <= kAccuracyDefault_mm};
   };
   ask(kPathEnds_mm);
   // Who stands where a path has ended may leave it again, and no farther than that.

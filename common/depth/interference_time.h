@@ -12,6 +12,7 @@ struct FreeUntil {
                          ///< times the accuracy where they are deeper than that at the start;
                          ///< 0: nothing is proven, 1: nothing is in the whole tick
   bool touches = false;  ///< nothing is deeper where the path begins
+  bool closely = false;  ///< and the depth is 1e-6 mm: a word may rest on it
 };
 
 struct SweptQuery {

@@ -228,7 +228,7 @@ void leave_unasked(const World& world, PairWork& pair) {
   pair.near = pair.undecided = pair.contact_waits = true;
   if (!holds_back(world.policy)) return;
   const double t = free_by_covers(pair);
-  pair.never_real = t >= 1.0;
+  pair.never_real = t >= 1.0 && pair.certain_free->closely;
   pair.short_of_work = t < 1.0;
   pair.t_stop = pair.tau + (1.0 - pair.tau) * t;
 }

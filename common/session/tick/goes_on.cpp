@@ -48,7 +48,8 @@ bool goes_on(PairWork& pair, CcdScratch& ccd) {
       return is_never_possible(pair) && is_as_near(pair, ccd);
     case CollisionClass::kPotential:
       // The point speaks of one place.
-      return pair.open->size() == 1 && free_by_covers(pair) >= 1.0 && is_possible_at_end(pair);
+      return pair.open->size() == 1 && free_by_covers(pair) >= 1.0 && pair.certain_free->closely &&
+             is_possible_at_end(pair);
     default:
       return false;
   }

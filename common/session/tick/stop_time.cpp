@@ -350,9 +350,12 @@ SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch)
     return {touch.state == ContactState::kUndecided ? touch.t_clear : 1.0, true};
   SearchedTime time = start_of_search(pair, touch);
   if (!time.known) time.t = std::max(time.t, free_by_covers(pair));
-  time.known |= time.t >= 1.0;
+  const bool by_covers = !time.known && time.t >= 1.0;
+  time.known |= by_covers;
   pair.t_stop_start = time.t;
-  pair.never_real = time.known && time.t >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
+  // A word rests on no more than touching.
+  pair.never_real = time.known && time.t >= 1.0 && std::isinf(pair.memo->allowed_depth_mm) &&
+                    (!by_covers || pair.certain_free->closely);
   return time;
 }
 
