@@ -6,8 +6,6 @@
 
 namespace mortise {
 
-using Vec2 = Eigen::Vector2d;
-
 /// A plane that cuts parts, and the axes in which the cut is drawn: x_W = origin_W + x right_W +
 /// y up_W. Unit and perpendicular; mm.
 struct CutPlane {

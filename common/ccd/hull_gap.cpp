@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/simplex.h"
+
 namespace mortise::ccd {
 namespace {
 
@@ -13,70 +15,9 @@ constexpr double kGoodPlane = 1e-13;
 // How far a plane may be off, as a share of the gap; where boxes cannot tell more, to spare time.
 constexpr double kSlack = 1e-3;
 
-// Distance of the hull of up to four points from the origin; keeps the points that carry it.
-struct Simplex {
-  int count = 0;
-  Vec3 point[4];
-  std::int32_t leaf_a[4], leaf_b[4];
-
-  // The point nearest to the origin within the hull of the points in `set`, if it lies inside of
-  // their affine hull's face: barycentric coordinates all positive.
-  bool foot(unsigned set, Vec3& at) const {
-    int index[4] = {}, n = 0;
-    for (int k = 0; k < count; ++k)
-      if (set >> k & 1U) index[n++] = k;
-    const Vec3& o = point[index[0]];
-    if (n == 1) {
-      at = o;
-      return true;
-    }
-    const Vec3 e1 = point[index[1]] - o;
-    if (n == 2) {
-      const double ee = e1.squaredNorm(), s = -o.dot(e1);
-      if (!(s > 0.0 && s < ee)) return false;
-      at = o + e1 * (s / ee);
-      return true;
-    }
-    const Vec3 e2 = point[index[2]] - o;
-    if (n == 3) {
-      const Vec3 normal = e1.cross(e2);
-      const double nn = normal.squaredNorm();
-      if (!(nn > 0.0)) return false;
-      const double u = normal.dot((-o).cross(e2)), v = normal.dot(e1.cross(-o));
-      if (!(u > 0.0 && v > 0.0 && u + v < nn)) return false;
-      at = normal * (normal.dot(o) / nn);
-      return true;
-    }
-    const Vec3 e3 = point[index[3]] - o;
-    const double volume = e1.dot(e2.cross(e3)), sign = volume > 0.0 ? 1.0 : -1.0;
-    const double u = sign * (-o).dot(e2.cross(e3)), v = sign * e1.dot((-o).cross(e3)),
-                 w = sign * e1.dot(e2.cross(-o));
-    if (!(u > 0.0 && v > 0.0 && w > 0.0 && u + v + w < sign * volume)) return false;
-    at = Vec3::Zero();
-    return true;
-  }
-
-  Vec3 nearest() {
-    double best2 = std::numeric_limits<double>::infinity();
-    Vec3 best = Vec3::Zero();
-    unsigned best_set = 1;
-    for (unsigned set = 1; set < (1U << count); ++set) {
-      Vec3 at;
-      if (!foot(set, at) || !(at.squaredNorm() < best2)) continue;
-      best2 = at.squaredNorm();
-      best = at;
-      best_set = set;
-    }
-    int kept = 0;
-    for (int k = 0; k < count; ++k) {
-      if (!(best_set >> k & 1U)) continue;
-      point[kept] = point[k];
-      leaf_a[kept] = leaf_a[k];
-      leaf_b[kept++] = leaf_b[k];
-    }
-    count = kept;
-    return best;
-  }
+// Of the trees of both parts.
+struct Leaves {
+  std::int32_t a, b;
 };
 
 }  // namespace
@@ -115,7 +56,7 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
   const PairState& s = motion.state();
   HullGap best;
   best.gap_mm = -std::numeric_limits<double>::infinity();
-  Simplex simplex;
+  Simplex<Leaves> simplex;
   Support on_a, on_b;
   Vec3 v = guess;
   double size = std::numeric_limits<double>::infinity();
@@ -138,9 +79,7 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
     bool known = n.dot(w) >= size * (1.0 - kGoodPlane);
     for (int k = 0; k < simplex.count; ++k) known = known || simplex.point[k] == w;
     if (known) break;
-    simplex.point[simplex.count] = w;
-    simplex.leaf_a[simplex.count] = on_a.leaf;
-    simplex.leaf_b[simplex.count++] = on_b.leaf;
+    simplex.add(w, {on_a.leaf, on_b.leaf});
     v = simplex.nearest();
     const double now = v.norm();
     if (!(now < size) || simplex.count == 4) break;
@@ -149,8 +88,8 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
   best.apart = best.gap_mm > motion.rounding_mm();
   best.pairs = simplex.count;
   for (int k = 0; k < simplex.count; ++k) {
-    best.leaf_a[k] = simplex.leaf_a[k];
-    best.leaf_b[k] = simplex.leaf_b[k];
+    best.leaf_a[k] = simplex.tag[k].a;
+    best.leaf_b[k] = simplex.tag[k].b;
   }
   return best;
 }

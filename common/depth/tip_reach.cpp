@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/depth/cells/least_reach.h"
 #include "common/geometry/tips.h"
 
 namespace mortise {
@@ -35,8 +36,6 @@ constexpr double kSamePlane = 1.0 - 1e-9;
 constexpr double kReaches = 2.0, kFlat = 1e-12;
 // Faces that are asked whether all is below them.
 constexpr std::size_t kMostFaces = 16;
-// Steps of the search for a direction that separates two tips.
-constexpr int kSteps = 40;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -273,23 +272,18 @@ class DepthBound {
   SurfacePoint nearest_;
 };
 
-// Are two convex pieces apart? Tried along directions from one to the other (Frank and Wolfe).
+// Are two convex pieces apart?
 bool apart(const Piece& a, const Piece& b) {
-  Vec3 way = a.middle() - b.middle();
-  for (int i = 0; i < kSteps; ++i) {
-    const double length = way.norm();
-    if (!(length > 0.0)) return false;
-    const Vec3 n = way / length;
-    if (-a.support_mm(-n) - b.support_mm(n) >= 0.0) return true;
-    const Vec3 to = a.farthest(-n) - b.farthest(n);
-    const Vec3 step = to - way;
-    const double squared = step.squaredNorm();
-    if (!(squared > 0.0)) return false;
-    const double share = std::clamp(-way.dot(step) / squared, 0.0, 1.0);
-    if (share <= 0.0) return false;
-    way += share * step;
-  }
-  return false;
+  const double bulge_mm = a.bulge_mm + b.bulge_mm;
+  bool found = false;
+  const auto farthest = [&](const Vec3& n) { return PointOfEach{b.farthest(n), a.farthest(-n)}; };
+  const auto tried = [&](const Vec3&, double reach_mm) {
+    return found = reach_mm + bulge_mm <= 0.0;
+  };
+  const Vec3 between = a.middle() - b.middle();
+  const double size_mm = between.norm();
+  if (size_mm > 0.0) LeastReach(farthest, tried, size_mm).run(between / size_mm);
+  return found;
 }
 
 class TipSearch {

@@ -3,13 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "common/base/result.h"
+#include "common/math/types.h"
 
 namespace mortise {
 
-using Vec2 = Eigen::Vector2d;
 using Loop = std::vector<Vec2>;  ///< closed polygon, the last corner joins the first
 
 /// Twice the signed area; positive counter-clockwise.

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "common/depth/cells/least_reach.h"
+
 namespace mortise {
 namespace {
 
-// Steps towards the direction in which two cells are farthest apart.
-constexpr int kSteps = 24;
 // Spans that are looked at before what is proven so far has to do.
 constexpr int kMostSpans = 400;
 // Over a span longer than this share of the path anything that keeps cells apart is looked for.
@@ -133,23 +133,42 @@ class CoverPair::Bound {
     return least_ <= limit_mm_;
   }
 
-  // Frank and Wolfe on the difference of both cells: towards its point nearest to the origin.
+  // Along the direction in which both cells are farthest apart, or least deep in each other, at
+  // both ends of the span: from the best one so far.
   void descend() {
-    const Pose& X = views_.chord[0].X_KS[0];
-    Vec3 z = X * s(0).middle - k(0).middle;
-    for (int i = 0; i < kSteps; ++i) {
-      const double length = z.norm();
-      if (!(length > 1e-12)) return;
-      const Vec3 n = z / length;
-      const Vec3 y = X * s(0).farthest(-(X.q.conjugate() * n)) - k(0).farthest(n);
-      if (y.dot(n) > 0.0 && by_direction(0, n)) return;
-      const Vec3 step = y - z;
-      const double square = step.squaredNorm();
-      if (!(square > 1e-24)) return;
-      const double share = std::clamp(-z.dot(step) / square, 0.0, 1.0);
-      if (!(share > 0.0)) return;
-      z += share * step;
-    }
+    const Chord& chord = views_.chord[0];
+    const auto farthest = [&](const Vec3& n) {
+      ++work_;
+      Vec3 nearest_S = Vec3::Zero();
+      double least = kInfinity;
+      for (int e = 0; e < chord.ends; ++e) {
+        const Pose& X = chord.X_KS[e];
+        const Vec3 x = X * s(0).farthest(-(X.q.conjugate() * n));
+        if (n.dot(x) >= least) continue;
+        least = n.dot(x);
+        nearest_S = x;
+      }
+      return PointOfEach{k(0).farthest(n), nearest_S};
+    };
+    double most = kInfinity;
+    const auto tried = [&](const Vec3& n, double reach_mm) {
+      if (reach_mm >= most) return false;
+      most = reach_mm;
+      return by_direction(0, n);
+    };
+    const Vec3 between = chord.X_KS[0] * s(0).middle - k(0).middle;
+    const double size_mm = between.norm();
+    if (!(size_mm > 1e-12)) return;
+    LeastReach search(farthest, tried, size_mm);
+    search.run(first_direction(between / size_mm));
+    if (asked_ != Asked::kHowDeep || cells_->by_void) return;
+    const PointOfEach& touching = search.touching();
+    cells_->places_S = {cells_->role == 0 ? chord.X_KS[0].inverse() * touching.s : touching.k};
+  }
+
+  Vec3 first_direction(const Vec3& otherwise) const {
+    if (cells_->role < 0 || cells_->by_void) return otherwise;
+    return cells_->role == 0 ? cells_->n : Vec3(-(views_.chord[0].X_KS[0].q * cells_->n));
   }
 
   const CoverPair& pair_;
@@ -357,16 +376,16 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   return overlap;
 }
 
-// By a direction: between both cells, then as far as S goes along it. Around the middle of a disc
-// as well, since a shaft may come out of it.
+// By a direction: where both cells touch, between them, then as far as S goes along it. Around the
+// middle of a disc as well, since a shaft may come out of it.
 std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) const {
-  if (!cells.places_S.empty()) return cells.places_S;
+  if (cells.by_void && !cells.places_S.empty()) return cells.places_S;
   const Pose& X_KS = views.chord[cells.role].X_KS[0];
   const ConvexCell& s = parts_[cells.role]->cells[cells.cell[cells.role]];
   const ConvexCell& k = parts_[1 - cells.role]->cells[cells.cell[1 - cells.role]];
   const Pose X_SK = X_KS.inverse();
   const Vec3 n_S = -(X_KS.q.conjugate() * cells.n);
-  std::vector<Vec3> places;
+  std::vector<Vec3> places = cells.places_S;
   const auto add = [&](Vec3 x_S) {
     for (int i = 0; i < kProjections; ++i) x_S = s.near(X_SK * k.near(X_KS * x_S));
     places.push_back(x_S);

@@ -65,7 +65,7 @@ class CoverPair {
     std::size_t v = 0;
     bool by_void = false;
     Vec3 n = Vec3::Zero();
-    std::vector<Vec3> places_S;  // by_void: of the part that is seen, what comes farthest
+    std::vector<Vec3> places_S;  // of part `role`, what comes farthest
   };
   class Bound;
   class Whole;
