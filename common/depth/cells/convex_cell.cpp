@@ -209,4 +209,26 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
   return cell;
 }
 
+std::optional<ConvexCell> prism_cell(const std::array<Vec3, 3>& frame,
+                                     const std::vector<Vec2>& polygon, const Interval& along) {
+  if (polygon.size() < 3 || !(along.lo < along.hi)) return std::nullopt;
+  ConvexCell cell;
+  const auto flat = [&](const Vec2& x) { return Vec3(x.x() * frame[0] + x.y() * frame[1]); };
+  const auto n = static_cast<std::uint16_t>(polygon.size());
+  for (const double z : {along.lo, along.hi})
+    for (const Vec2& x : polygon) cell.corners.push_back(flat(x) + z * frame[2]);
+  cell.normals = {frame[2], -frame[2]};
+  for (std::uint16_t i = 0; i < n; ++i) {
+    const auto next = static_cast<std::uint16_t>(i + 1 == n ? 0 : i + 1);
+    const auto above = [&](std::uint16_t k) { return static_cast<std::uint16_t>(k + n); };
+    cell.edges.push_back({i, next});
+    cell.edges.push_back({above(i), above(next)});
+    cell.edges.push_back({i, above(i)});
+    const Vec2 along_side = polygon[next] - polygon[i];
+    cell.normals.push_back(flat(Vec2(along_side.y(), -along_side.x()).normalized()));
+  }
+  for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
+  return cell;
+}
+
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/math/interval.h"
 #include "common/math/types.h"
 
 namespace mortise {
@@ -59,5 +60,10 @@ std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
 
 /// The polytope within all half-spaces, which must bound it; nullopt: it is empty. O(n⁴).
 std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes);
+
+/// The prism over a convex polygon in the plane of frame[0] and frame[1], counter-clockwise,
+/// between two heights along frame[2]. The frame is orthonormal; nullopt: it is empty.
+std::optional<ConvexCell> prism_cell(const std::array<Vec3, 3>& frame,
+                                     const std::vector<Vec2>& polygon, const Interval& along);
 
 }  // namespace mortise

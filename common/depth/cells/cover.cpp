@@ -4,13 +4,15 @@
 
 #include "common/depth/cells/cover_faces.h"
 #include "common/depth/cells/cover_outside.h"
+#include "common/depth/cells/cover_prism.h"
 #include "common/depth/cells/cover_voids.h"
 
 namespace mortise {
 namespace {
 
-// A turned cover is taken that has less than this share of the volume of the box.
-constexpr double kSmaller = 0.95;
+// A turned cover is taken that has less than this share of the volume of the box; prisms that have
+// less than this share of what was best before.
+constexpr double kSmaller = 0.95, kMuchSmaller = 0.99;
 
 void set_heights(CoverLayer& layer) {
   for (const ConvexCell& cell : layer.cells)
@@ -42,6 +44,9 @@ Cover find_cover(const Body& body) {
   Outside box = polytope_outside(faces);
   if (outside.cells[1].empty() || outside.volume_mm3 >= kSmaller * box.volume_mm3)
     outside = std::move(box);
+  Outside prism = prism_outside(faces);
+  if (!prism.cells[1].empty() && prism.volume_mm3 < kMuchSmaller * outside.volume_mm3)
+    outside = std::move(prism);
   if (outside.cells[1].empty()) {
     cover.why_not = "it is too thin";
     return cover;

@@ -262,8 +262,66 @@ inline DrawnPart slot_block(Random& random, double) {
   return part;
 }
 
+/// Teeth with plane flanks and tips on a round body.
+inline DrawnPart spline(Random& random, double fit_r_mm) {
+  struct Tooth {
+    Vec3 out, aside;  // unit
+  };
+  const int count = 3 + below(random, 9);
+  const double root_r = 0.8 * fit_r_mm, tip_u = 1.15 * fit_r_mm, top = uniform(random, 5.0, 20.0);
+  const double pitch = 2.0 * std::numbers::pi / count;
+  const double foot = uniform(random, 0.2, 0.3) * pitch;  // half the angle of a tooth at its foot
+  const double foot_u = root_r * std::cos(foot), foot_v = root_r * std::sin(foot);
+  const double tip_v = uniform(random, 0.4, 0.95) * foot_v;
+  // Of a flank, in the plane of a tooth: (u, v) with v towards it.
+  const Vec3 flank = Vec3(foot_v - tip_v, tip_u - foot_u, 0.0).normalized();
+  Shape shape;
+  std::vector<Tooth> teeth;
+  Loop loop;
+  std::vector<int> side;
+  const int root = shape.cylinder("root", Vec3::Zero(), root_r, false);
+  for (int i = 0; i < count; ++i) {
+    const double a = pitch * i + 0.3;
+    const Tooth tooth{{std::cos(a), std::sin(a), 0.0}, {-std::sin(a), std::cos(a), 0.0}};
+    teeth.push_back(tooth);
+    const auto at = [&](double u, double v) { return Vec3(u * tooth.out + v * tooth.aside); };
+    const std::string n = std::to_string(i);
+    const auto add = [&](const Vec3& x, int face) {
+      loop.push_back(x.head<2>());
+      side.push_back(face);
+    };
+    add(at(foot_u, -foot_v),
+        shape.plane("right" + n, at(foot_u, -foot_v), at(flank.x(), -flank.y())));
+    add(at(tip_u, -tip_v), shape.plane("tip" + n, at(tip_u, 0.0), tooth.out));
+    add(at(tip_u, tip_v), shape.plane("left" + n, at(foot_u, foot_v), at(flank.x(), flank.y())));
+    add(at(foot_u, foot_v), root);
+    add({root_r * std::cos(a + 0.5 * pitch), root_r * std::sin(a + 0.5 * pitch), 0.0}, root);
+  }
+  const Ring lower = shape.ring(loop, 0.0), upper = shape.ring(loop, top);
+  for (std::size_t i = 0; i < loop.size(); ++i) shape.facet(lower, upper, i, side[i]);
+  shape.cap(lower, {}, false, shape.plane("bottom", Vec3::Zero(), -Vec3::UnitZ()));
+  shape.cap(upper, {}, true, shape.plane("top", {0, 0, top}, Vec3::UnitZ()));
+  DrawnPart part = finish(random, *std::move(shape).finish(), 0.03);
+  part.length_mm = top;
+  part.depth = [=](const Vec3& x, const OffsetOf& o) {
+    double most = root_r + o("root") - radius(x);
+    for (int i = 0; i < count; ++i) {
+      const double u = x.dot(teeth[i].out), v = x.dot(teeth[i].aside);
+      const auto below_flank = [&](double aside, const char* name) {
+        return flank.x() * (foot_u - u) + flank.y() * (foot_v - aside) +
+               o(name + std::to_string(i));
+      };
+      most = std::max(most, std::min({u, below_flank(v, "left"), below_flank(-v, "right"),
+                                      tip_u + o("tip" + std::to_string(i)) - u}));
+    }
+    return std::min({most, x.z() + o("bottom"), top + o("top") - x.z()});
+  };
+  part.what = "spline";
+  return part;
+}
+
 inline DrawnPart any_part(Random& random, double fit_r_mm) {
-  switch (below(random, 7)) {
+  switch (below(random, 8)) {
     case 0:
     case 1:
       return shaft(random, fit_r_mm);
@@ -275,6 +333,8 @@ inline DrawnPart any_part(Random& random, double fit_r_mm) {
       return socket(random, fit_r_mm);
     case 5:
       return block(random, fit_r_mm);
+    case 6:
+      return spline(random, fit_r_mm);
     default:
       return slot_block(random, fit_r_mm);
   }
