@@ -481,9 +481,9 @@ class InterferenceSearch {
 
 // Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
 constexpr int kLooks = 3;
-// Covers alone cost a hundredth. They look ahead as often where they do not say that both only
-// touch, and as long as they do: who slides along a wall becomes deeper long after that. Then so
-// often between the last two looks.
+// Covers alone cost a hundredth: they look as far as a search would end, or as long as both only
+// touch: who slides along a wall becomes deeper long after that. Then so often between the last two
+// looks.
 constexpr int kCoverHalvings = 6;
 
 // Work of one look; at the brink of interfering it is not worth more.
@@ -614,9 +614,8 @@ class LookAhead {
   }
 
   SoonAfter run() {
-    SoonAfter soon = by_covers();
-    if (!soon.interferes) soon = by_search();
-    return soon.interferes ? soon : by_covers_closely();
+    const SoonAfter soon = by_covers();
+    return soon.interferes ? soon : by_search();
   }
 
  private:
@@ -629,24 +628,20 @@ class LookAhead {
     return at;
   }
 
+  // Where the covers touch the parts do not touch: they are told real where that is so close behind
+  // that a search would end there, too. Where they do touch nothing can be free beyond.
   SoonAfter by_covers() {
     double before = t_;
-    int unclear = 0;
-    for (double step = step_; before < 1.0 && unclear < kLooks; step *= 2.0) {
+    bool parts_touch = false;
+    for (double step = step_; before < 1.0; step *= 2.0) {
       const double t = std::min(t_ + step, 1.0);
       const SaidByCovers said = said_by_covers(at(t), named_, spent_);
       if (said.place) return between(before, {true, t, *said.place});
-      unclear += !said.apart;
+      parts_touch |= said.touches;
+      if (!said.apart && !parts_touch && step > close_) break;
       before = t;
     }
     return {};
-  }
-
-  // So close behind that the search would end there, too.
-  SoonAfter by_covers_closely() {
-    const double last = std::min(t_ + close_, 1.0);
-    const auto place = said_by_covers(at(last), named_, spent_).place;
-    return place ? between(t_ + step_, {true, last, *place}) : SoonAfter{};
   }
 
   SoonAfter between(double before, SoonAfter found) {

@@ -483,6 +483,7 @@ SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_
   said.apart = covers.apart(layer);
   const std::optional<Sample> deepest =
       named == Named::kLeastHere ? covers.on_mesh(layer) : covers.deepest(layer);
+  said.touches = covers.touches(layer);
   if (deepest && (layer == Layer::kUpper || find_witness(pair, *deepest, evaluations)))
     said.place = {deepest->role, deepest->triangle,
                   pair.X_KS[1 - deepest->role] * deepest->point_K};

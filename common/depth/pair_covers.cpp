@@ -12,6 +12,8 @@ namespace {
 // A point that is this share as deep as any may be: no other place is asked but the first ones.
 constexpr double kAsDeep = 0.9;
 constexpr std::size_t kFirstPlaces = 3;
+// So far a search of times may be off (interference_time).
+constexpr double kTouches_mm = 4e-4;
 
 std::size_t index_of(Layer layer) { return layer == Layer::kLower ? 0 : 1; }
 
@@ -72,7 +74,8 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
     const Vec3& x_S = overlap.places_S[i];
     const SurfacePoint own = nearest_surface(*s.solid, x_S);
     evaluations_ += 2;
-    if (s.depth_in(x_S, own, layer) < -pair_.touch_mm) {
+    const double own_mm = s.depth_in(x_S, own, layer);
+    if (own_mm < -kTouches_mm) {
       deeper(off_mesh, sample_at(pair_, layer, role, own.triangle, own.point));
       continue;
     }
@@ -82,11 +85,17 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
     sample.point_K = pair_.X_KS[role] * x_S;
     sample.at = nearest_surface(*k.solid, sample.point_K);
     sample.depth_mm = k.depth_in(sample.point_K, sample.at, layer);
-    deeper(found, sample);
+    touches_[index_of(layer)] |= sample.depth_mm >= -kTouches_mm;
+    if (own_mm < -pair_.touch_mm)
+      deeper(off_mesh, sample_at(pair_, layer, role, own.triangle, own.point));
+    else
+      deeper(found, sample);
   }
   if (!found) found = off_mesh;
   return found;
 }
+
+bool PairCovers::touches(Layer layer) const { return touches_[index_of(layer)]; }
 
 std::optional<Sample> PairCovers::on_mesh(Layer layer) {
   if (apart(layer)) return std::nullopt;

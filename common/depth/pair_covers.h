@@ -23,6 +23,8 @@ class PairCovers {
   /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
   /// the covers name none that is deeper than touching.
   std::optional<Sample> deepest(Layer layer);
+  /// Such a point was asked that is in both parts, or but for as little as a search of times is off.
+  bool touches(Layer layer) const;
   /// The same by a point of the mesh beside the end of its cell: what holds a part there has a face
   /// of its own, along which the part slides.
   std::optional<Sample> on_mesh(Layer layer);
@@ -52,6 +54,7 @@ class PairCovers {
   std::optional<bool> apart_[2];            // least, largest
   std::optional<CoverOverlap> overlap_[2];  // the same
   std::optional<Sample> deepest_[2];
+  bool touches_[2] = {false, false};
 };
 
 }  // namespace mortise
