@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/depth/cells/outline.h"
+
 namespace mortise {
 namespace {
 
@@ -224,8 +226,7 @@ std::optional<ConvexCell> prism_cell(const std::array<Vec3, 3>& frame,
     cell.edges.push_back({i, next});
     cell.edges.push_back({above(i), above(next)});
     cell.edges.push_back({i, above(i)});
-    const Vec2 along_side = polygon[next] - polygon[i];
-    cell.normals.push_back(flat(Vec2(along_side.y(), -along_side.x()).normalized()));
+    cell.normals.push_back(flat(outline::outward(polygon[i], polygon[next])));
   }
   for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
   return cell;

@@ -169,7 +169,8 @@ class Prism {
     std::vector<outline::Line> lines;
     for (std::size_t i = 0; i < piece.size(); ++i) {
       const Vec2 &a = piece[i].at, &b = piece[(i + 1) % piece.size()].at;
-      outline::Line line = outline::line_through(a, b);
+      outline::Line line{outline::outward(a, b), 0.0};
+      line.c_mm = reach_of(piece, line.n);
       if (piece[i].is_cut()) {
         line.c_mm += kIntoNext * std::max(widest_mm_, f_.travel_mm);
         lines.push_back(line);
@@ -185,6 +186,13 @@ class Prism {
     return lines;
   }
 
+  // Corners are convex only as closely as places are told apart; none is cut off.
+  static double reach_of(const outline::Piece& piece, const Vec2& n) {
+    double most = -kInfinity;
+    for (const outline::Corner& corner : piece) most = std::max(most, n.dot(corner.at));
+    return most;
+  }
+
   // Of a round side: those below which the piece is.
   void add_tangents(const outline::Piece& piece, std::size_t i, double out_mm,
                     std::vector<outline::Line>& lines) const {
@@ -194,10 +202,8 @@ class Prism {
       const double share = static_cast<double>(k) / kTangents;
       const Vec2 n = (a + share * (b - a) - middle).normalized();
       const double c_mm = n.dot(middle) + s.radius_mm;
-      if (std::all_of(piece.begin(), piece.end(), [&](const outline::Corner& corner) {
-            return n.dot(corner.at) <= c_mm + f_.same_mm;
-          }))
-        lines.push_back({n, c_mm + out_mm});
+      const double reach = reach_of(piece, n);
+      if (reach <= c_mm + f_.same_mm) lines.push_back({n, std::max(c_mm, reach) + out_mm});
     }
   }
 

@@ -90,10 +90,9 @@ void join(Piece& piece, std::vector<Piece>& pieces, double same_mm) {
 
 }  // namespace
 
-Line line_through(const Vec2& a, const Vec2& b) {
+Vec2 outward(const Vec2& a, const Vec2& b) {
   const Vec2 way = b - a;
-  const Vec2 n = Vec2(way.y(), -way.x()).normalized();
-  return {n, std::max(n.dot(a), n.dot(b))};
+  return Vec2(way.y(), -way.x()).normalized();
 }
 
 double area(const std::vector<Vec2>& corners) {

@@ -12,8 +12,8 @@ struct Line {
   Vec2 n = Vec2::UnitX();
   double c_mm = 0.0;
 };
-/// What is left of the way from a to b is within.
-Line line_through(const Vec2& a, const Vec2& b);
+/// Unit, to the right of the way from a to b.
+Vec2 outward(const Vec2& a, const Vec2& b);
 
 double area(const std::vector<Vec2>& corners);
 /// Of x from the straight way from a to b.
