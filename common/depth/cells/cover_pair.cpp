@@ -13,6 +13,9 @@ namespace {
 constexpr int kMostSpans = 400;
 // Over a span longer than this share of the path anything that keeps cells apart is looked for.
 constexpr double kLongSpan = 0.2;
+// Cells that are so much of the distance of their middles deep in each other: that they are apart
+// is out of the question.
+constexpr double kDeep = 1e-2;
 // Onto each of two cells, to find a point of both.
 constexpr int kProjections = 6;
 // What comes so much less far is as good a place to look at.
@@ -160,7 +163,9 @@ class CoverPair::Bound {
     const double size_mm = between.norm();
     if (!(size_mm > 1e-12)) return;
     LeastReach search(farthest, tried, size_mm);
-    search.run(first_direction(between / size_mm));
+    const double useless_mm =
+        std::max(kDeep * size_mm, asked_ == Asked::kHowDeep ? least_ : limit_mm_);
+    search.run(first_direction(between / size_mm), useless_mm);
     if (asked_ != Asked::kHowDeep || cells_->by_void) return;
     const PointOfEach& touching = search.touching();
     cells_->places_S = {cells_->role == 0 ? chord.X_KS[0].inverse() * touching.s : touching.k};

@@ -23,12 +23,14 @@ class LeastReach {
   LeastReach(Farthest farthest, Tried tried, double size_mm)
       : farthest_(std::move(farthest)), tried_(std::move(tried)), size_mm_(size_mm) {}
 
-  /// From a first direction, a unit vector.
-  void run(const Vec3& first) {
+  /// From a first direction, a unit vector. Looks no closer where both are seen to be deeper in
+  /// each other than useless_mm.
+  void run(const Vec3& first, double useless_mm) {
     best_n_ = first;
     touching_ = best_ = farthest_(first);
     best_mm_ = best_.across().dot(first);
     if (tried_(first, best_mm_)) return;
+    if (best_mm_ > useless_mm && (see_from(Vec3::Zero()) || best_mm_ > useless_mm)) return;
     for (double margin_mm = kFirstMargin * size_mm_; margin_mm > kLastMargin * size_mm_;
          margin_mm *= kCloser) {
       const double before_mm = best_mm_;

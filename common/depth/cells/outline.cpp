@@ -116,6 +116,13 @@ bool is_within(const std::vector<Vec2>& corners, const Vec2& a, const Vec2& b, d
   double nearest = std::numeric_limits<double>::infinity(), of_middle = nearest;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 &p = corners[i], &q = corners[after(i, n)];
+    if ((p.y() > middle.y()) != (q.y() > middle.y()) &&
+        middle.x() < p.x() + (middle.y() - p.y()) / (q.y() - p.y()) * (q.x() - p.x()))
+      inside = !inside;
+    const double reach = std::fabs(slack_mm);
+    if ((p.cwiseMin(q) - a.cwiseMax(b)).maxCoeff() > reach ||
+        (a.cwiseMin(b) - p.cwiseMax(q)).maxCoeff() > reach)
+      continue;  // farther away than matters
     const bool crosses = cross(b - a, p - a) * cross(b - a, q - a) < 0.0 &&
                          cross(q - p, a - p) * cross(q - p, b - p) < 0.0;
     // Who crosses the border by no more than the slack ends that near to it.
@@ -123,9 +130,6 @@ bool is_within(const std::vector<Vec2>& corners, const Vec2& a, const Vec2& b, d
     if (crosses && ends > slack_mm) return false;
     nearest = std::min({nearest, ends, distance(p, a, b), distance(q, a, b)});
     of_middle = std::min(of_middle, distance(middle, p, q));
-    if ((p.y() > middle.y()) != (q.y() > middle.y()) &&
-        middle.x() < p.x() + (middle.y() - p.y()) / (q.y() - p.y()) * (q.x() - p.x()))
-      inside = !inside;
   }
   return slack_mm < 0.0 ? inside && nearest >= -slack_mm : inside || of_middle <= slack_mm;
 }
