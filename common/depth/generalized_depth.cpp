@@ -32,6 +32,8 @@ constexpr double kCloseShare = 1.002, kCloseFullShare = 1.0001, kClose_mm = 2e-6
 // What part of the work is kept for the holds; lines of them. Chosen: half or twice of it moves no
 // bracket of 400 random pairs (gpd_pairs in tests/bench) by a percent.
 constexpr std::uint64_t kHoldsShare = 4;
+// Holds cost up to about so many evaluations, whatever is left; with less they are left out.
+constexpr std::uint64_t kHoldWork = 1'500;
 constexpr std::size_t kHoldLines = 32, kHoldLinesFull = 96;
 // So many times what the holds ask for is tried as a motion.
 constexpr double kHeldTimes[] = {1.0, 1.02, 1.1, 1.3, 1.6, 2.0, 3.0};
@@ -173,7 +175,7 @@ class PairDepth {
   // In a crack the depth of a point is a guess.
   bool can_hold() const {
     return mover_.inside_known() && other_.inside_known() && std::isfinite(hi_mm_) &&
-           evaluations_ < query_.work_cap;
+           evaluations_ + kHoldWork <= query_.work_cap;
   }
   std::vector<Vec3> deepest_points() const {
     std::vector<Vec3> points;
