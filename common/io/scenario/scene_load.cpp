@@ -8,6 +8,7 @@
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
 #include "common/generators/generators.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/live_rules.h"
 #include "common/io/scenario/scene_features.h"
 #include "common/io/scenario/scene_rules.h"
@@ -277,25 +278,32 @@ class SceneLoader {
 
   std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, std::size_t index) {
     const std::optional<LoadedMesh>& mesh = mesh_of(spec);
-    if (!mesh) return std::nullopt;
+    return mesh ? make_kind(spec, *mesh, index) : std::nullopt;
+  }
+
+ public:
+  std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                                    std::size_t index) {
     PartKind kind;
-    kind.solid = mesh->solid;
-    kind.report = mesh->report;
+    kind.solid = mesh.solid;
+    kind.report = mesh.report;
     kind.stated.kind = index;
     if (spec.tolerance)
       kind.stated.rest = {{spec.tolerance->offset_mm, spec.tolerance->text}, spec.tolerance->at};
     const Recognition* recognized = spec.undeclared == UndeclaredSurface::kNominal
                                         ? nullptr
                                         : &recognized_.of(*kind.solid, kind.report.quantum_mm);
-    if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
+    if (!match_features(spec, mesh, recognized, kind)) return std::nullopt;
     if (recognized != nullptr) add_undeclared(*recognized, kind);
     kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
                             for_band(kind.stated.rest), for_band(kind.stated.of_feature),
                             spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm,
-                            mesh->freeform});
+                            mesh.freeform});
     return kind;
   }
+  const std::vector<Finding>& findings() const { return scene_.findings; }
 
+ private:
   // 2. meshes, one a source, one solid a content
 
   const std::optional<LoadedMesh>& mesh_of(const Scenario::PartSpec& spec) {
@@ -443,15 +451,66 @@ class SceneLoader {
   RecognizedMeshes recognized_;
 };
 
+std::string counted_faces(const BroughtPart& brought) {
+  std::string text = std::to_string(brought.given->features.size()) + " surfaces as its file states them";
+  if (const std::size_t freeform = brought.given->freeform.size(); freeform > 0)
+    text += ", " + std::to_string(freeform) + " freeform faces as they were measured";
+  return text;
+}
+
+// What people are told of a part whose file says more than its mesh.
+std::vector<std::string> notes_of(const BroughtPart& brought) {
+  std::vector<std::string> notes = brought.given->notes;
+  notes.push_back(counted_faces(brought));
+  const auto used = std::ranges::count_if(brought.listed, [](const auto& entry) { return entry.used; });
+  if (used > 0) notes.push_back(std::to_string(used) + " tolerances of its file hold");
+  if (std::string unused = told_of_unused(brought.listed); !unused.empty())
+    notes.push_back(std::move(unused));
+  return notes;
+}
+
+// As the same part of an assembly is made.
+Result<PartShape> shape_of_brought(const SolidPtr& solid, double quantum_mm) {
+  const Result<BroughtPart> brought = brought_part(solid->mesh());
+  if (!brought) return brought.error();
+  Scenario scenario;
+  scenario.file = brought->given->product;
+  Scenario::PartSpec spec;
+  spec.name = brought->given->product;
+  spec.mesh.given = brought->given;
+  spec.features = brought->features;
+  LoadedMesh mesh{solid, {}, brought->given->features, brought->given->freeform};
+  mesh.report.quantum_mm = quantum_mm;
+  const MeshProvider meshes = default_meshes();
+  SceneLoader loader(scenario, meshes);
+  std::optional<PartKind> kind = loader.make_kind(spec, mesh, 0);
+  if (!kind) {
+    for (const Finding& finding : loader.findings())
+      if (finding.is_error) return fail(Code::kInvalidInput, finding.text);
+    return fail(Code::kInvalidInput, "it contradicts the mesh");
+  }
+  PartShape shape{solid, std::move(kind->features), std::move(kind->band)};
+  shape.stated = std::make_shared<const StatedPart>(std::move(kind->stated));
+  shape.notes = notes_of(*brought);
+  for (const Finding& finding : loader.findings()) shape.notes.push_back(finding.text);
+  return shape;
+}
+
 }  // namespace
 
 PartShape shape_of(SolidPtr solid, double quantum_mm, UndeclaredSurface undeclared) {
+  std::vector<std::string> notes;
+  if (solid->mesh().stated) {
+    Result<PartShape> brought = shape_of_brought(solid, quantum_mm);
+    if (brought) return std::move(brought).value();
+    notes.push_back("its faces are not taken as its file states them: " + brought.error().text);
+  }
   PartKind kind;
   kind.solid = solid;
   const bool recognizes = undeclared != UndeclaredSurface::kNominal;
   RecognizedMeshes recognized;
   if (recognizes) add_undeclared(recognized.of(*solid, quantum_mm), kind);
-  PartShape shape{solid, kind.features, {}, {}};
+  PartShape shape{solid, kind.features, {}, {}, std::move(notes)};
   shape.band = build_band({solid.get(),
                            kind.features,
                            std::nullopt,

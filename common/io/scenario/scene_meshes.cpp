@@ -8,18 +8,6 @@
 namespace mortise {
 namespace {
 
-ImportedMesh with_report(TriangleMesh mesh, std::string file, std::string format) {
-  ImportedMesh imported;
-  imported.mesh = std::move(mesh);
-  ImportReport& report = imported.report;
-  report.file = std::move(file);
-  report.format = std::move(format);
-  report.raw_vertices = report.points = imported.mesh.points_mm.size();
-  report.raw_triangles = report.triangles = imported.mesh.triangles.size();
-  note_topology(imported.mesh, report);
-  return imported;
-}
-
 Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
   Result<GeneratedPart> generated = generate(part.mesh.generator, part.mesh.parameters);
   if (!generated) return generated.error();
