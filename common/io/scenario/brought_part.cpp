@@ -79,7 +79,8 @@ Result<BroughtPart> brought_part(const TriangleMesh& mesh) {
   std::vector<StepPartGiven> given;
   given.push_back(given_part(part, part.name, groups_of_faces(*document, 0)));
   BroughtPart brought;
-  std::vector<PartStatements> stated = statements_of(*document, given, brought.listed);
+  std::vector<Scenario::AssemblySpec::Listed> listed;  // told by who reads the whole file
+  std::vector<PartStatements> stated = statements_of(*document, given, listed);
   brought.given = std::move(given.front().part);
   brought.features = std::move(stated.front().features);
   return brought;

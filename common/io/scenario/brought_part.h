@@ -27,8 +27,7 @@ Result<TriangleMesh> brought_mesh(std::vector<std::byte> bytes);
 
 struct BroughtPart {
   std::shared_ptr<const GivenPart> given;
-  std::vector<Scenario::FeatureSpec> features;         ///< of which the file states something
-  std::vector<Scenario::AssemblySpec::Listed> listed;  ///< what became of each statement
+  std::vector<Scenario::FeatureSpec> features;  ///< of which the file states something
 };
 /// What is stated of a mesh that has `stated`.
 Result<BroughtPart> brought_part(const TriangleMesh& mesh);
@@ -36,8 +35,8 @@ Result<BroughtPart> brought_part(const TriangleMesh& mesh);
 /// What becomes of each statement of an assembly whose parts are brought one by one.
 std::vector<Scenario::AssemblySpec::Listed> listed_when_brought(const StepDocument& document);
 
-/// "2 of 3 tolerances that the file states are not used: #12 flatness (why), #13 angle (why)";
-/// empty: all are.
+/// For whoever brings it: "2 of 3 tolerances that the file states are not used: #12 flatness (why),
+/// #13 angle (why)"; empty: all are.
 std::string told_of_unused(const std::vector<Scenario::AssemblySpec::Listed>& listed);
 
 }  // namespace mortise

@@ -451,24 +451,6 @@ class SceneLoader {
   RecognizedMeshes recognized_;
 };
 
-std::string counted_faces(const BroughtPart& brought) {
-  std::string text = std::to_string(brought.given->features.size()) + " surfaces as its file states them";
-  if (const std::size_t freeform = brought.given->freeform.size(); freeform > 0)
-    text += ", " + std::to_string(freeform) + " freeform faces as they were measured";
-  return text;
-}
-
-// What people are told of a part whose file says more than its mesh.
-std::vector<std::string> notes_of(const BroughtPart& brought) {
-  std::vector<std::string> notes = brought.given->notes;
-  notes.push_back(counted_faces(brought));
-  const auto used = std::ranges::count_if(brought.listed, [](const auto& entry) { return entry.used; });
-  if (used > 0) notes.push_back(std::to_string(used) + " tolerances of its file hold");
-  if (std::string unused = told_of_unused(brought.listed); !unused.empty())
-    notes.push_back(std::move(unused));
-  return notes;
-}
-
 // As the same part of an assembly is made.
 Result<PartShape> shape_of_brought(const SolidPtr& solid, double quantum_mm) {
   const Result<BroughtPart> brought = brought_part(solid->mesh());
@@ -491,7 +473,7 @@ Result<PartShape> shape_of_brought(const SolidPtr& solid, double quantum_mm) {
   }
   PartShape shape{solid, std::move(kind->features), std::move(kind->band)};
   shape.stated = std::make_shared<const StatedPart>(std::move(kind->stated));
-  shape.notes = notes_of(*brought);
+  shape.notes = brought->given->notes;
   for (const Finding& finding : loader.findings()) shape.notes.push_back(finding.text);
   return shape;
 }
