@@ -34,7 +34,7 @@ class PartMaker {
     double quantum_mm = 0.0;
     std::optional<PartShapes::AsPart> as = {};
     std::string text;  ///< else what was found in the file; may be empty
-    std::shared_ptr<const std::vector<Feature>> recognized;    ///< null: not searched
+    std::shared_ptr<const std::vector<Feature>> recognized;  ///< null: not searched
     /// Of a file: see mesh_bytes.h and, where something is stated of it, brought_part.h.
     std::shared_ptr<const std::vector<std::byte>> mesh_bytes;
   };

@@ -115,8 +115,7 @@ std::string name_of(const Brought& b, const std::pair<PartId, PartId>& pair) {
 }
 
 TEST(BroughtAssembly, IsJudgedAsTheFileItself) {
-  Brought b =
-      brought_from(std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios/tensioner.step");
+  Brought b = brought_from(std::filesystem::path(MORTISE_SOURCE_DIR) / "scenarios/tensioner.step");
   const Told here = verdicts_of(b.session.world);
   EXPECT_EQ(here.size(), 8U);
   EXPECT_EQ(here, verdicts_of(b.direct->scene.world));

@@ -73,8 +73,7 @@ Result<BroughtPart> brought_part(const TriangleMesh& mesh) {
   const Result<StepDocument> document = checked(*mesh.stated);
   if (!document) return document.error();
   const StepPart& part = document->parts.front();
-  if (part.mesh.points_mm.size() != mesh.points_mm.size() ||
-      part.mesh.triangles != mesh.triangles)
+  if (part.mesh.points_mm.size() != mesh.points_mm.size() || part.mesh.triangles != mesh.triangles)
     return fail(Code::kInvalidInput, "what is stated is of another mesh");
   std::vector<StepPartGiven> given;
   given.push_back(given_part(part, part.name, groups_of_faces(*document, 0)));

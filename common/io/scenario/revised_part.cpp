@@ -203,8 +203,8 @@ PartShape revised_by_file(const PartMemory& memory, const PartShape& own) {
   std::vector<Named> faces = stated_faces(memory, own, shape.notes);
   const std::shared_ptr<StatedPart> stated = stated_of(memory, faces);
   for (Named& face : faces) shape.features.push_back(std::move(face.feature));
-  shape.band = with_statements(own.band, *own.solid, for_band(stated->rest),
-                               for_band(stated->of_feature));
+  shape.band =
+      with_statements(own.band, *own.solid, for_band(stated->rest), for_band(stated->of_feature));
   for (SurfaceBand::Face& face : shape.band.faces)
     if (face.feature >= 0) face.name = shape.features[static_cast<std::size_t>(face.feature)].name;
   shape.stated = stated;

@@ -40,9 +40,9 @@ void remember(PartMemory& memory, const Part& part, const StatedPart& stated);
 
 /// The mesh as that part. Where its file states its faces, those are its faces: one that the part
 /// had before keeps its name, and what people said of it; of the others, and of faces of which
-/// nobody said anything, holds what the file says. Of any other mesh: a declared face is found by its surface, a recognized one by what is
-/// recognized; what is found keeps its name, and no other face gets it. Statements about the others
-/// wait in the memory. Pure; as slow as the recognition.
+/// nobody said anything, holds what the file says. Of any other mesh: a declared face is found by
+/// its surface, a recognized one by what is recognized; what is found keeps its name, and no other
+/// face gets it. Statements about the others wait in the memory. Pure; as slow as the recognition.
 PartShape revised(const PartMemory& memory, SolidPtr solid, double quantum_mm);
 
 }  // namespace mortise

@@ -182,7 +182,8 @@ class BroughtParts : public RevisedPart {
   void begin_empty() {
     begin_with(
         "name: revisions\nunits: mm\npolicy: report\ndeviation: recognized\nparts:\n"
-        "  - {name: desk, generator: {kind: block, x: 9, y: 9, z: 9}, pose: {position: [0, 0, -900]}}\n"
+        "  - {name: desk, generator: {kind: block, x: 9, y: 9, z: 9}, pose: {position: [0, 0, "
+        "-900]}}\n"
         "  - {name: box, generator: {kind: block, x: 9, y: 9, z: 9}, moving: true, "
         "pose: {position: [0, 0, 900]}}\n");
   }
@@ -209,13 +210,12 @@ class BroughtParts : public RevisedPart {
     std::vector<std::string> told;
     for (const ClashEvent& clash : snapshot_of(in).open_clashes) {
       const Verdict& v = clash.verdict;
-      told.push_back(in.find(clash.part_a)->name + " " + in.find(clash.part_b)->name + " " +
-                     v.face_a + " " + v.face_b + " class " +
-                     std::to_string(static_cast<int>(v.collision_class)) + " grade " +
-                     std::to_string(static_cast<int>(v.grade)) + " " + std::to_string(v.gpd_mm.lo) +
-                     " " + std::to_string(v.gpd_mm.hi) + " fake below " +
-                     std::to_string(v.fake_below_mm) + " real above " +
-                     std::to_string(v.real_above_mm));
+      told.push_back(
+          in.find(clash.part_a)->name + " " + in.find(clash.part_b)->name + " " + v.face_a + " " +
+          v.face_b + " class " + std::to_string(static_cast<int>(v.collision_class)) + " grade " +
+          std::to_string(static_cast<int>(v.grade)) + " " + std::to_string(v.gpd_mm.lo) + " " +
+          std::to_string(v.gpd_mm.hi) + " fake below " + std::to_string(v.fake_below_mm) +
+          " real above " + std::to_string(v.real_above_mm));
     }
     return told;
   }
@@ -231,8 +231,7 @@ TEST_F(BroughtParts, AreJudgedAsInAScenarioOfTheirAssembly) {
   Scratch other(1);
   for (int i = 0; i < 20; ++i) tick(), step(direct.world, {}, other);
   ASSERT_EQ(clashes(world()).size(), 1U);
-  EXPECT_EQ(snapshot_of(world()).open_clashes[0].verdict.grade,
-            DeviationGrade::kDeclaredFeature);
+  EXPECT_EQ(snapshot_of(world()).open_clashes[0].verdict.grade, DeviationGrade::kDeclaredFeature);
   EXPECT_EQ(clashes(world()), clashes(direct.world));
   expect_the_same_again();
 }

@@ -478,9 +478,8 @@ TEST_F(UploadTest, WhatIsNoPartOfAStepFileIsRefusedInOneLine) {
   std::vector<std::byte> file = brought_bytes(test::ring_and_pins(), 1);
   file.resize(file.size() - 5);
   ada.client->upload(ada.user, "pin.step.mmsh", 1.0, file);
-  ASSERT_TRUE(turn_until([&] {
-    return !ada.uploads.empty() && ada.uploads.back().refusal != Refusal::kNone;
-  }));
+  ASSERT_TRUE(turn_until(
+      [&] { return !ada.uploads.empty() && ada.uploads.back().refusal != Refusal::kNone; }));
   EXPECT_EQ(ada.uploads.back().refusal, Refusal::kUnreadableMesh);
   EXPECT_EQ(ada.uploads.back().text.substr(0, 15), "pin.step.mmsh: ");
   EXPECT_EQ(ada.uploads.back().text.find('\n'), std::string::npos);
