@@ -17,6 +17,9 @@
 /// that goes (TriangleMesh::stated): to the server, to one that stands by, into the log.
 namespace mortise {
 
+/// A file of such bytes is called so, beside the meshes of a saved session.
+inline constexpr const char* kBroughtEnding = ".mstp";
+
 /// The bytes of one part of an assembly. A statement that speaks of faces of several parts says
 /// nothing any more, and is kept so that faces stay apart as they are in the assembly.
 std::vector<std::byte> brought_bytes(const StepDocument& document, std::uint32_t part);

@@ -68,6 +68,7 @@ struct LoadedMesh {
   ImportReport report;
   std::vector<Feature> generated;  // features that a generator or an assembly brings
   std::vector<FreeformFace> freeform;
+  std::vector<Scenario::FeatureSpec> stated;  // of which the mesh itself brings a tolerance
 };
 
 // All parts that are alike: mesh, features, band.
@@ -105,7 +106,7 @@ Result<FeatureMatch> match_of(const Scenario::PartSpec& spec, const Scenario::Fe
       declared_in_file(spec, declared.name))
     return match_feature(mesh.solid->mesh(), declaration);
   // The corners of a CAD file lie on its edges, which may be off its surfaces by what it states.
-  if (spec.mesh.given)
+  if (spec.mesh.given || mesh.solid->mesh().stated)
     declaration.chord_error_mm = std::max(declaration.chord_error_mm, 1.001 * own->residual_mm);
   return check_feature(*mesh.solid, declaration, own->triangles);
 }
@@ -119,7 +120,9 @@ std::vector<Scenario::FeatureSpec> with_generated(const Scenario::PartSpec& spec
     const auto same =
         std::find_if(specs.begin(), specs.end(), [&](auto& s) { return s.name == generated.name; });
     if (same == specs.end()) {
-      Scenario::FeatureSpec extra;
+      const auto stated =
+          std::ranges::find(mesh.stated, generated.name, &Scenario::FeatureSpec::name);
+      Scenario::FeatureSpec extra = stated == mesh.stated.end() ? Scenario::FeatureSpec{} : *stated;
       extra.name = generated.name;
       extra.surface = generated.surface;
       extra.at = spec.at;
@@ -290,15 +293,16 @@ class SceneLoader {
     kind.stated.kind = index;
     if (spec.tolerance)
       kind.stated.rest = {{spec.tolerance->offset_mm, spec.tolerance->text}, spec.tolerance->at};
-    const Recognition* recognized = spec.undeclared == UndeclaredSurface::kNominal
-                                        ? nullptr
-                                        : &recognized_.of(*kind.solid, kind.report.quantum_mm);
+    // Of a mesh whose file states its faces nothing is guessed.
+    const bool recognizes =
+        spec.undeclared != UndeclaredSurface::kNominal && !kind.solid->mesh().stated;
+    const Recognition* recognized =
+        recognizes ? &recognized_.of(*kind.solid, kind.report.quantum_mm) : nullptr;
     if (!match_features(spec, mesh, recognized, kind)) return std::nullopt;
     if (recognized != nullptr) add_undeclared(*recognized, kind);
     kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
                             for_band(kind.stated.rest), for_band(kind.stated.of_feature),
-                            spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm,
-                            mesh.freeform});
+                            recognizes, kind.report.quantum_mm, mesh.freeform});
     return kind;
   }
   const std::vector<Finding>& findings() const { return scene_.findings; }
@@ -324,6 +328,7 @@ class SceneLoader {
       return std::nullopt;
     }
     LoadedMesh mesh;
+    if (imported->mesh.stated && !take_stated(spec, *imported, mesh)) return std::nullopt;
     mesh.report = imported->report;
     SolidPtr solid = std::make_shared<const Solid>(std::move(imported->mesh));
     mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
@@ -345,6 +350,20 @@ class SceneLoader {
       }
     }
     return mesh;
+  }
+
+  // A part of a STEP file that a session saved, or has in its log.
+  bool take_stated(const Scenario::PartSpec& spec, ImportedMesh& imported, LoadedMesh& mesh) {
+    Result<BroughtPart> brought = brought_part(imported.mesh);
+    if (!brought) {
+      finding(true, spec.at, "part " + spec.name + ": " + brought.error().text);
+      return false;
+    }
+    mesh.generated = brought->given->features;
+    mesh.freeform = brought->given->freeform;
+    mesh.stated = std::move(brought->features);
+    imported.report.notes = brought->given->notes;
+    return true;
   }
 
   void say_open(const Scenario::PartSpec& spec, const LoadedMesh& mesh) {
@@ -461,7 +480,7 @@ Result<PartShape> shape_of_brought(const SolidPtr& solid, double quantum_mm) {
   spec.name = brought->given->product;
   spec.mesh.given = brought->given;
   spec.features = brought->features;
-  LoadedMesh mesh{solid, {}, brought->given->features, brought->given->freeform};
+  LoadedMesh mesh{solid, {}, brought->given->features, brought->given->freeform, {}};
   mesh.report.quantum_mm = quantum_mm;
   const MeshProvider meshes = default_meshes();
   SceneLoader loader(scenario, meshes);
