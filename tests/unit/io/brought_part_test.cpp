@@ -9,6 +9,7 @@
 
 #include "common/io/log/log_records.h"
 #include "common/io/scenario/assembly_parts.h"
+#include "common/io/step/given_parts.h"
 #include "tests/unit/io/revised_session.h"
 #include "tests/unit/io/step_samples.h"
 
@@ -173,6 +174,33 @@ TEST(BroughtPart, SurfacesThatTheMeshContradictsAreNotTaken) {
   EXPECT_NE(all_of(shape.notes).find("its faces are not taken as its file states them: "),
             std::string::npos)
       << all_of(shape.notes);
+}
+
+// A plate with thousands of like holes, each in two halves: whoever brings it waits for seconds.
+TEST(BroughtPart, HalvesOfManyLikeHolesFindEachOther) {
+  constexpr std::uint32_t kHoles = 2'000;
+  StepPart part;
+  part.name = "sieve";
+  for (std::uint32_t half = 0; half < 2; ++half)
+    for (std::uint32_t hole = 0; hole < kHoles; ++hole) {
+      StepFace face;
+      face.grade = StepFaceGrade::kExact;
+      face.surface.kind = SurfaceKind::kCylinder;
+      face.surface.radius_mm = 1.0;
+      face.surface.inward = true;
+      face.surface.point = Vec3(3.0 * hole, 0.0, 0.0);
+      const auto first = static_cast<std::uint32_t>(part.mesh.points_mm.size());
+      for (const Vec3& corner : {Vec3(1, 0, 0), Vec3(1, 0, 2), Vec3(0, half == 0 ? 1 : -1, 0)})
+        part.mesh.points_mm.push_back(face.surface.point + corner);
+      part.mesh.triangles.push_back({first, first + 1, first + 2});
+      part.face_of_triangle.push_back(static_cast<std::uint32_t>(part.faces.size()));
+      part.faces.push_back(face);
+    }
+  const StepPartGiven given = given_part(part, "sieve.step");
+  EXPECT_EQ(given.part->features.size(), kHoles);
+  for (const Feature& feature : given.part->features) EXPECT_EQ(feature.triangles.size(), 2U);
+  for (std::uint32_t hole = 0; hole < kHoles; ++hole)
+    EXPECT_EQ(given.feature_of_face[hole], given.feature_of_face[kHoles + hole]);
 }
 
 // 2. in a session
