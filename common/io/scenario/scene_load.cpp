@@ -150,6 +150,22 @@ std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
   return "generator " + spec.mesh.generator + " has no feature of this name; " + known_names(mesh);
 }
 
+std::string told_of_open(const LoadedMesh& mesh) {
+  const ImportReport& report = mesh.report;
+  const std::string edges = std::to_string(report.boundary_edges) + " boundary, " +
+                            std::to_string(report.non_manifold_edges) + " non-manifold, " +
+                            std::to_string(report.misoriented_edges) + " misoriented edges";
+  const bool volume = mesh.solid->topology().balanced();  // then it is the volume that is missing
+  return ": mesh " + report.file +
+         (mesh.solid->has_inside()
+              ? " is open at " + std::to_string(mesh.solid->cracks().count) + " cracks (" + edges +
+                    "): beside them its inside is not known, and a clash there potential at best; "
+                    "repair it"
+              : (volume ? " encloses no volume (" : " is open (") + edges +
+                    "): crossing is found, depth is not, and what lies within it is not examined; "
+                    "repair it for more than potential");
+}
+
 // What can be added while the session runs.
 std::shared_ptr<PartShapes> make_shapes(const LoadedScene& scene, UndeclaredSurface undeclared) {
   auto shapes = std::make_shared<PartShapes>([undeclared](SolidPtr solid, double quantum_mm) {
@@ -334,7 +350,7 @@ class SceneLoader {
     mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
     for (const std::string& note : mesh.report.notes)
       finding(false, spec.at, "part " + spec.name + ": mesh " + mesh.report.file + ": " + note);
-    if (!mesh.report.closed) say_open(spec, mesh);
+    if (!mesh.report.closed) finding(false, spec.at, "part " + spec.name + told_of_open(mesh));
     if (spec.mesh.given && mesh_hash(spec.mesh.given->mesh) == mesh.solid->hash()) {
       mesh.generated = spec.mesh.given->features;
       mesh.freeform = spec.mesh.given->freeform;
@@ -364,24 +380,6 @@ class SceneLoader {
     mesh.stated = std::move(brought->features);
     imported.report.notes = brought->given->notes;
     return true;
-  }
-
-  void say_open(const Scenario::PartSpec& spec, const LoadedMesh& mesh) {
-    const ImportReport& report = mesh.report;
-    const std::string edges = std::to_string(report.boundary_edges) + " boundary, " +
-                              std::to_string(report.non_manifold_edges) + " non-manifold, " +
-                              std::to_string(report.misoriented_edges) + " misoriented edges";
-    const bool volume = mesh.solid->topology().balanced();  // then it is the volume that is missing
-    finding(false, spec.at,
-            "part " + spec.name + ": mesh " + report.file +
-                (mesh.solid->has_inside()
-                     ? " is open at " + std::to_string(mesh.solid->cracks().count) + " cracks (" +
-                           edges +
-                           "): beside them its inside is not known, and a clash there potential at "
-                           "best; repair it"
-                     : (volume ? " encloses no volume (" : " is open (") + edges +
-                           "): crossing is found, depth is not, and what lies within it is not "
-                           "examined; repair it for more than potential"));
   }
 
   // 3. features
