@@ -19,6 +19,8 @@
 #include "common/base/hash.h"
 #include "common/geometry/recognition/recognition.h"
 #include "common/io/mesh/mesh_import.h"
+#include "common/io/mesh/topology_report.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/messages/mesh_bytes.h"
 #include "common/session/guide/guidance.h"
 
@@ -66,6 +68,12 @@ Result<ImportedMesh> read_wire_mesh(const std::vector<std::byte>& bytes, const s
   return mesh_of_triangles(std::move(coordinates_mm), name);
 }
 
+Result<ImportedMesh> read_brought(const std::vector<std::byte>& bytes, const std::string& name) {
+  Result<TriangleMesh> mesh = brought_mesh(bytes);
+  if (!mesh) return fail(Code::kInvalidInput, name + ": " + mesh.error().text);
+  return with_report(std::move(mesh).value(), name, "STEP");
+}
+
 // What the importer says, with the name that the sender gave in place of ours.
 std::string told(std::string text, const std::string& path, const std::string& name) {
   for (std::size_t at = text.find(path); at != std::string::npos;
@@ -76,7 +84,9 @@ std::string told(std::string text, const std::string& path, const std::string& n
 
 Result<ImportedMesh> read_file(const PartMaker::Wish& wish) {
   const std::string ending = fs::path(wish.name).extension().string();
-  if (ending == ".mmsh") return read_wire_mesh(wish.file, wish.name);
+  if (ending == ".mmsh")
+    return is_step_document(wish.file) ? read_brought(wish.file, wish.name)
+                                       : read_wire_mesh(wish.file, wish.name);
   const OwnFolder folder;
   const fs::path path = folder.path() / ("part" + ending);
   std::ofstream out(path, std::ios::binary);
@@ -137,14 +147,14 @@ struct PartMaker::Work {
         ready.text = mesh.error().text;
         return ready;
       }
-      for (const std::string& note : notes_of(mesh->report))
-        ready.text += (ready.text.empty() ? "" : "; ") + note;
+      add_notes(notes_of(mesh->report), ready.text);
       ready.quantum_mm = mesh->report.quantum_mm;
       wish.solid = std::make_shared<const Solid>(std::move(mesh->mesh));
     }
     const Solid& solid = *wish.solid;
     const PartShapes::Make& make_it = wish.as ? wish.as->make : make;
     ready.shape = std::make_shared<const PartShape>(make_it(wish.solid, ready.quantum_mm));
+    if (is_file) add_notes(ready.shape->notes, ready.text);
     build_derived(*ready.shape, threads);
     if (solid.mesh().triangles.size() <= kRecognizedOnDemand)
       ready.recognized =
@@ -158,12 +168,18 @@ struct PartMaker::Work {
     return none;
   }
 
+  static void add_notes(const std::vector<std::string>& notes, std::string& text) {
+    for (const std::string& note : notes) text += (text.empty() ? "" : "; ") + note;
+  }
+
+  // Clients get the mesh; a server that stands by what is stated of it as well.
   void tell(const Solid& solid, Made& ready) {
     const TriangleMesh& mesh = solid.mesh();
-    ready.mesh_bytes = std::make_shared<const std::vector<std::byte>>(
+    const auto plain = std::make_shared<const std::vector<std::byte>>(
         mesh_to_bytes(mesh.points_mm, mesh.triangles));
+    ready.mesh_bytes = mesh.stated ? mesh.stated : plain;
     const std::lock_guard lock(publishing);
-    if (publish) publish(solid.hash(), *ready.mesh_bytes);
+    if (publish) publish(solid.hash(), *plain);
   }
 };
 

@@ -34,8 +34,9 @@ class PartMaker {
     double quantum_mm = 0.0;
     std::optional<PartShapes::AsPart> as = {};
     std::string text;  ///< else what was found in the file; may be empty
-    std::shared_ptr<const std::vector<Feature>> recognized;    ///< null: not searched
-    std::shared_ptr<const std::vector<std::byte>> mesh_bytes;  ///< of a file: see mesh_bytes.h
+    std::shared_ptr<const std::vector<Feature>> recognized;  ///< null: not searched
+    /// Of a file: see mesh_bytes.h and, where something is stated of it, brought_part.h.
+    std::shared_ptr<const std::vector<std::byte>> mesh_bytes;
   };
   /// Called by the thread for each mesh of a file, before it is told as made.
   using Publish = std::function<void(const std::string& hash, std::span<const std::byte> bytes)>;

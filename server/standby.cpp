@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/io/log/session_log_read.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/messages/mesh_bytes.h"
 #include "common/session/world/decisions.h"
 #include "server/backlog.h"
@@ -64,6 +65,17 @@ std::string text_of(Backlog::News news, std::uint64_t backlog, std::uint64_t tic
   return {};
 }
 
+// A mesh as clients get it, or a part with what its file states of it.
+std::optional<TriangleMesh> mesh_of(std::vector<std::byte> bytes) {
+  if (is_step_document(bytes)) {
+    Result<TriangleMesh> brought = brought_mesh(std::move(bytes));
+    return brought ? std::optional(std::move(brought).value()) : std::nullopt;
+  }
+  std::optional<WireMesh> mesh = mesh_from_bytes(bytes);
+  if (!mesh) return std::nullopt;
+  return TriangleMesh{std::move(mesh->points_mm), std::move(mesh->triangles)};
+}
+
 }  // namespace
 
 Follower::Follower(World& world, SessionStatistics& statistics, SessionLogWriter* log, int threads,
@@ -117,13 +129,11 @@ Status Follower::take_mesh(MeshPiece piece) {
   if (piece.hash != mesh_.hash || piece.offset != mesh_.bytes.size()) return ok();
   mesh_.bytes.insert(mesh_.bytes.end(), piece.bytes.begin(), piece.bytes.end());
   if (mesh_.bytes.size() < mesh_.length || !world_.shapes) return ok();
-  std::optional<WireMesh> mesh = mesh_from_bytes(mesh_.bytes);
-  TriangleMesh triangles;
-  if (mesh) triangles = {std::move(mesh->points_mm), std::move(mesh->triangles)};
-  if (!mesh || mesh_hash(triangles) != mesh_.hash)
+  std::optional<TriangleMesh> triangles = mesh_of(std::move(mesh_.bytes));
+  if (!triangles || mesh_hash(*triangles) != mesh_.hash)
     return fail(Code::kMismatch, "mesh " + mesh_.hash + " was told with other bytes");
   auto make = [make = world_.shapes->make(), quantum_mm = mesh_.quantum_mm, threads = threads_,
-               solid = std::make_shared<const Solid>(std::move(triangles))]() -> PartShapePtr {
+               solid = std::make_shared<const Solid>(std::move(*triangles))]() -> PartShapePtr {
     auto shape = std::make_shared<const PartShape>(make(solid, quantum_mm));
     build_derived(*shape, threads);
     return shape;

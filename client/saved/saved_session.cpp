@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kScenario = "scenario.yaml", kMeshes = "meshes/", kMesh = ".obj";
+constexpr std::string_view kScenario = "scenario.yaml", kMeshes = "meshes/", kMesh = ".obj",
+                           kPart = ".mstp";
 
 struct Discard {
   void operator()(zip_t* zip) const { zip_discard(zip); }
@@ -40,7 +41,11 @@ std::string why(zip_error_t& reason) {
   return text;
 }
 
-std::string obj_of(const SavedScenario::MeshFile& mesh) {
+std::string text_of(const SavedScenario::MeshFile& mesh) {
+  if (mesh.with_stated) {
+    const std::vector<std::byte>& bytes = *mesh.solid->mesh().stated;
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
   std::ostringstream out;
   write_obj(mesh.solid->mesh(), {}, out);
   return std::move(out).str();
@@ -49,9 +54,9 @@ std::string obj_of(const SavedScenario::MeshFile& mesh) {
 // Of what is saved: names of plain letters, in this folder or in that of the meshes.
 bool is_saved_name(std::string_view name) {
   if (name == kScenario) return true;
-  if (!name.starts_with(kMeshes) || !name.ends_with(kMesh)) return false;
+  if (!name.starts_with(kMeshes) || !(name.ends_with(kMesh) || name.ends_with(kPart))) return false;
   name.remove_prefix(kMeshes.size());
-  name.remove_suffix(kMesh.size());
+  name.remove_suffix(name.ends_with(kMesh) ? kMesh.size() : kPart.size());
   return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-';
   });
@@ -176,7 +181,7 @@ Status write_folder(const SavedScenario& saved, const fs::path& folder) {
   if (Status free = is_free(folder); !free) return free;
   if (Status made = make_folders(folder); !made) return made;
   for (const SavedScenario::MeshFile& mesh : saved.meshes)
-    if (Status written = write_file(folder / mesh.name, obj_of(mesh)); !written) return written;
+    if (Status written = write_file(folder / mesh.name, text_of(mesh)); !written) return written;
   return write_file(folder / kScenario, saved.yaml);
 }
 
@@ -197,7 +202,7 @@ Result<std::string> zip_of(const SavedScenario& saved) {
   }
   std::vector<std::pair<std::string, std::string>> files{{std::string(kScenario), saved.yaml}};
   for (const SavedScenario::MeshFile& mesh : saved.meshes)
-    files.emplace_back(mesh.name, obj_of(mesh));
+    files.emplace_back(mesh.name, text_of(mesh));
   for (const auto& [name, text] : files) {
     zip_source_t* source = zip_source_buffer(zip.get(), text.data(), text.size(), 0);
     if (source != nullptr && zip_file_add(zip.get(), name.c_str(), source, ZIP_FL_ENC_UTF_8) >= 0)

@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "common/io/scenario/assembly_parts.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/io/step/step_import.h"
-#include "common/messages/mesh_bytes.h"
 
 namespace mortise::web {
 namespace {
@@ -44,15 +44,13 @@ std::string without_path(std::string text, const std::string& path, const std::s
 
 BroughtAssembly brought(const StepDocument& document) {
   BroughtAssembly assembly;
-  for (const StepPart& part : document.parts)
-    assembly.meshes.push_back(mesh_to_bytes(part.mesh.points_mm, part.mesh.triangles));
+  for (std::uint32_t i = 0; i < document.parts.size(); ++i)
+    assembly.meshes.push_back(brought_bytes(document, i));
   for (const StepInstance& instance : document.instances)
     assembly.places.push_back({part_name_of(instance.path), instance.part, instance.X_WP});
   assembly.notes = document.notes;
-  if (!document.statements.empty())
-    assembly.notes.push_back(std::to_string(document.statements.size()) +
-                             " tolerances that the file states are not used here; `mortise open` "
-                             "of the file uses them");
+  if (std::string unused = told_of_unused(listed_when_brought(document)); !unused.empty())
+    assembly.notes.push_back(std::move(unused));
   for (const std::string& path : document.not_solid)
     assembly.notes.push_back(path + " is no solid: left out");
   return assembly;

@@ -16,7 +16,7 @@ namespace mortise::web {
 
 /// The parts of a STEP file.
 struct BroughtAssembly {
-  std::vector<std::vector<std::byte>> meshes;  ///< mesh_bytes.h; of each distinct part
+  std::vector<std::vector<std::byte>> meshes;  ///< brought_part.h; of each distinct part
   struct Place {
     std::string name;
     std::size_t mesh = 0;  ///< index of `meshes`

@@ -1,5 +1,6 @@
 #include "common/geometry/mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -22,7 +23,8 @@ bool valid(const TriangleMesh& mesh) {
 std::string mesh_hash(const TriangleMesh& mesh) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   std::vector<std::byte> bytes(mesh.points_mm.size() * sizeof(Vec3) +
-                               mesh.triangles.size() * sizeof(mesh.triangles[0]));
+                               mesh.triangles.size() * sizeof(mesh.triangles[0]) +
+                               (mesh.stated ? mesh.stated->size() : 0));
   std::byte* out = bytes.data();
   for (const Vec3& point : mesh.points_mm) {
     const Vec3 no_negative_zero = point.array() + 0.0;
@@ -31,6 +33,7 @@ std::string mesh_hash(const TriangleMesh& mesh) {
   }
   if (!mesh.triangles.empty())
     std::memcpy(out, mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]));
+  if (mesh.stated) std::ranges::copy(*mesh.stated, bytes.end() - std::ssize(*mesh.stated));
   return content_hash(bytes);
 }
 

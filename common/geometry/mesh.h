@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,9 @@ namespace mortise {
 struct TriangleMesh {
   std::vector<Vec3> points_mm;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// What its CAD file states of the faces of exactly these triangles, where it came as such a part
+  /// into a running session: bytes of io/scenario/brought_part.h. Null: nothing.
+  std::shared_ptr<const std::vector<std::byte>> stated = {};
 
   const Vec3& corner(std::uint32_t triangle, int k) const {
     return points_mm[triangles[triangle][k]];
@@ -23,7 +28,8 @@ struct TriangleMesh {
 /// Functions of this room expect such a mesh; it may be empty. O(n).
 bool valid(const TriangleMesh& mesh);
 
-/// Hash of points and triangles: 32 hex digits, the name of the mesh everywhere.
+/// Hash of points, triangles and what is stated of them: 32 hex digits, the name of the mesh
+/// everywhere.
 std::string mesh_hash(const TriangleMesh& mesh);
 
 /// Box of all points.

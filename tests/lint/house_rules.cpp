@@ -68,9 +68,9 @@ const std::vector<Room> kRooms = {
     {"client/api/examples", {}},
     {"client/python/", {}},
     {"tests/",
-     {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/replay/",
-      "client/report/", "client/saved/", "client/picture/", "client/tools/", "client/tools/check/",
-      "tests/"}},
+     {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/web/step_reader",
+      "client/replay/", "client/report/", "client/saved/", "client/picture/", "client/tools/",
+      "client/tools/check/", "tests/"}},
 };
 
 // A library that is named in some places only. Tests may use what they test against.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/constants.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/io/state/bytes.h"
 
 namespace mortise::log_records {
@@ -300,6 +301,10 @@ bool decode(std::span<const std::byte> bytes, TickEnd& out) {
 
 std::vector<std::byte> encode(const TriangleMesh& mesh) {
   ByteWriter out;
+  if (mesh.stated) {  // which holds the mesh as well
+    out.raw(*mesh.stated);
+    return out.take();
+  }
   out.u32(static_cast<std::uint32_t>(mesh.points_mm.size()));
   out.u32(static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const Vec3& point : mesh.points_mm)
@@ -310,6 +315,11 @@ std::vector<std::byte> encode(const TriangleMesh& mesh) {
 }
 
 bool decode(std::span<const std::byte> bytes, TriangleMesh& out) {
+  if (is_step_document(bytes)) {
+    Result<TriangleMesh> brought = brought_mesh({bytes.begin(), bytes.end()});
+    if (brought) out = std::move(brought).value();
+    return static_cast<bool>(brought);
+  }
   ByteReader in(bytes);
   const std::uint64_t points = in.u32(), triangles = in.u32();
   if (!in.ok() || in.left() != points * 24 + triangles * 12) return false;

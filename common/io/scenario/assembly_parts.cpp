@@ -16,8 +16,6 @@
 namespace mortise {
 namespace {
 
-// Faces of one part; a band counts them in 16 bits.
-constexpr std::size_t kMostFaces = 50'000;
 // An address agrees with a face to the digits that people copy.
 constexpr double kAgreesSize_mm = 1e-3, kAgreesPlace_mm = 1e-3, kAgreesDirection = 1e-4;
 
@@ -34,10 +32,10 @@ class AssemblyPlacer {
     for (const std::string& note : document_.notes) say(false, assembly_.at, note);
     for (std::size_t i = 0; i < document_.parts.size(); ++i) {
       const StepPart& part = document_.parts[i];
-      if (part.faces.size() > kMostFaces) {
+      if (part.faces.size() > kMostPartFaces) {
         say(true, assembly_.at,
             "part " + part.name + " has " + std::to_string(part.faces.size()) +
-                " faces, more than " + std::to_string(kMostFaces) + "; split or simplify it");
+                " faces, more than " + std::to_string(kMostPartFaces) + "; split or simplify it");
         return;
       }
       given_.push_back(given_part(part, assembly_.file,

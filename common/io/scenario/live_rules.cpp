@@ -118,8 +118,8 @@ class LiveRules final : public SurfaceRules {
     return restate_part(world, target, text, context);
   }
 
-  void add_part(const Part& part) override {
-    StatedPart& stated = stated_.emplace_back();
+  void add_part(const Part& part, const PartShape& shape) override {
+    StatedPart& stated = stated_.emplace_back(shape.stated ? *shape.stated : StatedPart{});
     stated.kind = part.kind;
     stated.of_feature.resize(part.features.size());
   }
@@ -222,6 +222,7 @@ class LiveRules final : public SurfaceRules {
     feature.width_to.clear();
     feature.position = {};
     feature.at = {};
+    feature.by = Scenario::SaidBy::kSession;
     return text.empty() ? ok() : feature_statement(text, context, feature);
   }
 

@@ -101,7 +101,7 @@ class StatementReader {
       case Kind::kUnknown:
         break;
     }
-    return "of no known kind";
+    return "of no known kind, or about several parts";
   }
 
   struct Target {
@@ -330,6 +330,7 @@ class StatementReader {
     if (known != features.end()) return *known;
     features.emplace_back();
     features.back().name = target.feature->name;
+    features.back().by = Scenario::SaidBy::kFile;
     return features.back();
   }
 

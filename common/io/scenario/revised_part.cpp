@@ -24,20 +24,38 @@ const Spec* spec_of(const PartMemory& memory, const std::string& name) {
   return found == memory.declared.end() ? nullptr : &*found;
 }
 
+bool states(const Spec& spec) {
+  return spec.tolerance || !spec.iso_class.empty() || spec.position.zone_mm > 0.0;
+}
+
+// Did people say this, in the scenario or since? Also that nothing is stated any more.
+bool by_people(const Spec& spec) {
+  using By = Scenario::SaidBy;
+  return spec.by == By::kSession || (spec.by == By::kScenario && states(spec));
+}
+
+// What holds of a face of a mesh of which `own` is stated: what people said, wherever they did.
+const Spec* spec_beside(const PartMemory& memory, const std::string& name, const Spec* own) {
+  const Spec* said = spec_of(memory, name);
+  return said != nullptr && by_people(*said) ? said : own;
+}
+
 // "bore_3" -> "bore_"
 std::string stem_of(const std::string& name) {
   const std::size_t end = name.find_last_not_of("0123456789");
   return name.substr(0, end == std::string::npos ? 0 : end + 1);
 }
 
-// What was recognized in the new mesh has the names that its faces had; other ones get fresh names.
-void name_as_before(const PartMemory& memory, const Solid& solid, std::vector<Feature>& shown) {
+// What the new mesh shows, or its file states, has the names that its faces had; other ones get
+// fresh names. What is shown has names of recognized faces alone.
+void name_as_before(const PartMemory& memory, const Solid& solid, std::vector<Feature>& shown,
+                    bool are_stated = false) {
   std::vector<std::string> names;
   std::vector<SoughtFace> sought;
   std::set<std::string> taken;
   for (const auto& [name, face] : memory.faces) {
     taken.insert(name);
-    if (face.origin != FeatureOrigin::kRecognized) continue;
+    if (face.origin != FeatureOrigin::kRecognized && !are_stated) continue;
     names.push_back(name);
     sought.push_back(face);
   }
@@ -100,8 +118,34 @@ std::vector<Named> first_faces(const PartMemory& memory) {
   for (const Feature& feature : memory.first->features) {
     Named& face = faces.emplace_back();
     face.feature = feature;
-    if (const Spec* said = spec_of(memory, feature.name)) face.spec = *said;
+    const auto own = std::ranges::find(memory.first->declared, feature.name, &Spec::name);
+    const Spec* said =
+        spec_beside(memory, feature.name, own == memory.first->declared.end() ? nullptr : &*own);
+    if (said != nullptr) face.spec = *said;
   }
+  return faces;
+}
+
+// A mesh whose file states its faces: `own` is what it states, `notes` what of that does not hold.
+std::vector<Named> stated_faces(const PartMemory& memory, const PartShape& own,
+                                std::vector<std::string>& notes) {
+  std::vector<Feature> features = own.features;
+  name_as_before(memory, *own.solid, features, true);
+  std::vector<Named> faces;
+  std::size_t given_way = 0;
+  std::string names;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    Named& face = faces.emplace_back();
+    face.feature = std::move(features[i]);
+    Spec stated = own.stated->declared[i];
+    const Spec* said = spec_beside(memory, face.feature.name, &stated);
+    if (said != &stated && states(stated))
+      names += (given_way++ == 0 ? "" : ", ") + face.feature.name;
+    face.spec = *said;
+    face.spec->surface = stated.surface;
+  }
+  if (given_way > 0)
+    notes.push_back("tolerances of its file give way to what people said of " + names);
   return faces;
 }
 
@@ -133,7 +177,7 @@ std::shared_ptr<StatedPart> stated_of(const PartMemory& memory, std::vector<Name
 void remember(PartMemory& memory, const Part& part, const StatedPart& stated) {
   if (!memory.first)
     memory.first = std::make_shared<const PartMemory::First>(
-        PartMemory::First{part.solid->hash(), part.features, part.band});
+        PartMemory::First{part.solid->hash(), part.features, part.band, stated.declared});
   memory.rest = stated.rest;
   for (std::size_t i = 0; i < part.features.size(); ++i) {
     const Feature& feature = part.features[i];
@@ -150,8 +194,30 @@ void remember(PartMemory& memory, const Part& part, const StatedPart& stated) {
   }
 }
 
+namespace {
+
+// A mesh whose file states its faces.
+PartShape revised_by_file(const PartMemory& memory, const PartShape& own) {
+  PartShape shape;
+  shape.solid = own.solid;
+  std::vector<Named> faces = stated_faces(memory, own, shape.notes);
+  const std::shared_ptr<StatedPart> stated = stated_of(memory, faces);
+  for (Named& face : faces) shape.features.push_back(std::move(face.feature));
+  shape.band =
+      with_statements(own.band, *own.solid, for_band(stated->rest), for_band(stated->of_feature));
+  for (SurfaceBand::Face& face : shape.band.faces)
+    if (face.feature >= 0) face.name = shape.features[static_cast<std::size_t>(face.feature)].name;
+  shape.stated = stated;
+  return shape;
+}
+
+}  // namespace
+
 PartShape revised(const PartMemory& memory, SolidPtr solid, double quantum_mm) {
   const bool is_first = memory.first && memory.first->mesh == solid->hash();
+  if (!is_first && solid->mesh().stated)
+    if (const PartShape own = shape_of(solid, quantum_mm, memory.undeclared); own.stated)
+      return revised_by_file(memory, own);
   const bool recognizes = memory.undeclared != UndeclaredSurface::kNominal;
   std::vector<Named> faces;
   if (is_first) {

@@ -25,6 +25,7 @@ struct PartMemory {
     std::string mesh;
     std::vector<Feature> features;
     SurfaceBand band;
+    std::vector<Scenario::FeatureSpec> declared;  ///< what was stated then
   };
   std::shared_ptr<const First> first;
   std::map<std::string, Face> faces;
@@ -37,9 +38,11 @@ struct PartMemory {
 /// Adds what the part has and what is stated of it now.
 void remember(PartMemory& memory, const Part& part, const StatedPart& stated);
 
-/// The mesh as that part. A declared face is found by its surface, a recognized one by what is
-/// recognized; what is found keeps its name, and no other face gets it. Statements about the others
-/// wait in the memory. Pure; as slow as the recognition.
+/// The mesh as that part. Where its file states its faces, those are its faces: one that the part
+/// had before keeps its name, and what people said of it; of the others, and of faces of which
+/// nobody said anything, holds what the file says. Of any other mesh: a declared face is found by
+/// its surface, a recognized one by what is recognized; what is found keeps its name, and no other
+/// face gets it. Statements about the others wait in the memory. Pure; as slow as the recognition.
 PartShape revised(const PartMemory& memory, SolidPtr solid, double quantum_mm);
 
 }  // namespace mortise

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "common/io/scenario/brought_part.h"
 #include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/world/standing.h"
@@ -128,9 +129,10 @@ class Writer {
       node["mesh"]["file"] = file_of(part);
       node["mesh"]["unit"] = "mm";
       node["mesh"].remove("scale");
-      surfaces(part, node);
+      if (!is_kept_whole(part)) surfaces(part, node);
     }
     statements(part, node, is_generated);
+    if (whole_of(part.id)) take_back(part, node);
     YAML::Node pose;
     pose["position"] = vector_of(part.X_WP.p / scenario_.unit_mm);
     const Eigen::Vector4d& q = part.X_WP.q.coeffs();
@@ -140,16 +142,38 @@ class Writer {
     return node;
   }
 
+  // Its mesh is kept with all that its file states of it, under the names that the faces have
+  // there. Faces of a part that took this mesh may go by older names: then the mesh is kept alone.
+  bool is_kept_whole(const Part& part) {
+    if (!part.solid->mesh().stated) return false;
+    const auto [known, is_new] = whole_.try_emplace(part.id, false);
+    if (!is_new) return known->second;
+    const Result<BroughtPart> brought = brought_part(part.solid->mesh());
+    known->second = brought && std::ranges::all_of(part.features, [&](const Feature& feature) {
+                      return std::ranges::any_of(brought->given->features, [&](const Feature& own) {
+                        return own.name == feature.name;
+                      });
+                    });
+    return known->second;
+  }
+
+  bool whole_of(PartId id) const {
+    const auto known = whole_.find(id);
+    return known != whole_.end() && known->second;
+  }
+
   std::string file_of(const Part& part) {
-    std::string& name = files_[part.solid->hash()];
+    const bool whole = is_kept_whole(part);
+    const std::string ending = whole ? kBroughtEnding : ".obj";
+    std::string& name = files_[part.solid->hash() + ending];
     if (!name.empty()) return name;
     std::string stem = part.name;
     std::ranges::replace_if(
         stem, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
-    name = "meshes/" + stem + ".obj";
+    name = "meshes/" + stem + ending;
     for (int n = 2; !names_.insert(name).second; ++n)
-      name = "meshes/" + stem + "_" + std::to_string(n) + ".obj";
-    out_.meshes.push_back({name, part.solid});
+      name = "meshes/" + stem + "_" + std::to_string(n) + ending;
+    out_.meshes.push_back({name, part.solid, whole});
     return name;
   }
 
@@ -157,8 +181,10 @@ class Writer {
   void surfaces(const Part& part, YAML::Node& node) const {
     const YAML::Node said = node["features"];
     YAML::Node features;
+    // Of a STEP file those of which something was said: the others may lie on one surface.
+    const bool all = !part.solid->mesh().stated;
     for (const Feature& feature : part.features)
-      if (feature.origin != FeatureOrigin::kRecognized)
+      if (feature.origin != FeatureOrigin::kRecognized && (all || (said && said[feature.name])))
         features[feature.name] = with_surface(feature, said ? said[feature.name] : YAML::Node());
     node.remove("features");
     if (features.size() > 0) node["features"] = features;
@@ -189,7 +215,8 @@ class Writer {
       const auto face = std::ranges::find(part.features, name, &Feature::name);
       if (face == part.features.end()) return;
       if (face->origin == FeatureOrigin::kGenerated && is_generated)
-        return;  // the generator knows it
+        return;                       // the generator knows it
+      if (whole_of(part.id)) return;  // so does the mesh
       node["features"][name] = with_surface(*face, YAML::Node());
     };
     for (const Decision& said : standing_decisions(world_)) {
@@ -210,6 +237,19 @@ class Writer {
         for (const auto& entry : text) at[entry.first] = entry.second;
       else
         at["tolerance"] = text;
+    }
+  }
+
+  // What the file of a mesh states of a face, and somebody has taken back: a feature that says
+  // nothing.
+  static void take_back(const Part& part, YAML::Node& node) {
+    const Result<BroughtPart> brought = brought_part(part.solid->mesh());
+    if (!brought) return;
+    for (const Scenario::FeatureSpec& stated : brought->features) {
+      const auto face = std::ranges::find(part.band.faces, stated.name, &SurfaceBand::Face::name);
+      if (face != part.band.faces.end() && face->tolerance_source.empty() &&
+          !(node["features"] && node["features"][stated.name]))
+        node["features"][stated.name] = YAML::Node(YAML::NodeType::Map);
     }
   }
 
@@ -289,6 +329,11 @@ class Writer {
     const auto say = [&](std::size_t count, const std::string& what) {
       if (count > 0) out_.left_out.push_back(std::to_string(count) + " " + what);
     };
+    say(static_cast<std::size_t>(std::ranges::count_if(
+            world_.parts,
+            [&](const Part& p) { return p.present && p.solid->mesh().stated && !whole_of(p.id); })),
+        "parts that took a mesh of a STEP file: of its exact surfaces those are kept of which "
+        "something was said, of its tolerances none");
     say(world_.guides.size(), "constraints: they belong to who holds the part");
     say(static_cast<std::size_t>(
             std::ranges::count_if(world_.parts, [](const Part& p) { return bool(p.holder); })),
@@ -304,7 +349,8 @@ class Writer {
   const Scenario& scenario_;
   YAML::Node root_;
   SavedScenario out_;
-  std::map<std::string, std::string> files_;  ///< by hash of the mesh
+  std::map<std::string, std::string> files_;  ///< by hash of the mesh and ending
+  std::map<PartId, bool> whole_;              ///< see is_kept_whole()
   std::set<std::string> names_;
 };
 

@@ -15,6 +15,7 @@ struct SavedScenario {
   struct MeshFile {
     std::string name;  ///< below the scenario
     SolidPtr solid;
+    bool with_stated = false;  ///< the bytes of Solid::mesh().stated; else an OBJ of the mesh
   };
   std::vector<MeshFile> meshes;
   std::vector<std::string> left_out;  ///< what a scenario cannot hold, one line each

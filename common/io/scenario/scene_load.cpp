@@ -8,6 +8,7 @@
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
 #include "common/generators/generators.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/live_rules.h"
 #include "common/io/scenario/scene_features.h"
 #include "common/io/scenario/scene_rules.h"
@@ -67,6 +68,7 @@ struct LoadedMesh {
   ImportReport report;
   std::vector<Feature> generated;  // features that a generator or an assembly brings
   std::vector<FreeformFace> freeform;
+  std::vector<Scenario::FeatureSpec> stated;  // of which the mesh itself brings a tolerance
 };
 
 // All parts that are alike: mesh, features, band.
@@ -104,7 +106,7 @@ Result<FeatureMatch> match_of(const Scenario::PartSpec& spec, const Scenario::Fe
       declared_in_file(spec, declared.name))
     return match_feature(mesh.solid->mesh(), declaration);
   // The corners of a CAD file lie on its edges, which may be off its surfaces by what it states.
-  if (spec.mesh.given)
+  if (spec.mesh.given || mesh.solid->mesh().stated)
     declaration.chord_error_mm = std::max(declaration.chord_error_mm, 1.001 * own->residual_mm);
   return check_feature(*mesh.solid, declaration, own->triangles);
 }
@@ -118,7 +120,9 @@ std::vector<Scenario::FeatureSpec> with_generated(const Scenario::PartSpec& spec
     const auto same =
         std::find_if(specs.begin(), specs.end(), [&](auto& s) { return s.name == generated.name; });
     if (same == specs.end()) {
-      Scenario::FeatureSpec extra;
+      const auto stated =
+          std::ranges::find(mesh.stated, generated.name, &Scenario::FeatureSpec::name);
+      Scenario::FeatureSpec extra = stated == mesh.stated.end() ? Scenario::FeatureSpec{} : *stated;
       extra.name = generated.name;
       extra.surface = generated.surface;
       extra.at = spec.at;
@@ -144,6 +148,22 @@ std::string not_known(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
   if (spec.mesh.generator.empty() && recognized != nullptr)
     return "no feature of this name was recognized; " + recognized_names(*recognized);
   return "generator " + spec.mesh.generator + " has no feature of this name; " + known_names(mesh);
+}
+
+std::string told_of_open(const LoadedMesh& mesh) {
+  const ImportReport& report = mesh.report;
+  const std::string edges = std::to_string(report.boundary_edges) + " boundary, " +
+                            std::to_string(report.non_manifold_edges) + " non-manifold, " +
+                            std::to_string(report.misoriented_edges) + " misoriented edges";
+  const bool volume = mesh.solid->topology().balanced();  // then it is the volume that is missing
+  return ": mesh " + report.file +
+         (mesh.solid->has_inside()
+              ? " is open at " + std::to_string(mesh.solid->cracks().count) + " cracks (" + edges +
+                    "): beside them its inside is not known, and a clash there potential at best; "
+                    "repair it"
+              : (volume ? " encloses no volume (" : " is open (") + edges +
+                    "): crossing is found, depth is not, and what lies within it is not examined; "
+                    "repair it for more than potential");
 }
 
 // What can be added while the session runs.
@@ -277,25 +297,33 @@ class SceneLoader {
 
   std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, std::size_t index) {
     const std::optional<LoadedMesh>& mesh = mesh_of(spec);
-    if (!mesh) return std::nullopt;
+    return mesh ? make_kind(spec, *mesh, index) : std::nullopt;
+  }
+
+ public:
+  std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
+                                    std::size_t index) {
     PartKind kind;
-    kind.solid = mesh->solid;
-    kind.report = mesh->report;
+    kind.solid = mesh.solid;
+    kind.report = mesh.report;
     kind.stated.kind = index;
     if (spec.tolerance)
       kind.stated.rest = {{spec.tolerance->offset_mm, spec.tolerance->text}, spec.tolerance->at};
-    const Recognition* recognized = spec.undeclared == UndeclaredSurface::kNominal
-                                        ? nullptr
-                                        : &recognized_.of(*kind.solid, kind.report.quantum_mm);
-    if (!match_features(spec, *mesh, recognized, kind)) return std::nullopt;
+    // Of a mesh whose file states its faces nothing is guessed.
+    const bool recognizes =
+        spec.undeclared != UndeclaredSurface::kNominal && !kind.solid->mesh().stated;
+    const Recognition* recognized =
+        recognizes ? &recognized_.of(*kind.solid, kind.report.quantum_mm) : nullptr;
+    if (!match_features(spec, mesh, recognized, kind)) return std::nullopt;
     if (recognized != nullptr) add_undeclared(*recognized, kind);
     kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
                             for_band(kind.stated.rest), for_band(kind.stated.of_feature),
-                            spec.undeclared != UndeclaredSurface::kNominal, kind.report.quantum_mm,
-                            mesh->freeform});
+                            recognizes, kind.report.quantum_mm, mesh.freeform});
     return kind;
   }
+  const std::vector<Finding>& findings() const { return scene_.findings; }
 
+ private:
   // 2. meshes, one a source, one solid a content
 
   const std::optional<LoadedMesh>& mesh_of(const Scenario::PartSpec& spec) {
@@ -316,12 +344,13 @@ class SceneLoader {
       return std::nullopt;
     }
     LoadedMesh mesh;
+    if (imported->mesh.stated && !take_stated(spec, *imported, mesh)) return std::nullopt;
     mesh.report = imported->report;
     SolidPtr solid = std::make_shared<const Solid>(std::move(imported->mesh));
     mesh.solid = solid_of_.emplace(solid->hash(), solid).first->second;
     for (const std::string& note : mesh.report.notes)
       finding(false, spec.at, "part " + spec.name + ": mesh " + mesh.report.file + ": " + note);
-    if (!mesh.report.closed) say_open(spec, mesh);
+    if (!mesh.report.closed) finding(false, spec.at, "part " + spec.name + told_of_open(mesh));
     if (spec.mesh.given && mesh_hash(spec.mesh.given->mesh) == mesh.solid->hash()) {
       mesh.generated = spec.mesh.given->features;
       mesh.freeform = spec.mesh.given->freeform;
@@ -339,22 +368,18 @@ class SceneLoader {
     return mesh;
   }
 
-  void say_open(const Scenario::PartSpec& spec, const LoadedMesh& mesh) {
-    const ImportReport& report = mesh.report;
-    const std::string edges = std::to_string(report.boundary_edges) + " boundary, " +
-                              std::to_string(report.non_manifold_edges) + " non-manifold, " +
-                              std::to_string(report.misoriented_edges) + " misoriented edges";
-    const bool volume = mesh.solid->topology().balanced();  // then it is the volume that is missing
-    finding(false, spec.at,
-            "part " + spec.name + ": mesh " + report.file +
-                (mesh.solid->has_inside()
-                     ? " is open at " + std::to_string(mesh.solid->cracks().count) + " cracks (" +
-                           edges +
-                           "): beside them its inside is not known, and a clash there potential at "
-                           "best; repair it"
-                     : (volume ? " encloses no volume (" : " is open (") + edges +
-                           "): crossing is found, depth is not, and what lies within it is not "
-                           "examined; repair it for more than potential"));
+  // A part of a STEP file that a session saved, or has in its log.
+  bool take_stated(const Scenario::PartSpec& spec, ImportedMesh& imported, LoadedMesh& mesh) {
+    Result<BroughtPart> brought = brought_part(imported.mesh);
+    if (!brought) {
+      finding(true, spec.at, "part " + spec.name + ": " + brought.error().text);
+      return false;
+    }
+    mesh.generated = brought->given->features;
+    mesh.freeform = brought->given->freeform;
+    mesh.stated = std::move(brought->features);
+    imported.report.notes = brought->given->notes;
+    return true;
   }
 
   // 3. features
@@ -443,15 +468,48 @@ class SceneLoader {
   RecognizedMeshes recognized_;
 };
 
+// As the same part of an assembly is made.
+Result<PartShape> shape_of_brought(const SolidPtr& solid, double quantum_mm) {
+  const Result<BroughtPart> brought = brought_part(solid->mesh());
+  if (!brought) return brought.error();
+  Scenario scenario;
+  scenario.file = brought->given->product;
+  Scenario::PartSpec spec;
+  spec.name = brought->given->product;
+  spec.mesh.given = brought->given;
+  spec.features = brought->features;
+  LoadedMesh mesh{solid, {}, brought->given->features, brought->given->freeform, {}};
+  mesh.report.quantum_mm = quantum_mm;
+  const MeshProvider meshes = default_meshes();
+  SceneLoader loader(scenario, meshes);
+  std::optional<PartKind> kind = loader.make_kind(spec, mesh, 0);
+  if (!kind) {
+    for (const Finding& finding : loader.findings())
+      if (finding.is_error) return fail(Code::kInvalidInput, finding.text);
+    return fail(Code::kInvalidInput, "it contradicts the mesh");
+  }
+  PartShape shape{solid, std::move(kind->features), std::move(kind->band)};
+  shape.stated = std::make_shared<const StatedPart>(std::move(kind->stated));
+  shape.notes = brought->given->notes;
+  for (const Finding& finding : loader.findings()) shape.notes.push_back(finding.text);
+  return shape;
+}
+
 }  // namespace
 
 PartShape shape_of(SolidPtr solid, double quantum_mm, UndeclaredSurface undeclared) {
+  std::vector<std::string> notes;
+  if (solid->mesh().stated) {
+    Result<PartShape> brought = shape_of_brought(solid, quantum_mm);
+    if (brought) return std::move(brought).value();
+    notes.push_back("its faces are not taken as its file states them: " + brought.error().text);
+  }
   PartKind kind;
   kind.solid = solid;
   const bool recognizes = undeclared != UndeclaredSurface::kNominal;
   RecognizedMeshes recognized;
   if (recognizes) add_undeclared(recognized.of(*solid, quantum_mm), kind);
-  PartShape shape{solid, kind.features, {}, {}};
+  PartShape shape{solid, kind.features, {}, {}, std::move(notes)};
   shape.band = build_band({solid.get(),
                            kind.features,
                            std::nullopt,

@@ -1,24 +1,15 @@
 #include "common/io/scenario/scene_meshes.h"
 
+#include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include "common/generators/generators.h"
 #include "common/io/mesh/topology_report.h"
+#include "common/io/scenario/brought_part.h"
 
 namespace mortise {
 namespace {
-
-ImportedMesh with_report(TriangleMesh mesh, std::string file, std::string format) {
-  ImportedMesh imported;
-  imported.mesh = std::move(mesh);
-  ImportReport& report = imported.report;
-  report.file = std::move(file);
-  report.format = std::move(format);
-  report.raw_vertices = report.points = imported.mesh.points_mm.size();
-  report.raw_triangles = report.triangles = imported.mesh.triangles.size();
-  note_topology(imported.mesh, report);
-  return imported;
-}
 
 Result<ImportedMesh> generated_mesh(const Scenario::PartSpec& part) {
   Result<GeneratedPart> generated = generate(part.mesh.generator, part.mesh.parameters);
@@ -31,6 +22,27 @@ ImportedMesh given_mesh(const GivenPart& given) {
   ImportedMesh imported = with_report(given.mesh, given.file, "STEP");
   imported.report.notes = given.notes;
   return imported;
+}
+
+// A part of a STEP file as a session saved it.
+Result<ImportedMesh> brought_file(const std::filesystem::path& file,
+                                  const Scenario::MeshSource& source) {
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{2} << 30;
+  if (source.mirror != 0 || source.unit_mm != 1.0)
+    return fail(Code::kInvalidInput, file.string() +
+                                         ": states its faces in mm, as they lie; leave out mirror "
+                                         "and scale, and write unit: mm");
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) return fail(Code::kNotFound, file.string() + ": cannot be read: " + error.message());
+  if (size > kMostBytes) return fail(Code::kLimit, file.string() + ": has more than 2 GB");
+  std::vector<std::byte> bytes(size);
+  std::ifstream in(file, std::ios::binary);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!in) return fail(Code::kNotFound, file.string() + ": cannot be read");
+  Result<TriangleMesh> mesh = brought_mesh(std::move(bytes));
+  if (!mesh) return fail(mesh.error().code, file.string() + ": " + mesh.error().text);
+  return with_report(std::move(mesh).value(), file.string(), "STEP");
 }
 
 }  // namespace
@@ -52,6 +64,8 @@ MeshProvider default_meshes() {
     if (part.mesh.given) return given_mesh(*part.mesh.given);
     if (!part.mesh.generator.empty()) return generated_mesh(part);
     const std::filesystem::path folder = std::filesystem::path(scenario.file).parent_path();
+    if (part.mesh.file.ends_with(kBroughtEnding))
+      return brought_file(folder / part.mesh.file, part.mesh);
     Result<ImportedMesh> imported = import_mesh(folder / part.mesh.file, part.mesh.unit_mm);
     if (!imported || part.mesh.mirror == 0) return imported;
     GeneratedPart mirrored{std::move(imported->mesh), {}};

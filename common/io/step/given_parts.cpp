@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "common/geometry/recognition/names.h"
 
@@ -69,9 +70,7 @@ class Gatherer {
   std::vector<Gathered> run() {
     for (std::uint32_t f = 0; f < part_.faces.size(); ++f)
       if (part_.faces[f].surface.kind != SurfaceKind::kUnknown && !triangles_of_[f].empty()) add(f);
-    // Splits may come in any order: join until nothing joins any more.
-    for (auto& [bucket, list] : buckets_)
-      for (bool joined = true; joined;) joined = join_one(list);
+    for (auto& [bucket, list] : buckets_) join_all(list);
     std::vector<Gathered> all;
     for (auto& [bucket, list] : buckets_)
       for (Gathered& gathered : list) all.push_back(std::move(gathered));
@@ -123,24 +122,40 @@ class Gatherer {
     return {std::min(lo, hi), std::max(lo, hi)};
   }
 
-  static bool join_one(std::vector<Gathered>& list) {
+  // Pairs in their order, the first that join first, until none do. What does not join is asked
+  // again only once one of the two has grown: of a plate with thousands of like holes each pair is
+  // asked about once.
+  static void join_all(std::vector<Gathered>& list) {
     for (std::size_t i = 0; i < list.size(); ++i)
-      for (std::size_t j = i + 1; j < list.size(); ++j) {
-        Gathered &a = list[i], &b = list[j];
-        if (!same_surface(a.feature.surface, b.feature.surface)) continue;
-        const Interval along = along_of(a, b);
-        const bool meet = along.lo <= a.along_mm.hi + kOneSurface_mm &&
-                          along.hi >= a.along_mm.lo - kOneSurface_mm;
-        if (a.feature.surface.kind == SurfaceKind::kCylinder && !meet) continue;
-        a.along_mm = hull(a.along_mm, along);
-        a.feature.residual_mm = std::max(a.feature.residual_mm, b.feature.residual_mm);
-        a.feature.triangles.insert(a.feature.triangles.end(), b.feature.triangles.begin(),
-                                   b.feature.triangles.end());
-        a.faces.insert(a.faces.end(), b.faces.begin(), b.faces.end());
-        list.erase(list.begin() + static_cast<std::ptrdiff_t>(j));
-        return true;
+      for (std::size_t j = i + 1; j < list.size();) {
+        if (!join(list, i, j)) {
+          ++j;
+          continue;
+        }
+        for (std::size_t before = 0; before < i;)
+          if (join(list, before, i))
+            i = std::exchange(before, 0);
+          else
+            ++before;
+        j = i + 1;
       }
-    return false;
+  }
+
+  // The first takes the second up, where they are one surface.
+  static bool join(std::vector<Gathered>& list, std::size_t i, std::size_t j) {
+    Gathered &a = list[i], &b = list[j];
+    if (!same_surface(a.feature.surface, b.feature.surface)) return false;
+    const Interval along = along_of(a, b);
+    const bool meet =
+        along.lo <= a.along_mm.hi + kOneSurface_mm && along.hi >= a.along_mm.lo - kOneSurface_mm;
+    if (a.feature.surface.kind == SurfaceKind::kCylinder && !meet) return false;
+    a.along_mm = hull(a.along_mm, along);
+    a.feature.residual_mm = std::max(a.feature.residual_mm, b.feature.residual_mm);
+    a.feature.triangles.insert(a.feature.triangles.end(), b.feature.triangles.begin(),
+                               b.feature.triangles.end());
+    a.faces.insert(a.faces.end(), b.faces.begin(), b.faces.end());
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(j));
+    return true;
   }
 
   // By geometry alone: kind, larger first, then by place to a tenth of a micrometre.

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "common/io/step/step_document.h"
 
 namespace mortise {
+
+/// Faces of one part; a band counts them in 16 bits.
+inline constexpr std::size_t kMostPartFaces = 50'000;
 
 /// A part of a STEP file as the scene takes it, and where its faces went.
 struct StepPartGiven {

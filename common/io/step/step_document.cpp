@@ -313,6 +313,10 @@ std::vector<std::byte> encode(const StepDocument& document) {
   return out.take();
 }
 
+bool is_step_document(std::span<const std::byte> bytes) {
+  return ByteReader(bytes).u32() == kDocument;
+}
+
 Result<StepDocument> decode_step(std::span<const std::byte> bytes) {
   return StepReader(bytes).document();
 }

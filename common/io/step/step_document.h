@@ -96,6 +96,9 @@ inline constexpr std::uint64_t kMostStepInstances = 100'000, kMostStepTriangles 
 /// The bytes that the importer sends, and that a session log keeps.
 std::vector<std::byte> encode(const StepDocument& document);
 
+/// Do the bytes begin as those of a document?
+bool is_step_document(std::span<const std::byte> bytes);
+
 /// The file may have taken over the sender: every length, index and number is checked.
 Result<StepDocument> decode_step(std::span<const std::byte> bytes);
 

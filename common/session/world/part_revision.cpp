@@ -145,7 +145,9 @@ bool is_made_as(const World& world, const Part& part, const std::string& mesh_ha
 std::string told_of_revision(const World& world, const Part& part, const PartShape& shape) {
   const std::string faces = told_of_faces(part, shape);
   const std::string statements = told_of_statements(world, part, shape);
-  return faces + (faces.empty() || statements.empty() ? "" : "; ") + statements;
+  std::string told = faces + (faces.empty() || statements.empty() ? "" : "; ") + statements;
+  for (const std::string& note : shape.notes) told += (told.empty() ? "" : "; ") + note;
+  return told;
 }
 
 void revise(World& world, Part& part, const PartShape& shape, const Decision& by) {

@@ -23,6 +23,7 @@ struct PartShape {
   std::vector<Feature> features;
   SurfaceBand band;
   std::shared_ptr<const StatedPart> stated = {};  ///< what was stated; null: nothing
+  std::vector<std::string> notes = {};            ///< what people should know of it, one line each
 };
 using PartShapePtr = std::shared_ptr<const PartShape>;
 

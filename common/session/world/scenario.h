@@ -84,6 +84,12 @@ struct Scenario {
     std::string text;    ///< as written
     SourceLine at = {};
   };
+  /// Who states something of a face.
+  enum class SaidBy : std::uint8_t {
+    kScenario = 0,  ///< or nobody
+    kFile,          ///< the CAD file of the part itself
+    kSession,       ///< somebody in the running session
+  };
   struct FeatureSpec {
     std::string name;
     Surface surface;  ///< part frame; kind kUnknown: the generator's feature of this name
@@ -94,6 +100,7 @@ struct Scenario {
     std::string width_to;     ///< the other plane of a width under iso_class; empty when none
     Position position = {};   ///< of its axis or centre; zone 0: none stated
     SourceLine at;
+    SaidBy by = SaidBy::kScenario;
   };
   struct PartSpec {
     std::string name;

@@ -164,7 +164,8 @@ Part* append_part(World& world, const Decision& decision) {
   for (const Part& other : world.parts) part.kind = std::max(part.kind, other.kind + 1);
   part.notes = notes_of(decision);
   part.present = false;
-  if (world.rules) world.rules->add_part(part);
+  if (world.rules) world.rules->add_part(part, *shape);
+  world.evaluates = evaluates(world);
   world.restated.push_back(decision);
   return &part;
 }

@@ -36,9 +36,9 @@ class SurfaceRules {
   /// returns the finding of the reader and changes nothing.
   virtual Result<Change> restate(const World& world, const Target& target,
                                  const std::string& text) = 0;
-  /// A part was added: nothing is stated of it yet, and the patterns of the scenario do not mean
-  /// it.
-  virtual void add_part(const Part& part) = 0;
+  /// A part was added: of it is stated what its shape brings, and the patterns of the scenario do
+  /// not mean it.
+  virtual void add_part(const Part& part, const PartShape& shape) = 0;
   /// How a mesh is to be this part: where it has a face of the same geometry, the face keeps its
   /// name and what was stated of it.
   virtual PartShapes::AsPart as_part(const Part& part) const = 0;

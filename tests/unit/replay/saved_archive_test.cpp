@@ -11,8 +11,10 @@
 
 #include "client/saved/saved_session.h"
 #include "common/generators/generators.h"
+#include "common/io/scenario/brought_part.h"
 #include "tests/support/programs.h"
 #include "tests/support/test_folder.h"
+#include "tests/unit/io/step_samples.h"
 
 namespace mortise {
 namespace {
@@ -23,8 +25,11 @@ using Files = std::map<std::string, std::string>;
 SavedScenario sample() {
   const auto made = generate("dowel", {{"diameter_mm", 20.0}, {"length_mm", 40}, {"facets", 48}});
   EXPECT_TRUE(made) << made.error().text;
+  const auto pin = brought_mesh(brought_bytes(test::ring_and_pins(), 1));
+  EXPECT_TRUE(pin) << pin.error().text;
   return {.yaml = "name: sample\n",
-          .meshes = {{"meshes/peg.obj", std::make_shared<const Solid>(made->mesh)}},
+          .meshes = {{"meshes/peg.obj", std::make_shared<const Solid>(made->mesh), false},
+                     {"meshes/pin.mstp", std::make_shared<const Solid>(*pin), true}},
           .left_out = {}};
 }
 
@@ -81,13 +86,13 @@ TEST_F(SavedArchive, HoldsTheFilesOfTheFolder) {
   const Status done = unpack(path("saved.zip"), path("out"));
   ASSERT_TRUE(done) << done.error().text;
   EXPECT_EQ(files_in(path("out")), files_in(path("folder")));
-  EXPECT_EQ(files_in(path("out")).size(), 2U);
+  EXPECT_EQ(files_in(path("out")).size(), 3U);
 }
 
 TEST_F(SavedArchive, NothingGoesElsewhere) {
-  for (const char* name :
-       {"../evil.obj", "/tmp/evil.obj", "meshes/../../evil.obj", "meshes/sub/evil.obj",
-        "meshes/.obj", "meshes/a.b.obj", "evil.sh", "meshes\\evil.obj", "Scenario.yaml"})
+  for (const char* name : {"../evil.obj", "/tmp/evil.obj", "meshes/../../evil.obj",
+                           "meshes/sub/evil.obj", "meshes/.obj", "meshes/.mstp", "meshes/a.b.obj",
+                           "evil.sh", "meshes\\evil.obj", "Scenario.yaml"})
     expect_refused(archive_of({{"scenario.yaml", "name: x\n"}, {name, "v 0 0 0\n"}}),
                    "which no saved session has");
 }
@@ -127,7 +132,7 @@ TEST_F(SavedArchive, TheProgramSaysWhatIsWrong) {
     return test::run("mortise-replay", words, folder_.path());
   };
   EXPECT_EQ(run("unpack saved.zip --out kept").exit_code, 0);
-  EXPECT_EQ(files_in(path("kept")).size(), 2U);
+  EXPECT_EQ(files_in(path("kept")).size(), 3U);
   const test::Outcome again = run("unpack saved.zip --out kept");
   EXPECT_EQ(again.exit_code, 3);
   EXPECT_NE(again.err.find("is not empty"), std::string::npos) << again.err;

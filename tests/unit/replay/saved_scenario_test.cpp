@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "common/generators/generators.h"
 #include "common/io/log/replay.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/open_scene.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/messages/names.h"
@@ -17,6 +19,7 @@
 #include "tests/support/programs.h"
 #include "tests/support/test_folder.h"
 #include "tests/unit/io/log_samples.h"
+#include "tests/unit/io/step_samples.h"
 
 namespace mortise {
 namespace {
@@ -207,6 +210,68 @@ TEST_F(Saved, TheScenarioBeginsWhereTheSessionStood) {
     return all;
   };
   EXPECT_EQ(classes(fresh), classes(world()));
+}
+
+// Ring and pins of a STEP file, the hole Ø20 H7 and the pins g6 by the file.
+StepDocument brought_fit() {
+  StepDocument document = test::ring_and_pins();
+  for (const std::uint32_t part : {0U, 1U}) {
+    StepStatement& size = document.statements.emplace_back();
+    size.kind = StepStatement::Kind::kSize;
+    size.name = "diameter";
+    size.value = 20.0;
+    size.code = part == 0 ? "H7" : "g6";
+    size.faces = {{part, test::cylinder_of(document.parts[part], part == 0)}};
+  }
+  return document;
+}
+
+std::set<std::string> faces_of(const World& world, const std::string& part) {
+  std::set<std::string> faces;
+  if (const Part* found = world.find_part(part))
+    for (const SurfaceBand::Face& face : found->band.faces)
+      faces.insert(face.name + " " + std::to_string(static_cast<int>(face.grade)) + " " +
+                   face.tolerance_source);
+  return faces;
+}
+
+TEST_F(Saved, PartsOfAStepFileKeepWhatItStates) {
+  const StepDocument document = brought_fit();
+  const auto bring = [&](std::uint32_t number) {
+    meshes.push_back(
+        std::make_shared<const Solid>(brought_mesh(brought_bytes(document, number)).value()));
+    world().shapes->add(meshes.back(), 0.0);
+    return meshes.back()->hash();
+  };
+  edit(CommandKind::kAddPart, PartId{},
+       {"ring", bring(0), Pose::translation({0, 99, 7}), true, 0.0});
+  for (const char* name : {"pin", "pin_2", "pin_3"})
+    edit(CommandKind::kAddPart, PartId{}, {name, bring(1), {}, true, 0.0});
+  Details said;
+  said.feature = "shaft_1";
+  said.text = "±0.001";
+  ask(CommandKind::kSetTolerance, part("pin_2"), said);
+  ask(CommandKind::kSetTolerance, part("pin_3"), said);
+  said.text = "";
+  ask(CommandKind::kSetTolerance, part("pin_3"), said);
+  tick();
+  // A part that has names of its own for its faces: told what of it is left out.
+  edit(CommandKind::kReplacePart, part("peg_2"), {"", bring(1), {}, false, 0.0});
+  tick();
+  const test::TestFolder folder;
+  write(folder.path() / "log.mcap");
+  const test::Outcome run =
+      test::run("mortise-replay", "export log.mcap --scenario kept", folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("not kept: 1 parts that took a mesh of a STEP file"), std::string::npos)
+      << run.err;
+  const auto again = open_scene(folder.path() / "kept" / "scenario.yaml");
+  ASSERT_TRUE(again && again->usable());
+  const World& now = again->scene.world;
+  EXPECT_TRUE(faces_of(now, "pin").contains("shaft_1 2 Ø20 g6"));
+  EXPECT_TRUE(faces_of(now, "pin_3").contains("shaft_1 2 "));
+  for (const char* name : {"ring", "pin", "pin_2", "pin_3"})
+    EXPECT_EQ(faces_of(now, name), faces_of(world(), name)) << name;
 }
 
 TEST_F(Saved, AFolderThatIsNotEmptyIsLeftAlone) {

@@ -8,12 +8,15 @@
 
 #include "client/client.h"
 #include "common/base/hash.h"
+#include "common/io/scenario/brought_part.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
 #include "common/messages/mesh_bytes.h"
 #include "common/session/world/part_shapes.h"
 #include "server/standby.h"
 #include "server/tick_loop.h"
 #include "tests/support/cube_file.h"
+#include "tests/unit/io/step_samples.h"
 #include "tests/unit/server/small_world.h"
 
 namespace mortise {
@@ -393,6 +396,93 @@ TEST_F(UploadTest, TheOneThatStandsByMakesTheSamePart) {
   ASSERT_EQ(twin.parts.size(), 4U);
   EXPECT_EQ(twin.parts[3].solid->hash(), world_.parts[3].solid->hash());
   EXPECT_EQ(follower.last_tick(), world_.tick);
+}
+
+World world_of_shapes() {
+  World world = world_with_shapes();
+  world.shapes = std::make_shared<PartShapes>([](SolidPtr solid, double quantum_mm) {
+    return shape_of(std::move(solid), quantum_mm, UndeclaredSurface::kRecognized);
+  });
+  world.shapes->add(world.parts[0].solid, 0.0);
+  return world;
+}
+
+std::string stated_faces_of(const Part& part) {
+  std::string text;
+  for (const SurfaceBand::Face& face : part.band.faces)
+    text += face.name + " " + std::to_string(static_cast<int>(face.grade)) + " " +
+            face.tolerance_source + "; ";
+  return text;
+}
+
+// Of a STEP file: surfaces and tolerances reach the one that leads, the one that stands by, the log
+// and everybody, also who comes later.
+TEST_F(UploadTest, WhatAFileStatesOfItsFacesIsKnownToAll) {
+  StepDocument document = test::ring_and_pins();
+  StepStatement& size = document.statements.emplace_back();
+  size.kind = StepStatement::Kind::kSize;
+  size.name = "diameter";
+  size.value = 20.0;
+  size.code = "g6";
+  size.faces = {{1, test::cylinder_of(document.parts[1], false)}};
+  document.parts[1].loose_faces = 1;
+  const std::vector<std::byte> file = brought_bytes(document, 1);
+  const auto inner = hub_.open_server();
+  Followed channel(*inner);
+  world_ = world_of_shapes();
+  loop_ = std::make_unique<TickLoop>(world_, channel, clock_, &log_, TickLoopOptions{});
+  loop_->open();
+  World twin = world_of_shapes();
+  SessionStatistics statistics;
+  Follower follower(twin, statistics, nullptr, 1);
+  Person& ada = join("ada");
+  ada.client->upload(ada.user, "pin.step.mmsh", 1.0, file);
+  const std::uint64_t seq = ada.client->add_part(ada.user, "pin", content_hash(file),
+                                                 Pose::translation({0, 0, 99}), true);
+  ASSERT_TRUE(answered(ada, seq));
+  ASSERT_EQ(ada.replies[seq].refusal, Refusal::kNone) << ada.replies[seq].text;
+  for (int i = 0; i < 12; ++i) turn();
+  Person& late = join("late");
+  ASSERT_TRUE(turn_until([&] { return !late.client->features().of(PartId{4}).empty(); }));
+  const Part& part = world_.parts[3];
+  EXPECT_NE(stated_faces_of(part).find("shaft_1 2 Ø20 g6"), std::string::npos)
+      << stated_faces_of(part);
+  EXPECT_EQ(part.notes, std::vector<std::string>{"1 faces that bound no solid were left out"});
+  for (Person* person : {&ada, &late}) {
+    const auto mesh = std::ranges::find(person->meshes, part.solid->hash(), &MeshBytes::hash);
+    ASSERT_NE(mesh, person->meshes.end());
+    EXPECT_TRUE(mesh_from_bytes(mesh->bytes)) << "clients get the mesh alone";
+    const auto features = person->client->features().of(PartId{4});
+    const auto shaft = std::ranges::find(features, "shaft_1", &FeatureInfo::name);
+    ASSERT_NE(shaft, features.end());
+    EXPECT_EQ(shaft->origin, FeatureOrigin::kDeclared);
+  }
+  for (const ToldTick& tick : channel.told) {
+    while (!follower.has_meshes()) std::this_thread::sleep_for(1ms);
+    const Status taken = follower.take(tick);
+    ASSERT_TRUE(taken) << taken.error().text;
+  }
+  ASSERT_EQ(twin.parts.size(), 4U);
+  EXPECT_EQ(stated_faces_of(twin.parts[3]), stated_faces_of(part));
+  loop_->close();
+  std::size_t logged = 0;
+  for (const TickRecord& record : log_.records)
+    for (const SolidPtr& solid : record.meshes) logged += solid->mesh().stated != nullptr ? 1 : 0;
+  EXPECT_EQ(logged, 1U);
+}
+
+TEST_F(UploadTest, WhatIsNoPartOfAStepFileIsRefusedInOneLine) {
+  world_ = world_of_shapes();
+  begin();
+  Person& ada = join("ada");
+  std::vector<std::byte> file = brought_bytes(test::ring_and_pins(), 1);
+  file.resize(file.size() - 5);
+  ada.client->upload(ada.user, "pin.step.mmsh", 1.0, file);
+  ASSERT_TRUE(turn_until(
+      [&] { return !ada.uploads.empty() && ada.uploads.back().refusal != Refusal::kNone; }));
+  EXPECT_EQ(ada.uploads.back().refusal, Refusal::kUnreadableMesh);
+  EXPECT_EQ(ada.uploads.back().text.substr(0, 15), "pin.step.mmsh: ");
+  EXPECT_EQ(ada.uploads.back().text.find('\n'), std::string::npos);
 }
 
 }  // namespace

@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <thread>
 
+#include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
 #include "common/messages/mesh_bytes.h"
 #include "common/messages/names.h"
 #include "server/tick_loop.h"
 #include "tests/support/small_scenarios.h"
+#include "tests/unit/io/step_samples.h"
 #include "tests/unit/web/page.h"
 
 namespace mortise::web {
@@ -433,6 +436,55 @@ TEST_F(PagesOnASession, BringAStepFileAndHearOfAllItsParts) {
   EXPECT_EQ(part["name"], "box/b");
   EXPECT_EQ(part["p"], Json::parse("[7.0,8.0,9.0]"));
   EXPECT_EQ(part["q"], Json::parse("[0.0,0.0,0.6,0.8]"));
+}
+
+// Ring and pins as a gateway brings them; the hole is H7 by its file, the pins are g6.
+BroughtAssembly ring_with_pins() {
+  StepDocument document = test::ring_and_pins();
+  for (const std::uint32_t part : {0U, 1U}) {
+    StepStatement& size = document.statements.emplace_back();
+    size.kind = StepStatement::Kind::kSize;
+    size.name = "diameter";
+    size.value = 20.0;
+    size.code = part == 0 ? "H7" : "g6";
+    size.faces = {{part, test::cylinder_of(document.parts[part], part == 0)}};
+  }
+  BroughtAssembly assembly;
+  for (const std::uint32_t part : {0U, 1U})
+    assembly.meshes.push_back(brought_bytes(document, part));
+  const Pose in_the_hole{Quat(std::cos(0.02), 0, 0, std::sin(0.02)), Vec3(500, 0, -10)};
+  assembly.places = {{"ring", 0, Pose::translation({500, 0, 0})}, {"pin", 1, in_the_hole}};
+  return assembly;
+}
+
+TEST_F(PagesOnASession, AreToldTheVerdictThatTheFacesOfAStepFileGive) {
+  feed = feed_with_step(*client, ring_with_pins());
+  come(ann, "ann");
+  say(ann, R"({"type":"upload","id":5,"name":"fit.step","bytes":3})");
+  turn();
+  ASSERT_TRUE(feed->take_file(ticket_of(ann), std::vector<std::byte>(3)));
+  const auto wait_for = [&](const std::function<bool()>& done) {
+    for (int i = 0; i < 4000 && !done(); ++i) {
+      turn();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return done();
+  };
+  ASSERT_TRUE(wait_for([&] { return ann.last("upload")["state"] == "ready"; }));
+  const Json ready = ann.last("upload");
+  std::size_t id = 6;
+  for (Json edit : ready["parts"]) {
+    edit.update({{"type", "command"}, {"id", ++id}, {"do", "add_part"}, {"moving", true}});
+    say(ann, edit.dump());
+    ASSERT_TRUE(wait_for([&] { return ann.last("reply")["id"] == id; }));
+    ASSERT_EQ(ann.last("reply")["done"], true) << ann.last("reply");
+  }
+  ASSERT_TRUE(wait_for([&] { return ann.count("events") > 0; }));
+  const Json event = ann.last("events")["events"][0];
+  EXPECT_EQ(event["class"], "fake") << event;
+  EXPECT_EQ(event["grade"], name_of(DeviationGrade::kDeclaredFeature)) << event;
+  EXPECT_EQ(event["faces"], Json::parse(R"(["bore_1","shaft_1"])")) << event;
+  EXPECT_NE(event["explanation"].get<std::string>().find("Ø20 H7/g6"), std::string::npos) << event;
 }
 
 TEST_F(PagesOnASession, HearWhyAStepFileCannotBeRead) {
