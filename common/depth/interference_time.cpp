@@ -631,7 +631,7 @@ class LookAhead {
   // Where the covers touch the parts do not touch: they are told real where that is so close behind
   // that a search would end there, too. Where they do touch nothing can be free beyond.
   SoonAfter by_covers() {
-    const std::uint64_t enough = spent_ + query_.at_target.work_cap / 2;
+    const std::uint64_t enough = spent_ + kLookWorkCap;
     double before = t_;
     bool parts_touch = false;
     for (double step = step_; before < 1.0 && spent_ < enough; step *= 2.0) {

@@ -9,6 +9,9 @@
 namespace mortise {
 namespace {
 
+// Unit vectors that differ by less are one.
+constexpr double kSameNormal = 1e-9;
+
 // Triangles that are asked whether they lie on a face of the other part that looks the same way.
 constexpr std::size_t kMostCoincidenceQuestions = 64;
 // Triangles of a part below which its twin is looked for.
@@ -288,6 +291,8 @@ void describe(const PairFrame& pair, const Sample& deepest, const Sample& decidi
   Vec3 out = deepest.at.outward;
   if (distance > pair.touch_mm)
     out = (deepest.at.depth_mm > 0.0 ? 1.0 : -1.0) * to_surface / distance;
+  // Above the inside of a facet that is its normal, whichever point was the deepest that was asked.
+  if ((out - deepest.at.face_normal).norm() < kSameNormal) out = deepest.at.face_normal;
   // Role 0: out of B. Role 1: out of A, that is from A to B.
   region.normal_W = (role == 0 ? 1.0 : -1.0) * (pair.X_W[1 - role].q * out);
   region.triangle_a = role == 0 ? deepest.triangle : deepest.at.triangle;

@@ -38,6 +38,8 @@ constexpr double kReaches = 2.0, kFlat = 1e-12;
 constexpr std::size_t kMostFaces = 16;
 // Pieces that are so much of the distance of their middles deep in each other are not apart.
 constexpr double kDeep = 1e-2;
+// Another look is worth what it gains.
+constexpr double kMuch = 0.5;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -284,7 +286,8 @@ bool apart(const Piece& a, const Piece& b) {
   };
   const Vec3 between = a.middle() - b.middle();
   const double size_mm = between.norm();
-  if (size_mm > 0.0) LeastReach(farthest, tried, size_mm).run(between / size_mm, kDeep * size_mm);
+  if (size_mm > 0.0)
+    LeastReach(farthest, tried, size_mm).run(between / size_mm, kDeep * size_mm, kMuch);
   return found;
 }
 

@@ -16,6 +16,8 @@ constexpr double kLongSpan = 0.2;
 // Cells that are so much of the distance of their middles deep in each other: that they are apart
 // is out of the question.
 constexpr double kDeep = 1e-2;
+// Another look is worth what it gains: for a depth little, for whether there is any much.
+constexpr double kLittle = 1e-3, kMuch = 0.5;
 // Onto each of two cells, to find a point of both.
 constexpr int kProjections = 6;
 // What comes so much less far is as good a place to look at.
@@ -163,9 +165,9 @@ class CoverPair::Bound {
     const double size_mm = between.norm();
     if (!(size_mm > 1e-12)) return;
     LeastReach search(farthest, tried, size_mm);
-    const double useless_mm =
-        std::max(kDeep * size_mm, asked_ == Asked::kHowDeep ? least_ : limit_mm_);
-    search.run(first_direction(between / size_mm), useless_mm);
+    const bool how_deep = asked_ == Asked::kHowDeep;
+    const double useless_mm = std::max(kDeep * size_mm, how_deep ? least_ : limit_mm_);
+    search.run(first_direction(between / size_mm), useless_mm, how_deep ? kLittle : kMuch);
     if (asked_ != Asked::kHowDeep || cells_->by_void) return;
     const PointOfEach& touching = search.touching();
     cells_->places_S = {cells_->role == 0 ? chord.X_KS[0].inverse() * touching.s : touching.k};
@@ -381,8 +383,8 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   return overlap;
 }
 
-// By a direction: where both cells touch, between them, then as far as S goes along it. Around the
-// middle of a disc as well, since a shaft may come out of it.
+// By a direction: between both cells, then as far as S goes along it. Around the middle of a disc
+// as well, since a shaft may come out of it; and where both cells touch.
 std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) const {
   if (cells.by_void && !cells.places_S.empty()) return cells.places_S;
   const Pose& X_KS = views.chord[cells.role].X_KS[0];
@@ -390,7 +392,7 @@ std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) c
   const ConvexCell& k = parts_[1 - cells.role]->cells[cells.cell[1 - cells.role]];
   const Pose X_SK = X_KS.inverse();
   const Vec3 n_S = -(X_KS.q.conjugate() * cells.n);
-  std::vector<Vec3> places = cells.places_S;
+  std::vector<Vec3> places;
   const auto add = [&](Vec3 x_S) {
     for (int i = 0; i < kProjections; ++i) x_S = s.near(X_SK * k.near(X_KS * x_S));
     places.push_back(x_S);
@@ -401,6 +403,7 @@ std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) c
     const Vec3 inner = x_S + kFromRim * (middle - x_S);
     add(inner);
   }
+  places.insert(places.end(), cells.places_S.begin(), cells.places_S.end());
   return places;
 }
 

@@ -24,8 +24,8 @@ class LeastReach {
       : farthest_(std::move(farthest)), tried_(std::move(tried)), size_mm_(size_mm) {}
 
   /// From a first direction, a unit vector. Looks no closer where both are seen to be deeper in
-  /// each other than useless_mm.
-  void run(const Vec3& first, double useless_mm) {
+  /// each other than useless_mm, nor where two looks gained less than this share of the depth.
+  void run(const Vec3& first, double useless_mm, double worth) {
     best_n_ = first;
     touching_ = best_ = farthest_(first);
     best_mm_ = best_.across().dot(first);
@@ -36,7 +36,7 @@ class LeastReach {
       const double before_mm = best_mm_;
       const double out_mm = std::max(best_mm_, 0.0) + margin_mm;
       if (see_from(out_mm * best_n_)) return;
-      if (before_mm - best_mm_ <= kWorth * std::max(best_mm_, 0.0)) margin_mm *= kCloser;
+      if (before_mm - best_mm_ <= worth * std::max(best_mm_, 0.0)) margin_mm *= kCloser;
     }
   }
 
@@ -80,8 +80,6 @@ class LeastReach {
   // Shares of the size: how far outside of D one stands, at first and last, and by how much closer
   // each time. Farther out round sides are met in fewer steps, closer by more exactly.
   static constexpr double kFirstMargin = 1e-3, kLastMargin = 1e-10, kCloser = 1e-2;
-  // What is gained less than this share is as if nothing were.
-  static constexpr double kWorth = 1e-3;
   static constexpr double kNowhere = 1e-14, kGood = 1e-9;
   static constexpr int kSteps = 16;
 

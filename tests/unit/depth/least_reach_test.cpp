@@ -100,7 +100,7 @@ Found by_nearest_points(const Pair& pair) {
   };
   const Vec3 between = pair.X_KS * pair.s.middle - pair.k.middle;
   LeastReach search(farthest, tried, between.norm());
-  search.run(between.normalized(), 1e9);
+  search.run(between.normalized(), 1e9, 1e-3);
   found.touching = search.touching();
   return found;
 }
