@@ -218,6 +218,9 @@ class CoverPair::Whole {
     double most = -kInfinity;
     for (std::size_t j = 0; j < k().cells.size(); ++j) {
       const Interval& along = k().heights_of(j, v);
+      if (j > 0 && along.lo == k().heights_of(j - 1, v).lo &&
+          along.hi == k().heights_of(j - 1, v).hi)
+        continue;  // cells of a prism have the same heights
       const Interval inner{along.lo + least_mm_, along.hi - least_mm_};
       for (const ConvexCell& cell : s())
         most = std::max(most, beyond_wall_mm(cell, views_.chord[role_], *k().voids[v].wall, inner,
