@@ -46,6 +46,8 @@ class CoverPair::Bound {
     if (by_what_it_was(cells)) return least_;
     if (by_direction(0, views_.chord[0].X_KS[0] * s(0).middle - k(0).middle)) return least_;
     for (const int role : {0, 1})
+      if (k(role).round && off_axis(role)) return least_;
+    for (const int role : {0, 1})
       for (const Vec3& n : k(role).normals)
         if (by_direction(role, n)) return least_;
     for (const int role : {0, 1}) {
@@ -53,8 +55,6 @@ class CoverPair::Bound {
       for (std::size_t v = 0; v < voids.size(); ++v)
         if (by_void(role, v)) return least_;
     }
-    for (const int role : {0, 1})
-      if (k(role).round && off_axis(role)) return least_;
     descend();
     return least_;
   }
