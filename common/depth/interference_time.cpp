@@ -628,8 +628,9 @@ class LookAhead {
     return at;
   }
 
-  // Where the covers touch the parts do not touch: they are told real where that is so close behind
-  // that a search would end there, too. Where they do touch nothing can be free beyond.
+  // Covers may be larger than the parts, and then their time is too early: so a place counts that
+  // is no farther behind than a search ends. Where the parts themselves touch, the time is the
+  // parts' own, and a place anywhere behind counts.
   SoonAfter by_covers() {
     const std::uint64_t enough = spent_ + kLookWorkCap;
     double before = t_;

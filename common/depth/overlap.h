@@ -104,7 +104,7 @@ OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 /// What the covers of both parts (README, section 11) say of the least parts, or of the largest.
 struct SaidByCovers {
   bool apart = false;                 ///< no point is in both
-  bool touches = false;               ///< some point is, or but for 0.4 um
+  bool touches = false;               ///< a point was found within 0.4 um of both
   std::optional<CertainPlace> place;  ///< a point that is in both, verified
 };
 /// Neither: they say nothing. Some microseconds.

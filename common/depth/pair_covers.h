@@ -23,7 +23,7 @@ class PairCovers {
   /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
   /// the covers name none that is deeper than touching.
   std::optional<Sample> deepest(Layer layer);
-  /// Such a point was asked that is in both parts, or but for as little as a search of times is off.
+  /// deepest() asked a point that is in both parts, or outside by no more than 0.4 um.
   bool touches(Layer layer) const;
   /// The same by a point of the mesh beside the end of its cell: what holds a part there has a face
   /// of its own, along which the part slides.
