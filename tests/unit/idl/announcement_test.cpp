@@ -91,16 +91,19 @@ class Announced : public ::testing::Test {
     const auto wanted = bytes(begin);
     return std::search(whole_.begin(), whole_.end(), wanted.begin(), wanted.end());
   }
-  /// DATA, which is the last submessage, reaches to the end of the datagram.
-  void stretch_data() {
-    for (std::size_t at = 20; at + 4 < whole_.size();) {
+  /// Where the submessage DATA begins. A byte like its number may stand anywhere before.
+  std::size_t data_at() const {
+    for (std::size_t at = 20; at + 4 <= whole_.size();) {
+      if (whole_[at] == std::byte{0x15}) return at;
       std::uint16_t length = 0;
       std::memcpy(&length, &whole_[at + 2], sizeof length);
-      const bool is_data = whole_[at] == std::byte{0x15};
-      if (is_data) whole_[at + 2] = whole_[at + 3] = std::byte{0};
-      at += 4u + (is_data ? whole_.size() : length);
+      at += 4u + length;
     }
+    ADD_FAILURE() << "no DATA in the announcement";
+    return 20;
   }
+  /// DATA, which is the last submessage, reaches to the end of the datagram.
+  void stretch_data() { whole_[data_at() + 2] = whole_[data_at() + 3] = std::byte{0}; }
   test::UdpEar ear_;
   DdsOptions options_;
   std::unique_ptr<Participant> client_;
@@ -174,9 +177,8 @@ TEST_F(Announced, AreOfWhoSendsThemAndNothingElse) {
   other = whole_;
   other.insert(other.begin() + 20, source.begin(), source.end());
   EXPECT_FALSE(is_read(other)) << "said to be of another";
-  const auto submessage = static_cast<std::size_t>(find({0x15}) - whole_.begin());
   other = whole_;
-  other.insert(other.end(), whole_.begin() + static_cast<std::ptrdiff_t>(submessage), whole_.end());
+  other.insert(other.end(), whole_.begin() + static_cast<std::ptrdiff_t>(data_at()), whole_.end());
   EXPECT_FALSE(is_read(other)) << "two of them";
 }
 
