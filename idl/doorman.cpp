@@ -33,7 +33,7 @@ void Doorman::onParticipantAuthentication(dds::DomainParticipant*,
   Unproven& unproven = unproven_[client];
   unproven.since = Time::max();  // answered, either way
   if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
-    turn_away(client, unproven);
+    turn_away(client, " was not let in: " + unproven.why.text);
 }
 
 void Doorman::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
@@ -60,13 +60,20 @@ std::vector<ClientKey> Doorman::take() {
 }
 
 std::vector<std::string> Doorman::take_turned_away() {
-  constexpr auto kTimeToProve = std::chrono::seconds(2);
+  using std::chrono::seconds;
+  // Where messages of a handshake get lost, it is begun anew after a second, and may be again.
+  constexpr seconds kTimeToProve{2}, kTimeInDoubt{10};
   const std::lock_guard lock(mutex_);
+  const Time now = Time::clock::now();
   for (auto& [client, unproven] : unproven_) {
-    if (unproven.since == Time::max() || Time::clock::now() - unproven.since < kTimeToProve)
+    const bool is_certain = unproven.why.is_certain;
+    if (unproven.since == Time::max() ||
+        now - unproven.since < (is_certain ? kTimeToProve : kTimeInDoubt))
       continue;
     unproven.since = Time::max();  // said once
-    turn_away(client, unproven);
+    turn_away(client, is_certain ? " was not let in: " + unproven.why.text
+                                 : " has not proven who it is in 10 s: " + unproven.why.text +
+                                       ", or its messages get lost");
   }
   return std::exchange(turned_away_, {});
 }
@@ -85,9 +92,9 @@ void Doorman::add(const rtps::GUID_t& guid) {
   gone_.push_back(client_key(guid));
 }
 
-void Doorman::turn_away(const ClientKey& client, const Unproven& unproven) {
+void Doorman::turn_away(const ClientKey& client, const std::string& text) {
   if (identities_->is_revoked(client)) return;
-  turned_away_.push_back(identities_->whose(client) + " was not let in: " + unproven.why);
+  turned_away_.push_back(identities_->whose(client) + text);
 }
 
 }  // namespace mortise

@@ -44,10 +44,10 @@ class Doorman final : public dds::DomainParticipantListener {
  private:
   struct Unproven {
     Time since = Time::max();  ///< max: proven, or said
-    std::string why;
+    PeerIdentities::WhyNot why;
   };
   void add(const eprosima::fastrtps::rtps::GUID_t& guid);
-  void turn_away(const ClientKey& client, const Unproven& unproven);
+  void turn_away(const ClientKey& client, const std::string& text);
 
   LeadersMet leaders_;
   std::mutex mutex_;

@@ -246,11 +246,11 @@ std::string PeerIdentities::whose(const ClientKey& client) const {
                   : "a participant without a name (" + client + ")";
 }
 
-std::string PeerIdentities::why_not(const std::string& subject,
-                                    const std::string& authority) const {
-  if (subject.empty()) return "without keys; start it with --keys";
-  if (authority != authority_subject_) return "of another site (" + authority + ")";
-  return "expired, not valid yet, or signed by no authority of this site";
+PeerIdentities::WhyNot PeerIdentities::why_not(const std::string& subject,
+                                               const std::string& authority) const {
+  if (subject.empty()) return {"without keys; start it with --keys", true};
+  if (authority != authority_subject_) return {"of another site (" + authority + ")", true};
+  return {"expired, not valid yet, or signed by no authority of this site", false};
 }
 
 bool PeerIdentities::is_revoked(const ClientKey& client) const {

@@ -44,9 +44,13 @@ class PeerIdentities {
   void parted(const ClientKey& client);
   std::optional<Identity> identity_of(const ClientKey& client) const;
   std::string whose(const ClientKey& client) const;  ///< for a message
+  struct WhyNot {
+    std::string text;
+    bool is_certain;  ///< else it may yet be let in: nothing that it says of itself is against it
+  };
   /// Why one that says this of itself can not have been let in, as far as can be told from that:
   /// the transport does not say. Empty subject: it has no certificate.
-  std::string why_not(const std::string& subject, const std::string& authority) const;
+  WhyNot why_not(const std::string& subject, const std::string& authority) const;
   /// Also of one that came after its certificate was revoked: the list that the transport read when
   /// it began lets it in.
   bool is_revoked(const ClientKey& client) const;

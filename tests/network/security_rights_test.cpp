@@ -68,7 +68,7 @@ TEST_F(Security, ADesignersIncrementsArrive) {  // the same with the right to
   open_site();
   EXPECT_GT(increments_of_unruly(*site, options((*site_keys)["anna"]), "anna", "designer", said),
             20u);
-  EXPECT_TRUE(said.empty());
+  EXPECT_EQ(said, std::vector<std::string>{});
 }
 
 TEST_F(Security, NobodyJoinsAsSomebodyElse) {
