@@ -485,6 +485,8 @@ constexpr int kLooks = 3;
 // touch: who slides along a wall becomes deeper long after that. Then so often between the last two
 // looks.
 constexpr int kCoverHalvings = 6;
+// Where a look finds no witness it costs some 200 evaluations, and the next ones mostly find none.
+constexpr std::uint64_t kCoverLooksWorkCap = 400;
 
 // Work of one look; at the brink of interfering it is not worth more.
 constexpr std::uint64_t kPossibleLookWorkCap = 600;
@@ -632,7 +634,7 @@ class LookAhead {
   // is no farther behind than a search ends. Where the parts themselves touch, the time is the
   // parts' own, and a place anywhere behind counts.
   SoonAfter by_covers() {
-    const std::uint64_t enough = spent_ + kLookWorkCap;
+    const std::uint64_t enough = spent_ + kCoverLooksWorkCap;
     double before = t_;
     bool parts_touch = false;
     for (double step = step_; before < 1.0 && spent_ < enough; step *= 2.0) {

@@ -52,10 +52,16 @@ const CoverOverlap& PairCovers::overlap_of(Layer layer) {
 }
 
 double PairCovers::most_mm(Layer layer) {
-  if (apart(layer)) return pair_.touch_mm;
+  std::optional<double>& most_mm = most_mm_[index_of(layer)];
+  if (most_mm) return *most_mm;
+  if (apart(layer)) return *(most_mm = pair_.touch_mm);
+  most_mm = std::numeric_limits<double>::infinity();
   const CoverOverlap& overlap = overlap_of(layer);
-  return overlap.is_depth ? overlap.most_mm + pair_.touch_mm
-                          : std::numeric_limits<double>::infinity();
+  std::uint64_t work = 0;
+  if (found_ && cells_of(layer).bounds_depth(overlap, pair_.X_KS[0], pair_.touch_mm, work))
+    most_mm = overlap.most_mm + pair_.touch_mm;
+  evaluations_ += evaluations_of_bounds(work);
+  return *most_mm;
 }
 
 // Where the cover is the part, its border is its surface; else what is nearest of the mesh counts.
@@ -63,7 +69,7 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
   std::optional<Sample>& found = deepest_[index_of(layer)];
   if (found || apart(layer)) return found;
   const CoverOverlap& overlap = overlap_of(layer);
-  const int role = overlap.role;
+  const int role = overlap.keeper.role;
   const Body &s = pair_.s(role), &k = pair_.k(role);
   std::optional<Sample> off_mesh;
   const auto deeper = [&](std::optional<Sample>& known, const Sample& sample) {
@@ -102,9 +108,9 @@ std::optional<Sample> PairCovers::on_mesh(Layer layer) {
   const CoverOverlap& overlap = overlap_of(layer);
   if (overlap.places_S.empty()) return std::nullopt;
   const Vec3& x_S = overlap.places_S[overlap.places_S.size() > 1 ? 1 : 0];
-  const SurfacePoint at = nearest_surface(*pair_.s(overlap.role).solid, x_S);
+  const SurfacePoint at = nearest_surface(*pair_.s(overlap.keeper.role).solid, x_S);
   evaluations_ += 2;
-  const Sample sample = sample_at(pair_, layer, overlap.role, at.triangle, at.point);
+  const Sample sample = sample_at(pair_, layer, overlap.keeper.role, at.triangle, at.point);
   if (!(sample.depth_mm > pair_.touch_mm)) return std::nullopt;
   return sample;
 }

@@ -53,6 +53,7 @@ class PairCovers {
   std::uint64_t& evaluations_;
   std::optional<bool> apart_[2];            // least, largest
   std::optional<CoverOverlap> overlap_[2];  // the same
+  std::optional<double> most_mm_[2];
   std::optional<Sample> deepest_[2];
   bool touches_[2] = {false, false};
 };

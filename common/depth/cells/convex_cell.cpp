@@ -118,9 +118,14 @@ Vec3 ConvexCell::near(const Vec3& x) const {
   if (round) return nearest_of_round(x);
   Vec3 at = x;
   for (int i = 0; i < kRounds; ++i)
-    for (const Vec3& n : normals)
-      if (const double beyond = n.dot(at) - support_mm(n); beyond > 0.0) at -= beyond * n;
+    for (const HalfSpace& face : faces)
+      if (const double beyond = face.n.dot(at) - face.c_mm; beyond > 0.0) at -= beyond * face.n;
   return at;
+}
+
+void ConvexCell::set_faces(std::span<const Vec3> normals) {
+  faces.clear();
+  for (const Vec3& n : normals) faces.push_back({n, support_mm(n)});
 }
 
 std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
@@ -164,7 +169,7 @@ std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
     else
       cell.circles.back().r_mm = std::max(cell.circles.back().r_mm, p.r_mm);
   if (!(cell.circles.back().z_mm > cell.circles.front().z_mm)) return std::nullopt;
-  cell.normals = {axis, -axis};
+  cell.set_faces(std::array{axis, Vec3(-axis)});
   cell.middle = point + 0.5 * (cell.circles.front().z_mm + cell.circles.back().z_mm) * axis;
   return cell;
 }
@@ -206,7 +211,9 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
         shared += std::count(planes_of[b].begin(), planes_of[b].end(), p);
       if (shared >= 2) cell.edges.push_back({a, b});
     }
-  for (const HalfSpace& plane : planes) cell.normals.push_back(plane.n);
+  std::vector<Vec3> normals;
+  for (const HalfSpace& plane : planes) normals.push_back(plane.n);
+  cell.set_faces(normals);
   for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
   return cell;
 }
@@ -219,15 +226,16 @@ std::optional<ConvexCell> prism_cell(const std::array<Vec3, 3>& frame,
   const auto n = static_cast<std::uint16_t>(polygon.size());
   for (const double z : {along.lo, along.hi})
     for (const Vec2& x : polygon) cell.corners.push_back(flat(x) + z * frame[2]);
-  cell.normals = {frame[2], -frame[2]};
+  std::vector<Vec3> normals = {frame[2], -frame[2]};
   for (std::uint16_t i = 0; i < n; ++i) {
     const auto next = static_cast<std::uint16_t>(i + 1 == n ? 0 : i + 1);
     const auto above = [&](std::uint16_t k) { return static_cast<std::uint16_t>(k + n); };
     cell.edges.push_back({i, next});
     cell.edges.push_back({above(i), above(next)});
     cell.edges.push_back({i, above(i)});
-    cell.normals.push_back(flat(outline::outward(polygon[i], polygon[next])));
+    normals.push_back(flat(outline::outward(polygon[i], polygon[next])));
   }
+  cell.set_faces(normals);
   for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
   return cell;
 }

@@ -31,8 +31,8 @@ struct ConvexCell {
   /// Its edges, by corner. There may be more, none is missing.
   std::vector<std::array<std::uint16_t, 2>> edges;
 
-  std::vector<Vec3> normals;   ///< of its plane faces, outward
-  Vec3 middle = Vec3::Zero();  ///< a point inside
+  std::vector<HalfSpace> faces;  ///< the plane ones; each touches the body
+  Vec3 middle = Vec3::Zero();    ///< a point inside
 
   /// Largest n · x over the body; of a point where it is reached. n need not be a unit vector.
   double support_mm(const Vec3& n) const;
@@ -43,6 +43,9 @@ struct ConvexCell {
   std::vector<Vec3> around_farthest(const Vec3& n, double slack_mm) const;
   /// A point of the body near x; of one of revolution the nearest, of a polytope about that.
   Vec3 near(const Vec3& x) const;
+
+  /// Sets `faces` to those with these normals, outward unit vectors.
+  void set_faces(std::span<const Vec3> normals);
 
  private:
   Vec3 nearest_of_round(const Vec3& x) const;

@@ -26,8 +26,8 @@ double beyond(const VoidWall& wall, const Vec3& x) {
   return wall.cosine * ((d - z * wall.axis).norm() - wall.r_mm - wall.slope * z);
 }
 
-// A round cell beside a wall. Directions off its axis are u = c across[0] + s across[1]; over a
-// sector of a circle they are within the triangle of both ends and where their tangents meet.
+// A round cell beside a wall. Directions off its axis are u = c across[0] + s across[1]; what is
+// linear in u is largest at an end of a sector, or where it is largest at all.
 class RoundInWall {
  public:
   RoundInWall(const ConvexCell& s, const Chord& chord, const VoidWall& wall, const Interval& along,
@@ -38,7 +38,8 @@ class RoundInWall {
       point_[e] = X * s.point;
       axis_[e] = X.q * s.axis;
       for (int k = 0; k < 2; ++k) across_[e][k] = X.q * s.across[k];
-      rise_[e] = std::hypot(across_[e][0].dot(wall.axis), across_[e][1].dot(wall.axis));
+      rises_[e] = {across_[e][0].dot(wall.axis), across_[e][1].dot(wall.axis)};
+      rise_[e] = std::hypot(rises_[e].c, rises_[e].s);
       for (const auto& circle : s.circles)
         too_far_mm_ =
             std::max(too_far_mm_, circle.r_mm * rise_[e] * (rise_[e] + std::fabs(wall.slope)));
@@ -214,32 +215,46 @@ class RoundInWall {
       }
   }
 
+  // The largest of g · u over a sector of at most half a turn.
+  static double most_over(const Direction& from, const Direction& to, const Direction& g) {
+    if (from.c * g.s - from.s * g.c >= 0.0 && g.c * to.s - g.s * to.c >= 0.0)
+      return std::sqrt(g.c * g.c + g.s * g.s);
+    return std::max(from.c * g.c + from.s * g.s, to.c * g.c + to.s * g.s);
+  }
+
+  // A point r u of a circle at z has a rise h = u · axis of the wall. With c the way from that axis
+  // to the middle of the circle it is, off the axis, |c + r u|² = c² + 2 r c · u + r² (1 - h²).
+  double most_of_circle(int e, double z, double r, const Direction& from, const Direction& to,
+                        const Interval& rises) const {
+    const Vec3 d = point_[e] + z * axis_[e] - wall_.point;
+    const double height = d.dot(wall_.axis);
+    const Vec3 off = d - height * wall_.axis;
+    const double aside = most_over(from, to, {off.dot(across_[e][0]), off.dot(across_[e][1])});
+    const double least_rise = std::max({0.0, rises.lo, -rises.hi});
+    const double square =
+        off.squaredNorm() + 2.0 * r * aside + r * r * (1.0 - least_rise * least_rise);
+    const double rise = wall_.slope > 0.0 ? rises.lo : rises.hi;
+    return wall_.cosine *
+           (std::sqrt(std::max(0.0, square)) - wall_.r_mm - wall_.slope * (height + r * rise));
+  }
+
   void add(const Direction& from, const Direction& to, double known) {
     ++work_;
     ++work_here_;
-    const Direction middle = between(from, to);
-    const double out = 1.0 / (from.c * middle.c + from.s * middle.s);
-    const Direction corners[3] = {from, to, {out * middle.c, out * middle.s}};
-    std::array<std::array<Vec3, 3>, 2> u;
     Rises rises;
     for (int e = 0; e < chord_.ends; ++e) {
-      rises.least[e] = kInfinity;
-      rises.most[e] = -kInfinity;
-      for (int k = 0; k < 3; ++k) {
-        u[e][k] = corners[k].c * across_[e][0] + corners[k].s * across_[e][1];
-        const double rise = u[e][k].dot(wall_.axis);
-        rises.least[e] = std::min(rises.least[e], rise);
-        rises.most[e] = std::max(rises.most[e], rise);
-      }
+      rises.least[e] = -most_over(from, to, {-rises_[e].c, -rises_[e].s});
+      rises.most[e] = most_over(from, to, rises_[e]);
     }
+    const Direction middle = between(from, to);
     double most = -kInfinity;
     for (std::size_t k = 0; k + 1 < s_.circles.size(); ++k) {
       double a, b;
       if (!clip(k, rises, a, b)) continue;
       for (int e = 0; e < chord_.ends; ++e)
         for (const double z : {a, b})
-          for (int c = 0; c < 3; ++c)
-            most = std::max(most, beyond(wall_, point_[e] + z * axis_[e] + radius(k, z) * u[e][c]));
+          most = std::max(
+              most, most_of_circle(e, z, radius(k, z), from, to, {rises.least[e], rises.most[e]}));
       see(k, middle);
     }
     if (most == -kInfinity) return;
@@ -270,8 +285,9 @@ class RoundInWall {
   const Interval along_;
   std::uint64_t& work_;
   Vec3 point_[2], axis_[2], across_[2][2];
-  double rise_[2] = {0.0, 0.0};
-  double too_far_mm_ = 0.0;  // what whole_circle() may say too much
+  Direction rises_[2];           // of both directions across
+  double rise_[2] = {0.0, 0.0};  // the most of any
+  double too_far_mm_ = 0.0;      // what whole_circle() may say too much
   int work_here_ = 0;
   double best_ = -kInfinity;  // of points seen, at an end of the chord
   Place place_;

@@ -48,8 +48,8 @@ class CoverPair::Bound {
     for (const int role : {0, 1})
       if (k(role).round && off_axis(role)) return least_;
     for (const int role : {0, 1})
-      for (const Vec3& n : k(role).normals)
-        if (by_direction(role, n)) return least_;
+      for (const HalfSpace& face : k(role).faces)
+        if (by_face(role, face)) return least_;
     for (const int role : {0, 1}) {
       const std::vector<Void>& voids = pair_.parts_[1 - role]->voids;
       for (std::size_t v = 0; v < voids.size(); ++v)
@@ -63,7 +63,7 @@ class CoverPair::Bound {
   bool by_what_it_was(Cells& cells) {
     cells_ = &cells;
     least_ = kInfinity;
-    return cells.role >= 0 && again();
+    return cells.keeper.role >= 0 && again(cells.keeper);
   }
 
  private:
@@ -71,9 +71,8 @@ class CoverPair::Bound {
   const ConvexCell& s(int role) const { return pair_.parts_[role]->cells[cells_->cell[role]]; }
   const ConvexCell& k(int role) const { return s(1 - role); }
 
-  bool again() {
-    return cells_->by_void ? by_void(cells_->role, cells_->v)
-                           : by_direction(cells_->role, cells_->n);
+  bool again(const CoverKeeper& last) {
+    return last.by_void ? by_void(last.role, last.v) : by_direction(last.role, last.n);
   }
 
   // All of K is below, all of S above, along a direction fixed in K.
@@ -81,8 +80,18 @@ class CoverPair::Bound {
     const double length = towards.norm();
     if (!(length > 1e-12)) return false;
     const Vec3 n = towards / length;
+    return by_plane(role, {n, k(role).support_mm(n)});
+  }
+
+  bool by_plane(int role, const HalfSpace& plane) {
     ++work_;
-    return take(beyond_plane_mm(s(role), views_.chord[role], {n, k(role).support_mm(n)}), role, n);
+    return take(beyond_plane_mm(s(role), views_.chord[role], plane), role, plane.n);
+  }
+
+  // S reaches at least as deep as its middle.
+  bool by_face(int role, const HalfSpace& face) {
+    const double middle_mm = face.c_mm - face.n.dot(views_.chord[role].X_KS[0] * s(role).middle);
+    return middle_mm < useless_mm() && by_plane(role, face);
   }
 
   bool off_axis(int role) {
@@ -97,7 +106,6 @@ class CoverPair::Bound {
     const Void& hole = part.voids[v];
     const Chord& chord = views_.chord[role];
     const bool how_deep = asked_ == Asked::kHowDeep;
-    const double useless_mm = how_deep ? least_ : limit_mm_;
     double most = -kInfinity;
     std::vector<Vec3> places_S;
     for (const HalfSpace& plane : hole.planes) {
@@ -113,7 +121,7 @@ class CoverPair::Bound {
       std::vector<Vec3> at_wall;
       const double beyond =
           beyond_wall_mm(s(role), chord, *hole.wall, part.heights_of(cells_->cell[1 - role], v),
-                         limit_mm_, useless_mm, work_, how_deep ? &at_wall : nullptr);
+                         limit_mm_, useless_mm(), work_, how_deep ? &at_wall : nullptr);
       if (beyond > most) {
         most = beyond;
         places_S = std::move(at_wall);
@@ -122,18 +130,17 @@ class CoverPair::Bound {
     if (!(most < least_)) return false;
     least_ = most;
     cells_->places_S = std::move(places_S);
-    cells_->role = role;
-    cells_->by_void = true;
-    cells_->v = v;
+    cells_->keeper = {role, true, v, Vec3::Zero()};
     return least_ <= limit_mm_;
   }
+
+  // What is no less changes nothing.
+  double useless_mm() const { return asked_ == Asked::kHowDeep ? least_ : limit_mm_; }
 
   bool take(double bound, int role, const Vec3& n) {
     if (!(bound < least_)) return false;
     least_ = bound;
-    cells_->role = role;
-    cells_->by_void = false;
-    cells_->n = n;
+    cells_->keeper = {role, false, 0, n};
     cells_->places_S.clear();
     return least_ <= limit_mm_;
   }
@@ -166,16 +173,18 @@ class CoverPair::Bound {
     if (!(size_mm > 1e-12)) return;
     LeastReach search(farthest, tried, size_mm);
     const bool how_deep = asked_ == Asked::kHowDeep;
-    const double useless_mm = std::max(kDeep * size_mm, how_deep ? least_ : limit_mm_);
-    search.run(first_direction(between / size_mm), useless_mm, how_deep ? kLittle : kMuch);
-    if (asked_ != Asked::kHowDeep || cells_->by_void) return;
+    search.run(first_direction(between / size_mm), std::max(kDeep * size_mm, useless_mm()),
+               how_deep ? kLittle : kMuch);
+    if (!how_deep || cells_->keeper.by_void) return;
     const PointOfEach& touching = search.touching();
-    cells_->places_S = {cells_->role == 0 ? chord.X_KS[0].inverse() * touching.s : touching.k};
+    cells_->places_S = {cells_->keeper.role == 0 ? chord.X_KS[0].inverse() * touching.s
+                                                 : touching.k};
   }
 
   Vec3 first_direction(const Vec3& otherwise) const {
-    if (cells_->role < 0 || cells_->by_void) return otherwise;
-    return cells_->role == 0 ? cells_->n : Vec3(-(views_.chord[0].X_KS[0].q * cells_->n));
+    const CoverKeeper& last = cells_->keeper;
+    if (last.role < 0 || last.by_void) return otherwise;
+    return last.role == 0 ? last.n : Vec3(-(views_.chord[0].X_KS[0].q * last.n));
   }
 
   const CoverPair& pair_;
@@ -195,7 +204,7 @@ class CoverPair::Whole {
         std::uint64_t& work)
       : pair_(pair), views_(views), most_mm_(most_mm), least_mm_(least_mm), work_(work) {}
 
-  bool operator()(const Cells& deciding) {
+  bool operator()(const CoverKeeper& deciding) {
     role_ = deciding.role;
     return deciding.by_void ? of_void(deciding.v) : of_direction(deciding.n);
   }
@@ -379,22 +388,28 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
     overlap.most_mm = bound;
     deciding = &cells;
   }
-  if (deciding == nullptr || deciding->role < 0) return overlap;
-  overlap.role = deciding->role;
+  if (deciding == nullptr || deciding->keeper.role < 0) return overlap;
+  overlap.keeper = deciding->keeper;
   overlap.places_S = places_of(*deciding, views);
-  overlap.is_depth = Whole(*this, views, overlap.most_mm, least_mm, work)(*deciding);
   return overlap;
+}
+
+bool CoverPair::bounds_depth(const CoverOverlap& overlap, const Pose& X_BA, double least_mm,
+                             std::uint64_t& work) const {
+  if (overlap.keeper.role < 0) return false;
+  return Whole(*this, views_at(X_BA), overlap.most_mm, least_mm, work)(overlap.keeper);
 }
 
 // By a direction: between both cells, then as far as S goes along it. Around the middle of a disc
 // as well, since a shaft may come out of it; and where both cells touch.
 std::vector<Vec3> CoverPair::places_of(const Cells& cells, const Views& views) const {
-  if (cells.by_void && !cells.places_S.empty()) return cells.places_S;
-  const Pose& X_KS = views.chord[cells.role].X_KS[0];
-  const ConvexCell& s = parts_[cells.role]->cells[cells.cell[cells.role]];
-  const ConvexCell& k = parts_[1 - cells.role]->cells[cells.cell[1 - cells.role]];
+  if (cells.keeper.by_void && !cells.places_S.empty()) return cells.places_S;
+  const int role = cells.keeper.role;
+  const Pose& X_KS = views.chord[role].X_KS[0];
+  const ConvexCell& s = parts_[role]->cells[cells.cell[role]];
+  const ConvexCell& k = parts_[1 - role]->cells[cells.cell[1 - role]];
   const Pose X_SK = X_KS.inverse();
-  const Vec3 n_S = -(X_KS.q.conjugate() * cells.n);
+  const Vec3 n_S = -(X_KS.q.conjugate() * cells.keeper.n);
   std::vector<Vec3> places;
   const auto add = [&](Vec3 x_S) {
     for (int i = 0; i < kProjections; ++i) x_S = s.near(X_SK * k.near(X_KS * x_S));

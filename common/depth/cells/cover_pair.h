@@ -23,18 +23,25 @@ constexpr std::uint64_t evaluations_of_bounds(std::uint64_t work) {
   return (work + kBoundsPerEvaluation - 1) / kBoundsPerEvaluation;
 }
 
+/// What keeps a cell S of part `role` from one of the other part, or nearly so: a direction fixed
+/// in that part, or a void of it.
+struct CoverKeeper {
+  int role = -1;  ///< -1: nothing is known
+  bool by_void = false;
+  std::size_t v = 0;
+  Vec3 n = Vec3::Zero();
+};
+
 /// How deep the overlap of a layer of two parts may be.
 struct CoverOverlap {
-  /// No point is deeper in both. Infinity: nothing is known.
+  /// No point is deeper in both cells, or beyond both walls, that decide. Infinity: nothing is
+  /// known. What is no deeper than least_mm is not in both parts; CoverPair::bounds_depth() asks
+  /// whether this bounds the depth in the whole parts as well.
   double most_mm = std::numeric_limits<double>::infinity();
-  /// False: in some cell or beyond some wall that is so; the depth in the whole part, inside a
-  /// hollow edge, may be larger. What is no deeper than least_mm is not in both, however. True: no
-  /// point of either part is deeper in the other than most_mm and least_mm.
-  bool is_depth = false;
-  /// Points of S = part `role` that may be that deep in the other part, in its own frame, the
+  CoverKeeper keeper;
+  /// Points of S = part keeper.role that may be that deep in the other part, in its own frame, the
   /// likeliest first; to be verified.
   std::vector<Vec3> places_S;
-  int role = 0;
 };
 
 /// Upper bounds of the overlap of one layer of two parts A and B by their covers (README, section
@@ -52,20 +59,22 @@ class CoverPair {
   /// Overlaps below least_mm count as that.
   CoverOverlap overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const;
 
+  /// No point of either part is deeper in the other than most_mm and least_mm of the overlap at
+  /// this pose: true, or not known. In the whole part, inside a hollow edge, the depth may be
+  /// larger than in a cell or beyond a wall.
+  bool bounds_depth(const CoverOverlap& overlap, const Pose& X_BA, double least_mm,
+                    std::uint64_t& work) const;
+
  private:
   /// How each part is seen from the other over a span.
   struct Views {
     Chord chord[2];
   };
-  /// A cell of A and one of B, and what kept them apart last: a direction fixed in part 1 - role,
-  /// or a void of it.
+  /// A cell of A and one of B, and what kept them apart last.
   struct Cells {
     std::size_t cell[2];
-    int role = -1;
-    std::size_t v = 0;
-    bool by_void = false;
-    Vec3 n = Vec3::Zero();
-    std::vector<Vec3> places_S;  // of part `role`, what comes farthest
+    CoverKeeper keeper;
+    std::vector<Vec3> places_S;  // of part keeper.role, what comes farthest
   };
   class Bound;
   class Whole;
@@ -76,7 +85,7 @@ class CoverPair {
   /// Leaves with each pair of cells what keeps it apart.
   bool apart(const Views& views, std::vector<Cells>& all, double limit_mm,
              std::uint64_t& work) const;
-  /// Points of part cells.role where what kept its cell from the other one last is least far.
+  /// Points of part keeper.role where what kept its cell from the other one last is least far.
   std::vector<Vec3> places_of(const Cells& cells, const Views& views) const;
 
   const CoverLayer* parts_[2];

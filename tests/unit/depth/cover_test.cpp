@@ -143,8 +143,12 @@ struct Tally {
 };
 
 // What is no depth bounds none, unless nothing is in both.
-double bound_of(const CoverOverlap& overlap) {
-  return overlap.is_depth || overlap.most_mm <= kNothing_mm ? overlap.most_mm : 1e9;
+double bound_of(const CoverPair& pair, const Pose& X_BA) {
+  std::uint64_t work = 0;
+  const CoverOverlap overlap = pair.overlap(X_BA, kNothing_mm, work);
+  const bool is_bound =
+      overlap.most_mm <= kNothing_mm || pair.bounds_depth(overlap, X_BA, kNothing_mm, work);
+  return is_bound ? overlap.most_mm : 1e9;
 }
 
 Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
@@ -157,9 +161,8 @@ Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
       spoil(a);
       spoil(b);
       std::uint64_t work = 0;
-      const double most = bound_of(CoverPair(a, b).overlap(pair.X_BA, kNothing_mm, work));
-      const double other =
-          bound_of(CoverPair(b, a).overlap(pair.X_BA.inverse(), kNothing_mm, work));
+      const double most = bound_of({a, b}, pair.X_BA);
+      const double other = bound_of({b, a}, pair.X_BA.inverse());
       const double found = Deepest(pair, pair.X_BA, largest).find(random, 400);
       ++tally.poses;
       tally.overlap += found > 0.0;
@@ -498,9 +501,10 @@ TEST(Cover, NoSurfaceIsDeeperThanADepth) {
     const PairFrame frame(look_at(pair));
     for (const bool largest : {false, true}) {
       std::uint64_t work = 0;
-      const CoverOverlap overlap = CoverPair(layer_of(pair.a, largest), layer_of(pair.b, largest))
-                                       .overlap(frame.X_KS[0], frame.touch_mm, work);
-      if (!overlap.is_depth) continue;
+      const CoverLayer a = layer_of(pair.a, largest), b = layer_of(pair.b, largest);
+      const CoverPair covers(a, b);
+      const CoverOverlap overlap = covers.overlap(frame.X_KS[0], frame.touch_mm, work);
+      if (!covers.bounds_depth(overlap, frame.X_KS[0], frame.touch_mm, work)) continue;
       ++depths;
       const double found =
           deepest_of_surfaces(frame, largest ? Layer::kUpper : Layer::kLower, random, 3000);
