@@ -481,9 +481,11 @@ SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_
   const Layer layer = named == Named::kLargest ? Layer::kUpper : Layer::kLower;
   SaidByCovers said;
   said.apart = covers.apart(layer);
-  const std::optional<Sample> deepest =
-      named == Named::kLeastHere ? covers.on_mesh(layer) : covers.deepest(layer);
+  const bool here = named == Named::kLeastHere;
+  std::optional<Sample> deepest = here ? covers.on_mesh(layer) : covers.deepest(layer);
   said.touches = covers.touches(layer);
+  // Where the wall ends at that place, nothing is deep there, however far the part goes.
+  if (here && !deepest) deepest = covers.deepest(layer);
   if (deepest && (layer == Layer::kUpper || find_witness(pair, *deepest, evaluations)))
     said.place = {deepest->role, deepest->triangle,
                   pair.X_KS[1 - deepest->role] * deepest->point_K};
