@@ -404,8 +404,9 @@ TEST(Cover, WordsAgreeWithThoseWithoutCovers) {
     const OverlapResult with = find_overlap(query, scratch);
     query.use_covers = false;
     words.compare(with, find_overlap(query, scratch));
+    // One point may be refused where another one is found.
     for (const OverlapRegion& region : with.regions)
-      refused += static_cast<int>(region.witnesses_refused);
+      if (!region.has_witness) refused += static_cast<int>(region.witnesses_refused);
   }
   std::printf("%d decided without covers, %d more with them, %d less\n", words.decided, words.more,
               words.less);
