@@ -3,7 +3,6 @@
 import json
 import os
 import pathlib
-import random
 import subprocess
 import threading
 import time
@@ -324,8 +323,7 @@ def test_a_trivial_call_costs_little():
         assert name <= 5.0 and distance <= 5.0
 
 
-def test_a_live_session(tmp_path):
-    domain = random.randrange(180, 220)
+def test_a_live_session(tmp_path, domain):
     server = subprocess.Popen([BIN / "mortise-server", SOURCE / "scenarios" / "peg_in_hole.yaml", "--session", "python", "--domain",
                                str(domain), "--quiet", "--log", tmp_path / "s.mcap"], stdout=subprocess.DEVNULL)
     try:

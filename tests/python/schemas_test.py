@@ -4,7 +4,6 @@ import copy
 import json
 import os
 import pathlib
-import random
 import re
 import subprocess
 
@@ -173,9 +172,7 @@ def test_a_log_of_which_nothing_is_replayable(tmp_path):
     assert errors("replay-recover", {"log": "a.mcap"}) != []
 
 
-def test_a_live_session(tmp_path):
-    domain = str(random.randrange(140, 180))
-
+def test_a_live_session(tmp_path, domain):
     def program(name, *words):
         return subprocess.Popen([BIN / f"mortise-{name}", *map(str, words), "--json", "--quiet"], cwd=tmp_path, text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
@@ -188,7 +185,7 @@ def test_a_live_session(tmp_path):
         return json.loads(out)
 
     server = program("server", SCENARIOS / "peg_in_hole.yaml", "--session", "schemas", "--domain", domain, "--log", "s.mcap")
-    discovery = program("discovery", "--discovery-port", 20000 + int(domain))
+    discovery = program("discovery", "--discovery-port", 20000 + domain)
     bots = ("bot", "--session", "schemas", "--domain", domain, "--wait", 30, "--seconds", 2)
     try:
         alone = program(*bots, "--behaviour", "guided", "--tries", 1, "--limit", "lost_events=0")

@@ -9,7 +9,6 @@ import { PATIENCE, until, whenListed } from '../support/people.mjs';
 
 const first = new BrowserSession('save');
 const second = new BrowserSession('saved');
-second.domain = first.domain - 80; // both run at one time
 let eva, verdict;
 
 // As `mortise open` begins without a file.

@@ -1,5 +1,6 @@
 // A session as people have it: server, gateway, and bots where asked for, each a process of its own; ended by their ids.
 import { execFile, spawn } from 'node:child_process';
+import { createServer } from 'node:net';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -7,10 +8,19 @@ import { join, resolve } from 'node:path';
 const root = resolve(import.meta.dirname, '../../..');
 const bin = process.env.MORTISE_BIN_DIR ?? join(root, 'build/release/bin');
 
+/** A DDS domain that no other test of this machine has: its name is taken as tests/network/domain.cpp takes it, until this process ends. */
+async function takeDomain() {
+  for (let tries = 0; ; ++tries) {
+    const domain = 1 + ((process.pid + tries) % 100);
+    const name = createServer().unref().listen(`\0mortise-test-domain-${domain}`);
+    if (await new Promise((done) => name.once('listening', () => done(true)).once('error', () => done(false)))) return domain;
+  }
+}
+
 export class LiveSession {
   #children = [];
   folder = mkdtempSync(join(tmpdir(), 'mortise-web-'));
-  domain = 100 + (process.pid % 100);
+  domain = 0;
 
   /** @param {string} [name] */
   constructor(name = `web${process.pid}`) {
@@ -43,6 +53,7 @@ export class LiveSession {
   async serve(scenario, more = []) {
     const file = scenario.includes('\n') ? join(this.folder, 'scenario.yaml') : resolve(root, 'scenarios', scenario);
     if (scenario.includes('\n')) writeFileSync(file, scenario);
+    this.domain ||= await takeDomain();
     this.server = await this.start('server', [file, '--session', this.name, '--domain', `${this.domain}`, ...more]);
   }
 
