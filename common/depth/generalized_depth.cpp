@@ -120,8 +120,10 @@ class PairDepth {
     starts_.twists.push_back(apart);
     if (query_.known != nullptr && query_.known->of_b == query_.b_moves)
       starts_.twists.push_back(frame_.twist_of(query_.known->displacement()));
-    // Some is left for the lower end.
-    search(gpd::Looking::kNear, starts_.twists, query_.work_cap - query_.work_cap / kHoldsShare);
+    // For the lower end.
+    const std::uint64_t kept =
+        std::max(query_.work_cap / kHoldsShare, std::min(kHoldWork, query_.work_cap / 2));
+    search(gpd::Looking::kNear, starts_.twists, query_.work_cap - kept);
   }
 
   // From afar, and along what all holds ask for.

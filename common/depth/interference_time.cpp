@@ -488,6 +488,9 @@ constexpr int kCoverHalvings = 6;
 // Where a look finds no witness it costs some 200 evaluations, and the next ones mostly find none.
 constexpr std::uint64_t kCoverLooksWorkCap = 400;
 
+// A search of 1,000 evaluations finds no place in both parts that is less deep.
+constexpr double kWorthASearch_mm = 2e-3;
+
 // Work of one look; at the brink of interfering it is not worth more.
 constexpr std::uint64_t kPossibleLookWorkCap = 600;
 
@@ -641,6 +644,7 @@ class LookAhead {
       const double t = std::min(t_ + step, 1.0);
       const SaidByCovers said = said_by_covers(at(t), named_, spent_);
       if (said.place) return between(before, {true, t, *said.place});
+      if (said.in_cells_mm < kWorthASearch_mm) brink_ = std::max(brink_, step);
       parts_touch |= said.touches;
       if (!said.apart && !parts_touch && step > close_) break;
       before = t;
@@ -662,7 +666,8 @@ class LookAhead {
 
   SoonAfter by_search() {
     const std::uint64_t before = spent_, most = query_.at_target.work_cap;
-    double step = step_;
+    double step = brink_ > 0.0 ? 2.0 * brink_ : step_;
+    if (brink_ > close_) return {};
     for (int i = 0; i < kLooks && t_ + step <= 1.0 && spent_ - before < most; ++i, step *= 2.0) {
       OverlapQuery there = at(t_ + step);
       there.work_cap = std::min(most - (spent_ - before), look_cap_);
@@ -676,6 +681,7 @@ class LookAhead {
   const double t_;
   std::uint64_t& spent_;
   double step_ = 0.0, close_ = 0.0;  // the first one, and what is close enough
+  double brink_ = 0.0;               // so far nothing can be deep enough for a search to find it
   Named named_ = Named::kLeast;
   std::uint64_t look_cap_ = 0;
 };
