@@ -63,3 +63,30 @@ export function smallTargets(page) {
     .filter(({ box }) => box.width < 43.5 || box.height < 43.5)
     .map(({ c, box }) => `${box.width.toFixed(0)} × ${box.height.toFixed(0)}: ${c.outerHTML.slice(0, 80)}`));
 }
+
+/**
+ * Of a report: what sticks out of the window or of its cell, heads that do not stand over their columns, and boxes that scroll without a word or out of
+ * reach of the keyboard.
+ * @param {import('playwright-core').Page} page @returns {Promise<string[]>}
+ */
+export function outOfReport(page) {
+  return page.evaluate(() => {
+    const bad = [];
+    const name = (element) => `${element.tagName} ${element.textContent.trim().slice(0, 40)}`;
+    for (const element of document.querySelectorAll('body *:not(.wide *, figure *, script)')) {
+      if (element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 1) bad.push(`out of the window: ${name(element)}`);
+    }
+    for (const cell of document.querySelectorAll('th, td')) if (cell.clientWidth < 24 || cell.scrollWidth > cell.clientWidth + 1) bad.push(`out of its cell: ${name(cell)}`);
+    for (const table of document.querySelectorAll('table')) {
+      const first = table.querySelector('tbody tr:not([hidden])')?.children ?? [];
+      table.querySelectorAll('thead th').forEach((head, i) => {
+        if (first[i] && getComputedStyle(head).textAlign !== getComputedStyle(first[i]).textAlign) bad.push(`not over its column: ${name(head)}`);
+      });
+    }
+    for (const box of document.querySelectorAll('.wide, figure')) {
+      if (box.scrollWidth <= box.clientWidth + 1 || getComputedStyle(box).overflowX === 'visible') continue;
+      if (getComputedStyle(box, '::before').content === 'none' || box.tabIndex !== 0) bad.push(`scrolls and does not say so: ${name(box)}`);
+    }
+    return bad;
+  });
+}
