@@ -68,9 +68,8 @@ th.n, td.n { text-align: right; } td.n { font-variant-numeric: tabular-nums; whi
 td { overflow-wrap: break-word; } #clashes td { overflow-wrap: anywhere; }
 #clashes { table-layout: fixed; min-width: 58rem; }
 #clashes col:nth-child(1) { width: 3rem; } #clashes col:nth-child(2) { width: 7rem; }
-#clashes col:nth-child(3) { width: 20%; } #clashes col:nth-child(4) { width: 12%; }
-#clashes col:nth-child(5) { width: 6.5rem; } #clashes col:nth-child(6) { width: 5.5rem; }
-#clashes col:nth-child(7) { width: 6rem; } #clashes svg { width: 100%; max-width: 124px; height: auto; }
+#clashes col:nth-child(3) { width: 20%; } #clashes col:nth-child(4) { width: 12%; } #clashes col:nth-child(5) { width: 6.5rem; }
+#clashes col:nth-child(6) { width: 5.5rem; } #clashes col:nth-child(7) { width: 6rem; } #clashes svg { width: 100%; max-width: 124px; height: auto; }
 details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { font-weight: 600; } dd { margin: 0 0 .2rem 1rem; }
 .real { color: var(--real); } .potential { color: var(--potential); } .fake { color: var(--fake); }
 .letter { display: inline-block; width: 1.5em; text-align: center; font-weight: 700;
@@ -85,8 +84,7 @@ details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { f
   display: block; width: max-content; max-width: 100%; font-size: .8rem; color: var(--dim); }
 .wide > svg { width: 100%; min-width: 50rem; max-width: 1100px; height: auto; }
 figure { margin: 1.2rem 0; break-inside: avoid; }
-figure > svg, figure > img { box-sizing: border-box; max-width: 100%; height: auto;
-  border: 1px solid var(--line); background: #fff; }
+figure > svg, figure > img { box-sizing: border-box; max-width: 100%; height: auto; border: 1px solid var(--line); background: #fff; }
 figure > svg { min-width: 36rem; }
 figcaption { font-size: .87rem; color: var(--dim); }
 .parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
