@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { joinAs, openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { cutOff, paleTexts, smallTargets } from '../support/looks.mjs';
+import { cutOff, paleTexts, skippedHeadings, smallTargets } from '../support/looks.mjs';
 import { PATIENCE, choose, drawn, grab, moveBy, settled, until, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
 
@@ -40,6 +40,7 @@ test('at 1440, 1280, 1024 and 800 pixels nothing is cut off, covered or out of r
         else if (side === 'left') assert.ok(await page.locator('#parts').isVisible() && await page.locator('#clashes').isVisible());
         await drawn(page);
         assert.deepEqual(await cutOff(page), [], `${scheme} ${width} × ${height}, ${side}`);
+        assert.deepEqual(await skippedHeadings(page), [], `${width} × ${height}, ${side}`);
         assert.ok(await page.locator(side === 'left' ? '#parts' : '#clashes').isVisible(), `${side} at ${width}`);
       }
     }

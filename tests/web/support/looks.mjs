@@ -20,6 +20,12 @@ export function cutOff(page) {
   });
 }
 
+/** Headings that skip a level, which a screen reader takes for a gap. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export function skippedHeadings(page) {
+  return page.evaluate(() => [...document.querySelectorAll('h1, h2, h3')].filter((h) => h.checkVisibility())
+    .filter((h, i, all) => Number(h.tagName[1]) > 1 + Number(all[i - 1]?.tagName[1] ?? 0)).map((h) => `${h.tagName} ${h.textContent}`));
+}
+
 /** Texts whose contrast with what is behind them is below 4.5 (WCAG 2.2, 1.4.3). What is disabled is exempt. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
 export function paleTexts(page) {
   return page.evaluate(() => {
