@@ -1,6 +1,8 @@
 #include "client/report/cells.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "common/base/plain_text.h"
 #include "common/messages/length_text.h"
@@ -49,6 +51,15 @@ double Cells::number(std::string_view name) const {
 std::string Cells::length(std::string_view name) const {
   const double mm = number(name);
   return std::isfinite(mm) ? length_text(mm) : "–";
+}
+
+void worst_first(Table& table) {
+  const auto counts = [&](const std::vector<Json>& row) {
+    const Cells cells(table, row);
+    return std::tuple(cells.number("real"), cells.number("potential"), cells.number("fake"));
+  };
+  std::stable_sort(table.rows.begin(), table.rows.end(),
+                   [&](const auto& x, const auto& y) { return counts(x) > counts(y); });
 }
 
 }  // namespace mortise

@@ -26,4 +26,7 @@ class Cells {
   const std::vector<Json>& row_;
 };
 
+/// Rows with real clashes first, then with potential, then with fake ones; the more the earlier.
+void worst_first(Table& table);
+
 }  // namespace mortise

@@ -49,7 +49,7 @@ std::string bar(const Cells& clash) {
   const auto x = [&](double mm) { return 120.0 * std::clamp(mm / most, 0.0, 1.0); };
   for (const double mm : thresholds) marks += fmt::format("M{:.1f} 1v16", x(mm));
   return fmt::format(
-      "<svg width=\"124\" height=\"18\" role=\"img\" aria-label=\"{}\"><rect x=\"0\" y=\"5\" "
+      "<svg viewBox=\"0 0 124 18\" role=\"img\" aria-label=\"{}\"><rect x=\"0\" y=\"5\" "
       "width=\"{:.1f}\" height=\"8\" fill=\"currentColor\" opacity=\".55\"/><path d=\"{}\" "
       "stroke=\"currentColor\" stroke-dasharray=\"2 2\"/></svg>",
       label, x(overlap), marks);
@@ -152,15 +152,14 @@ std::string clash_section(const SessionReport& report) {
       "Overlap of the meshes against two thresholds: fake up to the first, real above the second, "
       "potential between; a dash where the class was decided before the threshold was.</p>\n" +
       filters() +
-      "<table id=\"clashes\"><colgroup><col style=\"width:3rem\"><col style=\"width:7rem\"><col "
-      "style=\"width:13rem\"><col style=\"width:9.5rem\"><col style=\"width:6.5rem\"><col "
-      "style=\"width:6rem\"><col style=\"width:7rem\"><col></colgroup><thead><tr><th "
+      "<div class=\"wide\"><table id=\"clashes\"><colgroup><col><col><col><col><col><col><col>"
+      "<col></colgroup><thead><tr><th "
       "class=\"n\">#</th><th>class</th><th>parts, faces</th><th class=\"n\">overlap</th><th "
       "class=\"n\">fake up to, real above</th><th class=\"n\">margin</th><th>review</th>"
       "<th>why</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < std::min(groups.size(), kMostRows); ++i)
     html += clash_row(table, groups[i], report.pictures);
-  html += "</tbody></table>\n";
+  html += "</tbody></table></div>\n";
   if (groups.size() > kMostRows)
     html += fmt::format("<p>{} more pairs are in the CSV, JSON and SQLite exports.</p>\n",
                         groups.size() - kMostRows);
@@ -241,23 +240,20 @@ std::string session_value(const std::vector<Table>& tables, std::string_view key
 
 std::string html_of(const SessionReport& report) {
   const std::vector<Table>& tables = report.tables;
-  const std::string title = "Clashes of " + report.session;
   const Table& clashes = table_named(tables, "clashes");
   const std::string duration =
       fmt::format("{:.1f}", std::atof(session_value(tables, "duration_s").c_str()));
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width\"><title>{0}</title><style>{1}</style></head><body>\n"
-      "<h1>{0}</h1>\n<p class=\"dim\">Session {2}, scenario {3}, {4} s; engine {5}.</p>\n",
-      escaped(title), report_style(), escaped(session_value(tables, "session")),
-      escaped(session_value(tables, "scenario")), duration,
-      escaped(session_value(tables, "engine_version")));
+  std::string html = page_begin("Clashes of " + report.session) +
+                     fmt::format("<p class=\"dim\">Session {}, scenario {}, {} s; engine {}.</p>\n",
+                                 escaped(session_value(tables, "session")),
+                                 escaped(session_value(tables, "scenario")), duration,
+                                 escaped(session_value(tables, "engine_version")));
   if (const std::string complete = session_value(tables, "complete"); complete != "yes")
     html += "<p><b>Incomplete</b>: " + escaped(complete) + "</p>\n";
   html += cards(clashes);
+  html += clash_section(report);
   html += timeline(clashes, std::atof(session_value(tables, "end_s").c_str()));
   html += depth_section(report);
-  html += clash_section(report);
   html += picture_section(report);
   html += part_section(report);
   html += plain_table(table_named(tables, "by_part"), "By part");
@@ -271,7 +267,7 @@ std::string html_of(const SessionReport& report) {
   html += tick_time_section(report);
   html += limits_section(report);
   html += plain_table(table_named(tables, "session"), "Session");
-  return html + "<script>" + std::string(report_script()) + "</script></body></html>\n";
+  return html + std::string(filter_script()) + page_end();
 }
 
 }  // namespace mortise

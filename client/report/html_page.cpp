@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "client/picture/class_colours.h"
+#include "client/report/cells.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -18,6 +19,31 @@ std::string class_variables(std::uint32_t ClassColours::*ground) {
 }
 
 }  // namespace
+
+std::string page_begin(const std::string& title) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>{0}</title><style>{1}</style></head><body>\n"
+      "<h1>{0}</h1>\n",
+      escaped(title), report_style());
+}
+
+// A box whose table is wider than the window says so, and takes the keys that scroll it.
+std::string page_end() {
+  return R"(<script>
+const wide = new ResizeObserver(entries => {
+  for (const { target: box } of entries) {
+    const more = box.scrollWidth > box.clientWidth + 1;
+    box.classList.toggle('more', more);
+    for (const [name, value] of [['tabindex', '0'], ['role', 'group'], ['aria-label', 'scrolls sideways']])
+      more ? box.setAttribute(name, value) : box.removeAttribute(name);
+  }
+});
+for (const box of document.querySelectorAll('.wide, figure')) wide.observe(box);
+addEventListener('beforeprint', () => { for (const d of document.querySelectorAll('details')) d.open = true; });
+</script></body></html>
+)";
+}
 
 std::string report_style() {
   const std::string light = class_variables(&ClassColours::light);
@@ -39,7 +65,11 @@ th, td { text-align: left; vertical-align: top; padding: .35rem .55rem;
          border-bottom: 1px solid var(--line); }
 th { background: var(--band); position: sticky; top: 0; }
 th.n, td.n { text-align: right; } td.n { font-variant-numeric: tabular-nums; white-space: nowrap; }
-td { overflow-wrap: anywhere; } #clashes { table-layout: fixed; }
+td { overflow-wrap: break-word; } #clashes td { overflow-wrap: anywhere; }
+#clashes { table-layout: fixed; min-width: 58rem; }
+#clashes col:nth-child(1) { width: 3rem; } #clashes col:nth-child(2) { width: 7rem; }
+#clashes col:nth-child(3) { width: 20%; } #clashes col:nth-child(4) { width: 12%; } #clashes col:nth-child(5) { width: 6.5rem; }
+#clashes col:nth-child(6) { width: 5.5rem; } #clashes col:nth-child(7) { width: 6rem; } #clashes svg { width: 100%; max-width: 124px; height: auto; }
 details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { font-weight: 600; } dd { margin: 0 0 .2rem 1rem; }
 .real { color: var(--real); } .potential { color: var(--potential); } .fake { color: var(--fake); }
 .letter { display: inline-block; width: 1.5em; text-align: center; font-weight: 700;
@@ -48,30 +78,36 @@ details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { f
 .letter.fake { border-style: dotted; }
 .filters { display: flex; flex-wrap: wrap; gap: 1rem; margin: .6rem 0; }
 .wide svg text { font: 11px system-ui, sans-serif; fill: var(--ink); }
-.wide { overflow-x: auto; }
+.wide, figure { overflow-x: auto; }
+@media (min-width: 64rem) { .wide:has(> #clashes) { overflow: visible; } }
+.more::before { content: "Wider than the window: scroll sideways \2192"; position: sticky; left: 0;
+  display: block; width: max-content; max-width: 100%; font-size: .8rem; color: var(--dim); }
+.wide > svg { width: 100%; min-width: 50rem; max-width: 1100px; height: auto; }
 figure { margin: 1.2rem 0; break-inside: avoid; }
-figure > svg, figure > img { max-width: 100%; height: auto; border: 1px solid var(--line); background: #fff; }
+figure > svg, figure > img { box-sizing: border-box; max-width: 100%; height: auto; border: 1px solid var(--line); background: #fff; }
+figure > svg { min-width: 36rem; }
 figcaption { font-size: .87rem; color: var(--dim); }
-.parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(24rem, 1fr)); gap: 1rem; }
+.parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
 tr.now td { font-weight: 700; background: var(--band); }
 td a { color: inherit; }
 @media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
   body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
-  .wide { overflow: visible; } table { font-size: 7pt; } .wide > svg { width: 100%; height: auto; }
-  th, td { padding: .15rem .25rem; } .wide td, .wide th { overflow-wrap: anywhere; white-space: normal; }
-  #clashes svg { width: 60px; } #clashes col:nth-child(1) { width: 4% !important; }
-  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9% !important; }
-  #clashes col:nth-child(3) { width: 19% !important; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11% !important; }
+  .wide, figure { overflow: visible; } .more::before { display: none; }
+  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes { min-width: 0; }
+  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; white-space: normal; }
+  #clashes col:nth-child(1) { width: 4%; }
+  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9%; }
+  #clashes col:nth-child(3) { width: 19%; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11%; }
   .card { min-width: 0; padding: .3rem .8rem; } h2 + p { break-after: avoid; }
   dl, dt, dd { display: inline; margin: 0; } dt::after { content: ": "; } dd:not(:last-child)::after { content: "; "; }
-  summary { display: none; } table th, .wide th { overflow-wrap: normal; } .wide td:first-child { min-width: 7em; }
-  figure > svg { width: 100%; } .parts { grid-template-columns: 1fr 1fr; }
+  summary { display: none; } .wide td:first-child { min-width: 7em; }
+  figure > svg { width: 100%; min-width: 0; } .parts { grid-template-columns: 1fr 1fr; }
   th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
 )";
 }
 
-std::string_view report_script() {
-  return R"(
+std::string_view filter_script() {
+  return R"(<script>
 const rows = [...document.querySelectorAll('#clashes tbody tr')];
 const boxes = [...document.querySelectorAll('.filters input[type=checkbox]')];
 const search = document.getElementById('search'), shown = document.getElementById('shown');
@@ -91,8 +127,7 @@ document.querySelector('.filters').hidden = false;
 for (const box of boxes) box.addEventListener('change', filter);
 search.addEventListener('input', filter);
 filter();
-addEventListener('beforeprint', () => { for (const d of document.querySelectorAll('details')) d.open = true; });
-)";
+</script>)";
 }
 
 }  // namespace mortise

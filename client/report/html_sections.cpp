@@ -149,7 +149,9 @@ std::string tolerance_section(const SessionReport& report) {
       "<h2>With other tolerances</h2>\n<p class=\"dim\">Number of clashes by class if the "
       "zone of every face were wider (+) or narrower (−) by so many µm to each side, each at its "
       "worst recorded moment. Parts that would have stopped elsewhere are not moved here: "
-      "<code>mortise replay whatif</code> computes the session again.</p>\n<table><thead><tr>"
+      "<code>mortise replay whatif</code> computes the session again.</p>\n<div "
+      "class=\"wide\"><table>"
+      "<thead><tr>"
       "<th class=\"n\">zones, µm</th>";
   constexpr const char* kColumns[] = {"real", "potential", "fake", "none", "not_known"};
   for (const char* column : kColumns)
@@ -163,7 +165,7 @@ std::string tolerance_section(const SessionReport& report) {
     for (const char* column : kColumns) html += "<td class=\"n\">" + cells.text(column) + "</td>";
     html += "</tr>\n";
   }
-  html += "</tbody></table>\n";
+  html += "</tbody></table></div>\n";
   for (const Table& more : report.tables)
     if (more.name == "what_if") html += plain_table(more, "What if");
   return html;

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "client/report/cells.h"
 #include "common/base/check.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/messages/names.h"
@@ -138,6 +139,7 @@ class Session {
                             row.ticks[2], row.ticks[1], row.first_tick, row.last_tick,
                             row.worst_tick, word(row.worst.collision_class),
                             number(row.worst.delta_mm.lo), number(row.worst.margin_mm)});
+    worst_first(table);
     return table;
   }
 

@@ -69,6 +69,7 @@ Table by_face_table(const Table& clashes, const std::map<std::uint64_t, Touch>& 
                         : Json((sum.is_a ? touch->second.p_A : touch->second.p_B)[i]));
     table.rows.push_back(std::move(row));
   }
+  worst_first(table);
   return table;
 }
 

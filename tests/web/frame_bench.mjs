@@ -5,7 +5,8 @@ import { writeFileSync } from 'node:fs';
 import { openBrowser, openPage, whyNoBrowser } from './support/browser.mjs';
 import { openFakeGateway } from './support/fake_gateway.mjs';
 
-const BOUND_MS = 4;
+/** By parts that all move: 200 are an assembly, 1000 with 550,000 triangles the most that is promised. */
+const BOUNDS_MS = new Map([[200, 4], [1000, 8]]);
 /** Code that ran a few times is interpreted still: what a user's second second costs is asked, not the first picture. */
 const WARM_PICTURES = 25;
 const quick = process.argv.includes('--quick');
@@ -36,8 +37,16 @@ const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length 
 const percentile = (list, share) => [...list].sort((a, b) => a - b)[Math.min(list.length - 1, Math.floor(list.length * share))] ?? NaN;
 const total = (list) => list.reduce((sum, x) => sum + x, 0);
 
-/** Counts the pictures that the page asks for. */
+/** Counts the pictures that the page asks for. Each call draws one triangle of one part: the same script, and software is done with it at once. */
 const counting = () => {
+  const gl = WebGL2RenderingContext.prototype;
+  const { drawArrays, drawElements, drawArraysInstanced, drawElementsInstanced } = gl;
+  Object.assign(gl, {
+    drawArrays(mode, first, count) { drawArrays.call(this, mode, first, Math.min(count, 3)); },
+    drawElements(mode, count, type, offset) { drawElements.call(this, mode, Math.min(count, 3), type, offset); },
+    drawArraysInstanced(mode, first, count) { drawArraysInstanced.call(this, mode, first, Math.min(count, 3), 1); },
+    drawElementsInstanced(mode, count, type, offset) { drawElementsInstanced.call(this, mode, Math.min(count, 3), type, offset, 1); },
+  });
   const ask = requestAnimationFrame;
   window.pictures = 0;
   window.requestAnimationFrame = (what) => (++window.pictures, ask(what));
@@ -82,15 +91,17 @@ if (why) {
 const browser = await openBrowser();
 const rows = [];
 console.log('parts  pictures  messages  picture ms (p90)  message ms  frame ms');
-for (const parts of quick ? [200] : [50, 200, 400]) {
+for (const parts of quick ? [...BOUNDS_MS.keys()] : [50, 200, 400, 1000]) {
   const row = await measure(browser, parts);
   rows.push(row);
   const { pictures, messages, picture_ms, picture_p90_ms, message_ms, frame_ms } = row;
   console.log(`${`${parts}`.padStart(5)}  ${`${pictures}`.padStart(8)}  ${`${messages}`.padStart(8)}  ${picture_ms.toFixed(2).padStart(7)} (${picture_p90_ms.toFixed(2)})  ${message_ms.toFixed(2).padStart(10)}  ${frame_ms.toFixed(2).padStart(8)}   ${row.clock} time`);
 }
 await browser.close();
-const figure = rows.find((row) => row.parts === 200).frame_ms;
-const bars = [{ name: 'script of a page frame with 200 moving parts, ms', figure, kind: 'at most', bound: BOUND_MS, holds: figure <= BOUND_MS }];
-for (const { name, holds } of bars) console.log(`${holds ? 'holds ' : 'MISSED'}  ${name}: ${figure.toFixed(2)}, bound ${BOUND_MS}`);
+const bars = [...BOUNDS_MS].map(([parts, bound]) => {
+  const figure = rows.find((row) => row.parts === parts).frame_ms;
+  return { name: `script of a page frame with ${parts} moving parts, ms`, figure, kind: 'at most', bound, holds: figure <= bound };
+});
+for (const { name, figure, bound, holds } of bars) console.log(`${holds ? 'holds ' : 'MISSED'}  ${name}: ${figure.toFixed(2)}, bound ${bound}`);
 if (json) writeFileSync(json, `${JSON.stringify({ tables: [{ title: 'Script of a frame of the page', rows }], notes: [], bars }, null, 2)}\n`);
 process.exit(bars.every(({ holds }) => holds) ? 0 : 5);

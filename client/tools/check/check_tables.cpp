@@ -141,12 +141,12 @@ std::vector<Table> check_tables(const OpenedScene& opened, const CheckReport& re
 
 std::string check_page(const OpenedScene& opened, const CheckReport& report) {
   const std::vector<Table> tables = check_tables(opened, report);
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>"
-      "{1}</style></head><body><h1>{0}</h1><p class=\"dim\">{2} parts of {3} distinct products; "
-      "{4} pairs near each other</p><div class=\"cards\">",
-      escaped(opened.scenario.file), report_style(), report.parts, report.products,
-      report.candidate_pairs);
+  std::string html =
+      page_begin(opened.scenario.file) +
+      fmt::format(
+          "<p class=\"dim\">{} parts of {} distinct products; {} pairs near each other</p><div "
+          "class=\"cards\">",
+          report.parts, report.products, report.candidate_pairs);
   for (const auto& row : table_named(tables, "counts").rows) {
     std::string name = row[0].get<std::string>();
     std::replace(name.begin(), name.end(), '_', ' ');
@@ -158,7 +158,7 @@ std::string check_page(const OpenedScene& opened, const CheckReport& report) {
   html += plain_table(table_named(tables, "near"), "Nearer than asked");
   html += plain_table(table_named(tables, "not_judged"), "Not judged");
   html += plain_table(table_named(tables, "statements"), "Tolerances that the file states");
-  return html + "</body></html>\n";
+  return html + page_end();
 }
 
 BcfProject check_bcf(const OpenedScene& opened, const CheckReport& report,

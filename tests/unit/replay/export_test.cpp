@@ -311,6 +311,20 @@ TEST_F(Export, ThePageHasOneRowAPair) {
             std::string::npos);
 }
 
+TEST(ByFace, RealClashesComeFirst) {
+  const std::vector<Table::Column> columns{{"clash"},  {"class"},  {"part_a"},       {"face_a"},
+                                           {"part_b"}, {"face_b"}, {"overlap_lo_mm"}};
+  const Table clashes{"clashes",
+                      "",
+                      columns,
+                      {{1, "fake", "a", "", "b", "", 0.1},
+                       {2, "real", "y", "", "z", "", 0.1},
+                       {3, "potential", "c", "", "z", "", 0.1}}};
+  std::string order;
+  for (const auto& row : by_face_table(clashes, {}).rows) order += row[0].get<std::string>();
+  EXPECT_EQ(order, "zycab");
+}
+
 // The place of a clash on a part is on the part.
 TEST_F(Export, PlacesAreOnTheirParts) {
   const auto report = report_of(*log_);

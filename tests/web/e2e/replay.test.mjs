@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
+import { outOfReport } from '../support/looks.mjs';
 import { PATIENCE, choose, drawn, position, until, whenListed } from '../support/people.mjs';
 
 const session = new BrowserSession();
@@ -102,14 +103,19 @@ test('the report is downloaded, and opens by itself', async () => {
   await report.goto(`file://${file}`);
   await report.locator('#clashes tbody tr').first().waitFor(PATIENCE);
   assert.deepEqual(asked.filter((url) => !/^(file|data):/.test(url)), []);
-  // No table is wider than a window of 1280 pixels, or than paper (A4 less its margins).
-  for (const [media, width] of /** @type {const} */ ([['screen', 1280], ['print', 718]])) {
+  assert.deepEqual(await report.evaluate(() => [...document.querySelectorAll('h2')].slice(0, 2).map((h2) => h2.textContent)), ['Clashes', 'Timeline']);
+  for (const width of [1440, 1280, 1024, 800, 390]) {
     await report.setViewportSize({ width, height: 900 });
-    await report.emulateMedia({ media });
-    await report.evaluate(() => dispatchEvent(new Event('beforeprint')));
-    assert.deepEqual(await report.evaluate(() => [...document.querySelectorAll('table')].filter((table) => table.getBoundingClientRect().right > innerWidth - 20)
-      .map((table) => table.id || table.closest('.wide')?.previousElementSibling?.previousElementSibling?.textContent)), [], `${media}, ${width} pixels`);
+    await drawn(report);
+    assert.deepEqual(await outOfReport(report), [], `${width} pixels`);
   }
+  // Paper does not scroll: A4 less its margins.
+  await report.setViewportSize({ width: 718, height: 900 });
+  await report.emulateMedia({ media: 'print' });
+  await report.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await drawn(report);
+  assert.deepEqual(await outOfReport(report), [], 'print');
+  assert.deepEqual(await report.evaluate(() => [...document.querySelectorAll('.wide, figure')].filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.textContent?.slice(0, 60))), [], 'print');
   await report.close();
   await rm(folder, { recursive: true });
 });

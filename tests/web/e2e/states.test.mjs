@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { joinAs, openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { cutOff, paleTexts, smallTargets } from '../support/looks.mjs';
+import { cutOff, paleTexts, skippedHeadings, smallTargets } from '../support/looks.mjs';
 import { PATIENCE, choose, drawn, grab, moveBy, settled, until, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
 
@@ -40,9 +40,37 @@ test('at 1440, 1280, 1024 and 800 pixels nothing is cut off, covered or out of r
         else if (side === 'left') assert.ok(await page.locator('#parts').isVisible() && await page.locator('#clashes').isVisible());
         await drawn(page);
         assert.deepEqual(await cutOff(page), [], `${scheme} ${width} × ${height}, ${side}`);
+        assert.deepEqual(await skippedHeadings(page), [], `${width} × ${height}, ${side}`);
         assert.ok(await page.locator(side === 'left' ? '#parts' : '#clashes').isVisible(), `${side} at ${width}`);
       }
     }
+    await page.context().close();
+  }
+});
+
+test('with little room the bar is one row, and the keyboard reaches what stands behind its first button', async () => {
+  for (const [width, height, touch] of /** @type {const} */ ([[800, 600, false], [1024, 768, true], [800, 600, true], [390, 844, true]])) {
+    const size = `${width} pixels${touch ? ', by touch' : ''}`;
+    const page = await openPage(browser, addresses.designer, { name: `bo ${size}`, touch, view: { width, height } });
+    await whenListed(page, 'parts', 'block');
+    const bar = () => page.evaluate(() => {
+      const { clientHeight, clientWidth, scrollWidth } = document.querySelector('header.bar');
+      return { rows: clientHeight < 60 ? 1 : 2, beside: scrollWidth - clientWidth };
+    });
+    assert.deepEqual(await bar(), { rows: 1, beside: 0 }, size);
+    await page.locator('#more_tools').focus();
+    await page.keyboard.press('Enter');
+    assert.deepEqual(await cutOff(page), [], size);
+    if (touch) assert.deepEqual(await smallTargets(page), [], size);
+    const all = await page.evaluate(() => [...document.querySelectorAll('.bar button:not([hidden], :disabled), .bar select')].map(({ id }) => id));
+    const reached = [await page.evaluate(() => (document.querySelector('.bar button').focus(), document.activeElement.id))];
+    while (reached.length < all.length) {
+      await page.keyboard.press('Tab');
+      reached.push(await page.evaluate(() => document.activeElement.id));
+    }
+    assert.deepEqual(reached, all, size);
+    await page.locator('#more_tools').press('Enter');
+    assert.deepEqual(await bar(), { rows: 1, beside: 0 }, size);
     await page.context().close();
   }
 });

@@ -20,6 +20,12 @@ export function cutOff(page) {
   });
 }
 
+/** Headings that skip a level, which a screen reader takes for a gap. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export function skippedHeadings(page) {
+  return page.evaluate(() => [...document.querySelectorAll('h1, h2, h3')].filter((h) => h.checkVisibility())
+    .filter((h, i, all) => Number(h.tagName[1]) > 1 + Number(all[i - 1]?.tagName[1] ?? 0)).map((h) => `${h.tagName} ${h.textContent}`));
+}
+
 /** Texts whose contrast with what is behind them is below 4.5 (WCAG 2.2, 1.4.3). What is disabled is exempt. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
 export function paleTexts(page) {
   return page.evaluate(() => {
@@ -62,4 +68,31 @@ export function smallTargets(page) {
     .map((c) => ({ c, box: c.getBoundingClientRect() }))
     .filter(({ box }) => box.width < 43.5 || box.height < 43.5)
     .map(({ c, box }) => `${box.width.toFixed(0)} × ${box.height.toFixed(0)}: ${c.outerHTML.slice(0, 80)}`));
+}
+
+/**
+ * Of a report: what sticks out of the window or of its cell, heads that do not stand over their columns, and boxes that scroll without a word or out of
+ * reach of the keyboard.
+ * @param {import('playwright-core').Page} page @returns {Promise<string[]>}
+ */
+export function outOfReport(page) {
+  return page.evaluate(() => {
+    const bad = [];
+    const name = (element) => `${element.tagName} ${element.textContent.trim().slice(0, 40)}`;
+    for (const element of document.querySelectorAll('body *:not(.wide *, figure *, script)')) {
+      if (element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 1) bad.push(`out of the window: ${name(element)}`);
+    }
+    for (const cell of document.querySelectorAll('th, td')) if (cell.clientWidth < 24 || cell.scrollWidth > cell.clientWidth + 1) bad.push(`out of its cell: ${name(cell)}`);
+    for (const table of document.querySelectorAll('table')) {
+      const first = table.querySelector('tbody tr:not([hidden])')?.children ?? [];
+      table.querySelectorAll('thead th').forEach((head, i) => {
+        if (first[i] && getComputedStyle(head).textAlign !== getComputedStyle(first[i]).textAlign) bad.push(`not over its column: ${name(head)}`);
+      });
+    }
+    for (const box of document.querySelectorAll('.wide, figure')) {
+      if (box.scrollWidth <= box.clientWidth + 1 || getComputedStyle(box).overflowX === 'visible') continue;
+      if (getComputedStyle(box, '::before').content === 'none' || box.tabIndex !== 0) bad.push(`scrolls and does not say so: ${name(box)}`);
+    }
+    return bad;
+  });
 }

@@ -106,7 +106,7 @@ export function makeClashList({ session, choice, flyToClash, heat }) {
       (row, of) => (isHead(of) ? fillHead(row, of) : fill(row, of)));
     if (clashes.length === 0) {
       const open = session.openClashes().length;
-      list.append(el('li', { class: 'empty' }, open ? `${open} open, none that these filters show` : 'No clash is open'));
+      list.append(el('li', { class: 'empty', role: 'option', 'aria-disabled': 'true' }, open ? `${open} open, none that these filters show` : 'No clash is open'));
     }
     markChosen(list, `${choice.clash}`);
     const count = (/** @type {string} */ name) => session.openClashes().filter((clash) => clash.class === name).length;

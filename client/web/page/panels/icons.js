@@ -27,6 +27,7 @@ const PATHS = {
   replace: 'M4 8.5V5h9M10.5 2.5L13 5l-2.5 2.5M16 11.5V15H7M9.5 17.5L7 15l2.5-2.5',
   remove: 'M4 6h12M8 6V4h4v2M5.5 6l.8 10.5h7.4L14.5 6M8.5 9v5M11.5 9v5',
   add: 'M10 4v12M4 10h12',
+  more: 'M3 5h14M3 10h14M3 15h14',
   close: 'M5 5l10 10M15 5L5 15',
   link: 'M8 12l4-4M7 9L5 11a2.8 2.8 0 0 0 4 4l2-2M13 11l2-2a2.8 2.8 0 0 0-4-4L9 7',
   save: 'M4 4h9.5L16 6.5V16H4zM7 4v4h5.5V4M7 16v-5h6v5',

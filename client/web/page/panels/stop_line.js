@@ -27,7 +27,8 @@ export function makeStopLine({ session, choice, stops, labels, stage }) {
   });
   setInterval(() => (session.me !== 0 || note) && look(), LOOK_MS);
   session.on('poses', (parts) => {
-    for (const part of parts) stops.moved(part, performance.now());
+    const now = performance.now();
+    for (const part of parts) stops.moved(part, now);
   });
   session.on('refused', (increments) => {
     for (const { part, reason } of increments) stops.refused(part, reason, performance.now());

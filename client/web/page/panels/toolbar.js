@@ -83,6 +83,8 @@ export function makeToolbar({ session, choice, commands, section, mover, showAll
   byId('do_undo').onclick = () => change('undo');
   byId('do_redo').onclick = () => change('redo');
   byId('do_reset').onclick = () => change('reset');
+  const more = byId('more_tools');
+  more.onclick = () => more.setAttribute('aria-expanded', String(more.getAttribute('aria-expanded') === 'false'));
   policy.onchange = async () => {
     await commands.ask('policy', { text: policy.value });
     refresh();

@@ -2,12 +2,13 @@
 import * as THREE from 'three';
 import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { readMesh } from '../session/frames.js';
+import { Crowds } from './crowds.js';
 import { Looks } from './looks.js';
 
 /** @typedef {import('../session/session.js').Part} Part */
 /** @typedef {import('./looks.js').Look} Look */
 /** @typedef {{mesh: import('../session/frames.js').Mesh, faces: THREE.BufferGeometry, edges: THREE.BufferGeometry | null}} Shape */
-/** @typedef {{part: Part, faces: THREE.Mesh, edges: THREE.LineSegments | null, inside: THREE.Mesh, look: Look, seen: boolean}} Shown */
+/** @typedef {{part: Part, faces: THREE.Mesh, edges: THREE.BufferGeometry | null, look: Look}} Shown its faces are where it stands and what rays hit; it is drawn with its like */
 
 /** Facets that meet at less are one round face: 24 facets meet at 15°. */
 const CREASE = THREE.MathUtils.degToRad(32);
@@ -20,8 +21,8 @@ export class PartsView {
   /** @type {Map<number, Shown>} */
   shown = new Map();
   looks = new Looks();
-  /** Its children carry matrices of their own: no walk over them in each picture. */
-  group = new THREE.Group();
+  #crowds = new Crowds(this.looks);
+  #gathered = true;
   #generation = 0;
 
   /**
@@ -33,8 +34,8 @@ export class PartsView {
     this.stage = stage;
     this.fetchMesh = fetchMesh;
     this.problem = problem;
-    this.group.updateMatrixWorld = () => {};
-    stage.scene.add(this.group);
+    stage.scene.add(this.#crowds.group);
+    stage.beforePicture(() => this.#gather());
   }
 
   /** @param {string} hash @returns {Promise<Shape>} */
@@ -51,8 +52,8 @@ export class PartsView {
   /** All parts anew; those with a known mesh stand in the next picture. @param {Iterable<Part>} parts @returns {Promise<void>} */
   async setParts(parts) {
     const generation = ++this.#generation;
-    this.group.clear();
     this.shown.clear();
+    this.#gatherAgain();
     const waiting = [...parts].map(async (part) => {
       try {
         const shape = await this.#shapeOf(part.mesh);
@@ -66,30 +67,33 @@ export class PartsView {
 
   /** @param {Part} part @param {Shape} shape */
   #add(part, shape) {
-    const colour = this.looks.colourOf(part);
-    const faces = new THREE.Mesh(shape.faces, this.looks.faces(colour, 'plain'));
-    const edges = shape.edges && new THREE.LineSegments(shape.edges, /** @type {THREE.LineBasicMaterial} */ (this.looks.edges('plain')));
-    const inside = new THREE.Mesh(shape.faces, this.looks.inside(colour, 'plain'));
-    for (const object of [faces, edges, inside]) {
-      if (!object) continue;
-      object.matrixAutoUpdate = false;
-      object.matrixWorldAutoUpdate = false;
-      object.matrixWorld = faces.matrixWorld; // one pose for all three
-      object.userData.part = part.id;
-      this.group.add(object);
-    }
-    const shown = { part, faces, edges, inside, look: /** @type {Look} */ ('plain'), seen: true };
+    const faces = new THREE.Mesh(shape.faces, unseen);
+    faces.userData.part = part.id;
+    const shown = { part, faces, edges: shape.edges, look: /** @type {Look} */ ('plain') };
     this.shown.set(part.id, shown);
-    this.#showInside(shown);
     place(shown);
+    this.#gatherAgain();
+  }
+
+  /** In the next picture. */
+  #gatherAgain() {
+    this.#gathered = false;
     this.stage.ask();
+  }
+
+  #gather() {
+    if (this.#gathered) return;
+    this.#gathered = true;
+    this.#crowds.gather(this.shown.values());
   }
 
   /** @param {Iterable<Part>} parts */
   movePoses(parts) {
     for (const part of parts) {
       const shown = this.shown.get(part.id);
-      if (shown) place(shown);
+      if (!shown) continue;
+      place(shown);
+      this.#crowds.place(shown);
     }
     this.stage.ask();
   }
@@ -100,27 +104,14 @@ export class PartsView {
       const look = lookOf(shown.part);
       if (look === shown.look) continue;
       shown.look = look;
-      const colour = this.looks.colourOf(shown.part);
-      shown.faces.material = this.looks.faces(colour, look);
-      shown.inside.material = this.looks.inside(colour, look);
-      this.#showInside(shown);
-      shown.faces.visible = look !== 'hidden';
-      if (shown.edges) Object.assign(shown.edges, { material: this.looks.edges(look), visible: look !== 'hidden' });
-      // What is seen through is drawn after what is not.
-      shown.faces.renderOrder = look === 'ghost' ? 1 : 0;
+      this.#gatherAgain();
     }
-    this.stage.ask();
-  }
-
-  /** The cut face of a ghost says nothing, and there is none of what is hidden. @param {Shown} shown */
-  #showInside({ inside, look }) {
-    inside.visible = this.looks.clipping.length > 0 && look !== 'ghost' && look !== 'hidden';
   }
 
   /** @param {THREE.Plane[]} planes */
   cutBy(planes) {
     this.looks.cutBy(planes);
-    for (const shown of this.shown.values()) this.#showInside(shown);
+    this.#crowds.showInsides();
     this.stage.ask();
   }
 
@@ -164,6 +155,7 @@ function shapeOf(buffer) {
   return { mesh, faces, edges };
 }
 
+const unseen = new THREE.MeshBasicMaterial();
 const position = new THREE.Vector3();
 const turn = new THREE.Quaternion();
 const one = new THREE.Vector3(1, 1, 1);

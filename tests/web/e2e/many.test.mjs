@@ -1,0 +1,69 @@
+// Many parts: those of one shape that look alike are drawn by one call, and each of them is still shown, hidden, seen through and cut by itself.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openBrowser, openPage } from '../support/browser.mjs';
+import { openFakeGateway } from '../support/fake_gateway.mjs';
+import { PATIENCE } from '../support/people.mjs';
+
+const PARTS = 200;
+const SHAPES = 4;
+let gateway, browser, page;
+
+/** What one picture draws: calls, and bodies among all that is drawn of triangles. */
+const counting = () => {
+  const gl = WebGL2RenderingContext.prototype;
+  const now = { calls: 0, bodies: 0 };
+  const count = (/** @type {string} */ name, /** @type {(args: any[]) => number} */ bodies) => {
+    const draw = gl[name];
+    gl[name] = function drawn(...args) {
+      ++now.calls;
+      if (args[0] === this.TRIANGLES) now.bodies += bodies(args);
+      draw.apply(this, args);
+    };
+  };
+  for (const name of ['drawArrays', 'drawElements']) count(name, () => 1);
+  count('drawArraysInstanced', (args) => args[3]);
+  count('drawElementsInstanced', (args) => args[4]);
+  const ask = requestAnimationFrame;
+  window.requestAnimationFrame = (what) => ask((time) => {
+    Object.assign(now, { calls: 0, bodies: 0 });
+    what(time);
+    if (now.calls > 0) window.picture = { ...now };
+  });
+};
+
+before(async () => {
+  gateway = await openFakeGateway(PARTS, SHAPES, 2);
+  browser = await openBrowser();
+  page = await openPage(browser, gateway.address, { first: counting, view: { width: 760, height: 400 } });
+}, { timeout: 240_000 });
+after(async () => {
+  await browser?.close();
+  gateway?.close();
+});
+
+/** Until a picture has so many bodies. @param {number} bodies */
+async function bodies(bodies) {
+  await page.waitForFunction((n) => window.picture?.bodies === n, bodies, PATIENCE).catch(async () => assert.fail(`${JSON.stringify(await page.evaluate(() => window.picture))}, not ${bodies} bodies`));
+  return page.evaluate(() => window.picture.calls);
+}
+
+test('a picture of many parts of few shapes takes few calls', async () => {
+  const calls = await bodies(PARTS);
+  assert.ok(calls <= 4 * SHAPES, `${calls} calls`);
+});
+
+test('one of them is hidden, chosen among ghosts, and cut', async () => {
+  await page.locator('#place_left').click();
+  await page.locator('#parts > li').first().click();
+  await page.keyboard.press('d');
+  await bodies(PARTS - 1);
+  await page.keyboard.press('u');
+  await bodies(PARTS);
+  await page.keyboard.press('x'); // the insides, too
+  await bodies(2 * PARTS);
+  await page.keyboard.press('h'); // but not of ghosts
+  const calls = await bodies(PARTS + 1);
+  assert.ok(calls <= 4 * SHAPES + 3, `${calls} calls`);
+  assert.deepEqual(page.complaints, []);
+});
