@@ -479,23 +479,18 @@ class InterferenceSearch {
   InterferenceTime answer_;
 };
 
-// Looks ahead from the proven time, doubling from the accuracy, before anything is searched.
+// Looks ahead from the time up to which nothing is possible, doubling from the accuracy, before
+// anything is searched.
 constexpr int kLooks = 3;
-// Covers alone cost a hundredth: they look as far as a search would end, or as long as both only
+// Covers cost a hundredth: they look ahead as far as a search would end, or as long as both only
 // touch: who slides along a wall becomes deeper long after that. Then so often between the last two
-// looks.
+// looks. Where they name no place, a search at a pose of 2,000 evaluations found none, either.
 constexpr int kCoverHalvings = 6;
 // Where a look finds no witness it costs some 200 evaluations, and the next ones mostly find none.
 constexpr std::uint64_t kCoverLooksWorkCap = 400;
 
-// A search of 1,000 evaluations finds no place in both parts that is less deep.
-constexpr double kWorthASearch_mm = 2e-3;
-
 // Work of one look; at the brink of interfering it is not worth more.
 constexpr std::uint64_t kPossibleLookWorkCap = 600;
-
-// The same where the covers of the least parts cease to keep apart.
-constexpr std::uint64_t kCertainLookWorkCap = 2'000;
 
 // What first contact may do before the search, for each evaluation of that: a test is the cheaper.
 constexpr std::uint64_t kTestsPerEvaluation = 8;
@@ -608,19 +603,31 @@ struct SoonAfter {
 class LookAhead {
  public:
   LookAhead(const SweptQuery& query, double t, Layer layer, std::uint64_t& evaluations)
-      : query_(query), layer_(layer), t_(t), spent_(evaluations) {
+      : query_(query), t_(t), spent_(evaluations) {
     const PairPath path(query.motion_a, *query.at_target.a, query.motion_b, *query.at_target.b);
     const double speed_mm = std::max(path.speed_upper_bound(), 1e-300);
     step_ = query.accuracy_mm / speed_mm;
     close_ = kCloseEnough_mm / speed_mm;
     const bool certain = layer == Layer::kLower;
     named_ = certain && !query.slides ? Named::kLeast : named_of(layer);
-    look_cap_ = certain ? kCertainLookWorkCap : kPossibleLookWorkCap;
   }
 
+  // Covers may be larger than the parts, and then their time is too early: so a place counts that
+  // is no farther behind than a search ends. Where the parts themselves touch, the time is the
+  // parts' own, and a place anywhere behind counts.
   SoonAfter run() {
-    const SoonAfter soon = by_covers();
-    return soon.interferes ? soon : by_search();
+    const std::uint64_t enough = spent_ + kCoverLooksWorkCap;
+    double before = t_;
+    bool parts_touch = false;
+    for (double step = step_; before < 1.0 && spent_ < enough; step *= 2.0) {
+      const double t = std::min(t_ + step, 1.0);
+      const SaidByCovers said = said_by_covers(at(t), named_, spent_);
+      if (said.place) return between(before, {true, t, *said.place});
+      parts_touch |= said.touches;
+      if (!said.apart && !parts_touch && step > close_) break;
+      before = t;
+    }
+    return {};
   }
 
  private:
@@ -631,25 +638,6 @@ class LookAhead {
     at.refinement = Refinement::kDecided;
     at.want_delta = false;
     return at;
-  }
-
-  // Covers may be larger than the parts, and then their time is too early: so a place counts that
-  // is no farther behind than a search ends. Where the parts themselves touch, the time is the
-  // parts' own, and a place anywhere behind counts.
-  SoonAfter by_covers() {
-    const std::uint64_t enough = spent_ + kCoverLooksWorkCap;
-    double before = t_;
-    bool parts_touch = false;
-    for (double step = step_; before < 1.0 && spent_ < enough; step *= 2.0) {
-      const double t = std::min(t_ + step, 1.0);
-      const SaidByCovers said = said_by_covers(at(t), named_, spent_);
-      if (said.place) return between(before, {true, t, *said.place});
-      if (said.in_cells_mm < kWorthASearch_mm) brink_ = std::max(brink_, step);
-      parts_touch |= said.touches;
-      if (!said.apart && !parts_touch && step > close_) break;
-      before = t;
-    }
-    return {};
   }
 
   SoonAfter between(double before, SoonAfter found) {
@@ -664,26 +652,11 @@ class LookAhead {
     return found;
   }
 
-  SoonAfter by_search() {
-    const std::uint64_t before = spent_, most = query_.at_target.work_cap;
-    double step = brink_ > 0.0 ? 2.0 * brink_ : step_;
-    if (brink_ > close_) return {};
-    for (int i = 0; i < kLooks && t_ + step <= 1.0 && spent_ - before < most; ++i, step *= 2.0) {
-      OverlapQuery there = at(t_ + step);
-      there.work_cap = std::min(most - (spent_ - before), look_cap_);
-      if (const auto place = interferes_at(there, layer_, spent_)) return {true, t_ + step, *place};
-    }
-    return {};
-  }
-
   const SweptQuery& query_;
-  const Layer layer_;
   const double t_;
   std::uint64_t& spent_;
   double step_ = 0.0, close_ = 0.0;  // the first one, and what is close enough
-  double brink_ = 0.0;               // so far nothing can be deep enough for a search to find it
   Named named_ = Named::kLeast;
-  std::uint64_t look_cap_ = 0;
 };
 
 SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,

@@ -484,7 +484,6 @@ SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_
   const bool here = named == Named::kLeastHere;
   std::optional<Sample> deepest = here ? covers.on_mesh(layer) : covers.deepest(layer);
   said.touches = covers.touches(layer);
-  said.in_cells_mm = covers.in_cells_mm(layer);
   // Where the wall ends at that place, nothing is deep there, however far the part goes.
   if (here && !deepest) deepest = covers.deepest(layer);
   if (deepest && (layer == Layer::kUpper || find_witness(pair, *deepest, evaluations)))

@@ -105,7 +105,6 @@ OverlapResult find_overlap(const OverlapQuery& query, CcdScratch& scratch);
 struct SaidByCovers {
   bool apart = false;                 ///< no point is in both
   bool touches = false;               ///< a point was found within 0.4 um of both
-  double in_cells_mm = 0.0;           ///< PairCovers::in_cells_mm()
   std::optional<CertainPlace> place;  ///< a point that is in both, verified
 };
 /// Neither: they say nothing. Some microseconds.

@@ -64,10 +64,6 @@ double PairCovers::most_mm(Layer layer) {
   return *most_mm;
 }
 
-double PairCovers::in_cells_mm(Layer layer) {
-  return apart(layer) ? pair_.touch_mm : overlap_of(layer).most_mm;
-}
-
 // Where the cover is the part, its border is its surface; else what is nearest of the mesh counts.
 std::optional<Sample> PairCovers::deepest(Layer layer) {
   std::optional<Sample>& found = deepest_[index_of(layer)];

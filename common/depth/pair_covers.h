@@ -18,9 +18,6 @@ class PairCovers {
 
   /// No overlap of kLower or kUpper is deeper. Infinity: nothing is known.
   double most_mm(Layer layer);
-  /// No point is deeper in both cells, or beyond both walls, that are deepest in each other: a
-  /// guess of the depth, and a bound of it mostly. Infinity: nothing is known.
-  double in_cells_mm(Layer layer);
   /// No point is in both parts of the layer deeper than touching.
   bool apart(Layer layer);
   /// A point of one surface about where the other part is deepest, asked as any point is; nullopt:
