@@ -111,7 +111,7 @@ struct SaidByCovers {
 enum class Named : std::uint8_t {
   kLargest,   ///< a place in both largest parts
   kLeast,     ///< a place in both least parts
-  kLeastHere  ///< and beside a point of the mesh where the cell ends: along its face a part slides
+  kLeastHere  ///< and, if one is deep, where the cell ends on the mesh: parts slide along its face
 };
 SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_t& evaluations);
 
