@@ -1,5 +1,6 @@
 #include "idl/doorman.h"
 
+#include <string>
 #include <utility>
 
 namespace mortise {
@@ -71,9 +72,10 @@ std::vector<std::string> Doorman::take_turned_away() {
         now - unproven.since < (is_certain ? kTimeToProve : kTimeInDoubt))
       continue;
     unproven.since = Time::max();  // said once
-    turn_away(client, is_certain ? " was not let in: " + unproven.why.text
-                                 : " has not proven who it is in 10 s: " + unproven.why.text +
-                                       ", or its messages get lost");
+    turn_away(client, is_certain
+                          ? " was not let in: " + unproven.why.text
+                          : " has not proven who it is in " + std::to_string(kTimeInDoubt.count()) +
+                                " s: " + unproven.why.text + ", or its messages get lost");
   }
   return std::exchange(turned_away_, {});
 }
