@@ -423,12 +423,8 @@ double Body::depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) c
     const NearSurfaces::One& one = surfaces.all[i];
     const double on_face = off_face_mm(*one.face);
     const double exact = one.depth_mm + offset_of(*one.face, layer);
-    if (one.off_face2 <= on_face * on_face)
-      least = std::min(least, exact);
-    else if (one.off_face2 <= kBesideFace * kBesideFace * on_face * on_face)
-      least = std::min({least, exact, one.by_triangles_mm});
-    else
-      least = std::min(least, one.by_triangles_mm);
+    const bool beside = one.off_face2 <= kBesideFace * kBesideFace * on_face * on_face;
+    least = std::min(least, beside ? exact : std::max(exact, one.by_triangles_mm));
   }
   // Nothing near: the box was empty by rounding.
   if (!std::isfinite(least)) return nearest.depth_mm - reach;

@@ -70,8 +70,8 @@ struct Body {
   double offset_at(std::uint32_t triangle, const Vec3& x, Layer layer) const;
 
   /// Depth of x in the layer, positive inside, given its nearest mesh point: a lower bound where it
-  /// is positive. Over a declared face the distance from its surface counts, exact however coarse
-  /// the mesh; elsewhere the triangles with their offsets.
+  /// is positive (README, section 3). Over a declared face the distance from its surface counts,
+  /// exact however coarse the mesh; beyond its facets that, or its triangles with their offsets.
   double depth_in(const Vec3& x, const SurfacePoint& nearest, Layer layer) const;
 
   BodyIndex& index() const { return *index_; }
