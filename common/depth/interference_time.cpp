@@ -561,36 +561,63 @@ struct FreeByCovers {
   std::uint64_t work = 0;  // evaluations
 };
 
-FreeByCovers free_by_covers(const SweptQuery& query, Layer layer) {
-  const OverlapQuery& at = query.at_target;
-  FreeByCovers found;
-  if (!at.use_covers || (at.band_a->trivial && at.band_b->trivial)) return found;
-  const Body a(*at.a, *at.band_a), b(*at.b, *at.band_b);
-  if (!cover_of(a).found() || !cover_of(b).found()) return found;
-  const bool least = layer == Layer::kLower;
-  const CoverPair pair(cover_of(a).of(least), cover_of(b).of(least));
-  const PairPath path(query.motion_a, *at.a, query.motion_b, *at.b);
-  // What is no deeper than touching is not in both; the rest of the accuracy is that of the time.
-  const double moment_mm = kSmallestShare * query.accuracy_mm;
-  std::uint64_t bounds = 0;
-  const auto ask = [&](double ends_mm) {
-    const CoverFree free = pair.free_until(path, ends_mm, moment_mm);
-    bounds += free.work;
-    found.until = {free.all ? 1.0 : free.t_free, free.all || free.t_free > 0.0,
-                   ends_mm <= kAccuracyDefault_mm};
-  };
-  ask(kPathEnds_mm);
-  // Who stands where a path has ended may leave it again, and no farther than that.
-  const double deepest_mm =
-      least ? std::max(kAccuracyDefault_mm, kSearchEnds * query.accuracy_mm) : kAccuracyDefault_mm;
-  for (double ends_mm = kAccuracyDefault_mm; !found.until.touches; ends_mm *= kCoarser) {
-    ask(std::min(ends_mm, deepest_mm));
-    if (found.until.t < 1.0) found.until.t = 0.0;
-    if (ends_mm >= deepest_mm) break;
+// Both covers of a layer along the path; what is no deeper than touching is not in both.
+class CoverPath {
+ public:
+  CoverPath(const SweptQuery& query, Layer layer) : query_(query), layer_(layer) {
+    const OverlapQuery& at = query.at_target;
+    if (!at.use_covers || (at.band_a->trivial && at.band_b->trivial)) return;
+    const Body a(*at.a, *at.band_a), b(*at.b, *at.band_b);
+    if (!cover_of(a).found() || !cover_of(b).found()) return;
+    const bool least = layer == Layer::kLower;
+    pair_.emplace(cover_of(a).of(least), cover_of(b).of(least));
+    path_.emplace(query.motion_a, *at.a, query.motion_b, *at.b);
   }
-  found.work = evaluations_of_bounds(bounds);
-  return found;
-}
+
+  FreeByCovers free() {
+    FreeByCovers found;
+    if (!pair_) return found;
+    const auto ask = [&](double ends_mm) {
+      const CoverFree free = free_until(ends_mm);
+      found.until = {free.all ? 1.0 : free.t_free, free.all || free.t_free > 0.0,
+                     ends_mm <= kAccuracyDefault_mm};
+    };
+    ask(kPathEnds_mm);
+    // Who stands where a path has ended may leave it again, and no farther than that.
+    const double deepest_mm = layer_ == Layer::kLower
+                                  ? std::max(kAccuracyDefault_mm, kSearchEnds * query_.accuracy_mm)
+                                  : kAccuracyDefault_mm;
+    for (double ends_mm = kAccuracyDefault_mm; !found.until.touches; ends_mm *= kCoarser) {
+      ask(std::min(ends_mm, deepest_mm));
+      if (found.until.t < 1.0) found.until.t = 0.0;
+      if (ends_mm >= deepest_mm) break;
+    }
+    found.work = evaluations_of_bounds(bounds_);
+    return found;
+  }
+
+  // Who grazes a wall and has left it at the end needs no search: nowhere deeper than the accuracy.
+  bool only_grazes(std::uint64_t& evaluations) {
+    const bool only = pair_ && pair_->apart(path_->pose(0, 1.0), kPathEnds_mm, bounds_) &&
+                      free_until(query_.accuracy_mm).all;
+    evaluations += evaluations_of_bounds(bounds_);
+    return only;
+  }
+
+ private:
+  // The rest of the accuracy is that of the time.
+  CoverFree free_until(double ends_mm) {
+    const CoverFree free = pair_->free_until(*path_, ends_mm, kSmallestShare * query_.accuracy_mm);
+    bounds_ += free.work;
+    return free;
+  }
+
+  const SweptQuery& query_;
+  const Layer layer_;
+  std::optional<CoverPair> pair_;
+  std::optional<PairPath> path_;
+  std::uint64_t bounds_ = 0;
+};
 
 // Up to t the covers of a layer keep both parts apart. Shortly behind that the parts often
 // interfere: then no search is needed.
@@ -668,14 +695,14 @@ SoonAfter look_soon_after(const SweptQuery& query, double t, Layer layer,
 
 FreeUntil certain_free_until(const SweptQuery& query, std::uint64_t& evaluations) {
   check(query);
-  const FreeByCovers free = free_by_covers(query, Layer::kLower);
+  const FreeByCovers free = CoverPath(query, Layer::kLower).free();
   evaluations += free.work;
   return free.until;
 }
 
 bool is_free_of_possible(const SweptQuery& query, std::uint64_t& evaluations) {
   check(query);
-  const FreeByCovers free = free_by_covers(query, Layer::kUpper);
+  const FreeByCovers free = CoverPath(query, Layer::kUpper).free();
   evaluations += free.work;
   return free.until.t >= 1.0;
 }
@@ -713,6 +740,8 @@ InterferenceTime find_interference_time(const SweptQuery& query, CcdScratch&) {
     soon = {true, 0.0, *start.place};
   else if (free_at_start)
     soon = look_soon_after(query, free.t, Layer::kLower, answer.evaluations);
+  if (!soon.interferes && CoverPath(query, Layer::kLower).only_grazes(answer.evaluations))
+    return answer;
   const std::uint64_t looked = answer.evaluations;
   if (soon.interferes) {
     answer.becomes_real = true;
@@ -825,7 +854,7 @@ PossibleTime search_possible_time(const SweptQuery& query, CcdScratch& scratch) 
 
 PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
   check(query);
-  const auto [free, work] = free_by_covers(query, Layer::kUpper);
+  const auto [free, work] = CoverPath(query, Layer::kUpper).free();
   PossibleTime answer;
   if (free.t < 1.0) {
     SaidByCovers start;
@@ -839,7 +868,7 @@ PossibleTime find_possible_time(const SweptQuery& query, CcdScratch& scratch) {
       answer.becomes_possible = true;
       answer.t_clear = free.t;
       answer.t_possible = soon.t;
-    } else {
+    } else if (!CoverPath(query, Layer::kUpper).only_grazes(answer.evaluations)) {
       const std::uint64_t looked = answer.evaluations;
       answer = search_possible_time(rest_of(query, free.t), scratch);
       answer.t_clear = in_whole(free.t, answer.t_clear);

@@ -486,6 +486,7 @@ SaidByCovers said_by_covers(const OverlapQuery& query, Named named, std::uint64_
   said.touches = covers.touches(layer);
   // Where the wall ends at that place, nothing is deep there, however far the part goes.
   if (here && !deepest) deepest = covers.deepest(layer);
+  if (named == Named::kLeast && !deepest) deepest = covers.farther_in(layer);
   if (deepest && (layer == Layer::kUpper || find_witness(pair, *deepest, evaluations)))
     said.place = {deepest->role, deepest->triangle,
                   pair.X_KS[1 - deepest->role] * deepest->point_K};

@@ -14,6 +14,9 @@ constexpr double kAsDeep = 0.9;
 constexpr std::size_t kFirstPlaces = 3;
 // So far a search of times may be off (interference_time).
 constexpr double kTouches_mm = 4e-4;
+// Where edges run side by side, a place that covers name is often where one of them comes into the
+// other part. So many times the depth farther in, that is not what holds it any more.
+constexpr double kGoesIn = 2.0;
 
 std::size_t index_of(Layer layer) { return layer == Layer::kLower ? 0 : 1; }
 
@@ -91,7 +94,7 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
     sample.point_K = pair_.X_KS[role] * x_S;
     sample.at = nearest_surface(*k.solid, sample.point_K);
     sample.depth_mm = k.depth_in(sample.point_K, sample.at, layer);
-    touches_[index_of(layer)] |= sample.depth_mm >= -kTouches_mm;
+    if (sample.depth_mm >= -kTouches_mm) touching_[index_of(layer)].push_back(sample);
     if (own_mm < -pair_.touch_mm)
       deeper(off_mesh, sample_at(pair_, layer, role, own.triangle, own.point));
     else
@@ -101,7 +104,26 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
   return found;
 }
 
-bool PairCovers::touches(Layer layer) const { return touches_[index_of(layer)]; }
+std::optional<Sample> PairCovers::farther_in(Layer layer) {
+  const std::vector<Sample>& touching = touching_[index_of(layer)];
+  if (touching.empty()) return std::nullopt;
+  const int role = touching.front().role;
+  const Body& k = pair_.k(role);
+  Vec3 middle = Vec3::Zero();
+  for (const Sample& sample : touching)
+    middle += sample.point_K / static_cast<double>(touching.size());
+  const Vec3 in = kGoesIn * overlap_of(layer).most_mm * k.normal(touching.front().at.triangle);
+  for (const Vec3& x_K : {middle, Vec3(touching.front().point_K - in)}) {
+    const SurfacePoint own =
+        nearest_surface(*pair_.s(role).solid, pair_.X_KS[role].inverse() * x_K);
+    evaluations_ += 2;
+    const Sample sample = sample_at(pair_, layer, role, own.triangle, own.point);
+    if (sample.depth_mm > pair_.touch_mm) return sample;
+  }
+  return std::nullopt;
+}
+
+bool PairCovers::touches(Layer layer) const { return !touching_[index_of(layer)].empty(); }
 
 std::optional<Sample> PairCovers::on_mesh(Layer layer) {
   if (apart(layer)) return std::nullopt;

@@ -28,6 +28,9 @@ class PairCovers {
   /// The same by a point of the mesh beside the end of its cell: what holds a part there has a face
   /// of its own, along which the part slides.
   std::optional<Sample> on_mesh(Layer layer);
+  /// Where deepest() found no place, but such that touch: from there farther into the other part.
+  /// Not the place that holds it.
+  std::optional<Sample> farther_in(Layer layer);
   /// The bracket of a layer of a pair with one region, where a point of it is known that is about
   /// as deep as any can be: but for accuracy_mm, or a share of it where the sign is enough.
   std::optional<Bracket> bracket(Layer layer, double accuracy_mm, bool sign_only);
@@ -55,7 +58,7 @@ class PairCovers {
   std::optional<CoverOverlap> overlap_[2];  // the same
   std::optional<double> most_mm_[2];
   std::optional<Sample> deepest_[2];
-  bool touches_[2] = {false, false};
+  std::vector<Sample> touching_[2];
 };
 
 }  // namespace mortise
