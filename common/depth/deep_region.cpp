@@ -13,6 +13,8 @@ constexpr std::uint64_t kQuestions = 80'000, kQuestionsLazily = 800;
 
 // Twin points of duplicates are no farther apart than this share of the radius.
 constexpr double kDuplicateShare = 0.01;
+// A part whose middle is this share of its radius inside the other is no fit that is too tight.
+constexpr double kDeepShare = 0.1;
 // Deeper than at the surfaces by this factor: that is not what the surfaces left open.
 constexpr double kGrowth = 1.01;
 
@@ -46,12 +48,13 @@ bool are_duplicates(const Solid& a, const Pose& X_WA, const Solid& b, const Pose
   return twins_apart_mm(a, X_WA, b, X_WB) <= kDuplicateShare * a.sphere().radius_mm;
 }
 
-std::optional<OverlapRegion> find_duplicates(const PairFrame& pair, const OverlapQuery& query,
-                                             std::uint64_t& evaluations) {
-  if (query.refinement != Refinement::kDecided || query.only_certain ||
-      !are_duplicates(*query.a, query.X_WA, *query.b, query.X_WB))
-    return std::nullopt;
-  const auto shared = find_inside_of_twins(pair, evaluations);
+std::optional<OverlapRegion> find_in_one_place(const PairFrame& pair, const OverlapQuery& query,
+                                               std::uint64_t& evaluations) {
+  if (query.refinement != Refinement::kDecided || query.only_certain) return std::nullopt;
+  const auto shared =
+      are_duplicates(*query.a, query.X_WA, *query.b, query.X_WB)
+          ? find_inside_of_twins(pair, evaluations)
+          : find_middle_in_both(pair, kDeepShare * pair.smaller_radius_mm(), evaluations);
   if (!shared) return std::nullopt;
   OverlapRegion region = region_of(pair, *shared);
   if (!region.has_witness) return std::nullopt;
@@ -109,7 +112,7 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
   region.delta_mm = delta;
   if (inner->depth_mm.lo > at_surface_mm) region.point_W = inner->point_W;
   const bool grows = delta.lo > kGrowth * at_surface_mm + pair.touch_mm;
-  if (layers_known) return;
+  if (layers_known && !grows) return;
   region.certain_mm = of_layer(pair, *inner, region, region.certain_mm, Layer::kLower, grows);
   region.possible_mm = of_layer(pair, *inner, region, region.possible_mm, Layer::kUpper, grows);
   if (region.has_witness && region.certain_mm.hi <= 0.0) {

@@ -15,16 +15,16 @@ OverlapRegion region_of(const PairFrame& pair, const SharedInside& shared);
 double twins_apart_mm(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);
 bool are_duplicates(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);
 
-/// Duplicates that share a point of both least bodies: how deep at least, without a look at their
-/// surfaces, which nearly coincide everywhere. Lazily, and not where only what is certain is asked.
-/// Adds to `evaluations`.
-std::optional<OverlapRegion> find_duplicates(const PairFrame& pair, const OverlapQuery& query,
-                                             std::uint64_t& evaluations);
+/// Parts that lie in one place, duplicates or such that hold the middle of the other deep inside:
+/// how deep at least, without a look at their surfaces. Lazily, and not where only what is certain
+/// is asked. Adds to `evaluations`.
+std::optional<OverlapRegion> find_in_one_place(const PairFrame& pair, const OverlapQuery& query,
+                                               std::uint64_t& evaluations);
 
 /// Parts that lie deep in each other are deeper inside than at their surfaces. Tells that of their
-/// deepest region, and a witness where it has none; layers_known: that of the meshes alone. With
-/// kFull to the accuracy of the query, as far as the work goes; lazily to some thousandths. Adds to
-/// `evaluations`.
+/// deepest region, and a witness where it has none; layers_known: of the layers, too, only where
+/// the overlap grows inside. With kFull to the accuracy of the query, as far as the work goes;
+/// lazily to some thousandths. Adds to `evaluations`.
 void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool layers_known,
                         OverlapRegion& region, std::uint64_t& evaluations);
 

@@ -142,7 +142,7 @@ class Overlap {
       : query_(query), pair_(query), covers_(pair_, query.use_covers, result_.evaluations) {}
 
   OverlapResult run() {
-    if (told_by_covers() || told_as_duplicates()) {
+    if (told_by_covers() || told_in_one_place()) {
       mark_cracks(pair_, !query_.only_certain, result_);
       return std::move(result_);
     }
@@ -189,10 +189,13 @@ class Overlap {
   }
 
  private:
-  bool told_as_duplicates() {
-    auto region = find_duplicates(pair_, query_, result_.evaluations);
-    if (region) result_.regions.push_back(std::move(*region));
-    return result_.meshes_cross = region.has_value();
+  bool told_in_one_place() {
+    auto region = find_in_one_place(pair_, query_, result_.evaluations);
+    if (!region) return false;
+    result_.regions.push_back(std::move(*region));
+    result_.contained =
+        !are_duplicates(*query_.a, query_.X_WA, *query_.b, query_.X_WB) && !meshes_cross();
+    return result_.meshes_cross = true;
   }
 
   // What was asked for needs no triangle: the layer is apart, or the deepest region is known as

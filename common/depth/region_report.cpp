@@ -257,6 +257,27 @@ std::optional<SharedInside> find_inside_of_twins(const PairFrame& pair,
   return deepest;
 }
 
+std::optional<SharedInside> find_middle_in_both(const PairFrame& pair, double least_mm,
+                                                std::uint64_t& evaluations) {
+  std::optional<SharedInside> deepest;
+  if (!pair.has_insides()) return deepest;
+  for (const int own : {0, 1}) {
+    const Vec3 x_W = pair.X_W[own] * pair.bodies[own].solid->sphere().center_mm;
+    SharedInside shared{x_W, 0.0, std::numeric_limits<double>::infinity(), {0, 0}};
+    for (const int i : {0, 1}) {
+      const SurfacePoint at = nearest_surface(*pair.bodies[i].solid, pair.X_W[i].inverse() * x_W);
+      ++evaluations;
+      shared.depth_mm += at.depth_mm;
+      shared.in_either_mm = std::min(shared.in_either_mm, at.depth_mm);
+      shared.triangle[i] = at.triangle;
+      if (shared.in_either_mm < least_mm) break;
+    }
+    if (shared.in_either_mm >= least_mm && !(deepest && deepest->depth_mm >= shared.depth_mm))
+      deepest = shared;
+  }
+  return deepest;
+}
+
 OverlapRegion region_of_certain(const PairFrame& pair, const Sample& deepest, double most_mm) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   OverlapRegion region;

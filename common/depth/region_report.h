@@ -38,6 +38,9 @@ struct SharedInside {
 std::optional<SharedInside> find_shared_inside(const PairFrame& pair, const Candidates& candidates);
 /// Of parts of one mesh of which each point lies near its twin: below some of their triangles.
 std::optional<SharedInside> find_inside_of_twins(const PairFrame& pair, std::uint64_t& evaluations);
+/// The middle of either part, where it is no less than least_mm below the surface of both.
+std::optional<SharedInside> find_middle_in_both(const PairFrame& pair, double least_mm,
+                                                std::uint64_t& evaluations);
 
 /// Fills in point, normal and faces of the region from the deepest sample.
 void describe(const PairFrame& pair, const Sample& deepest, const Sample& deciding,

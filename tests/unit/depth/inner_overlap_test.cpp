@@ -170,6 +170,44 @@ TEST(InnerOverlap, ConvexPartsByPlanesAsByBoxes) {
   EXPECT_GT(deep, test::effort(40) / 4);
 }
 
+// A part whose middle lies deep in the other is told without a look at its surface; as in full.
+TEST(InnerOverlap, WhoLiesDeepInsideCostsLittle) {
+  std::mt19937_64 rng(13);
+  const auto u = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(rng);
+  };
+  int asked = 0, contained = 0;
+  for (int i = 0; i < test::effort(12); ++i) {
+    const double size = i % 3 == 0 ? 0.5 : 1.0;
+    Case c{solid(box({u(2, 4), u(2, 4), u(2, 4)}, Vec3::Zero(), 2)),
+           i % 2 ? solid(box({size * u(1, 2), size * u(1, 2), size * u(1, 2)}, Vec3::Zero(), 2))
+                 : solid(sphere(size * u(1, 2), Vec3::Zero(), 8))};
+    c.band_a = c.band_b = uniform_band({}, {-0.01, 0.01});
+    c.X_WB = {rotation_exp(Vec3(u(-2, 2), u(-2, 2), u(-2, 2))), Vec3(u(-1, 1), u(-1, 1), u(-1, 1))};
+    c.refinement = Refinement::kDecided;
+    const OverlapResult lazily = overlap_of(c);
+    c.refinement = Refinement::kFull;
+    const OverlapResult full = overlap_of(c);
+    ASSERT_EQ(worst_class(lazily), CollisionClass::kReal) << i;
+    ASSERT_EQ(worst_class(full), CollisionClass::kReal) << i;
+    EXPECT_LT(lazily.evaluations, 1'500U) << i;
+    EXPECT_EQ(lazily.contained, full.contained) << i;
+    const OverlapRegion &a = lazily.regions.front(), &b = full.regions.front();
+    for (const auto& [x, y] :
+         {std::pair(a.delta_mm, b.delta_mm), std::pair(a.certain_mm, b.certain_mm),
+          std::pair(a.possible_mm, b.possible_mm)}) {
+      EXPECT_LE(x.lo, y.hi + 1e-6) << i;
+      EXPECT_GE(x.hi, y.lo - 1e-6) << i;
+    }
+    EXPECT_LT(signed_distance_mm(*c.a, c.X_WA.inverse() * a.witness_W), -0.01) << i;
+    EXPECT_LT(signed_distance_mm(*c.b, c.X_WB.inverse() * a.witness_W), -0.01) << i;
+    ++asked;
+    contained += lazily.contained;
+  }
+  EXPECT_GT(contained, asked / 5);
+  EXPECT_LT(contained, asked);
+}
+
 // Where the work ends the bracket stays wide, and true.
 TEST(InnerOverlap, LittleWorkGivesAWideBracket) {
   const Case c{solid(box({20, 15, 10})), solid(box({5, 6, 30}, {1, 2, 3}))};
