@@ -154,11 +154,16 @@ bool ContactRows::meet_at_corners(const Vec6& xi, std::uint64_t& work) {
     corners_reach_mm_ = 0.0;
   }
   const Pose X_WA = frame_.pose_of(xi) * X_W_[0];
-  for (const int part : {0, 1})
+  const Pose X_BA = X_W_[1].inverse() * X_WA, X_of[2] = {X_BA, X_BA.inverse()};
+  for (const int part : {0, 1}) {
+    const Box& other = parts_[1 - part]->bounds();
     for (Corner& corner : deepest_first_[part]) {
       ++work;
+      const Vec3 y = X_of[part] * corner.x;
+      if ((y.array() < other.lo.array()).any() || (y.array() > other.hi.array()).any()) continue;
       if (corner_at(part, corner, X_WA).depth_mm > kMeet_mm) return true;
     }
+  }
   return false;
 }
 
