@@ -15,6 +15,7 @@
 #include "client/report/export_sqlite.h"
 #include "client/report/report.h"
 #include "client/saved/saved_session.h"
+#include "client/saved/unpack.h"
 #include "common/base/json_text.h"
 #include "common/io/log/replay.h"
 #include "common/session/tick/statistics.h"

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log_read.h"
@@ -8,6 +9,10 @@
 
 /// A logged session as a scenario with its meshes: a folder, or the same as a .zip archive.
 namespace mortise {
+
+/// The files of a saved session: the scenario, and the meshes in a folder of their own.
+inline constexpr std::string_view kSavedScenario = "scenario.yaml", kSavedMeshes = "meshes/",
+                                  kSavedMesh = ".obj", kSavedPart = ".mstp";
 
 struct SavedSession {
   SavedScenario scenario;
@@ -17,20 +22,12 @@ struct SavedSession {
 /// session on a STEP assembly.
 Result<SavedSession> saved_session(const SessionLog& log, const OnReplayedTick& on_tick);
 
+/// Fails where the folder holds something.
+Status is_free(const std::filesystem::path& folder);
 /// The folder is new or empty.
 Status write_folder(const SavedScenario& saved, const std::filesystem::path& folder);
 
 /// The bytes of an archive with the files that write_folder() writes.
 Result<std::string> zip_of(const SavedScenario& saved);
-
-/// What is taken of an archive; more is refused.
-struct SavedLimits {
-  std::uint64_t files = 10'000;
-  std::uint64_t bytes = std::uint64_t{4} << 30;  ///< of all files, unpacked
-};
-/// Writes the files of such an archive to a folder, which is new or empty; nothing else is taken
-/// from it, whatever it holds. Where it fails, the folder is as it was.
-Status unpack(const std::filesystem::path& archive, const std::filesystem::path& folder,
-              const SavedLimits& limits = {});
 
 }  // namespace mortise

@@ -1,6 +1,7 @@
 // A saved session as an archive: what Save writes is taken back whole, and of strangers' archives
 // nothing but such files, to no other place.
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <zip.h>
 
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <memory>
 
 #include "client/saved/saved_session.h"
+#include "client/saved/unpack.h"
 #include "common/generators/generators.h"
 #include "common/io/scenario/brought_part.h"
 #include "tests/support/programs.h"
@@ -124,6 +126,87 @@ TEST_F(SavedArchive, AFolderThatHoldsSomethingIsLeftAsItIs) {
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().text.find("is not empty; name a new folder"), std::string::npos);
   EXPECT_EQ(files_in(path("out")).size(), 1U);
+}
+
+/// What the reading process says, as bytes, and what is taken of them.
+class SavedArchiveWords : public SavedArchive {
+ protected:
+  static std::string word(char what, const std::string& bytes = "") {
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    std::string text(1, what);
+    text.append(reinterpret_cast<const char*>(&size), sizeof size);
+    return text + bytes;
+  }
+  Status take(const std::string& words, SavedLimits limits = {}) {
+    int ends[2];
+    EXPECT_EQ(pipe(ends), 0);
+    EXPECT_EQ(write(ends[1], words.data(), words.size()), static_cast<ssize_t>(words.size()));
+    close(ends[1]);
+    const Status status = take_unpacked(ends[0], path("given.zip"), path("out"), limits);
+    close(ends[0]);
+    return status;
+  }
+  const std::string names_ = word('N', "scenario.yaml") + word('N', "meshes/a.obj");
+  const std::string said_ = names_ + word('B', "name: x\n") + word('E') + word('B', "v 0 0 0\n") +
+                            word('B', "v 1 0 0\n") + word('E') + word('D');
+};
+
+TEST_F(SavedArchiveWords, AreTakenWhereTheyAreThoseOfASavedSession) {
+  const Status done = take(said_);
+  ASSERT_TRUE(done) << done.error().text;
+  EXPECT_EQ(files_in(path("out")),
+            (Files{{"scenario.yaml", "name: x\n"}, {"meshes/a.obj", "v 0 0 0\nv 1 0 0\n"}}));
+}
+
+TEST_F(SavedArchiveWords, AreBelievedInNothing) {
+  const std::string huge("N\xff\xff\xff\x7f", 5);
+  const std::pair<std::string, std::string> refused[] = {
+      {names_ + word('N', "meshes/../../a.obj") + word('E'), "which no saved session has"},
+      {names_ + word('N', "scenario.yaml") + word('E'), "twice"},
+      {names_ + word('E') + word('N', "meshes/b.obj"), "before all was read"},
+      {names_ + word('E') + word('D'), "before all was read"},
+      {names_ + word('E') + word('E') + word('E'), "before all was read"},
+      {names_ + word('E') + word('E'), "before all was read"},
+      {names_ + "X", "before all was read"},
+      {names_ + huge, "before all was read"},
+      {word('B', "text"), "holds no scenario.yaml"},
+      {word('D'), "before all was read"},
+      {"", "before all was read"},
+      {word('R', "is\nmany\x1b[2Jlines"), "is many [2Jlines"}};
+  for (const auto& [words, says] : refused) {
+    SCOPED_TRACE(says);
+    const Status status = take(words);
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.error().text.find(says), std::string::npos) << status.error().text;
+    EXPECT_EQ(status.error().text.find('\n'), std::string::npos);
+    EXPECT_FALSE(fs::exists(path("out")));
+  }
+  EXPECT_FALSE(take(said_, {.files = 1, .bytes = 1000}));
+  EXPECT_FALSE(take(said_, {.files = 2, .bytes = 10}));
+  EXPECT_TRUE(take(said_, {.files = 2, .bytes = 24}));
+}
+
+// Whatever bit of them is turned: files of the names that were given, or none.
+TEST_F(SavedArchiveWords, DoNoHarmDamaged) {
+  for (std::size_t bit = 0; bit < 8 * said_.size(); ++bit) {
+    std::string words = said_;
+    words[bit / 8] = static_cast<char>(words[bit / 8] ^ (1 << bit % 8));
+    const Status status = take(words);
+    if (status)
+      EXPECT_EQ(files_in(path("out")).size(), 2U) << bit;
+    else
+      EXPECT_FALSE(fs::exists(path("out"))) << bit;
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+      EXPECT_EQ(entry.path().filename(), "out") << bit;
+    fs::remove_all(path("out"));
+  }
+}
+
+TEST_F(SavedArchive, AFolderIsNoArchive) {
+  const fs::path archive = archive_of({{"scenario.yaml", "name: x\n"}});
+  fs::remove(archive);
+  fs::create_directory(archive);
+  expect_refused(archive, "is no archive that can be read");
 }
 
 TEST_F(SavedArchive, TheProgramSaysWhatIsWrong) {
