@@ -8,6 +8,9 @@
 namespace mortise::bench {
 namespace {
 
+// Facets of a round that is no prism that somebody drew.
+constexpr int kNoPrism = 65;
+
 std::size_t column_of(CollisionClass collision_class) {
   if (collision_class == CollisionClass::kReal) return 0;
   return collision_class == CollisionClass::kPotential ? 1 : 2;
@@ -57,6 +60,10 @@ std::string JudgementScore::add(const JudgedCase& c, const Truth& truth, const W
       Share& share = c.facets() != 0 && c.facets() < 24 ? coarse : fine;
       ++share.all;
       share.right += said == is;
+      if (c.facets() >= kNoPrism) {
+        ++no_prism.all;
+        no_prism.right += said == is;
+      }
       missed = said != is && &share == &fine;
     }
   }

@@ -18,12 +18,13 @@ struct JudgementScore {
   std::array<std::array<long long, 3>, 3> confusion{};
   long long cases = 0, contradictions = 0, capped = 0;
   /// Decided truths beyond the margin: all, and those found; by coarse (fewer than 24 facets) or
-  /// not.
+  /// not. Of the latter those that no prism has the facets of (65 steps a turn or more:
+  /// common/evaluation/README.md, "Round or flat?").
   struct Share {
     long long all = 0, right = 0;
     double percent() const;
   };
-  Share coarse, fine;
+  Share coarse, fine, no_prism;
   long long decided_truths = 0, left_open = 0;  ///< potential was said though the truth is decided
   std::vector<double> time_s;
   double slowest_s = 0.0;

@@ -140,6 +140,7 @@ const std::vector<std::string> kColumns = {"who",
                                            "none: fake or none",
                                            "contradictions",
                                            "left open %",
+                                           "right %, 65 facets on",
                                            "right %, 24 facets on",
                                            "right %, 12 to 23",
                                            "us median",
@@ -154,8 +155,9 @@ void add_row(Report& report, const std::string& name, const JudgementScore& s) {
   for (const auto& is : s.confusion)
     for (const long long count : is) cells.emplace_back(count);
   cells.emplace_back(s.contradictions);
-  for (const double figure : {s.left_open_percent(), s.fine.percent(), s.coarse.percent(),
-                              1e6 * median(s.time_s), 1e6 * quantile(s.time_s, 0.99)})
+  for (const double figure :
+       {s.left_open_percent(), s.no_prism.percent(), s.fine.percent(), s.coarse.percent(),
+        1e6 * median(s.time_s), 1e6 * quantile(s.time_s, 0.99)})
     cells.emplace_back(figure);
   cells.emplace_back(s.capped);
   cells.emplace_back(s.slowest);
@@ -208,7 +210,11 @@ void add_bars(Report& report, const Run& run, long long least_cases) {
     if (name == name_of(Grade::kEstimated))
       report.bar("contradictions of the truth, estimated, %", wrong_percent(s), 0.1,
                  BoundKind::kAtMost);
-    if (name != name_of(Grade::kDeclared) && name != name_of(Grade::kRecognized)) continue;
+    // A coarser round may be a prism, which is never to be called round.
+    if (name == name_of(Grade::kRecognized))
+      report.bar(name + ": decided truths found, margin > 0.5 um, 65 facets on, %",
+                 s.no_prism.percent(), 100.0, BoundKind::kAtLeast);
+    if (name != name_of(Grade::kDeclared)) continue;
     report.bar(name + ": decided truths found, margin > 0.5 um, 24 facets on, %", s.fine.percent(),
                100.0, BoundKind::kAtLeast);
     report.bar(name + ": decided truths found, margin > 0.5 um, 12 to 23 facets, %",
