@@ -24,19 +24,19 @@ std::string page_begin(const std::string& title) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>{0}</title><style>{1}</style></head><body>\n"
-      "<h1>{0}</h1>\n",
+      "<main>\n<h1>{0}</h1>\n",
       escaped(title), report_style());
 }
 
 // A box whose table is wider than the window says so, and takes the keys that scroll it.
 std::string page_end() {
-  return R"(<script>
+  return R"(</main><script>
 const wide = new ResizeObserver(entries => {
   for (const { target: box } of entries) {
     const more = box.scrollWidth > box.clientWidth + 1;
     box.classList.toggle('more', more);
-    for (const [name, value] of [['tabindex', '0'], ['role', 'group'], ['aria-label', 'scrolls sideways']])
-      more ? box.setAttribute(name, value) : box.removeAttribute(name);
+    const said = [['tabindex', '0'], ['aria-label', 'scrolls sideways'], ...(box.tagName === 'FIGURE' ? [] : [['role', 'group']])];
+    for (const [name, value] of said) more ? box.setAttribute(name, value) : box.removeAttribute(name);
   }
 });
 for (const box of document.querySelectorAll('.wide, figure')) wide.observe(box);
@@ -70,6 +70,9 @@ td { overflow-wrap: break-word; } #clashes td { overflow-wrap: anywhere; }
 #clashes col:nth-child(1) { width: 3rem; } #clashes col:nth-child(2) { width: 7rem; }
 #clashes col:nth-child(3) { width: 20%; } #clashes col:nth-child(4) { width: 12%; } #clashes col:nth-child(5) { width: 6.5rem; }
 #clashes col:nth-child(6) { width: 5.5rem; } #clashes col:nth-child(7) { width: 6rem; } #clashes svg { width: 100%; max-width: 124px; height: auto; }
+#pairs { table-layout: fixed; min-width: 52rem; } #pairs td { overflow-wrap: anywhere; white-space: pre-line; }
+#pairs th:nth-child(1) { width: 16%; } #pairs th:nth-child(2) { width: 9%; } #pairs th:nth-child(3) { width: 12%; }
+#pairs th:nth-child(4) { width: 11%; } #pairs th:nth-child(5) { width: 13%; } #pairs th:nth-child(6) { width: 7%; }
 details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { font-weight: 600; } dd { margin: 0 0 .2rem 1rem; }
 .real { color: var(--real); } .potential { color: var(--potential); } .fake { color: var(--fake); }
 .letter { display: inline-block; width: 1.5em; text-align: center; font-weight: 700;
@@ -93,8 +96,8 @@ td a { color: inherit; }
 @media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
   body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
   .wide, figure { overflow: visible; } .more::before { display: none; }
-  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes { min-width: 0; }
-  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; white-space: normal; }
+  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes, #pairs { min-width: 0; }
+  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; } td.n { white-space: normal; }
   #clashes col:nth-child(1) { width: 4%; }
   #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9%; }
   #clashes col:nth-child(3) { width: 19%; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11%; }
