@@ -18,6 +18,22 @@ std::string class_variables(std::uint32_t ClassColours::*ground) {
   return css;
 }
 
+constexpr char kOnPaper[] =
+    R"(@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
+  body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
+  .wide, figure { overflow: visible; } .more::before { display: none; }
+  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes, #pairs { min-width: 0; }
+  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; } td.n { white-space: normal; }
+  #clashes col:nth-child(1) { width: 4%; }
+  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9%; }
+  #clashes col:nth-child(3) { width: 19%; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11%; }
+  .card { min-width: 0; padding: .3rem .8rem; } h2 + p { break-after: avoid; }
+  dl, dt, dd { display: inline; margin: 0; } dt::after { content: ": "; } dd:not(:last-child)::after { content: "; "; }
+  summary { display: none; } .wide td:first-child { min-width: 7em; }
+  figure > svg { width: 100%; min-width: 0; } .parts { grid-template-columns: 1fr 1fr; }
+  th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
+)";
+
 }  // namespace
 
 std::string page_begin(const std::string& title) {
@@ -93,20 +109,7 @@ figcaption { font-size: .87rem; color: var(--dim); }
 .parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
 tr.now td { font-weight: 700; background: var(--band); }
 td a { color: inherit; }
-@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
-  body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
-  .wide, figure { overflow: visible; } .more::before { display: none; }
-  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes, #pairs { min-width: 0; }
-  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; } td.n { white-space: normal; }
-  #clashes col:nth-child(1) { width: 4%; }
-  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9%; }
-  #clashes col:nth-child(3) { width: 19%; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11%; }
-  .card { min-width: 0; padding: .3rem .8rem; } h2 + p { break-after: avoid; }
-  dl, dt, dd { display: inline; margin: 0; } dt::after { content: ": "; } dd:not(:last-child)::after { content: "; "; }
-  summary { display: none; } .wide td:first-child { min-width: 7em; }
-  figure > svg { width: 100%; min-width: 0; } .parts { grid-template-columns: 1fr 1fr; }
-  th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
-)";
+)" + kOnPaper;
 }
 
 std::string_view filter_script() {
