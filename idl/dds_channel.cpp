@@ -36,7 +36,7 @@ std::int64_t ns_until(Clock::time_point end) {
 class DdsServerChannel final : public StandbyChannel {
  public:
   /// Says goodbye after its last words were heard; who does not listen is not waited for long.
-  ~DdsServerChannel() override { writers_.await_heard(kLastWords_s); }
+  ~DdsServerChannel() override { writers_.close(kLastWords_s); }
   /// Of a server that leads from now on.
   Status open(const DdsOptions& options);
   Status stand_by(const DdsOptions& options);
@@ -52,7 +52,7 @@ class DdsServerChannel final : public StandbyChannel {
   void publish_uploads(std::span<const UploadState> uploads) override { writers_.say(uploads); }
   void publish_poses(const PoseBatch& batch) override { writers_.say(batch); }
   void publish_events(std::span<const ClashEvent> events) override { writers_.say(events); }
-  void publish_snapshot(const Snapshot& snapshot) override { writers_.say(snapshot); }
+  void publish_snapshot(Snapshot snapshot) override { writers_.say(std::move(snapshot)); }
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
     writers_.say(hash, bytes);
   }

@@ -36,7 +36,8 @@ void ServerWriters::change_term(Participant& participant, std::uint64_t term) {
   participant.change_term(*answers_, term);
 }
 
-void ServerWriters::await_heard(double at_most_s) {
+void ServerWriters::close(double at_most_s) {
+  snapshot_sayer_.stop();
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(at_most_s);
   for (dds::DataWriter* writer : {answers_, events_, snapshots_, pulses_}) {
     const std::chrono::duration<double> left = end - std::chrono::steady_clock::now();
@@ -83,7 +84,7 @@ void ServerWriters::say(std::span<const ClashEvent> events) {
   for (const wire::EventBatch& chunk : cut(events)) write(events_, chunk);
 }
 
-void ServerWriters::say(const Snapshot& snapshot) {
+void ServerWriters::say_now(const Snapshot& snapshot) {
   for (const wire::Snapshot& chunk : cut(snapshot, ++snapshot_serial_)) write(snapshots_, chunk);
 }
 

@@ -10,18 +10,20 @@
 #include "common/messages/channel.h"
 #include "idl/convert.h"
 #include "idl/participant.h"
+#include "idl/snapshot_sayer.h"
 
 namespace mortise {
 
 /// What a server says to clients: the writers of its topics, and the serial numbers of its samples.
-/// Nothing here waits.
+/// Nothing here waits, but what ends it.
 class ServerWriters {
  public:
   void open(Participant& participant, Status& status);
   /// Tells with the writers from now on that this server leads under another term.
   void change_term(Participant& participant, std::uint64_t term);
-  /// Waits until clients have what was said last, for at most so long.
-  void await_heard(double at_most_s);
+  /// Says what waits still, and waits until clients have what was said last, for at most so long.
+  /// To be called before the participant goes.
+  void close(double at_most_s);
 
   void say(const wire::Answers& answers) { write(answers_, answers); }
   void say(const JoinReply& reply) { say(to_wire(std::span(&reply, 1), {}, {})); }
@@ -32,7 +34,8 @@ class ServerWriters {
   void say(std::span<const UploadState> uploads);
   void say(const PoseBatch& batch);
   void say(std::span<const ClashEvent> events);
-  void say(const Snapshot& snapshot);
+  /// Said by a thread of its own, soon.
+  void say(Snapshot snapshot) { snapshot_sayer_.add(std::move(snapshot)); }
   /// May be called by any thread.
   void say(const std::string& mesh_hash, std::span<const std::byte> mesh);
   void say(const FeatureTable& table);
@@ -43,6 +46,7 @@ class ServerWriters {
   std::uint64_t failed() const { return failed_; }  ///< samples that were not taken
 
  private:
+  void say_now(const Snapshot& snapshot);
   template <class Sample>
   void write(dds::DataWriter* writer, Sample sample) {
     if (!writer->write(&sample)) ++failed_;
@@ -56,6 +60,7 @@ class ServerWriters {
   std::size_t mesh_chunks_ = 0;
   std::set<std::string> said_meshes_;
   std::atomic<std::uint64_t> failed_ = 0;
+  SnapshotSayer snapshot_sayer_{[this](const Snapshot& snapshot) { say_now(snapshot); }};  ///< last
 };
 
 }  // namespace mortise

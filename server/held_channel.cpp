@@ -217,8 +217,8 @@ void HeldChannel::publish_poses(const PoseBatch& batch) {
 void HeldChannel::publish_events(std::span<const ClashEvent> events) {
   say([this, all = copy_of(events)] { inner_.publish_events(all); });
 }
-void HeldChannel::publish_snapshot(const Snapshot& snapshot) {
-  say([this, snapshot] { inner_.publish_snapshot(snapshot); });
+void HeldChannel::publish_snapshot(Snapshot snapshot) {
+  say([this, kept = std::move(snapshot)]() mutable { inner_.publish_snapshot(std::move(kept)); });
 }
 void HeldChannel::publish_mesh(const std::string& hash, std::span<const std::byte> bytes) {
   say([this, hash, all = copy_of(bytes)] { inner_.publish_mesh(hash, all); });

@@ -66,7 +66,7 @@ class HeldChannel final : public ServerChannel {
   }
   void publish_poses(const PoseBatch& batch) override;
   void publish_events(std::span<const ClashEvent> events) override;
-  void publish_snapshot(const Snapshot& snapshot) override;
+  void publish_snapshot(Snapshot snapshot) override;
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override;
   /// It says nothing of the session.
   void publish_coming_mesh(const std::string& hash, std::span<const std::byte> bytes) override {

@@ -115,7 +115,7 @@ void TickPublisher::publish_snapshot(std::int64_t now_ns) {
   Snapshot snapshot = snapshot_of(world_);
   snapshot.session = options_.session;
   snapshot.event_seq = event_seq_;
-  channel_.publish_snapshot(snapshot);
+  channel_.publish_snapshot(std::move(snapshot));
   snapshot_ns_ = now_ns;
   changed_since_snapshot_ = false;
   snapshot_wanted_ = false;

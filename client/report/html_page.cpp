@@ -18,25 +18,41 @@ std::string class_variables(std::uint32_t ClassColours::*ground) {
   return css;
 }
 
+constexpr char kOnPaper[] =
+    R"(@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
+  body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
+  .wide, figure { overflow: visible; } .more::before { display: none; }
+  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes, #pairs { min-width: 0; }
+  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; } td.n { white-space: normal; }
+  #clashes col:nth-child(1) { width: 4%; }
+  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9%; }
+  #clashes col:nth-child(3) { width: 19%; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11%; }
+  .card { min-width: 0; padding: .3rem .8rem; } h2 + p { break-after: avoid; }
+  dl, dt, dd { display: inline; margin: 0; } dt::after { content: ": "; } dd:not(:last-child)::after { content: "; "; }
+  summary { display: none; } .wide td:first-child { min-width: 7em; }
+  figure > svg { width: 100%; min-width: 0; } .parts { grid-template-columns: 1fr 1fr; }
+  th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
+)";
+
 }  // namespace
 
 std::string page_begin(const std::string& title) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>{0}</title><style>{1}</style></head><body>\n"
-      "<h1>{0}</h1>\n",
+      "<main>\n<h1>{0}</h1>\n",
       escaped(title), report_style());
 }
 
 // A box whose table is wider than the window says so, and takes the keys that scroll it.
 std::string page_end() {
-  return R"(<script>
+  return R"(</main><script>
 const wide = new ResizeObserver(entries => {
   for (const { target: box } of entries) {
     const more = box.scrollWidth > box.clientWidth + 1;
     box.classList.toggle('more', more);
-    for (const [name, value] of [['tabindex', '0'], ['role', 'group'], ['aria-label', 'scrolls sideways']])
-      more ? box.setAttribute(name, value) : box.removeAttribute(name);
+    const said = [['tabindex', '0'], ['aria-label', 'scrolls sideways'], ...(box.tagName === 'FIGURE' ? [] : [['role', 'group']])];
+    for (const [name, value] of said) more ? box.setAttribute(name, value) : box.removeAttribute(name);
   }
 });
 for (const box of document.querySelectorAll('.wide, figure')) wide.observe(box);
@@ -70,6 +86,9 @@ td { overflow-wrap: break-word; } #clashes td { overflow-wrap: anywhere; }
 #clashes col:nth-child(1) { width: 3rem; } #clashes col:nth-child(2) { width: 7rem; }
 #clashes col:nth-child(3) { width: 20%; } #clashes col:nth-child(4) { width: 12%; } #clashes col:nth-child(5) { width: 6.5rem; }
 #clashes col:nth-child(6) { width: 5.5rem; } #clashes col:nth-child(7) { width: 6rem; } #clashes svg { width: 100%; max-width: 124px; height: auto; }
+#pairs { table-layout: fixed; min-width: 52rem; } #pairs td { overflow-wrap: anywhere; white-space: pre-line; }
+#pairs th:nth-child(1) { width: 16%; } #pairs th:nth-child(2) { width: 9%; } #pairs th:nth-child(3) { width: 12%; }
+#pairs th:nth-child(4) { width: 11%; } #pairs th:nth-child(5) { width: 13%; } #pairs th:nth-child(6) { width: 7%; }
 details { margin-top: .3rem; color: var(--dim); } dl { margin: .3rem 0; } dt { font-weight: 600; } dd { margin: 0 0 .2rem 1rem; }
 .real { color: var(--real); } .potential { color: var(--potential); } .fake { color: var(--fake); }
 .letter { display: inline-block; width: 1.5em; text-align: center; font-weight: 700;
@@ -90,20 +109,7 @@ figcaption { font-size: .87rem; color: var(--dim); }
 .parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
 tr.now td { font-weight: 700; background: var(--band); }
 td a { color: inherit; }
-@media print { :root { --ink: #000; --dim: #444; --line: #bbb; --page: #fff; --band: #eee; }
-  body { margin: 0; max-width: none; font-size: 10pt; } .filters { display: none; }
-  .wide, figure { overflow: visible; } .more::before { display: none; }
-  .wide > svg { min-width: 0; max-width: none; } table { font-size: 7pt; } #clashes { min-width: 0; }
-  th, td { padding: .15rem .25rem; } .wide td { overflow-wrap: anywhere; white-space: normal; }
-  #clashes col:nth-child(1) { width: 4%; }
-  #clashes col:nth-child(2), #clashes col:nth-child(6), #clashes col:nth-child(7) { width: 9%; }
-  #clashes col:nth-child(3) { width: 19%; } #clashes col:nth-child(4), #clashes col:nth-child(5) { width: 11%; }
-  .card { min-width: 0; padding: .3rem .8rem; } h2 + p { break-after: avoid; }
-  dl, dt, dd { display: inline; margin: 0; } dt::after { content: ": "; } dd:not(:last-child)::after { content: "; "; }
-  summary { display: none; } .wide td:first-child { min-width: 7em; }
-  figure > svg { width: 100%; min-width: 0; } .parts { grid-template-columns: 1fr 1fr; }
-  th { position: static; } tr { break-inside: avoid; } h2 { break-after: avoid; } }
-)";
+)" + kOnPaper;
 }
 
 std::string_view filter_script() {

@@ -61,9 +61,10 @@ std::string letter_of(const std::string& klass) {
 
 std::string plain_table(const Table& table, const std::string& title) {
   if (table.rows.empty()) return "";
-  std::string html =
-      fmt::format("<h2>{}</h2>\n<p class=\"dim\">{}</p>\n<div class=\"wide\"><table><thead><tr>",
-                  title, escaped(table.about));
+  std::string html = fmt::format(
+      "<h2>{}</h2>\n<p class=\"dim\">{}</p>\n<div class=\"wide\"><table "
+      "id=\"{}\"><thead><tr>",
+      title, escaped(table.about), escaped(table.name));
   for (const Table::Column& column : table.columns)
     html += (column.type == Table::Type::kText ? "<th>" : "<th class=\"n\">") +
             spaced(escaped(column.name)) + "</th>";

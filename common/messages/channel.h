@@ -197,7 +197,7 @@ class ServerChannel {
   virtual void publish_uploads(std::span<const UploadState> uploads) = 0;
   virtual void publish_poses(const PoseBatch& batch) = 0;
   virtual void publish_events(std::span<const ClashEvent> events) = 0;
-  virtual void publish_snapshot(const Snapshot& snapshot) = 0;  ///< kept for late joiners
+  virtual void publish_snapshot(Snapshot snapshot) = 0;  ///< kept for late joiners
   virtual void publish_mesh(const std::string& hash,
                             std::span<const std::byte> bytes) = 0;  ///< kept
   /// A mesh that a part may be made of soon; kept as well. May be called by any thread.

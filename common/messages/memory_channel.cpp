@@ -203,10 +203,10 @@ class MemoryServer final : public ServerChannel {
       }
     });
   }
-  void publish_snapshot(const Snapshot& snapshot) override {
+  void publish_snapshot(Snapshot snapshot) override {
     each([&](ClientBox& box) { box.reliable.snapshots = {snapshot}; });
     const std::lock_guard lock(state_->mutex);
-    if (current()) state_->snapshot = snapshot;
+    if (current()) state_->snapshot = std::move(snapshot);
   }
   void publish_mesh(const std::string& hash, std::span<const std::byte> bytes) override {
     const MeshBytes mesh{hash, {bytes.begin(), bytes.end()}};

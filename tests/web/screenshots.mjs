@@ -1,9 +1,9 @@
 // Draws the pictures of the READMEs from the demo's own session: node tests/web/screenshots.mjs [FOLDER]
-// 1280 × 720: people at work; a clash with its section; a cut in the light theme; a part in hand.
+// 1280 × 720: people at work; a clash with its section.
 import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { openBrowser, openPage, whyNoBrowser } from './support/browser.mjs';
-import { choose, grab, whenListed } from './support/people.mjs';
+import { whenListed } from './support/people.mjs';
 import { LiveSession } from './support/session.mjs';
 
 const folder = resolve(process.argv[2] ?? join(import.meta.dirname, '../../client/web/pictures'));
@@ -31,35 +31,11 @@ try {
   await shoot(eve, 'people');
 
   await whenListed(eve, 'clashes', 'real, cover × bearing_out_upper');
-  await whenListed(tom, 'clashes', 'fake, bearing_in_upper × input_shaft');
   await eve.waitForTimeout(3000);
   await eve.keyboard.press('f');
   await eve.locator('#clashes > li[aria-label*="gear_in"]').first().click();
   await eve.waitForFunction(() => document.getElementById('heat_legend')?.textContent?.includes('As they stand'), undefined, { timeout: 60_000 });
   await shoot(eve, 'clash');
-
-  await tom.focus('#canvas');
-  await tom.keyboard.press('x');
-  await tom.keyboard.press('f');
-  await tom.waitForTimeout(1500);
-  await tom.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
-  await shoot(tom, 'section');
-  await tom.keyboard.press('Escape');
-
-  await choose(tom, 'screw_1');
-  await grab(tom, 'screw_1');
-  await tom.focus('#canvas');
-  await tom.keyboard.press('z');
-  await tom.waitForTimeout(1500);
-  for (let i = 0; i < 4; ++i) await tom.keyboard.press('-');
-  await shoot(tom, 'hand');
-  await tom.click('#tool_align');
-  await tom.getByLabel('Feature of the part in your hand').selectOption({ index: 1 });
-  await tom.getByLabel('Other part', { exact: true }).selectOption({ label: 'cover' });
-  await tom.getByLabel('Feature of the other part').selectOption({ index: 1 });
-  await shoot(tom, 'align');
-  await tom.click('#tab_statistics');
-  await shoot(tom, 'statistics');
   if (eve.complaints.length + tom.complaints.length > 0) throw new Error([...eve.complaints, ...tom.complaints].join('\n'));
 } catch (error) {
   for (const context of browser.contexts()) for (const page of context.pages()) await page.screenshot({ path: join(folder, 'failed.png') });

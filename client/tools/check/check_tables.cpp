@@ -10,6 +10,7 @@
 #include "client/report/html_sections.h"
 #include "client/tools/check/check_text.h"
 #include "client/tools/check/check_tree.h"
+#include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -72,6 +73,41 @@ Table clash_table(const OpenedScene& opened, const CheckReport& report) {
                           pair.mating.text,
                           pair.reason,
                           v.explanation});
+  }
+  return table;
+}
+
+// The same for people, as wide as a sheet of paper: what belongs together is one cell of some
+// lines.
+Table pairs_to_read(const OpenedScene& opened, const CheckReport& report) {
+  const SessionNames names = names_of(opened.scene.world);
+  Table table{
+      "pairs",
+      "in the order in which they are read; the other forms of the report have every figure",
+      {{"pair"}, {"class"}, {"relation"}, {"depth"}, {"in common"}, {"deepest at, mm"}, {"why"}},
+      {}};
+  const auto line = [](const std::string& text) { return text.empty() ? "" : "\n" + text; };
+  for (const CheckedPair& pair : report.pairs) {
+    const Verdict v = pair.verdicts.empty() ? Verdict() : pair.verdicts.front();
+    const auto part = [&](PartId id, const std::string& face) {
+      return names.part(id) + (face.empty() ? "" : " · " + face);
+    };
+    const bool has_depth = !reads_as_zero(v.delta_mm.hi);
+    std::string common;
+    if (pair.common_mm3 >= 0.0)
+      common = fmt::format("{:.6g} mm³\n{:.6g} explained\n{} thick", pair.common_mm3,
+                           pair.mating.explained_mm3, length_text(pair.thickness_mm));
+    table.rows.push_back(
+        {part(pair.a, v.face_a) + "\n" + part(pair.b, v.face_b) +
+             (pair.all.size() > 1 ? fmt::format("\n×{}", pair.all.size()) : "") +
+             line(pair.inside) + (pair.muted ? "\nmuted" : ""),
+         (pair.explained ? "explained " : "") + class_word(pair),
+         std::string(name_of(pair.mating.relation)) + line(pair.mating.text),
+         has_depth ? range_text(v.delta_mm) : "", common,
+         has_depth
+             ? fmt::format("{:.2f}\n{:.2f}\n{:.2f}", v.point_W.x(), v.point_W.y(), v.point_W.z())
+             : "",
+         pair.reason + (pair.reason.empty() ? v.explanation : line(v.explanation))});
   }
   return table;
 }
@@ -154,7 +190,7 @@ std::string check_page(const OpenedScene& opened, const CheckReport& report) {
   }
   html += "</div><h2>Clashes that nothing explains</h2>" + clash_section(opened, report);
   html += tree_section(tree_of(opened, report));
-  html += plain_table(table_named(tables, "clashes"), "All pairs");
+  html += plain_table(pairs_to_read(opened, report), "All pairs");
   html += plain_table(table_named(tables, "near"), "Nearer than asked");
   html += plain_table(table_named(tables, "not_judged"), "Not judged");
   html += plain_table(table_named(tables, "statements"), "Tolerances that the file states");

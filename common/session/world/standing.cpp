@@ -47,6 +47,7 @@ bool is_of_present(const World& world, const Decision& decision) {
 
 std::vector<Decision> standing_decisions(const World& world) {
   std::vector<Decision> standing;
+  standing.reserve(world.declared.size() + world.standing.size() + world.guides.size());
   for (const Decision& declared : world.declared)
     if (is_of_present(world, declared) &&
         std::ranges::none_of(world.standing, [&](auto& d) { return replaces(d, declared); }))

@@ -39,7 +39,7 @@ struct Wire final : ServerChannel {
   void publish_refusals(std::span<const RefusedIncrement>) override {}
   void publish_poses(const PoseBatch& batch) override { said.push_back(batch.tick); }
   void publish_events(std::span<const ClashEvent>) override {}
-  void publish_snapshot(const Snapshot&) override {}
+  void publish_snapshot(Snapshot) override {}
   void publish_mesh(const std::string&, std::span<const std::byte>) override {}
   void publish_features(const FeatureTable&) override {}
   void publish_uploads(std::span<const UploadState>) override {}

@@ -34,7 +34,7 @@ struct Line final : StandbyChannel {
   void publish_refusals(std::span<const RefusedIncrement>) override {}
   void publish_poses(const PoseBatch&) override {}
   void publish_events(std::span<const ClashEvent>) override {}
-  void publish_snapshot(const Snapshot&) override {}
+  void publish_snapshot(Snapshot) override {}
   void publish_mesh(const std::string&, std::span<const std::byte>) override {}
   void publish_features(const FeatureTable&) override {}
   void publish_uploads(std::span<const UploadState>) override {}

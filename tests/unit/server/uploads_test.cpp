@@ -335,7 +335,7 @@ struct Followed final : ServerChannel {
   void publish_uploads(std::span<const UploadState> x) override { inner_.publish_uploads(x); }
   void publish_poses(const PoseBatch& x) override { inner_.publish_poses(x); }
   void publish_events(std::span<const ClashEvent> x) override { inner_.publish_events(x); }
-  void publish_snapshot(const Snapshot& x) override { inner_.publish_snapshot(x); }
+  void publish_snapshot(Snapshot x) override { inner_.publish_snapshot(std::move(x)); }
   void publish_mesh(const std::string& hash, std::span<const std::byte> x) override {
     inner_.publish_mesh(hash, x);
   }

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { outOfReport } from '../support/looks.mjs';
+import { fitsScreensAndPaper } from '../support/looks.mjs';
 import { PATIENCE, choose, drawn, position, until, whenListed } from '../support/people.mjs';
 
 const session = new BrowserSession();
@@ -104,18 +104,7 @@ test('the report is downloaded, and opens by itself', async () => {
   await report.locator('#clashes tbody tr').first().waitFor(PATIENCE);
   assert.deepEqual(asked.filter((url) => !/^(file|data):/.test(url)), []);
   assert.deepEqual(await report.evaluate(() => [...document.querySelectorAll('h2')].slice(0, 2).map((h2) => h2.textContent)), ['Clashes', 'Timeline']);
-  for (const width of [1440, 1280, 1024, 800, 390]) {
-    await report.setViewportSize({ width, height: 900 });
-    await drawn(report);
-    assert.deepEqual(await outOfReport(report), [], `${width} pixels`);
-  }
-  // Paper does not scroll: A4 less its margins.
-  await report.setViewportSize({ width: 718, height: 900 });
-  await report.emulateMedia({ media: 'print' });
-  await report.evaluate(() => dispatchEvent(new Event('beforeprint')));
-  await drawn(report);
-  assert.deepEqual(await outOfReport(report), [], 'print');
-  assert.deepEqual(await report.evaluate(() => [...document.querySelectorAll('.wide, figure')].filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.textContent?.slice(0, 60))), [], 'print');
+  await fitsScreensAndPaper(report);
   await report.close();
   await rm(folder, { recursive: true });
 });

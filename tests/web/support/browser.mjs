@@ -6,14 +6,16 @@ const CHROMIUM = process.env.MORTISE_CHROMIUM ?? '/usr/bin/chromium';
 const PATIENCE_MS = 120_000;
 export const VIEW = { width: 1280, height: 720 };
 
-/** Why there can be no browser here; empty when there can. */
-export async function whyNoBrowser() {
+/** Why there can be no browser here, or no use of it without this module; empty when there can. */
+export async function whyNoBrowser(module = 'playwright-core') {
   if (Number(process.versions.node.split('.')[0]) < 20) return `node ${process.versions.node} is older than 20`;
   if (!existsSync(CHROMIUM)) return `${CHROMIUM} is not there: apt-get install chromium`;
-  try {
-    await import('playwright-core');
-  } catch {
-    return 'playwright-core is not there: npm ci --prefix tests/web';
+  for (const needed of new Set(['playwright-core', module])) {
+    try {
+      await import(needed);
+    } catch {
+      return `${needed} is not there: npm ci --prefix tests/web`;
+    }
   }
   if (!existsSync(new URL('../../../client/web/page/node_modules/three/build/three.module.js', import.meta.url))) {
     return 'three is not there: npm ci --omit=dev --prefix client/web/page';

@@ -27,7 +27,7 @@ function disc(teeth) {
 
 /** @param {number} count of parts @param {number} shapes among them @param {number} held by somebody */
 export async function openFakeGateway(count, shapes, held) {
-  const meshes = Array.from({ length: shapes }, (_, i) => disc(12 + 6 * i));
+  const meshes = Array.from({ length: shapes }, (_, i) => disc(12 + 6 * (i % 20))); // no larger where there are more
   const side = Math.ceil(Math.sqrt(count));
   const parts = Array.from({ length: count }, (_, i) => ({
     id: i + 1, name: `part_${i + 1}`, mesh: `shape${i % shapes}`, moving: true, holder: i < held ? 2 : 0, radius: 10, reference: [0, 0, 0], features: [], classes: 0,

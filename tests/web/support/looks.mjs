@@ -1,4 +1,6 @@
 // What a page looks like, measured: what is cut off, how texts stand out from their ground, how large what is touched is.
+import assert from 'node:assert/strict';
+import { drawn } from './people.mjs';
 
 /** Controls and headings that are out of the window or lie on each other. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
 export function cutOff(page) {
@@ -95,4 +97,20 @@ export function outOfReport(page) {
     }
     return bad;
   });
+}
+
+/** A report of any kind: nothing sticks out at five widths and on paper, which does not scroll. @param {import('playwright-core').Page} report */
+export async function fitsScreensAndPaper(report) {
+  for (const width of [1440, 1280, 1024, 800, 390]) {
+    await report.setViewportSize({ width, height: 900 });
+    await drawn(report);
+    assert.deepEqual(await outOfReport(report), [], `${width} pixels`);
+  }
+  await report.setViewportSize({ width: 718, height: 900 }); // A4 less its margins
+  await report.emulateMedia({ media: 'print' });
+  await report.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await drawn(report);
+  assert.deepEqual(await outOfReport(report), [], 'print');
+  const wider = () => [...document.querySelectorAll('.wide, figure')].filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.textContent?.slice(0, 60));
+  assert.deepEqual(await report.evaluate(wider), [], 'print');
 }

@@ -49,11 +49,11 @@ export function icon(name) {
   return svg;
 }
 
-/** Octagon, triangle, circle: the shape of a class. */
-const SHAPES = {
-  real: 'M7 2h6l5 5v6l-5 5H7l-5-5V7z',
-  potential: 'M10 1.5L19 18H1z',
-  fake: 'M10 2a8 8 0 1 1 0 16 8 8 0 0 1 0-16z',
+/** The shape of a class (octagon, triangle, circle), and its letter: drawn, so that it is no word beside what it stands at. @type {Record<string, [string, string]>} */
+const MARKS = {
+  real: ['M7 2h6l5 5v6l-5 5H7l-5-5V7z', 'M7.8 14.2V6.3h2.7a2.3 2.3 0 0 1 0 4.6H7.8M10.3 10.9l2.5 3.3'],
+  potential: ['M10 1.5L19 18H1z', 'M8.6 16V9.4h2a1.9 1.9 0 0 1 0 3.8h-2'],
+  fake: ['M10 2a8 8 0 1 1 0 16 8 8 0 0 1 0-16z', 'M8.3 14.2V6.3h4.2M8.3 10.1h3.6'],
 };
 
 /** The mark of a class: its shape in its colour with its letter. @param {string} name @returns {SVGSVGElement} */
@@ -62,13 +62,11 @@ export function classMark(name) {
   svg.setAttribute('viewBox', '0 0 20 20');
   svg.setAttribute('aria-hidden', 'true');
   svg.classList.add('mark', `is-${name}`);
-  const shape = document.createElementNS(NS, 'path');
-  shape.setAttribute('d', /** @type {Record<string, string>} */ (SHAPES)[name] ?? 'M4 9h12v2H4z');
-  const letter = document.createElementNS(NS, 'text');
-  letter.setAttribute('x', '10');
-  letter.setAttribute('y', name === 'potential' ? '16' : '14');
-  letter.textContent = name === 'none' ? '' : name[0].toUpperCase();
-  svg.append(shape, letter);
+  for (const drawn of MARKS[name] ?? ['M4 9h12v2H4z']) {
+    const path = document.createElementNS(NS, 'path');
+    path.setAttribute('d', drawn);
+    svg.append(path);
+  }
   return svg;
 }
 

@@ -1,4 +1,4 @@
-// Colours and materials of parts. One material for all parts that look alike, so that a picture of many parts sets few uniforms.
+// Colours and materials of parts: one material for all that look alike.
 import * as THREE from 'three';
 
 /** Calm, distinct, alike in brightness; parts that stand are grey. */
@@ -47,12 +47,11 @@ export class Looks {
     return material;
   }
 
-  /** @param {number} colour @param {Look} look */
-  faces(colour, look) {
-    return this.#kept(`faces ${colour} ${look}`, () => {
+  /** Colours are those of the parts. @param {Look} look */
+  faces(look) {
+    return this.#kept(`faces ${look}`, () => {
       const ghost = look === 'ghost';
       return new THREE.MeshStandardMaterial({
-        color: colour,
         roughness: 0.62,
         metalness: 0.08,
         emissive: look === 'chosen' ? 0x2f74b5 : 0x000000,
@@ -77,12 +76,9 @@ export class Looks {
     });
   }
 
-  /** What a cut opens: the insides, flat, so that they read as the cut face. @param {number} colour @param {Look} look */
-  inside(colour, look) {
-    return this.#kept(`inside ${colour} ${look}`, () => {
-      const shade = new THREE.Color(colour).multiplyScalar(look === 'chosen' ? 0.8 : 0.62);
-      return new THREE.MeshBasicMaterial({ color: shade, side: THREE.BackSide });
-    });
+  /** What a cut opens: the insides, flat, so that they read as the cut face. @param {Look} look */
+  inside(look) {
+    return this.#kept(`inside ${look}`, () => new THREE.MeshBasicMaterial({ color: new THREE.Color().setScalar(look === 'chosen' ? 0.8 : 0.62), side: THREE.BackSide }));
   }
 
   /** @param {THREE.Plane[]} planes */

@@ -2,13 +2,13 @@
 import * as THREE from 'three';
 import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { readMesh } from '../session/frames.js';
-import { Crowds } from './crowds.js';
+import { Bodies } from './bodies.js';
 import { Looks } from './looks.js';
 
 /** @typedef {import('../session/session.js').Part} Part */
 /** @typedef {import('./looks.js').Look} Look */
 /** @typedef {{mesh: import('../session/frames.js').Mesh, faces: THREE.BufferGeometry, edges: THREE.BufferGeometry | null}} Shape */
-/** @typedef {{part: Part, faces: THREE.Mesh, edges: THREE.BufferGeometry | null, look: Look}} Shown its faces are where it stands and what rays hit; it is drawn with its like */
+/** @typedef {{part: Part, shape: Shape, faces: THREE.Mesh, look: Look}} Shown its faces are where it stands and what rays hit; it is drawn with all others */
 
 /** Facets that meet at less are one round face: 24 facets meet at 15°. */
 const CREASE = THREE.MathUtils.degToRad(32);
@@ -21,7 +21,7 @@ export class PartsView {
   /** @type {Map<number, Shown>} */
   shown = new Map();
   looks = new Looks();
-  #crowds = new Crowds(this.looks);
+  #bodies = new Bodies(this.looks);
   #gathered = true;
   #generation = 0;
 
@@ -34,7 +34,7 @@ export class PartsView {
     this.stage = stage;
     this.fetchMesh = fetchMesh;
     this.problem = problem;
-    stage.scene.add(this.#crowds.group);
+    stage.scene.add(this.#bodies.group);
     stage.beforePicture(() => this.#gather());
   }
 
@@ -69,7 +69,7 @@ export class PartsView {
   #add(part, shape) {
     const faces = new THREE.Mesh(shape.faces, unseen);
     faces.userData.part = part.id;
-    const shown = { part, faces, edges: shape.edges, look: /** @type {Look} */ ('plain') };
+    const shown = { part, shape, faces, look: /** @type {Look} */ ('plain') };
     this.shown.set(part.id, shown);
     place(shown);
     this.#gatherAgain();
@@ -84,7 +84,7 @@ export class PartsView {
   #gather() {
     if (this.#gathered) return;
     this.#gathered = true;
-    this.#crowds.gather(this.shown.values());
+    this.#bodies.gather(this.shown.values());
   }
 
   /** @param {Iterable<Part>} parts */
@@ -93,7 +93,7 @@ export class PartsView {
       const shown = this.shown.get(part.id);
       if (!shown) continue;
       place(shown);
-      this.#crowds.place(shown);
+      this.#bodies.place(shown);
     }
     this.stage.ask();
   }
@@ -111,7 +111,7 @@ export class PartsView {
   /** @param {THREE.Plane[]} planes */
   cutBy(planes) {
     this.looks.cutBy(planes);
-    this.#crowds.showInsides();
+    this.#bodies.showInsides();
     this.stage.ask();
   }
 
@@ -149,10 +149,16 @@ function shapeOf(buffer) {
   const creased = mesh.triangles.length / 3 <= MOST_CREASED;
   if (!creased) plain.computeVertexNormals();
   const faces = creased ? toCreasedNormals(plain, CREASE) : plain;
+  if (creased) indexed(faces);
   faces.computeBoundingBox();
   faces.computeBoundingSphere();
-  const edges = creased ? new THREE.EdgesGeometry(plain, THREE.MathUtils.radToDeg(CREASE)) : null;
+  const edges = creased ? indexed(new THREE.EdgesGeometry(plain, THREE.MathUtils.radToDeg(CREASE))) : null;
   return { mesh, faces, edges };
+}
+
+/** One vertex after another, as all that lies in one buffer. @param {THREE.BufferGeometry} geometry */
+function indexed(geometry) {
+  return geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from({ length: geometry.attributes.position.count }, (_, i) => i), 1));
 }
 
 const unseen = new THREE.MeshBasicMaterial();

@@ -36,7 +36,7 @@ export class WayGhost {
     const like = this.partsView.shown.get(part.id);
     if (!like) return false;
     const mesh = new THREE.Mesh(like.faces.geometry, this.#faces);
-    const edges = like.edges && new THREE.LineSegments(like.edges, this.#lines);
+    const edges = like.shape.edges && new THREE.LineSegments(like.shape.edges, this.#lines);
     mesh.renderOrder = 2; // after the parts that are seen through
     this.#group.add(...[mesh, edges].filter((object) => object !== null));
     this.#shown = { part, separation, begin: atOnce ? -Infinity : performance.now(), mesh, edges };
