@@ -60,9 +60,10 @@ struct LaidOut {
   std::vector<Shelf::Held> indices;
 };
 
+// Never destroyed: a thread may still lay out while the program ends.
 LaidOut& laid_out() {
-  static LaidOut all;
-  return all;
+  static auto* const all = new LaidOut;
+  return *all;
 }
 
 std::shared_ptr<BodyIndex> take_laid_out(const Solid& solid, const SurfaceBand& band) {
