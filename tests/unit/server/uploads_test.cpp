@@ -105,8 +105,8 @@ class UploadTest : public ::testing::Test {
   /// Ticks until then; what is made beside them takes its time.
   template <class Done>
   bool turn_until(Done done) {
-    // A child reads the file, on a machine that may be busy.
-    for (int i = 0; i < 30'000; ++i) {
+    // A child reads the file, on a machine that may be busy, or with a sanitizer.
+    for (int i = 0; i < 300'000; ++i) {
       turn();
       if (done()) return true;
       std::this_thread::sleep_for(1ms);
