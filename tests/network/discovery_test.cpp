@@ -174,6 +174,7 @@ TEST_F(DiscoveryServers, MayBeGoneWhileAServerLooksForAnother) {
   const auto spare = serve("hall", 0, {"--standby-of", "hall", "--restore", logs()});
   ASSERT_TRUE(says(*spare, "in step")) << spare->errors();
   hall->signal(SIGKILL);
+  hall->wait(5);  // its ports are free
   ASSERT_TRUE(says(*spare, "taken over")) << spare->errors();
   discovery_->signal(SIGKILL);
   discovery_->wait(5);
