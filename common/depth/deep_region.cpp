@@ -22,7 +22,8 @@ constexpr double kGrowth = 1.01;
 
 OverlapRegion region_of(const PairFrame& pair, const SharedInside& shared) {
   OverlapRegion region;
-  region.delta_mm = {shared.depth_mm, 2.0 * pair.smaller_radius_mm()};
+  region.delta_mm = {shared.depth_mm, pair.bodies[0].solid->sphere().radius_mm +
+                                          pair.bodies[1].solid->sphere().radius_mm};
   region.certain_mm = {shared.depth_mm - pair.reach_mm(Layer::kLower), region.delta_mm.hi};
   region.possible_mm = {shared.depth_mm - pair.reach_mm(Layer::kUpper),
                         region.delta_mm.hi + pair.reach_mm(Layer::kUpper)};
@@ -63,7 +64,7 @@ std::optional<OverlapRegion> find_in_one_place(const PairFrame& pair, const Over
     region.grade = std::max(region.grade, grade);
     region.estimated |= grade == DeviationGrade::kEstimated;
   }
-  tell_inner_overlap(pair, query, false, region, evaluations);
+  tell_inner_overlap(pair, query, false, true, region, evaluations);
   return region;
 }
 
@@ -91,7 +92,7 @@ Interval of_layer(const PairFrame& pair, const InnerOverlap& inner, const Overla
 }  // namespace
 
 void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool layers_known,
-                        OverlapRegion& region, std::uint64_t& evaluations) {
+                        bool from_inside, OverlapRegion& region, std::uint64_t& evaluations) {
   if (region.at_crack || region.delta_mm.lo < -pair.touch_mm) return;  // not known, or apart
   const bool full = query.refinement == Refinement::kFull;
   InnerStart start;
@@ -99,6 +100,7 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
   start.points_W = full ? std::span<const Vec3>(region.points_W) : std::span<const Vec3>(deepest);
   start.depth_mm = std::max(0.0, region.delta_mm.lo);
   start.everywhere = full;
+  start.inside = from_inside;
   start.accuracy_mm = query.accuracy_mm;
   const std::uint64_t left = query.work_cap - std::min(query.work_cap, evaluations);
   auto inner = convex_overlap(pair, region.point_W, query.accuracy_mm, evaluations);

@@ -23,9 +23,10 @@ std::optional<OverlapRegion> find_in_one_place(const PairFrame& pair, const Over
 
 /// Parts that lie deep in each other are deeper inside than at their surfaces. Tells that of their
 /// deepest region, and a witness where it has none; layers_known: of the layers, too, only where
-/// the overlap grows inside. With kFull to the accuracy of the query, as far as the work goes;
-/// lazily to some thousandths. Adds to `evaluations`.
+/// the overlap grows inside. from_inside: the point of the region is inside both. With kFull to the
+/// accuracy of the query, as far as the work goes; lazily to some thousandths. Adds to
+/// `evaluations`.
 void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool layers_known,
-                        OverlapRegion& region, std::uint64_t& evaluations);
+                        bool from_inside, OverlapRegion& region, std::uint64_t& evaluations);
 
 }  // namespace mortise

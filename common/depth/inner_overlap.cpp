@@ -52,13 +52,15 @@ class InnerSearch {
   InnerSearch(const PairFrame& pair, const InnerStart& start, std::uint64_t work_cap,
               std::uint64_t& evaluations)
       : pair_(pair),
-        start_mm_(start.depth_mm),
+        start_mm_(start.inside ? 0.0 : start.depth_mm),
         growth_(start.everywhere ? 0.0 : kGrowth),
         narrow_(start.everywhere ? 0.0 : kNarrow),
         accuracy_mm_(std::max(start.accuracy_mm, pair.touch_mm)),
         thin_mm_(std::min(half_extent_mm(0), half_extent_mm(1))),
         left_(work_cap),
         evaluations_(evaluations) {}
+
+  bool is_inside(const Vec3& from_B) { return look_at(from_B) > 0.0; }
 
   // The overlap at a point of one surface grows inwards where the other surface is not what is
   // nearest there.
@@ -258,8 +260,9 @@ std::optional<InnerOverlap> find_inner_overlap(const PairFrame& pair, const Inne
   InnerSearch search(pair, start, work_cap, evaluations);
   const Pose X_BW = pair.X_W[1].inverse();
   const bool grows =
-      std::any_of(start.points_W.begin(), start.points_W.end(),
-                  [&](const Vec3& point_W) { return search.grows_from(X_BW * point_W); });
+      std::any_of(start.points_W.begin(), start.points_W.end(), [&](const Vec3& point_W) {
+        return start.inside ? search.is_inside(X_BW * point_W) : search.grows_from(X_BW * point_W);
+      });
   if (!grows && !start.everywhere) return std::nullopt;
   search.search(kMostInVain);
   if (!search.has_grown()) return std::nullopt;

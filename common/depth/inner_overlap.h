@@ -26,6 +26,8 @@ struct InnerStart {
   bool everywhere = false;
   /// The bracket is to be no wider. Not everywhere: than some thousandths of the depth.
   double accuracy_mm = 0.0;
+  /// The points are inside both parts, no points of a surface: the deepest of them is found, too.
+  bool inside = false;
 };
 
 /// None where no point is found at which the overlap is larger than at the start: there the overlap

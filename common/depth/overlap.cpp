@@ -183,7 +183,7 @@ class Overlap {
                        return a.delta_mm.lo > b.delta_mm.lo;
                      });
     if (!result_.no_inside && query_.want_delta && !query_.only_certain && !result_.regions.empty())
-      tell_inner_overlap(pair_, query_, planes_->has_brackets(), result_.regions.front(),
+      tell_inner_overlap(pair_, query_, planes_->has_brackets(), false, result_.regions.front(),
                          result_.evaluations);
     return std::move(result_);
   }

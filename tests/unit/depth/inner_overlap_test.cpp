@@ -47,6 +47,25 @@ TEST(InnerOverlap, APegInABlockWithoutAHole) {
   expect_delta({solid(box({20, 20, 20})), solid(box({5, 5, 30}, {0, 0, 15}))}, 25.0);
 }
 
+// Both middles are where the overlap is deepest: nothing grows from there.
+TEST(InnerOverlap, AroundOneMiddleLazilyAsInFull) {
+  for (const double half : {0.5, 2.0, 5.0, 19.0}) {
+    SCOPED_TRACE(half);
+    Case c{solid(box({20, 20, 20})), solid(sphere(half, Vec3::Zero(), 12))};
+    c.band_a = c.band_b = uniform_band({}, {-0.01, 0.01});
+    const OverlapResult full = overlap_of(c);
+    c.refinement = Refinement::kDecided;
+    const OverlapResult lazily = overlap_of(c);
+    ASSERT_FALSE(full.regions.empty() || lazily.regions.empty());
+    const OverlapRegion &a = lazily.regions.front(), &b = full.regions.front();
+    EXPECT_LE(a.delta_mm.lo, b.delta_mm.hi + 1e-6);
+    EXPECT_GE(a.delta_mm.hi, b.delta_mm.lo - 1e-6);
+    EXPECT_LE(a.delta_mm.width(), 0.006 * b.delta_mm.hi);
+    EXPECT_LE(a.certain_mm.width(), 0.006 * b.delta_mm.hi);
+    EXPECT_EQ(worst_class(lazily), CollisionClass::kReal);
+  }
+}
+
 // No surface of theirs lies inside the other, or hardly.
 TEST(InnerOverlap, PartsOnOnePlace) {
   const SolidPtr block = solid(box({20, 15, 10}));
