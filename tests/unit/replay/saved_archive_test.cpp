@@ -1,6 +1,7 @@
 // A saved session as an archive: what Save writes is taken back whole, and of strangers' archives
 // nothing but such files, to no other place.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zip.h>
 
@@ -202,11 +203,12 @@ TEST_F(SavedArchiveWords, DoNoHarmDamaged) {
   }
 }
 
-TEST_F(SavedArchive, AFolderIsNoArchive) {
-  const fs::path archive = archive_of({{"scenario.yaml", "name: x\n"}});
-  fs::remove(archive);
-  fs::create_directory(archive);
-  expect_refused(archive, "is no archive that can be read");
+// Nobody writes into the pipe: who opens it waits.
+TEST_F(SavedArchive, FoldersAndPipesAreNoArchives) {
+  fs::create_directory(path("folder.zip"));
+  ASSERT_EQ(mkfifo(path("pipe.zip").c_str(), 0600), 0);
+  for (const char* name : {"folder.zip", "pipe.zip"})
+    expect_refused(path(name), "is no archive that can be read");
 }
 
 TEST_F(SavedArchive, TheProgramSaysWhatIsWrong) {
