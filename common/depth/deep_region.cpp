@@ -13,7 +13,8 @@ constexpr std::uint64_t kQuestions = 80'000, kQuestionsLazily = 800;
 
 // Twin points of duplicates are no farther apart than this share of the radius.
 constexpr double kDuplicateShare = 0.01;
-// A part whose middle is this share of its radius inside the other is no fit that is too tight.
+// Parts are in one place where the middle of one is this share of the smaller radius below both
+// surfaces. The middle of a pin is in its hole, however tight it fits.
 constexpr double kDeepShare = 0.1;
 // Deeper than at the surfaces by this factor: that is not what the surfaces left open.
 constexpr double kGrowth = 1.01;
@@ -113,7 +114,7 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
                        std::max(inner->depth_mm.hi, at_surface_mm)};
   region.delta_mm = delta;
   if (inner->depth_mm.lo > at_surface_mm) region.point_W = inner->point_W;
-  const bool grows = delta.lo > kGrowth * at_surface_mm + pair.touch_mm;
+  const bool grows = from_inside || delta.lo > kGrowth * at_surface_mm + pair.touch_mm;
   if (layers_known && !grows) return;
   region.certain_mm = of_layer(pair, *inner, region, region.certain_mm, Layer::kLower, grows);
   region.possible_mm = of_layer(pair, *inner, region, region.possible_mm, Layer::kUpper, grows);
