@@ -1,5 +1,6 @@
 # awk -f summary.awk FILE...: one line of what ctest wrote by --output-junit: how many tests passed, failed and were skipped, and for which
 # categories of reasons. A skipped test of GoogleTest prints "...: Skipped" and "category: reason" below, a script "SKIPPED: category: reason".
+# With -v tails=N: before it the last N lines that each failed test printed, so that the end of a long log says why.
 # With -v report=TITLE: the same by room, as a report that tests/bench/figures keeps.
 function plain(text) {
   gsub(/&lt;/, "<", text); gsub(/&gt;/, ">", text); gsub(/&quot;/, "\"", text); gsub(/&apos;/, "'", text); gsub(/&amp;/, "\\&", text)
@@ -17,7 +18,7 @@ function count(list) {
   ++list["all"]
 }
 /^\t<testcase / {
-  status = attribute("status"); test = attribute("name"); reason = ""; below = 0
+  status = attribute("status"); test = attribute("name"); reason = ""; below = 0; lines = 0
   room = test; sub(/[.].*/, "", room)
   if (!(room in seconds)) rooms[++known] = room
   seconds[room] += attribute("time"); seconds["all"] += attribute("time")
@@ -28,11 +29,14 @@ status == "notrun" && reason == "" {
   below = /: Skipped$/
   if (match($0, /(SKIPPED|skipped): /)) reason = substr($0, RSTART + RLENGTH)
 }
+status == "fail" && tails && !/^\t<\/?testcase/ { printed[++lines] = $0 }
 /^\t<\/testcase>/ {
   if (status == "run") count(passes)
   else if (status == "fail") {
     count(fails)
     told = told (told ? ",\n" : "") "\"failed: " test "\""
+    if (tails) print "failed: " plain(test) ", and printed at its end:"
+    for (i = lines > tails ? lines - tails + 1 : 1; i <= lines; ++i) print "  " plain(printed[i])
   } else {
     sub(/:.*/, "", reason)
     count(skips)

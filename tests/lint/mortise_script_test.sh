@@ -160,6 +160,10 @@ data &lt;absent&gt;: set MORTISE_DATA
 		<system-out>SKIPPED: not root: no network namespaces
 	</testcase>
 	<testcase name="d" classname="d" time="0.1" status="fail">
+		<failure message="Subprocess aborted"/>
+		<system-out>[ RUN      ] D.D
+d.cpp:3: check failed: 1 &lt; 0: numbers
+		</system-out>
 	</testcase>
 	<testcase name="e" classname="e" time="0" status="notrun">
 		<skipped message="Unable to find executable"/>
@@ -170,6 +174,9 @@ case $said in
   'mortise: 1 passed, 2 failed, 2 skipped: 1 data <absent>, 1 not root' | 'mortise: 1 passed, 2 failed, 2 skipped: 1 not root, 1 data <absent>') ;;
   *) fail "summary: $said" ;;
 esac
+awk -v tails=2 -f tests/summary.awk results.xml >said
+grep -q '^failed: d, and printed' said && grep -q '^  d.cpp:3: check failed: 1 < 0: numbers' said || fail "ends of failed tests: $(cat said)"
+! grep -q 'aborted' said || fail "more than two lines of a failed test"
 awk -v report='Tests under a sanitizer' -f tests/summary.awk results.xml results.xml >report.json
 for part in '{"room":"b","tests":2,"passed":0,"skipped":2,"failed":0,"seconds":0.2}' '"tests":10,"passed":2,"skipped":4,"failed":4,"seconds":0.8}' \
   '"notes":\["failed: d",' '"figure":4,"kind":"at most","bound":0,"holds":false'; do

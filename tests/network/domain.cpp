@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,8 +15,23 @@
 namespace mortise::test {
 namespace {
 
-// Their ports, 7400 + 250 * domain on, lie below those that the kernel gives to others.
-constexpr int kDomains = 100;
+// Their ports lie below those that the kernel gives to others.
+constexpr int kDomains = 100, kFirstPort = 7400, kPorts = 250;
+
+/// Does a socket hold a UDP port of it still? The kernel frees the name of a process that is ended
+/// before its ports, and who ended the parent may not have waited for the child.
+bool has_ports(int domain) {
+  std::ifstream sockets("/proc/net/udp");
+  std::string line;
+  std::getline(sockets, line);  // the heading
+  while (std::getline(sockets, line)) {
+    const std::size_t colon = line.find(':', line.find(':') + 1);
+    const int port = std::stoi(line.substr(colon + 1, 4), nullptr, 16);
+    if (port >= kFirstPort + kPorts * domain && port < kFirstPort + kPorts * (domain + 1))
+      return true;
+  }
+  return false;
+}
 
 /// A name in the network namespace, which lasts as long as any process has the socket: children
 /// inherit it. Negative: somebody has it.
@@ -26,7 +42,8 @@ int take(int domain) {
   const std::string name = "mortise-test-domain-" + std::to_string(domain);
   name.copy(named.sun_path + 1, name.size());  // a name that begins with zero is in no file system
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (bind(handle, reinterpret_cast<const sockaddr*>(&named), size) == 0) return handle;
+  const bool is_mine = bind(handle, reinterpret_cast<const sockaddr*>(&named), size) == 0;
+  if (is_mine && !has_ports(domain)) return handle;
   close(handle);
   return -1;
 }
@@ -64,6 +81,6 @@ DdsOptions own_options(const std::string& session) {
   return options;
 }
 
-int spare_port(int domain, int index) { return 7400 + 250 * domain + 200 + 5 * index; }
+int spare_port(int domain, int index) { return kFirstPort + kPorts * domain + 200 + 5 * index; }
 
 }  // namespace mortise::test

@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <memory>
+#include <stdexcept>
 
 #include "client/client.h"
 #include "tests/network/small_server.h"
@@ -15,10 +16,7 @@ struct FrozenReader {
   explicit FrozenReader(const DdsOptions& options) : frozen("client", options, "frozen", 60.0) {
     auto opened = open_server_channel(options);
     auto own = open_client_channel(options);
-    if (!opened || !own) {
-      ADD_FAILURE() << (opened ? own.error().text : opened.error().text);
-      std::abort();
-    }
+    if (!opened || !own) throw std::runtime_error(opened ? own.error().text : opened.error().text);
     channel = std::move(*opened);
     server = std::make_unique<SmallServer>(*channel, options.session, 100);
     own_channel = std::move(*own);

@@ -1,5 +1,8 @@
 // Sessions side by side on one host, with the same names of users and parts: no word crosses.
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "tests/network/domain.h"
 #include "tests/network/site.h"
@@ -94,13 +97,26 @@ struct Isolation : testing::Test {
       const InboxCounters& counters = site->loop->inbox().counters();
       EXPECT_EQ(counters.accepted, increments);
       EXPECT_EQ(counters.commands, commands);
-      EXPECT_EQ(counters.joins, 2U);
+      EXPECT_GE(counters.joins, 2U);  // asked for again where the answer is late
       EXPECT_EQ(counters.refused_in_all() + counters.foreign + counters.joins_refused, 0U);
       EXPECT_EQ(site->channel->counters().malformed + site->channel->counters().foreign, 0U);
     }
     for (Person* person : everybody()) EXPECT_EQ(person->client->statistics().server_losses, 0U);
   }
 };
+
+/// A server that is being ended frees the name of its domain before its ports.
+TEST(Domain, IsNotTakenWhileASocketHoldsAPortOfIt) {
+  const int next = 1 + static_cast<int>(getpid()) % 100;  // what is tried first
+  sockaddr_in port{};
+  port.sin_family = AF_INET;
+  port.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  port.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * next + 249));
+  const int handle = socket(AF_INET, SOCK_DGRAM, 0);
+  ASSERT_EQ(bind(handle, reinterpret_cast<const sockaddr*>(&port), sizeof port), 0);
+  EXPECT_NE(take_domains(1), next);
+  close(handle);
+}
 
 TEST_F(Isolation, TwoDomains) {
   DdsOptions other = own_options();
@@ -126,6 +142,8 @@ TEST_F(Isolation, TwoSessionsByPartition) {
   EXPECT_EQ(ben_there.client->session(), "other");
   play();
   expect_nothing_crossed();
+  const std::uint64_t joins_here = here->loop->inbox().counters().joins;
+  const std::uint64_t joins_there = there->loop->inbox().counters().joins;
   // Who asks the server of one for the session of the other hears nobody.
   DdsOptions lost = own_options();
   lost.session = "other";
@@ -139,8 +157,8 @@ TEST_F(Isolation, TwoSessionsByPartition) {
       1.5);
   EXPECT_FALSE(eve.client->server_present());
   EXPECT_EQ(eve.channel->counters().received, 0U);
-  EXPECT_EQ(here->loop->inbox().counters().joins, 2U);
-  EXPECT_EQ(there->loop->inbox().counters().joins, 2U);
+  EXPECT_EQ(here->loop->inbox().counters().joins, joins_here);
+  EXPECT_EQ(there->loop->inbox().counters().joins, joins_there);
 }
 
 // Clients look for a server that takes over where another session's is: that one began later, and

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 
 #include "client/client.h"
@@ -18,19 +19,13 @@ struct Session {
       : options(own_options(name)) {
     if (lease_s > 0.0) options.liveliness_lease_s = options.participant_lease_s = lease_s;
     auto opened = open_server_channel(options);
-    if (!opened) {
-      ADD_FAILURE() << opened.error().text;
-      std::abort();
-    }
+    if (!opened) throw std::runtime_error(opened.error().text);
     channel = std::move(*opened);
     server = std::make_unique<SmallServer>(*channel, name, parts);
   }
   Client& add_client(const std::string& name) {
     auto opened = open_client_channel(options);
-    if (!opened) {
-      ADD_FAILURE() << opened.error().text;
-      std::abort();
-    }
+    if (!opened) throw std::runtime_error(opened.error().text);
     channels.push_back(std::move(*opened));
     clients.push_back(std::make_unique<Client>(*channels.back()));
     events.emplace_back();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,12 +20,12 @@ namespace mortise::test {
 struct Site {
   Site(const DdsOptions& where, const std::string& yaml) : options(where) {
     auto reading = read_scenario_text(yaml, "site.yaml");
-    if (!reading) give_up(reading.error());
+    if (!reading) throw std::runtime_error(reading.error().text);
     auto loaded = load_scene(reading->scenario, default_meshes());
-    if (!loaded) give_up(loaded.error());
+    if (!loaded) throw std::runtime_error(loaded.error().text);
     scene = std::move(*loaded);
     auto opened = open_server_channel(options);
-    if (!opened) give_up(opened.error());
+    if (!opened) throw std::runtime_error(opened.error().text);
     channel = std::move(*opened);
     TickLoopOptions loop_options;
     loop_options.session = options.session;
@@ -37,12 +38,6 @@ struct Site {
   std::unique_ptr<ServerChannel> channel;
   SystemClock clock;
   std::unique_ptr<TickLoop> loop;
-
- private:
-  [[noreturn]] static void give_up(const Error& error) {
-    ADD_FAILURE() << error.text;
-    std::abort();
-  }
 };
 
 /// One participant and all that it was told.

@@ -1,19 +1,29 @@
 // A session as people have it: server, gateway, and bots where asked for, each a process of its own; ended by their ids.
 import { execFile, spawn } from 'node:child_process';
 import { createServer } from 'node:net';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
 const root = resolve(import.meta.dirname, '../../..');
 const bin = process.env.MORTISE_BIN_DIR ?? join(root, 'build/release/bin');
 
+/** Does a socket hold a UDP port of the domain still, say of a server that is being ended? @param {number} domain */
+function hasPorts(domain) {
+  const first = 7400 + 250 * domain;
+  const ports = readFileSync('/proc/net/udp', 'utf8').match(/(?<=^ *\d+: [0-9A-F]{8}:)[0-9A-F]{4}/gm) ?? [];
+  return ports.some((port) => parseInt(port, 16) >= first && parseInt(port, 16) < first + 250);
+}
+
 /** A DDS domain that no other test of this machine has: its name is taken as tests/network/domain.cpp takes it, until this process ends. */
 async function takeDomain() {
   for (let tries = 0; ; ++tries) {
     const domain = 1 + ((process.pid + tries) % 100);
     const name = createServer().unref().listen(`\0mortise-test-domain-${domain}`);
-    if (await new Promise((done) => name.once('listening', () => done(true)).once('error', () => done(false)))) return domain;
+    if (await new Promise((done) => name.once('listening', () => done(true)).once('error', () => done(false)))) {
+      if (!hasPorts(domain)) return domain;
+      name.close();
+    }
   }
 }
 
