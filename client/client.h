@@ -55,6 +55,10 @@ class Client final : public ClientCommands {
   /// Takes what has arrived, never blocks, sends what is due (joins, heartbeats, snapshot
   /// requests).
   ClientUpdate poll();
+  /// Returns when something may have come for poll(), or after so long (seconds) at the latest.
+  void await_news(double at_most_s) {
+    channel_.await_input(static_cast<std::int64_t>(at_most_s * 1e9));
+  }
 
   bool synced() const {
     return events_.synced();

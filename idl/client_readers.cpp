@@ -19,15 +19,16 @@ void append(std::vector<Entry>& from, std::vector<Entry>& to) {
 
 void ClientReaders::open(Participant& participant, const DdsOptions& options, Status& status) {
   participant_ = &participant;
-  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kPose, nullptr, poses_, status);
-  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, nullptr, keyframes_, status);
-  participant.open_reader<wire::EventBatchPubSubType>(Topic::kEvent, nullptr, events_, status);
-  participant.open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, nullptr, snapshots_, status);
-  participant.open_reader<wire::PulsePubSubType>(Topic::kPulse, nullptr, pulses_, status);
+  SampleBell* bell = &arrivals_;
+  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kPose, bell, poses_, status);
+  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, bell, keyframes_, status);
+  participant.open_reader<wire::EventBatchPubSubType>(Topic::kEvent, bell, events_, status);
+  participant.open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, bell, snapshots_, status);
+  participant.open_reader<wire::PulsePubSubType>(Topic::kPulse, bell, pulses_, status);
   if (options.meshes)
-    participant.open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, nullptr, meshes_, status);
+    participant.open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, bell, meshes_, status);
   if (options.features)
-    participant.open_reader<wire::FeaturesPubSubType>(Topic::kFeatures, nullptr, features_, status);
+    participant.open_reader<wire::FeaturesPubSubType>(Topic::kFeatures, bell, features_, status);
 }
 
 void ClientReaders::open_answers(Participant& participant, Status& status) {

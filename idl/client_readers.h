@@ -14,8 +14,9 @@ namespace mortise {
 /// chunks put together. What others say, or said before, is dropped.
 class ClientReaders {
  public:
-  /// Before any thread of Fast DDS calls; the watch must outlive this.
-  explicit ClientReaders(ServerWatch& watch) : watch_(watch) {}
+  /// Before any thread of Fast DDS calls; both must outlive this. `arrivals` rings when samples
+  /// come.
+  ClientReaders(ServerWatch& watch, SampleBell& arrivals) : watch_(watch), arrivals_(arrivals) {}
   void open(Participant& participant, const DdsOptions& options, Status& status);
   /// Last of all endpoints: once the server's answers are matched, everything else is declared.
   void open_answers(Participant& participant, Status& status);
@@ -42,6 +43,7 @@ class ClientReaders {
   std::optional<Value> joined(const std::vector<Chunk>& chunks, Add add);
 
   ServerWatch& watch_;
+  SampleBell& arrivals_;
   Participant* participant_ = nullptr;
   dds::DataReader *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
                   *snapshots_ = nullptr, *pulses_ = nullptr, *meshes_ = nullptr,

@@ -279,6 +279,7 @@ class DdsClientChannel final : public ClientChannel {
   void send(const UploadPiece& piece) override;
   void request_snapshot() override;
   ClientInput take() override;
+  void await_input(std::int64_t at_most_ns) override { arrivals_.await(at_most_ns); }
   ChannelCounters counters() const override;
 
  private:
@@ -291,8 +292,9 @@ class DdsClientChannel final : public ClientChannel {
   void refuse_unsent(ClientInput& input);
 
   std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
-  ServerWatch watch_;                           // before the participant, whose threads call it
-  ClientReaders readers_{watch_};
+  SampleBell arrivals_;                         // these before the participant, whose threads call
+  ServerWatch watch_{arrivals_};
+  ClientReaders readers_{watch_, arrivals_};
   std::unique_ptr<Participant> participant_;
   ClientKey key_;
   dds::DataWriter *presence_ = nullptr, *increments_ = nullptr, *requests_ = nullptr;

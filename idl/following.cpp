@@ -22,20 +22,6 @@ double seconds_of(clockid_t clock) {
 
 }  // namespace
 
-void Bell::ring() {
-  {
-    const std::lock_guard lock(mutex_);
-    rung_ = true;
-  }
-  rings_.notify_one();
-}
-
-void Bell::await(std::int64_t at_most_ns) {
-  std::unique_lock lock(mutex_);
-  rings_.wait_for(lock, std::chrono::nanoseconds(at_most_ns), [this] { return rung_; });
-  rung_ = false;
-}
-
 bool PeerServers::is_alive(const ClientKey& server) const {
   const std::lock_guard lock(mutex_);
   return alive_.contains(server);

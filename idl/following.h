@@ -12,35 +12,13 @@
 #include <vector>
 
 #include "common/messages/channel.h"
+#include "idl/bell.h"
 #include "idl/chunks.h"
 #include "idl/participant.h"
 #include "idl/tick_watch.h"
 
 /// What the servers of a session tell each other, and which of them counts.
 namespace mortise {
-
-/// Rung by a thread of Fast DDS.
-class Bell {
- public:
-  void ring();
-  /// Returns when it has rung since the last call, or after so long.
-  void await(std::int64_t at_most_ns);
-
- private:
-  std::mutex mutex_;
-  std::condition_variable rings_;
-  bool rung_ = false;
-};
-
-/// Rings when a sample comes.
-class SampleBell final : public dds::DataReaderListener {
- public:
-  void on_data_available(dds::DataReader*) override { bell_.ring(); }
-  void await(std::int64_t at_most_ns) { bell_.await(at_most_ns); }
-
- private:
-  Bell bell_;
-};
 
 /// Hears which other servers of the session tell ticks and are alive, and which listen to ours.
 class PeerServers final : public dds::DataReaderListener, public dds::DataWriterListener {

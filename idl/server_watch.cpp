@@ -43,12 +43,14 @@ void ServerWatch::on_subscription_matched(dds::DataReader*,
   server.answers = status.current_count_change > 0;
   if (server.answers) server.met = ++met_;
   choose();
+  arrivals_.ring();
 }
 
 void ServerWatch::on_publication_matched(dds::DataWriter*,
                                          const dds::PublicationMatchedStatus& status) {
   const std::lock_guard lock(mutex_);
   servers_[prefix_of(status.last_subscription_handle)].readers += status.current_count_change;
+  arrivals_.ring();
 }
 
 ServerWatch::Answer ServerWatch::take(int topics) {

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <string>
 
+#include "idl/bell.h"
 #include "idl/participant.h"
 
 namespace mortise {
@@ -16,6 +17,9 @@ namespace mortise {
 class ServerWatch final : public dds::DomainParticipantListener {
  public:
   using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+
+  /// `arrivals` rings when the server says something, comes or goes; it must outlive the watch.
+  explicit ServerWatch(SampleBell& arrivals) : arrivals_(arrivals) {}
 
   /// Before any thread of Fast DDS calls.
   void look_for(const std::string& session) { session_ = session; }
@@ -39,6 +43,7 @@ class ServerWatch final : public dds::DomainParticipantListener {
                                const dds::SubscriptionMatchedStatus& status) override;
   void on_publication_matched(dds::DataWriter*,
                               const dds::PublicationMatchedStatus& status) override;
+  void on_data_available(dds::DataReader*) override { arrivals_.ring(); }
 
  private:
   struct Server {
@@ -49,6 +54,7 @@ class ServerWatch final : public dds::DomainParticipantListener {
   void look_who_is_revoked();
   void choose();
 
+  SampleBell& arrivals_;
   std::string session_;
   PeerIdentities* identities_ = nullptr;  ///< null: no security
   mutable std::mutex mutex_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <thread>
 
 #include "client/api/convert.h"
 #include "client/client.h"
@@ -13,8 +12,8 @@ namespace mortise::api {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kPeriod(5);  // between two looks for news
-constexpr double kAnswer_s = 5.0;                // for the answer to a request
+constexpr double kLongestWait_s = 0.02;  // what is due is sent by a look for news
+constexpr double kAnswer_s = 5.0;        // for the answer to a request
 // The longest wait that a caller may ask for: beyond it the sum with the clock could overflow.
 constexpr double kLongest_s = 3600.0;
 
@@ -83,8 +82,9 @@ struct Client::Impl {
     for (const Clock::time_point end = after(seconds);;) {
       poll();
       if (until()) return true;
-      if (Clock::now() >= end) return false;
-      std::this_thread::sleep_for(kPeriod);
+      const double left_s = std::chrono::duration<double>(end - Clock::now()).count();
+      if (left_s <= 0.0) return false;
+      client.await_news(std::min(left_s, kLongestWait_s));
     }
   }
 

@@ -15,9 +15,9 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr double kPollEvery_s = 0.002;  // what latency figures are rounded up to
-// An observer measures no latency, and costs a fifth so.
-constexpr double kObserverPollEvery_s = 0.010;
+constexpr double kLongestWait_s = 0.02;  // what is due is sent by a look for news
+// An observer measures no latency: one look for the news of several ticks.
+constexpr double kObserverPause_s = 0.010;
 constexpr double kGoodbye_s = 0.2;  // for leave messages to go out
 
 std::atomic<bool> stop_asked{false};
@@ -100,7 +100,7 @@ bool Crew::wait_until_joined() {
       say_why_not_joined();
       return false;
     }
-    poll(kPollEvery_s);
+    poll(kLongestWait_s);
   }
   return true;
 }
@@ -109,7 +109,7 @@ bool Crew::wait_for_people() {
   const auto is_person = [](const UserInfo& user) {
     return user.present && user.role == Role::kDesigner;
   };
-  while (!stop_asked && std::ranges::none_of(client_.users(), is_person)) poll(kPollEvery_s);
+  while (!stop_asked && std::ranges::none_of(client_.users(), is_person)) poll(kLongestWait_s);
   return !stop_asked;
 }
 
@@ -139,14 +139,16 @@ Status Crew::find_parts() {
   return fail(Code::kNotFound, "no part '" + missing + "' in the session");
 }
 
-void Crew::poll(double pause_s) {
+void Crew::poll(double wait_s) {
   tally_.add(client_.poll(), client_);
-  std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
+  client_.await_news(wait_s);
 }
 
 void Crew::listen(double seconds) {
   const auto start = SteadyClock::now();
-  while (!stop_asked && seconds_since(start) < seconds) poll(kPollEvery_s);
+  for (double left_s = seconds; !stop_asked && left_s > 0.0;
+       left_s = seconds - seconds_since(start))
+    poll(std::min(left_s, kLongestWait_s));
 }
 
 void Crew::act() {
@@ -158,7 +160,8 @@ void Crew::act() {
     if (options_.duration_s > 0.0 && now_s >= options_.duration_s) break;
     add_users_due(now_s);
     if (options_.observer) {
-      poll(kObserverPollEvery_s);
+      poll(0.0);
+      std::this_thread::sleep_for(std::chrono::duration<double>(kObserverPause_s));
       continue;
     }
     if (now_s >= next_s) {
@@ -168,7 +171,7 @@ void Crew::act() {
       if (all_done) break;
     }
     const double until_next_s = next_s - seconds_since(start);
-    poll(std::clamp(until_next_s, 0.0, kPollEvery_s));
+    poll(std::clamp(until_next_s, 0.0, kLongestWait_s));
   }
   acted_s_ = seconds_since(start);
 }

@@ -33,7 +33,7 @@ class Crew {
   /// Until somebody is there who is no bot. False: it was stopped before.
   bool wait_for_people();
   Status find_parts();
-  void poll(double pause_s);
+  void poll(double wait_s);
   void listen(double seconds);
   void act();
   bool beat(double now_s, double beat_s);

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <thread>
 
 #include "common/io/scenario/scenario_file.h"
 #include "common/math/rotation.h"
@@ -16,8 +15,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr double kFastest = 100.0;  // what lies before the piece that is asked for
-constexpr double kPollEvery_s = 0.002;
+constexpr double kFastest = 100.0;            // what lies before the piece that is asked for
+constexpr double kLongestWait_s = 0.02;       // what is due is sent by a look for news
 constexpr double kLeastPeriod_s = 1.0 / 120;  // between two increments of one user for one part
 // A reply takes a tick and a round trip. After this the play goes on without it.
 constexpr double kReplyWait_s = 1.0;
@@ -164,8 +163,9 @@ class Player {
     for (;;) {
       listen();
       if (done()) return true;
-      if (SteadyClock::now() >= end) return false;
-      std::this_thread::sleep_for(in(kPollEvery_s));
+      const double left_s = seconds(end - SteadyClock::now());
+      if (left_s <= 0.0) return false;
+      client_.await_news(std::min(left_s, kLongestWait_s));
     }
   }
   static SteadyClock::duration in(double s) {
@@ -183,8 +183,8 @@ class Player {
     while (SteadyClock::now() < due_) {
       listen();
       send_due();
-      const auto left = due_ - SteadyClock::now();
-      if (left.count() > 0) std::this_thread::sleep_for(std::min(left, in(kPollEvery_s)));
+      const double left_s = seconds(due_ - SteadyClock::now());
+      if (left_s > 0.0) client_.await_news(std::min(left_s, kLongestWait_s));
     }
   }
 

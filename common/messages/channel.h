@@ -287,6 +287,9 @@ class ClientChannel {
   virtual void send(const UploadPiece& piece) = 0;
   virtual void request_snapshot() = 0;  ///< after a gap, or when none has arrived
   virtual ClientInput take() = 0;
+  /// Returns when there may be something to take that was not there at the last call, or after so
+  /// long at the latest.
+  virtual void await_input(std::int64_t at_most_ns) = 0;
   virtual ChannelCounters counters() const = 0;
 };
 

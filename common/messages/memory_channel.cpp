@@ -1,11 +1,13 @@
 #include "common/messages/memory_channel.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <random>
+#include <thread>
 #include <utility>
 
 namespace mortise {
@@ -302,6 +304,11 @@ class MemoryClient final : public ClientChannel {
                               input.snapshots.size() + input.join_replies.size();
     box->counters.lost = box->poses.lost() + box->events.lost();
     return input;
+  }
+  /// There is none to ring: whoever waits looks once a millisecond.
+  void await_input(std::int64_t at_most_ns) override {
+    constexpr std::int64_t kLook_ns = 1'000'000;
+    std::this_thread::sleep_for(std::chrono::nanoseconds(std::min(at_most_ns, kLook_ns)));
   }
   ChannelCounters counters() const override {
     const std::lock_guard lock(state_->mutex);

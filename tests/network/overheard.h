@@ -40,6 +40,7 @@ class Overheard final : public ClientChannel {
   void send(const Command& command) override { inner_->send(command); }
   void send(const UploadPiece& piece) override { inner_->send(piece); }
   void request_snapshot() override { inner_->request_snapshot(); }
+  void await_input(std::int64_t at_most_ns) override { inner_->await_input(at_most_ns); }
   ChannelCounters counters() const override { return inner_->counters(); }
 
  private:
