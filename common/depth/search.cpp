@@ -118,11 +118,14 @@ class Search {
         roots <= kFewRoots ? kPolishFew
                            : std::clamp(kPolishPerRoot * roots, kPolishLeast, kPolishMost);
     while (!heap_.empty() && work_ < query_.work_cap && !has_found()) {
-      if (query_.sign_only && work_ >= polish && all_decided()) break;
       std::pop_heap(heap_.begin(), heap_.end(), worse);
       const Item item = std::move(heap_.back());
       heap_.pop_back();
-      treat(item);
+      // What is left is for regions whose class is open.
+      if (query_.sign_only && work_ >= polish && is_decided(brackets_[item.region]))
+        keep_bound(item);
+      else
+        treat(item);
     }
     // What was not reached keeps its bound.
     const bool found = has_found();
@@ -274,10 +277,7 @@ class Search {
     started_ = true;
     Bracket& bracket = brackets_[item.region];
     const double tight = tight_limit(bracket);
-    if (bound_of(item) <= tight) {
-      bracket.hi_mm = std::max(bracket.hi_mm, bound_of(item));
-      return;
-    }
+    if (bound_of(item) <= tight) return keep_bound(item);
     const Patch patch =
         make_patch(pair_.s(item.role), query_.layer, item.piece, pair_.X_KS[item.role]);
     const auto below = [&](double limit) {
@@ -302,10 +302,11 @@ class Search {
       push(half, item.role, item.region, item.bound_mm, item.at.triangle);
   }
 
-  bool all_decided() const {
-    for (const Bracket& bracket : brackets_)
-      if (bracket.best.depth_mm <= pair_.touch_mm) return false;
-    return true;
+  bool is_decided(const Bracket& bracket) const { return bracket.best.depth_mm > pair_.touch_mm; }
+
+  void keep_bound(const Item& item) {
+    double& hi_mm = brackets_[item.region].hi_mm;
+    hi_mm = std::max(hi_mm, bound_of(item));
   }
 
   const SearchQuery& query_;
