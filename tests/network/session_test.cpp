@@ -88,6 +88,26 @@ TEST(Network, JoinsMovesAndSeesPoses) {
   EXPECT_EQ(session.channel->counters().send_failed, 0u);
 }
 
+/// Also who has not joined yet is woken: by a server that comes.
+TEST(Network, NewsEndAWait) {
+  constexpr double kLong_s = 60.0;
+  Session session;
+  Client& anna = session.add_client("anna");
+  const double begun_s = now_s();
+  while (!anna.server_present() && now_s() < begun_s + kLong_s) {
+    anna.await_news(kLong_s);
+    anna.poll();
+  }
+  EXPECT_LT(now_s(), begun_s + kLong_s / 2) << "until a server was there";
+  ASSERT_TRUE(session.wait(kPatience_s, [&] { return session.all_joined(); }));
+  while (anna.statistics().highest_event_seq < 20) {
+    session.server->publish_events(1);
+    anna.await_news(kLong_s);
+    anna.poll();
+  }
+  EXPECT_LT(now_s(), begun_s + kLong_s / 2) << "with twenty events";
+}
+
 TEST(Network, AServerIsFoundByTheNameOfItsHost) {
   Session session;
   session.options.server = "localhost,127.0.0.1";
