@@ -22,6 +22,10 @@ constexpr int kClimbs = 10;
 // A step that gains less than this is the last one.
 constexpr double kWorthwhile = 1.05;
 
+// The zone in which the corner of a layer may lie is as large as it is, however small the piece at
+// it: one whose longest edge is below this share of its patch's radius is not cut again.
+constexpr double kLeastShare = 1.0 / 8.0;
+
 // Contact points kept for the fitted separating motion.
 constexpr std::size_t kMostSamples = 48;
 
@@ -52,6 +56,12 @@ std::array<Piece, 4> quarters(const Piece& piece) {
   const Vec3 ab = 0.5 * (c[0] + c[1]), bc = 0.5 * (c[1] + c[2]), ca = 0.5 * (c[2] + c[0]);
   return {Piece{{c[0], ab, ca}, piece.triangle}, Piece{{ab, c[1], bc}, piece.triangle},
           Piece{{ca, bc, c[2]}, piece.triangle}, Piece{{ab, bc, ca}, piece.triangle}};
+}
+
+double longest_edge_mm(const Piece& piece) {
+  const std::array<Vec3, 3>& c = piece.corners;
+  return std::sqrt(std::max(
+      {(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(), (c[0] - c[2]).squaredNorm()}));
 }
 
 struct Looked {
@@ -298,6 +308,7 @@ class Search {
         return;
       }
     }
+    if (longest_edge_mm(item.piece) < kLeastShare * patch.radius_mm) return keep_bound(item);
     for (const Piece& half : split(pair_.s(item.role), query_.layer, item.piece))
       push(half, item.role, item.region, item.bound_mm, item.at.triangle);
   }
