@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
@@ -24,12 +25,27 @@ class Bell {
 /// Rings when a sample comes.
 class SampleBell final : public dds::DataReaderListener {
  public:
-  void ring() { bell_.ring(); }
   void await(std::int64_t at_most_ns) { bell_.await(at_most_ns); }
-  void on_data_available(dds::DataReader*) override { ring(); }
+  void on_data_available(dds::DataReader*) override { bell_.ring(); }
 
  private:
   Bell bell_;
+};
+
+/// A reader that rings a bell, and knows whether a sample has come since it was last asked: most
+/// looks at most readers would find nothing.
+struct Inlet final : dds::DataReaderListener {
+  explicit Inlet(Bell& rings) : bell(rings) {}
+  /// A sample that comes meanwhile is told at the next call.
+  bool take_come() { return come.exchange(false, std::memory_order_acquire); }
+  void on_data_available(dds::DataReader*) override {
+    come.store(true, std::memory_order_release);
+    bell.ring();
+  }
+
+  Bell& bell;
+  dds::DataReader* reader = nullptr;
+  std::atomic<bool> come{false};
 };
 
 }  // namespace mortise

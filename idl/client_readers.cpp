@@ -19,16 +19,20 @@ void append(std::vector<Entry>& from, std::vector<Entry>& to) {
 
 void ClientReaders::open(Participant& participant, const DdsOptions& options, Status& status) {
   participant_ = &participant;
-  SampleBell* bell = &arrivals_;
-  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kPose, bell, poses_, status);
-  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, bell, keyframes_, status);
-  participant.open_reader<wire::EventBatchPubSubType>(Topic::kEvent, bell, events_, status);
-  participant.open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, bell, snapshots_, status);
-  participant.open_reader<wire::PulsePubSubType>(Topic::kPulse, bell, pulses_, status);
+  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kPose, &poses_, poses_.reader, status);
+  participant.open_reader<wire::PoseBatchPubSubType>(Topic::kKeyframe, &keyframes_,
+                                                     keyframes_.reader, status);
+  participant.open_reader<wire::EventBatchPubSubType>(Topic::kEvent, &events_, events_.reader,
+                                                      status);
+  participant.open_reader<wire::SnapshotPubSubType>(Topic::kSnapshot, &snapshots_,
+                                                    snapshots_.reader, status);
+  participant.open_reader<wire::PulsePubSubType>(Topic::kPulse, &pulses_, pulses_.reader, status);
   if (options.meshes)
-    participant.open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, bell, meshes_, status);
+    participant.open_reader<wire::MeshChunkPubSubType>(Topic::kMesh, &meshes_, meshes_.reader,
+                                                       status);
   if (options.features)
-    participant.open_reader<wire::FeaturesPubSubType>(Topic::kFeatures, bell, features_, status);
+    participant.open_reader<wire::FeaturesPubSubType>(Topic::kFeatures, &features_,
+                                                      features_.reader, status);
 }
 
 void ClientReaders::open_answers(Participant& participant, Status& status) {
@@ -53,9 +57,8 @@ ChannelCounters ClientReaders::counters() const {
 }
 
 template <class Sample, class Action>
-void ClientReaders::take_each(dds::DataReader* reader, Action action) {
-  if (reader == nullptr) return;
-  take_all<Sample>(*reader,
+void ClientReaders::take_each(dds::DataReader& reader, Action action) {
+  take_all<Sample>(reader,
                    [&](const Sample& sample, const eprosima::fastrtps::rtps::GUID_t& writer) {
                      ++counters_.received;
                      if (watch_.is_past(writer.guidPrefix)) {
@@ -81,7 +84,7 @@ void ClientReaders::begin_with_another_server() {
 }
 
 void ClientReaders::take_answers(const ClientKey& own, ClientInput& input) {
-  take_each<wire::Answers>(answers_, [&](const wire::Answers& sample) {
+  take_each<wire::Answers>(*answers_, [&](const wire::Answers& sample) {
     Result<Answers> answers = from_wire(sample);
     if (!answers) {
       ++counters_.malformed;

@@ -16,7 +16,7 @@ class ClientReaders {
  public:
   /// Before any thread of Fast DDS calls; both must outlive this. `arrivals` rings when samples
   /// come.
-  ClientReaders(ServerWatch& watch, SampleBell& arrivals) : watch_(watch), arrivals_(arrivals) {}
+  ClientReaders(ServerWatch& watch, Bell& arrivals) : watch_(watch), arrivals_(arrivals) {}
   void open(Participant& participant, const DdsOptions& options, Status& status);
   /// Last of all endpoints: once the server's answers are matched, everything else is declared.
   void open_answers(Participant& participant, Status& status);
@@ -28,7 +28,11 @@ class ClientReaders {
 
  private:
   template <class Sample, class Action>
-  void take_each(dds::DataReader* reader, Action action);
+  void take_each(dds::DataReader& reader, Action action);
+  template <class Sample, class Action>
+  void take_each(Inlet& inlet, Action action) {
+    if (inlet.take_come()) take_each<Sample>(*inlet.reader, action);
+  }
   void begin_with_another_server();
   void take_answers(const ClientKey& own, ClientInput& input);
   void take_snapshots(ClientInput& input);
@@ -43,11 +47,11 @@ class ClientReaders {
   std::optional<Value> joined(const std::vector<Chunk>& chunks, Add add);
 
   ServerWatch& watch_;
-  SampleBell& arrivals_;
+  Bell& arrivals_;
   Participant* participant_ = nullptr;
-  dds::DataReader *answers_ = nullptr, *poses_ = nullptr, *keyframes_ = nullptr, *events_ = nullptr,
-                  *snapshots_ = nullptr, *pulses_ = nullptr, *meshes_ = nullptr,
-                  *features_ = nullptr;
+  dds::DataReader* answers_ = nullptr;
+  Inlet poses_{arrivals_}, keyframes_{arrivals_}, events_{arrivals_}, snapshots_{arrivals_},
+      pulses_{arrivals_}, meshes_{arrivals_}, features_{arrivals_};
   ServerWatch::Prefix server_;  ///< who said what was taken last
   ChunkCollector<wire::Snapshot> snapshot_collector_;
   ChunkCollector<wire::PoseBatch> keyframe_collector_;

@@ -292,7 +292,7 @@ class DdsClientChannel final : public ClientChannel {
   void refuse_unsent(ClientInput& input);
 
   std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
-  SampleBell arrivals_;                         // these before the participant, whose threads call
+  Bell arrivals_;                               // these before the participant, whose threads call
   ServerWatch watch_{arrivals_};
   ClientReaders readers_{watch_, arrivals_};
   std::unique_ptr<Participant> participant_;

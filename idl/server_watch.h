@@ -19,7 +19,7 @@ class ServerWatch final : public dds::DomainParticipantListener {
   using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 
   /// `arrivals` rings when the server says something, comes or goes; it must outlive the watch.
-  explicit ServerWatch(SampleBell& arrivals) : arrivals_(arrivals) {}
+  explicit ServerWatch(Bell& arrivals) : arrivals_(arrivals) {}
 
   /// Before any thread of Fast DDS calls.
   void look_for(const std::string& session) { session_ = session; }
@@ -54,7 +54,7 @@ class ServerWatch final : public dds::DomainParticipantListener {
   void look_who_is_revoked();
   void choose();
 
-  SampleBell& arrivals_;
+  Bell& arrivals_;
   std::string session_;
   PeerIdentities* identities_ = nullptr;  ///< null: no security
   mutable std::mutex mutex_;
