@@ -31,10 +31,9 @@ constexpr std::uint64_t kUnlimitedEffort = 10'000;
 // parts that leave each other need no more.
 constexpr std::uint64_t kFirstEffort = 1'500, kGlance = 250;
 
-// What the times and the motion of an event may take: no less than a first, wide bracket does. More
-// than the most hardly shortens a way out, and raises its lower end by some percent. So much of
-// what is saved is kept for the verdicts of later ticks.
-constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 1'000, kKeptForVerdicts = 12'000;
+// What the times and the motion of an event may take: no less than a first, wide bracket does. So
+// much of what is saved is kept for the verdicts of later ticks.
+constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 4'000, kKeptForVerdicts = 12'000;
 
 // A search that has come to nothing is not repeated for so many ticks while nothing has changed;
 // nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
