@@ -29,6 +29,10 @@ static_assert(FASTRTPS_VERSION_MAJOR == 2 && FASTRTPS_VERSION_MINOR == 9 &&
 namespace {
 
 constexpr double kLookAgain_ms = 5.0;  // much shorter than a lease, longer than what holds the lock
+// An announcement that comes while its sender is removed makes it one that is met, of which the
+// rest of the removal takes what keys know: it is never asked again who it is. So one that still
+// announces itself, each 500 ms, is removed between two announcements: so long after the last one.
+constexpr double kAfterAnnouncement_ms = 50.0, kBeforeNext_ms = 350.0, kLookBetween_ms = 150.0;
 
 struct Uses {
   std::atomic<std::uint64_t> lease_checks = 0, encodings = 0, session_keys = 0;
@@ -114,7 +118,12 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote_parti
       has_own ? all_peers().of(getLocalParticipantProxyData()->m_guid.guidPrefix) : Peers{};
   const auto heard = known.heard.lock();
   const auto peer = std::bit_cast<mortise::PeersHeard::Prefix>(guid.guidPrefix.value);
-  if (left.count() < 0.0 || (heard && heard->is_silent(peer))) {
+  const bool is_silent = heard && heard->is_silent(peer);
+  const Left since = Left(remote.lease_duration()) - left;
+  if (left.count() >= 0.0 && is_silent &&
+      (since.count() < kAfterAnnouncement_ms || since.count() > kBeforeNext_ms))
+    return look_after(remote, Left(kLookBetween_ms));
+  if (left.count() < 0.0 || is_silent) {
     if (heard) heard->part(peer);
     lock.unlock();
     const auto remove = [this, guid, may_go_on = heard == nullptr] {
