@@ -57,21 +57,21 @@ ChannelCounters ClientReaders::counters() const {
 }
 
 template <class Sample, class Action>
-void ClientReaders::take_each(dds::DataReader& reader, Action action) {
-  take_all<Sample>(reader,
-                   [&](const Sample& sample, const eprosima::fastrtps::rtps::GUID_t& writer) {
-                     ++counters_.received;
-                     if (watch_.is_past(writer.guidPrefix)) {
-                       ++counters_.foreign;
-                       return;
-                     }
-                     participant_->note_spoke(writer);
-                     if (writer.guidPrefix != server_) {
-                       server_ = writer.guidPrefix;
-                       begin_with_another_server();
-                     }
-                     action(sample);
-                   });
+bool ClientReaders::take_each(dds::DataReader& reader, Action action) {
+  return take_all<Sample>(
+      reader, [&](const Sample& sample, const eprosima::fastrtps::rtps::GUID_t& writer) {
+        ++counters_.received;
+        if (watch_.is_past(writer.guidPrefix)) {
+          ++counters_.foreign;
+          return;
+        }
+        participant_->note_spoke(writer);
+        if (writer.guidPrefix != server_) {
+          server_ = writer.guidPrefix;
+          begin_with_another_server();
+        }
+        action(sample);
+      });
 }
 
 // Its numbers start anew.

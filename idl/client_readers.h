@@ -28,10 +28,10 @@ class ClientReaders {
 
  private:
   template <class Sample, class Action>
-  void take_each(dds::DataReader& reader, Action action);
+  bool take_each(dds::DataReader& reader, Action action);
   template <class Sample, class Action>
   void take_each(Inlet& inlet, Action action) {
-    if (inlet.take_come()) take_each<Sample>(*inlet.reader, action);
+    if (inlet.take_come() && !take_each<Sample>(*inlet.reader, action)) inlet.come = true;
   }
   void begin_with_another_server();
   void take_answers(const ClientKey& own, ClientInput& input);

@@ -46,13 +46,16 @@ std::string announced(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& 
                       const char* property);
 
 /// Takes all valid samples that have come, and hands each with its writer's GUID to the action.
+/// False: the reader ended with an error, and may hold more.
 template <class Sample, class Action>
-void take_all(dds::DataReader& reader, Action action) {
+bool take_all(dds::DataReader& reader, Action action) {
+  using eprosima::fastrtps::types::ReturnCode_t;
   Sample sample;
   dds::SampleInfo info;
-  while (reader.take_next_sample(&sample, &info) ==
-         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK)
+  ReturnCode_t code = ReturnCode_t::RETCODE_OK;
+  while ((code = reader.take_next_sample(&sample, &info)) == ReturnCode_t::RETCODE_OK)
     if (info.valid_data) action(sample, info.sample_identity.writer_guid());
+  return code == ReturnCode_t::RETCODE_NO_DATA;
 }
 
 /// One DDS participant in one session: transport, discovery and endpoints after the topic table.
