@@ -23,7 +23,8 @@ constexpr int kClimbs = 10;
 constexpr double kWorthwhile = 1.05;
 
 // The zone in which the corner of a layer may lie is as large as it is, however small the piece at
-// it: one whose longest edge is below this share of its patch's radius is not cut again.
+// it: one whose longest edge is below this share of its patch's radius is not cut again. Its bound
+// stays. With half the share a tooth's edge used up 3,600 evaluations; 2,100 do with this one.
 constexpr double kLeastShare = 1.0 / 8.0;
 
 // Contact points kept for the fitted separating motion.
