@@ -124,9 +124,10 @@ class Neighbourhood {
     }
     bool failed = false;
     const auto visit = [&](std::uint32_t t, const Corners& c) {
-      if (failed || outside_slab(c)) return;
+      if (outside_slab(c)) return true;
       if (scratch_.near.size() <= kMostOpen) scratch_.near.push_back({t, c});
-      if (!take(t, c)) failed = true;
+      failed = !take(t, c);
+      return !failed;
     };
     const std::uint32_t first = proof_.at_center.triangle;
     // The facet nearest to the centre first: most others lie below it.
