@@ -449,7 +449,6 @@ double Body::depth_by_triangle(const Vec3& x, std::uint32_t t, const std::array<
 const FaceEnds& Body::ends_of(std::uint16_t face) const {
   std::vector<FaceEnds>& ends = index_->ends;
   if (ends.empty()) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ends.assign(band->faces.size(), {{kInfinity, -kInfinity}});
     for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
       const std::uint16_t f = face_index(t);

@@ -15,7 +15,7 @@ namespace {
 // Points asked. A pair of blocks needs about ten.
 constexpr int kMostPoints = 60;
 // Places on the way to the start: the last one is 2^-7 of it.
-constexpr int kHalvings = 8;
+constexpr int kStartPlaces = 8;
 // Of points this close to the surface the direction to it is rounding, mm.
 constexpr double kOn_mm = 1e-9;
 // Faces of a part that one program takes.
@@ -59,7 +59,7 @@ class CuttingPlanes {
     const Vec3 deepest_B = pair_.X_W[1].inverse() * best_.point_W;
     const double enough_mm = best_.depth_mm.lo - pair_.rounding_mm;
     double share = 1.0;
-    for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
+    for (int i = 0; i < kStartPlaces; ++i, share *= 0.5) {
       best_.depth_mm.lo = enough_mm;  // what is as deep takes its place
       planes_at(deepest_B + share * (start_B - deepest_B));
       if (best_.depth_mm.lo > enough_mm) return;

@@ -18,9 +18,9 @@ namespace {
 // overlap at all.
 constexpr std::size_t kNearest = 4, kAllOver = 4, kAllOverMore = 24;
 // Contact points kept for the fitted separating motion, which looks at 32 of all regions.
-constexpr std::size_t kMostSamples = 24;
+constexpr std::size_t kMostContactPoints = 24;
 // Where a witness is looked for: shares of the way to the middle of the face.
-constexpr double kWitnessShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
+constexpr double kMiddleShares[] = {0.0, 0.002, 0.02, 0.1, 0.4, 1.0};
 
 // Of a torus along its tube, to so far.
 constexpr double kWitnessTurn_rad = 0.5;
@@ -95,7 +95,7 @@ class DeclaredSearch {
         role == 0 ? Vec3(pair_.X_KS[1] * known.overlap.point_B) : known.overlap.point_B;
     const double z = (named_S - surface.point).dot(surface.axis);
     const double to_middle = pair_.s(role).extent_of(known.face[role]).middle() - z;
-    for (const double share : kWitnessShares) {
+    for (const double share : kMiddleShares) {
       // Along a shaft, or along a tube.
       Vec3 x = named_S + share * to_middle * surface.axis;
       if (surface.kind == SurfaceKind::kTorus)
@@ -121,7 +121,7 @@ class DeclaredSearch {
       const Sample sample = sample_at(pair_, Layer::kMesh, role, triangle, x, near);
       near = sample.at.triangle;
       if (sample.depth_mm > found.best.depth_mm) found.best = sample;
-      if (sample.depth_mm > pair_.touch_mm && found.samples.size() < kMostSamples)
+      if (sample.depth_mm > pair_.touch_mm && found.samples.size() < kMostContactPoints)
         found.samples.push_back(sample);
     }
   }

@@ -7,7 +7,7 @@ namespace mortise {
 namespace {
 
 // A patch whose hull comes nearer to the axis than this share of the radius goes through it.
-constexpr double kLeastFacing = 1e-3;
+constexpr double kLeastRadiusShare = 1e-3;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ double depth_below_facing_tangent(const Patch& patch, const Surface& surface) {
       if (foot.squaredNorm() < nearest.squaredNorm()) nearest = foot;
     }
   const double length = nearest.norm();
-  if (!(length > kLeastFacing * surface.radius_mm) || !(length > 0.0))
+  if (!(length > kLeastRadiusShare * surface.radius_mm) || !(length > 0.0))
     return std::numeric_limits<double>::infinity();
   const Vec3 out = nearest / length;
   Vec3 normal = out, point = surface.point + surface.radius_mm * out;

@@ -15,9 +15,9 @@ namespace {
 
 // Lazily a bracket is narrow enough at this share of the depth: what is told of parts that lie deep
 // in each other is how deep, not to the micrometre.
-constexpr double kNarrow = 0.005;
+constexpr double kNarrowShare = 0.005;
 // Lazily the overlap is said to grow away from the surface when it does by more than this share.
-constexpr double kGrowth = 0.01;
+constexpr double kGrowsAway = 0.01;
 // Work in which something deeper than at the surfaces is found, if there is.
 constexpr std::uint64_t kMostInVain = 600;
 // The climb from a new best point ends at this share of its first step.
@@ -35,10 +35,10 @@ struct LessPromising {
   }
 };
 
-using Corners = FaceBelow::Corners;
+using CellCorners = FaceBelow::Corners;
 
-Corners corners_of(const Cell& cell) {
-  Corners corners;
+CellCorners corners_of(const Cell& cell) {
+  CellCorners corners;
   for (int i = 0; i < 8; ++i)
     corners[static_cast<std::size_t>(i)] =
         cell.center + Vec3(i & 1 ? cell.half.x() : -cell.half.x(),
@@ -53,8 +53,8 @@ class InnerSearch {
               std::uint64_t& evaluations)
       : pair_(pair),
         start_mm_(start.inside ? 0.0 : start.depth_mm),
-        growth_(start.everywhere ? 0.0 : kGrowth),
-        narrow_(start.everywhere ? 0.0 : kNarrow),
+        growth_(start.everywhere ? 0.0 : kGrowsAway),
+        narrow_(start.everywhere ? 0.0 : kNarrowShare),
         accuracy_mm_(std::max(start.accuracy_mm, pair.touch_mm)),
         thin_mm_(std::min(half_extent_mm(0), half_extent_mm(1))),
         left_(work_cap),
@@ -180,7 +180,7 @@ class InnerSearch {
     near_[body] = at.triangle;
     const SurfacePoint other = surface(body, body == 0 ? Vec3(pair_.X_KS[0] * beyond) : beyond);
     Bounds bounds;
-    Corners corners = corners_of(cell);
+    CellCorners corners = corners_of(cell);
     if (body == 0)
       for (Vec3& x : corners) x = pair_.X_KS[1] * x;
     bounds[0] = distances_mm(body, at.triangle, corners, center);
@@ -192,7 +192,7 @@ class InnerSearch {
 
   // Of the corners from the plane face of the triangle, where it lies below all of the box;
   // otherwise from the triangle.
-  std::array<double, 8> distances_mm(int body, std::uint32_t triangle, const Corners& corners,
+  std::array<double, 8> distances_mm(int body, std::uint32_t triangle, const CellCorners& corners,
                                      const Vec3& center) const {
     std::array<double, 8> distances;
     FaceBelow face(*pair_.bodies[body].solid, triangle);

@@ -55,7 +55,7 @@ constexpr std::uint64_t kBackOff = 12, kBackOffCaps = 2;
 //   4. else it is halved, in time when it stands clear at its start, else in space;
 //   5. the first item that is as brief as the accuracy and ends in a certain overlap is the answer.
 
-struct Item {
+struct SpanItem {
   Span span;
   Piece piece;
   int role = 0;
@@ -63,7 +63,7 @@ struct Item {
   std::uint32_t near = Topology::kNone;  // see nearest_surface()
 };
 
-bool later(const Item& a, const Item& b) {
+bool later(const SpanItem& a, const SpanItem& b) {
   if (a.span.t0 != b.span.t0) return a.span.t0 > b.span.t0;
   return a.order > b.order;
 }
@@ -204,7 +204,7 @@ class InterferenceSearch {
         std::min(std::max(kEnoughLeast, at_.work_cap / kEnoughOfCap), at_.work_cap / 2);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), later);
-      const Item item = std::move(heap_.back());
+      const SpanItem item = std::move(heap_.back());
       heap_.pop_back();
       if (item.span.t0 >= std::min(t_real_, free_until_)) break;
       if (answer_.evaluations >= at_.work_cap) {
@@ -353,7 +353,7 @@ class InterferenceSearch {
                      order_++});
   }
 
-  void treat(const Item& item) {
+  void treat(const SpanItem& item) {
     ++answer_.evaluations;
     Span span = item.span;
     const Body& s = bodies_[item.role];
@@ -379,13 +379,13 @@ class InterferenceSearch {
     cut(item, span, X0, X1, shape, swept, center);
   }
 
-  Sample look(const Item& item, const Vec3& x_K, std::uint32_t near) const {
+  Sample look(const SpanItem& item, const Vec3& x_K, std::uint32_t near) const {
     const Body& k = bodies_[1 - item.role];
     const SurfacePoint at = nearest_surface(*k.solid, x_K, near);
     return {k.depth_in(x_K, at, layer_), item.role, item.piece.triangle, x_K, at};
   }
 
-  bool stays_out(const Item& item, const Patch& patch, const Sample& center, double limit_mm) {
+  bool stays_out(const SpanItem& item, const Patch& patch, const Sample& center, double limit_mm) {
     DepthProof proof;
     proof.k = &bodies_[1 - item.role];
     proof.layer = layer_;
@@ -416,7 +416,7 @@ class InterferenceSearch {
 
   // In time when the piece stands clear at the start, else in space. What is small in time and not
   // deeper than the accuracy, or small in both, is free within the accuracy.
-  void cut(const Item& item, const Span& span, const Pose& X0, const Pose& X1,
+  void cut(const SpanItem& item, const Span& span, const Pose& X0, const Pose& X1,
            const PieceShape& shape, const Patch& swept, const Sample& center) {
     const double path = path_.spread(item.role, span) + longest_way(item.piece, X0, X1);
     const double width = longest_edge(item.piece);
@@ -441,7 +441,7 @@ class InterferenceSearch {
       push({span, half, item.role, order_++, center.at.triangle});
   }
 
-  void push(Item item) {
+  void push(SpanItem item) {
     heap_.push_back(std::move(item));
     std::push_heap(heap_.begin(), heap_.end(), later);
   }
@@ -472,7 +472,7 @@ class InterferenceSearch {
   double rounding_mm_ = 0.0, touch_mm_ = 0.0;
   KnownOverlaps known_;
   SearchScratch scratch_;
-  std::vector<Item> heap_;
+  std::vector<SpanItem> heap_;
   std::uint64_t order_ = 0;
   double t_real_ = std::numeric_limits<double>::infinity();
   double free_until_ = std::numeric_limits<double>::infinity();

@@ -9,8 +9,6 @@
 namespace mortise {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // A round face of S or K in a hollow one, and where the patch is along the axis of that.
 struct HereAlongHollow {
   const Surface* of[2];  // of A, of B

@@ -27,7 +27,6 @@ namespace {
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of a region with one point: its two triangles decide it.
 OverlapRegion decided_there(const PairFrame& pair, OverlapRegion region) {

@@ -279,7 +279,6 @@ std::optional<SharedInside> find_middle_in_both(const PairFrame& pair, double le
 }
 
 OverlapRegion region_of_certain(const PairFrame& pair, const Sample& deepest, double most_mm) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   OverlapRegion region;
   region.certain_mm = {deepest.depth_mm, std::max(deepest.depth_mm, most_mm)};
   region.possible_mm = {region.certain_mm.lo, kInfinity};

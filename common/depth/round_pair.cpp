@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 namespace mortise {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // At the very end of a face its neighbour is as near: a point is named that is a little inside.
 constexpr double kEndShare = 1e-4;
@@ -51,14 +48,14 @@ const std::array<Turn, kFirstPieces + 1>& first_turns() {
   return kTurns;
 }
 
-struct Piece {
+struct ArcPiece {
   Turn from, middle, to;
   double bound;
 };
 
-class Reach {
+class RoundSearch {
  public:
-  Reach(const RoundFace& convex, const RoundFace& hollow)
+  RoundSearch(const RoundFace& convex, const RoundFace& hollow)
       : convex_(convex),
         hollow_(hollow),
         slope_(convex.axis.dot(hollow.axis)),
@@ -75,7 +72,7 @@ class Reach {
   std::optional<RoundReach> run(double margin_mm, double accuracy_mm, double limit_mm) {
     margin_mm_ = margin_mm;
     if (const auto reach = parallel_cylinders()) return reach;
-    std::vector<Piece> pieces;
+    std::vector<ArcPiece> pieces;
     pieces.reserve(4 * kFirstPieces);
     const auto add = [&](const Turn& from, const Turn& to) {
       const Turn middle(from, to);
@@ -84,7 +81,7 @@ class Reach {
       look(middle);
     };
     for (std::size_t i = 0; i < kFirstPieces; ++i) add(first_turns()[i], first_turns()[i + 1]);
-    const auto lower = [](const Piece& a, const Piece& b) { return a.bound < b.bound; };
+    const auto lower = [](const ArcPiece& a, const ArcPiece& b) { return a.bound < b.bound; };
     std::make_heap(pieces.begin(), pieces.end(), lower);
     for (int looked = kFirstPieces; !pieces.empty() && looked < kMostPieces; looked += 2) {
       if (pieces.front().bound <= most_ + accuracy_mm || most_ > limit_mm) break;
@@ -92,7 +89,7 @@ class Reach {
           pieces.front().bound <= most_ + kEnoughShare * (limit_mm - most_))
         break;
       std::pop_heap(pieces.begin(), pieces.end(), lower);
-      const Piece piece = pieces.back();
+      const ArcPiece piece = pieces.back();
       pieces.pop_back();
       for (const auto& [from, to] :
            {std::pair(piece.from, piece.middle), std::pair(piece.middle, piece.to)}) {
@@ -304,7 +301,7 @@ std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& 
   // A generator that runs square to the hollow axis meets no height of it.
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
   if (std::fabs(convex.widening) * tilt > 0.5 * std::fabs(slope)) return std::nullopt;
-  return Reach(convex, hollow).run(margin_mm, accuracy_mm, limit_mm);
+  return RoundSearch(convex, hollow).run(margin_mm, accuracy_mm, limit_mm);
 }
 
 }  // namespace mortise

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "common/depth/cells/least_reach.h"
@@ -26,26 +25,24 @@ constexpr double kSmallest_mm = 2e-4;
 // An edge of curved faces is followed by chords until they are off by less, mm, or so many
 // halvings.
 constexpr double kSag_mm = 2e-5;
-constexpr int kMostHalvings = 7;
+constexpr int kMostChordHalvings = 7;
 // The bulge of an arc is no larger than this many times that in the middle of its chord.
 constexpr double kSagMargin = 1.1;
 // Planes of one face.
 constexpr double kSamePlane = 1.0 - 1e-9;
 // A box around a piece is wide enough to show what bounds the largest body in it: so many times as
 // far as its surface may be off the mesh. Corners of one plane differ by this share of the part.
-constexpr double kReaches = 2.0, kFlat = 1e-12;
+constexpr double kReaches = 2.0, kFlatCorner = 1e-12;
 // Faces that are asked whether all is below them.
-constexpr std::size_t kMostFaces = 16;
+constexpr std::size_t kMostFacesAsked = 16;
 // Pieces that are so much of the distance of their middles deep in each other are not apart.
-constexpr double kDeep = 1e-2;
+constexpr double kDeepShare = 1e-2;
 // Another look is worth what it gains.
-constexpr double kMuch = 0.5;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kWorthLook = 0.5;
 
 // A convex piece of what a tip adds to the faces' own offsets, frame K: the hull of its corners,
 // and how far the tip may bulge out of it. Four corners: a simplex; more: `simplices` cover it.
-struct Piece {
+struct TipPiece {
   std::vector<Vec3> corners;
   std::vector<std::array<int, 4>> simplices;
   double bulge_mm = 0.0;
@@ -66,13 +63,13 @@ struct Piece {
                              [&](const Vec3& a, const Vec3& b) { return n.dot(a) < n.dot(b); });
   }
   double support_mm(const Vec3& n) const { return n.dot(farthest(n)) + bulge_mm; }
-  Piece part(std::vector<Vec3> of_corners) const {
+  TipPiece part(std::vector<Vec3> of_corners) const {
     return {std::move(of_corners), {}, bulge_mm, triangle};
   }
-  void split(std::vector<Piece>& into) const;
+  void split(std::vector<TipPiece>& into) const;
 };
 
-void Piece::split(std::vector<Piece>& into) const {
+void TipPiece::split(std::vector<TipPiece>& into) const {
   for (const auto& s : simplices)
     into.push_back(part({corners[s[0]], corners[s[1]], corners[s[2]], corners[s[3]]}));
   if (!simplices.empty()) return;
@@ -96,7 +93,7 @@ class TipPieces {
   TipPieces(const Body& body, const Pose& X_KS) : body_(body), X_KS_(X_KS) {}
 
   // Of the stretch of an edge between two points of it.
-  void edge(const Tip& tip, const Vec3& from, const Vec3& to, std::vector<Piece>& into) const {
+  void edge(const Tip& tip, const Vec3& from, const Vec3& to, std::vector<TipPiece>& into) const {
     const LargestFace a = face(tip, 0), b = face(tip, 1);
     const auto section = [&](const Vec3& on_mesh) {
       const Vec3 x = meeting_point(*body_.solid, *body_.band, tip, on_mesh, false);
@@ -109,10 +106,10 @@ class TipPieces {
     for (int i = 0; i < 4; ++i)
       sag_mm = std::max(sag_mm, (middle[i] - 0.5 * (one[i] + two[i])).norm());
     const auto prism = [&](int top) {
-      Piece piece{{one[0], one[top], one[2], two[0], two[top], two[2]},
-                  {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 3, 4, 5}},
-                  kSagMargin * sag_mm,
-                  tip.triangles[0]};
+      TipPiece piece{{one[0], one[top], one[2], two[0], two[top], two[2]},
+                     {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 3, 4, 5}},
+                     kSagMargin * sag_mm,
+                     tip.triangles[0]};
       add(piece, into);
     };
     prism(1);
@@ -121,9 +118,9 @@ class TipPieces {
   }
 
   // The hull of a corner, of the ends of its edges and of its feet on the faces.
-  void corner(const Tip& tip, std::vector<Piece>& into) const {
+  void corner(const Tip& tip, std::vector<TipPiece>& into) const {
     const Vec3& x = tip.from;
-    Piece piece;
+    TipPiece piece;
     piece.triangle = tip.triangles[0];
     piece.corners = {meeting_point(*body_.solid, *body_.band, tip, x, true)};
     for (int i = 0; i < 3; ++i) piece.corners.push_back(face(tip, i).foot(x));
@@ -144,7 +141,7 @@ class TipPieces {
     add(piece, into);
   }
 
-  void whole(const Tip& tip, std::vector<Piece>& into) const {
+  void whole(const Tip& tip, std::vector<TipPiece>& into) const {
     if (tip.faces == 3)
       corner(tip, into);
     else
@@ -155,7 +152,7 @@ class TipPieces {
   LargestFace face(const Tip& tip, int i) const {
     return {*body_.solid, *body_.band, tip.triangles[i]};
   }
-  void add(Piece& piece, std::vector<Piece>& into) const {
+  void add(TipPiece& piece, std::vector<TipPiece>& into) const {
     for (Vec3& corner : piece.corners) corner = X_KS_ * corner;
     into.push_back(piece);
   }
@@ -167,7 +164,7 @@ class TipPieces {
 // Upper bound of the depth of any point of a piece in the largest body of K.
 class DepthBound {
  public:
-  DepthBound(const Body& body, const Piece& piece) : body_(body), piece_(piece) {
+  DepthBound(const Body& body, const TipPiece& piece) : body_(body), piece_(piece) {
     middle_ = piece.middle();
     radius_mm_ = piece.radius_mm(middle_);
     nearest_ = nearest_surface(*body.solid, middle_);
@@ -219,7 +216,7 @@ class DepthBound {
         body_.solid->bvh(), Box{middle_.array() - reach_mm, middle_.array() + reach_mm},
         [&](std::uint32_t t, const std::array<Vec3, 3>&) {
           triangles.push_back(t);
-          if (faces.size() < kMostFaces &&
+          if (faces.size() < kMostFacesAsked &&
               std::none_of(faces.begin(), faces.end(),
                            [&](std::uint32_t other) { return is_one_face(t, other); }))
             faces.push_back(t);
@@ -241,10 +238,12 @@ class DepthBound {
     const SurfaceBand::Face& band = body_.face(face);
     const double extent_mm = body_.solid->bvh().extent_mm;
     if (const Surface* surface = Body::surface_of(band, Layer::kUpper))
-      return surface->stays_below_mm(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2),
-                                     std::max(0.0, -band.deviation_mm.lo) + kFlat * extent_mm);
+      return surface->stays_below_mm(
+          mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2),
+          std::max(0.0, -band.deviation_mm.lo) + kFlatCorner * extent_mm);
     for (int k = 0; k < 3; ++k)
-      if (body_.normal(face).dot(mesh.corner(t, k) - mesh.corner(face, 0)) > kFlat * extent_mm)
+      if (body_.normal(face).dot(mesh.corner(t, k) - mesh.corner(face, 0)) >
+          kFlatCorner * extent_mm)
         return false;
     return true;
   }
@@ -270,14 +269,14 @@ class DepthBound {
   }
 
   const Body& body_;
-  const Piece& piece_;
+  const TipPiece& piece_;
   Vec3 middle_;
   double radius_mm_ = 0.0;
   SurfacePoint nearest_;
 };
 
 // Are two convex pieces apart?
-bool apart(const Piece& a, const Piece& b) {
+bool apart(const TipPiece& a, const TipPiece& b) {
   const double bulge_mm = a.bulge_mm + b.bulge_mm;
   bool found = false;
   const auto farthest = [&](const Vec3& n) { return PointOfEach{b.farthest(n), a.farthest(-n)}; };
@@ -287,7 +286,7 @@ bool apart(const Piece& a, const Piece& b) {
   const Vec3 between = a.middle() - b.middle();
   const double size_mm = between.norm();
   if (size_mm > 0.0)
-    LeastReach(farthest, tried, size_mm).run(between / size_mm, kDeep * size_mm, kMuch);
+    LeastReach(farthest, tried, size_mm).run(between / size_mm, kDeepShare * size_mm, kWorthLook);
   return found;
 }
 
@@ -325,28 +324,28 @@ class TipSearch {
 
  private:
   bool is_excluded(const Tip& corner) {
-    std::vector<Piece> pieces;
+    std::vector<TipPiece> pieces;
     of_s_.corner(corner, pieces);
     return is_excluded(std::move(pieces));
   }
 
   // An edge of curved faces is followed more closely where its chord does not settle it.
   bool is_excluded(const Tip& edge, const Vec3& from, const Vec3& to, int level) {
-    std::vector<Piece> pieces;
+    std::vector<TipPiece> pieces;
     of_s_.edge(edge, from, to, pieces);
     bool all = true;
-    for (const Piece& piece : pieces) all = all && is_excluded(piece);
+    for (const TipPiece& piece : pieces) all = all && is_excluded(piece);
     if (all) return true;
     if (has_reached()) return false;
-    if (pieces.front().bulge_mm <= kSag_mm || level == kMostHalvings)
+    if (pieces.front().bulge_mm <= kSag_mm || level == kMostChordHalvings)
       return is_excluded(std::move(pieces));
     const Vec3 middle = 0.5 * (from + to);
     return is_excluded(edge, from, middle, level + 1) && is_excluded(edge, middle, to, level + 1);
   }
 
-  bool is_excluded(std::vector<Piece> open) {
+  bool is_excluded(std::vector<TipPiece> open) {
     while (!open.empty()) {
-      const Piece piece = std::move(open.back());
+      const TipPiece piece = std::move(open.back());
       open.pop_back();
       if (is_excluded(piece)) continue;
       const double size_mm = piece.radius_mm(piece.middle()) - piece.bulge_mm;
@@ -359,7 +358,7 @@ class TipSearch {
   bool has_reached() const { return found_.possible_mm.lo > pair_.touch_mm; }
 
   // Nothing of the piece is in the largest body of K; else found_ tells of it.
-  bool is_excluded(const Piece& piece) {
+  bool is_excluded(const TipPiece& piece) {
     ++looks_;
     const DepthBound bound(k_, piece);
     const double most_mm = bound.mm(pair_.touch_mm);
@@ -383,16 +382,16 @@ class TipSearch {
     return false;
   }
 
-  bool meets_other_tip(const Piece& piece) const {
+  bool meets_other_tip(const TipPiece& piece) const {
     const Vec3 middle = piece.middle();
     const double radius_mm = piece.radius_mm(middle);
     for (const Tip& tip : tips_of(k_)) {
       const double half_mm = 0.5 * (tip.to - tip.from).norm();
       if ((0.5 * (tip.from + tip.to) - middle).norm() > radius_mm + half_mm + tip.travel_mm)
         continue;
-      std::vector<Piece> others;
+      std::vector<TipPiece> others;
       of_k_.whole(tip, others);
-      for (const Piece& other : others)
+      for (const TipPiece& other : others)
         if (!apart(piece, other)) return true;
     }
     return false;

@@ -8,11 +8,9 @@
 namespace mortise {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // How closely a closed form is followed around its circles; halvings before it is left wide.
 constexpr double kTubeAccuracy_mm = 1e-5;
-constexpr int kMostHalvings = 20'000;
+constexpr int kMostCircleHalvings = 20'000;
 
 // To begin with; they are halved where their bound is too loose.
 constexpr int kFirstArcs = 8;
@@ -39,13 +37,13 @@ bool less(const Arc& a, const Arc& b) {
 }
 
 // A point of the tube's centre circle seen from the wall's axis.
-struct Seen {
+struct SeenFromWall {
   double out = 0.0, up = 0.0;
 };
 
-class Reach {
+class TubeSearch {
  public:
-  Reach(const Tube& tube, const TubeWall& wall, double margin_mm)
+  TubeSearch(const Tube& tube, const TubeWall& wall, double margin_mm)
       : tube_(tube),
         wall_(*wall.surface),
         extent_(wall.extent),
@@ -65,7 +63,7 @@ class Reach {
   TubeReach run(double accuracy_mm) {
     std::vector<Arc> arcs = first_arcs();
     double settled = -kInfinity;
-    for (int i = 0; i < kMostHalvings && !arcs.empty(); ++i) {
+    for (int i = 0; i < kMostCircleHalvings && !arcs.empty(); ++i) {
       std::pop_heap(arcs.begin(), arcs.end(), less);
       const Arc arc = arcs.back();
       arcs.pop_back();
@@ -106,7 +104,7 @@ class Reach {
 
   double upper(const Arc& arc) {
     const Vec3 middle = at(arc.middle());
-    const Seen here = seen(middle);
+    const SeenFromWall here = seen(middle);
     const double half = arc.half(), walked = tube_.circle_mm * half;
     if (is_off_wall(arc, middle, here, walked)) return -kInfinity;
     const double off = std::min(walked, box_half(arc, here, walked));
@@ -117,14 +115,14 @@ class Reach {
   }
 
   // How far from its middle an arc goes, as seen from the wall's axis.
-  double box_half(const Arc& arc, const Seen& here, double walked) const {
+  double box_half(const Arc& arc, const SeenFromWall& here, double walked) const {
     const double least = here.out - walked;
     if (!(least > 0.0)) return kInfinity;
     const double bend_out = (first_ + 4.0 * second_) / (2.0 * least) +
                             std::pow(first_ + 2.0 * second_, 2.0) / (4.0 * std::pow(least, 3.0));
     double out = 0.0, up = 0.0;
     for (const double end : {arc.from, arc.to}) {
-      const Seen there = seen(at(end));
+      const SeenFromWall there = seen(at(end));
       out = std::max(out, std::fabs(there.out - here.out));
       up = std::max(up, std::fabs(there.up - here.up));
     }
@@ -134,7 +132,7 @@ class Reach {
 
   // Upper bound of the depth below the wall of any point of the balls about points that are no
   // farther than `off` from one, all as seen from the axis.
-  double depth_mm(const Seen& c, double off) const {
+  double depth_mm(const SeenFromWall& c, double off) const {
     const double r = tube_.radius_mm;
     if (wall_.kind == SurfaceKind::kCylinder) {
       const double k = std::max(0.0, beyond_extent(c.up) - off);
@@ -144,7 +142,7 @@ class Reach {
     }
     if (wall_.kind != SurfaceKind::kTorus || !wall_.inward)
       return r + off - wall_.signed_distance_mm(wall_.point + c.out * f1_ + c.up * wall_.axis);
-    const Seen w{c.out - wall_.radius_mm, c.up};
+    const SeenFromWall w{c.out - wall_.radius_mm, c.up};
     const double length = std::hypot(w.out, w.up);
     const FaceArc face = reached_arc();
     const double straight = length + r + off - wall_.tube_radius_mm;
@@ -178,7 +176,8 @@ class Reach {
   }
 
   // No point of the balls about an arc is on the part of a torus that the wall's face has.
-  bool is_off_wall(const Arc& arc, const Vec3& middle, const Seen& here, double walked) const {
+  bool is_off_wall(const Arc& arc, const Vec3& middle, const SeenFromWall& here,
+                   double walked) const {
     if (wall_.kind != SurfaceKind::kTorus || extent_.around_axis.whole()) return false;
     // Across the axis its points are that far from the middle, and the face that far from its ends.
     const double far =
@@ -190,7 +189,8 @@ class Reach {
 
   // Sine of the angle between the planes through the axes, of the tube's and of the wall's, at
   // most.
-  double out_of_plane(const Arc& arc, const Vec3& middle, const Seen& here, double walked) const {
+  double out_of_plane(const Arc& arc, const Vec3& middle, const SeenFromWall& here,
+                      double walked) const {
     const double least = here.out - walked;
     if (!(least > 0.0) || tube_.circle_mm == 0.0) return 1.0;
     const Vec3 along = wall_.axis.cross(across(middle)) / here.out;
@@ -200,7 +200,7 @@ class Reach {
   }
 
   // The point of the tube's surface that is deepest there, if both faces have it.
-  void look(double rad, const Vec3& c, const Seen& here) {
+  void look(double rad, const Vec3& c, const SeenFromWall& here) {
     Vec3 down = -wall_.outward_normal(c);
     if (wall_.kind == SurfaceKind::kTorus && wall_.inward) down = down_a_groove(c, here);
     if (wall_.kind == SurfaceKind::kCylinder) {
@@ -222,8 +222,8 @@ class Reach {
   }
 
   // Down to where the ray in the direction that leads farthest leaves the ball.
-  Vec3 down_a_groove(const Vec3& c, const Seen& here) const {
-    const Seen w{here.out - wall_.radius_mm, here.up};
+  Vec3 down_a_groove(const Vec3& c, const SeenFromWall& here) const {
+    const SeenFromWall w{here.out - wall_.radius_mm, here.up};
     const double r = tube_.radius_mm, length = std::hypot(w.out, w.up);
     double rad = length > 0.0 ? std::atan2(w.up, w.out) : extent_.around_tube.middle_rad;
     const FaceArc& face = extent_.around_tube;
@@ -243,7 +243,7 @@ class Reach {
         (beyond(tube_.around_axis, rad) > kSame_rad ||
          beyond(tube_.around_tube, std::atan2(n.dot(tube_.axis), n.dot(radial))) > kSame_rad))
       return false;
-    const Seen at = seen(x);
+    const SeenFromWall at = seen(x);
     if (wall_.kind != SurfaceKind::kTorus)
       return !std::isfinite(extent_.hi_mm) ||
              (at.up >= extent_.lo_mm - kSame_rad * tube_.radius_mm &&
@@ -254,7 +254,9 @@ class Reach {
 
   Vec3 flat(const Vec3& d) const { return d - d.dot(wall_.axis) * wall_.axis; }
   Vec3 across(const Vec3& x) const { return flat(x - wall_.point); }
-  Seen seen(const Vec3& x) const { return {across(x).norm(), (x - wall_.point).dot(wall_.axis)}; }
+  SeenFromWall seen(const Vec3& x) const {
+    return {across(x).norm(), (x - wall_.point).dot(wall_.axis)};
+  }
   double turn_about_wall(const Vec3& x) const {
     const Vec3 d = x - wall_.point;
     return std::atan2(d.dot(f2_), d.dot(f1_));
@@ -299,7 +301,7 @@ std::optional<Tube> Tube::of(const Surface& surface, const FaceExtent& extent) {
 }
 
 TubeReach tube_reach(const Tube& tube, const TubeWall& wall, double margin_mm, double accuracy_mm) {
-  return Reach(tube, wall, margin_mm).run(accuracy_mm);
+  return TubeSearch(tube, wall, margin_mm).run(accuracy_mm);
 }
 
 std::optional<FacePairOverlap> tube_overlap(const Surface& a, const FaceExtent& extent_a,

@@ -6,8 +6,6 @@
 namespace mortise {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Halvings of the share in the search for the best one: to a thousandth.
 constexpr int kShareSteps = 16;
 

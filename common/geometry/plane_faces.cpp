@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "common/base/constants.h"
 
@@ -19,8 +18,6 @@ constexpr double kLeastAlong = 0.9;
 constexpr std::size_t kMostFacesOfCorner = 12;
 // Three planes whose normals span less have no corner of their own.
 constexpr double kLeastSpan = 1e-9;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double largest_coordinate(const TriangleMesh& mesh) {
   double largest = 0.0;

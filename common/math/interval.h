@@ -1,7 +1,10 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 
 namespace mortise {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// lo <= true value <= hi.
 struct Interval {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/depth/cells/outline.h"
 
@@ -16,7 +15,6 @@ constexpr double kSameShare = 1e-10;
 constexpr double kLeastSpan = 1e-9;
 // Rounds of projections onto the planes of a polytope.
 constexpr int kRounds = 4;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace mortise {
 namespace {
@@ -17,8 +16,7 @@ constexpr double kOffRim_mm = 0.1;
 // Places on a circle.
 constexpr int kAround = 16;
 // Beside an axis as parallel as this the bound of a whole circle is taken for exact, mm.
-constexpr double kParallel_mm = 1e-9;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kParallelToWall_mm = 1e-9;
 
 double beyond(const VoidWall& wall, const Vec3& x) {
   const Vec3 d = x - wall.point;
@@ -50,7 +48,7 @@ class RoundInWall {
     const double whole = whole_circle();
     if (whole <= limit_mm || whole == -kInfinity) return whole;
     // Of a path only the number is asked, and beside a parallel axis that is exact.
-    if (chord_.ends == 2 && too_far_mm_ <= kParallel_mm) return whole;
+    if (chord_.ends == 2 && too_far_mm_ <= kParallelToWall_mm) return whole;
     see_away_from_axis();
     const auto is_useless = [&] { return best_ - chord_.spread_mm > useless_mm; };
     const auto is_narrow = [&](double most) {

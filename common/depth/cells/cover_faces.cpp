@@ -13,12 +13,12 @@ constexpr double kParallel = 1e-9;
 // one comes twice as far.
 constexpr double kTravelOfRound = 2.0;
 // Lengths that differ by less than this share of the part are one, but for rounding.
-constexpr double kSameShare = 1e-9;
+constexpr double kSameLength = 1e-9;
 
 }  // namespace
 
 CoverFaces::CoverFaces(const Body& body_of) : body(body_of), planes(body_of.plane_faces()) {
-  same_mm = std::max(2.0 * planes.noise_mm, kSameShare * body.solid->bvh().extent_mm);
+  same_mm = std::max(2.0 * planes.noise_mm, kSameLength * body.solid->bvh().extent_mm);
   double most = 0.0;
   for (const SurfaceBand::Face& face : body.band->faces) {
     reach_of_face_.push_back(std::max(0.0, Body::offset_range_of(face, Layer::kUpper).hi));

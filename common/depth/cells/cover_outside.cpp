@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -16,10 +15,9 @@ constexpr std::size_t kMostSlabs = 24;
 // Axes are the same that differ by no more than this, mm, anywhere along the part.
 constexpr double kSameAxis_mm = 1e-4;
 // Planes of a polytope beside those of a box, and how many faces are tried, largest first.
-constexpr std::size_t kMostPlanes = 12, kMostTried = 24;
+constexpr std::size_t kMostPlanes = 12, kMostFacesTried = 24;
 // Normals with a larger cosine do not make a polytope much smaller.
 constexpr double kSimilar = 0.999;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // r = at_zero + slope * z, and how far it is off in a layer, along its normal.
 struct OuterLine {
@@ -372,7 +370,7 @@ Outside polytope_outside(const CoverFaces& f) {
     return std::any_of(normals.begin(), normals.end(),
                        [&](const Vec3& known) { return known.dot(n) > kSimilar; });
   };
-  for (std::size_t i = 0; i < std::min(kMostTried, by_area.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMostFacesTried, by_area.size()); ++i) {
     const PlaneFace& face = f.planes.faces[by_area[i].second];
     if (normals.size() >= kMostPlanes) break;
     if (has_similar(face.n)) continue;

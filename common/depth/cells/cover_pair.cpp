@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/depth/cells/least_reach.h"
 
@@ -28,16 +27,15 @@ constexpr double kFromRim = 0.02;
 constexpr double kOpposite = 1.0 - 1e-12;
 // Who goes along a face goes less than this share towards it.
 constexpr double kAcross = 1e-9;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// What is asked of a pair of cells: whether it stays below a limit, or how deep it may be as well.
-enum class Asked { kWhether, kHowDeep };
 
 }  // namespace
 
 // The least bound of one pair of cells; looks no further once it is not above the limit.
 class CoverPair::Bound {
  public:
+  /// Whether the pair stays below a limit, or how deep it may be as well.
+  enum class Asked { kWhether, kHowDeep };
+
   Bound(const CoverPair& pair, const Views& views, double limit_mm, Asked asked,
         std::uint64_t& work)
       : pair_(pair), views_(views), limit_mm_(limit_mm), asked_(asked), work_(work) {}
@@ -337,8 +335,8 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
     const Views at_start = views_at(views.chord[0].X_KS[0]);
     const double length = now.span.t1 - now.span.t0;
     const bool looks_for_others = length > kLongSpan || length <= moment;
-    Bound bound(*this, views, limit_mm, Asked::kWhether, free.work);
-    Bound bound_at_start(*this, at_start, limit_mm, Asked::kWhether, free.work);
+    Bound bound(*this, views, limit_mm, Bound::Asked::kWhether, free.work);
+    Bound bound_at_start(*this, at_start, limit_mm, Bound::Asked::kWhether, free.work);
     std::erase_if(now.cells, [&](Cells& cells) {
       if (bound.by_what_it_was(cells)) return true;
       if (!looks_for_others && bound_at_start.by_what_it_was(cells)) return false;
@@ -371,7 +369,7 @@ bool CoverPair::apart(const Pose& X_BA, double limit_mm, std::uint64_t& work) co
 
 bool CoverPair::apart(const Views& views, std::vector<Cells>& all, double limit_mm,
                       std::uint64_t& work) const {
-  Bound bound(*this, views, limit_mm, Asked::kWhether, work);
+  Bound bound(*this, views, limit_mm, Bound::Asked::kWhether, work);
   return std::all_of(all.begin(), all.end(),
                      [&](Cells& cells) { return bound(cells) <= limit_mm; });
 }
@@ -383,7 +381,7 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   std::vector<Cells> all = all_cells();
   const Cells* deciding = nullptr;
   for (Cells& cells : all) {
-    const double bound = Bound(*this, views, overlap.most_mm, Asked::kHowDeep, work)(cells);
+    const double bound = Bound(*this, views, overlap.most_mm, Bound::Asked::kHowDeep, work)(cells);
     if (!(bound > overlap.most_mm)) continue;
     overlap.most_mm = bound;
     deciding = &cells;

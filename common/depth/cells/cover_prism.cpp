@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -12,17 +11,16 @@ namespace mortise {
 namespace {
 
 // Plane faces whose outline is tried, the largest first.
-constexpr std::size_t kMostTried = 3;
+constexpr std::size_t kMostOutlines = 3;
 // Sides of an outline; and sides times triangles that are compared, some 0.1 s.
 constexpr std::size_t kMostSides = 2'000, kMostCompared = 20'000'000;
-constexpr std::size_t kMostPieces = 160;
+constexpr std::size_t kMostOutlinePieces = 160;
 // Normals that differ by less are parallel, or at right angles.
-constexpr double kParallel = 1e-9;
+constexpr double kParallelSides = 1e-9;
 // Of a piece with no more sides each round one is followed by so many tangents: tips of teeth.
 constexpr std::size_t kFewSides = 32, kTangents = 4;
 // Cells go on into each other by so many times what any face may be off.
 constexpr double kIntoNext = 4.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Prism {
  public:
@@ -41,7 +39,7 @@ class Prism {
     Outside outside;
     if (!is_whole_ || !find_outline() || !set_sides() || !rest_is_inside()) return outside;
     const std::vector<outline::Piece> pieces = outline::convex_pieces(corners_, f_.same_mm);
-    if (pieces.empty() || pieces.size() > kMostPieces) return outside;
+    if (pieces.empty() || pieces.size() > kMostOutlinePieces) return outside;
     const LayerOffsets upper = end_offsets(1.0, height_.hi), lower = end_offsets(-1.0, -height_.lo);
     for (int layer = 0; layer < 2; ++layer) {
       const Interval along{height_.lo - lower[layer], height_.hi + upper[layer]};
@@ -110,7 +108,7 @@ class Prism {
     for (std::uint32_t t = 0; t < f_.count(); ++t) {
       if (is_cap(t)) continue;
       const std::optional<std::size_t> side =
-          std::fabs(f_.body.normal(t).dot(axis_)) < kParallel ? side_of(t) : std::nullopt;
+          std::fabs(f_.body.normal(t).dot(axis_)) < kParallelSides ? side_of(t) : std::nullopt;
       if (side)
         add_wall(sides_[*side], t);
       else
@@ -136,7 +134,7 @@ class Prism {
     const double bulge_mm = s != nullptr ? f_.bulge_mm(t) : 0.0;
     const LayerOffsets from_chord{offsets[0] + bulge_mm, offsets[1] + bulge_mm};
     const bool round = s != nullptr && s->kind == SurfaceKind::kCylinder && !s->inward &&
-                       s->axis.cross(axis_).norm() < kParallel;
+                       s->axis.cross(axis_).norm() < kParallelSides;
     side.round = round && (!side.found || side.round == s) ? s : nullptr;
     side.from_round = side.found ? larger(side.from_round, offsets) : offsets;
     side.from_chord = side.found ? larger(side.from_chord, from_chord) : from_chord;
@@ -150,7 +148,7 @@ class Prism {
     if (rest_.size() * corners_.size() > kMostCompared) return false;
     return std::all_of(rest_.begin(), rest_.end(), [&](std::uint32_t t) {
       const double clear_mm = widest_mm_ + f_.reach_mm(t) + f_.bulge_mm(t) + f_.same_mm;
-      const bool is_end = std::fabs(f_.body.normal(t).dot(axis_)) > 1.0 - kParallel;
+      const bool is_end = std::fabs(f_.body.normal(t).dot(axis_)) > 1.0 - kParallelSides;
       for (int k = 0; k < 3; ++k) {
         const Vec2 a = flat(f_.mesh().corner(t, k)), b = flat(f_.mesh().corner(t, (k + 1) % 3));
         if (is_end ? !outline::is_within(corners_, a, b, f_.same_mm)
@@ -230,7 +228,7 @@ Outside prism_outside(const CoverFaces& f) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return area[a] > area[b]; });
-  for (std::size_t i = 0; i < std::min(kMostTried, order.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMostOutlines, order.size()); ++i) {
     Outside outside = Prism(f, f.planes.faces[order[i]]).run();
     if (!outside.cells[1].empty()) return outside;
   }

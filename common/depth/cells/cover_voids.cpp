@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/geometry/signed_distance.h"
 
@@ -13,18 +12,17 @@ namespace {
 // more pairs are asked by their triangles.
 constexpr std::size_t kMostVoids = 48, kMostPockets = 12;
 // A facet between two corners on a rim is no farther inside of it than a chord, and this.
-constexpr double kChordMargin = 1.1;
+constexpr double kRimMargin = 1.1;
 // Halvings of a triangle that is seen against a wall.
-constexpr int kHalvings = 6;
+constexpr int kWallHalvings = 6;
 // Pockets are looked for at so many plane faces, those with most hollow edges first.
-constexpr std::size_t kMostFloors = 24, kMostWalls = 8;
+constexpr std::size_t kMostFloors = 24, kMostPocketWalls = 8;
 // Two faces meet at a hollow edge where one rises so steeply from the other.
 constexpr double kHollow = 1e-6;
 // A point this share of the part's size above a floor is in its pocket.
 constexpr double kAboveShare = 1e-6;
 // Above the rounding of a distance, as a share of the part's size.
 constexpr double kFarShare = 1e-9;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Corners = std::array<Vec3, 3>;
 
@@ -178,7 +176,7 @@ class Bore {
 
   // For a cylinder the distance of the axis from the triangle seen along it.
   double least_clearance(const Corners& c) const {
-    if (s_.kind == SurfaceKind::kCone) return refined(c, kHalvings);
+    if (s_.kind == SurfaceKind::kCone) return refined(c, kWallHalvings);
     Corners flat;
     for (int k = 0; k < 3; ++k) flat[k] = c[k] - height(c[k]) * s_.axis;
     return (nearest_on_triangle(s_.point, flat[0], flat[1], flat[2]) - s_.point).norm() -
@@ -196,7 +194,7 @@ class Bore {
   bool see(std::uint32_t t) {
     const bool touches = f_.touches(t, own_point_);
     const double allowed =
-        f_.same_mm + (touches ? kChordMargin * chord_mm_ : -(f_.surface(t) ? f_.bulge_mm(t) : 0.0));
+        f_.same_mm + (touches ? kRimMargin * chord_mm_ : -(f_.surface(t) ? f_.bulge_mm(t) : 0.0));
     const Corners c = corners_of(f_.mesh(), t);
     const double clear = least_clearance(c);
     if (clear >= -allowed) {
@@ -204,7 +202,7 @@ class Bore {
         for (double& offset : offsets_) offset = std::max(offset, f_.reach_mm(t) - clear);
       return true;
     }
-    return limit(c, allowed, kHalvings);
+    return limit(c, allowed, kWallHalvings);
   }
 
   bool limit(const Corners& c, double allowed, int depth) {
@@ -384,7 +382,7 @@ void add_pockets(const CoverFaces& f, std::vector<LayerVoids>& voids) {
   const auto hollow = hollow_neighbours(f);
   std::vector<std::uint32_t> floors;
   for (std::uint32_t i = 0; i < hollow.size(); ++i)
-    if (!hollow[i].empty() && hollow[i].size() <= kMostWalls) floors.push_back(i);
+    if (!hollow[i].empty() && hollow[i].size() <= kMostPocketWalls) floors.push_back(i);
   std::stable_sort(floors.begin(), floors.end(), [&](std::uint32_t a, std::uint32_t b) {
     return hollow[a].size() > hollow[b].size();
   });

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -15,19 +14,17 @@ namespace mortise {
 namespace {
 
 // Linear programs of a query.
-constexpr std::uint64_t kMostPrograms = 1000;
+constexpr std::uint64_t kMostProgramsOfQuery = 1000;
 // Windows of a query, and how often one is halved: ten times along each axis, to a thousandth.
 constexpr std::size_t kMostWindows = 96;
-constexpr int kMostHalvings = 30;
+constexpr int kMostWindowHalvings = 30;
 // How often a window is made tighter at most; again where it got shorter than this share.
 constexpr int kTightenings = 4;
 constexpr double kWorthTightening = 0.8;
 // A window is not halved when it is narrower than this share of the reach.
-constexpr double kNarrow = 0.5;
+constexpr double kNarrowWindow = 0.5;
 // A wider window is made with room, so that it is wide enough for what it newly contains.
 constexpr double kReachShare = 1.01;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Where both parts can be.
 Box core_of(const SharpQuery& query) {
@@ -95,7 +92,7 @@ class SharpSearch {
     const Box& core = window->core;
     WindowPair* windows = &*window->pair;
     const bool narrow =
-        (core.hi - core.lo).maxCoeff() < kNarrow * reach_mm_ || level >= kMostHalvings;
+        (core.hi - core.lo).maxCoeff() < kNarrowWindow * reach_mm_ || level >= kMostWindowHalvings;
     bool crowded = false;
     for (const SharpWindow& part : windows->part)
       crowded |= part.state() == SharpWindow::State::kCrowded;
@@ -120,7 +117,7 @@ class SharpSearch {
   DeepestPoint::Found find(const DeepestPoint& deepest, WindowPair& windows, bool least_bodies) {
     const DeepestPoint::Found found = deepest.find(windows, least_bodies, best_);
     decision_.programs += found.programs;
-    if (decision_.programs > kMostPrograms) give_up(SharpDecision::State::kTooMuch);
+    if (decision_.programs > kMostProgramsOfQuery) give_up(SharpDecision::State::kTooMuch);
     return found;
   }
 

@@ -13,12 +13,10 @@ constexpr double kHeld_mm = 1e-9;
 // The other branches of a clause overlap the first by this, so that no point falls between them.
 constexpr double kBranchOverlap_mm = 1e-7;
 // Linear programs of one window before it is halved.
-constexpr std::uint64_t kMostPrograms = 400;
+constexpr std::uint64_t kMostProgramsOfWindow = 400;
 
 // Where less faces the other part, the gap is told as if so much did.
-constexpr double kLeastFacing = 0.05;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeastFaced = 0.05;
 
 Box moved(const Pose& X, const Box& box) {
   Box moved;
@@ -187,7 +185,7 @@ DeepestPoint::Found DeepestPoint::find(WindowPair& windows, bool least_bodies, d
   while (!open.empty()) {
     const Node node = open.top();
     found.bound = node.bound;
-    if (node.bound <= best || found.programs > kMostPrograms) return found;
+    if (node.bound <= best || found.programs > kMostProgramsOfWindow) return found;
     open.pop();
     int part = 0;
     const FaceSet clause = violated(windows, node.optimum, least_bodies, part);
@@ -222,7 +220,7 @@ void DeepestPoint::tell_faces(const WindowPair& windows, const Node& node, Found
     const LinearProgram::Row row = program.row_of(id);
     if (literal.part == 0) sum += weights[i] * Vec3(row.g[0], row.g[1], row.g[2]);
   }
-  found.facing = std::clamp(sum.norm(), kLeastFacing, 1.0);
+  found.facing = std::clamp(sum.norm(), kLeastFaced, 1.0);
 }
 
 // A child for each face of the clause: it is held, and those before it fail.

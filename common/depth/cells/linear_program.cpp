@@ -14,7 +14,7 @@ constexpr double kFulfilled = 1e-10;
 // Beyond this no point fulfils the rows.
 constexpr double kInfeasible = 1e-9;
 // Rows whose normals are shorter have become parallel to one that is active.
-constexpr double kParallel = 1e-11;
+constexpr double kDependent = 1e-11;
 // Sums of five products: their rounding, with room.
 constexpr double kRoundings = 64.0;
 
@@ -102,7 +102,7 @@ bool LinearProgram::push(Level& level, int variables, const Reduced& row) {
   double length = 0.0;
   for (int k = 0; k < variables; ++k) length += row.g[k] * row.g[k];
   length = std::sqrt(length);
-  if (length < kParallel) return row.h >= -kInfeasible;
+  if (length < kDependent) return row.h >= -kInfeasible;
   Reduced scaled = row;
   for (int k = 0; k < variables; ++k) scaled.g[k] /= length;
   scaled.h /= length;
@@ -118,7 +118,7 @@ bool LinearProgram::solve_on(int variables, const Reduced& row, std::size_t rows
   int p = 0;
   for (int k = 1; k < variables; ++k)
     if (std::fabs(row.g[k]) > std::fabs(row.g[p])) p = k;
-  if (std::fabs(row.g[p]) < kParallel) return false;
+  if (std::fabs(row.g[p]) < kDependent) return false;
   below.rows.clear();
   const auto reduced = [&](const Vector& g, double h, int id) {
     const double share = g[p] / row.g[p];
@@ -179,7 +179,7 @@ LinearProgram::Vector LinearProgram::multipliers(const Optimum& optimum) const {
     int pivot = i;
     for (int k = i + 1; k < n; ++k)
       if (std::fabs(m[k][i]) > std::fabs(m[pivot][i])) pivot = k;
-    if (std::fabs(m[pivot][i]) < kParallel) continue;
+    if (std::fabs(m[pivot][i]) < kDependent) continue;
     std::swap(m[i], m[pivot]);
     for (int k = 0; k < n; ++k) {
       if (k == i) continue;
@@ -189,7 +189,7 @@ LinearProgram::Vector LinearProgram::multipliers(const Optimum& optimum) const {
   }
   Vector weights{};
   for (int i = 0; i < n; ++i)
-    if (std::fabs(m[i][i]) >= kParallel) weights[i] = std::max(0.0, m[i][n] / m[i][i]);
+    if (std::fabs(m[i][i]) >= kDependent) weights[i] = std::max(0.0, m[i][n] / m[i][i]);
   return weights;
 }
 

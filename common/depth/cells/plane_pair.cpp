@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/ccd/distance.h"
 #include "common/depth/cells/sharp_window.h"
@@ -16,8 +15,6 @@ namespace {
 constexpr double kDepths = 2.0, kDeeper = 4.0, kAnyDepth = 2.0;
 // A place for a later look lies this share of the way from the witness to the face of A.
 constexpr double kTowardsFace = 0.9;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Offsets of both layers and both parts, mm.
 double all_offsets_mm(const PairFrame& pair) {

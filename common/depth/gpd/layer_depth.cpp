@@ -9,13 +9,13 @@ namespace mortise {
 namespace {
 
 // Planes around a corner are one where normals and offsets differ by less.
-constexpr double kSameNormal = 1e-7, kSame_mm = 1e-12;
+constexpr double kSamePlaneNormal = 1e-7, kSame_mm = 1e-12;
 // A corner misses its planes by no more than this share of the largest offset.
 constexpr double kMissShare = 1e-9;
 // A triangle may turn by no more than this (cosine) while its corners move.
 constexpr double kLeastTurn = 0.99;
 // Directions in which the planes around a corner say nothing.
-constexpr double kFlat = 1e-6;
+constexpr double kNoDirection = 1e-6;
 // Facets of one face that stand for a round surface meet at no more than this (cosine).
 constexpr double kSmooth = 0.7;
 
@@ -59,7 +59,7 @@ bool meet(const std::vector<Moved>& planes, bool outer, Vec3& d) {
     mean += planes[i].n;
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(kFlat);
+  solver.setThreshold(kNoDirection);
   d = solver.compute(m).solve(h);
   double lack = 0.0, least = 1.0;
   mean.normalize();
@@ -84,13 +84,13 @@ void add_plane(const Moved& plane, std::vector<Moved>& around) {
   const auto same = std::find_if(around.begin(), around.end(), [&](const Moved& other) {
     if (other.round_face != plane.round_face) return false;
     return plane.round_face >= 0 ? other.n.dot(plane.n) > kSmooth
-                                 : (other.n - plane.n).norm() < kSameNormal &&
+                                 : (other.n - plane.n).norm() < kSamePlaneNormal &&
                                        std::fabs(other.by_mm - plane.by_mm) < kSame_mm;
   });
   Moved& into = same != around.end() ? *same : around.emplace_back(plane);
   if (plane.round_face >= 0 &&
       std::none_of(into.facets.begin(), into.facets.end(),
-                   [&](const Vec3& n) { return (n - plane.n).norm() < kSameNormal; }))
+                   [&](const Vec3& n) { return (n - plane.n).norm() < kSamePlaneNormal; }))
     into.facets.push_back(plane.n);
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMostRounds = 40, kMostBoundRounds = 60;
 // Rounds without gain after which the program ends, and what counts as one.
 constexpr int kIdleRounds = 6;
-constexpr double kGain = 2e-5;
+constexpr double kRoundGain = 2e-5;
 // Gap to the lower bound, as a share, at which it has converged.
 constexpr double kConverged = 2e-4;
 // Keeps the metric positive where all weight is on few corners.
@@ -119,7 +119,7 @@ bool Minimax::solve(const std::vector<Row>& rows, Vec6& xi) {
       break;
     double mean_square = 0.0;
     const double longest = reweigh(now, mean_square);
-    if (longest < best * (1.0 - kGain)) last_gain = round;
+    if (longest < best * (1.0 - kRoundGain)) last_gain = round;
     if (longest < best) {
       best = longest;
       xi = now;

@@ -10,7 +10,7 @@ namespace mortise::gpd {
 namespace {
 
 // Boxes that may hold a point that is faster by no more than this share are left alone.
-constexpr double kSlackShare = 1e-9;
+constexpr double kTwistSlack = 1e-9;
 // Below this turn, rad, the series of the coefficients of exp are exact to rounding.
 constexpr double kSmallTurn_rad = 1e-3;
 
@@ -95,7 +95,7 @@ double longest_path_mm(const Solid& part, const Pose& X_W, const TwistFrame& fra
   double most2 = 0.0;
   for (const Vec3& x : part.outline().corners)
     most2 = std::max(most2, field.at(x - bvh.origin).squaredNorm());
-  constexpr double kSlack2 = (1.0 + kSlackShare) * (1.0 + kSlackShare);
+  constexpr double kSlack2 = (1.0 + kTwistSlack) * (1.0 + kTwistSlack);
   std::int32_t stack[Bvh::kMostWaiting];
   int top = 0;
   stack[top++] = bvh.root;
@@ -114,7 +114,7 @@ double longest_path_mm(const Solid& part, const Pose& X_W, const TwistFrame& fra
     for (int k = 0; k < node.count; ++k)
       if (child2[k] > most2 * kSlack2) stack[top++] = node.child[k];
   }
-  return std::sqrt(most2) * (1.0 + kSlackShare);
+  return std::sqrt(most2) * (1.0 + kTwistSlack);
 }
 
 double longest_path_brute_force_mm(const Solid& part, const Pose& X_W, const TwistFrame& frame,

@@ -45,7 +45,6 @@ constexpr double kSamePushCosine = 0.95;
 constexpr double kLeastApproach = 0.1;
 // Path by which a part leaves the brink of being real, mm.
 constexpr double kLeaveBrink_mm = 0.05;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 static_assert(4.0 * kAdvanceAccuracy_mm <= kClashHysteresis_mm);
 
 // Upper bound of the lower outward offset of any face: what the real surface has at least.

@@ -23,8 +23,6 @@ constexpr std::uint64_t kTickOverlapCap = 10'000;
 // Tests of the look back from the end of a motion that passes through something.
 constexpr std::uint64_t kLeastWorkBack = 2'000;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // The two motions of a pair over some part of the tick; t_contact and t_enter (see PairWork) count
 // in them, 1: not within them.
 struct SegmentMotion {
