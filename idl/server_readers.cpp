@@ -6,6 +6,13 @@
 #include "mortisePubSubTypes.h"
 
 namespace mortise {
+namespace {
+
+// A beat says that its user is there, and comes five times a second. Several are taken at once,
+// half a beat late at most, so that most ticks need not look for them.
+constexpr std::chrono::milliseconds kPresencePeriod{100};
+
+}  // namespace
 
 void ServerReaders::know(std::unique_ptr<PeerIdentities> identities) {
   identities_ = std::move(identities);
@@ -99,6 +106,9 @@ void ServerReaders::take_request(const wire::Request& sample, const ClientKey& k
 }
 
 void ServerReaders::take_presence(ServerInput& input) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_presence_) return;
+  next_presence_ = now + kPresencePeriod;
   take_each<wire::Presence>(*presence_, [&](const wire::Presence& sample, const ClientKey& key) {
     const UserId user{sample.user()};
     if (user && owns(key, user)) input.heartbeats.push_back(user);

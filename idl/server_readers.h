@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -53,6 +54,7 @@ class ServerReaders {
   dds::DataReader *presence_ = nullptr, *requests_ = nullptr, *increments_ = nullptr;
   std::map<UserId, ClientKey> joined_;
   std::set<ClientKey> present_;
+  std::chrono::steady_clock::time_point next_presence_{};
   ChannelCounters counters_;
 };
 
