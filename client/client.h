@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -55,9 +56,11 @@ class Client final : public ClientCommands {
   /// Takes what has arrived, never blocks, sends what is due (joins, heartbeats, snapshot
   /// requests).
   ClientUpdate poll();
-  /// Returns when something may have come for poll(), or after so long (seconds) at the latest.
+  /// Returns when something may have come for poll(), or after so long (seconds) at the latest. No
+  /// later than a fiftieth of a second, because poll() sends what is due meanwhile.
   void await_news(double at_most_s) {
-    channel_.await_input(static_cast<std::int64_t>(at_most_s * 1e9));
+    constexpr double kLongestWait_s = 0.02;
+    channel_.await_input(static_cast<std::int64_t>(std::min(at_most_s, kLongestWait_s) * 1e9));
   }
 
   bool synced() const {

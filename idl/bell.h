@@ -22,16 +22,6 @@ class Bell {
   bool rung_ = false;
 };
 
-/// Rings when a sample comes.
-class SampleBell final : public dds::DataReaderListener {
- public:
-  void await(std::int64_t at_most_ns) { bell_.await(at_most_ns); }
-  void on_data_available(dds::DataReader*) override { bell_.ring(); }
-
- private:
-  Bell bell_;
-};
-
 /// A reader that rings a bell, and knows whether a sample has come since it was last asked: most
 /// looks at most readers would find nothing.
 struct Inlet final : dds::DataReaderListener {

@@ -104,7 +104,8 @@ class DdsServerChannel final : public StandbyChannel {
   ServerWriters writers_;
   ServerReaders readers_{writers_};
   PeerServers servers_;
-  SampleBell takings_;
+  Bell takings_;
+  Inlet takings_inlet_{takings_};
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Heartbeat> beat_;  ///< after the participant, whose writer it speaks for
   std::uint64_t term_ = 0;           ///< 0 while another leads
@@ -185,7 +186,7 @@ Status DdsServerChannel::open_endpoints() {
   // The writers first: who is heard can be answered.
   writers_.open(*participant_, status);
   participant_->open_writer<wire::ServerTickPubSubType>(Topic::kTick, ticks_, status, &servers_);
-  participant_->open_reader<wire::ServerTakenPubSubType>(Topic::kTaken, &takings_, follows_,
+  participant_->open_reader<wire::ServerTakenPubSubType>(Topic::kTaken, &takings_inlet_, follows_,
                                                          status);
   readers_.open(*participant_, status);
   return status;

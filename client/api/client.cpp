@@ -12,8 +12,7 @@ namespace mortise::api {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kLongestWait_s = 0.02;  // what is due is sent by a look for news
-constexpr double kAnswer_s = 5.0;        // for the answer to a request
+constexpr double kAnswer_s = 5.0;  // for the answer to a request
 // The longest wait that a caller may ask for: beyond it the sum with the clock could overflow.
 constexpr double kLongest_s = 3600.0;
 
@@ -84,7 +83,7 @@ struct Client::Impl {
       if (until()) return true;
       const double left_s = std::chrono::duration<double>(end - Clock::now()).count();
       if (left_s <= 0.0) return false;
-      client.await_news(std::min(left_s, kLongestWait_s));
+      client.await_news(left_s);
     }
   }
 

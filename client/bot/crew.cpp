@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "common/math/interval.h"
 #include "idl/dds_channel.h"
 
 namespace mortise {
@@ -15,7 +16,6 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr double kLongestWait_s = 0.02;  // what is due is sent by a look for news
 // An observer measures no latency: one look for the news of several ticks.
 constexpr double kObserverPause_s = 0.010;
 constexpr double kGoodbye_s = 0.2;  // for leave messages to go out
@@ -100,7 +100,7 @@ bool Crew::wait_until_joined() {
       say_why_not_joined();
       return false;
     }
-    poll(kLongestWait_s);
+    poll(kInfinity);
   }
   return true;
 }
@@ -109,7 +109,7 @@ bool Crew::wait_for_people() {
   const auto is_person = [](const UserInfo& user) {
     return user.present && user.role == Role::kDesigner;
   };
-  while (!stop_asked && std::ranges::none_of(client_.users(), is_person)) poll(kLongestWait_s);
+  while (!stop_asked && std::ranges::none_of(client_.users(), is_person)) poll(kInfinity);
   return !stop_asked;
 }
 
@@ -148,7 +148,7 @@ void Crew::listen(double seconds) {
   const auto start = SteadyClock::now();
   for (double left_s = seconds; !stop_asked && left_s > 0.0;
        left_s = seconds - seconds_since(start))
-    poll(std::min(left_s, kLongestWait_s));
+    poll(left_s);
 }
 
 void Crew::act() {
@@ -171,7 +171,7 @@ void Crew::act() {
       if (all_done) break;
     }
     const double until_next_s = next_s - seconds_since(start);
-    poll(std::clamp(until_next_s, 0.0, kLongestWait_s));
+    poll(std::max(until_next_s, 0.0));
   }
   acted_s_ = seconds_since(start);
 }

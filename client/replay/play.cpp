@@ -16,7 +16,6 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr double kFastest = 100.0;            // what lies before the piece that is asked for
-constexpr double kLongestWait_s = 0.02;       // what is due is sent by a look for news
 constexpr double kLeastPeriod_s = 1.0 / 120;  // between two increments of one user for one part
 // A reply takes a tick and a round trip. After this the play goes on without it.
 constexpr double kReplyWait_s = 1.0;
@@ -165,7 +164,7 @@ class Player {
       if (done()) return true;
       const double left_s = seconds(end - SteadyClock::now());
       if (left_s <= 0.0) return false;
-      client_.await_news(std::min(left_s, kLongestWait_s));
+      client_.await_news(left_s);
     }
   }
   static SteadyClock::duration in(double s) {
@@ -184,7 +183,7 @@ class Player {
       listen();
       send_due();
       const double left_s = seconds(due_ - SteadyClock::now());
-      if (left_s > 0.0) client_.await_news(std::min(left_s, kLongestWait_s));
+      if (left_s > 0.0) client_.await_news(left_s);
     }
   }
 
