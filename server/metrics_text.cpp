@@ -176,6 +176,8 @@ void add_stages(Text& out, const SessionFigures& f) {
   out.value(s.distance_queries, "kind=\"distance\"");
   out.value(s.depth_queries, "kind=\"depth\"");
   out.value(s.event_time_queries, "kind=\"event time\"");
+  out.one("mortise_event_times_at_latest_total", "counter",
+          "Times of events that a work cap left unproven to be the first", s.event_times_at_latest);
 }
 
 void add_process(Text& out, const SessionFigures& f, std::uint64_t resident) {

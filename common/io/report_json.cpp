@@ -151,7 +151,8 @@ Json json_of(const StepCounters& c) {
   json["queries"] = {{"first_contact", c.first_contact_queries},
                      {"distance", c.distance_queries},
                      {"depth", c.depth_queries},
-                     {"event_times", c.event_time_queries}};
+                     {"event_times", c.event_time_queries},
+                     {"event_times_at_latest", c.event_times_at_latest}};
   json["judged"] = {{"with_bands", c.judged_with_bands},
                     {"plain", c.judged_plain},
                     {"regions_decided_early", c.regions_decided_early},
@@ -329,6 +330,9 @@ std::string stage_table(const StepCounters& c) {
   text += fmt::format("  {:<14}{:>12}{:>12}  {} decided before their depth was\n", "refined",
                       c.regions_decided_early + c.regions_refined, c.regions_refined,
                       c.regions_decided_early);
+  if (c.event_times_at_latest > 0)
+    text += fmt::format("  {} time(s) of events are told as at the latest (work cap)\n",
+                        c.event_times_at_latest);
   if (c.not_examined > 0) {
     text += fmt::format(
         "  {} pair(s) were NOT examined to the end (work cap); they are not "

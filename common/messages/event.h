@@ -26,7 +26,8 @@ struct ClashEvent {
   double t_contact = 1.0;       ///< time of first contact of the meshes inside the tick, 0..1
   double t_potential = kNever;  ///< 0..1: before it no admissible pair of real surfaces interferes
   double t_real = kNever;       ///< 0..1: first time at which every admissible pair interferes;
-                                ///< both times are those of the pair of parts
+                                ///< both times are those of the pair of parts, and at the latest
+                                ///< where a search met its cap
   std::uint64_t begin_tick = 0;
   CollisionClass worst_class = CollisionClass::kNone;
   Interval worst_delta_mm;

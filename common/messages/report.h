@@ -28,6 +28,8 @@ struct StepCounters {
   std::uint64_t contacts_clear = 0, contacts_undecided = 0;
   std::uint64_t first_contact_queries = 0, distance_queries = 0, depth_queries = 0;
   std::uint64_t event_time_queries = 0;  ///< searches for when an event became possible or real
+  /// Those that a work cap ended: the time is that of the event at the latest.
+  std::uint64_t event_times_at_latest = 0;
   /// Pairs judged (depth_queries that asked for verdicts): with bands, or as plain meshes because
   /// nothing is declared of either part. Plain pairs ask for no deviation and no tolerance.
   std::uint64_t judged_with_bands = 0, judged_plain = 0;

@@ -17,7 +17,7 @@ constexpr std::uint8_t kTotalsLayout = 2;
 
 std::vector<std::byte> encode(const Checkpoint& state) {
   Writer counters;
-  counters(state.counters);
+  counters(state.counters, state.counters.event_times_at_latest);
   const std::vector<std::byte> counted = counters.take();
   ByteWriter out;
   out.u8(kStateLayout);
@@ -41,6 +41,7 @@ bool decode(std::span<const std::byte> bytes, Checkpoint& out, bool keep) {
   out.hash = in.string();
   Reader counted(in.raw(in.varint()));
   counted(out.counters);
+  if (!counted.at_end()) counted(out.counters.event_times_at_latest);  // files of before have none
   if (!counted.at_end()) return false;
   const auto state = in.raw(in.left());
   if (!in.ok() || content_hash(state) != out.hash) return false;

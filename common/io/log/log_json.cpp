@@ -14,7 +14,6 @@ namespace mortise::log_json {
 namespace {
 
 using nlohmann::ordered_json;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
@@ -219,6 +218,7 @@ void each_counter(const StepCounters& counters, const Visit& visit) {
   visit("distance_queries", counters.distance_queries);
   visit("depth_queries", counters.depth_queries);
   visit("event_time_queries", counters.event_time_queries);
+  visit("event_times_at_latest", counters.event_times_at_latest);
   visit("judged_with_bands", counters.judged_with_bands);
   visit("judged_plain", counters.judged_plain);
   visit("regions_decided_early", counters.regions_decided_early);

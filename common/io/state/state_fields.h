@@ -199,15 +199,17 @@ void fields(A& a, StageCount& x) {
   auto& [in, out] = x;
   a(in, out);
 }
+/// But for event_times_at_latest, which follows at the end of what files of before lack it in.
 template <class A>
 void fields(A& a, StepCounters& x) {
   auto& [increments, refused, moves, moves_below_rounding, pairs, pairs_static, pairs_still,
          pairs_excluded, pairs_boxes_apart, pairs_budget, contacts, contacts_clear,
          contacts_undecided, first_contact_queries, distance_queries, depth_queries,
-         event_time_queries, judged_with_bands, judged_plain, regions_decided_early,
-         regions_refined, verdicts, verdicts_by_class, stopped_parts, rounds, slid_parts,
-         slide_legs, slide_holds, slides_cut_short, box_tests, triangle_tests, depth_evaluations,
-         parts_without_inside, pairs_waiting, pairs_held_again, pushes_cut, not_examined] = x;
+         event_time_queries, event_times_at_latest, judged_with_bands, judged_plain,
+         regions_decided_early, regions_refined, verdicts, verdicts_by_class, stopped_parts, rounds,
+         slid_parts, slide_legs, slide_holds, slides_cut_short, box_tests, triangle_tests,
+         depth_evaluations, parts_without_inside, pairs_waiting, pairs_held_again, pushes_cut,
+         not_examined] = x;
   a(increments, refused, moves, moves_below_rounding, pairs, pairs_static, pairs_still,
     pairs_excluded, pairs_boxes_apart, pairs_budget, contacts, contacts_clear, contacts_undecided,
     first_contact_queries, distance_queries, depth_queries, event_time_queries, judged_with_bands,
@@ -230,6 +232,10 @@ template <class A>
 void fields(A& a, SessionStatistics& x) {
   a(x.ticks_, x.counters_, x.by_pair_, x.by_part_, x.by_user_, x.clashes_, x.open_, x.ended_,
     x.total_, x.rows_left_out_);
+  if constexpr (A::reads()) {
+    if (a.at_end()) return;  // of a file of before
+  }
+  a(x.counters_.event_times_at_latest);
 }
 
 /// What a pair has of its own as far as it is not said again with the changes of tolerances.

@@ -7,8 +7,8 @@
 namespace mortise {
 namespace {
 
-// Evaluations of each of the two searches, some 10 ms of work. At the cap a time of that kind
-// is told that is not proven to be the first, and the pair is counted as not examined.
+// Evaluations of each of the two searches, some 10 ms of work. At the cap a time of that kind is
+// told that is not proven to be the first.
 constexpr std::uint64_t kEventTimeWorkCap = 3'000;
 // The same within a tick that has others to serve: its events are told to a share of the tick.
 constexpr std::uint64_t kEventTimeWorkCapOfTick = 750;
@@ -24,10 +24,13 @@ CollisionClass worst_told(const PairWork& pair) {
   return worst;
 }
 
-void count(PairWork& pair, std::uint64_t evaluations, bool capped) {
+// At the cap: what has the class at the end of the motion has it since that time at the latest. Of
+// anything else it is not known whether it was so on the way.
+void count(PairWork& pair, std::uint64_t evaluations, bool capped, bool is_told) {
   ++pair.counts.event_time_queries;
   pair.counts.depth_evaluations += evaluations;
-  if (capped) pair.undecided = true;
+  if (capped && is_told) ++pair.counts.event_times_at_latest;
+  if (capped && !is_told) pair.undecided = true;
 }
 
 // Where the search leaves more of the tick open between what is clear and what is not, the time at
@@ -63,13 +66,13 @@ double halved(PairWork& pair, const SweptQuery& swept, double clear, double know
 }
 
 // With bands the two times differ, and neither is that of the meshes.
-void search(PairWork& pair, CcdScratch& ccd) {
+void search(PairWork& pair, CollisionClass worst, CcdScratch& ccd) {
   const auto in_tick = [&](double t) { return pair.tau + (1.0 - pair.tau) * t; };
   SweptQuery query = swept_query(pair);
   query.at_target.work_cap =
       pair.cap_of(pair.limited ? kEventTimeWorkCapOfTick : kEventTimeWorkCap);
   const PossibleTime possible = find_possible_time(query, ccd);
-  count(pair, possible.evaluations, possible.capped);
+  count(pair, possible.evaluations, possible.capped, worst >= CollisionClass::kPotential);
   const bool close = possible.t_possible - possible.t_clear <= kClose;
   if (possible.becomes_possible)
     pair.t_potential = in_tick(close ? possible.t_clear : possible.t_possible);
@@ -83,7 +86,7 @@ void search(PairWork& pair, CcdScratch& ccd) {
     pair.t_real = pair.t_stop;
   } else if (!pair.no_inside() && !pair.never_real) {
     const InterferenceTime real = find_interference_time(query, ccd);
-    count(pair, real.evaluations, real.capped);
+    count(pair, real.evaluations, real.capped, worst >= CollisionClass::kReal);
     if (real.becomes_real) pair.t_real = in_tick(real.t_real);
     if (real.capped && !real.becomes_real)
       pair.t_real = in_tick(halved(pair, query, real.t_free, real.t_real, Asked::kReal, ccd));
@@ -98,7 +101,7 @@ void find_event_times(PairWork& pair, double t_end, CcdScratch& ccd) {
   if (pair.placed) {
     t_end = 0.0;
   } else if (!pair.plain()) {
-    search(pair, ccd);
+    search(pair, worst, ccd);
   } else if (pair.meets) {
     // The meshes are the parts: they interfere from where they press in, but for the rounding of
     // their files.

@@ -38,6 +38,7 @@ void accumulate(StepCounters& into, const StepCounters& from) {
   into.distance_queries += from.distance_queries;
   into.depth_queries += from.depth_queries;
   into.event_time_queries += from.event_time_queries;
+  into.event_times_at_latest += from.event_times_at_latest;
   into.judged_with_bands += from.judged_with_bands;
   into.judged_plain += from.judged_plain;
   into.regions_decided_early += from.regions_decided_early;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "common/io/log/log_checkpoint.h"
 #include "common/session/memory/session_state.h"
 #include "tests/support/ball_bed.h"
 #include "tests/support/effort.h"
@@ -306,6 +307,24 @@ TEST(Checkpoint, NumbersWithoutSenseAreRefusedOrComputedWith) {
     (void)encode_state(world);
   }
   EXPECT_GT(computed, 20);
+}
+
+// Written by a program that did not count them: the last eight bytes of what is counted are
+// missing.
+TEST(CheckpointRecord, TotalsOfBeforeLackEventTimesAtLatest) {
+  StepReport report;
+  report.counters.event_times_at_latest = 3;
+  report.counters.not_examined = 2;
+  SessionStatistics totals;
+  totals.add(report);
+  const std::vector<std::byte> bytes = log_records::encode(totals);
+  SessionStatistics read;
+  ASSERT_TRUE(log_records::decode(bytes, read));
+  EXPECT_TRUE(same_counts(read.counters(), totals.counters()));
+  ASSERT_TRUE(log_records::decode(std::span(bytes).first(bytes.size() - 8), read));
+  EXPECT_EQ(read.counters().event_times_at_latest, 0U);
+  EXPECT_EQ(read.counters().not_examined, 2U);
+  EXPECT_FALSE(log_records::decode(std::span(bytes).first(bytes.size() - 9), read));
 }
 
 }  // namespace

@@ -126,6 +126,32 @@ TEST(EventTimes, OfAPegPushedAsideInItsBore) {
   EXPECT_NEAR(0.03 * report.events[0].t_real, 0.0205, 2e-4);
 }
 
+// Two fine balls come into each other within one tick. The search for the first time at which they
+// may interfere ends at its cap. The clash is told all the same: it is no pair that was not
+// examined.
+TEST(EventTimes, AtTheLatestAreCounted) {
+  SessionBuilder session(Policy::kReport);
+  const UserId ada = session.join("ada");
+  const TriangleMesh ball = shapes::sphere(20.0, Vec3::Zero(), 50);
+  const Vec3 aside = Vec3(1, 0, -0.7).normalized();
+  const PartId still = session.add("still", ball, at(0, 0, 0), false);
+  const PartId pushed = session.add("pushed", ball, Pose::translation(42.5 * aside), true);
+  for (const PartId part : {still, pushed}) session.set_tolerance(part, 0.02);
+  session.grab(ada, pushed);
+  Scratch scratch;
+  StepReport report;
+  for (int i = 0; i < 4; ++i)
+    report = play_tick(session.world, {session.push(ada, pushed, -0.7 * aside)}, scratch);
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].verdict.collision_class, CollisionClass::kReal);
+  EXPECT_EQ(report.counters.event_times_at_latest, 1U);
+  EXPECT_EQ(report.counters.not_examined, 0U);
+  EXPECT_TRUE(report.unexamined.empty());
+  // Of the true balls: possible at a distance of 40.04. The time told is not earlier than that.
+  EXPECT_GE(report.events[0].t_potential, (40.4 - 40.04) / 0.7);
+  EXPECT_LE(report.events[0].t_potential, report.events[0].t_real);
+}
+
 // Ticks of +-amplitude about a place; how many events that makes.
 std::size_t events_of_trembling(double x_mm, double tolerance_mm, double amplitude_mm,
                                 int ticks = 1000) {
