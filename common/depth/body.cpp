@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/base/constants.h"
+#include "common/depth/triangles_in.h"
 
 namespace mortise {
 namespace {
@@ -178,13 +179,6 @@ Body::Body(const Solid& solid_of, const SurfaceBand& band_of)
       double& largest = largest_offset_mm[static_cast<int>(layer)];
       largest = std::max({largest, std::fabs(range.lo), std::fabs(range.hi)});
     }
-}
-
-Vec3 Body::normal(std::uint32_t triangle) const {
-  const Vec3 n = (mesh->corner(triangle, 1) - mesh->corner(triangle, 0))
-                     .cross(mesh->corner(triangle, 2) - mesh->corner(triangle, 0));
-  const double length = n.norm();
-  return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
 }
 
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "common/depth/body_index.h"
@@ -34,7 +33,7 @@ struct Body {
   std::uint16_t face_index(std::uint32_t triangle) const {
     return band->face_of_triangle.empty() ? std::uint16_t{0} : band->face_of_triangle[triangle];
   }
-  Vec3 normal(std::uint32_t triangle) const;
+  const Vec3& normal(std::uint32_t triangle) const { return solid->topology().normal[triangle]; }
   const FaceEnds& ends_of(std::uint16_t face) const;
   /// Extent of a face along the axis of its declared surface, from the surface's point, mm.
   const Interval& extent_of(std::uint16_t face) const { return ends_of(face).extent_mm; }
@@ -84,48 +83,5 @@ struct Body {
   std::int32_t find_faces_of_children(std::int32_t child) const;
   std::shared_ptr<BodyIndex> index_;
 };
-
-/// Calls visit(triangle, corners) for every triangle whose box is within the given box (part
-/// frame). A visit that tells false ends it.
-template <class Visit>
-void for_each_triangle_in(const Bvh& bvh, const Box& box, Visit&& visit) {
-  std::array<std::int32_t, Bvh::kMostWaiting> stack;
-  int top = 0;
-  stack[top++] = bvh.root;
-  const Vec3 center = box.center() - bvh.origin, half = box.half();
-  while (top > 0) {
-    const std::int32_t child = stack[--top];
-    if (child < 0) {
-      const Bvh::Leaf& leaf = bvh.leaves[~child];
-      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-        const std::array<double, 9>& c = bvh.corners[i];
-        bool apart = false;
-        for (int k = 0; k < 3; ++k) {
-          const double lo = std::min(c[k], std::min(c[3 + k], c[6 + k]));
-          const double hi = std::max(c[k], std::max(c[3 + k], c[6 + k]));
-          apart |= lo > box.hi[k] || hi < box.lo[k];
-        }
-        if (apart) continue;
-        const std::array<Vec3, 3> corners = {Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5]),
-                                             Vec3(c[6], c[7], c[8])};
-        if constexpr (std::is_same_v<std::invoke_result_t<Visit, std::uint32_t, decltype(corners)>,
-                                     bool>) {
-          if (!visit(bvh.triangle_order[i], corners)) return;
-        } else {
-          visit(bvh.triangle_order[i], corners);
-        }
-      }
-      continue;
-    }
-    const Bvh::Node& node = bvh.nodes[child];
-    double gap[3][Bvh::kWidth];
-    for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < Bvh::kWidth; ++k)
-        gap[c][k] = std::fabs(center[c] - static_cast<double>(node.local_center[c][k])) -
-                    static_cast<double>(node.half[c][k]) - half[c];
-    for (int k = node.count - 1; k >= 0; --k)
-      if (std::max(gap[0][k], std::max(gap[1][k], gap[2][k])) <= 0.0) stack[top++] = node.child[k];
-  }
-}
 
 }  // namespace mortise

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/depth/triangles_in.h"
+
 namespace mortise {
 namespace {
 

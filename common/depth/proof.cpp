@@ -7,6 +7,7 @@
 #include "common/base/check.h"
 #include "common/depth/facing_tangent.h"
 #include "common/depth/known_depth.h"
+#include "common/depth/triangles_in.h"
 #include "common/depth/wall_mean.h"
 
 namespace mortise {
@@ -114,17 +115,13 @@ class Neighbourhood {
                                   patch_.thickness() + proof_.rounding_mm;
     Box box;
     for (int i = 0; i < patch_.count; ++i) box.add(patch_.points[i]);
-    slab_normal_ = patch_.normal;
-    slab_lo_ = std::numeric_limits<double>::infinity();
-    slab_hi_ = -slab_lo_;
+    Slab slab{patch_.normal, {kInfinity, -kInfinity}};
     for (int i = 0; i < patch_.count; ++i) {
-      const double h = slab_normal_.dot(patch_.points[i]);
-      slab_lo_ = std::min(slab_lo_, h - reach);
-      slab_hi_ = std::max(slab_hi_, h + reach);
+      const double h = slab.normal.dot(patch_.points[i]);
+      slab.between_mm = hull(slab.between_mm, {h - reach, h + reach});
     }
     bool failed = false;
     const auto visit = [&](std::uint32_t t, const Corners& c) {
-      if (outside_slab(c)) return true;
       if (scratch_.near.size() <= kMostOpen) scratch_.near.push_back({t, c});
       failed = !take(t, c);
       return !failed;
@@ -134,7 +131,7 @@ class Neighbourhood {
     nearest_ = {k_.mesh->corner(first, 0), k_.mesh->corner(first, 1), k_.mesh->corner(first, 2)};
     const bool nearest_counts = std::fabs(proof_.at_center.depth_mm) <= reach + patch_.radius_mm;
     if (nearest_counts && !take(first, nearest_)) return false;
-    for_each_triangle_in(k_.solid->bvh(), box.grown(reach), visit);
+    for_each_triangle_in(k_.solid->bvh(), box.grown(reach), slab, visit);
     if (failed) return false;
     // The whole patch is on the centre's side, and not deeper than u.
     if (scratch_.near.empty()) return true;
@@ -144,11 +141,6 @@ class Neighbourhood {
   }
 
  private:
-  bool outside_slab(const Corners& c) const {
-    const double a = slab_normal_.dot(c[0]), b = slab_normal_.dot(c[1]), d = slab_normal_.dot(c[2]);
-    return std::min({a, b, d}) > slab_hi_ || std::max({a, b, d}) < slab_lo_;
-  }
-
   bool all_covered() const {
     for (const ProofScratch::Near& open : scratch_.open)
       if (!covered(open.triangle, open.corners)) return false;
@@ -391,9 +383,7 @@ class Neighbourhood {
   const Body& k_;
   Vec3 up_;
   Corners nearest_;
-  Vec3 slab_normal_ = Vec3::Zero();
   double reach_ = 0.0;
-  double slab_lo_ = 0.0, slab_hi_ = 0.0;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "common/depth/cells/plane_pair.h"
 #include "common/depth/convex_edge.h"
+#include "common/depth/triangles_in.h"
 
 namespace mortise {
 namespace {

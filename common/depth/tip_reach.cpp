@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/depth/cells/least_reach.h"
+#include "common/depth/triangles_in.h"
 #include "common/geometry/tips.h"
 
 namespace mortise {

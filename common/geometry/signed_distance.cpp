@@ -155,13 +155,6 @@ Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
   return found;
 }
 
-Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t t) {
-  const Vec3 n =
-      (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
-  const double length = n.norm();
-  return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
-}
-
 // Sum over the triangles around a corner of normal times angle there.
 Vec3 corner_pseudonormal(const Solid& solid, std::uint32_t start, int start_corner) {
   const TriangleMesh& mesh = solid.mesh();
@@ -174,7 +167,7 @@ Vec3 corner_pseudonormal(const Solid& solid, std::uint32_t start, int start_corn
     while (k < 2 && mesh.triangles[t][k] != point) ++k;
     const Vec3 u = mesh.corner(t, (k + 1) % 3) - mesh.corner(t, k);
     const Vec3 v = mesh.corner(t, (k + 2) % 3) - mesh.corner(t, k);
-    sum += std::atan2(u.cross(v).norm(), u.dot(v)) * normal_of(mesh, t);
+    sum += std::atan2(u.cross(v).norm(), u.dot(v)) * topology.normal[t];
     t = topology.neighbor[t][k];
     if (t == start || t == Topology::kNone) break;
   }
@@ -182,12 +175,13 @@ Vec3 corner_pseudonormal(const Solid& solid, std::uint32_t start, int start_corn
 }
 
 Vec3 pseudonormal(const Solid& solid, std::uint32_t t, Spot spot) {
-  if (spot == Spot::kFace) return normal_of(solid.mesh(), t);
+  const Topology& topology = solid.topology();
+  if (spot == Spot::kFace) return topology.normal[t];
   if (spot >= Spot::kCorner0)
     return corner_pseudonormal(solid, t, static_cast<int>(spot) - static_cast<int>(Spot::kCorner0));
-  const std::uint32_t other = solid.topology().neighbor[t][static_cast<int>(spot) - 1];
-  const Vec3 mine = normal_of(solid.mesh(), t);
-  return other == Topology::kNone ? mine : Vec3(mine + normal_of(solid.mesh(), other));
+  const std::uint32_t other = topology.neighbor[t][static_cast<int>(spot) - 1];
+  const Vec3& mine = topology.normal[t];
+  return other == Topology::kNone ? mine : Vec3(mine + topology.normal[other]);
 }
 
 // Directions without relation to any usual mesh; the next is tried when one grazes an edge.
@@ -286,7 +280,7 @@ SurfacePoint nearest_surface(const Solid& solid, const Vec3& x, std::uint32_t ne
   SurfacePoint at;
   at.triangle = found.triangle;
   at.point = found.foot.point;
-  at.face_normal = normal_of(solid.mesh(), found.triangle);
+  at.face_normal = solid.topology().normal[found.triangle];
   const double distance = std::sqrt(found.distance2);
   Vec3 outward = pseudonormal(solid, found.triangle, found.foot.spot);
   const double length = outward.norm();

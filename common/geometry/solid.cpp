@@ -27,7 +27,8 @@ const Topology& Solid::topology() const {
     topology_ = std::make_unique<const Topology>(build_topology(mesh_));
     derived_bytes_ += topology_->neighbor.capacity() * sizeof(topology_->neighbor[0]) +
                       topology_->edge_kind.capacity() * sizeof(topology_->edge_kind[0]) +
-                      topology_->edge_sharp.capacity() * sizeof(topology_->edge_sharp[0]);
+                      topology_->edge_sharp.capacity() * sizeof(topology_->edge_sharp[0]) +
+                      topology_->normal.capacity() * sizeof(topology_->normal[0]);
   });
   return *topology_;
 }

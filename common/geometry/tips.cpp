@@ -21,13 +21,6 @@ constexpr int kSteps = 6;
 // Normals of one plane.
 constexpr double kSamePlane = 1.0 - 1e-9;
 
-Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t t) {
-  const Vec3 n =
-      (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
-  const double length = n.norm();
-  return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
-}
-
 const Surface* round_surface(const SurfaceBand::Face& face) {
   const bool round = face.surface && face.surface->kind != SurfaceKind::kPlane &&
                      face.surface->kind != SurfaceKind::kUnknown;
@@ -80,7 +73,7 @@ class TipFinder {
     const SurfaceBand::Face& face = band_.face_of(t);
     if (round_surface(face) != nullptr) return true;
     return !is_plane_band(band_, face) ||
-           normal_of(mesh_, t).dot(normal_of(mesh_, other)) > kSamePlane;
+           topology_.normal[t].dot(topology_.normal[other]) > kSamePlane;
   }
 
   void add_edge(std::uint32_t t, std::uint32_t k) {
@@ -156,7 +149,7 @@ class TipFinder {
 LargestFace::LargestFace(const Solid& solid, const SurfaceBand& band, std::uint32_t triangle)
     : surface_(round_surface(band.face_of(triangle))),
       corner_(solid.mesh().corner(triangle, 0)),
-      normal_(normal_of(solid.mesh(), triangle)),
+      normal_(solid.topology().normal[triangle]),
       offset_mm_((surface_ != nullptr ? band.face_of(triangle).doubt_mm().hi
                                       : band.face_of(triangle).deviation_mm.hi) +
                  band.face_of(triangle).tolerance_mm.hi) {}

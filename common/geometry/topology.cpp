@@ -60,12 +60,21 @@ EdgeShape shape_of_edge(const TriangleMesh& mesh, double extent_mm, std::uint32_
   return shape;
 }
 
+Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t t) {
+  const Vec3 n =
+      (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+  const double length = n.norm();
+  return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+}
+
 Topology without_edges(const TriangleMesh& mesh) {
   Topology topology;
   const std::size_t count = mesh.triangles.size();
   topology.neighbor.assign(count, {Topology::kNone, Topology::kNone, Topology::kNone});
   topology.edge_kind.assign(count, {EdgeKind::kBoundary, EdgeKind::kBoundary, EdgeKind::kBoundary});
   topology.edge_sharp.assign(count, {false, false, false});
+  topology.normal.reserve(count);
+  for (std::uint32_t t = 0; t < count; ++t) topology.normal.push_back(normal_of(mesh, t));
   topology.volume_mm3 = signed_volume_mm3(mesh);
   return topology;
 }

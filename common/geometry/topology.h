@@ -24,6 +24,7 @@ struct Topology {
   std::map<std::uint32_t, std::uint32_t> next_side;
   std::vector<std::array<EdgeKind, 3>> edge_kind;
   std::vector<std::array<bool, 3>> edge_sharp;  ///< exterior angle above kSharpEdge_rad
+  std::vector<Vec3> normal;                     ///< outward, unit; zero of a triangle without area
   std::uint64_t boundary_edges = 0;             ///< edges of one triangle
   std::uint64_t non_manifold_edges = 0;         ///< edges of more than two, or without length
   std::uint64_t misoriented_edges = 0;          ///< edges of two that run in the same direction

@@ -14,7 +14,12 @@ struct Pose {
 
   static Pose translation(const Vec3& p_mm) { return {Quat::Identity(), p_mm}; }
 
-  Vec3 operator*(const Vec3& x) const { return q * x + p; }
+  /// Inlined, which the product of Eigen is not, and the same bit for bit.
+  Vec3 operator*(const Vec3& x) const {
+    Vec3 turned = q.vec().cross(x);
+    turned += turned;
+    return x + q.w() * turned + q.vec().cross(turned) + p;
+  }
   Pose operator*(const Pose& other) const { return {(q * other.q).normalized(), q * other.p + p}; }
   Pose inverse() const { return {q.conjugate(), -(q.conjugate() * p)}; }
   Mat3 rotation() const { return q.toRotationMatrix(); }

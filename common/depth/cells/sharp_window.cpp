@@ -7,6 +7,7 @@
 #include "common/base/constants.h"
 #include "common/depth/body.h"
 #include "common/depth/cells/linear_program.h"
+#include "common/depth/triangles_in.h"
 
 namespace mortise {
 namespace {

@@ -65,6 +65,16 @@ TEST(Pose, ComposesInReadingOrder) {
   EXPECT_LT(((X_WA.inverse() * X_WA).p).norm(), 1e-15);
 }
 
+// Bit for bit: written out so that it is inlined.
+TEST(Pose, MovesAPointAsTheQuaternionDoes) {
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 10'000; ++i) {
+    const Pose X{rotation_exp(random_vector(random, 3.0)), random_vector(random, 1e3)};
+    const Vec3 x = random_vector(random, 1e3);
+    EXPECT_EQ(X * x, Vec3(X.q * x + X.p));
+  }
+}
+
 TEST(Pose, StaysARotationAfterAMillionProducts) {
   Pose X;
   const Pose step{rotation_exp({1e-3, 2e-3, -1e-3}), {1e-3, 0, 0}};
