@@ -18,6 +18,7 @@ class PeerRemovals {
   void add(std::function<void()> removal);
   /// Waits for what is under way.
   void stop();
+  bool stops() const { return thread_.get_stop_token().stop_requested(); }
 
  private:
   void run(const std::stop_token& stopped);

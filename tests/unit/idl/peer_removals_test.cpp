@@ -29,7 +29,10 @@ TEST(PeerRemovals, WhoStopsWaitsForWhatIsUnderWayAndNothingFollows) {
   });
   removals.add([&] { followed = true; });
   begun.get_future().wait();
-  std::thread release([&] { go_on.set_value(); });
+  std::thread release([&] {
+    while (!removals.stops()) std::this_thread::yield();
+    go_on.set_value();
+  });
   removals.stop();
   EXPECT_TRUE(ended);
   EXPECT_FALSE(followed);
