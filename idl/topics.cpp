@@ -22,7 +22,9 @@ constexpr std::array<TopicRow, 13> kTopics = {{
      false, false, false, true},
     {"mortise_request", "Request", true, "", true, false, 1024, kAll, 8192, 1, false, false, false,
      true},
-    {"mortise_presence", "Presence", true, "user", true, false, 1, kLast, 1, kMaxUsers, false,
+    // The server takes several beats at once: what another client says in a user's name must not
+    // push out what the user said.
+    {"mortise_presence", "Presence", true, "user", true, false, 1, kLast, 16, kMaxUsers, false,
      false, true, false},
     {"mortise_answers", "Answers", false, "", true, false, 1024, kLast, 1024, 1, true, false, false,
      true},
