@@ -345,6 +345,25 @@ double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace&
   return material.c_mm - least + chord.spread_mm;
 }
 
+// h_K is convex, and n . x of both straight ways is a polynomial of degree two: at no time is its
+// sum with h_K larger than the largest of these three (Bernstein).
+double beyond_turning_mm(const ConvexCell& s, const ConvexCell& k, const Chord& chord,
+                         const Vec3 (&n)[2]) {
+  const double least_length = std::sqrt(std::max(0.0, 0.5 * (1.0 + n[0].dot(n[1]))));
+  if (!(least_length > 0.0)) return kInfinity;
+  // Over all x of S: the largest -(n[i] . X[j] x + n[j] . X[i] x) / 2.
+  const auto s_mm = [&](int i, int j) {
+    const Pose &Xi = chord.X_KS[i], &Xj = chord.X_KS[j];
+    const Vec3 along_S = 0.5 * (Xj.q.conjugate() * n[i] + Xi.q.conjugate() * n[j]);
+    return s.support_mm(-along_S) - 0.5 * (n[i].dot(Xj.p) + n[j].dot(Xi.p));
+  };
+  const double k_mm[2] = {k.support_mm(n[0]), k.support_mm(n[1])};
+  const double most = std::max({k_mm[0] + s_mm(0, 0), k_mm[1] + s_mm(1, 1),
+                                0.5 * (k_mm[0] + k_mm[1]) + s_mm(0, 1)}) +
+                      chord.spread_mm;
+  return most > 0.0 ? most / least_length : most;
+}
+
 double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
                       const Interval& along, double limit_mm, double useless_mm,
                       std::uint64_t& work, std::vector<Vec3>* places) {

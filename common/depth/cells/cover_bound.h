@@ -21,6 +21,12 @@ struct Chord {
 /// No point of S comes farther than this beyond the border of a half-space of material. mm.
 double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace& material);
 
+/// S and K are no deeper in each other than this, by directions in K that go straight from n[0] to
+/// n[1], unit vectors, while S goes along the chord (README, section 11). mm; infinity where both
+/// are opposite.
+double beyond_turning_mm(const ConvexCell& s, const ConvexCell& k, const Chord& chord,
+                         const Vec3 (&n)[2]);
+
 /// No point of S comes farther than this beyond the wall of a hole, where its height along the axis
 /// is in `along_mm`; minus infinity: none gets there. Looks no closer once it is not above
 /// limit_mm; infinity where it is seen to be above useless_mm. Adds what it has looked at to

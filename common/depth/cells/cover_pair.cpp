@@ -309,6 +309,41 @@ std::vector<CoverPair::Cells> CoverPair::all_cells() const {
   return all;
 }
 
+std::optional<Vec3> CoverPair::apart_along(const Cells& cells, const Pose& X_BA, const Vec3& first,
+                                           std::uint64_t& work) const {
+  const ConvexCell& s = parts_[0]->cells[cells.cell[0]];
+  const ConvexCell& k = parts_[1]->cells[cells.cell[1]];
+  std::optional<Vec3> along;
+  const auto farthest = [&](const Vec3& n) {
+    ++work;
+    return PointOfEach{k.farthest(n), X_BA * s.farthest(-(X_BA.q.conjugate() * n))};
+  };
+  const auto tried = [&](const Vec3& n, double reach_mm) {
+    if (reach_mm < 0.0) along = n;
+    return false;
+  };
+  LeastReach(farthest, tried, (X_BA * s.middle - k.middle).norm()).run(first, -kInfinity, 0.0);
+  return along;
+}
+
+bool CoverPair::turn_apart(const Views& views, Cells& cells, double limit_mm,
+                           std::uint64_t& work) const {
+  const CoverKeeper& keeper = cells.keeper;
+  if (keeper.role < 0 || keeper.by_void) return false;
+  const Chord& chord = views.chord[0];
+  for (int e = 0; e < 2; ++e) {
+    std::optional<Vec3>& along = cells.apart_along[e];
+    if (along) continue;
+    const Pose& X = chord.X_KS[e];
+    along = apart_along(cells, X, keeper.role == 0 ? keeper.n : Vec3(-(X.q * keeper.n)), work);
+    if (!along) return false;
+  }
+  const Vec3 n[2] = {*cells.apart_along[0], *cells.apart_along[1]};
+  work += 3;
+  return beyond_turning_mm(parts_[0]->cells[cells.cell[0]], parts_[1]->cells[cells.cell[1]], chord,
+                           n) <= limit_mm;
+}
+
 // What keeps two cells apart where a span begins does so all over it, or else over a part of it:
 // the span is halved. Anything else is looked for where that is not so, over long spans, and over
 // the shortest ones before they are taken for the end.
@@ -339,7 +374,8 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
     Bound bound_at_start(*this, at_start, limit_mm, Bound::Asked::kWhether, free.work);
     std::erase_if(now.cells, [&](Cells& cells) {
       if (bound.by_what_it_was(cells)) return true;
-      if (!looks_for_others && bound_at_start.by_what_it_was(cells)) return false;
+      if (!looks_for_others && bound_at_start.by_what_it_was(cells))
+        return turn_apart(views, cells, limit_mm, free.work);
       return bound(cells) <= limit_mm;
     });
     if (now.cells.empty()) continue;
@@ -349,6 +385,8 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
       return free;
     }
     open.push_back({{middle, now.span.t1}, now.cells});
+    for (Cells& cells : open.back().cells) cells.apart_along[0].reset();
+    for (Cells& cells : now.cells) cells.apart_along[1].reset();
     open.push_back({{now.span.t0, middle}, std::move(now.cells)});
   }
   free.all = true;

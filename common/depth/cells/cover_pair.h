@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/depth/cells/cover.h"
@@ -74,7 +75,8 @@ class CoverPair {
   struct Cells {
     std::size_t cell[2];
     CoverKeeper keeper;
-    std::vector<Vec3> places_S;  // of part keeper.role, what comes farthest
+    std::vector<Vec3> places_S;          // of part keeper.role, what comes farthest
+    std::optional<Vec3> apart_along[2];  // in B, where the span begins and ends
   };
   class Bound;
   class Whole;
@@ -85,6 +87,12 @@ class CoverPair {
   /// Leaves with each pair of cells what keeps it apart.
   bool apart(const Views& views, std::vector<Cells>& all, double limit_mm,
              std::uint64_t& work) const;
+  /// Kept apart over a span by a direction that turns: from that in which they are farthest apart
+  /// where it begins to that where it ends.
+  bool turn_apart(const Views& views, Cells& cells, double limit_mm, std::uint64_t& work) const;
+  /// That direction in B, at a pose of A in B; null: none is found.
+  std::optional<Vec3> apart_along(const Cells& cells, const Pose& X_BA, const Vec3& first,
+                                  std::uint64_t& work) const;
   /// Points of part keeper.role where what kept its cell from the other one last is least far.
   std::vector<Vec3> places_of(const Cells& cells, const Views& views) const;
 

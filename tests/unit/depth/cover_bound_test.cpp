@@ -119,5 +119,63 @@ TEST(CoverBound, OfAShaftInItsBoreNeedsFewSectors) {
   EXPECT_LE(most, 60u);
 }
 
+Vec3 any_direction(Random& random) {
+  return Vec3(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)).normalized();
+}
+
+// A cone frustum, or a block with random corners cut off.
+ConvexCell any_cell(Random& random) {
+  const double h = uniform(random, 2.0, 20.0), r = uniform(random, 2.0, 20.0);
+  if (random() % 2 == 0) {
+    const double slope = uniform(random, 0.0, 0.5), across = 1.0 / std::hypot(1.0, slope);
+    const MeridianLine lines[] = {
+        {1.0, 0.0, h}, {-1.0, 0.0, h}, {-slope * across, across, (r + slope * h) * across}};
+    return *round_cell(Vec3::Zero(), any_direction(random), lines);
+  }
+  std::vector<HalfSpace> planes;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) planes.push_back({side * Vec3::Unit(axis), h});
+  for (int i = 0; i < 4; ++i) planes.push_back({any_direction(random), h + uniform(random, 0, 3)});
+  return *polytope_cell(planes);
+}
+
+// Between both ends of the span, by support functions at many times of it.
+TEST(CoverBound, HoldsAllAlongADirectionThatTurns) {
+  Random random(83);
+  int below = 0, in_between = 0, asked = 0;
+  for (int i = 0; i < test::effort(2000); ++i) {
+    const ConvexCell s = any_cell(random), k = any_cell(random);
+    Chord chord;
+    chord.ends = 2;
+    chord.spread_mm = random() % 2 == 0 ? 0.0 : uniform(random, 0.0, 1e-2);
+    Vec3 n[2] = {any_direction(random), Vec3::Zero()};
+    n[1] = rotation_exp(log_uniform(random, 1e-4, 1.0) * any_direction(random)) * n[0];
+    chord.X_KS[0] = {rotation_exp(3.0 * any_direction(random)), 30.0 * n[0]};
+    chord.X_KS[1] = {
+        rotation_exp(log_uniform(random, 1e-4, 1.0) * any_direction(random)) * chord.X_KS[0].q,
+        30.0 * n[1]};
+    const double bound = beyond_turning_mm(s, k, chord, n);
+    double most = -kInfinity, at_ends = -kInfinity;
+    constexpr int kTimes = 50;
+    for (int j = 0; j <= kTimes; ++j) {
+      const double t = double(j) / kTimes;
+      const Vec3 along = (1.0 - t) * n[0] + t * n[1];
+      const Vec3 along_S = (1.0 - t) * (chord.X_KS[0].q.conjugate() * along) +
+                           t * (chord.X_KS[1].q.conjugate() * along);
+      const Vec3 origin = (1.0 - t) * chord.X_KS[0].p + t * chord.X_KS[1].p;
+      const double deep_mm =
+          (k.support_mm(along) + s.support_mm(-along_S) - along.dot(origin)) / along.norm() +
+          chord.spread_mm;
+      most = std::max(most, deep_mm);
+      if (j == 0 || j == kTimes) at_ends = std::max(at_ends, deep_mm);
+    }
+    ++asked;
+    below += bound < most - 1e-9;
+    in_between += most > at_ends + 1e-6;
+  }
+  EXPECT_EQ(below, 0) << "of " << asked;
+  EXPECT_GT(in_between, asked / 8);
+}
+
 }  // namespace
 }  // namespace mortise

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "common/depth/interference_time.h"
 #include "common/math/rotation.h"
@@ -62,6 +63,39 @@ TEST(CoverTimes, WhoGrazesAWallNeedsNoSearch) {
         find_interference_time(rocking(block, plate, 0.08, 0.02), scratch);
     EXPECT_TRUE(real.becomes_real);
     EXPECT_LT(real.t_free, 0.5);
+  }
+}
+
+// The edge of one block crosses that of another, 0.1 um beside it, and turns about it: what keeps
+// both apart turns too.
+TEST(CoverTimes, EdgesThatTurnAboutEachOtherNeedFewSpans) {
+  constexpr double kGap_mm = 1e-4, kTurn_rad = 0.05;
+  Random random(7103);
+  for (int i = 0; i < test::effort(20); ++i) {
+    const DrawnPart above = block_of(random, 20.0, 20.0, 20.0),
+                    below = block_of(random, 20.0, 20.0, 20.0);
+    const Vec3 edge_above(10.0 + above.offsets.at("right").lo, 0.0,
+                          -10.0 - above.offsets.at("bottom").lo),
+        edge_below(10.0 + below.offsets.at("right").lo, 0.0, 10.0 + below.offsets.at("top").lo);
+    const auto turned_up = [](const Vec3& edge, double up) {
+      return Quat::FromTwoVectors(edge, up * Vec3::UnitZ());
+    };
+    const Quat down =
+        rotation_exp(0.5 * std::numbers::pi * Vec3::UnitZ()) * turned_up(edge_above, -1.0);
+    SweptQuery query;
+    query.at_target = overlap_of(above, below);
+    const Quat up = turned_up(edge_below, 1.0);
+    query.motion_b = still_motion({up, -(up * edge_below)});
+    const auto at = [&](double angle) {
+      const Quat q = rotation_exp(angle * Vec3::UnitY()) * down;
+      return Pose{q,
+                  rotation_exp(angle * Vec3::UnitY()) * Vec3(0.0, 0.0, kGap_mm) - q * edge_above};
+    };
+    const Vec3 on_the_other_edge = edge_above * (1.0 + kGap_mm / edge_above.norm());
+    query.motion_a = linear_motion(at(-kTurn_rad), at(kTurn_rad), on_the_other_edge);
+    std::uint64_t work = 0;
+    EXPECT_EQ(certain_free_until(query, work).t, 1.0) << i;
+    EXPECT_LT(work, 300u) << i;
   }
 }
 
