@@ -44,7 +44,7 @@ AskedEarlier asked_until(const PairWork& pair, double t) {
                      pair.t_stop,        pair.motion_a,     pair.motion_b,
                      pair.entered,       pair.meets,        pair.overlaps_at_start,
                      pair.short_of_work, pair.stop_gave_up, pair.touch_unasked,
-                     pair.place};
+                     pair.place,         pair.certain_free};
   asked.t_end = t;
   return asked;
 }
@@ -66,7 +66,7 @@ void take_back(PairWork& pair, const AskedEarlier& asked) {
   pair.stop_gave_up = asked.stop_gave_up;
   pair.touch_unasked = asked.touch_unasked;
   pair.place = asked.place;
-  pair.certain_free.reset();
+  pair.certain_free = asked.certain_free;
 }
 
 class Response {

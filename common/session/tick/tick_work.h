@@ -54,6 +54,7 @@ struct AskedEarlier {
   bool entered = false, meets = false, overlaps_at_start = false, short_of_work = false;
   bool stop_gave_up = false, touch_unasked = false;
   CertainPlace place;
+  std::optional<FreeUntil> certain_free;
   double t_end = 1.0;  ///< of the tick: until then
 };
 
