@@ -431,6 +431,19 @@ class Overlap {
   Regions regions_;
 };
 
+// Where the meshes do not overlap, the rounding of their files alone makes no collision.
+void leave_out_rounding(const OverlapQuery& query, OverlapResult& result) {
+  if (query.only_certain || result.no_inside || (query.band_a->trivial && query.band_b->trivial))
+    return;
+  const double files_mm = query.band_a->quantum_mm + query.band_b->quantum_mm;
+  std::erase_if(result.regions, [&](const OverlapRegion& region) {
+    if (region.possible_mm.hi > files_mm + kDepthAccuracyDefault_mm) return false;
+    const double touch_mm = PairFrame(query).touch_mm;
+    return region.delta_mm.lo <= touch_mm && !(region.certain_mm.lo > 0.0) &&
+           region.possible_mm.hi <= files_mm + 2.0 * touch_mm;
+  });
+}
+
 void check(const OverlapQuery& query) {
   MORTISE_CHECK(query.a != nullptr && query.b != nullptr && query.band_a != nullptr &&
                     query.band_b != nullptr,
@@ -465,8 +478,9 @@ void check(const OverlapQuery& query, const OverlapResult& result) {
 
 OverlapResult find_overlap(const OverlapQuery& query, CcdScratch&) {
   check(query);
-  const OverlapResult result =
+  OverlapResult result =
       b_comes_first(query) ? mirrored(Overlap(mirrored(query)).run()) : Overlap(query).run();
+  leave_out_rounding(query, result);
   check(query, result);
   return result;
 }

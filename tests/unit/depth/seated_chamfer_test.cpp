@@ -46,9 +46,10 @@ std::vector<std::uint32_t> between(const TriangleMesh& mesh, double lo_mm, doubl
 
 enum class Known { kDeclared, kExact, kRecognized };
 
-SurfaceBand band_of(const Disc& disc, Known known) {
+SurfaceBand band_of(const Disc& disc, Known known, double quantum_mm = 0.0) {
   BandInput input;
   input.solid = disc.solid.get();
+  input.quantum_mm = quantum_mm;
   std::vector<Feature> features;
   if (known == Known::kRecognized) {
     features = recognize_features(*disc.solid).features;
@@ -59,10 +60,10 @@ SurfaceBand band_of(const Disc& disc, Known known) {
     for (const auto& [surface, lo_mm, hi_mm] :
          {std::tuple(disc.chamfer, 0.0, up_mm), std::tuple(disc.wall, up_mm, kLength_mm)}) {
       const FeatureDeclaration declared{"face", surface, std::nullopt, 0.0};
-      const auto match = known == Known::kDeclared
-                             ? match_feature(disc.solid->mesh(), declared)
-                             : check_feature(*disc.solid, declared,
-                                             between(disc.solid->mesh(), lo_mm, hi_mm));
+      const auto match =
+          known == Known::kDeclared
+              ? match_feature(disc.solid->mesh(), declared)
+              : check_feature(*disc.solid, declared, between(disc.solid->mesh(), lo_mm, hi_mm));
       EXPECT_TRUE(match);
       if (match) features.push_back(match->feature);
     }
@@ -87,6 +88,29 @@ TEST_P(SeatedChamfer, TouchesTheFaceItStandsOn) {
         EXPECT_EQ(worst_class(overlap_of(c)), CollisionClass::kNone)
             << degrees << " degrees, " << facets << " facets, refinement "
             << static_cast<int>(refinement);
+      }
+}
+
+// Files are rounded by more than what counts as touching.
+TEST_P(SeatedChamfer, TouchesItHoweverCoarseTheFilesAre) {
+  constexpr double kQuantum_mm = 5e-6;
+  const auto plate = std::make_shared<const Solid>(box(Vec3(30, 30, 5), Vec3(0, 0, -5)));
+  BandInput of_plate;
+  of_plate.solid = plate.get();
+  of_plate.quantum_mm = kQuantum_mm;
+  for (const double degrees : {10.0, 45.0, 80.0})
+    for (const int facets : {16, 31})
+      for (const Refinement refinement : {Refinement::kDecided, Refinement::kFull}) {
+        const Disc disc = disc_of(degrees, facets);
+        OverlapCase c{plate, disc.solid};
+        c.band_a = build_band(of_plate);
+        c.band_b = band_of(disc, GetParam(), kQuantum_mm);
+        c.X_WB = Pose{rotation_exp(Vec3(0, 0, 0.7)), Vec3(3, -2, 0)};
+        c.refinement = refinement;
+        EXPECT_TRUE(overlap_of(c).regions.empty()) << degrees << " degrees, " << facets;
+        // More than both files are rounded by is told.
+        c.X_WB.p.z() = -3.0 * kQuantum_mm;
+        EXPECT_GE(worst_class(overlap_of(c)), CollisionClass::kPotential) << degrees;
       }
 }
 
