@@ -188,6 +188,17 @@ TEST_F(MeshImport, RefusalsSayWhy) {
               "no triangles are left");
 }
 
+TEST_F(MeshImport, WhatMayNotBeReadIsSaidSo) {
+  const uid_t self = geteuid();
+  const fs::path secret = write("secret.stl", "solid x\n");
+  fs::permissions(secret, fs::perms::none);
+  if (self == 0 && seteuid(65534) != 0) GTEST_SKIP() << "root reads everything";
+  const std::string said = one_line_error(secret);
+  ASSERT_TRUE(self != 0 || seteuid(0) == 0);
+  if (said.find("cannot start") != std::string::npos) GTEST_SKIP() << said;
+  expect_says(said, "secret.stl: cannot be read: Permission denied; check who may read it");
+}
+
 TEST_F(MeshImport, NoFileOfAnyOtherKindIsTriedAsSomethingElse) {
   // An OBJ in a file that says STL: assimp would guess by content.
   EXPECT_NE(one_line_error(write("really_an_obj.stl", kCubeObj)), "(imported)");
@@ -261,6 +272,8 @@ TEST_F(MeshImport, EveryDialectOfStlIsTheSameBox) {
       {"no name", replaced(text, " box", "")},
       {"exponents", replaced(replaced(text, " 3", " +3.0E+00"), " 2", " 0.2e1")},
       {"strange normals", replaced(text, "normal 0 0 0", "normal nan -nan(ind) 1.#IND")},
+      {"filled with zeros", text + std::string(100, '\0')},
+      {"end of a tape", text + "\x1a"},
       {"binary", binary_box()},
       {"binary solid", binary_box(12, "solid box")},
       {"binary facet", binary_box(12, "solid facet normal 0 0 0")},

@@ -1,4 +1,4 @@
-// A PLY file is held to its header before assimp counts to what that says.
+// A PLY file is held to its header, row by row, before assimp counts to what that says.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -39,6 +39,18 @@ class PlyHeader : public testing::Test {
     EXPECT_EQ(said.find('\n'), std::string::npos);
   }
   test::TestFolder folder_;
+  static std::string binary() {
+    std::string bytes = "ply\nformat binary_big_endian 1.0\n" + kPlyHead;
+    const std::string one = "\x3f\x80", zero(2, '\0');  // halves of 1.0F and of all else
+    for (const int axis : {-1, 0, 1, 2})
+      for (int k = 0; k < 3; ++k) bytes += (k == axis ? one : zero) + zero;
+    for (const auto& face : {"\0\2\1", "\0\1\3", "\0\3\2", "\1\2\3"}) {
+      bytes += '\3';
+      for (int k = 0; k < 3; ++k) bytes += std::string(3, '\0') + face[k];
+    }
+    return bytes;
+  }
+  const std::string binary_ = binary();
   const std::string good_ = "ply\nformat ascii 1.0\n" + kPlyHead + kPlyBody;
 };
 
@@ -52,6 +64,35 @@ TEST_F(PlyHeader, OfEveryDialectIsTaken) {
          "imported");
   expect(with(good_, "end_header\n", "element edge 0\nproperty int vertex1\nend_header\n"),
          "imported");
+  expect(with(good_, "\n1 0 0\n", "\n\n \ncomment x\n +1 0\t0 \r\n"), "imported");
+  expect(good_ + std::string("\n\x1a\0\0", 4), "imported");
+  expect(binary_ + std::string(100, '\0'), "imported");
+  expect(binary_ + "more", "imported");
+  expect(with(binary_, "end_header\n", "element edge 0\nproperty int vertex1\nend_header\n"),
+         "imported");
+}
+
+TEST_F(PlyHeader, WithOtherRowsThanItAnnouncesIsRefused) {
+  const std::string cut = "rows of 'face', the file has 2: it is damaged or was cut off";
+  expect(good_.substr(0, good_.size() - 16), cut);
+  expect(good_.substr(0, good_.size() - 17), cut);  // no end of the last line
+  expect(good_.substr(0, good_.size() - 3), "line 17: a row of 'face' has 3 numbers, not 4");
+  expect(with(good_, "face 4", "face 3"), "line 17: more rows than the header announces");
+  expect(with(good_, "vertex 4", "vertex 5"), "line 14: a row of 'vertex' has 4 numbers, not 3");
+  expect(with(good_, "vertex 4", "vertex 3"), "line 13: a row of 'face'");
+  expect(with(good_, "\n1 0 0\n", "\n1 0\n"), "line 11: a row of 'vertex' has 2 numbers, not 3");
+  expect(with(good_, "\n1 0 0\n", "\n1 0 0 7\n"), "line 11: a row of 'vertex' has 4 numbers");
+  expect(with(good_, "\n1 0 0\n", "\n1.000,5 0 0\n"),
+         "line 11: '1.000,5' is no number (decimals have a point)");
+  expect(with(good_, "3 0 2 1", "3 0 2.0 1"), "line 14: '2.0' is no whole number of its type");
+  expect(with(good_, "3 0 2 1", "3 0 4294967298 1"), "'4294967298' is no whole number");
+  expect(with(good_, "3 0 2 1", "-3 0 2 1"), "line 14: a row of 'face' has no list of '-3'");
+
+  expect(with(binary_, "face 4", "face 3"), "the file has 13 bytes behind the rows");
+  expect(with(binary_, "vertex 4", "vertex 3"), "the file ");
+  expect(binary_.substr(0, binary_.size() - 1), "ends before the last row");
+  expect(with(binary_, std::string("\3\0", 2), std::string("\xff\0", 2)),
+         "ends before the last row");
 }
 
 TEST_F(PlyHeader, ThatPromisesTooMuchIsRefusedAtOnce) {

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "common/base/in_quotes.h"
+#include "common/io/mesh/importer/plain_text.h"
 
 namespace mortise {
 namespace {
 
-/// The statements of OBJ and of its free forms, which hold no triangles, but v and f.
-constexpr std::array<std::string_view, 41> kKnownStatements = {
-    "vt",     "vn",         "vp",        "g",      "o",     "s",        "mg",
-    "usemtl", "mtllib",     "usemap",    "maplib", "l",     "p",        "cstype",
-    "deg",    "bmat",       "step",      "curv",   "curv2", "surf",     "parm",
-    "trim",   "hole",       "scrv",      "sp",     "end",   "con",      "bevel",
-    "lod",    "shadow_obj", "trace_obj", "ctech",  "stech", "c_interp", "d_interp",
-    "call",   "csh",        "res",       "bzp",    "bsp",   "cdc"};
+/// The statements of OBJ and of its free forms, which hold no triangles, but v, f, l and p.
+constexpr std::array<std::string_view, 39> kKnownStatements = {
+    "vt",       "vn",     "vp",     "g",          "o",         "s",     "mg",    "usemtl",
+    "mtllib",   "usemap", "maplib", "cstype",     "deg",       "bmat",  "step",  "curv",
+    "curv2",    "surf",   "parm",   "trim",       "hole",      "scrv",  "sp",    "end",
+    "con",      "bevel",  "lod",    "shadow_obj", "trace_obj", "ctech", "stech", "c_interp",
+    "d_interp", "call",   "csh",    "res",        "bzp",       "bsp",   "cdc"};
 
 bool ends_line(char c) { return c == '\n' || c == '\r'; }
 bool is_gap(char c) { return c == ' ' || c == '\t'; }
@@ -48,6 +48,7 @@ class ObjLines {
     return true;
   }
   std::size_t number() const { return number_; }
+  bool continued() const { return lines_of_last_ > 1; }
 
  private:
   bool goes_on() const {
@@ -111,25 +112,51 @@ std::string wrong_with_face(const Statement& words) {
   return {};
 }
 
+bool holds_shape(std::string_view word) {
+  return word == "v" || word == "f" || word == "l" || word == "p";
+}
+
+std::string wrong_with(const Statement& words, bool continued) {
+  if (words[0] == "v") return wrong_with_vertex(words);
+  if (words[0] == "f") return wrong_with_face(words);
+  if (holds_shape(words[0])) return {};
+  if (std::find(kKnownStatements.begin(), kKnownStatements.end(), words[0]) ==
+      kKnownStatements.end())
+    return in_quotes(words[0]) + " is no statement of OBJ";
+  // A name like C:\models\ in front of a vertex.
+  if (continued && std::any_of(words.begin() + 1, words.end(), holds_shape))
+    return in_quotes(words[0]) + " ends with a backslash, which joins the next statement to it";
+  return {};
+}
+
+/// A point in the texture or a normal says nothing of the shape.
+void append(const Statement& words, std::string& out) {
+  if (!holds_shape(words[0])) return;
+  out += words[0];
+  const bool vertex = words[0] == "v";
+  for (std::size_t i = 1; i < (vertex ? 4 : words.size()); ++i) {
+    out += ' ';
+    out += vertex ? words[i] : words[i].substr(0, words[i].find('/'));
+  }
+  out += '\n';
+}
+
 }  // namespace
 
-std::string wrong_with_obj(std::string_view bytes) {
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+Result<std::string> strict_obj(std::string_view bytes) {
+  bytes = without_padding(without_mark(bytes));
   ObjLines lines(bytes);
+  std::string out;
+  out.reserve(bytes.size() + 1);
   for (Statement words; lines.next(words);) {
     if (words.empty()) continue;
-    std::string wrong;
-    if (words[0] == "v")
-      wrong = wrong_with_vertex(words);
-    else if (words[0] == "f")
-      wrong = wrong_with_face(words);
-    else if (std::find(kKnownStatements.begin(), kKnownStatements.end(), words[0]) ==
-             kKnownStatements.end())
-      wrong = in_quotes(words[0]) + " is no statement of OBJ";
+    const std::string wrong = wrong_with(words, lines.continued());
     if (!wrong.empty())
-      return "line " + std::to_string(lines.number()) + ": " + wrong + "; export it again";
+      return fail(Code::kInvalidInput,
+                  "line " + std::to_string(lines.number()) + ": " + wrong + "; export it again");
+    append(words, out);
   }
-  return {};
+  return out;
 }
 
 }  // namespace mortise

@@ -2,12 +2,16 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/result.h"
+
 namespace mortise {
 
-/// What is wrong with the first bad line of an OBJ file, one line; empty: all of them are
-/// statements of OBJ, its vertices have finite numbers, as many as there may be, and its faces
-/// corners. assimp passes over what it does not know, and takes numbers from the next line where
-/// one has too few. Linear in the bytes.
-std::string wrong_with_obj(std::string_view bytes);
+/// The vertices, faces, lines and points of an OBJ file, one plain line each: three coordinates as
+/// they are written, corners by their vertices alone. All else that may stand in an OBJ holds no
+/// triangles and is left out: assimp ends a comment elsewhere, passes over lines that are indented
+/// or that it does not know, and takes numbers from the next line where one has too few. Refused
+/// with the first bad line: statements that are none of OBJ, vertices without three finite numbers,
+/// faces without three corners. Linear in the bytes.
+Result<std::string> strict_obj(std::string_view bytes);
 
 }  // namespace mortise

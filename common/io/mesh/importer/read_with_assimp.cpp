@@ -8,13 +8,16 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 #include "common/base/in_quotes.h"
@@ -199,9 +202,38 @@ std::string place_all(const aiScene& scene, const WrittenDigits& digits, RawSoup
   return {};
 }
 
-std::string bytes_of(const std::filesystem::path& file) {
+Result<std::string> bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  if (!in)
+    return fail(Code::kRuntime, "cannot be read: " + std::generic_category().message(errno) +
+                                    "; check who may read it");
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+/// What assimp is to read in place of the file.
+struct Text {
+  std::optional<std::string> bytes;  ///< none: the file itself
+  std::string note;
+};
+
+template <class Strict>
+Result<Text> text_of(Result<Strict> strict) {
+  if (!strict) return strict.error();
+  return Text{std::move(strict->bytes), std::move(strict->note)};
+}
+
+/// Refuses what assimp would read as something else.
+Result<Text> checked_file(const std::filesystem::path& file, const std::string& extension) {
+  const Result<std::string> bytes = bytes_of(file);
+  if (!bytes) return bytes.error();
+  if (extension == ".stl") return text_of(strict_stl(*bytes));
+  if (extension == ".ply") return text_of(strict_ply(*bytes));
+  if (extension == ".obj") {
+    Result<std::string> text = strict_obj(*bytes);
+    if (!text) return text.error();
+    return Text{std::move(*text), {}};
+  }
+  return Text{};
 }
 
 RawSoup refuse(const std::string& why) {
@@ -219,19 +251,12 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
   importer.SetIOHandler(files);  // which owns it
   keep_reader_of(extension, importer);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  std::string note;
-  if (extension == ".stl") {
-    Result<StrictStl> stl = strict_stl(bytes_of(file));
-    if (!stl) return refuse(stl.error().text);
-    importer.ReadFileFromMemory(stl->bytes.data(), stl->bytes.size(), 0, "stl");
-    note = std::move(stl->note);
-  } else {
-    const std::string wrong = extension == ".ply"   ? wrong_with_ply(bytes_of(file))
-                              : extension == ".obj" ? wrong_with_obj(bytes_of(file))
-                                                    : "";
-    if (!wrong.empty()) return refuse(wrong);
+  const Result<Text> text = checked_file(file, extension);
+  if (!text) return refuse(text.error().text);
+  if (!text->bytes)
     importer.ReadFile(file.string(), 0);
-  }
+  else
+    importer.ReadFileFromMemory(text->bytes->data(), text->bytes->size(), 0, extension.c_str() + 1);
   const aiScene* scene = importer.GetScene();
   if (scene == nullptr && !files->refused().empty())
     return refuse("names " + in_quotes(files->refused()) +
@@ -248,7 +273,7 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
 
   // 3. Every placed mesh, moved into the frame of the file.
   RawSoup soup;
-  soup.note = std::move(note);
+  soup.note = text->note;
   soup.format = extension.substr(1);
   for (char& c : soup.format) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   if (extension == ".dae") {
@@ -257,7 +282,8 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
     soup.stated_unit_mm = 1000.0 * metres;
   }
   if (extension == ".gltf" || extension == ".glb") soup.stated_unit_mm = 1000.0;  // by its standard
-  if (const std::string wrong = place_all(*scene, WrittenDigits(file, extension), soup);
+  if (const std::string wrong =
+          place_all(*scene, WrittenDigits(text->bytes.value_or(""), extension), soup);
       !wrong.empty())
     return refuse(wrong);
   return soup;

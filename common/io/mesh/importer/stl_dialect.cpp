@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "common/base/in_quotes.h"
+#include "common/io/mesh/importer/plain_text.h"
 
 namespace mortise {
 namespace {
@@ -203,9 +204,8 @@ Result<StrictStl> strict_stl(std::string_view bytes) {
   if (bytes.size() >= kFront &&
       bytes.size() == kFront + std::uint64_t{count_in_header(bytes)} * kRecord)
     return read_binary(bytes);
-  std::string_view text = bytes;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  if (begins_as_text(text) && !has_zero_byte(text)) return TextReader(text).read();
+  const std::string_view text = without_mark(bytes);
+  if (begins_as_text(text) && !has_zero_byte(text)) return TextReader(without_padding(text)).read();
   if (bytes.size() < kFront || !has_zero_byte(bytes))
     return bad("is no STL file: it neither begins with 'solid' nor is it binary; check the ending");
   return read_binary(bytes);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <limits>
 
 namespace mortise {
@@ -110,11 +109,14 @@ std::size_t WrittenDigits::Hash::operator()(const Key& key) const {
   return hash ^ (hash >> 32U);
 }
 
-WrittenDigits::WrittenDigits(const std::filesystem::path& file, const std::string& extension) {
+WrittenDigits::WrittenDigits(const std::string& text, const std::string& extension) {
   const std::string keyword = extension == ".obj" ? "v" : extension == ".stl" ? "vertex" : "";
   if (keyword.empty()) return;
-  std::ifstream in(file, std::ios::binary);
-  for (std::string line; std::getline(in, line);) {
+  std::string line;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    line.assign(text, from, end - from);
+    from = end + 1;
     if (line.find('\0') != std::string::npos) return;  // binary
     const char* at = skip_blanks(line.c_str());
     if (line.compare(static_cast<std::size_t>(at - line.c_str()), keyword.size(), keyword) != 0)

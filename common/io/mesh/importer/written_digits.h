@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -14,8 +13,8 @@ using Triple = std::array<double, 3>;
 /// floats. They are found again by the float that assimp made of them.
 class WrittenDigits {
  public:
-  /// Reads the file once more. A file that is no such text gives none.
-  WrittenDigits(const std::filesystem::path& file, const std::string& extension);
+  /// Of the text that assimp read. What is no such text gives none.
+  WrittenDigits(const std::string& text, const std::string& extension);
 
   /// The coordinates as written; null where none or several different ones became this float.
   const Triple* find(float x, float y, float z) const;
