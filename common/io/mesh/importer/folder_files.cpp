@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <string_view>
 
 #include "common/io/mesh/sandbox.h"
 
@@ -25,6 +27,22 @@ bool is_beneath(const fs::path& file, const fs::path& folder) {
          folder.end();
 }
 
+/// glTF names files by URIs, where a blank is %20; assimp passes them on as they are.
+std::string without_percents(std::string_view uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const std::string_view digits = uri.substr(i + 1, 2);
+    unsigned char byte = 0;
+    const auto [end, status] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    const bool coded = uri[i] == '%' && digits.size() == 2 && status == std::errc{} &&
+                       end == digits.data() + 2 && byte != 0;
+    out += coded ? static_cast<char>(byte) : uri[i];
+    if (coded) i += 2;
+  }
+  return out;
+}
+
 }  // namespace
 
 FolderFiles::FolderFiles(const fs::path& mesh) {
@@ -36,7 +54,8 @@ FolderFiles::FolderFiles(const fs::path& mesh) {
 
 fs::path FolderFiles::real(const char* file) const {
   std::error_code error;
-  const fs::path path = fs::canonical(file, error);
+  fs::path path = fs::canonical(file, error);
+  if (error) path = fs::canonical(without_percents(file), error);
   if (error) return {};
   if (is_beneath(path, folder_)) return path;
   if (refused_.empty()) refused_ = file;

@@ -22,6 +22,7 @@
 
 #include "common/base/in_quotes.h"
 #include "common/io/mesh/importer/folder_files.h"
+#include "common/io/mesh/importer/gltf_check.h"
 #include "common/io/mesh/importer/obj_lines.h"
 #include "common/io/mesh/importer/ply_header.h"
 #include "common/io/mesh/importer/stl_dialect.h"
@@ -223,7 +224,8 @@ Result<Text> text_of(Result<Strict> strict) {
 }
 
 /// Refuses what assimp would read as something else.
-Result<Text> checked_file(const std::filesystem::path& file, const std::string& extension) {
+Result<Text> checked_file(const std::filesystem::path& file, const std::string& extension,
+                          FolderFiles& files) {
   const Result<std::string> bytes = bytes_of(file);
   if (!bytes) return bytes.error();
   if (extension == ".stl") return text_of(strict_stl(*bytes));
@@ -233,6 +235,11 @@ Result<Text> checked_file(const std::filesystem::path& file, const std::string& 
     if (!text) return text.error();
     return Text{std::move(*text), {}};
   }
+  if (extension == ".gltf" || extension == ".glb")
+    if (const std::string wrong =
+            wrong_with_gltf(*bytes, extension == ".glb", file.parent_path(), files);
+        !wrong.empty())
+      return fail(Code::kInvalidInput, wrong);
   return Text{};
 }
 
@@ -251,7 +258,7 @@ RawSoup read_with_assimp(const std::filesystem::path& file, const std::string& e
   importer.SetIOHandler(files);  // which owns it
   keep_reader_of(extension, importer);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const Result<Text> text = checked_file(file, extension);
+  const Result<Text> text = checked_file(file, extension, *files);
   if (!text) return refuse(text.error().text);
   if (!text->bytes)
     importer.ReadFile(file.string(), 0);
