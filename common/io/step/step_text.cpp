@@ -102,6 +102,28 @@ std::vector<int> StepText::labels_with(std::string_view text) const {
   return labels;
 }
 
+std::size_t StepText::line_of(int label) const {
+  const auto found = place_of_.find(label);
+  if (found == place_of_.end()) return 0;
+  const auto end = text_.begin() + static_cast<std::ptrdiff_t>(found->second.first);
+  return 1 + static_cast<std::size_t>(std::count(text_.begin(), end, '\n'));
+}
+
+std::vector<int> step_references(std::string_view entity) {
+  std::vector<int> references;
+  for (std::size_t i = 0; i < entity.size();) {
+    if (entity[i] != '#') {
+      i = std::max(past_quoted(entity, i), i + 1);
+      continue;
+    }
+    const std::size_t end = std::min(entity.find_first_not_of("0123456789", i + 1), entity.size());
+    if (const int label = step_reference(entity.substr(i, end - i)); label > 0)
+      references.push_back(label);
+    i = end;
+  }
+  return references;
+}
+
 std::vector<std::string> step_keywords(std::string_view entity) {
   std::vector<std::string> keywords;
   for_records(entity,

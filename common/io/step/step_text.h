@@ -19,6 +19,10 @@ class StepText {
   std::string_view entity(int label) const;
   /// The labels of all entities that contain this text, ascending.
   std::vector<int> labels_with(std::string_view text) const;
+  /// The labels of all entities, ascending.
+  std::vector<int> labels() const { return labels_with({}); }
+  /// The line of the file in which this entity begins, from 1; 0: there is no such entity.
+  std::size_t line_of(int label) const;
 
  private:
   std::string text_;
@@ -32,6 +36,9 @@ std::vector<std::string> step_keywords(std::string_view entity);
 /// the entity has no such keyword.
 std::optional<std::vector<std::string_view>> step_arguments(std::string_view entity,
                                                             std::string_view keyword);
+
+/// The labels that an entity names, in its order.
+std::vector<int> step_references(std::string_view entity);
 
 /// "#12" as 12; 0 when it is no reference.
 int step_reference(std::string_view argument);

@@ -52,7 +52,7 @@ StepDocument StepAnswers::read(const std::filesystem::path& file) {
     part.loose_faces = tree_.parts[i].loose_faces;
     part.mirrored = tree_.parts[i].mirrored;
   }
-  read_pmi(file, tree_, document);
+  read_pmi(tree_, document);
   return document;
 }
 

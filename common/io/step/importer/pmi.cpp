@@ -38,8 +38,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -76,15 +74,11 @@ std::string tolerance_name(const std::string& keyword) {
   return name;
 }
 
-std::string file_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class PmiReader {
  public:
   PmiReader(const StepTree& tree, StepDocument& document)
       : document_(document),
+        text_(*tree.text),
         session_(tree.reader.Reader().WS()),
         process_(session_->TransferReader()->TransientProcess()),
         model_(Handle(StepData_StepModel)::DownCast(session_->Model())),
@@ -97,7 +91,7 @@ class PmiReader {
     }
   }
 
-  void run(const std::filesystem::path& file) {
+  void run() {
     if (model_.IsNull()) return;
     for (int i = 1; i <= model_->NbEntities(); ++i) {
       const Entity entity = model_->Value(i);
@@ -107,7 +101,7 @@ class PmiReader {
       statement.entity = static_cast<std::uint32_t>(label);
       if (read(entity, statement)) document_.statements.push_back(std::move(statement));
     }
-    read_geometric(file);
+    read_geometric();
     std::stable_sort(document_.statements.begin(), document_.statements.end(),
                      [](const auto& a, const auto& b) { return a.entity < b.entity; });
   }
@@ -235,15 +229,12 @@ class PmiReader {
 
   // Geometric tolerances come from the text: of some kinds the library makes nothing, and a
   // magnitude that is a complex entity it leaves out.
-  void read_geometric(const std::filesystem::path& file) {
-    std::string bytes = file_text(file);
-    if (bytes.find("_TOLERANCE") == std::string::npos) return;
-    const StepText text(std::move(bytes));
-    for (const int label : text.labels_with("_TOLERANCE")) {
+  void read_geometric() {
+    for (const int label : text_.labels_with("_TOLERANCE")) {
       StepStatement s;
       s.kind = StepStatement::Kind::kGeometric;
       s.entity = static_cast<std::uint32_t>(label);
-      const std::string_view entity = text.entity(label);
+      const std::string_view entity = text_.entity(label);
       std::string simple;
       for (const std::string& keyword : step_keywords(entity))
         if (const std::string name = tolerance_name(keyword); !name.empty()) {
@@ -255,14 +246,14 @@ class PmiReader {
       if (!arguments && !simple.empty()) arguments = step_arguments(entity, simple);
       if (!arguments || arguments->size() < 4) continue;
       if (s.name.empty()) s.name = "geometric tolerance";
-      if (const auto value = text_measure(text, (*arguments)[2])) s.value = *value;
-      modifiers_of(text, entity, s);
+      if (const auto value = text_measure((*arguments)[2])) s.value = *value;
+      modifiers_of(entity, s);
       geometric_faces((*arguments)[3], s);
       document_.statements.push_back(std::move(s));
     }
   }
 
-  void modifiers_of(const StepText& text, std::string_view entity, StepStatement& s) const {
+  void modifiers_of(std::string_view entity, StepStatement& s) const {
     const auto with = step_arguments(entity, "GEOMETRIC_TOLERANCE_WITH_MODIFIERS");
     if (with && !with->empty())
       for (const char c : with->front()) {  // (.MAXIMUM_MATERIAL_REQUIREMENT.,.STATISTICAL.)
@@ -273,12 +264,12 @@ class PmiReader {
       }
     const auto unequal = step_arguments(entity, "UNEQUALLY_DISPOSED_GEOMETRIC_TOLERANCE");
     if (unequal && !unequal->empty())
-      if (const auto outside = text_measure(text, unequal->back())) s.outside = *outside;
+      if (const auto outside = text_measure(unequal->back())) s.outside = *outside;
   }
 
   // The measure that an argument names, in mm or degrees.
-  std::optional<double> text_measure(const StepText& text, std::string_view argument) const {
-    const std::string_view entity = text.entity(step_reference(argument));
+  std::optional<double> text_measure(std::string_view argument) const {
+    const std::string_view entity = text_.entity(step_reference(argument));
     for (const std::string& keyword : step_keywords(entity)) {
       if (!keyword.ends_with("MEASURE_WITH_UNIT")) continue;
       const auto arguments = step_arguments(entity, keyword);
@@ -342,6 +333,7 @@ class PmiReader {
   }
 
   StepDocument& document_;
+  const StepText& text_;
   Handle(XSControl_WorkSession) session_;
   Handle(Transfer_TransientProcess) process_;
   Handle(StepData_StepModel) model_;
@@ -352,8 +344,6 @@ class PmiReader {
 
 }  // namespace
 
-void read_pmi(const std::filesystem::path& file, const StepTree& tree, StepDocument& document) {
-  PmiReader(tree, document).run(file);
-}
+void read_pmi(const StepTree& tree, StepDocument& document) { PmiReader(tree, document).run(); }
 
 }  // namespace mortise

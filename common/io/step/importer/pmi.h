@@ -9,6 +9,6 @@ namespace mortise {
 /// the file themselves, because the document model of the library loses signs and limits, and those
 /// of geometric tolerances from its text, because the library leaves out magnitudes that are
 /// complex entities; faces by what the transfer made of them.
-void read_pmi(const std::filesystem::path& file, const StepTree& tree, StepDocument& document);
+void read_pmi(const StepTree& tree, StepDocument& document);
 
 }  // namespace mortise

@@ -16,15 +16,18 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <gp_Ax2.hxx>
 #include <gp_Quaternion.hxx>
+#include <iterator>
 #include <map>
 #include <set>
 
+#include "common/io/step/importer/reading_notes.h"
+#include "common/io/step/step_objections.h"
+
 namespace mortise {
 namespace {
-
-constexpr int kDeepest = 200;  // levels of a tree; deeper is a loop
 
 std::string name_of(const TDF_Label& label) {
   Handle(TDataStd_Name) name;
@@ -42,6 +45,11 @@ bool says_nothing(const std::string& name) {
   const bool numbers = name.find_first_not_of("0123456789 ") == std::string::npos;
   return numbers || name.find("=>") != std::string::npos || name.starts_with("NAUO") ||
          name == "SOLID" || name == "COMPOUND" || name == "SHELL" || name == "Open CASCADE";
+}
+
+std::string file_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 class TreeReader {
@@ -70,8 +78,9 @@ class TreeReader {
  private:
   void visit(const TDF_Label& label, TopLoc_Location location, const std::string& above,
              const std::string& products, std::uint32_t colour, int depth) {
-    if (depth > kDeepest) {
-      tree_.refusal = "its assemblies contain each other; export it again";
+    if (depth > static_cast<int>(kMostStepLevels)) {
+      tree_.refusal = "its assemblies are nested deeper than " + std::to_string(kMostStepLevels) +
+                      " levels, or contain each other; export it again";
       return;
     }
     TDF_Label product = label;
@@ -222,6 +231,9 @@ class TreeReader {
 }  // namespace
 
 void read_step_tree(const std::filesystem::path& file, StepTree& tree) {
+  tree.text = std::make_unique<const StepText>(file_text(file));
+  tree.refusal = step_refusal(*tree.text);
+  if (!tree.refusal.empty()) return;
   Message::DefaultMessenger()->ChangePrinters().Clear();
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", tree.document);
   tree.reader.SetNameMode(true);
@@ -236,6 +248,7 @@ void read_step_tree(const std::filesystem::path& file, StepTree& tree) {
     return;
   }
   TreeReader(tree).run();
+  for (std::string& note : reading_notes(tree)) tree.notes.push_back(std::move(note));
   if (tree.refusal.empty() && tree.parts.empty())
     tree.refusal =
         tree.not_solid.empty()

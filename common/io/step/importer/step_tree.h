@@ -3,10 +3,12 @@
 #include <TDocStd_Document.hxx>
 #include <TopoDS_Shape.hxx>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/io/step/step_document.h"
+#include "common/io/step/step_text.h"
 
 namespace mortise {
 
@@ -20,6 +22,7 @@ struct StepTree {
   std::vector<StepPart> parts;  ///< names and counts; no mesh
   std::vector<StepInstance> instances;
   std::vector<std::string> not_solid, notes;
+  std::unique_ptr<const StepText> text;
   Handle(TDocStd_Document) document;
   STEPCAFControl_Reader reader;
 };
