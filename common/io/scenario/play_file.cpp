@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <map>
 #include <numbers>
-#include <sstream>
+#include <set>
 
+#include "common/base/file_text.h"
 #include "common/base/in_quotes.h"
 #include "common/base/plain_text.h"
 #include "common/base/ranges.h"
+#include "common/io/scenario/yaml_document.h"
 
 namespace mortise {
 namespace {
@@ -28,8 +29,12 @@ struct Fault {
 int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
 
 void only_keys(const YAML::Node& map, std::initializer_list<const char*> known) {
+  std::set<std::string> taken;
   for (const auto& entry : map) {
-    const auto key = entry.first.as<std::string>();
+    if (!entry.first.IsScalar()) throw Fault{line_of(entry.first), "a key must be a word"};
+    const std::string& key = entry.first.Scalar();
+    if (!taken.insert(key).second)
+      throw Fault{line_of(entry.first), "key " + in_quotes(key) + " stands here twice; keep one"};
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
     for (const char* name : known) list += (list.empty() ? "" : ", ") + std::string(name);
@@ -130,10 +135,10 @@ double Play::seconds() const {
 }
 
 Result<Play> read_play_text(std::string_view yaml, const std::string& name) {
-  if (utf8_prefix(yaml) < yaml.size())
-    return fail(Code::kInvalidInput, name + ": is not UTF-8; save the file as UTF-8");
+  const Result<YAML::Node> document = parse_yaml(yaml, name);
+  if (!document) return document.error();
   try {
-    return read_document(YAML::Load(std::string(yaml)));
+    return read_document(*document);
   } catch (const Fault& fault) {
     return fail(Code::kInvalidInput, name + ":" + std::to_string(fault.line) + ": " + fault.text);
   } catch (const YAML::Exception& error) {
@@ -143,13 +148,8 @@ Result<Play> read_play_text(std::string_view yaml, const std::string& name) {
 }
 
 Result<Play> read_play(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  if (!in || std::filesystem::is_directory(file)) {
-    return fail(Code::kInvalidInput, file.string() + ": cannot be read");
-  }
-  return read_play_text(text.str(), file.string());
+  const Result<std::string> text = file_text(file, kMostYaml_bytes + 1);
+  return text ? read_play_text(*text, file.string()) : text.error();
 }
 
 }  // namespace mortise

@@ -1,9 +1,9 @@
 #include "common/io/scenario/scenario_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
+#include "common/base/file_text.h"
 #include "common/base/in_quotes.h"
 #include "common/base/length_unit.h"
 #include "common/base/plain_text.h"
@@ -266,13 +266,16 @@ Result<std::string> scenario_text(const std::filesystem::path& file) {
     return fail(Code::kInvalidInput, file.string() +
                                          ": is a session log, and a scenario (.yaml) is expected; "
                                          "mortise replay reads logs");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return fail(Code::kNotFound, file.string() + ": cannot be read; check the path");
-  // One byte more than allowed tells a file that is too large without reading all of it.
-  std::string text((std::size_t{16} << 20) + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  return file_text(file, kMostYaml_bytes + 1);
+}
+
+std::vector<std::filesystem::path> files_of(const Scenario& scenario) {
+  const std::filesystem::path own = scenario.file, folder = own.parent_path();
+  std::vector<std::filesystem::path> files{own};
+  if (scenario.assembly) files.push_back(folder / scenario.assembly->file);
+  for (const Scenario::PartSpec& part : scenario.parts)
+    if (!part.mesh.file.empty()) files.push_back(folder / part.mesh.file);
+  return files;
 }
 
 Result<ScenarioReading> read_scenario(const std::filesystem::path& file) {

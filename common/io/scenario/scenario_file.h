@@ -29,6 +29,9 @@ struct ScenarioReading {
 /// mesh or a session log in its place is an error that says what to do.
 Result<std::string> scenario_text(const std::filesystem::path& file);
 
+/// The scenario and what it names: its meshes, its STEP file.
+std::vector<std::filesystem::path> files_of(const Scenario& scenario);
+
 /// A warning for a session, where parts are to move, and none of a scene that is only judged:
 /// nothing moves.
 std::optional<Finding> nothing_moves(const Scenario& scenario);

@@ -10,6 +10,7 @@
 
 #include "common/base/ranges.h"
 #include "common/io/scenario/scenario_file.h"
+#include "common/io/scenario/yaml_document.h"
 #include "common/math/types.h"
 
 /// Strict access to YAML: every read names the type that it expects, and an error becomes a finding
@@ -81,10 +82,5 @@ std::optional<double> yaml_number(YamlContext& context, const YAML::Node& node,
 /// Is a length of the file, in mm, no longer than any length may be? Else an error at the node.
 bool within_range(YamlContext& context, const YAML::Node& at, const std::string& what,
                   const Vec3& mm);
-
-/// Parses text into one document, with the keys that `<<: *other` takes over. Refused: what is not
-/// UTF-8, more than one document, too deep, too large, or aliases that expand to more than
-/// `kMaxExpandedNodes` nodes.
-Result<YAML::Node> parse_yaml(std::string_view yaml, const std::string& name);
 
 }  // namespace mortise

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/base/file_text.h"
 #include "common/base/hash.h"
 #include "common/base/ids.h"
 #include "common/base/in_quotes.h"
@@ -13,9 +14,27 @@
 #include "common/base/ranges.h"
 #include "common/base/result.h"
 #include "common/base/union_find.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise {
 namespace {
+
+TEST(FileText, HasTheBytesOfAFileUpToABound) {
+  const test::TestFolder folder;
+  const std::string file = folder.write("a.txt", std::string("one\0\r\ntwo", 9));
+  const auto whole = file_text(file), part = file_text(file, 4);
+  ASSERT_TRUE(whole && part);
+  EXPECT_EQ(*whole, std::string("one\0\r\ntwo", 9));
+  EXPECT_EQ(*part, std::string("one\0", 4));
+  for (const auto& [name, says] :
+       {std::pair{folder.path() / "b.txt", "cannot be read; check the path"},
+        std::pair{folder.path(), "is a folder; name a file"},
+        std::pair{std::filesystem::path("/dev/zero"), "is a pipe or a device"}}) {
+    const auto refused = file_text(name);
+    ASSERT_FALSE(refused) << name;
+    EXPECT_NE(refused.error().text.find(says), std::string::npos) << refused.error().text;
+  }
+}
 
 TEST(Ids, ZeroIsNoneAndKindsDoNotMix) {
   EXPECT_FALSE(PartId{});

@@ -53,6 +53,12 @@ TEST(PlayFile, EachFaultIsOneLineWithItsPlace) {
       {"acts:\n  - user: a\n    part: b\n    speed: 3\n    steps: [{seconds: 1}]", "p.yaml:4",
        "unknown key 'speed'"},
       {"acts: [{user: a, part: b, steps: [{seconds: 1}]}]\nloop: true", "p.yaml:2", "loop"},
+      {"acts: [{user: a, part: b, steps: [{seconds: 1}]}]\nacts: []", "p.yaml:2", "'acts' stands"},
+      {"acts:\n  - {user: a,\n     part: b, user: c, steps: [{seconds: 1}]}", "p.yaml:3", "'user'"},
+      {"acts: [{user: a, part: b, steps: [{seconds: 1, seconds: 2}]}]", "p.yaml:1", "twice"},
+      {"acts: [{user: a, part: b, steps: [{seconds: 1}]}]\n---\nacts: []", "p.yaml",
+       "more than one document"},
+      {"? [acts]\n: 1", "p.yaml:1", "a key must be a word"},
   };
   for (const auto& fault : faults) {
     const auto play = read_play_text(fault.yaml, "p.yaml");
