@@ -11,11 +11,12 @@ void add_session(ProgramOptions& app, ServerOptions& o) {
   const auto add = [&](const char* name, auto& value, const char* text) {
     return app.add(name, value, text).group(kSessionGroup);
   };
-  app.add("scenario", o.scenario, "Scenario file (YAML)");
+  app.add("scenario", o.scenario, "Scenario file (YAML)").reads_file();
   add("--restore", o.restore,
       "Continue from this session log, or from the newest one of the session in this folder (none "
       "there: "
-      "begin SCENARIO)");
+      "begin SCENARIO)")
+      .reads_file();
   must_name_a_session(
       add("--standby-of", o.standby_of,
           "Stand by for the server of this session, and take over when it is gone; --restore "
@@ -36,7 +37,8 @@ void add_log(ProgramOptions& app, ServerOptions& o) {
   const auto log = app.add("--log", o.log,
                            "Session log (NAME.mcap), or a folder for it, which is made; default "
                            "sessions/<session>-<UTC time>.mcap")
-                       .group(kLogGroup);
+                       .group(kLogGroup)
+                       .writes_file();
   app.add("--log-rotate", o.log_rotate_mb,
           "Begin the next file of the log (name_p0002.mcap ...) when one has so many MB; 0: "
           "never. Old files are yours to keep or to delete")
@@ -70,7 +72,7 @@ void add_metrics(ProgramOptions& app, ServerOptions& o) {
 }
 
 void add_output(ProgramOptions& app, ServerOptions& o) {
-  app.add("--stats", o.stats, "Write the closing statistics to this file (JSON)");
+  app.add("--stats", o.stats, "Write the closing statistics to this file (JSON)").writes_file();
   app.add_flag("--json", o.json, "Closing statistics as one JSON document instead of tables");
   app.add_flag("--quiet", o.quiet, "Print warnings and errors only");
   app.add_flag("--live", o.live, "Status line: time, users, open clashes, tick time");

@@ -229,8 +229,6 @@ Status Service::open_channel() {
 
 // 3. the log of before, played again, and the new one
 Status Service::open_log() {
-  // A disk that is full, or a file that may not grow, is an error of the log, not the end.
-  std::signal(SIGXFSZ, SIG_IGN);
   auto resumed = resume(*start_, options_);
   if (!resumed) return resumed.error();
   resumed_ = std::move(*resumed);

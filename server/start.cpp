@@ -10,6 +10,7 @@
 #include "common/io/log/log_file.h"
 #include "common/io/log/replay.h"
 #include "common/io/scenario/assembly_parts.h"
+#include "common/io/usage.h"
 #include "idl/identity.h"
 #include "server/restore.h"
 
@@ -59,6 +60,7 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
       !status) {
     return status.error();
   }
+  if (Status kept = none_is_written(files_of(reading->scenario)); !kept) return kept.error();
   auto scene = load_scene(reading->scenario, default_meshes());
   if (!scene) return scene.error();
   if (Status status = say_findings(scene->findings, scene->usable(), options.scenario); !status) {
@@ -71,6 +73,7 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
 // The state that the newest checkpoint tells, or the log's beginning: ticks after it are still to
 // be played.
 Result<SessionStart> read_from_log(const fs::path& file) {
+  if (Status kept = none_is_written({file}); !kept) return kept.error();
   auto log = read_session_log(file, {.keep_checkpoints = 2});
   // A log that cannot be read is bad input, whatever the reason.
   if (!log) return fail(Code::kInvalidInput, log.error().text);

@@ -69,7 +69,7 @@ void add_behaviour(ProgramOptions& app, BotOptions& o, double& tremor_deg) {
     return app.add(name, value, text).group("Behaviour");
   };
   add("--behaviour", o.behaviour, "What they do").one_of(behaviour_names()).shows_default();
-  add("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)");
+  add("--play", o.play, "Play file of --behaviour script (acts: user, part, steps)").reads_file();
   add("--part", o.part, "Part to begin with (fight: the part that all want)");
   add("--first-part", o.first_part,
       "Number of the moving part that the first user begins with, from 0");
@@ -117,7 +117,8 @@ void add_report(ProgramOptions& app, BotOptions& o, std::vector<std::string>& li
       .group(kLimitsGroup)
       .positive();
   app.add("--junit", o.junit, "Write the limits to this file as a JUnit document")
-      .group(kLimitsGroup);
+      .group(kLimitsGroup)
+      .writes_file();
 }
 
 /// What options ask of each other.

@@ -31,8 +31,8 @@ void add_verify(ProgramOptions& app, int& code) {
   auto command = app.add_command(
       "verify", "compute the session again and compare every tick; exit 4 at the first difference",
       [options, &code] { code = run_verify(*options); });
-  command.add("log", options->log, "session log (.mcap)").required();
-  command.add("more", options->more, kMore);
+  command.add("log", options->log, "session log (.mcap)").reads_file().required();
+  command.add("more", options->more, kMore).reads_file();
   command.add("--threads", options->threads, "threads; the result does not depend on it")
       .in_range(1, 256);
   command.add("--signed", options->signed_by,
@@ -46,8 +46,8 @@ void add_report(ProgramOptions& app, int& code) {
   auto command = app.add_command(
       "report", "verify, and print the statistics of the session: collisions by pair and user",
       [options, &code] { code = run_report(*options); });
-  command.add("log", options->log, "session log (.mcap)").required();
-  command.add("more", options->more, kMore);
+  command.add("log", options->log, "session log (.mcap)").reads_file().required();
+  command.add("more", options->more, kMore).reads_file();
   command.add("--threads", options->threads, "as with verify").in_range(1, 256);
   command.add_flag("--json", options->json, kJson);
 }
@@ -56,8 +56,8 @@ void add_info(ProgramOptions& app, int& code) {
   auto options = std::make_shared<InfoOptions>();
   auto command = app.add_command("info", "what a log holds, and what it lost",
                                  [options, &code] { code = run_info(*options); });
-  command.add("log", options->log, "session log (.mcap)").required();
-  command.add("more", options->more, kMore);
+  command.add("log", options->log, "session log (.mcap)").reads_file().required();
+  command.add("more", options->more, kMore).reads_file();
   command.add_flag("--json", options->json, kJson);
 }
 
@@ -66,8 +66,8 @@ void add_recover(ProgramOptions& app, int& code) {
   auto command = app.add_command(
       "recover", "copy all that is whole into a new, closed log; exit 7: it is not replayable",
       [options, &code] { code = run_recover(*options); });
-  command.add("log", options->log, "damaged session log").required();
-  command.add("--out", options->out, "new log; must not exist").required();
+  command.add("log", options->log, "damaged session log").reads_file().required();
+  command.add("--out", options->out, "new log; must not exist").writes_file().required();
   command.add_flag("--json", options->json, kJson);
 }
 
@@ -76,16 +76,19 @@ void add_export(ProgramOptions& app, int& code) {
   auto command =
       app.add_command("export", "the session as tables: clashes, events, users, decisions, sums",
                       [options, &code] { code = run_export(*options); });
-  command.add("log", options->log, "session log (.mcap)").required();
-  command.add("more", options->more, kMore);
-  command.add("--csv", options->csv, "a folder for one CSV file a table");
-  command.add("--sqlite", options->sqlite, "a new SQLite database, with views");
-  command.add("--html", options->html, "one page that needs no other file");
-  command.add("--json", options->json, "one JSON document");
-  command.add("--bcf", options->bcf,
-              "a new BCF 3.0 archive: each clash as an issue, with a picture");
-  command.add("--scenario", options->scenario,
-              "a new folder for a scenario, with its meshes, that begins where the session stands");
+  command.add("log", options->log, "session log (.mcap)").reads_file().required();
+  command.add("more", options->more, kMore).reads_file();
+  command.add("--csv", options->csv, "a folder for one CSV file a table").writes_file();
+  command.add("--sqlite", options->sqlite, "a new SQLite database, with views").writes_file();
+  command.add("--html", options->html, "one page that needs no other file").writes_file();
+  command.add("--json", options->json, "one JSON document").writes_file();
+  command
+      .add("--bcf", options->bcf, "a new BCF 3.0 archive: each clash as an issue, with a picture")
+      .writes_file();
+  command
+      .add("--scenario", options->scenario,
+           "a new folder for a scenario, with its meshes, that begins where the session stands")
+      .writes_file();
   command
       .add("--what-if", options->sweep,
            "changes as behind --sweep of whatif; their table goes with the others")
@@ -99,8 +102,8 @@ void add_unpack(ProgramOptions& app, int& code) {
   auto command = app.add_command(
       "unpack", "a session that was saved on the page, as a folder with its scenario",
       [options, &code] { code = run_unpack(*options); });
-  command.add("archive", options->archive, "what Save wrote (.zip)").required();
-  command.add("--out", options->out, "a new folder").required();
+  command.add("archive", options->archive, "what Save wrote (.zip)").reads_file().required();
+  command.add("--out", options->out, "a new folder").writes_file().required();
 }
 
 void add_explain(ProgramOptions& app, int& code) {
@@ -108,7 +111,7 @@ void add_explain(ProgramOptions& app, int& code) {
   auto command = app.add_command(
       "explain", "the whole chain that led to the verdict of one clash, in words and numbers",
       [options, &code] { code = run_explain(*options); });
-  command.add("log", options->log, "session log (.mcap)").required();
+  command.add("log", options->log, "session log (.mcap)").reads_file().required();
   command.add("clash", options->clash, "its number, as in the tables").required();
   command.add("--tick", options->tick, "what was told in this tick; default: the worst");
   command.add_flag("--json", options->json, kJson);
@@ -121,7 +124,7 @@ void add_play([[maybe_unused]] ProgramOptions& app, [[maybe_unused]] int& code) 
   auto command = app.add_command(
       "play", "send what the users of a log did to a live session with the same parts, again",
       [options, &code] { code = run_play(*options); });
-  command.add("log", o.log, "session log (.mcap)").required();
+  command.add("log", o.log, "session log (.mcap)").reads_file().required();
   add_client_network_options(command, o.network);
   command.add("--speed", o.speed, "times the recorded pace").in_range(0.1, 100.0).shows_default();
   command.add("--from", o.from_s, "s of the log; what lies before is played at ×100")
@@ -138,7 +141,7 @@ void add_what_if(ProgramOptions& app, int& code) {
       "whatif", "compute the session with changes: which clashes have another class, and why",
       [options, &code] { code = run_what_if(*options); });
   command.footer(kChanges);
-  command.add("log", options->log, "session log (.mcap)").required();
+  command.add("log", options->log, "session log (.mcap)").reads_file().required();
   command.add("--set", options->set, "a change; may be given again").one_at_a_time();
   command.add("--sweep", options->sweep, "a change with values in brackets; again: each with each")
       .one_at_a_time();
@@ -162,7 +165,9 @@ void add_merge(ProgramOptions& app, int& code) {
   auto options = std::make_shared<MergeOptions>();
   auto command = app.add_command("merge", "put the JSON of all shards of one sweep together",
                                  [options, &code] { code = run_merge(*options); });
-  command.add("files", options->files, "documents of whatif --json --shard").required();
+  command.add("files", options->files, "documents of whatif --json --shard")
+      .reads_file()
+      .required();
 }
 
 }  // namespace

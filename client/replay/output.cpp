@@ -5,6 +5,7 @@
 #include "client/replay/progress.h"
 #include "common/base/json_text.h"
 #include "common/io/log/log_chain.h"
+#include "common/io/usage.h"
 
 namespace mortise {
 
@@ -31,6 +32,7 @@ Result<SessionLog> read_files(const std::filesystem::path& log,
   std::vector<std::filesystem::path> files{log};
   files.insert(files.end(), more.begin(), more.end());
   if (more.empty()) files = chain_from(log);
+  if (const Status kept = none_is_written(files); !kept) return kept.error();
   Progress progress("reading the log", static_cast<double>(files.size()));
   return read_session(files, {.on_progress = [&](double read) { progress.show(read); }});
 }

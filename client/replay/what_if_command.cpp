@@ -1,12 +1,12 @@
 #include "client/replay/what_if_command.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 
 #include "client/replay/output.h"
 #include "client/replay/progress.h"
 #include "client/replay/sweep.h"
+#include "common/base/file_text.h"
 #include "common/io/build_info.h"
 #include "common/io/log/log_chain.h"
 
@@ -65,9 +65,10 @@ int run_merge(const MergeOptions& options) {
   Json merged;
   std::vector<Json> variants;
   for (const auto& file : options.files) {
-    std::ifstream in(file);
-    const Json shard = Json::parse(in, nullptr, false);
-    if (!in || shard.is_discarded() || !shard.is_object() || !shard.contains("variants"))
+    const Result<std::string> text = file_text(file);
+    if (!text) return say(text.error(), kExitBadInput);
+    const Json shard = Json::parse(*text, nullptr, false);
+    if (shard.is_discarded() || !shard.is_object() || !shard.contains("variants"))
       return say(fail(Code::kInvalidInput, file.string() + ": not the --json of a whatif"),
                  kExitBadInput);
     if (merged.is_null()) merged = shard;

@@ -1,10 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "common/base/result.h"
 
 namespace CLI {
 class App;
@@ -12,8 +15,7 @@ class Option;
 }  // namespace CLI
 
 /// Command lines of programs. Behind it stands CLI11, whose templates cost each unit that includes
-/// them ten seconds of compiling. Who links this also ends with one line, not a core, where the
-/// system has no memory or thread left.
+/// them ten seconds of compiling. What it does for the process is in program_process.h.
 namespace mortise {
 
 /// What is wrong with a command line: "--part x: there is none". Thrown by what reads or checks it.
@@ -34,13 +36,17 @@ class ProgramOption {
   ProgramOption in_range(int lo, int hi) const;
   ProgramOption in_range(double lo, double hi) const;
   ProgramOption in_range(std::uint64_t lo, std::uint64_t hi) const;
-  ProgramOption positive() const;
-  ProgramOption not_negative() const;
+  ProgramOption positive() const;      ///< up to kLargestNumber
+  ProgramOption not_negative() const;  ///< the same
   ProgramOption one_of(const std::vector<std::string>& words) const;
   /// What `wrong` says of a value is wrong with it; nothing: it may be.
   ProgramOption check(const std::function<std::string(const std::string&)>& wrong) const;
   /// A list as one word with commas between.
   ProgramOption comma_separated() const;
+  /// Names a file that is read. A pipe or a device, which may have no end, is bad input.
+  ProgramOption reads_file() const;
+  /// Names a file that is written: none that is read, and none that another option has written.
+  ProgramOption writes_file() const;
   /// A list of which each word has the option before it.
   ProgramOption one_at_a_time() const;
   ProgramOption needs(const ProgramOption& other) const;
@@ -59,7 +65,7 @@ class ProgramOptions {
   ProgramOptions(const std::string& title, const std::string& version);
 
   /// Of text, a number, a path, an optional number, or a vector of them: of which types is in
-  /// usage.cpp.
+  /// usage.cpp. Numbers are finite, and those without a sign have none.
   template <class T>
   ProgramOption add(const std::string& name, T& value, const std::string& text);
   ProgramOption add_flag(const std::string& name, bool& value, const std::string& text);
@@ -86,5 +92,9 @@ class ProgramOptions {
   std::shared_ptr<CLI::App> owned_;  ///< of the program; none for a command of it
   CLI::App* app_;
 };
+
+/// Fails where one of these files, which are read although no option names them (meshes of a
+/// scenario, further files of a log), is one that an option of the command line has written.
+Status none_is_written(const std::vector<std::filesystem::path>& read);
 
 }  // namespace mortise

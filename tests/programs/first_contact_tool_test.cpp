@@ -115,6 +115,10 @@ TEST_F(Tool, NamesFileLineAndColumnOfBadInput) {
       {"a,linear,0,0,0,-5,0,0,1,0,0,0,5,0,x,1,0,0,0\n", "motions.csv:2:35: 'x' in column end_z"},
       {"a,linear,0,0,0,nan,0,0,1,0,0,0,5,0,0,1,0,0,0\n",
        "motions.csv:2:16: 'nan' in column start_x"},
+      {"a,linear,0,0,0,1e20,0,0,1,0,0,0,5,0,0,1,0,0,0\n",
+       "motions.csv:2:16: '1e20' in column start_x is beyond"},
+      {"a,screw,0,1e300,0,-5,0,0,1,0,0,0,5,0,0,1,0,0,0\n",
+       "motions.csv:2:11: '1e300' in column ref_y is beyond"},
       {"a,linear,0,0,0,-5,0,0,2,0,0,0,5,0,0,1,0,0,0\n", "motions.csv:2:23: the quaternion"},
       {"a,linear,0,0\n", "motions.csv:2:12: 4 values"},
       {"a,linear,0,0,0,-5,0,0,1,0,0,0,5,0,0,1,0,0,0\na,linear,0,0,0,-5,0,0,1,0,0,0,5,0,0,1,0,0,0\n",
@@ -134,6 +138,17 @@ TEST_F(Tool, NamesFileLineAndColumnOfBadInput) {
   run_motions("a,linear,0,0,0,-5,0,0,1,0,0,0,5,0,0,1,0,0,0\n");
   EXPECT_EQ(run("--moving cube.obj --static cube.obj --motions motions.csv --out /no/such/o.csv"),
             1);
+}
+
+TEST_F(Tool, APointBeyondAllThatIsMadeIsRefused) {
+  std::string far(kCube);
+  for (std::size_t at = 0; (at = far.find("0.5", at)) != std::string::npos; at += 4)
+    far.replace(at, 3, "5e20");
+  write("far.obj", far);
+  write("motions.csv", std::string(kHeader) + "a,linear,0,0,0,-5,0,0,1,0,0,0,5,0,0,1,0,0,0\n");
+  EXPECT_EQ(run("--moving far.obj --static cube.obj --motions motions.csv --out out.csv"), 3);
+  EXPECT_NE(read("stderr").find("far.obj: a coordinate is beyond ±1e9 mm"), std::string::npos)
+      << read("stderr");
 }
 
 TEST_F(Tool, ObjKeepsAllDigitsAndNamesMistakes) {

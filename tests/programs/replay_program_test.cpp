@@ -55,6 +55,18 @@ TEST_F(ReplayProgram, VerifiesATrueLog) {
   EXPECT_NE(run("verify " + quoted(file)).out.find("verified: up to tick"), std::string::npos);
 }
 
+TEST_F(ReplayProgram, ExportLeavesTheLogAsItIs) {
+  const TemporaryFile file("kept.mcap");
+  ASSERT_TRUE(test::write_log(*session_, file.path()));
+  const auto size = std::filesystem::file_size(file.path());
+  for (const char* option : {"--json ", "--html ", "--csv "}) {
+    const Outcome refused = run("export " + quoted(file) + " " + option + quoted(file));
+    EXPECT_EQ(refused.exit_code, 2) << option;
+    EXPECT_NE(refused.err.find("would overwrite the input"), std::string::npos) << refused.err;
+    EXPECT_EQ(std::filesystem::file_size(file.path()), size);
+  }
+}
+
 TEST_F(ReplayProgram, FourAtTheTickOfAChangedIncrement) {
   auto ticks = session_->ticks;
   std::uint64_t changed = 0;

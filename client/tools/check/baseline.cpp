@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
+
+#include "common/base/file_text.h"
 
 namespace mortise {
 namespace {
@@ -52,10 +52,9 @@ States states_of(const Json& report) {
 }  // namespace
 
 Result<std::string> compare_with_baseline(const std::string& file, Json& report) try {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return fail(Code::kNotFound, file + ": cannot be read; check the path");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const States before = states_of(Json::parse(text)), now = states_of(report);
+  const Result<std::string> text = file_text(file);
+  if (!text) return text.error();
+  const States before = states_of(Json::parse(*text)), now = states_of(report);
   Json changes = {{"new", Json::array()}, {"gone", Json::array()}, {"changed", Json::array()}};
   std::size_t unchanged = 0;
   std::string lines;

@@ -10,6 +10,7 @@
 #include "client/tools/check/propose.h"
 #include "client/tools/check/run_check.h"
 #include "common/base/json_text.h"
+#include "common/io/usage.h"
 
 namespace {
 
@@ -32,6 +33,8 @@ int main(int argc, char** argv) {
   for (const mortise::Finding& finding : subject->findings)
     std::fprintf(stderr, "mortise-check: %s\n", finding.text.c_str());
   if (!subject->usable()) return mortise::kExitBadInput;
+  if (const auto kept = mortise::none_is_written(files_of(subject->scenario)); !kept)
+    return say(kept.error());
   const auto outcome = mortise::run_check(std::move(*subject), o);
   if (!outcome) return say(outcome.error());
   const mortise::OpenedScene& opened = outcome->opened;

@@ -10,6 +10,7 @@ namespace {
 void add_files(ProgramOptions& app, CheckCommand& o) {
   app.add("files", o.files,
           "a STEP assembly, a scenario (.yaml), or two or more meshes, as they lie")
+      .reads_file()
       .required();
   app.add("--unit", o.unit, "of the numbers in meshes: mm (default), cm, m, in, um")
       .one_of(length_unit_names());
@@ -35,16 +36,19 @@ void add_judgement(ProgramOptions& app, CheckCommand& o, std::vector<std::string
 void add_output(ProgramOptions& app, CheckCommand& o) {
   app.add_flag("--json", o.json, "one JSON document on stdout");
   app.add_flag("-v,--verbose", o.verbose, "every contact and every statement of the file");
-  app.add("--csv", o.csv, "write the pairs to this file");
-  app.add("--html", o.html, "write a page with pictures of the worst to this file");
-  app.add("--junit", o.junit, "write a test report for CI to this file");
+  app.add("--csv", o.csv, "write the pairs to this file").writes_file();
+  app.add("--html", o.html, "write a page with pictures of the worst to this file").writes_file();
+  app.add("--junit", o.junit, "write a test report for CI to this file").writes_file();
   app.add(
-      "--bcf", o.bcf,
-      "write an issue for each clash that nothing explains to this BCF 3.0 file, which must not "
-      "exist");
-  app.add("--sqlite", o.sqlite, "write a database to this file, which must not exist");
+         "--bcf", o.bcf,
+         "write an issue for each clash that nothing explains to this BCF 3.0 file, which must not "
+         "exist")
+      .writes_file();
+  app.add("--sqlite", o.sqlite, "write a database to this file, which must not exist")
+      .writes_file();
   app.add("--baseline", o.baseline,
-          "a JSON report of before: say what is new, gone, changed and unchanged");
+          "a JSON report of before: say what is new, gone, changed and unchanged")
+      .reads_file();
   app.add("--fail-on", o.fail_on,
           "exit 6 when there is: real, a real clash that nothing explains; potential, also "
           "a potential one; near, also a gap below --min-gap; new, one that the baseline "
@@ -54,9 +58,10 @@ void add_output(ProgramOptions& app, CheckCommand& o) {
                "write NAME.mortise.yaml beside the STEP file, with the fits to be filled in; it is "
                "read the next time");
   app.add(
-      "--session", o.session,
-      "of a STEP assembly: write a scenario for a session of it to this file; the overlaps that "
-      "are explained begin approved");
+         "--session", o.session,
+         "of a STEP assembly: write a scenario for a session of it to this file; the overlaps that "
+         "are explained begin approved")
+      .writes_file();
   app.add("--fix", o.fixed, "with --session: a path of what does not move; '*' allowed");
 }
 

@@ -3,11 +3,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <set>
+#include <sstream>
 #include <string_view>
 
+#include "common/base/file_text.h"
 #include "common/base/in_quotes.h"
+#include "common/base/ranges.h"
 
 namespace mortise {
 namespace {
@@ -50,8 +52,9 @@ class MotionsReader {
   MotionsReader(std::string file, double unit_mm) : file_(std::move(file)), unit_mm_(unit_mm) {}
 
   Result<std::vector<NamedMotion>> read() {
-    std::ifstream in(file_);
-    if (!in) return fail(Code::kNotFound, file_ + ": cannot be opened; check the path");
+    Result<std::string> text = file_text(file_);
+    if (!text) return text.error();
+    std::istringstream in(std::move(*text));
     std::string line;
     while (std::getline(in, line)) {
       ++line_number_;
@@ -127,9 +130,16 @@ class MotionsReader {
   }
 
   bool vector(const std::vector<Cell>& cells, int column, Vec3& v) {
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
       if (!number(cells, column + c, v[c])) return false;
-    v *= unit_mm_;
+      v[c] *= unit_mm_;
+      if (!within(v[c], kLongest_mm)) {
+        const Cell& cell = cells[where_[column + c]];
+        return bad(cell.column, in_quotes(cell.text) + " in column " +
+                                    std::string(kColumns[column + c]) +
+                                    " is beyond ±1e9 mm; correct the value or the unit");
+      }
+    }
     return true;
   }
 

@@ -13,11 +13,14 @@ FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
   ProgramOptions app(
       "mortise-first-contact: when does a moving mesh first touch a static one, motion by motion",
       version_line("mortise-first-contact"));
-  app.add("--moving", o.moving, "Mesh of the moving part (OBJ, STL, PLY, glTF, DAE)").required();
-  app.add("--static", o.fixed, "Mesh of the static part, at identity").required();
+  app.add("--moving", o.moving, "Mesh of the moving part (OBJ, STL, PLY, glTF, DAE)")
+      .reads_file()
+      .required();
+  app.add("--static", o.fixed, "Mesh of the static part, at identity").reads_file().required();
   app.add("--motions", o.motions,
           "CSV with the columns id,path,ref_x..z,start_x..z,start_qw..z,end_x..z,end_qw..z; "
           "path is linear or screw, ref the reference point in the part's own frame")
+      .reads_file()
       .required();
   std::string unit = "mm";
   app.add("--unit", unit, "Unit of every length in the three files: mm, cm, m, in or um")
@@ -31,7 +34,8 @@ FirstContactCommandLine read_first_contact_command_line(int argc, char** argv) {
       .shows_default();
   app.add("--out", o.out,
           "CSV to write: id,state,t_clear,t_contact,distance_mm,time_us; state is free, "
-          "contact, undecided, touching_at_start or overlapping_at_start");
+          "contact, undecided, touching_at_start or overlapping_at_start")
+      .writes_file();
   app.add_flag("--json", o.json, "One JSON document on stdout");
   app.footer(
       "t in [0, 1] of the motion. distance_mm is that of the meshes at t_contact (undecided: at "

@@ -8,6 +8,7 @@
 
 #include "client/tools/first_contact/motions_file.h"
 #include "common/base/json_text.h"
+#include "common/base/ranges.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
 #include "common/ccd/start_state.h"
@@ -55,6 +56,10 @@ Result<SolidPtr> load(const std::string& file, double unit_mm) {
                    file.c_str(), imported->report.quantum_mm);
     mesh = std::move(imported->mesh);
   }
+  for (const Vec3& point : mesh.points_mm)
+    if (!within(point.array().abs().maxCoeff(), kLongest_mm))
+      return fail(Code::kInvalidInput,
+                  file + ": a coordinate is beyond ±1e9 mm; correct the value or the unit");
   std::fprintf(stderr, "%s: %zu triangles\n", file.c_str(), mesh.triangles.size());
   return SolidPtr(std::make_shared<Solid>(std::move(mesh)));
 }

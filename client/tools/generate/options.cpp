@@ -19,8 +19,9 @@ GenerateCommandLine read_generate_command_line(int argc, char** argv) {
   app.add("kind", o.kind, "Kind of part, e.g. shaft");
   std::vector<std::string> words;
   app.add("parameters", words, "name=value, e.g. d1_mm=20 facets=48 phase_rad=0.1");
-  app.add("--scene", o.scene, "Scenario file: all its parts at their poses, as .obj and .mtl");
-  app.add("-o,--out", o.out, "File to write: .obj (all digits) or .stl (floats)");
+  app.add("--scene", o.scene, "Scenario file: all its parts at their poses, as .obj and .mtl")
+      .reads_file();
+  app.add("-o,--out", o.out, "File to write: .obj (all digits) or .stl (floats)").writes_file();
   app.footer("Exit codes: 0 ok, 1 cannot write, 2 usage, 3 the part cannot be made.");
   const auto wrong = [&](const std::string& text) {
     std::fprintf(stderr, "mortise-generate: %s; see mortise-generate --help\n", text.c_str());

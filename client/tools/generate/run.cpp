@@ -8,6 +8,7 @@
 #include "client/tools/generate/write_scene.h"
 #include "common/generators/generators.h"
 #include "common/io/scenario/open_scene.h"
+#include "common/io/usage.h"
 
 namespace mortise {
 namespace {
@@ -46,6 +47,8 @@ int write_scene(const GenerateOptions& options) {
   if (!opened) return complain(kExitBadInput, opened.error().text);
   for (const Finding& finding : opened->findings)
     if (finding.is_error) return complain(kExitBadInput, finding.text);
+  if (const Status kept = none_is_written(files_of(opened->scenario)); !kept)
+    return complain(kExitBadInput, kept.error().text);
   const auto material_file = std::filesystem::path(options.out).replace_extension(".mtl");
   std::ofstream out(options.out), materials(material_file);
   write_scene_obj(opened->scene.world, material_file.filename().string(), out, materials);

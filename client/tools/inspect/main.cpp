@@ -17,7 +17,9 @@ int main(int argc, char** argv) {
       "mortise-inspect: planes, cylinders, cones, spheres and tori of meshes on stderr, and a "
       "scenario of them on stdout",
       mortise::version_line("mortise-inspect"));
-  app.add("files", files, "mesh files, one scenario (.yaml), or one STEP assembly").required();
+  app.add("files", files, "mesh files, one scenario (.yaml), or one STEP assembly")
+      .reads_file()
+      .required();
   app.add("--unit", unit, "of the numbers in mesh files: mm, cm, m, in, um")
       .one_of(mortise::length_unit_names())
       .shows_default();

@@ -14,6 +14,7 @@ JudgeCommandLine read_judge_command_line(int argc, char** argv) {
                      version_line("mortise-judge"));
   app.add("files", o.files,
           "a scenario (.yaml), or two or more meshes, which meet as they lie in their files")
+      .reads_file()
       .required();
   app.add("--fit", o.fit,
           "of meshes: the fit of their hole and shaft, H7/g6; with a size before it where "
@@ -27,7 +28,8 @@ JudgeCommandLine read_judge_command_line(int argc, char** argv) {
   app.add("--fail-on", o.fail_on, "exit 6 when a collision of this class or worse is found")
       .one_of({"real", "potential"});
   app.add("--picture", o.picture,
-          "draw the worst region in section, as .svg or .png; implies --full");
+          "draw the worst region in section, as .svg or .png; implies --full")
+      .writes_file();
   app.add("--region", o.regions, "draw this region instead; several are drawn side by side");
   app.add_flag(
       "--apply-way", o.apply_way,

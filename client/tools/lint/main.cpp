@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   mortise::ProgramOptions app(
       "mortise-lint: checks a scenario and prints its tolerances in micrometres",
       mortise::version_line("mortise-lint"));
-  app.add("scenario", file, "scenario file (.yaml)").required();
+  app.add("scenario", file, "scenario file (.yaml)").reads_file().required();
   app.add_flag("--json", json, "one JSON document on stdout");
   app.footer("Exit codes: 0 ok (warnings allowed), 2 usage, 3 the scenario has errors.");
   if (const int exit_code = app.read(argc, argv); exit_code >= 0) return exit_code;
