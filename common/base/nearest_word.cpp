@@ -12,8 +12,12 @@ constexpr std::size_t kLeastBeginning = 2;
 /// Known words in one sentence; chosen: a line or two of a terminal.
 constexpr std::size_t kMostListed = 12;
 
+// The sign of micro, which Unicode has twice, is a u where only plain letters are known: µm is um.
 std::string lower(std::string_view text) {
   std::string small(text);
+  for (const std::string_view micro : {"\u00b5", "\u03bc"})
+    for (std::size_t at = 0; (at = small.find(micro, at)) != small.npos;)
+      small.replace(at, micro.size(), "u");
   for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return small;
 }

@@ -97,6 +97,21 @@ TEST_F(ScenarioTools, JudgeRefusesABadScenarioAndABadOption) {
   EXPECT_EQ(run("mortise-judge", file("a.yaml", blocks("10")) + " --fail-on fake").exit_code, 2);
 }
 
+// The name of a scene that is made of meshes is as short as one of a file must be.
+TEST_F(ScenarioTools, MeshesMayHaveLongNamesAndBeMany) {
+  const std::string one = folder_ / (std::string(70, 'a') + ".obj");
+  ASSERT_EQ(run("mortise-generate", "block --out " + one).exit_code, 0);
+  std::string many;
+  for (int i = 0; i < 40; ++i) many += one + " ";
+  for (const std::string& files : {one + " " + one, many}) {
+    const Outcome judged = run("mortise-judge", files);
+    EXPECT_EQ(judged.exit_code, 0) << judged.err;
+  }
+  const Outcome refused = run("mortise-judge", one + " " + one + " --fit 20");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("code: is a size alone"), std::string::npos) << refused.err;
+}
+
 // The same line from every program that reads a scenario, and none of them falls over.
 TEST_F(ScenarioTools, LatinOneAndDistantPosesAreRefusedByAll) {
   const std::string latin = file("latin.yaml", "name: J\xe4ger\n" + blocks("10.2").substr(13));

@@ -37,9 +37,11 @@ bool is_round(const Part& part, const Feature& feature) {
                   measure_region(part.solid->mesh(), feature.surface, feature.triangles).arc_rad);
 }
 
+// A face that the file does not name, as of the surface around a part, goes by its part.
 std::string name_of(const FitEnd& end) {
-  return end.feature == kWholePart ? end.part.name
-                                   : end.part.name + "." + end.part.features[end.feature].name;
+  const std::string feature =
+      end.feature == kWholePart ? std::string() : end.part.features[end.feature].name;
+  return end.part.name + (feature.empty() ? "" : ".") + feature;
 }
 
 std::vector<Mating> all_matings(const Scenario::FitSpec& fit, const FitEnd& a, const FitEnd& b) {
@@ -95,7 +97,7 @@ bool axes_meet(const Surface& bore, const Pose& X_WBore, const Surface& shaft,
 
 FitSide side_of(const FitEnd& end) {
   const Feature& feature = end.part.features[end.feature];
-  return {&feature.surface, feature.residual_mm, end.part.name + "." + feature.name};
+  return {&feature.surface, feature.residual_mm, name_of(end)};
 }
 
 Result<std::vector<FeatureIndices>> fitting_features(const Scenario::FitSpec& fit, const FitEnd& a,

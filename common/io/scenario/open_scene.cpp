@@ -57,6 +57,13 @@ Result<OpenedScene> opened_with(Result<ScenarioReading> reading, const AssemblyW
   return opened_of(std::move(reading).value());
 }
 
+// Of a scene of these parts; of many parts, or with long names, of the first.
+std::string name_of_all(const std::vector<std::string>& parts) {
+  std::string all;
+  for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
+  return is_name(all) ? all : parts.front() + " and " + std::to_string(parts.size() - 1) + " more";
+}
+
 }  // namespace
 
 Result<OpenedScene> open_scene(const std::filesystem::path& file, const AssemblyWishes& wishes) {
@@ -97,7 +104,7 @@ Result<OpenedScene> open_meshes(const std::vector<std::string>& files, const std
         files.front() + ": one mesh meets nothing; name a second one, or a scenario (.yaml)");
   const std::vector<std::string> names = part_names(files);
   std::vector<PartText> parts(files.size());
-  std::string all_names, all_files;
+  std::string all_files;
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!is_text(files[i]))
       return fail(Code::kInvalidInput,
@@ -107,10 +114,9 @@ Result<OpenedScene> open_meshes(const std::vector<std::string>& files, const std
     spec.mesh.file = files[i];
     spec.mesh.unit_mm = length_unit_mm(unit).value_or(1.0);
     spec.moving = i > 0;
-    all_names += (i == 0 ? "" : ", ") + names[i];
     all_files += (i == 0 ? "" : ", ") + files[i];
   }
-  std::string yaml = scenario_yaml(all_names, parts);
+  std::string yaml = scenario_yaml(name_of_all(names), parts);
   if (!fit.empty()) {
     const bool pair = files.size() == 2;
     yaml += "fits:\n  - {between: [" + yaml_word(pair ? names[0] : "*") + ", " +

@@ -35,6 +35,9 @@ Scenario::Tolerance profile(double t_mm) {
   return {{-0.5 * t_mm, 0.5 * t_mm}, "profile " + size_text(t_mm) + " mm"};
 }
 
+constexpr const char* kSizeAlone =
+    "is a size alone; write the class behind it: Ø20 H7, or H7/g6 of a fit";
+
 }  // namespace
 
 std::pair<double, std::string> split_nominal(const std::string& code) {
@@ -148,6 +151,7 @@ void read_feature_statement(YamlContext& context, const YamlMap& map,
     double nominal = 0.0;
     std::tie(nominal, feature.iso_class) = split_nominal(*iso);
     feature.nominal_mm = nominal * context.unit_mm;
+    if (feature.iso_class.empty()) map.error("iso", kSizeAlone);
   }
   if (const auto nominal = map.positive_length_mm("nominal")) feature.nominal_mm = *nominal;
   if (const YAML::Node position = map.find("position"))
@@ -169,6 +173,7 @@ std::string read_fit_statement(YamlContext& context, const YamlMap& map, Scenari
     double nominal = 0.0;
     std::tie(nominal, fit.code) = split_nominal(*code);
     fit.nominal_mm = nominal * context.unit_mm;
+    if (fit.code.empty()) map.error("code", kSizeAlone);
   }
   if (const auto nominal = map.positive_length_mm("nominal")) {
     if (fit.nominal_mm > 0.0 && fit.nominal_mm != *nominal)

@@ -18,6 +18,8 @@ TEST(NearestWord, IsTheOneThatWasMeant) {
         Case{"Units", "units", keys},            // capitals
         Case{"rotation", "rotation_deg", pose},  // a beginning, farther in edits
         Case{"inch", "in", {"mm", "cm", "m", "in", "um"}},
+        Case{"µm", "um", {"mm", "cm", "m", "in", "um"}},  // the sign of micro
+        Case{"μm", "um", {"mm", "cm", "m", "in", "um"}},  // the Greek letter
         Case{"movable", "moving", {"name", "mesh", "moving"}},
         Case{"--pictur", "--picture", {"--json", "--picture", "--region"}},
         Case{"a", "", keys},  // of no word more than of another
