@@ -224,6 +224,10 @@ class Taker {
     if (taken_ > limits_.bytes)
       return not_saved(archive_,
                        "unpacks to more than " + std::to_string(limits_.bytes) + " bytes");
+    of_file_ += bytes_.size();
+    if (names_[at_] == kSavedScenario && of_file_ > limits_.scenario_bytes)
+      return not_saved(archive_, names_[at_] + " has more than " +
+                                     std::to_string(limits_.scenario_bytes) + " bytes");
     out_.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
     return out_ ? ok() : not_written();
   }
@@ -234,6 +238,7 @@ class Taker {
     out_.close();
     if (!whole) return not_written();
     ++at_;
+    of_file_ = 0;
     return ok();
   }
 
@@ -251,7 +256,7 @@ class Taker {
   std::vector<std::string> names_;
   std::size_t at_ = 0;  // the file that is written
   std::ofstream out_;
-  std::uint64_t taken_ = 0;
+  std::uint64_t taken_ = 0, of_file_ = 0;
   bool began_ = false;
 };
 

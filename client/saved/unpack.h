@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "common/base/result.h"
+#include "common/io/scenario/yaml_document.h"
 
 /// A saved session taken out of the archive of a stranger.
 namespace mortise {
@@ -10,7 +11,8 @@ namespace mortise {
 /// What is taken of an archive; more is refused.
 struct SavedLimits {
   std::uint64_t files = 10'000;
-  std::uint64_t bytes = std::uint64_t{4} << 30;  ///< of all files, unpacked
+  std::uint64_t bytes = std::uint64_t{4} << 30;    ///< of all files, unpacked
+  std::uint64_t scenario_bytes = kMostYaml_bytes;  ///< its reader takes no more
 };
 
 /// Writes the files of such an archive to a folder, which is new or empty; nothing else is taken

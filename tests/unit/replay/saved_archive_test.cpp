@@ -120,6 +120,13 @@ TEST_F(SavedArchive, WhatUnpacksToMoreThanIsTakenIsRefused) {
   expect_refused(bomb, "holds 2 files, more than 1", {.files = 1, .bytes = 10'000'000});
 }
 
+// No reader takes a scenario of more than 16 MiB.
+TEST_F(SavedArchive, AScenarioThatNobodyReadsIsRefused) {
+  const std::string zeros(std::size_t{17} << 20, '\0');
+  expect_refused(archive_of({{"scenario.yaml", zeros}}),
+                 "scenario.yaml has more than 16777216 bytes");
+}
+
 TEST_F(SavedArchive, AFolderThatHoldsSomethingIsLeftAsItIs) {
   fs::create_directories(path("out"));
   folder_.write("out/mine.txt", "x");
