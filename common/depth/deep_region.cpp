@@ -76,13 +76,14 @@ Interval of_layer(const PairFrame& pair, const InnerOverlap& inner, const Overla
                   const Interval& known, Layer layer, bool grows) {
   const Interval& delta = region.delta_mm;
   const double reach_mm = pair.reach_mm(layer);
-  // What the surfaces themselves say is known better; parts that do not meet meet nowhere inside.
-  if (region.closed_form || (!pair.trivial && known.hi <= 0.0)) return known;
+  const bool in_both = inner.in_either_mm > reach_mm;
+  // What the surfaces themselves say is known better. Parts whose surfaces do not meet meet nowhere
+  // inside, unless these lie in one another, as those of a part that is there twice.
+  if (region.closed_form || (!pair.trivial && known.hi <= 0.0 && !in_both)) return known;
   if (pair.trivial && layer == Layer::kLower) return {delta.lo - reach_mm, delta.hi - reach_mm};
   if (pair.trivial) return {delta.lo + reach_mm, delta.hi + reach_mm};
   // An edge or corner travels farther than its faces are offset: what was found there stays, and
   // a point less deep than that in one of the parts may be far outside of its least body.
-  const bool in_both = inner.in_either_mm > reach_mm;
   const double lo_mm = in_both ? std::max(known.lo, inner.depth_mm.lo - reach_mm) : known.lo;
   // By triangles a face may be asked beyond a moved neighbour, by planes not.
   if (const auto most_mm = most_of_convex_layer_mm(pair, layer))

@@ -5,10 +5,13 @@
 #include <random>
 
 #include "common/depth/convex_overlap.h"
+#include "common/evaluation/band.h"
 #include "common/generators/generators.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/overlap_case.h"
+#include "tests/unit/depth/random_polyhedra.h"
 
 namespace mortise {
 namespace {
@@ -102,6 +105,46 @@ TEST(InnerOverlap, TheSamePartTwiceCostsLittle) {
 }
 
 // A bar straight through a slab as thick as it is.
+// The hull of nine points: three of them are a triangle where all others are below.
+SolidPtr hull_of_points(std::mt19937_64& random) {
+  TriangleMesh mesh;
+  constexpr std::uint32_t kPoints = 9;
+  for (std::uint32_t i = 0; i < kPoints; ++i)
+    mesh.points_mm.push_back(polyhedra::between(random, 0.12, 0.2) * polyhedra::direction(random));
+  const auto& x = mesh.points_mm;
+  for (std::uint32_t i = 0; i < kPoints; ++i)
+    for (std::uint32_t j = i + 1; j < kPoints; ++j)
+      for (std::uint32_t k = i + 1; k < kPoints; ++k) {
+        if (j == k) continue;
+        const Vec3 n = (x[j] - x[i]).cross(x[k] - x[i]);
+        const auto is_below = [&](const Vec3& y) { return n.dot(y - x[i]) <= 1e-12; };
+        if (std::all_of(x.begin(), x.end(), is_below)) mesh.triangles.push_back({i, j, k});
+      }
+  return std::make_shared<const Solid>(std::move(mesh));
+}
+
+// The surfaces of both are the same, so that no point of one is deep in the other.
+TEST(InnerOverlap, TheSamePartTwiceIsRealInFullAsWell) {
+  std::mt19937_64 random(4107);
+  for (int i = 0; i < test::effort(6); ++i) {
+    const SolidPtr part = hull_of_points(random);
+    Case c{part, part};
+    const auto features = recognize_features(*part).features;
+    BandInput input;
+    input.solid = part.get();
+    input.features = features;
+    input.of_feature.resize(features.size());
+    input.estimate = true;
+    c.band_a = c.band_b = build_band(input);
+    c.X_WA = {polyhedra::rotation(random), 1.0 * polyhedra::direction(random)};
+    c.X_WB = {c.X_WA.q, c.X_WA.p + 1e-8 * polyhedra::direction(random)};
+    for (const Refinement refinement : {Refinement::kDecided, Refinement::kFull}) {
+      c.refinement = refinement;
+      EXPECT_EQ(worst_class(overlap_of(c)), CollisionClass::kReal) << i;
+    }
+  }
+}
+
 TEST(InnerOverlap, CrossingBars) {
   expect_delta({solid(box({5, 5, 0.2})), solid(box({0.2, 0.2, 5}, {0.3, 0.1, 0.4}))}, 0.4);
 }
