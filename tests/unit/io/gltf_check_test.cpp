@@ -12,7 +12,7 @@ namespace mortise {
 namespace {
 
 // A tetrahedron: four points of three floats, twelve corners of two bytes.
-std::string buffer() {
+std::string gltf_buffer() {
   const float points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::uint16_t corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
   std::string bytes(sizeof points + sizeof corners, '\0');
@@ -29,14 +29,14 @@ const std::string kGltf =
     R"({"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
     R"("buffers":[{"byteLength":72,"uri":"part.bin"}]})";
 
-std::string with(const std::string& what, const std::string& by, std::string text = kGltf) {
+std::string gltf_with(const std::string& what, const std::string& by, std::string text = kGltf) {
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   return text.replace(at, what.size(), by);
 }
 
 std::string node_with(const std::string& more) {
-  return with(R"("mesh":0)", R"("mesh":0,)" + more);
+  return gltf_with(R"("mesh":0)", R"("mesh":0,)" + more);
 }
 
 std::string little(std::uint32_t number) {
@@ -46,19 +46,19 @@ std::string little(std::uint32_t number) {
 }
 
 std::string glb(std::uint32_t version = 2) {
-  std::string text = with(R"(,"uri":"part.bin")", "");
+  std::string text = gltf_with(R"(,"uri":"part.bin")", "");
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const auto size = [](const std::string& of) { return static_cast<std::uint32_t>(of.size()); };
   const std::string chunks =
-      little(size(text)) + "JSON" + text + little(72) + std::string("BIN\0", 4) + buffer();
+      little(size(text)) + "JSON" + text + little(72) + std::string("BIN\0", 4) + gltf_buffer();
   return "glTF" + little(version) + little(12 + size(chunks)) + chunks;
 }
 
 class GltfCheck : public testing::Test {
  protected:
   void SetUp() override {
-    folder_.write("part.bin", buffer());
-    folder_.write("the part.bin", buffer());
+    folder_.write("part.bin", gltf_buffer());
+    folder_.write("the part.bin", gltf_buffer());
   }
   std::string said_of(const std::string& bytes, const std::string& name = "part.gltf") const {
     const auto mesh = import_mesh(folder_.write(name, bytes), 1000.0);
@@ -78,30 +78,30 @@ class GltfCheck : public testing::Test {
 
 TEST_F(GltfCheck, WhatAssimpReadsAsItIsMeantIsTaken) {
   expect(kGltf, "imported");
-  expect(with("part.bin", "the%20part.bin"), "imported");
-  expect(with("part.bin", "the part.bin"), "imported");
+  expect(gltf_with("part.bin", "the%20part.bin"), "imported");
+  expect(gltf_with("part.bin", "the part.bin"), "imported");
   expect(glb(), "imported", "part.glb");
   expect(node_with(R"("rotation":[0,0,0.7071,0.7071],"translation":[1,2,3])"), "imported");
   expect(node_with(R"("matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,5,6,7,1])"), "imported");
-  expect(with("\"scene\":0", R"("extensionsRequired":["KHR_materials_unlit"],"scene":0)"),
+  expect(gltf_with("\"scene\":0", R"("extensionsRequired":["KHR_materials_unlit"],"scene":0)"),
          "imported");
 }
 
 TEST_F(GltfCheck, WhatItWouldDropIsRefused) {
-  expect(with(R"("count":4)", R"("count":3)"), "primitives[0] names vertex 3 of 3");
-  expect(with(R"("count":12)", R"("count":13)"), "accessors[1] reaches beyond its view");
-  expect(with(R"("count":12)", R"("count":11)"), "11 corners, which make no whole triangles");
-  expect(with(R"("count":4)", R"("byteOffset":18446744073709551604,"count":4)"),
+  expect(gltf_with(R"("count":4)", R"("count":3)"), "primitives[0] names vertex 3 of 3");
+  expect(gltf_with(R"("count":12)", R"("count":13)"), "accessors[1] reaches beyond its view");
+  expect(gltf_with(R"("count":12)", R"("count":11)"), "11 corners, which make no whole triangles");
+  expect(gltf_with(R"("count":4)", R"("byteOffset":18446744073709551604,"count":4)"),
          "accessors[0]: byteOffset is no whole number");
-  expect(with(R"("byteOffset":48)", R"("byteOffset":"48")"), "byteOffset is no whole number");
-  expect(with(R"("byteOffset":48)", R"("byteOffset":52)"), "reaches beyond its buffer");
-  expect(with(R"("byteLength":48)", R"("byteLength":48,"byteStride":4)"), "stride");
-  expect(with("VEC3", "VEC2"), "positions that are not three floats");
-  expect(with("5123", "5122"), "accessors[1] are no indices");
-  expect(with("\"scene\":0", R"("extensionsRequired":["EXT_mesh_gpu_instancing"],"scene":0)"),
+  expect(gltf_with(R"("byteOffset":48)", R"("byteOffset":"48")"), "byteOffset is no whole number");
+  expect(gltf_with(R"("byteOffset":48)", R"("byteOffset":52)"), "reaches beyond its buffer");
+  expect(gltf_with(R"("byteLength":48)", R"("byteLength":48,"byteStride":4)"), "stride");
+  expect(gltf_with("VEC3", "VEC2"), "positions that are not three floats");
+  expect(gltf_with("5123", "5122"), "accessors[1] are no indices");
+  expect(gltf_with("\"scene\":0", R"("extensionsRequired":["EXT_mesh_gpu_instancing"],"scene":0)"),
          "requires the extension 'EXT_mesh_gpu_instancing', which is not read");
-  expect(with(R"("primitives")", R"("weights":[0.5],"primitives")"), "bent by weights");
-  expect(with(R"("nodes":[0])", R"("nodes":["0",0])"), "scenes[0]: nodes is no whole number");
+  expect(gltf_with(R"("primitives")", R"("weights":[0.5],"primitives")"), "bent by weights");
+  expect(gltf_with(R"("nodes":[0])", R"("nodes":["0",0])"), "scenes[0]: nodes is no whole number");
   expect(node_with(R"("children":[-1])"), "nodes[0]: children is no whole number");
   expect(node_with(R"("children":[7])"), "names nodes[7], and there are 1");
 }
@@ -119,16 +119,16 @@ TEST_F(GltfCheck, APlacementThatIsNoneIsRefused) {
 TEST_F(GltfCheck, WhatIsNoGltfIsSaidToBeNone) {
   expect(kGltf.substr(0, 100), "its JSON is damaged or was cut off, at byte 101");
   expect("\xef\xbb\xbf" + kGltf, "a mark of UTF-8");
-  expect(with("2.0", "1.0"), "is glTF of version '1.0'; export it as 2.0");
-  expect(with("\"scene\":0", R"("scene":0,"scene":0)"), "has 'scene' twice");
+  expect(gltf_with("2.0", "1.0"), "is glTF of version '1.0'; export it as 2.0");
+  expect(gltf_with("\"scene\":0", R"("scene":0,"scene":0)"), "has 'scene' twice");
   expect(glb(), "give it the ending .glb");
   expect(kGltf, "does not begin with 'glTF'", "part.glb");
   expect(glb(1), "is a binary glTF of version 1; export it as version 2", "part.glb");
   expect(glb().substr(0, 300), "it was cut off", "part.glb");
-  expect(with("part.bin", "no.bin"), "names 'no.bin', which cannot be read");
-  expect(with("part.bin", "..%2f..%2fetc%2fpasswd"), "names '..%2f");
-  expect(with(R"(,"uri":"part.bin")", ""), "buffers[0] says not where its bytes are");
-  expect(with("\"byteLength\":72", "\"byteLength\":80"), "announces 80 bytes and holds 72");
+  expect(gltf_with("part.bin", "no.bin"), "names 'no.bin', which cannot be read");
+  expect(gltf_with("part.bin", "..%2f..%2fetc%2fpasswd"), "names '..%2f");
+  expect(gltf_with(R"(,"uri":"part.bin")", ""), "buffers[0] says not where its bytes are");
+  expect(gltf_with("\"byteLength\":72", "\"byteLength\":80"), "announces 80 bytes and holds 72");
 }
 
 }  // namespace

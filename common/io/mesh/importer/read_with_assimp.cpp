@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "common/base/in_quotes.h"
+#include "common/io/mesh/importer/dae_check.h"
 #include "common/io/mesh/importer/folder_files.h"
 #include "common/io/mesh/importer/gltf_check.h"
 #include "common/io/mesh/importer/obj_lines.h"
@@ -239,6 +240,9 @@ Result<Text> checked_file(const std::filesystem::path& file, const std::string& 
     if (const std::string wrong =
             wrong_with_gltf(*bytes, extension == ".glb", file.parent_path(), files);
         !wrong.empty())
+      return fail(Code::kInvalidInput, wrong);
+  if (extension == ".dae")
+    if (const std::string wrong = wrong_with_dae(*bytes); !wrong.empty())
       return fail(Code::kInvalidInput, wrong);
   return Text{};
 }
