@@ -23,12 +23,39 @@ constexpr std::size_t kMostFaces = 400;
 // Common points are looked for within so many radii, which no tip leaves.
 constexpr double kFar = 100.0;
 
+// What is largest: the sum of the depths in both parts, or the smaller of them.
+enum class Largest { kSum, kSmaller };
+
 // Variables: the point in frame B, about the middle of what both boxes have in common, and its
-// depth in either part.
+// depth in either part; of the smaller one the depth in both.
 class CuttingPlanes {
  public:
-  CuttingPlanes(const PairFrame& pair, std::uint64_t& evaluations)
-      : pair_(pair), evaluations_(evaluations), core_(core_of(pair)), origin_(core_.center()) {}
+  CuttingPlanes(const PairFrame& pair, Largest largest, std::uint64_t& evaluations)
+      : pair_(pair),
+        largest_(largest),
+        evaluations_(evaluations),
+        core_(core_of(pair)),
+        origin_(core_.center()) {}
+
+  // A point that is deeper in both than enough_mm, or the deepest that was seen.
+  InnerOverlap run_to(double enough_mm, const Vec3& start_B) {
+    best_.in_either_mm = -std::numeric_limits<double>::infinity();
+    if (core_.empty()) return best_;
+    LinearProgram program = program_of();
+    LinearProgram::Optimum optimum;
+    program.maximize(optimum);
+    Vec3 x_B = start_B;
+    for (int i = 0; i < kMostPoints && !(best_.in_either_mm > enough_mm); ++i) {
+      bool cut = false;
+      for (const LinearProgram::Row& row : planes_at(x_B)) {
+        cut |= program.cuts_off(row, optimum);
+        if (!program.maximize_with(row, optimum)) return best_;
+      }
+      if (program.upper_bound(optimum) <= enough_mm || (!cut && i > 0)) break;
+      x_B = origin_ + Vec3(optimum.y[0], optimum.y[1], optimum.y[2]);
+    }
+    return best_;
+  }
 
   std::optional<InnerOverlap> run(const Vec3& start_B, double accuracy_mm) {
     if (core_.empty()) return std::nullopt;
@@ -86,6 +113,11 @@ class CuttingPlanes {
       return 0.5 * (box.hi - box.lo).minCoeff();
     };
     const Vec3 half = core_.hi - origin_;
+    if (largest_ == Largest::kSmaller)
+      return {4,
+              {-half.x(), -half.y(), -half.z(), 0.0},
+              {half.x(), half.y(), half.z(), std::min(most_mm(0), most_mm(1))},
+              {0.0, 0.0, 0.0, 1.0}};
     return {5,
             {-half.x(), -half.y(), -half.z(), 0.0, 0.0},
             {half.x(), half.y(), half.z(), most_mm(0), most_mm(1)},
@@ -110,16 +142,19 @@ class CuttingPlanes {
         h += n_B.dot(pair_.X_KS[0].p);
       }
       rows[static_cast<std::size_t>(body)].g = {n_B.x(), n_B.y(), n_B.z(), 0.0, 0.0};
-      rows[static_cast<std::size_t>(body)].g[static_cast<std::size_t>(3 + body)] = 1.0;
+      rows[static_cast<std::size_t>(body)]
+          .g[static_cast<std::size_t>(largest_ == Largest::kSum ? 3 + body : 3)] = 1.0;
       rows[static_cast<std::size_t>(body)].h = h - n_B.dot(origin_);
     }
     const double sum_mm = depth_mm[0] + depth_mm[1];
-    if (sum_mm > best_.depth_mm.lo)
-      best_ = {{sum_mm, sum_mm}, pair_.X_W[1] * x_B, std::min(depth_mm[0], depth_mm[1])};
+    const double smaller_mm = std::min(depth_mm[0], depth_mm[1]);
+    if (largest_ == Largest::kSum ? sum_mm > best_.depth_mm.lo : smaller_mm > best_.in_either_mm)
+      best_ = {{sum_mm, sum_mm}, pair_.X_W[1] * x_B, smaller_mm};
     return rows;
   }
 
   const PairFrame& pair_;
+  const Largest largest_;
   std::uint64_t& evaluations_;
   Box core_;
   Vec3 origin_;
@@ -145,7 +180,17 @@ bool has_plane_faces_alone(const Body& body) {
 std::optional<InnerOverlap> convex_overlap(const PairFrame& pair, const Vec3& start_W,
                                            double accuracy_mm, std::uint64_t& evaluations) {
   if (!are_convex(pair)) return std::nullopt;
-  return CuttingPlanes(pair, evaluations).run(pair.X_W[1].inverse() * start_W, accuracy_mm);
+  return CuttingPlanes(pair, Largest::kSum, evaluations)
+      .run(pair.X_W[1].inverse() * start_W, accuracy_mm);
+}
+
+std::optional<InnerOverlap> convex_inside_both(const PairFrame& pair, const Vec3& start_W,
+                                               double deeper_mm, std::uint64_t& evaluations) {
+  if (!are_convex(pair)) return std::nullopt;
+  const InnerOverlap found = CuttingPlanes(pair, Largest::kSmaller, evaluations)
+                                 .run_to(deeper_mm, pair.X_W[1].inverse() * start_W);
+  if (!(found.in_either_mm > deeper_mm)) return std::nullopt;
+  return found;
 }
 
 std::optional<double> most_of_convex_layer_mm(const PairFrame& pair, Layer layer) {

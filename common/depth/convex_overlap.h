@@ -14,6 +14,11 @@ namespace mortise {
 std::optional<InnerOverlap> convex_overlap(const PairFrame& pair, const Vec3& start_W,
                                            double accuracy_mm, std::uint64_t& evaluations);
 
+/// A point deeper than deeper_mm in either part, by the same planes: where the sum of both depths
+/// is largest it may lie on the surface of one. nullopt as above, or none was found.
+std::optional<InnerOverlap> convex_inside_both(const PairFrame& pair, const Vec3& start_W,
+                                               double deeper_mm, std::uint64_t& evaluations);
+
 /// The same of the bodies of a layer, bounded from above by one linear program over all their moved
 /// faces. nullopt: a part is not convex, has faces that are not plane, or very many.
 std::optional<double> most_of_convex_layer_mm(const PairFrame& pair, Layer layer);

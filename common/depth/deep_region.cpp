@@ -123,7 +123,14 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
     region.has_witness = false;
     ++region.witnesses_refused;
   }
-  if (region.has_witness || inner->in_either_mm <= pair.reach_mm(Layer::kLower)) return;
+  if (region.has_witness || region.certain_mm.hi <= 0.0) return;
+  const double reach_mm = pair.reach_mm(Layer::kLower);
+  if (inner->in_either_mm <= reach_mm) {
+    inner = convex_inside_both(pair, inner->point_W, reach_mm, evaluations);
+    if (!inner) return;
+    region.certain_mm.lo =
+        std::clamp(inner->depth_mm.lo - reach_mm, region.certain_mm.lo, region.certain_mm.hi);
+  }
   region.has_witness = true;
   region.witness_W = inner->point_W;
 }

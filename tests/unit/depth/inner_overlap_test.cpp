@@ -105,29 +105,56 @@ TEST(InnerOverlap, TheSamePartTwiceCostsLittle) {
 }
 
 // A bar straight through a slab as thick as it is.
-// The hull of nine points: three of them are a triangle where all others are below.
-SolidPtr hull_of_points(std::mt19937_64& random) {
+// Three points are a triangle of the hull where all others are below. No four are in one plane.
+SolidPtr hull_of(const std::vector<Vec3>& points) {
   TriangleMesh mesh;
-  constexpr std::uint32_t kPoints = 9;
-  for (std::uint32_t i = 0; i < kPoints; ++i)
-    mesh.points_mm.push_back(polyhedra::between(random, 0.12, 0.2) * polyhedra::direction(random));
-  const auto& x = mesh.points_mm;
-  for (std::uint32_t i = 0; i < kPoints; ++i)
-    for (std::uint32_t j = i + 1; j < kPoints; ++j)
-      for (std::uint32_t k = i + 1; k < kPoints; ++k) {
+  mesh.points_mm = points;
+  const auto count = static_cast<std::uint32_t>(points.size());
+  for (std::uint32_t i = 0; i < count; ++i)
+    for (std::uint32_t j = i + 1; j < count; ++j)
+      for (std::uint32_t k = i + 1; k < count; ++k) {
         if (j == k) continue;
-        const Vec3 n = (x[j] - x[i]).cross(x[k] - x[i]);
-        const auto is_below = [&](const Vec3& y) { return n.dot(y - x[i]) <= 1e-12; };
-        if (std::all_of(x.begin(), x.end(), is_below)) mesh.triangles.push_back({i, j, k});
+        const Vec3 n = (points[j] - points[i]).cross(points[k] - points[i]);
+        const auto is_below = [&](const Vec3& y) { return n.dot(y - points[i]) <= 1e-12; };
+        if (std::all_of(points.begin(), points.end(), is_below))
+          mesh.triangles.push_back({i, j, k});
       }
   return std::make_shared<const Solid>(std::move(mesh));
+}
+
+// The deepest point below the block's top is the tip itself, on the surface of its part.
+TEST(InnerOverlap, ALeaningTipInABlockIsReal) {
+  std::mt19937_64 random(4108);
+  for (int i = 0; i < test::effort(30); ++i) {
+    const double lean_rad = polyhedra::between(random, 0.0, 0.9),
+                 half_rad = polyhedra::between(random, 0.1, 0.5),
+                 deep_mm = std::exp(polyhedra::between(random, -4.0, 1.0));
+    std::vector<Vec3> points = {Vec3::Zero()};
+    for (const double turn_rad : {0.1, 2.2, 4.4})
+      points.push_back(20.0 * Vec3(std::tan(half_rad) * std::cos(turn_rad),
+                                   std::tan(half_rad) * std::sin(turn_rad), 1.0));
+    Case c{hull_of(points), solid(box(Vec3(30, 30, 10), Vec3(0, 0, -10)))};
+    c.X_WA = {rotation_exp(Vec3(0, lean_rad, 0)), Vec3(0.3, 0.2, -deep_mm)};
+    for (const Refinement refinement : {Refinement::kDecided, Refinement::kFull}) {
+      c.refinement = refinement;
+      const OverlapResult result = overlap_of(c);
+      EXPECT_EQ(worst_class(result), CollisionClass::kReal) << lean_rad << " " << half_rad;
+      if (result.regions.empty()) continue;
+      const Vec3& witness_W = result.regions.front().witness_W;
+      EXPECT_LT(witness_W.z(), 0.0);
+      EXPECT_GT(nearest_surface(*c.a, c.X_WA.inverse() * witness_W).depth_mm, 0.0);
+    }
+  }
 }
 
 // The surfaces of both are the same, so that no point of one is deep in the other.
 TEST(InnerOverlap, TheSamePartTwiceIsRealInFullAsWell) {
   std::mt19937_64 random(4107);
   for (int i = 0; i < test::effort(6); ++i) {
-    const SolidPtr part = hull_of_points(random);
+    std::vector<Vec3> points;
+    for (int k = 0; k < 9; ++k)
+      points.push_back(polyhedra::between(random, 0.12, 0.2) * polyhedra::direction(random));
+    const SolidPtr part = hull_of(points);
     Case c{part, part};
     const auto features = recognize_features(*part).features;
     BandInput input;
