@@ -41,13 +41,30 @@ std::optional<McapChannel> channel_of(std::span<const std::byte> content) {
   return channel;
 }
 
-std::optional<Index> read_index(const InputFile& file) {
+namespace {
+
+std::map<std::uint16_t, std::uint64_t> messages_of(std::span<const std::byte> statistics) {
+  ByteReader reader(statistics);
+  reader.raw(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // counts of the whole file, two times
+  ByteReader entries(reader.raw(reader.u32()));
+  std::map<std::uint16_t, std::uint64_t> messages;
+  while (entries.left() > 0) {
+    const std::uint16_t channel = entries.u16();
+    const std::uint64_t count = entries.u64();
+    if (entries.ok()) messages[channel] = count;
+  }
+  return messages;
+}
+
+}  // namespace
+
+std::optional<Index> read_index(const InputFile& file, std::uint64_t at) {
   constexpr std::uint64_t kTailBytes = kRecordHeaderBytes + kFooterBytes + kMagic.size();
   if (file.size() < kTailBytes) return std::nullopt;
   std::vector<std::byte> tail_buffer;
   ByteReader tail(file.read(file.size() - kTailBytes, kTailBytes, tail_buffer));
   const bool is_footer = tail.u8() == kFooter && tail.u64() == kFooterBytes;
-  const std::uint64_t start = tail.u64();
+  const std::uint64_t told = tail.u64(), start = at == 0 ? told : at;
   tail.u64();
   const std::uint32_t crc = tail.u32();
   const bool is_end = std::ranges::equal(tail.raw(kMagic.size()), std::as_bytes(std::span(kMagic)));
@@ -69,6 +86,8 @@ std::optional<Index> read_index(const InputFile& file) {
     } else if (opcode == kChannel) {
       if (auto channel = channel_of(content))
         index.channels.emplace(channel->id, std::move(*channel));
+    } else if (opcode == kStatistics) {
+      index.messages = messages_of(content);
     }
   }
   return index;

@@ -21,10 +21,12 @@ std::optional<McapChannel> channel_of(std::span<const std::byte> content);
 struct Index {
   std::map<std::uint16_t, McapSchema> schemas;  ///< their data are in `bytes`
   std::map<std::uint16_t, McapChannel> channels;
+  std::map<std::uint16_t, std::uint64_t> messages;  ///< how many were written, by channel
   std::vector<std::byte> bytes;
   std::uint64_t start = UINT64_MAX;  ///< the records before end below it
 };
-/// Nothing where the file has no index, or its checksum does not fit.
-std::optional<Index> read_index(const InputFile& file);
+/// Nothing where the file has no index, or its checksum does not fit. `at`: where it begins, if not
+/// where the footer says; 0: there.
+std::optional<Index> read_index(const InputFile& file, std::uint64_t at = 0);
 
 }  // namespace mortise::mcap

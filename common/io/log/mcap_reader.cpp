@@ -124,6 +124,8 @@ class Scanner {
   void channel(std::span<const std::byte> content);
   void announce(McapChannel channel);
   void announce_missing();
+  bool moved_index(std::uint64_t found_at, std::uint64_t told_at);
+  void state_messages(const mcap::Index& index);
   void message(std::span<const std::byte> content);
   void attachment(std::span<const std::byte> content);
   void note(const std::string& what);
@@ -264,15 +266,18 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
       std::ranges::equal(magic, std::as_bytes(std::span(mcap::kMagic))) &&
       (summary_start == next_offset || (summary_start == 0 && footer_at == next_offset));
   if (!closed) {
+    if (reader.ok() && content.size() == 4 && moved_index(next_offset, summary_start))
+      return Next::kEnd;
     // Either the file lost its tail inside the summary, or this is no end of data at all.
     if (reader.ok() && content.size() == 4 &&
         find_chunk(file_, next_offset, search_buffer_) == file_.size()) {
-      note("the index at the end is cut off or damaged; the data before it are whole");
+      note("the index at the end is cut off or damaged; it is not needed");
       return Next::kEnd;
     }
     return Next::kResync;
   }
   scan_.complete = true;
+  state_messages(index_);
   if (crc_known_ && data_crc != 0 && data_crc != crc_)
     note(
         "the checksum of the data section does not fit: some record between the chunks is damaged");
@@ -282,6 +287,25 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
     if (crc32(summary) != summary_crc) note("the index at the end is damaged; it is not needed");
   }
   return Next::kEnd;
+}
+
+void Scanner::state_messages(const mcap::Index& index) {
+  for (const auto& [id, count] : index.messages)
+    if (const auto channel = channels_.find(id); channel != channels_.end())
+      scan_.stated[channel->second.topic] += count;
+}
+
+// Is there a whole index, only not where it was written? Then the file was closed, and is no longer
+// what was closed.
+bool Scanner::moved_index(std::uint64_t found_at, std::uint64_t told_at) {
+  const std::optional<mcap::Index> index = mcap::read_index(file_, found_at);
+  if (!index || told_at == 0) return false;
+  const bool is_less = told_at > found_at;
+  note(std::to_string(is_less ? told_at - found_at : found_at - told_at) + " bytes were " +
+       (is_less ? "taken out" : "added") + " before this place, after the file had been closed");
+  state_messages(*index);
+  scan_.complete = true;
+  return true;
 }
 
 bool Scanner::chunk(std::span<const std::byte> content) {

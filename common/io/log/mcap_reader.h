@@ -63,6 +63,8 @@ struct McapScan {
   bool complete = false;  ///< footer and closing magic were found
   std::uint64_t file_bytes = 0, records = 0, chunks = 0, messages = 0, attachments = 0;
   std::uint64_t lost_chunks = 0, lost_attachments = 0;
+  /// How many messages the index states, by topic; empty: there is none that is whole.
+  std::map<std::string, std::uint64_t> stated;
   std::vector<std::string> notes;  ///< what was lost or unexpected, with its place in the file
 };
 

@@ -198,11 +198,11 @@ Result<std::string> walk(World& world, const SessionLog& log, int threads,
   const std::uint64_t begun_at = world.tick;
   std::int64_t before_ns = log.begin ? log.begin->time_ns : 0;
   auto gap = log.gaps.begin();
-  while (gap != log.gaps.end() && gap->until_tick != 0 && gap->until_tick <= begun_at) ++gap;
   for (const TickRecord& record : log.ticks) {
     const std::int64_t from_ns = std::exchange(before_ns, record.time_ns);
     if (begun_at > 0 && record.tick <= begun_at) continue;
     // 1. What was lost before this tick cannot be computed, nor anything after it.
+    while (gap != log.gaps.end() && gap->until_tick < record.tick) ++gap;
     if (gap != log.gaps.end() && gap->until_tick == record.tick)
       return "ticks between " + std::to_string(gap->after_tick) + " and " +
              std::to_string(gap->until_tick) + " are missing: " + gap->reason;
@@ -220,7 +220,7 @@ Result<std::string> walk(World& world, const SessionLog& log, int threads,
     const StepReport computed = step(world, record.increments, scratch);
     if (!visit({world, computed, &record})) return std::string();
   }
-  return std::string();
+  return cut_off_of(log);
 }
 
 // Nothing where they agree.

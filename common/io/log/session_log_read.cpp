@@ -12,6 +12,7 @@
 #include "common/io/log/log_layout.h"
 #include "common/io/log/log_records.h"
 #include "common/io/log/mcap_reader.h"
+#include "common/io/log/tick_sequence.h"
 #include "common/io/scenario/assembly_parts.h"
 
 namespace mortise {
@@ -40,6 +41,13 @@ void add_counts(const nlohmann::json& record, std::map<std::string, std::uint64_
 std::int64_t last_time_ns(const SessionLog& log) {
   if (!log.ticks.empty()) return log.ticks.back().time_ns;
   return log.begin ? log.begin->time_ns : 0;
+}
+
+std::string cut_off_of(const SessionLog& log) {
+  if (log.gaps.empty() || log.gaps.back().until_tick != 0 || !log.gaps.back().was_recorded)
+    return {};
+  return "ticks after " + std::to_string(log.gaps.back().after_tick) +
+         " are missing: " + log.gaps.back().reason;
 }
 
 namespace {
@@ -84,6 +92,7 @@ class LogAssembler {
   bool has_session_ = false, has_scenario_ = false;
   std::uint64_t part_told_ = 0;  ///< by the session's record; 0: not told
   std::uint64_t bad_records_ = 0;
+  TickSequence sequence_;
 };
 
 void LogAssembler::note(const std::string& what) { log_.notes.push_back(what); }
@@ -157,6 +166,8 @@ TickRecord& LogAssembler::open(std::uint64_t tick) {
 void LogAssembler::end_tick(log_records::TickEnd end, std::int64_t time_ns,
                             std::uint32_t sequence) {
   TickRecord& record = open(end.tick);
+  if (const std::uint64_t missing = sequence_.missing_before(sequence); missing > 0)
+    open_gap(missing_text(missing));
   if (log_.ticks.empty() && log_.chain.part > 1 && !log_.begin)
     open_gap("it goes on from " + log_.chain.previous +
              ", and the state that it begins with is missing or damaged");
@@ -222,10 +233,11 @@ void LogAssembler::message(const McapChannel& channel, const McapMessage& messag
     totals(message.data);
   } else if (channel.topic == kGaps) {
     Gap gap;
-    open_gap(log_json::decode(text_of(message.data), gap)
-                 ? std::to_string(gap.ticks) + " ticks from " + std::to_string(gap.first_tick) +
-                       " on were not recorded: " + gap.reason
-                 : "a gap that does not say why");
+    const bool is_read = log_json::decode(text_of(message.data), gap);
+    open_gap(is_read && gap.ticks == 0 ? gap.reason  // not known how many
+             : is_read                 ? std::to_string(gap.ticks) + " ticks from " +
+                             std::to_string(gap.first_tick) + " on were not recorded: " + gap.reason
+                       : "a gap that does not say why");
   }
 }
 
@@ -321,6 +333,11 @@ Result<SessionLog> LogAssembler::finish(const std::string& file, McapScan scan) 
   if (tick_ || !events_.empty())
     open_gap(tick_ ? "tick " + std::to_string(tick_->tick) + " has no end record"
                    : "the last tick has no end record");
+  if (const auto stated = scan.stated.find(log_layout::kTicks); stated != scan.stated.end())
+    if (const std::uint64_t missing = sequence_.missing_of(stated->second); missing > 0) {
+      open_gap(missing_text(missing));
+      gap_->was_recorded = true;
+    }
   if (gap_) log_.gaps.push_back(*gap_);
   log_.notes.insert(log_.notes.end(), scan.notes.begin(), scan.notes.end());
   if (bad_records_ > 0) note(std::to_string(bad_records_) + " records are not readable");

@@ -20,6 +20,7 @@ struct LogGap {
   std::uint64_t after_tick = 0;  ///< last tick before it (0: none)
   std::uint64_t until_tick = 0;  ///< first tick after it (0: none)
   std::string reason;
+  bool was_recorded = false;  ///< the file held them when it was closed
 };
 
 /// A log that was read. It is readable without its tail; `complete` says whether the end was found.
@@ -46,6 +47,9 @@ struct SessionLog {
 
 /// Server clock of the last tick of a log, or of the tick that it begins with; 0: it has neither.
 std::int64_t last_time_ns(const SessionLog& log);
+
+/// What a file once held behind its last tick, in words; empty: nothing.
+std::string cut_off_of(const SessionLog& log);
 
 struct LogReading {
   /// Keep the bytes of so many last checkpoints; of all others only the hash.

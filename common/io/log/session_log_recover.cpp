@@ -11,6 +11,7 @@
 #include "common/io/log/mcap_writer.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log_read.h"
+#include "common/io/log/tick_sequence.h"
 
 namespace mortise {
 namespace {
@@ -34,6 +35,12 @@ class Copy {
         .on_metadata = [this](const std::string& name, const auto& values) { add(name, values); },
         .on_loss = [this](const std::string& reason) { lost(reason); },
         .on_stray = [this](const std::string& reason) { lost(reason); }};
+  }
+
+  /// Marks what is missing at the end.
+  void end(const McapScan& scan) {
+    if (const auto stated = scan.stated.find(log_layout::kTicks); stated != scan.stated.end())
+      cut_out(sequence_.missing_of(stated->second));
   }
 
  private:
@@ -70,8 +77,11 @@ class Copy {
     is_front_ = is_front_ &&
                 (channel.topic == log_layout::kCheckpoints || channel.topic == log_layout::kTotals);
     if (!is_front_) mark_gap();
+    const bool ends_tick = channel.topic == log_layout::kTicks;
+    if (ends_tick) cut_out(sequence_.missing_before(message.sequence));
+    is_marked_ = is_marked_ && !ends_tick;
     out_.add_message(channels_[channel.id], time_ns_, message.data);
-    if (channel.topic == log_layout::kTicks && out_.chunk_is_full()) out_.end_chunk();
+    if (ends_tick && out_.chunk_is_full()) out_.end_chunk();
   }
 
   void lost(const std::string& reason) {
@@ -80,9 +90,16 @@ class Copy {
     if (!is_front_) mark_gap();
   }
 
+  void cut_out(std::uint64_t ticks) {
+    if (ticks == 0 || is_marked_) return;
+    lost_ = missing_text(ticks);
+    mark_gap();
+  }
+
   void mark_gap() {
     if (lost_.empty() || gaps_channel_ == 0) return;
     const std::string gap = log_json::encode(log_json::Gap{.reason = std::exchange(lost_, {})});
+    is_marked_ = true;
     out_.add_message(gaps_channel_, time_ns_, std::as_bytes(std::span(gap)));
   }
 
@@ -94,6 +111,8 @@ class Copy {
   std::map<std::uint16_t, std::uint16_t> schemas_, channels_;  // number there -> number here
   std::uint16_t gaps_channel_ = 0;
   std::uint64_t time_ns_ = 0;
+  TickSequence sequence_;
+  bool is_marked_ = false;  ///< since the last tick
 };
 
 // What was written is read as anybody would read it.
@@ -129,6 +148,7 @@ Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
   Copy copy(out, *readable);
   const Result<McapScan> scan = scan_mcap(damaged, copy.handler());
   if (!scan) return scan.error();
+  copy.end(*scan);
 
   std::map<std::string, std::string> account = {{"was_complete", scan->complete ? "yes" : "no"},
                                                 {"lost_chunks", std::to_string(scan->lost_chunks)}};
@@ -141,11 +161,13 @@ Result<Recovery> recover_session_log(const std::filesystem::path& damaged,
                     .lost_chunks = scan->lost_chunks,
                     .was_complete = scan->complete,
                     .notes = std::move(readable->notes)};
+  const std::string cut_off = cut_off_of(*readable);
   if (const Status whole = prove(new_file, recovery); !whole) {
     std::error_code ignored;
     std::filesystem::remove(new_file, ignored);
     recovery.not_replayable = damaged.string() + ": " + whole.error().text;
   }
+  if (recovery.not_verified.empty()) recovery.not_verified = cut_off;
   return recovery;
 }
 

@@ -8,6 +8,7 @@
 #include "common/io/log/mcap_format.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log_recover.h"
+#include "common/io/log/tick_sequence.h"
 #include "tests/support/effort.h"
 #include "tests/support/test_folder.h"
 #include "tests/unit/io/log_samples.h"
@@ -170,6 +171,65 @@ TEST_F(LogDamageInChains, ALostFirstTickIsNotTakenForTheFront) {
     ASSERT_LT(log->ticks.size(), 60U);
     ASSERT_EQ(log->gaps.size(), 1U);
     EXPECT_EQ(log->gaps[0].after_tick, 0U);
+  }
+}
+
+// Where the chunks of a log begin, and behind the last of them its end of data.
+std::vector<std::size_t> chunks_of(const std::string& bytes) {
+  std::vector<std::size_t> chunks;
+  while (const std::size_t at = front_of(bytes, static_cast<int>(chunks.size())))
+    chunks.push_back(at);
+  return chunks;
+}
+
+// The size of the record there.
+std::size_t record_size(const std::string& bytes, std::size_t at) {
+  std::uint64_t length = 0;
+  for (std::size_t i = 8; i > 0; --i)
+    length = length << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return mcap::kRecordHeaderBytes + length;
+}
+
+/// A whole chunk that was cut out leaves a file of whole records: its ticks are missed all the
+/// same, by reading, by computing again, and in what recover makes of it.
+TEST(LogDamage, AChunkThatWasCutOutIsMissed) {
+  const test::TestFolder folder;
+  const fs::path file = folder.path() / "whole.mcap", cut = folder.path() / "cut.mcap",
+                 recovered = folder.path() / "recovered.mcap";
+  test::RandomSession session(10);
+  for (int i = 0; i < 60; ++i) session.tick();
+  auto writer = SessionLogWriter::create(file, session.header, {.chunk_bytes = 512});
+  ASSERT_TRUE(writer) << writer.error().text;
+  for (const TickRecord& tick : session.ticks) (*writer)->record(tick);
+  ASSERT_TRUE((*writer)->close());
+  const std::string bytes = all_of(file);
+  const std::vector<std::size_t> chunks = chunks_of(bytes);
+  ASSERT_GT(chunks.size(), 3U);
+  for (const std::size_t chunk : {std::size_t{0}, chunks.size() / 2, chunks.size() - 1}) {
+    SCOPED_TRACE("chunk " + std::to_string(chunk) + " of " + std::to_string(chunks.size()));
+    std::string rest = bytes;
+    rest.erase(chunks[chunk], record_size(bytes, chunks[chunk]));
+    std::ofstream(cut, std::ios::binary) << rest;
+    const auto log = read_session_log(cut);
+    ASSERT_TRUE(log) << log.error().text;
+    ASSERT_LT(log->ticks.size(), 60U);
+    ASSERT_EQ(log->gaps.size(), 1U);
+    const LogGap& gap = log->gaps[0];
+    EXPECT_EQ(gap.reason, missing_text(60 - log->ticks.size()));
+    const auto report = verify(*log, 1);
+    ASSERT_TRUE(report) << report.error().text;
+    EXPECT_EQ(report->verified_to_tick, gap.after_tick);
+    EXPECT_NE(report->not_verifiable.find(gap.reason), std::string::npos);
+    EXPECT_FALSE(report->difference);
+    const auto recovery = recover_session_log(cut, recovered);
+    ASSERT_TRUE(recovery) << recovery.error().text;
+    EXPECT_EQ(recovery->verified_to_tick, gap.after_tick);
+    EXPECT_NE(recovery->not_verified.find(gap.reason), std::string::npos);
+    const auto again = read_session_log(recovered);
+    ASSERT_TRUE(again) << again.error().text;
+    ASSERT_EQ(again->gaps.size(), 1U);
+    EXPECT_EQ(again->gaps[0].reason, gap.reason);
+    fs::remove(recovered);
   }
 }
 
