@@ -56,8 +56,8 @@ std::string fit_code(const ClashLine& clash) {
   if (clash.fit.empty() || clash.verdict->explanation.find(clash.fit) == std::string::npos)
     return "";
   const std::size_t blank = clash.fit.find(' ');
-  const bool sized =
-      blank != std::string::npos && clash.fit.find(' ', blank + 1) == std::string::npos;
+  const bool sized = clash.fit.starts_with("Ø") && blank != std::string::npos &&
+                     clash.fit.find(' ', blank + 1) == std::string::npos;
   return shortened(sized ? clash.fit.substr(blank + 1) : clash.fit, kFitColumns);
 }
 

@@ -91,6 +91,9 @@ bool estimated(const ExplainInput& in) {
   return in.estimated || in.grade == DeviationGrade::kEstimated || is(in.face_a) || is(in.face_b);
 }
 
+// One face is nominal; what the other one has besides rounding, its surface says.
+bool has_surface(const SurfaceBand::Face* face) { return face != nullptr && face->surface; }
+
 std::string mesh_error_name(const ExplainInput& in) {
   if (estimated(in)) return " estimated";
   switch (in.grade) {
@@ -104,7 +107,7 @@ std::string mesh_error_name(const ExplainInput& in) {
     case DeviationGrade::kRecognizedFeature:
       return " recognized";
     case DeviationGrade::kNominal:
-      return " of rounding";
+      return has_surface(in.face_a) || has_surface(in.face_b) ? "" : " of rounding";
     case DeviationGrade::kEstimated:
     case DeviationGrade::kUnknown:
       break;

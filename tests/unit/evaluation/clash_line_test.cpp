@@ -76,6 +76,9 @@ TEST(ClashLine, SaysTheClassFirst) {
             "REAL  cover × pin   0.5 µm beyond H7/p6, +7 places   clash 4 by ann");
   EXPECT_EQ(clash_line({"a", "b", &v, "Ø30 H7/g6", 1, ""}),  // other faces than those of the fit
             "REAL  a × b   0.5 µm beyond tolerance and mesh error, +1 place");
+  const Verdict of_zone = verdict_of(CollisionClass::kReal, 0.0005, "of surface ±0.02 mm): real");
+  EXPECT_EQ(clash_line({"a", "b", &of_zone, "±0.02 mm", 0, ""}),
+            "REAL  a × b   0.5 µm beyond ±0.02 mm");
   v.real_above_mm = 0.0;
   EXPECT_EQ(clash_line({"a", "b", &v, "", 0, ""}), "REAL  a × b   0.5 µm deep");
   v.delta_mm.hi = 3.0;

@@ -35,6 +35,25 @@ TEST(Explain, TheSentenceOfAFit) {
             "clearance 3.5 µm of Ø20 H7/g6), real above 68.7 µm: fake, 3.5 µm to spare");
 }
 
+// A round face that is declared beside one of which nothing is.
+TEST(Explain, TheChordsOfADeclaredFaceAreNoRounding) {
+  SurfaceBand::Face round, flat;
+  round.grade = DeviationGrade::kDeclaredFeature;
+  round.surface.emplace();
+  round.deviation_mm = {-0.0482, 0.0};
+  flat.grade = DeviationGrade::kNominal;
+  ExplainInput in;
+  in.collision_class = CollisionClass::kFake;
+  in.delta_mm = {0.03, 0.03};
+  in.thresholds = {0.0482, 0.0482};
+  in.margin_mm = 0.0182;
+  in.grade = DeviationGrade::kNominal;
+  in.face_a = &round;
+  in.face_b = &flat;
+  EXPECT_EQ(explain(in).find("rounding"), std::string::npos) << explain(in);
+  EXPECT_NE(explain(in).find("mesh error 48.2 µm"), std::string::npos) << explain(in);
+}
+
 TEST(Explain, OtherSentences) {
   ExplainInput in;
   in.collision_class = CollisionClass::kReal;
