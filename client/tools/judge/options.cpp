@@ -35,7 +35,9 @@ JudgeCommandLine read_judge_command_line(int argc, char** argv) {
       "--apply-way", o.apply_way,
       "move the part of the worst region, or of --region, out by its way, and judge again");
   app.add("--threads", o.threads, "threads; the result does not depend on it").in_range(1, 256);
-  app.footer("Exit codes: 0 ok, 2 usage, 3 a file has errors, 6 --fail-on found something.");
+  app.footer(
+      "Exit codes: 0 ok, 1 cannot write, 2 usage, 3 a file has errors, 6 --fail-on found "
+      "something.");
   line.exit_code = app.read(argc, argv, [&] {
     if (!is_mesh_name(o.files.front())) {
       if (o.files.size() > 1)

@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
       mortise::version_line("mortise-lint"));
   app.add("scenario", file, "scenario file (.yaml)").reads_file().required();
   app.add_flag("--json", json, "one JSON document on stdout");
-  app.footer("Exit codes: 0 ok (warnings allowed), 2 usage, 3 the scenario has errors.");
+  app.footer(
+      "Exit codes: 0 ok (warnings allowed), 1 cannot write, 2 usage, 3 the scenario has errors.");
   if (const int exit_code = app.read(argc, argv); exit_code >= 0) return exit_code;
   auto opened = mortise::open_scene(file);
   if (!opened) {
