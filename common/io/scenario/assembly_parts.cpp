@@ -30,6 +30,12 @@ class AssemblyPlacer {
   void run() {
     assembly_.not_solid = document_.not_solid;
     for (const std::string& note : document_.notes) say(false, assembly_.at, note);
+    if (is_crowded(document_)) {
+      say(true, assembly_.at,
+          "its " + std::to_string(document_.instances.size()) + " instances meet in more than " +
+              std::to_string(kMostStepPairs) + " pairs; export a part of the assembly");
+      return;
+    }
     for (std::size_t i = 0; i < document_.parts.size(); ++i) {
       const StepPart& part = document_.parts[i];
       if (part.faces.size() > kMostPartFaces) {

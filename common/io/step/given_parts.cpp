@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/geometry/recognition/names.h"
+#include "common/math/box.h"
 
 namespace mortise {
 namespace {
@@ -260,6 +261,42 @@ StepPartGiven given_part(const StepPart& part, const std::string& file,
       given->freeform.push_back({part.faces[f].deviation_mm, gatherer.triangles_of(f)});
   result.part = std::move(given);
   return result;
+}
+
+namespace {
+
+// The boxes of all instances, in the world.
+std::vector<Box> boxes_of(const StepDocument& document) {
+  std::vector<Box> of_part(document.parts.size()), boxes;
+  for (std::size_t i = 0; i < document.parts.size(); ++i)
+    for (const Vec3& point : document.parts[i].mesh.points_mm) of_part[i].add(point);
+  for (const StepInstance& instance : document.instances) {
+    const Box& own = of_part[instance.part];
+    Box box;
+    for (int corner = 0; corner < 8 && !own.empty(); ++corner)
+      box.add(instance.X_WP * Vec3((corner & 1) != 0 ? own.hi.x() : own.lo.x(),
+                                   (corner & 2) != 0 ? own.hi.y() : own.lo.y(),
+                                   (corner & 4) != 0 ? own.hi.z() : own.lo.z()));
+    if (!box.empty()) boxes.push_back(box);
+  }
+  return boxes;
+}
+
+}  // namespace
+
+bool is_crowded(const StepDocument& document) {
+  std::vector<Box> boxes = boxes_of(document);
+  Box all;
+  for (const Box& box : boxes) all.add(box.center());
+  if (all.empty()) return false;
+  int axis = 0;
+  all.half().maxCoeff(&axis);
+  std::ranges::sort(boxes, {}, [&](const Box& box) { return box.lo[axis]; });
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < boxes.size() && pairs <= kMostStepPairs; ++i)
+    for (std::size_t k = i + 1; k < boxes.size() && boxes[k].lo[axis] <= boxes[i].hi[axis]; ++k)
+      pairs += boxes[i].overlaps(boxes[k]) ? 1 : 0;
+  return pairs > kMostStepPairs;
 }
 
 }  // namespace mortise

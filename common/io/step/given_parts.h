@@ -30,4 +30,10 @@ StepPartGiven given_part(const StepPart& part, const std::string& file,
 /// Faces of a part of which the same statements speak are of one group.
 std::vector<std::uint32_t> groups_of_faces(const StepDocument& document, std::uint32_t part);
 
+/// Pairs of instances whose boxes meet; each is to be judged.
+inline constexpr std::size_t kMostStepPairs = 2'000'000;
+/// Has it more than kMostStepPairs? An assembly has some ten of each part; a file that says little
+/// and puts everything into one place has the square of its parts.
+bool is_crowded(const StepDocument& document);
+
 }  // namespace mortise

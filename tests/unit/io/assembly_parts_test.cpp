@@ -7,6 +7,7 @@
 #include "common/io/log/replay.h"
 #include "common/io/scenario/general_tolerance.h"
 #include "common/io/scenario/scene_load.h"
+#include "common/io/step/given_parts.h"
 #include "tests/unit/io/log_samples.h"
 #include "tests/unit/io/step_samples.h"
 
@@ -199,6 +200,24 @@ TEST(AssemblyParts, LongPathsKeepTheirEnds) {
   EXPECT_LE(name.size(), 128U);
   EXPECT_TRUE(name.ends_with("/horn"));
   EXPECT_EQ(part_name_of("a.b/c*"), "a_b/c_");
+}
+
+// What stands in one place is judged by pairs: a small file may ask for billions of them.
+TEST(AssemblyParts, MorePairsThanCanBeJudgedAreRefused) {
+  StepDocument document = test::ring_and_pins();
+  const StepInstance pin = document.instances.back();
+  for (int i = 0; i < 2100; ++i) {
+    document.instances.push_back(pin);
+    document.instances.back().path += std::to_string(i);
+  }
+  EXPECT_TRUE(is_crowded(document));
+  const ScenarioReading refused = read_with(document, "}\n");
+  ASSERT_FALSE(refused.usable());
+  EXPECT_NE(refused.findings.back().text.find("its 2103 instances meet in more than 2000000 pairs"),
+            std::string::npos);
+  for (std::size_t i = 3; i < document.instances.size(); ++i)
+    document.instances[i].X_WP = Pose::translation({0.0, 30.0 * static_cast<double>(i), 0.0});
+  EXPECT_FALSE(is_crowded(document));
 }
 
 }  // namespace
