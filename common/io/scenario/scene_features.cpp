@@ -51,11 +51,11 @@ std::vector<std::int32_t> owners_of(const std::vector<Feature>& features,
                                     const TriangleMesh& mesh) {
   constexpr double kTie_mm = 1e-9;  // above the rounding of a distance, below any other
   std::vector<std::int32_t> owner(mesh.triangles.size(), -1);
+  // All over the triangle: the corners of a narrow flat lie on the round that it is cut from, too.
   const auto off_mm = [&](std::int32_t f, std::uint32_t t) {
-    double most = 0.0;
-    for (int k = 0; k < 3; ++k)
-      most = std::max(most, std::fabs(features[f].surface.signed_distance_mm(mesh.corner(t, k))));
-    return most;
+    const Interval off = features[f].surface.signed_distance_range_mm(
+        mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2));
+    return std::max(std::fabs(off.lo), std::fabs(off.hi));
   };
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(features.size()); ++f)
     for (const std::uint32_t t : features[f].triangles)

@@ -1,4 +1,5 @@
 #include "common/io/scenario/scene_load.h"
+#include "common/io/scenario/scene_features.h"
 
 #include <gtest/gtest.h>
 
@@ -320,6 +321,26 @@ parts:
   for (const Finding& f : reading->findings)
     with_advice += f.is_error && f.text.find("mirror") != std::string::npos;
   EXPECT_EQ(with_advice, 3U);
+}
+
+// A flat that is no wider than some facets of the round that it is cut from: all its corners lie on
+// both surfaces.
+TEST(SceneLoad, ANarrowFlatBelongsToItsPlaneWhicheverIsDeclaredFirst) {
+  constexpr double kRadius_mm = 10.0, kHalfWidth_mm = 3.0;
+  const double off_mm = std::sqrt(kRadius_mm * kRadius_mm - kHalfWidth_mm * kHalfWidth_mm);
+  TriangleMesh mesh;
+  mesh.points_mm = {Vec3(off_mm, -kHalfWidth_mm, 0), Vec3(off_mm, kHalfWidth_mm, 0),
+                    Vec3(off_mm, kHalfWidth_mm, 20), Vec3(off_mm, -kHalfWidth_mm, 20)};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Feature round, flat;
+  round.surface.kind = SurfaceKind::kCylinder;
+  round.surface.radius_mm = kRadius_mm;
+  flat.surface.kind = SurfaceKind::kPlane;
+  flat.surface.point = Vec3(off_mm, 0, 0);
+  flat.surface.axis = Vec3::UnitX();
+  round.triangles = flat.triangles = {0, 1};
+  EXPECT_EQ(owners_of({round, flat}, mesh), (std::vector<std::int32_t>{1, 1}));
+  EXPECT_EQ(owners_of({flat, round}, mesh), (std::vector<std::int32_t>{0, 0}));
 }
 
 }  // namespace
