@@ -101,6 +101,23 @@ std::optional<McapAttachment> attachment_of(std::span<const std::byte> content) 
   return attachment;
 }
 
+// How many messages the index states, by topic.
+std::map<std::string, std::uint64_t> stated_of(
+    const mcap::Index& index, const std::map<std::uint16_t, McapChannel>& channels) {
+  std::map<std::string, std::uint64_t> stated;
+  for (const auto& [id, count] : index.messages)
+    if (const auto channel = channels.find(id); channel != channels.end())
+      stated[channel->second.topic] += count;
+  return stated;
+}
+
+// The file was closed with its index at `told_at`, and that is now somewhere else.
+std::string moved_text(std::uint64_t found_at, std::uint64_t told_at) {
+  const bool is_less = told_at > found_at;
+  return std::to_string(is_less ? told_at - found_at : found_at - told_at) + " bytes were " +
+         (is_less ? "taken out" : "added") + " before this place, after the file had been closed";
+}
+
 class Scanner {
  public:
   Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits,
@@ -124,8 +141,6 @@ class Scanner {
   void channel(std::span<const std::byte> content);
   void announce(McapChannel channel);
   void announce_missing();
-  bool moved_index(std::uint64_t found_at, std::uint64_t told_at);
-  void state_messages(const mcap::Index& index);
   void message(std::span<const std::byte> content);
   void attachment(std::span<const std::byte> content);
   void note(const std::string& what);
@@ -238,8 +253,6 @@ Scanner::Next Scanner::record(std::uint8_t opcode, std::uint64_t length,
     case mcap::kFooter:
       note("a footer without end of data");
       return length == mcap::kFooterBytes ? Next::kEnd : Next::kResync;
-    case mcap::kMessageIndex:
-      break;
     default:
       if (opcode > mcap::kDataEnd)
         note("record of unknown kind " + std::to_string(opcode) + " left out");
@@ -266,8 +279,13 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
       std::ranges::equal(magic, std::as_bytes(std::span(mcap::kMagic))) &&
       (summary_start == next_offset || (summary_start == 0 && footer_at == next_offset));
   if (!closed) {
-    if (reader.ok() && content.size() == 4 && moved_index(next_offset, summary_start))
+    const auto moved = summary_start == 0 ? std::nullopt : mcap::read_index(file_, next_offset);
+    if (moved && reader.ok() && content.size() == 4) {
+      note(moved_text(next_offset, summary_start));
+      scan_.stated = stated_of(*moved, channels_);
+      scan_.complete = true;
       return Next::kEnd;
+    }
     // Either the file lost its tail inside the summary, or this is no end of data at all.
     if (reader.ok() && content.size() == 4 &&
         find_chunk(file_, next_offset, search_buffer_) == file_.size()) {
@@ -277,7 +295,7 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
     return Next::kResync;
   }
   scan_.complete = true;
-  state_messages(index_);
+  scan_.stated = stated_of(index_, channels_);
   if (crc_known_ && data_crc != 0 && data_crc != crc_)
     note(
         "the checksum of the data section does not fit: some record between the chunks is damaged");
@@ -287,25 +305,6 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
     if (crc32(summary) != summary_crc) note("the index at the end is damaged; it is not needed");
   }
   return Next::kEnd;
-}
-
-void Scanner::state_messages(const mcap::Index& index) {
-  for (const auto& [id, count] : index.messages)
-    if (const auto channel = channels_.find(id); channel != channels_.end())
-      scan_.stated[channel->second.topic] += count;
-}
-
-// Is there a whole index, only not where it was written? Then the file was closed, and is no longer
-// what was closed.
-bool Scanner::moved_index(std::uint64_t found_at, std::uint64_t told_at) {
-  const std::optional<mcap::Index> index = mcap::read_index(file_, found_at);
-  if (!index || told_at == 0) return false;
-  const bool is_less = told_at > found_at;
-  note(std::to_string(is_less ? told_at - found_at : found_at - told_at) + " bytes were " +
-       (is_less ? "taken out" : "added") + " before this place, after the file had been closed");
-  state_messages(*index);
-  scan_.complete = true;
-  return true;
 }
 
 bool Scanner::chunk(std::span<const std::byte> content) {
