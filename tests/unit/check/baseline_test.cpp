@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "client/tools/check/check.h"
+#include "tests/support/test_folder.h"
 
 namespace mortise {
 namespace {
@@ -17,13 +16,18 @@ Json report_with(const std::string& klass, double depth_mm, const char* part_b) 
           {"pairs", Json::array({pair})}};
 }
 
-std::string written(const Json& report) {
-  const std::string file = testing::TempDir() + "mortise_baseline.json";
-  std::ofstream(file) << report.dump();
-  return file;
-}
+// In a folder of its own: tests run beside each other.
+class Baseline : public testing::Test {
+ protected:
+  std::string written(const Json& report) const {
+    return folder_.write("baseline.json", report.dump());
+  }
 
-TEST(Baseline, TellsNewGoneChangedAndUnchanged) {
+ private:
+  test::TestFolder folder_;
+};
+
+TEST_F(Baseline, TellsNewGoneChangedAndUnchanged) {
   const std::string file = written(report_with("real", 0.5, "b"));
   Json same = report_with("real", 0.5004, "b");
   ASSERT_TRUE(compare_with_baseline(file, same));
@@ -39,7 +43,7 @@ TEST(Baseline, TellsNewGoneChangedAndUnchanged) {
   EXPECT_TRUE(fails_on("new", other));
 }
 
-TEST(Baseline, WhatIsNoReportIsRefused) {
+TEST_F(Baseline, WhatIsNoReportIsRefused) {
   Json report = report_with("real", 0.5, "b");
   EXPECT_FALSE(compare_with_baseline(written(Json::array()), report));
   EXPECT_FALSE(compare_with_baseline("/nowhere.json", report));
