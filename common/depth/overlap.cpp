@@ -431,13 +431,24 @@ class Overlap {
   Regions regions_;
 };
 
+// By how much the face of a triangle may be off for the rounding of its file. A declared surface is
+// known apart from the file; at its rim the face beside it decides, unless a tolerance lets it
+// grow.
+double file_mm(const SurfaceBand& band, std::uint32_t triangle) {
+  const SurfaceBand::Face& face = band.face_of(triangle);
+  const bool grows = face.grade == DeviationGrade::kDeclaredFeature && face.tolerance_mm.hi > 0.0;
+  return grows ? 0.0 : band.quantum_mm;
+}
+
 // Where the meshes do not overlap, the rounding of their files alone makes no collision.
 void leave_out_rounding(const OverlapQuery& query, OverlapResult& result) {
   if (query.only_certain || result.no_inside || (query.band_a->trivial && query.band_b->trivial))
     return;
-  const double files_mm = query.band_a->quantum_mm + query.band_b->quantum_mm;
   std::erase_if(result.regions, [&](const OverlapRegion& region) {
-    if (region.possible_mm.hi > files_mm + kDepthAccuracyDefault_mm) return false;
+    const double files_mm = file_mm(*query.band_a, region.deciding_triangle_a) +
+                            file_mm(*query.band_b, region.deciding_triangle_b);
+    if (region.closed_form || region.possible_mm.hi > files_mm + kDepthAccuracyDefault_mm)
+      return false;
     const double touch_mm = PairFrame(query).touch_mm;
     return region.delta_mm.lo <= touch_mm && !(region.certain_mm.lo > 0.0) &&
            region.possible_mm.hi <= files_mm + 2.0 * touch_mm;

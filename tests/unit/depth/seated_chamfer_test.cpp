@@ -114,6 +114,34 @@ TEST_P(SeatedChamfer, TouchesItHoweverCoarseTheFilesAre) {
       }
 }
 
+// A declared journal that may be 4 um larger than its bore: no rounding, however coarse the files
+// are.
+TEST(DeclaredFaces, AreNotLeftOutForTheRoundingOfTheirFiles) {
+  constexpr double kRadius = 10.0, kQuantum_mm = 5e-6, kMore_mm = 4e-6;
+  OverlapCase c;
+  const auto band_of_round = [&](const SolidPtr& solid, bool inward, double more_mm) {
+    Surface surface;
+    surface.kind = SurfaceKind::kCylinder;
+    surface.radius_mm = kRadius;
+    surface.inward = inward;
+    const auto match = match_feature(solid->mesh(), {"round", surface, std::nullopt, 0.0});
+    EXPECT_TRUE(match);
+    const std::vector<Feature> features = {match->feature};
+    BandInput input;
+    input.solid = solid.get();
+    input.quantum_mm = kQuantum_mm;
+    input.features = features;
+    input.of_feature.resize(1);
+    input.of_feature[0].offset_mm = {0.0, more_mm};
+    return build_band(input);
+  };
+  c.a = solid(peg({kRadius, -5, 25, 48}));
+  c.b = solid(ring({kRadius, 0, 20, 48}, 20));
+  c.band_a = band_of_round(c.a, false, kMore_mm);
+  c.band_b = band_of_round(c.b, true, 0.0);
+  EXPECT_GE(worst_class(overlap_of(c)), CollisionClass::kPotential);
+}
+
 INSTANTIATE_TEST_SUITE_P(Grades, SeatedChamfer,
                          testing::Values(Known::kDeclared, Known::kExact, Known::kRecognized));
 
