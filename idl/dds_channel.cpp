@@ -26,6 +26,10 @@ using Clock = std::chrono::steady_clock;
 // One that leads tells a tick as soon as it sees us.
 constexpr std::chrono::seconds kLookForLeader(2);
 constexpr double kLastWords_s = 0.3;
+// With keys, a client that met no server again opens a participant anew: first after so long, which
+// is beyond the 4 s in which a user is taken back from the same participant, then twice as long
+// each time, so that a slow handshake comes to its end.
+constexpr std::chrono::seconds kMeetAnewFirst(5), kMeetAnewLast(80);
 
 std::int64_t ns_until(Clock::time_point end) {
   return std::chrono::nanoseconds(end - Clock::now()).count();
@@ -286,18 +290,26 @@ class DdsClientChannel final : public ClientChannel {
  private:
   template <class Sample>
   void write(dds::DataWriter* writer, Sample sample) {
-    if (!writer->write(&sample)) ++send_failed_;
+    if (writer == nullptr || !writer->write(&sample)) ++send_failed_;
   }
+  Status open_participant();
+  void close_participant();
+  /// Where the server and this client were parted for longer than a lease, Fast DDS 2.9.1 may keep
+  /// a rest of one that it removed, and then answers its handshakes never again. Nobody has a rest
+  /// of a participant that is new.
+  void meet_anew_if_alone(bool present);
   /// Says that this process lives, a few times within the lease.
   void assert_presence();
   void refuse_unsent(ClientInput& input);
 
+  DdsOptions options_;
   std::unique_ptr<PeerIdentities> identities_;  ///< null: no security
   Bell arrivals_;                               // these before the participant, whose threads call
   ServerWatch watch_{arrivals_};
-  ClientReaders readers_{watch_, arrivals_};
-  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<ClientReaders> readers_;
+  std::unique_ptr<Participant> participant_;  ///< null: could not be opened anew, is tried again
   ClientKey key_;
+  bool moves_ = true;  ///< an observer's permissions have no increments
   dds::DataWriter *presence_ = nullptr, *increments_ = nullptr, *requests_ = nullptr;
   Clock::duration assert_period_{};
   Clock::time_point asserted_at_{};
@@ -305,31 +317,66 @@ class DdsClientChannel final : public ClientChannel {
   std::vector<RefusedIncrement> unsent_;  ///< an observer's, to be told with the next input
   bool lost_ = false;                     ///< to be told with the next input
   std::uint64_t send_failed_ = 0;
+  std::optional<Clock::time_point> alone_since_;  ///< none: a server is there
+  Clock::duration meet_anew_after_ = kMeetAnewFirst;
+  bool was_met_ = false;    ///< a server
+  ChannelCounters before_;  ///< of participants before this one
 };
 
 Status DdsClientChannel::open(const DdsOptions& options) {
+  options_ = options;
   watch_.look_for(options.session);
   if (!options.keys.empty()) {
     const KeyFiles files(options.keys);
     identities_ = std::make_unique<PeerIdentities>(files.authority, files.revocations);
     watch_.know(identities_.get());
   }
-  auto participant = Participant::open(options, Participant::Side::kClient, &watch_);
+  assert_period_ = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(0.25 * options.liveliness_lease_s));
+  return open_participant();
+}
+
+Status DdsClientChannel::open_participant() {
+  auto participant = Participant::open(options_, Participant::Side::kClient, &watch_);
   if (!participant) return participant.error();
   participant_ = std::move(participant.value());
   key_ = participant_->key();
-  assert_period_ = std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(0.25 * options.liveliness_lease_s));
+  moves_ = !participant_->identity() || participant_->identity()->role != "observer";
   Status status = ok();
-  readers_.open(*participant_, options, status);
+  readers_ = std::make_unique<ClientReaders>(watch_, arrivals_);
+  readers_->open(*participant_, options_, status);
   participant_->open_writer<wire::PresencePubSubType>(Topic::kPresence, presence_, status, &watch_);
-  // An observer's permissions have no increments.
-  if (!participant_->identity() || participant_->identity()->role != "observer")
+  if (moves_)
     participant_->open_writer<wire::IncrementBatchPubSubType>(Topic::kIncrement, increments_,
                                                               status, &watch_);
   participant_->open_writer<wire::RequestPubSubType>(Topic::kRequest, requests_, status, &watch_);
-  readers_.open_answers(*participant_, status);
+  readers_->open_answers(*participant_, status);
   return status;
+}
+
+void DdsClientChannel::meet_anew_if_alone(bool present) {
+  if (present) {
+    alone_since_.reset();
+    meet_anew_after_ = kMeetAnewFirst;
+    was_met_ = true;
+    return;
+  }
+  if (options_.keys.empty() || !was_met_) return;
+  const Clock::time_point now = Clock::now();
+  if (!alone_since_) alone_since_ = now;
+  if (now - *alone_since_ < meet_anew_after_) return;
+  alone_since_ = now;
+  meet_anew_after_ = std::min<Clock::duration>(2 * meet_anew_after_, kMeetAnewLast);
+  before_ = counters();
+  close_participant();
+  if (!open_participant()) close_participant();
+}
+
+void DdsClientChannel::close_participant() {
+  participant_.reset();  // first: its threads call the readers
+  readers_.reset();
+  presence_ = increments_ = requests_ = nullptr;
+  watch_.part_from_all();
 }
 
 void DdsClientChannel::join(std::uint64_t nonce, const std::string& name, const std::string& role) {
@@ -359,7 +406,7 @@ void DdsClientChannel::heartbeat(UserId user) {
 
 void DdsClientChannel::send(const IncrementBatch& batch) {
   assert_presence();
-  if (increments_ == nullptr) {
+  if (!moves_) {
     ++send_failed_;
     for (const auto& [increment, sent_ns] : batch.increments)
       unsent_.push_back({increment.user, increment.part, increment.seq, Refusal::kObserver});
@@ -393,21 +440,27 @@ void DdsClientChannel::request_snapshot() {
 ClientInput DdsClientChannel::take() {
   ClientInput input;
   input.server_lost = std::exchange(lost_, false);  // the input before had its last words
-  readers_.take(key_, input);
+  if (readers_) readers_->take(key_, input);
   refuse_unsent(input);
   // Answers can be heard; and what is sent from now on will be.
-  const ServerWatch::Answer watch = watch_.take(increments_ == nullptr ? 2 : 3);
+  const ServerWatch::Answer watch = watch_.take(moves_ ? 3 : 2);
   lost_ = watch.lost;
   input.server_present = watch.present && !lost_;
+  meet_anew_if_alone(input.server_present);
   return input;
 }
 
 ChannelCounters DdsClientChannel::counters() const {
-  ChannelCounters counters = readers_.counters();
+  ChannelCounters counters = before_;
   counters.send_failed = send_failed_;
-  counters.malformed += participant_->refused();
-  counters.guard_dropped = participant_->dropped();
-  counters.trailers_cut = participant_->cut();
+  if (participant_ == nullptr) return counters;
+  const ChannelCounters heard = readers_->counters();
+  counters.received += heard.received;
+  counters.foreign += heard.foreign;
+  counters.lost += heard.lost;
+  counters.malformed += heard.malformed + participant_->refused();
+  counters.guard_dropped += participant_->dropped();
+  counters.trailers_cut += participant_->cut();
   return counters;
 }
 
@@ -415,7 +468,7 @@ void DdsClientChannel::assert_presence() {
   const Clock::time_point now = Clock::now();
   if (now - asserted_at_ < assert_period_) return;
   asserted_at_ = now;
-  presence_->assert_liveliness();
+  if (presence_ != nullptr) presence_->assert_liveliness();
 }
 
 // Of an observer with keys: as a server answers one without, lest it is sent again for ever.

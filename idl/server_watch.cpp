@@ -66,6 +66,15 @@ ServerWatch::Answer ServerWatch::take(int topics) {
   return {std::exchange(lost_, false), present};
 }
 
+void ServerWatch::part_from_all() {
+  const std::lock_guard lock(mutex_);
+  for (auto& [prefix, server] : servers_) {
+    server.answers = false;
+    server.readers = 0;
+  }
+  choose();
+}
+
 bool ServerWatch::is_past(const Prefix& server) const {
   const std::lock_guard lock(mutex_);
   const auto found = servers_.find(server);

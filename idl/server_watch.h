@@ -31,6 +31,8 @@ class ServerWatch final : public dds::DomainParticipantListener {
     bool present = false;  ///< and hears us, on so many topics
   };
   Answer take(int topics);
+  /// The participant is gone, and another one comes: nobody is met. Terms are remembered.
+  void part_from_all();
   /// Nothing that it says counts any more: overtaken, or its going was told by take(). Its last
   /// words may come after that, each topic by its own way.
   bool is_past(const Prefix& server) const;

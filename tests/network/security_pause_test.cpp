@@ -97,5 +97,34 @@ TEST_F(SecurityPause, AClientThatStoodStillIsMetAgain) {
   std::printf("met again %.1f s after a pause of %.0f s\n", now_s() - begun_s, kPause_s);
 }
 
+/// What a server keeps of one that it removed can keep it outside for good. It is taken back for
+/// some seconds as the participant that it was.
+TEST_F(SecurityPause, AClientThatMeetsNobodyForLongComesAsAnotherParticipant) {
+  constexpr double kAlone_s = 7.0;
+  auto channel = open_client_channel(options((*site_keys)["anna"]));
+  ASSERT_TRUE(channel) << channel.error().text;
+  Client client(**channel);
+  client.add_user("anna", "designer");
+  const auto comes_as = [&]() -> ClientKey {
+    auto hall = open_server_channel(options((*site_keys)["hall"]));
+    if (!hall) return hall.error().text;
+    SmallServer server(**hall, "test", 3);
+    (void)until(
+        kPatience_s, [&] { return !server.users.empty(); },
+        [&] {
+          server.turn();
+          (void)client.poll();
+        });
+    return server.users.empty() ? "nobody" : server.users.begin()->second.first;
+  };
+  const ClientKey first = comes_as();
+  EXPECT_EQ(comes_as(), first);
+  (void)until(
+      kAlone_s, [] { return false; }, [&] { (void)client.poll(); });
+  const ClientKey another = comes_as();
+  EXPECT_NE(another, first);
+  EXPECT_EQ(another.size(), first.size()) << another;
+}
+
 }  // namespace
 }  // namespace mortise::test
