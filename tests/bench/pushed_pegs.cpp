@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -81,8 +82,8 @@ StepReport Pegs::push(const std::vector<Vec3>& by_mm, const Vec3& turn_rad) {
   return step(world_, increments_, scratch_);
 }
 
-Pushed push_all(const Fit& fit, int count, const char* policy, int ticks) {
-  Pegs pegs(fit, count, policy);
+Pushed push_all(const Fit& fit, int count, const char* policy, int ticks, int threads) {
+  Pegs pegs(fit, count, policy, threads);
   Pushed result;
   std::vector<double> moved_mm(static_cast<std::size_t>(count));
   std::vector<Vec3> by(moved_mm.size()), before(moved_mm.size());
@@ -95,8 +96,11 @@ Pushed push_all(const Fit& fit, int count, const char* policy, int ticks) {
       before[i] = pegs.position(static_cast<int>(i));
     }
     const Stopwatch watch;
+    const auto begun = std::chrono::steady_clock::now();
     const StepReport report = pegs.push(by, Vec3(0, 0, 1e-3 * (tick % 2 == 0 ? 1 : -1)));
     result.tick_ms.push_back(1e3 * watch.elapsed_s());
+    result.wall_s +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     result.not_examined += report.counters.not_examined;
     for (std::size_t i = 0; i < by.size(); ++i)
       moved_mm[i] += (pegs.position(static_cast<int>(i)) - before[i]).norm() / ticks;

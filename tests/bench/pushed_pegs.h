@@ -45,9 +45,10 @@ struct Pushed {
   double least_mm_a_tick = 0.0;  ///< of the peg that moved least
   std::uint64_t not_examined = 0;
   std::vector<double> tick_ms;
+  double wall_s = 0.0;  ///< of all ticks
 };
 /// Down and up in the hole, while hands tremble and turn.
-Pushed push_all(const Fit& fit, int count, const char* policy, int ticks);
+Pushed push_all(const Fit& fit, int count, const char* policy, int ticks, int threads = 1);
 
 /// Against the wall in one tick, away from it in the next one, policy stop.
 struct Shaken {

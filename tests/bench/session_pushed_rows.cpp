@@ -2,6 +2,9 @@
 // on, and what a tick costs.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/bench/pushed_pegs.h"
 #include "tests/bench/session_sections.h"
 #include "tests/bench/statistics.h"
@@ -9,7 +12,7 @@
 namespace mortise::bench {
 namespace {
 
-constexpr double kFewBar = 0.9, kManyBar = 0.5, kAwayBar = 99.0;
+constexpr double kFewBar = 0.9, kManyBar = 0.5, kAwayBar = 99.0, kThreadsBar = 1.7;
 constexpr int kFew = 64;
 // A peg that moves less than this share of one alone is stuck.
 constexpr double kStuck = 0.1;
@@ -36,6 +39,27 @@ void pushed_rows(Report& report, const Fit& fit, const char* policy, int ticks) 
   }
 }
 
+// The same ticks on one thread and on two, in turns; the shortest of each counts, since others work
+// on this machine.
+void thread_rows(Report& report, const Fit& fit, const char* policy, int ticks) {
+  constexpr int kMany = 256, kTurns = 3;
+  double wall_s[2] = {kInfinity, kInfinity};
+  double moved_mm[2] = {0.0, 0.0};
+  for (int turn = 0; turn < kTurns; ++turn)
+    for (const int threads : {1, 2}) {
+      const Pushed p = push_all(fit, kMany, policy, ticks, threads);
+      wall_s[threads - 1] = std::min(wall_s[threads - 1], p.wall_s);
+      moved_mm[threads - 1] = p.mm_a_tick;
+    }
+  const double times = wall_s[0] / wall_s[1];
+  report.row({std::string(fit.name), std::string(policy), 1e3 * wall_s[0] / ticks,
+              1e3 * wall_s[1] / ticks, times});
+  const std::string of = fmt::format("{}, {}, {} pegs: ", fit.name, policy, kMany);
+  report.bar(of + "two threads, times as fast as one", times, kThreadsBar, BoundKind::kAtLeast);
+  report.bar(of + "mm a tick that differ by threads", std::fabs(moved_mm[0] - moved_mm[1]), 0.0,
+             BoundKind::kAtMost);
+}
+
 }  // namespace
 
 void section_pushed(Report& report, const SessionOptions& options) {
@@ -45,6 +69,10 @@ void section_pushed(Report& report, const SessionOptions& options) {
                 "not examined", "ms median", "ms p99", "ms largest"});
   for (const Fit& fit : {kClearance, kSliding})
     for (const char* policy : {"stop", "slide"}) pushed_rows(report, fit, policy, ticks);
+  report.table("256 pegs, all pushed at once; wall time a tick, ms",
+               {"fit", "policy", "one thread", "two threads", "times as fast"});
+  for (const Fit& fit : {kClearance, kSliding})
+    for (const char* policy : {"stop", "slide"}) thread_rows(report, fit, policy, ticks);
   report.table("Dowels of Ø19 shaken in bores of Ø20, stop; one thread; ms of CPU a tick",
                {"designers", "pushes away", "carried out %", "not examined", "ms median", "ms p99",
                 "ms largest"});

@@ -349,11 +349,13 @@ bool is_told_real(const PairWork& pair) {
 void find_verdicts(const World& world, Scratch::Impl& work) {
   work.asked.clear();
   work.unasked.clear();
+  work.pool.for_each(work.pair_count, [&](std::size_t i, int) {
+    work.pairs[i].tells = false;
+    if (work.pairs[i].asked) note_going_on(world, work, work.pairs[i]);
+  });
   for (std::uint32_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    pair.tells = false;
     if (!pair.asked) continue;
-    note_going_on(world, work, pair);
     // A part that was stopped before this pair came near is clear of it.
     const bool looked_at =
         pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0);

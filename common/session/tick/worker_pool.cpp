@@ -19,13 +19,15 @@ void WorkerPool::run(std::size_t count, void* body, Call call) {
     body_ = body;
     call_ = call;
     next_.store(0);
-    busy_ = static_cast<int>(workers_.size());
+    open_ = true;
     ++round_;
   }
   start_.notify_all();
   take_indices(0);
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return busy_ == 0; });
+  open_ = false;  // who comes late finds nothing to do: where other programs have the core, it may
+                  // come milliseconds late
+  done_.wait(lock, [this] { return inside_ == 0; });
 }
 
 void WorkerPool::take_indices(int thread) {
@@ -38,12 +40,13 @@ void WorkerPool::work(const std::stop_token& stop, int thread) {
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      if (!start_.wait(lock, stop, [&] { return round_ != seen; })) return;
+      if (!start_.wait(lock, stop, [&] { return open_ && round_ != seen; })) return;
       seen = round_;
+      ++inside_;
     }
     take_indices(thread);
     const std::lock_guard lock(mutex_);
-    if (--busy_ == 0) done_.notify_one();
+    if (--inside_ == 0) done_.notify_one();
   }
 }
 

@@ -23,7 +23,8 @@ class WorkerPool {
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
   /// Calls body(index, thread) for every index in [0, count), thread in [0, threads()); returns
-  /// when all are done. No allocation. body must not throw.
+  /// when all are done. A worker that has not begun by then is not waited for. No allocation. body
+  /// must not throw.
   template <class Body>
   void for_each(std::size_t count, Body&& body) {
     if (workers_.empty() || count < 2) {
@@ -44,7 +45,8 @@ class WorkerPool {
   std::condition_variable_any start_;
   std::condition_variable done_;
   std::uint64_t round_ = 0;  // guarded by mutex_
-  int busy_ = 0;             // guarded by mutex_
+  bool open_ = false;        // guarded by mutex_: indices of the round are left to take
+  int inside_ = 0;           // guarded by mutex_: workers that take indices of the round
   std::size_t count_ = 0;
   void* body_ = nullptr;
   Call call_ = nullptr;
