@@ -96,6 +96,14 @@ LogBegin begin_of(World& world, const SessionStatistics& statistics, std::int64_
           time_ns};
 }
 
+// A log that was closed says how many ticks it holds; one that was not may have lost any number.
+std::string missing_at_end(const SessionLog& log, std::uint64_t last_tick) {
+  if (std::string cut_off = cut_off_of(log); !cut_off.empty()) return cut_off;
+  if (log.complete) return {};
+  return "the log was not closed properly; it ends at tick " + std::to_string(last_tick) +
+         ", and what came after is not known";
+}
+
 }  // namespace
 
 Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bool all_depart,
@@ -121,6 +129,8 @@ Result<Resumed> resume_from(const SessionLog& log, World& world, int threads, bo
   for (const TickRecord& record : log.ticks)
     ++(record.tick <= world.tick ? resumed.ticks : resumed.ticks_left_out);
   resumed.left_out_because = report->not_verifiable;
+  resumed.missing_at_end =
+      missing_at_end(log, log.ticks.empty() ? world.tick : log.ticks.back().tick);
   if (world.state) resumed.begin = begin_of(world, resumed.statistics, last_time_ns(log));
   if (all_depart) resumed.departures = depart_all(world);
   return resumed;

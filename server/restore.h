@@ -24,6 +24,7 @@ struct Resumed {
   std::uint64_t ticks_computed = 0;  ///< of these; earlier ones are covered by a checkpoint
   std::uint64_t ticks_left_out = 0;  ///< behind a gap: they cannot be computed
   std::string left_out_because;      ///< empty: none left out
+  std::string missing_at_end;        ///< what the log may not have behind its last tick, in words
 };
 
 enum class Newest { kBegun, kWritten };

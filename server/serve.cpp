@@ -69,6 +69,9 @@ Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& 
     spdlog::warn("{} ticks of {} are left out: {}", played->ticks_left_out, start.source,
                  played->left_out_because);
   }
+  // The log of a server that still leads is never closed.
+  if (options.standby_of.empty() && !played->missing_at_end.empty())
+    spdlog::warn("{}: {}", start.source, played->missing_at_end);
   start.log.reset();
   resumed = std::move(*played);
   return resumed;

@@ -159,6 +159,28 @@ TEST_F(Restore, WhatLiesBehindAGapIsLeftOutAndCounted) {
   EXPECT_NE(resumed->left_out_because.find("queue"), std::string::npos);
 }
 
+TEST_F(Restore, WhatMayBeMissingBehindTheLastTickIsSaid) {
+  const auto missing = [](const SessionLog& log) {
+    auto scene = scene_of(log);
+    EXPECT_TRUE(scene);
+    const auto resumed = resume_from(log, scene->world, 1);
+    EXPECT_TRUE(resumed) << resumed.error().text;
+    EXPECT_EQ(resumed->ticks_left_out, 0U);
+    return resumed->missing_at_end;
+  };
+  SessionLog log = first(30);
+  log.complete = true;
+  EXPECT_EQ(missing(log), "");
+  log.complete = false;
+  EXPECT_EQ(
+      missing(log),
+      "the log was not closed properly; it ends at tick 30, and what came after is not known");
+  // It was closed, and a chunk was cut out of its end.
+  log.complete = true;
+  log.gaps.push_back({30, 0, "20 ticks that it states are not there", true});
+  EXPECT_EQ(missing(log), "ticks after 30 are missing: 20 ticks that it states are not there");
+}
+
 TEST(LogToRestore, IsTheNewestOfTheSessionAndNoOther) {
   TestFolder folder;
   EXPECT_TRUE(logs_to_restore(folder.path(), "demo").empty());
