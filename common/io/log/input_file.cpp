@@ -10,7 +10,8 @@
 namespace mortise {
 
 InputFile::InputFile(const std::filesystem::path& file)
-    : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    // Not to wait for a writer, where it is a pipe; nothing else on a regular file.
+    : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   struct stat info {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0) return;
   if (!S_ISREG(info.st_mode)) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -42,6 +43,10 @@ class ObjReader {
   ObjReader(std::string file) : file_(std::move(file)) {}
 
   Result<CleanMesh> read(double unit_mm) {
+    std::error_code ignored;  // a pipe would be waited for
+    if (std::filesystem::exists(file_, ignored) &&
+        !std::filesystem::is_regular_file(file_, ignored))
+      return fail(Code::kInvalidInput, file_ + ": is no regular file; give it a file of its own");
     std::ifstream in(file_);
     if (!in) return fail(Code::kNotFound, file_ + ": cannot be opened; check the path");
     for (std::string text; std::getline(in, text);) {

@@ -80,5 +80,19 @@ TEST_F(DaeCheck, OtherNumbersThanAnnouncedAreRefused) {
   expect(kDae.substr(0, 900), "its XML is damaged or was cut off, at byte ");
 }
 
+TEST_F(DaeCheck, WhatIsNestedTooDeepIsRefused) {
+  const auto nested = [](int levels) {
+    std::string open, close;
+    for (int i = 0; i < levels; ++i) open += "<node>", close += "</node>";
+    const std::string mesh = R"(<instance_geometry url="#g"/>)";
+    return dae_with(mesh, open + mesh + close);
+  };
+  expect(nested(900), "imported");
+  expect(nested(1000), "its elements are nested deeper than 1000 levels");
+  expect(nested(200'000), "its elements are nested deeper than 1000 levels");
+  expect(dae_with(R"(<instance_geometry url="#g"/>)", R"(<instance_node url="#a"/>)"),
+         "its elements hold each other");
+}
+
 }  // namespace
 }  // namespace mortise

@@ -131,5 +131,22 @@ TEST_F(GltfCheck, WhatIsNoGltfIsSaidToBeNone) {
   expect(gltf_with("\"byteLength\":72", "\"byteLength\":80"), "announces 80 bytes and holds 72");
 }
 
+// Nodes of which each holds the next one; the last has the mesh.
+std::string nodes_in_each_other(int levels) {
+  std::string nodes;
+  for (int i = 1; i < levels; ++i) nodes += R"({"children":[)" + std::to_string(i) + "]},";
+  return gltf_with(R"({"mesh":0})", nodes + R"({"mesh":0})");
+}
+
+TEST_F(GltfCheck, WhatIsNestedTooDeepIsRefused) {
+  expect(nodes_in_each_other(1000), "imported");
+  expect(nodes_in_each_other(1001), "its nodes are nested deeper than 1000 levels");
+  expect(nodes_in_each_other(5000), "its nodes are nested deeper than 1000 levels");
+  expect(node_with(R"("children":[0])"), "its nodes hold each other");
+  const std::string open(200'000, '['), close(200'000, ']');
+  expect(gltf_with(R"("scene":0)", R"("extras":)" + open + close + R"(,"scene":0)"),
+         "its lists are nested deeper than 1000 levels");
+}
+
 }  // namespace
 }  // namespace mortise

@@ -122,5 +122,14 @@ TEST_F(PlyHeader, ThatIsNoneIsRefusedAtOnce) {
   expect(with(good_, "float y", "floaty y"), "line 5: ");
 }
 
+TEST_F(PlyHeader, ACornerHasThreeAxes) {
+  const std::string text = "ply\nformat ascii 1.0\n" + kPlyHead + kPlyBody;
+  expect(text, "imported");
+  for (const std::string axis : {"x", "y", "z"}) {
+    expect(with(text, "float " + axis + "\n", "float w\n"), "its vertices have no " + axis);
+    expect(with(binary(), "float " + axis + "\n", "float w\n"), "its vertices have no " + axis);
+  }
+}
+
 }  // namespace
 }  // namespace mortise

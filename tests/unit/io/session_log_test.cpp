@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 #include "common/io/build_info.h"
 #include "common/io/log/log_json.h"
 #include "common/io/log/log_records.h"
+#include "common/io/mesh/obj_exact.h"
+#include "tests/support/test_folder.h"
 #include "tests/unit/io/log_samples.h"
 
 namespace mortise {
@@ -311,6 +314,14 @@ TEST(SessionLog, AFullDiskIsSaidAndTheRestStaysReadable) {
   EXPECT_GT(log->ticks.size(), 20u);
   const std::uint64_t dropped = std::stoull("0" + bytes_of(account.path()));
   EXPECT_GE(log->ticks.size() + dropped, kTicks) << "ticks were lost in silence";
+}
+
+TEST(SessionLog, APipeIsNotWaitedFor) {
+  const test::TestFolder folder;
+  const auto pipe = folder.path() / "pipe.mcap";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(read_session_log(pipe));
+  EXPECT_FALSE(read_obj_exact(pipe, 1.0));
 }
 
 TEST(SessionLog, OtherFilesAreRefusedInOneLine) {

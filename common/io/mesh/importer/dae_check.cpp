@@ -7,8 +7,11 @@
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
+#include <unordered_map>
+#include <vector>
 
 #include "common/base/in_quotes.h"
+#include "common/io/mesh/importer/nesting.h"
 
 namespace mortise {
 namespace {
@@ -45,6 +48,8 @@ class DaeCheck {
   /// One line; empty: nothing is wrong.
   std::string wrong(const pugi::xml_document& document) {
     for_each(document, [&](const pugi::xml_node& node) { note_id(node); });
+    if (const std::string nested = wrong_with_nesting(holds(document), "elements"); !nested.empty())
+      return nested;
     for_each(document, [&](const pugi::xml_node& node) {
       if (wrong_.empty()) check(node);
     });
@@ -60,6 +65,23 @@ class DaeCheck {
       for (; !next && node; node = node.parent()) next = node.next_sibling();
       node = next;
     }
+  }
+
+  /// What each element holds: what stands in it, and the node that it names.
+  std::vector<std::vector<std::size_t>> holds(const pugi::xml_document& document) const {
+    std::unordered_map<std::size_t, std::size_t> number;
+    for_each(document,
+             [&](const pugi::xml_node& node) { number.emplace(node.hash_value(), number.size()); });
+    std::vector<std::vector<std::size_t>> holds(number.size());
+    for_each(document, [&](const pugi::xml_node& node) {
+      const std::size_t own = number[node.hash_value()];
+      if (const auto above = number.find(node.parent().hash_value()); above != number.end())
+        holds[above->second].push_back(own);
+      if (std::string_view(node.name()) != "instance_node") return;
+      if (const pugi::xml_node named = find("node", node.attribute("url").value()))
+        holds[own].push_back(number[named.hash_value()]);
+    });
+    return holds;
   }
 
   void fault(const pugi::xml_node& node, const std::string& what) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/base/in_quotes.h"
+#include "common/io/mesh/importer/nesting.h"
 
 namespace mortise {
 namespace {
@@ -88,7 +89,8 @@ GltfParts parts_of_gltf(std::string_view bytes, bool binary) {
 json parsed_gltf(std::string_view text) {
   std::vector<std::set<std::string>> open;
   std::string twice;
-  const auto watch = [&](int, json::parse_event_t event, json& value) {
+  const auto watch = [&](int depth, json::parse_event_t event, json& value) {
+    if (static_cast<std::size_t>(depth) > kMostLevels) throw GltfFault{too_deep("lists")};
     if (event == json::parse_event_t::object_start) open.emplace_back();
     if (event == json::parse_event_t::object_end) open.pop_back();
     if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
@@ -188,6 +190,7 @@ class GltfCheck {
     check_extensions();
     for (std::size_t i = 0; i < list(gltf_, "nodes").size(); ++i)
       check_node(entry("nodes", i), place("nodes", i));
+    check_nesting();
     for (std::size_t i = 0; i < list(gltf_, "scenes").size(); ++i)
       check_names(entry("scenes", i), "nodes", place("scenes", i));
     if (gltf_.contains("scene")) entry("scenes", whole(gltf_, "scene", "it"));
@@ -286,6 +289,16 @@ class GltfCheck {
     for (const json& weight : list(owner, "weights"))
       if (!weight.is_number() || weight.get<double>() != 0.0)
         throw GltfFault{where + " is bent by weights, which are not applied; export it bent"};
+  }
+
+  void check_nesting() const {
+    std::vector<std::vector<std::size_t>> holds;
+    for (const json& node : list(gltf_, "nodes")) {
+      holds.emplace_back();
+      for (const json& child : list(node, "children")) holds.back().push_back(child);
+    }
+    if (const std::string wrong = wrong_with_nesting(holds, "nodes"); !wrong.empty())
+      throw GltfFault{wrong};
   }
 
   void check_node(const json& node, const std::string& where) const {

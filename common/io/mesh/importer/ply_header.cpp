@@ -64,6 +64,7 @@ NumberType type_of(std::string_view name) {
 }
 
 struct Property {
+  std::string name;
   NumberType type;
   std::optional<NumberType> count;  ///< of a list
 };
@@ -85,7 +86,10 @@ class PlyHead {
     for (PlyWords words; lines_ + 1 < kMostLines && at_ < bytes_.size();) {
       const std::string_view line = next_line();
       split(line, words);
-      if (!words.empty() && words[0] == "end_header") return wrong_with_room();
+      if (!words.empty() && words[0] == "end_header") {
+        const std::string wrong = wrong_with_vertices();
+        return wrong.empty() ? wrong_with_room() : wrong;
+      }
       if (!take(words))
         return "line " + std::to_string(lines_) + ": " + in_quotes(line) +
                " is no line of a PLY header; export it again";
@@ -134,13 +138,25 @@ class PlyHead {
   bool take_property(const PlyWords& words) {
     const bool list = words.size() == 5 && words[1] == "list";
     if (elements_.empty() || (!list && words.size() != 3)) return false;
-    Property property{type_of(words[list ? 3 : 1]), {}};
+    Property property{std::string(words.back()), type_of(words[list ? 3 : 1]), {}};
     if (list) property.count = type_of(words[2]);
     if (property.type.bytes == 0 ||
         (list && (property.count->bytes == 0 || !property.count->whole)))
       return false;
     elements_.back().properties.push_back(property);
     return true;
+  }
+
+  // Assimp takes an axis that no property names for 0 everywhere: the part would be flat.
+  std::string wrong_with_vertices() const {
+    for (const Element& element : elements_)
+      if (element.name == "vertex")
+        for (const std::string axis : {"x", "y", "z"})
+          if (std::ranges::none_of(element.properties, [&](const Property& property) {
+                return property.name == axis && !property.count;
+              }))
+            return "its vertices have no " + axis + "; export it again";
+    return {};
   }
 
   // A number takes two bytes of text, and a list has its count at least. A row without properties
