@@ -27,11 +27,13 @@ std::string default_page() {
 void add_what_is_shown(ProgramOptions& app, WebOptions& o) {
   app.add("--replay", o.replay, "Show this session log (MCAP) with a timeline, without a server")
       .group(kLogGroup)
+      .reads_file()
       .excludes("--session");
   app.add("--log", o.log,
           "Log that the server of the session writes, where this machine can read it: pages "
           "can download a report of the session so far")
       .group(kLogGroup)
+      .reads_file()
       .excludes("--replay");
 }
 
@@ -47,8 +49,9 @@ void add_http(ProgramOptions& app, GatewayOptions& o) {
   add("--origin", o.origins,
       "Origin (https://host:port) of another page that may connect; again for more");
   const auto certificate =
-      add("--certificate", o.certificate, "Speak TLS with this certificate chain (PEM)");
-  const auto key = add("--key", o.key, "Its private key (PEM)");
+      add("--certificate", o.certificate, "Speak TLS with this certificate chain (PEM)")
+          .reads_file();
+  const auto key = add("--key", o.key, "Its private key (PEM)").reads_file();
   certificate.needs(key);
   key.needs(certificate);
   app.add("--browsers", o.limits.browsers, "Browsers at one time")
@@ -69,10 +72,12 @@ void add_page(ProgramOptions& app, WebOptions& o) {
   add("--tokens", o.tokens,
       "File of two lines, the tokens of designers and of observers (made when it is not there), "
       "or a line ROLE NAME TOKEN for each person (mortise keys token). Default: two new "
-      "ones for this run");
+      "ones for this run")
+      .reads_file();
   add("--addresses", o.addresses,
       "File for the addresses with their tokens, which only its owner reads; -: stdout. "
-      "Default: stdout where that is a terminal, else none are said");
+      "Default: stdout where that is a terminal, else none are said")
+      .writes_file();
 }
 
 /// What options ask of each other.

@@ -71,6 +71,11 @@ TEST_F(NamedFiles, NoOutputOverwritesAnInput) {
       {"mortise-first-contact", contact + "m.csv", "m.csv"},
       {"mortise-server", "s.yaml --no-log --duration 0.1 --stats s.yaml", "s.yaml"},
       {"mortise-server", "s.yaml --no-log --duration 0.1 --stats b.obj", "b.obj"},
+      {"mortise-web", "--replay m.csv --addresses m.csv", "m.csv"},
+      {"mortise-web", "--log m.csv --addresses m.csv", "m.csv"},
+      {"mortise-web", "--tokens s.yaml --addresses s.yaml", "s.yaml"},
+      {"mortise-web", "--certificate s.yaml --key m.csv --addresses s.yaml", "s.yaml"},
+      {"mortise-web", "--certificate s.yaml --key m.csv --addresses m.csv", "m.csv"},
   };
   for (const auto& c : cases) {
     const std::string before = text(c.kept);
