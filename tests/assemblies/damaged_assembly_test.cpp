@@ -80,15 +80,31 @@ TEST(DamagedAssembly, WhatIsLeftOutIsTold) {
   }
 }
 
-TEST(DamagedAssembly, AScaledPlaceIsRefused) {
+TEST(DamagedAssembly, APlaceThatScalesOrMirrorsIsLeftOutAlone) {
   const test::TestFolder folder;
   const std::string text = tensioner_text(folder);
-  const auto read =
-      imported(folder, with(text, R"(ITEM_DEFINED_TRANSFORMATION\('','',#\d+,#\d+\))",
-                            "CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',$$,$$,#99999,2.,$$);\n"
-                            "#99999 = CARTESIAN_POINT('',(0.,0.,0.))"));
-  ASSERT_FALSE(read);
-  EXPECT_NE(read.error().text.find("scales a part"), std::string::npos) << read.error().text;
+  const auto whole = imported(folder, text);
+  ASSERT_TRUE(whole) << whole.error().text;
+  for (const auto& [arguments, what] :
+       {std::pair{"$$,$$,#99999,2.,$$", "scales a part"},
+        std::pair{"#99998,#99996,#99999,1.,#99997", "mirrors a part"}}) {
+    const auto read = imported(
+        folder, with(text, R"(ITEM_DEFINED_TRANSFORMATION\('','',#\d+,#\d+\))",
+                     "CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',''," + std::string(arguments) +
+                         ");\n#99999 = CARTESIAN_POINT('',(0.,0.,0.));\n"
+                         "#99998 = DIRECTION('',(1.,0.,0.));\n#99997 = DIRECTION('',(0.,0.,1.));\n"
+                         "#99996 = DIRECTION('',(0.,-1.,0.))"));
+    ASSERT_TRUE(read) << read.error().text;
+    const StepDocument& all = whole->document;
+    ASSERT_EQ(read->document.instances.size(), all.instances.size() - 1) << what;
+    for (const StepInstance& instance : read->document.instances)
+      EXPECT_TRUE(std::ranges::any_of(all.instances, [&](const StepInstance& one) {
+        return one.path == instance.path && one.X_WP.p == instance.X_WP.p;
+      })) << instance.path;
+    ASSERT_EQ(read->document.notes.size(), 1U);
+    EXPECT_NE(read->document.notes[0].find(" was left out: "), std::string::npos);
+    EXPECT_NE(read->document.notes[0].find(what), std::string::npos) << read->document.notes[0];
+  }
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -288,6 +290,47 @@ TEST_F(ScenarioTools, WhatTheImportFoundIsToldByEveryProgram) {
       const std::size_t at = text->find(note);
       EXPECT_NE(at, std::string::npos) << note << " is not in\n" << *text;
       EXPECT_EQ(text->find(note, at + 1), std::string::npos) << "twice in\n" << *text;
+    }
+}
+
+TEST_F(ScenarioTools, AStepFileThatIsNotWholeIsNotPassed) {
+  std::stringstream text;
+  text << std::ifstream(std::string(MORTISE_SOURCE_DIR) + "/scenarios/tensioner.step").rdbuf();
+  const std::string whole = file("whole.step", text.str());
+  EXPECT_EQ(run("mortise-inspect", whole).exit_code, 0);
+  EXPECT_EQ(run("mortise-check", whole).exit_code, 0);
+  // Without the entity that puts one of its parts in place.
+  const std::string cut =
+      std::regex_replace(text.str(), std::regex(R"(#\d+ = CONTEXT_DEPENDENT_SHAPE_REPR[^;]*;)"), "",
+                         std::regex_constants::format_first_only);
+  ASSERT_NE(cut, text.str());
+  const std::string damaged = file("damaged.step", cut);
+  EXPECT_EQ(run("mortise-inspect", damaged).exit_code, 7);
+  const Outcome checked = run("mortise-check", damaged);
+  EXPECT_EQ(checked.exit_code, 7);
+  EXPECT_NE(checked.out.find("not examined: 1 of its 18 places in assemblies"), std::string::npos)
+      << checked.out;
+  EXPECT_EQ(run("mortise-check", damaged + " --fail-on real").exit_code, 6);
+}
+
+TEST_F(ScenarioTools, ASizeAloneIsNoFit) {
+  const std::string cylinder =
+      "name: s\nunits: mm\nparts:\n  - name: p\n    generator: {kind: "
+      "dowel}\n    features: {journal: {iso: ";
+  for (const char* size : {"20", "20.5", ".5", "Ø20"}) {
+    const Outcome refused = run("mortise-lint", file("s.yaml", cylinder + size + "}}\n"));
+    EXPECT_EQ(refused.exit_code, 3) << refused.out;
+    EXPECT_NE(refused.out.find("is a size alone"), std::string::npos) << refused.out;
+  }
+  run("mortise-generate", "dowel --out a.obj", folder_);
+  run("mortise-generate", "plate_with_bore --out b.obj", folder_);
+  for (const char* program : {"mortise-judge", "mortise-check"})
+    for (const char* code : {"20", "20.5", ".5", ".", ".."}) {
+      const Outcome refused = run(program, "a.obj b.obj --fit " + std::string(code), folder_);
+      EXPECT_EQ(refused.exit_code, 3) << program << " " << code;
+      EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+      // A part without a face is named without a dot behind it.
+      EXPECT_EQ(refused.err.find("a. "), std::string::npos) << refused.err;
     }
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/ccd/distance.h"
+#include "common/io/scenario/assembly_parts.h"
 #include "common/messages/length_text.h"
 
 namespace mortise {
@@ -120,6 +121,8 @@ void say_bodies(const OpenedScene& opened, CheckReport& report) {
   if (opened.scenario.assembly)
     for (const std::string& path : opened.scenario.assembly->not_solid)
       report.not_judged.push_back(path + ": not a solid (surfaces or wires only)");
+  for (const std::string& lost : not_read_of(opened.scenario))
+    report.not_judged.push_back("not examined: " + lost);
   for (const Part& p : world.parts)
     if (!p.solid->has_inside())
       report.not_judged.push_back(p.name + ": open, so that nothing of it is more than potential");

@@ -10,6 +10,7 @@
 #include "client/tools/check/propose.h"
 #include "client/tools/check/run_check.h"
 #include "common/base/json_text.h"
+#include "common/io/scenario/assembly_parts.h"
 #include "common/io/usage.h"
 
 namespace {
@@ -49,6 +50,6 @@ int main(int argc, char** argv) {
   if (o.propose)
     if (const auto proposed = mortise::write_proposal(opened, report, o.files.front()); !proposed)
       return say(proposed.error());
-  return mortise::fails_on(o.fail_on, outcome->document) ? mortise::kExitFindings
-                                                         : mortise::kExitOk;
+  if (mortise::fails_on(o.fail_on, outcome->document)) return mortise::kExitFindings;
+  return not_read_of(opened.scenario).empty() ? mortise::kExitOk : mortise::kExitNotWhole;
 }

@@ -78,7 +78,7 @@ CheckCommandLine read_check_command_line(int argc, char** argv) {
   add_output(app, o);
   app.footer(
       "Exit codes: 0 ok, 1 cannot write, 2 usage, 3 a file has errors, 6 --fail-on found "
-      "something.");
+      "something, 7 not all of a STEP file could be read: what is missing is not examined.");
   line.exit_code = app.read(argc, argv, [&] {
     o.check.unexplained.insert(unexplained.begin(), unexplained.end());
     if (const Status good = coherent(o); !good) throw UsageError(good.error().text);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/base/json_text.h"
+#include "common/io/scenario/assembly_parts.h"
 #include "common/io/scenario/open_scene.h"
 #include "common/io/step/step_import.h"
 #include "common/io/usage.h"
@@ -36,10 +37,11 @@ std::string step_text(const std::string& file, const StepDocument& document) {
     const StepPart& part = document.parts[instance.part];
     const Faces faces = faces_of(part);
     text += fmt::format(
-        "  {}: {}, {} triangles, {:.6g} mm³, faces: {} exact, {} recognized, {} freeform{}{}\n",
+        "  {}: {}, {} triangles, {:.6g} mm³, faces: {} exact, {} recognized, {} freeform{}{}{}\n",
         instance.path, part.name, part.mesh.triangles.size(), part.volume_mm3, faces.exact,
         faces.recognized, faces.freeform,
         part.open_edges > 0 ? fmt::format(", {} open edges", part.open_edges) : "",
+        part.untriangulated > 0 ? fmt::format(", {} not tessellated", part.untriangulated) : "",
         part.mirrored ? ", mirrored" : "");
   }
   for (const std::string& path : document.not_solid) text += "  " + path + ": not a solid\n";
@@ -79,7 +81,7 @@ int inspect_step(const std::string& file, bool json) {
   const std::string text =
       json ? json_text(step_json(file, assembly->document)) + "\n" : assembly_yaml(file, {});
   std::fputs(text.c_str(), stdout);
-  return kExitOk;
+  return not_read_of(assembly->document).empty() ? kExitOk : kExitNotWhole;
 }
 
 }  // namespace mortise

@@ -26,7 +26,8 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "one JSON document on stdout");
   app.footer(
       "mortise-inspect a.stl b.stl > scene.yaml writes a scenario that can be judged as it stands."
-      "\nExit codes: 0 ok, 1 cannot write, 2 usage, 3 a file cannot be used.");
+      "\nExit codes: 0 ok, 1 cannot write, 2 usage, 3 a file cannot be used, 7 "
+      "not all of a STEP file could be read.");
   if (const int exit_code = app.read(argc, argv); exit_code >= 0) return exit_code;
   if (files.size() == 1 && mortise::is_step_name(files.front()))
     return mortise::inspect_step(files.front(), json);

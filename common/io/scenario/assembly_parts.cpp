@@ -11,6 +11,7 @@
 #include "common/io/scenario/product_information.h"
 #include "common/io/step/given_parts.h"
 #include "common/io/step/step_import.h"
+#include "common/io/step/step_objections.h"
 #include "common/session/world/rights.h"
 
 namespace mortise {
@@ -239,6 +240,23 @@ void add_assembly(ScenarioReading& reading, std::span<const std::byte> sent) {
   reading.scenario.assembly->sent =
       std::make_shared<const std::vector<std::byte>>(sent.begin(), sent.end());
   AssemblyPlacer(reading, *document).run();
+}
+
+std::vector<std::string> not_read_of(const StepDocument& document) {
+  std::vector<std::string> lost;
+  for (const std::string& note : document.notes)
+    if (!note.ends_with(kWithoutFaces)) lost.push_back(note);
+  for (const StepPart& part : document.parts)
+    if (part.untriangulated > 0)
+      lost.push_back(part.name + ": " + std::to_string(part.untriangulated) +
+                     " faces could not be tessellated");
+  return lost;
+}
+
+std::vector<std::string> not_read_of(const Scenario& scenario) {
+  if (!scenario.assembly || !scenario.assembly->sent) return {};
+  const Result<StepDocument> document = decode_step(*scenario.assembly->sent);
+  return document ? not_read_of(*document) : std::vector{document.error().text};
 }
 
 void add_assembly(ScenarioReading& reading) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -159,17 +160,65 @@ std::unordered_set<int> placing(const StepText& text) {
   return labels;
 }
 
-std::string operator_refusal(const StepText& text) {
+// Of a place in an assembly: the usages that each transformation is of, by way of the relation that
+// names it and what depends on that.
+std::unordered_multimap<int, int> usages_of_transformations(const StepText& text) {
+  constexpr std::string_view kRelation = "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION";
+  constexpr std::string_view kPlaced = "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION";
+  std::unordered_multimap<int, int> usages;
+  for (const int label : text.labels_with(kPlaced)) {
+    const auto placed = step_arguments(text.entity(label), kPlaced);
+    if (!placed || placed->size() != 2) continue;
+    const auto relation = step_arguments(text.entity(step_reference((*placed)[0])), kRelation);
+    const auto shape =
+        step_arguments(text.entity(step_reference((*placed)[1])), "PRODUCT_DEFINITION_SHAPE");
+    if (!relation || relation->empty() || !shape || shape->empty()) continue;
+    const int usage = step_reference(shape->back());
+    if (step_arguments(text.entity(usage), kUsage))
+      usages.emplace(step_reference(relation->back()), usage);
+  }
+  return usages;
+}
+
+// How many relations and mapped items name this transformation?
+std::size_t uses_of(const StepText& text, int label) {
+  std::size_t uses = 0;
+  for (const int by : text.labels_with("#" + std::to_string(label)))
+    for (const int named : step_references(text.entity(by))) uses += named == label;
+  return uses;
+}
+
+std::string odd_place(const StepText& text, int label, const std::string& what) {
+  return step_place(text, label) + " " + what + " a part (" + std::string(kOperator) +
+         "), which is not read; export such a part as one of its own";
+}
+
+/// What is wrong with operators: a refusal, or usages that can be left out alone.
+struct OddPlaces {
+  std::string refusal;
+  std::map<int, std::string> usages;
+};
+
+OddPlaces odd_places(const StepText& text) {
+  OddPlaces odd;
   const std::vector<int> operators = text.labels_with(kOperator);
-  if (operators.empty()) return {};
+  if (operators.empty()) return odd;
   const std::unordered_set<int> used = placing(text);
+  std::optional<std::unordered_multimap<int, int>> usages;
   for (const int label : operators) {
     if (!used.contains(label)) continue;
-    if (const std::string what = beside_motion(text, text.entity(label)); !what.empty())
-      return step_place(text, label) + " " + what + " a part (" + std::string(kOperator) +
-             "), which is not read; export such a part as one of its own";
+    const std::string what = beside_motion(text, text.entity(label));
+    if (what.empty()) continue;
+    if (!usages) usages = usages_of_transformations(text);
+    const auto [first, last] = usages->equal_range(label);
+    const std::string why = odd_place(text, label, what);
+    if (static_cast<std::size_t>(std::distance(first, last)) != uses_of(text, label)) {
+      odd.refusal = why;
+      return odd;
+    }
+    for (auto usage = first; usage != last; ++usage) odd.usages[usage->second] = why;
   }
-  return {};
+  return odd;
 }
 
 }  // namespace
@@ -180,10 +229,23 @@ std::string step_place(const StepText& text, int label) {
 
 std::string step_refusal(const StepText& text) {
   if (std::string refusal = ProductTree(text).refusal(); !refusal.empty()) return refusal;
-  return operator_refusal(text);
+  return odd_places(text).refusal;
 }
 
+std::map<int, std::string> step_left_out(const StepText& text) { return odd_places(text).usages; }
+
 std::size_t step_places(const StepText& text) { return usages_of(text).size(); }
+
+std::vector<std::string> step_crowded_points(const StepText& text) {
+  for (const std::string_view kind : {"CARTESIAN_POINT", "DIRECTION"})
+    for (const int label : text.labels_with(kind)) {
+      const auto arguments = step_arguments(text.entity(label), kind);
+      if (arguments && !arguments->empty() && std::ranges::count(arguments->back(), ',') > 2)
+        return {step_place(text, label) + " " + std::string(kind) +
+                " has more than three numbers; what is made of it may be wrong; export it again"};
+    }
+  return {};
+}
 
 std::vector<std::string> step_missing(const StepText& text) {
   const std::vector<int> labels = text.labels();

@@ -195,6 +195,17 @@ TEST(AssemblyParts, DamagedBytesAreAnErrorOfTheScenario) {
   EXPECT_FALSE(reading->usable());
 }
 
+TEST(AssemblyParts, WhatCouldNotBeReadIsToldApartFromNotes) {
+  StepDocument document = test::ring_and_pins();
+  document.notes = {"2 places in the tree have no faces and were left out"};
+  EXPECT_TRUE(not_read_of(read_with(document, "}\n").scenario).empty());
+  document.notes.emplace_back("1 of its 3 places in assemblies could not be read");
+  document.parts[1].untriangulated = 2;
+  EXPECT_EQ(not_read_of(read_with(document, "}\n").scenario),
+            (std::vector<std::string>{
+                document.notes[1], document.parts[1].name + ": 2 faces could not be tessellated"}));
+}
+
 TEST(AssemblyParts, LongPathsKeepTheirEnds) {
   const std::string name = part_name_of(std::string(300, 'x') + "/horn");
   EXPECT_LE(name.size(), 128U);

@@ -84,6 +84,31 @@ TEST(StepObjections, AMirroredOrScaledPartIsRefused) {
   EXPECT_EQ(refusal_of(placed_by(mirror, "")), "");
 }
 
+TEST(StepObjections, APlaceThatMirrorsIsLeftOutAlone) {
+  const std::string mirror =
+      placed_by("CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',#2,#3,#1,1.,#4)", kRelation);
+  const std::string usage = place(12, 13, 14) + "#11=PRODUCT_DEFINITION_SHAPE('','',#12);\n" +
+                            "#10=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#6,#11);\n";
+  EXPECT_EQ(refusal_of(mirror + usage), "");
+  const auto left_out = step_left_out(StepText(mirror + usage));
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_EQ(left_out.begin()->first, 12);
+  EXPECT_NE(left_out.begin()->second.find("line 5: #5 mirrors a part"), std::string::npos);
+  // Of a place, and of something else.
+  const std::string item = "#16=MAPPED_ITEM('',#17,#5);\n";
+  EXPECT_NE(refusal_of(mirror + usage + item).find("#5 mirrors a part"), std::string::npos);
+}
+
+TEST(StepObjections, APointHasThreeNumbers) {
+  EXPECT_TRUE(step_crowded_points(StepText("#1=CARTESIAN_POINT('a,b,c,d',(0.,0.,1.));\n"
+                                           "#2=DIRECTION('',(0.,1.));\n"))
+                  .empty());
+  const auto said = step_crowded_points(StepText("#1=CARTESIAN_POINT('',(0.,0.,1.,0.));\n"));
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("line 1: #1 CARTESIAN_POINT has more than three numbers"),
+            std::string::npos);
+}
+
 TEST(StepObjections, WhatIsNamedAndNotThereIsMissing) {
   const StepText whole("#1=A('#7 is a text',#2);\n#2=B(/* #8 */ #1);\n");
   EXPECT_TRUE(step_missing(whole).empty());

@@ -143,6 +143,7 @@ std::size_t places_read(const StepTree& tree) {
 
 std::vector<std::string> reading_notes(const StepTree& tree) {
   std::vector<std::string> notes = step_missing(*tree.text);
+  for (std::string& note : step_crowded_points(*tree.text)) notes.push_back(std::move(note));
   for (std::string& note : NotRead(tree).notes()) notes.push_back(std::move(note));
   const std::size_t stated = step_places(*tree.text), read = places_read(tree);
   if (read < stated)

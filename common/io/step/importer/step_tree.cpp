@@ -5,6 +5,9 @@
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Quantity_Color.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
@@ -14,6 +17,7 @@
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -54,8 +58,9 @@ std::string file_text(const std::filesystem::path& file) {
 
 class TreeReader {
  public:
-  explicit TreeReader(StepTree& tree)
+  TreeReader(StepTree& tree, std::map<std::string, std::string> left_out)
       : tree_(tree),
+        left_out_(std::move(left_out)),
         shapes_(XCAFDoc_DocumentTool::ShapeTool(tree.document->Main())),
         colours_(XCAFDoc_DocumentTool::ColorTool(tree.document->Main())) {}
 
@@ -70,9 +75,12 @@ class TreeReader {
       else
         visit(root, TopLoc_Location(), "", "", kNoColour, 1);
     }
+    // One that was not met under its name stands among the others, and not as it should.
+    for (const auto& [name, why] : left_out_)
+      if (!met_.contains(name)) tree_.refusal = why;
     if (without_shape_ > 0)
-      tree_.notes.push_back(std::to_string(without_shape_) +
-                            " places in the tree have no faces and were left out");
+      tree_.notes.push_back(std::to_string(without_shape_) + " places in the tree" +
+                            std::string(kWithoutFaces));
   }
 
  private:
@@ -87,6 +95,11 @@ class TreeReader {
     if (shapes_->IsReference(label)) {
       location = location * shapes_->GetLocation(label);
       shapes_->GetReferredShape(label, product);
+    }
+    if (const auto why = left_out_.find(name_of(label)); why != left_out_.end()) {
+      met_.insert(why->first);
+      tree_.notes.push_back(joined(above, name_of(product)) + " was left out: " + why->second);
+      return;
     }
     const std::string path = unique(above, label, product);
     const std::string of_product = joined(products, name_of(product));
@@ -221,12 +234,40 @@ class TreeReader {
   }
 
   StepTree& tree_;
+  std::map<std::string, std::string> left_out_;  // why, by the name of the instance
+  std::set<std::string> met_;                    // of these
   Handle(XCAFDoc_ShapeTool) shapes_;
   Handle(XCAFDoc_ColorTool) colours_;
   std::map<std::string, int> part_of_;
   std::set<std::string> paths_;
   std::size_t without_shape_ = 0;
 };
+
+// The library keeps of a place only its name: those that are to be left out get one of their own.
+std::map<std::string, std::string> marked_places(StepTree& tree) {
+  std::map<std::string, std::string> why_of;
+  const std::map<int, std::string> left_out = step_left_out(*tree.text);
+  const Handle(StepData_StepModel) model =
+      Handle(StepData_StepModel)::DownCast(tree.reader.Reader().WS()->Model());
+  for (int i = 1; !left_out.empty() && i <= model->NbEntities(); ++i) {
+    const auto usage = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(model->Value(i));
+    const auto why = usage.IsNull() ? left_out.end() : left_out.find(model->IdentLabel(usage));
+    if (why == left_out.end()) continue;
+    const std::string mark = "left out by mortise: #" + std::to_string(why->first);
+    usage->SetName(new TCollection_HAsciiString(mark.c_str()));
+    why_of[mark] = why->second;
+  }
+  return why_of;
+}
+
+std::string nothing_read(const StepTree& tree) {
+  if (!tree.not_solid.empty())
+    return "none of its " + std::to_string(tree.not_solid.size()) +
+           " bodies is a solid (surfaces or wires only); export exact solids";
+  for (const std::string& note : tree.notes)
+    if (note.find(" was left out: ") != std::string::npos) return note;
+  return "it holds no shapes (tessellated only, or no geometry); export exact solids";
+}
 
 }  // namespace
 
@@ -243,18 +284,14 @@ void read_step_tree(const std::filesystem::path& file, StepTree& tree) {
     tree.refusal = "it is no STEP file, or it is cut off or damaged; export it again";
     return;
   }
+  std::map<std::string, std::string> left_out = marked_places(tree);
   if (!tree.reader.Transfer(tree.document)) {
     tree.refusal = "nothing in it could be made a shape; export the assembly as AP214 or AP242";
     return;
   }
-  TreeReader(tree).run();
+  TreeReader(tree, std::move(left_out)).run();
   for (std::string& note : reading_notes(tree)) tree.notes.push_back(std::move(note));
-  if (tree.refusal.empty() && tree.parts.empty())
-    tree.refusal =
-        tree.not_solid.empty()
-            ? "it holds no shapes (tessellated only, or no geometry); export exact solids"
-            : "none of its " + std::to_string(tree.not_solid.size()) +
-                  " bodies is a solid (surfaces or wires only); export exact solids";
+  if (tree.refusal.empty() && tree.parts.empty()) tree.refusal = nothing_read(tree);
 }
 
 }  // namespace mortise
