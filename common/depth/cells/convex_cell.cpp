@@ -18,13 +18,24 @@ constexpr int kRounds = 4;
 
 }  // namespace
 
+Arc::Arc(const Vec3& first, const Vec3& halfway, const Vec3& last)
+    : whole(false), from(first), middle(halfway), to(last), cosine(first.dot(halfway)) {}
+
+Vec3 Arc::farthest(const Vec3& d, const Vec3& otherwise) const {
+  const double length = d.norm();
+  if (!(length > 0.0)) return whole ? otherwise : middle;
+  if (holds(d)) return d / length;
+  return from.dot(d) > to.dot(d) ? from : to;
+}
+
 double ConvexCell::support_mm(const Vec3& n) const {
   double most = -kInfinity;
   if (!round) {
     for (const Vec3& x : corners) most = std::max(most, n.dot(x));
+    for (const ConvexCell& piece : pieces) most = std::max(most, piece.support_mm(n));
     return most;
   }
-  const double along = n.dot(axis), off = (n - along * axis).norm();
+  const double along = n.dot(axis), off = arc.most(n - along * axis);
   for (const Circle& circle : circles)
     most = std::max(most, along * circle.z_mm + off * circle.r_mm);
   return most + n.dot(point);
@@ -39,12 +50,18 @@ Vec3 ConvexCell::farthest(const Vec3& n) const {
         most = s;
         at = &x;
       }
-    return *at;
+    Vec3 farthest_at = *at;
+    for (const ConvexCell& piece : pieces)
+      if (const Vec3 x = piece.farthest(n); n.dot(x) > most) {
+        most = n.dot(x);
+        farthest_at = x;
+      }
+    return farthest_at;
   }
   const double along = n.dot(axis);
   const Vec3 across_axis = n - along * axis;
-  const double off = across_axis.norm();
-  const Vec3 u = off > 0.0 ? Vec3(across_axis / off) : across[0];
+  const double off = arc.most(across_axis);
+  const Vec3 u = arc.farthest(across_axis, across[0]);
   Vec3 at = middle;
   for (const Circle& circle : circles)
     if (const double s = along * circle.z_mm + off * circle.r_mm; s > most) {
@@ -62,6 +79,7 @@ std::vector<Vec3> ConvexCell::around_farthest(const Vec3& n, double slack_mm) co
   };
   if (!round) {
     for (const Vec3& x : corners) add(x);
+    for (const ConvexCell& piece : pieces) add(piece.farthest(n));
     return around;
   }
   const Vec3 across_axis = n - n.dot(axis) * axis;

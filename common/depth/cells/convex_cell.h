@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -16,7 +17,25 @@ struct HalfSpace {
   double c_mm = 0.0;
 };
 
-/// A convex body in the frame of its part, mm: one of revolution, or a polytope.
+/// Directions across an axis, unit: all, or those from one to another past the middle of both.
+struct Arc {
+  bool whole = true;
+  Vec3 from = Vec3::Zero(), middle = Vec3::Zero(), to = Vec3::Zero();
+  double cosine = -1.0;  ///< of half the angle between both ends
+  Arc() = default;
+  Arc(const Vec3& first, const Vec3& halfway, const Vec3& last);
+
+  bool holds(const Vec3& d) const { return whole || d.dot(middle) >= cosine * d.norm(); }
+  /// The largest u . d over all of them, d across the axis: convex in d.
+  double most(const Vec3& d) const {
+    return holds(d) ? d.norm() : std::max(from.dot(d), to.dot(d));
+  }
+  /// The u of it; otherwise: where d is zero.
+  Vec3 farthest(const Vec3& d, const Vec3& otherwise) const;
+};
+
+/// A convex body in the frame of its part, mm: one of revolution, a piece of such a one, or a
+/// polytope.
 struct ConvexCell {
   /// A circle about the axis, `z_mm` along it from `point`.
   struct Circle {
@@ -27,9 +46,13 @@ struct ConvexCell {
   Vec3 across[2] = {Vec3::UnitX(), Vec3::UnitY()};  ///< unit, at right angles to the axis
   std::vector<Circle> circles;  ///< round: the body is their hull; z ascends, r is concave over z
 
-  std::vector<Vec3> corners;  ///< polytope: the body is their hull
+  Arc arc;  ///< round, not whole: the body is the hull of these points of the circles
+
+  std::vector<Vec3> corners;  ///< polytope: the body is their hull, and that of `pieces`
   /// Its edges, by corner. There may be more, none is missing.
   std::vector<std::array<std::uint16_t, 2>> edges;
+  /// Of a prism with round sides along `axis`, of one length. Its edges along the axis are named.
+  std::vector<ConvexCell> pieces;
 
   std::vector<HalfSpace> faces;  ///< the plane ones; each touches the body
   Vec3 middle = Vec3::Zero();    ///< a point inside

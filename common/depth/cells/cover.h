@@ -18,15 +18,18 @@ struct VoidWall {
   Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
   double r_mm = 0.0, slope = 0.0;
   double cosine = 1.0;  ///< of the angle between wall and axis
+  /// Not whole: of a cylinder. The hole reaches to its tangents there, and is round between them;
+  /// r is the way from the axis along that direction of these in which it is longest.
+  Arc arc;
   /// Material that is beside the wall, and beyond no plane of the hole, has these heights.
   Interval along_mm{-std::numeric_limits<double>::infinity(),
                     std::numeric_limits<double>::infinity()};
 };
 
 /// A convex part of space without material, open: a bore down to its floor, a pocket, a slot. The
-/// material lies beyond its wall or within one of `planes`.
+/// material lies beyond one of `walls` or within one of `planes`.
 struct Void {
-  std::optional<VoidWall> wall;
+  std::vector<VoidWall> walls;  ///< of one axis, and with the same heights
   std::vector<HalfSpace> planes;
 };
 
@@ -34,7 +37,7 @@ struct Void {
 struct CoverLayer {
   std::vector<ConvexCell> cells;
   std::vector<Void> voids;
-  /// By cell and void: the heights at which material of the cell may be beside the wall.
+  /// By cell and void: the heights at which material of the cell may be beside a wall.
   std::vector<Interval> heights_mm;
 
   const Interval& heights_of(std::size_t cell, std::size_t v) const {

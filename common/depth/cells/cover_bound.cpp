@@ -21,7 +21,7 @@ constexpr double kParallelToWall_mm = 1e-9;
 double beyond(const VoidWall& wall, const Vec3& x) {
   const Vec3 d = x - wall.point;
   const double z = d.dot(wall.axis);
-  return wall.cosine * ((d - z * wall.axis).norm() - wall.r_mm - wall.slope * z);
+  return wall.cosine * (wall.arc.most(d - z * wall.axis) - wall.r_mm - wall.slope * z);
 }
 
 // A round cell beside a wall. Directions off its axis are u = c across[0] + s across[1]; what is
@@ -48,7 +48,7 @@ class RoundInWall {
     const double whole = whole_circle();
     if (whole <= limit_mm || whole == -kInfinity) return whole;
     // Of a path only the number is asked, and beside a parallel axis that is exact.
-    if (chord_.ends == 2 && too_far_mm_ <= kParallelToWall_mm) return whole;
+    if (chord_.ends == 2 && too_far_mm_ <= kParallelToWall_mm && s_.arc.whole) return whole;
     see_away_from_axis();
     const auto is_useless = [&] { return best_ - chord_.spread_mm > useless_mm; };
     const auto is_narrow = [&](double most) {
@@ -56,7 +56,10 @@ class RoundInWall {
     };
     if (is_useless()) return kInfinity;
     if (is_narrow(whole)) return whole;
-    for (int i = 0; i < 4; ++i) add(kQuarters[i], kQuarters[(i + 1) % 4], whole);
+    if (s_.arc.whole)
+      for (int i = 0; i < 4; ++i) add(kQuarters[i], kQuarters[(i + 1) % 4], whole);
+    else
+      add_arc(whole);
     while (!heap_.empty() && work_here_ < kMostSectors) {
       const double most = heap_.front().hi;
       if (most <= limit_mm || is_narrow(most)) break;
@@ -191,8 +194,25 @@ class RoundInWall {
       off -= off.dot(wall_.axis) * wall_.axis;
       const double c = off.dot(across_[e][0]), s = off.dot(across_[e][1]);
       const double length = std::sqrt(c * c + s * s);
-      see(k, length > 0.0 ? Direction{c / length, s / length} : kQuarters[0]);
+      if (s_.arc.whole)
+        see(k, length > 0.0 ? Direction{c / length, s / length} : kQuarters[0]);
+      else
+        see(k, direction(s_.arc.farthest(c * s_.across[0] + s * s_.across[1], s_.arc.middle)));
     });
+  }
+
+  Direction direction(const Vec3& u_S) const {
+    return {u_S.dot(s_.across[0]), u_S.dot(s_.across[1])};
+  }
+
+  void add_arc(double known) {
+    const Direction from = direction(s_.arc.from), middle = direction(s_.arc.middle),
+                    to = direction(s_.arc.to), first = between(from, middle),
+                    second = between(middle, to);
+    add(from, first, known);
+    add(first, middle, known);
+    add(middle, second, known);
+    add(second, to, known);
   }
 
   // The points of one generator at both heights of the wall.
@@ -232,8 +252,21 @@ class RoundInWall {
     const double square =
         off.squaredNorm() + 2.0 * r * aside + r * r * (1.0 - least_rise * least_rise);
     const double rise = wall_.slope > 0.0 ? rises.lo : rises.hi;
-    return wall_.cosine *
-           (std::sqrt(std::max(0.0, square)) - wall_.r_mm - wall_.slope * (height + r * rise));
+    const double most = wall_.cosine * (std::sqrt(std::max(0.0, square)) - wall_.r_mm -
+                                        wall_.slope * (height + r * rise));
+    return wall_.arc.whole ? most : std::min(most, most_of_triangle(e, z, r, from, to));
+  }
+
+  // A sector is in the triangle of its ends and the place where its tangents meet.
+  double most_of_triangle(int e, double z, double r, const Direction& from,
+                          const Direction& to) const {
+    const Vec3 x = point_[e] + z * axis_[e];
+    const auto at = [&](const Direction& u, double length) {
+      return beyond(wall_, x + length * (u.c * across_[e][0] + u.s * across_[e][1]));
+    };
+    const Direction middle = between(from, to);
+    const double half = middle.c * from.c + middle.s * from.s;
+    return std::max({at(from, r), at(to, r), at(middle, r / half)});
   }
 
   void add(const Direction& from, const Direction& to, double known) {
@@ -334,6 +367,30 @@ double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall&
   return most + chord.spread_mm;
 }
 
+// A prism with round sides. At one height of it each point is a mean of points of its edges and
+// pieces there: those have the same height along the wall but for how much a cut across the prism
+// rises along the wall. f is convex.
+double prism_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
+                     const Interval& along, double limit_mm, double useless_mm, std::uint64_t& work,
+                     std::vector<Vec3>* places) {
+  double rise_mm = 0.0;
+  for (int e = 0; e < chord.ends; ++e) {
+    const Vec3 axis_S = chord.X_KS[e].q.conjugate() * wall.axis;
+    const Vec3 across = axis_S - axis_S.dot(s.axis) * s.axis;
+    rise_mm = std::max(rise_mm, s.support_mm(across) + s.support_mm(-across));
+  }
+  const Interval wider{along.lo - rise_mm, along.hi + rise_mm};
+  double most = polytope_in_wall(s, chord, wall, wider, work, places);
+  for (const ConvexCell& piece : s.pieces) {
+    RoundInWall in_wall(piece, chord, wall, wider, work);
+    const double beyond = in_wall.run(limit_mm, useless_mm);
+    if (beyond <= most) continue;
+    most = beyond;
+    if (places) *places = in_wall.places();
+  }
+  return most;
+}
+
 }  // namespace
 
 double beyond_plane_mm(const ConvexCell& s, const Chord& chord, const HalfSpace& material) {
@@ -378,6 +435,8 @@ double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& w
     RoundInWall in_wall(s, chord, wall, along, work);
     most = in_wall.run(limit_mm, useless_mm);
     if (places) *places = in_wall.places();
+  } else if (!s.pieces.empty()) {
+    most = prism_in_wall(s, chord, wall, along, limit_mm, useless_mm, work, places);
   } else {
     most = polytope_in_wall(s, chord, wall, along, work, places);
   }

@@ -98,7 +98,7 @@ class CoverPair::Bound {
     return by_direction(role, d - d.dot(cell.axis) * cell.axis);
   }
 
-  // What of S is in K is beside the wall of the void, or beyond one of its planes.
+  // What of S is in K is beside a wall of the void, or beyond one of its planes.
   bool by_void(int role, std::size_t v) {
     const CoverLayer& part = *pair_.parts_[1 - role];
     const Void& hole = part.voids[v];
@@ -115,10 +115,10 @@ class CoverPair::Bound {
       if (how_deep)
         places_S = {s(role).farthest_middle(-(chord.X_KS[0].q.conjugate() * plane.n), kAsFar_mm)};
     }
-    if (hole.wall) {
+    for (const VoidWall& wall : hole.walls) {
       std::vector<Vec3> at_wall;
       const double beyond =
-          beyond_wall_mm(s(role), chord, *hole.wall, part.heights_of(cells_->cell[1 - role], v),
+          beyond_wall_mm(s(role), chord, wall, part.heights_of(cells_->cell[1 - role], v),
                          limit_mm_, useless_mm(), work_, how_deep ? &at_wall : nullptr);
       if (beyond > most) {
         most = beyond;
@@ -221,7 +221,7 @@ class CoverPair::Whole {
     return most;
   }
   // What stands on an end of the material only touches it.
-  double beyond_wall(std::size_t v) {
+  double beyond_wall(std::size_t v, const VoidWall& wall) {
     double most = -kInfinity;
     for (std::size_t j = 0; j < k().cells.size(); ++j) {
       const Interval& along = k().heights_of(j, v);
@@ -230,8 +230,8 @@ class CoverPair::Whole {
         continue;  // cells of a prism have the same heights
       const Interval inner{along.lo + least_mm_, along.hi - least_mm_};
       for (const ConvexCell& cell : s())
-        most = std::max(most, beyond_wall_mm(cell, views_.chord[role_], *k().voids[v].wall, inner,
-                                             most_mm_, most_mm_, work_, nullptr));
+        most = std::max(most, beyond_wall_mm(cell, views_.chord[role_], wall, inner, most_mm_,
+                                             most_mm_, work_, nullptr));
     }
     return most;
   }
@@ -246,8 +246,11 @@ class CoverPair::Whole {
   // Whoever is beyond a wall leaves through it, and meets no other one on the way.
   bool of_void(std::size_t v) {
     const Void& hole = k().voids[v];
-    const double wall_mm = hole.wall ? beyond_wall(v) : -kInfinity;
-    if (wall_mm > most_mm_) return false;
+    std::vector<double> wall_mm;
+    for (const VoidWall& wall : hole.walls) {
+      wall_mm.push_back(beyond_wall(v, wall));
+      if (wall_mm.back() > most_mm_) return false;
+    }
     std::vector<double> plane_mm;
     for (const HalfSpace& plane : hole.planes) {
       plane_mm.push_back(beyond_mm(plane));
@@ -255,10 +258,11 @@ class CoverPair::Whole {
     }
     for (std::size_t a = 0; a < hole.planes.size(); ++a) {
       const Vec3& n = hole.planes[a].n;
-      if (hole.wall) {
-        const double along = n.dot(hole.wall->axis), across = (n - along * hole.wall->axis).norm();
-        if (!stays(plane_mm[a], wall_mm, across + std::fabs(hole.wall->slope * along)) ||
-            !stays(wall_mm, plane_mm[a], across))
+      for (std::size_t w = 0; w < hole.walls.size(); ++w) {
+        const VoidWall& wall = hole.walls[w];
+        const double along = n.dot(wall.axis), across = (n - along * wall.axis).norm();
+        if (!stays(plane_mm[a], wall_mm[w], across + std::fabs(wall.slope * along)) ||
+            !stays(wall_mm[w], plane_mm[a], across))
           return false;
       }
       for (std::size_t b = 0; b < hole.planes.size(); ++b) {
@@ -267,6 +271,9 @@ class CoverPair::Whole {
           return false;
       }
     }
+    for (std::size_t a = 0; a < hole.walls.size(); ++a)
+      for (std::size_t b = 0; b < hole.walls.size(); ++b)
+        if (b != a && !stays(wall_mm[a], wall_mm[b], 1.0)) return false;
     return true;
   }
 

@@ -129,8 +129,8 @@ class Bore {
     LayerVoids voids;
     for (int layer = 0; layer < 2; ++layer) {
       Void& v = voids.of[layer];
-      v.wall = wall_;
-      v.wall->r_mm -= offsets_[layer] / wall_.cosine;
+      v.walls = {wall_};
+      v.walls.front().r_mm -= offsets_[layer] / wall_.cosine;
     }
     close(free_.lo, 1.0, voids);
     close(free_.hi, -1.0, voids);
@@ -231,7 +231,7 @@ class Bore {
     const LayerOffsets offsets = f_.border(n, c_mm).offsets;
     for (int layer = 0; layer < 2; ++layer) {
       voids.of[layer].planes.push_back({n, c_mm + offsets[layer]});
-      Interval& along = voids.of[layer].wall->along_mm;
+      Interval& along = voids.of[layer].walls.front().along_mm;
       double& end = sign > 0.0 ? along.lo : along.hi;
       end = z + sign * offsets[layer];
     }

@@ -13,6 +13,7 @@
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/cover_parts.h"
+#include "tests/unit/depth/profile_parts.h"
 
 namespace mortise {
 namespace {
@@ -151,11 +152,12 @@ double bound_of(const CoverPair& pair, const Pose& X_BA) {
   return is_bound ? overlap.most_mm : 1e9;
 }
 
-Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&)) {
+Tally judge_poses(std::uint64_t seed, int count, void (*spoil)(CoverLayer&),
+                  DrawnPair (*draw)(Random&) = any_pair) {
   Random random(seed);
   Tally tally;
   for (int i = 0; i < count; ++i) {
-    const DrawnPair pair = any_pair(random);
+    const DrawnPair pair = draw(random);
     for (const bool largest : {false, true}) {
       CoverLayer a = layer_of(pair.a, largest), b = layer_of(pair.b, largest);
       spoil(a);
@@ -193,7 +195,7 @@ TEST(Cover, NoBoundIsBelowAPointInBoth) {
 TEST(Cover, PlantedFaultsAreSeen) {
   const Tally walls = judge_poses(7002, 250, [](CoverLayer& layer) {
     for (Void& v : layer.voids)
-      if (v.wall) v.wall->r_mm += 0.02;
+      for (VoidWall& wall : v.walls) wall.r_mm += 0.02;
   });
   EXPECT_GT(walls.below, 0);
   const Tally shafts = judge_poses(7003, 250, [](CoverLayer& layer) {
@@ -208,6 +210,63 @@ TEST(Cover, PlantedFaultsAreSeen) {
       layer.cells.erase(layer.cells.begin(), layer.cells.end() - 1);
   });
   EXPECT_GT(teeth.below, 0);
+}
+
+// A shaft with flats, or with round corners, nearly in the middle of its hole; the shaft also
+// rests in a bore, and any part in such a hole.
+DrawnPair profile_pair(Random& random) {
+  const double r = uniform(random, 4.0, 12.0), less = uniform(random, -0.02, 0.1);
+  const double flat = r * uniform(random, 0.3, 0.95), side = r * uniform(random, 0.4, 1.0);
+  const double corner = below(random, 3) == 0 ? side : side * uniform(random, 0.1, 0.9);
+  const int kind = below(random, 3), facets = 4 + below(random, 20);
+  const auto profile = [&](double by) {
+    if (kind < 2) return flattened(r - by, flat - by, kind == 1, 2 * facets);
+    return rounded(r - by, side - by, corner - by, facets);
+  };
+  const int other = below(random, 6);
+  DrawnPair pair{other == 0 ? shaft(random, 0.5 * r) : profile_part(random, profile(less), false),
+                 other == 1 ? ring(random, r) : profile_part(random, profile(0.0), true),
+                 {}};
+  const double off = below(random, 3) == 0 ? uniform(random, 0.0, 0.2) : 0.01;
+  const Vec3 turn = below(random, 2) * uniform(random, 0.0, 5e-3) * any_direction(random);
+  pair.X_BA.q = rotation_exp(turn);
+  pair.X_BA.p = off * any_direction(random) + uniform(random, -0.9, 0.9) *
+                                                  std::min(pair.a.length_mm, pair.b.length_mm) *
+                                                  Vec3::UnitZ();
+  return pair;
+}
+
+TEST(Cover, NoBoundOfAProfileIsBelowAPointInBoth) {
+  const Tally tally = judge_poses(
+      7011, test::effort(300), [](CoverLayer&) {}, profile_pair);
+  std::printf("%d poses: %d overlap, %d proven apart, %d within 5 um\n", tally.poses, tally.overlap,
+              tally.apart, tally.tight);
+  EXPECT_EQ(tally.below, 0);
+  EXPECT_EQ(tally.differ, 0);
+  EXPECT_GT(tally.overlap, test::effort(60));
+  EXPECT_GT(tally.apart, test::effort(150));
+}
+
+TEST(Cover, PlantedFaultsOfAProfileAreSeen) {
+  const Tally flats = judge_poses(
+      7012, 250,
+      [](CoverLayer& layer) {
+        for (Void& v : layer.voids)
+          for (HalfSpace& plane : v.planes) plane.c_mm -= 0.02;
+      },
+      profile_pair);
+  EXPECT_GT(flats.below, 0);
+  const Tally rounds = judge_poses(
+      7013, 250,
+      [](CoverLayer& layer) {
+        for (Void& v : layer.voids)
+          for (VoidWall& wall : v.walls) wall.r_mm += 0.02;
+        for (ConvexCell& cell : layer.cells)
+          for (ConvexCell& piece : cell.pieces)
+            for (auto& circle : piece.circles) circle.r_mm -= 0.02;
+      },
+      profile_pair);
+  EXPECT_GT(rounds.below, 0);
 }
 
 Motion any_motion(Random& random, const Pose& X_W, const Vec3& reference, bool along) {
