@@ -33,9 +33,13 @@ std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
 
 class DeclaredSearch {
  public:
-  DeclaredSearch(const PairFrame& pair, const OverlapQuery& query, SearchScratch& scratch,
-                 std::uint64_t& evaluations)
-      : pair_(pair), query_(query), scratch_(scratch), evaluations_(evaluations) {}
+  DeclaredSearch(const PairFrame& pair, const OverlapQuery& query, bool closely,
+                 SearchScratch& scratch, std::uint64_t& evaluations)
+      : pair_(pair),
+        query_(query),
+        closely_(closely),
+        scratch_(scratch),
+        evaluations_(evaluations) {}
 
   DeclaredRegion find(const KnownFacePair& known) {
     const SurfaceBand::Face& face_a = pair_.bodies[0].band->faces[known.face[0]];
@@ -55,14 +59,15 @@ class DeclaredSearch {
     if (region.certain_mm.lo > 0.0) {
       Sample least;
       const auto witness_W = known_witness(known, least, region.witnesses_refused);
-      if (!witness_W && query_.only_certain) return {true, std::nullopt};
+      if (!witness_W && query_.only_certain) return {.left_to_search = true, .region = {}};
       set_witness(pair_, witness_W, least, region);
     }
     Bracket mesh = mesh_overlap_of(known, region.possible_mm.hi > 0.0);
     // The meshes stand out of the true surfaces by no more than this.
     const double excess =
         std::max(0.0, -face_a.deviation_mm.lo) + std::max(0.0, -face_b.deviation_mm.lo);
-    mesh.hi_mm = std::max(mesh.best.depth_mm, std::min(mesh.hi_mm, known.overlap.hi_mm + excess));
+    const double most_mm = known.overlap.hi_mm + excess;
+    mesh.hi_mm = std::max(mesh.best.depth_mm, std::min(mesh.hi_mm, most_mm));
     if (mesh.best.depth_mm <= pair_.touch_mm && region.possible_mm.hi <= 0.0 && query_.want_delta)
       return {};
     region.delta_mm = without_touch({mesh.best.depth_mm, mesh.hi_mm}, pair_.touch_mm);
@@ -76,7 +81,7 @@ class DeclaredSearch {
     for (const Sample& sample : mesh.samples)
       region.points_W.push_back(pair_.in_world(sample.role, sample.point_K));
     region.points_W.push_back(region.point_W);
-    return {false, std::move(region)};
+    return {false, std::move(region), most_mm};
   }
 
  private:
@@ -165,7 +170,7 @@ class DeclaredSearch {
     ask_nearest(known, found);
     const bool decides = !is_possible && found.best.depth_mm <= pair_.touch_mm;
     ask_all_over(known, decides ? kAllOverMore : kAllOver, found);
-    if (query_.refinement != Refinement::kFull) return found;
+    if (!closely_) return found;
     std::vector<Root> roots;
     for (int role = 0; role < 2; ++role)
       for (const std::uint32_t t : known.triangles[role])
@@ -174,6 +179,7 @@ class DeclaredSearch {
     search.pair = &pair_;
     search.roots = &roots;
     search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
+    search.sign_only = query_.refinement != Refinement::kFull;
     search.work_cap = work_left() / 2;
     Bracket full = search_depth(search, scratch_, evaluations_).front();
     if (full.best.depth_mm < found.best.depth_mm) full.best = found.best;
@@ -182,6 +188,7 @@ class DeclaredSearch {
 
   const PairFrame& pair_;
   const OverlapQuery& query_;
+  const bool closely_;
   SearchScratch& scratch_;
   std::uint64_t& evaluations_;
 };
@@ -189,9 +196,9 @@ class DeclaredSearch {
 }  // namespace
 
 DeclaredRegion find_declared_region(const PairFrame& pair, const OverlapQuery& query,
-                                    const KnownFacePair& known, SearchScratch& scratch,
-                                    std::uint64_t& evaluations) {
-  return DeclaredSearch(pair, query, scratch, evaluations).find(known);
+                                    const KnownFacePair& known, bool closely,
+                                    SearchScratch& scratch, std::uint64_t& evaluations) {
+  return DeclaredSearch(pair, query, closely, scratch, evaluations).find(known);
 }
 
 }  // namespace mortise

@@ -12,13 +12,16 @@ struct DeclaredRegion {
   /// short: to be searched like any other pair of faces.
   bool left_to_search = false;
   std::optional<OverlapRegion> region;  ///< none: not even possible
+  /// No point of the meshes of these faces is deeper, inside neither: the closed form, and how far
+  /// the meshes stand out of their surfaces.
+  double most_mm = 0.0;
 };
 
 /// The region of a pair of declared faces whose overlap has a closed form: certain and possible are
-/// those of the form (README, section 8), only the overlap of the meshes is searched. Adds to
-/// `evaluations`.
+/// those of the form (README, section 8), only the overlap of the meshes is searched. `closely`:
+/// as far as the work goes, not at some points only. Adds to `evaluations`.
 DeclaredRegion find_declared_region(const PairFrame& pair, const OverlapQuery& query,
-                                    const KnownFacePair& known, SearchScratch& scratch,
-                                    std::uint64_t& evaluations);
+                                    const KnownFacePair& known, bool closely,
+                                    SearchScratch& scratch, std::uint64_t& evaluations);
 
 }  // namespace mortise

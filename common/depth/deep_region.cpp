@@ -65,7 +65,7 @@ std::optional<OverlapRegion> find_in_one_place(const PairFrame& pair, const Over
     region.grade = std::max(region.grade, grade);
     region.estimated |= grade == DeviationGrade::kEstimated;
   }
-  tell_inner_overlap(pair, query, false, true, region, evaluations);
+  tell_inner_overlap(pair, query, {.from_inside = true}, region, evaluations);
   return region;
 }
 
@@ -93,8 +93,9 @@ Interval of_layer(const PairFrame& pair, const InnerOverlap& inner, const Overla
 
 }  // namespace
 
-void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool layers_known,
-                        bool from_inside, OverlapRegion& region, std::uint64_t& evaluations) {
+void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query,
+                        const BeforeInside& before, OverlapRegion& region,
+                        std::uint64_t& evaluations) {
   if (region.at_crack || region.delta_mm.lo < -pair.touch_mm) return;  // not known, or apart
   const bool full = query.refinement == Refinement::kFull;
   InnerStart start;
@@ -102,7 +103,8 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
   start.points_W = full ? std::span<const Vec3>(region.points_W) : std::span<const Vec3>(deepest);
   start.depth_mm = std::max(0.0, region.delta_mm.lo);
   start.everywhere = full;
-  start.inside = from_inside;
+  start.inside = before.from_inside;
+  if (region.closed_form) start.expected_mm = before.closed_form_mm;
   start.accuracy_mm = query.accuracy_mm;
   const std::uint64_t left = query.work_cap - std::min(query.work_cap, evaluations);
   auto inner = convex_overlap(pair, region.point_W, query.accuracy_mm, evaluations);
@@ -111,12 +113,14 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query, bool l
                                evaluations);
   if (!inner) return;
   const double at_surface_mm = region.delta_mm.lo;
-  const Interval delta{std::max(inner->depth_mm.lo, at_surface_mm),
-                       std::max(inner->depth_mm.hi, at_surface_mm)};
+  Interval delta{std::max(inner->depth_mm.lo, at_surface_mm),
+                 std::max(inner->depth_mm.hi, at_surface_mm)};
+  if (region.closed_form && delta.lo <= before.closed_form_mm)
+    delta.hi = std::min(delta.hi, before.closed_form_mm);
   region.delta_mm = delta;
   if (inner->depth_mm.lo > at_surface_mm) region.point_W = inner->point_W;
-  const bool grows = from_inside || delta.lo > kGrowth * at_surface_mm + pair.touch_mm;
-  if (layers_known && !grows) return;
+  const bool grows = before.from_inside || delta.lo > kGrowth * at_surface_mm + pair.touch_mm;
+  if (before.layers && !grows) return;
   region.certain_mm = of_layer(pair, *inner, region, region.certain_mm, Layer::kLower, grows);
   region.possible_mm = of_layer(pair, *inner, region, region.possible_mm, Layer::kUpper, grows);
   if (region.has_witness && region.certain_mm.hi <= 0.0) {

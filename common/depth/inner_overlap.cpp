@@ -20,6 +20,8 @@ constexpr double kNarrowShare = 0.005;
 constexpr double kGrowsAway = 0.01;
 // Work in which something deeper than at the surfaces is found, if there is.
 constexpr std::uint64_t kMostInVain = 600;
+// Work in which something deeper than expected is found.
+constexpr std::uint64_t kMostAsExpected = 8000;
 // The climb from a new best point ends at this share of its first step.
 constexpr int kClimbHalvings = 8;
 
@@ -56,6 +58,7 @@ class InnerSearch {
         growth_(start.everywhere ? 0.0 : kGrowsAway),
         narrow_(start.everywhere ? 0.0 : kNarrowShare),
         accuracy_mm_(std::max(start.accuracy_mm, pair.touch_mm)),
+        expected_mm_(start.expected_mm),
         thin_mm_(std::min(half_extent_mm(0), half_extent_mm(1))),
         left_(work_cap),
         evaluations_(evaluations) {}
@@ -79,9 +82,10 @@ class InnerSearch {
   bool has_grown() const { return best_mm_ > (1.0 + growth_) * start_mm_ + pair_.touch_mm; }
 
   // Gives up where so much work has found nothing that is deeper than the start.
-  void search(std::uint64_t most_in_vain) {
+  void search() {
     if (has_grown()) climb(0.5 * thin_mm_);
-    const std::uint64_t give_up_at = left_ - std::min(left_, most_in_vain);
+    const std::uint64_t give_up_at = left_ - std::min(left_, kMostInVain);
+    const std::uint64_t as_expected_at = left_ - std::min(left_, kMostAsExpected);
     add(root());
     most_mm_ = best_mm_;
     while (!open_.empty()) {
@@ -89,6 +93,7 @@ class InnerSearch {
       most_mm_ = std::max(best_mm_, cell.most_mm);
       if (most_mm_ <= best_mm_ + narrow_mm() || left_ == 0) return;
       if (left_ <= give_up_at && !has_grown()) return;
+      if (left_ <= as_expected_at && best_mm_ <= expected_mm_) return;
       open_.pop();
       most_mm_ = best_mm_;
       split(cell);
@@ -243,6 +248,7 @@ class InnerSearch {
   double growth_;  ///< share of it by which what is found must be deeper
   double narrow_;  ///< share of the depth at which its bracket is narrow enough
   double accuracy_mm_;
+  double expected_mm_;
   double thin_mm_;  ///< half the least extent of the thinner part
   std::uint64_t left_;
   std::uint64_t& evaluations_;
@@ -264,7 +270,7 @@ std::optional<InnerOverlap> find_inner_overlap(const PairFrame& pair, const Inne
         return start.inside ? search.is_inside(X_BW * point_W) : search.grows_from(X_BW * point_W);
       });
   if (!grows && !start.everywhere) return std::nullopt;
-  search.search(kMostInVain);
+  search.search();
   if (!search.has_grown()) return std::nullopt;
   return search.found();
 }

@@ -28,6 +28,8 @@ struct InnerStart {
   double accuracy_mm = 0.0;
   /// The points are inside both parts, no points of a surface: the deepest of them is found, too.
   bool inside = false;
+  /// The overlap is hardly deeper than this: little is spent where nothing is found that is.
+  double expected_mm = -1.0;
 };
 
 /// None where no point is found at which the overlap is larger than at the start: there the overlap

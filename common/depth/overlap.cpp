@@ -135,6 +135,27 @@ Bracket proven_apart(const PairFrame& pair, const Bracket& mesh, Layer layer) {
   return apart;
 }
 
+bool is_past_edge(const PairFrame& pair, const Sample& sample) {
+  const Vec3 at_W = pair.in_world(sample.role, sample.point_K);
+  for (const int i : {0, 1})
+    if (is_past_convex_edge(pair.bodies[i], pair.X_W[i].inverse() * at_W, pair.rounding_mm))
+      return true;
+  return false;
+}
+
+// Where a face was found deep beyond the edge that cuts it short, certain is what the witness
+// shows, or another point of the face.
+void cap_certain(const PairFrame& pair, const Bracket& certain, OverlapRegion& region) {
+  if (!region.has_witness || !is_past_edge(pair, certain.best)) return;
+  double most_mm = 0.0;
+  for (const int i : {0, 1})
+    most_mm += std::max(
+        0.0, depth_below_convex_edges(pair.bodies[i], pair.X_W[i].inverse() * region.witness_W));
+  for (const Sample& sample : certain.samples)
+    if (sample.depth_mm > most_mm && !is_past_edge(pair, sample)) most_mm = sample.depth_mm;
+  region.certain_mm.lo = std::min(region.certain_mm.lo, most_mm);
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query)
@@ -151,17 +172,10 @@ class Overlap {
     near.want_meetings = pair_.trivial && !result_.no_inside;
     Candidates candidates = find_candidate_triangles(near);
     known_ = known_overlaps(pair_, candidates);
-    for (const KnownFacePair& known : candidates.known)
-      if (!told_by_another(known, candidates)) add_declared(known, candidates);
-    regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2,
-                             query_.refinement == Refinement::kDecided,
-                             query_.only_certain ? kInfinity : covers_.most_mm(Layer::kUpper)},
-                            scratch_, result_.evaluations);
-    if (regions_.count > 0) {
-      if (query_.only_certain)
-        search_certain();
-      else
-        search_regions();
+    look_at(candidates);
+    if (may_have_missed_meshes()) {
+      closely_ = true;
+      look_at(candidates);
     }
     // Regions that were left out because nothing is certain in them are told apart from none.
     if (result_.regions.empty() && !(query_.only_certain && regions_.count > 0))
@@ -182,12 +196,32 @@ class Overlap {
                        return a.delta_mm.lo > b.delta_mm.lo;
                      });
     if (!result_.no_inside && query_.want_delta && !query_.only_certain && !result_.regions.empty())
-      tell_inner_overlap(pair_, query_, planes_->has_brackets(), false, result_.regions.front(),
-                         result_.evaluations);
+      tell_inner_overlap(pair_, query_,
+                         {.layers = planes_->has_brackets(), .closed_form_mm = closed_form_mm_},
+                         result_.regions.front(), result_.evaluations);
     return std::move(result_);
   }
 
  private:
+  void look_at(Candidates& candidates) {
+    for (const KnownFacePair& known : candidates.known)
+      if (!told_by_another(known, candidates)) add_declared(known, candidates);
+    regions_ = find_regions({&pair_, &candidates, &known_, query_.work_cap / 2, !closely_,
+                             query_.only_certain ? kInfinity : covers_.most_mm(Layer::kUpper)},
+                            scratch_, result_.evaluations);
+    if (regions_.count == 0) return;
+    if (query_.only_certain)
+      search_certain();
+    else
+      search_regions();
+  }
+
+  // No finding at all says that the meshes do not overlap either, which some points do not show.
+  bool may_have_missed_meshes() {
+    return !closely_ && query_.want_delta && !query_.only_certain && !pair_.trivial &&
+           result_.regions.empty() && meshes_cross();
+  }
+
   bool told_in_one_place() {
     auto region = find_in_one_place(pair_, query_, result_.evaluations);
     if (!region) return false;
@@ -215,9 +249,12 @@ class Overlap {
   }
 
   // Parts that are apart and whose meshes are so, too, are no finding.
-  bool meshes_cross() const {
-    CcdScratch scratch;
-    return surfaces_cross(*query_.a, query_.X_WA, *query_.b, query_.X_WB, scratch);
+  bool meshes_cross() {
+    if (!meshes_cross_) {
+      CcdScratch scratch;
+      meshes_cross_ = surfaces_cross(*query_.a, query_.X_WA, *query_.b, query_.X_WB, scratch);
+    }
+    return *meshes_cross_;
   }
 
   // One region whose brackets in both layers are those of the sharp bodies.
@@ -268,7 +305,9 @@ class Overlap {
     Found found;
     auto& [mesh, upper, lower, lower_lazily] = found;
     // Where no layer has to be searched, the meshes may cost more; else they wait for the class.
-    if (told_by_planes() || (pair_.trivial && !lazy))
+    if (lazy && closely_)
+      mesh = search(Layer::kMesh, true, work_left() / 3);
+    else if (told_by_planes() || (pair_.trivial && !lazy))
       mesh = search(Layer::kMesh, false, lazy ? std::min(kMeshAlone, work_left()) : work_left());
     else
       mesh =
@@ -345,7 +384,7 @@ class Overlap {
       try_witness(c.best, region);
       if (!found.lower_lazily.empty()) try_witness(found.lower_lazily[i].best, region);
       for (const Sample& sample : c.samples) try_witness(sample, region);
-      cap_certain(c, region);
+      cap_certain(pair_, c, region);
     }
     set_grade(pair_, regions_, i, {&deciding, &c.best}, region);
     return region;
@@ -376,32 +415,13 @@ class Overlap {
                 from, region);
   }
 
-  // Where a face was found deep beyond the edge that cuts it short, certain is what the witness
-  // shows, or another point of the face.
-  void cap_certain(const Bracket& certain, OverlapRegion& region) {
-    if (!region.has_witness || !is_past_edge(certain.best)) return;
-    double most_mm = 0.0;
-    for (const int i : {0, 1})
-      most_mm += std::max(0.0, depth_below_convex_edges(pair_.bodies[i],
-                                                        pair_.X_W[i].inverse() * region.witness_W));
-    for (const Sample& sample : certain.samples)
-      if (sample.depth_mm > most_mm && !is_past_edge(sample)) most_mm = sample.depth_mm;
-    region.certain_mm.lo = std::min(region.certain_mm.lo, most_mm);
-  }
-
-  bool is_past_edge(const Sample& sample) const {
-    const Vec3 at_W = pair_.in_world(sample.role, sample.point_K);
-    for (const int i : {0, 1})
-      if (is_past_convex_edge(pair_.bodies[i], pair_.X_W[i].inverse() * at_W, pair_.rounding_mm))
-        return true;
-    return false;
-  }
-
   void add_declared(const KnownFacePair& known, Candidates& candidates) {
     DeclaredRegion found =
-        find_declared_region(pair_, query_, known, scratch_, result_.evaluations);
+        find_declared_region(pair_, query_, known, closely_, scratch_, result_.evaluations);
     if (found.left_to_search) leave_to_search(known, candidates, known_);
-    if (found.region) result_.regions.push_back(std::move(*found.region));
+    if (!found.region) return;
+    result_.regions.push_back(std::move(*found.region));
+    closed_form_mm_ = std::max(closed_form_mm_, found.most_mm);
   }
 
   // Where the faces' own offsets keep the parts apart.
@@ -424,7 +444,11 @@ class Overlap {
   OverlapResult result_;
   const OverlapQuery& query_;
   const PairFrame pair_;
+  /// True: whether the meshes overlap is searched, not only looked for at some points.
+  bool closely_ = query_.refinement == Refinement::kFull;
+  std::optional<bool> meshes_cross_;  // asked when it counts
   PairCovers covers_;
+  double closed_form_mm_ = -1.0;     // of all regions with one
   std::optional<PlanePair> planes_;  // asked once covers do not do
   SearchScratch scratch_;
   KnownOverlaps known_;

@@ -218,7 +218,7 @@ class RoundInWall {
   // The points of one generator at both heights of the wall.
   void see(std::size_t segment, const Direction& d) {
     std::array<Vec3, 2> u;
-    Rises rises;
+    Rises rises{};
     for (int e = 0; e < chord_.ends; ++e) {
       u[e] = d.c * across_[e][0] + d.s * across_[e][1];
       rises.least[e] = rises.most[e] = u[e].dot(wall_.axis);
@@ -272,7 +272,7 @@ class RoundInWall {
   void add(const Direction& from, const Direction& to, double known) {
     ++work_;
     ++work_here_;
-    Rises rises;
+    Rises rises{};
     for (int e = 0; e < chord_.ends; ++e) {
       rises.least[e] = -most_over(from, to, {-rises_[e].c, -rises_[e].s});
       rises.most[e] = most_over(from, to, rises_[e]);
