@@ -297,7 +297,7 @@ class DdsClientChannel final : public ClientChannel {
   /// Where the server and this client were parted for longer than a lease, Fast DDS 2.9.1 may keep
   /// a rest of one that it removed, and then answers its handshakes never again. Nobody has a rest
   /// of a participant that is new.
-  void meet_anew_if_alone(bool present);
+  void meet_anew_if_alone(bool alone);
   /// Says that this process lives, a few times within the lease.
   void assert_presence();
   void refuse_unsent(ClientInput& input);
@@ -317,7 +317,7 @@ class DdsClientChannel final : public ClientChannel {
   std::vector<RefusedIncrement> unsent_;  ///< an observer's, to be told with the next input
   bool lost_ = false;                     ///< to be told with the next input
   std::uint64_t send_failed_ = 0;
-  std::optional<Clock::time_point> alone_since_;  ///< none: a server is there
+  std::optional<Clock::time_point> alone_since_;  ///< none: a server is met
   Clock::duration meet_anew_after_ = kMeetAnewFirst;
   bool was_met_ = false;    ///< a server
   ChannelCounters before_;  ///< of participants before this one
@@ -354,11 +354,10 @@ Status DdsClientChannel::open_participant() {
   return status;
 }
 
-void DdsClientChannel::meet_anew_if_alone(bool present) {
-  if (present) {
+void DdsClientChannel::meet_anew_if_alone(bool alone) {
+  if (!alone) {
     alone_since_.reset();
     meet_anew_after_ = kMeetAnewFirst;
-    was_met_ = true;
     return;
   }
   if (options_.keys.empty() || !was_met_) return;
@@ -446,7 +445,8 @@ ClientInput DdsClientChannel::take() {
   const ServerWatch::Answer watch = watch_.take(moves_ ? 3 : 2);
   lost_ = watch.lost;
   input.server_present = watch.present && !lost_;
-  meet_anew_if_alone(input.server_present);
+  was_met_ |= input.server_present;
+  meet_anew_if_alone(watch.alone);
   return input;
 }
 

@@ -62,8 +62,12 @@ ServerWatch::Answer ServerWatch::take(int topics) {
   }
   const auto leader = servers_.find(leader_);
   const bool present = led_ && leader != servers_.end() && leader->second.readers >= topics;
-  for (auto& [prefix, server] : servers_) server.gone = server.met > 0 && !server.answers;
-  return {std::exchange(lost_, false), present};
+  bool alone = true;
+  for (auto& [prefix, server] : servers_) {
+    server.gone = server.met > 0 && !server.answers;
+    alone = alone && !server.answers;
+  }
+  return {std::exchange(lost_, false), present, alone};
 }
 
 void ServerWatch::part_from_all() {

@@ -29,6 +29,7 @@ class ServerWatch final : public dds::DomainParticipantListener {
   struct Answer {
     bool lost = false;     ///< since the last call
     bool present = false;  ///< and hears us, on so many topics
+    bool alone = false;    ///< no server is met, revoked and overtaken ones included
   };
   Answer take(int topics);
   /// The participant is gone, and another one comes: nobody is met. Terms are remembered.

@@ -24,7 +24,7 @@ class DirectoryOfSessions : public ::testing::Test {
     if (session != "default") arguments.insert(arguments.end(), {"--session", session});
     auto server = std::make_unique<Program>(folder_.path(), "mortise-server", arguments);
     if (arguments.front() == "--standby-of") {
-      EXPECT_TRUE(says(*server, "in step"));
+      EXPECT_TRUE(says(*server, "in step")) << server->errors();
     }
     return server;
   }
