@@ -24,6 +24,9 @@ namespace mortise {
 namespace {
 
 // Evaluations of a search that only has to find points, not to prove that there are none.
+// Whether only the meshes overlap is searched where so much work is left: more than a tick gives.
+constexpr std::uint64_t kSecondLook = 20'000;
+
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;
@@ -216,10 +219,11 @@ class Overlap {
       search_regions();
   }
 
-  // No finding at all says that the meshes do not overlap either, which some points do not show.
+  // No finding at all says that the meshes do not overlap either, which some points do not show. A
+  // tick has no work for that.
   bool may_have_missed_meshes() {
     return !closely_ && query_.want_delta && !query_.only_certain && !pair_.trivial &&
-           result_.regions.empty() && meshes_cross();
+           result_.regions.empty() && work_left() >= kSecondLook && meshes_cross();
   }
 
   bool told_in_one_place() {
