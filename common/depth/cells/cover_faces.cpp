@@ -105,4 +105,16 @@ bool CoverFaces::touches(std::uint32_t t, const std::vector<bool>& points) const
   return false;
 }
 
+void leave_beyond(std::vector<Vec3>& polygon, const Vec3& n, double c_mm,
+                  std::vector<Vec3>& spare) {
+  spare.clear();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    const double at_p = n.dot(p) - c_mm, at_q = n.dot(q) - c_mm;
+    if (at_p > 0.0) spare.push_back(p);
+    if ((at_p > 0.0) != (at_q > 0.0)) spare.push_back(p + at_p / (at_p - at_q) * (q - p));
+  }
+  polygon.swap(spare);
+}
+
 }  // namespace mortise

@@ -59,4 +59,7 @@ class CoverFaces {
   std::vector<double> reach_of_face_;
 };
 
+/// Leaves of a convex polygon what has n · x > c_mm. `spare`: memory of calls before.
+void leave_beyond(std::vector<Vec3>& polygon, const Vec3& n, double c_mm, std::vector<Vec3>& spare);
+
 }  // namespace mortise

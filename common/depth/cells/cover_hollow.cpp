@@ -171,8 +171,10 @@ class Hollow {
     polygon_ = {f_.mesh().corner(t, 0), f_.mesh().corner(t, 1), f_.mesh().corner(t, 2)};
     for (const Facet& facet : facets_) {
       // Of what ends on the sides the nominal place counts, of all else the largest.
-      cut(facet.n, touches ? facet.mesh_mm + f_.same_mm - bulge_mm
-                           : facet.true_mm + f_.same_mm - f_.reach_mm(t, facet.n));
+      leave_beyond(polygon_, facet.n,
+                   touches ? facet.mesh_mm + f_.same_mm - bulge_mm
+                           : facet.true_mm + f_.same_mm - f_.reach_mm(t, facet.n),
+                   cut_);
       if (polygon_.empty()) return true;
     }
     Interval z{kInfinity, -kInfinity};
@@ -184,17 +186,6 @@ class Hollow {
     if (z.hi > own_.lo + f_.same_mm) return false;
     free_.lo = std::max(free_.lo, z.hi);
     return true;
-  }
-
-  void cut(const Vec3& n, double c_mm) {
-    cut_.clear();
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
-      const Vec3 &p = polygon_[i], &q = polygon_[(i + 1) % polygon_.size()];
-      const double at_p = n.dot(p) - c_mm, at_q = n.dot(q) - c_mm;
-      if (at_p > 0.0) cut_.push_back(p);
-      if ((at_p > 0.0) != (at_q > 0.0)) cut_.push_back(p + at_p / (at_p - at_q) * (q - p));
-    }
-    polygon_.swap(cut_);
   }
 
   LayerVoids voids() const {

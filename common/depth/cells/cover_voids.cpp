@@ -328,22 +328,11 @@ class Pocket {
       const PlaneFace& plane = f_.planes.faces[face];
       // Of those that end on its faces the nominal place counts, of others the largest.
       const double more = touches ? bulge_mm(t) : f_.reach_mm(t, plane.n);
-      cut(plane.n, plane.c + f_.same_mm - more);
+      leave_beyond(polygon_, plane.n, plane.c + f_.same_mm - more, cut_);
       if (polygon_.empty()) return;
     }
     const PlaneFace& floor = f_.planes.faces[of_.front()];
     for (const Vec3& x : polygon_) top_mm_ = std::min(top_mm_, floor.n.dot(x));
-  }
-
-  void cut(const Vec3& n, double c_mm) {
-    cut_.clear();
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
-      const Vec3 &p = polygon_[i], &q = polygon_[(i + 1) % polygon_.size()];
-      const double at_p = n.dot(p) - c_mm, at_q = n.dot(q) - c_mm;
-      if (at_p > 0.0) cut_.push_back(p);
-      if ((at_p > 0.0) != (at_q > 0.0)) cut_.push_back(p + at_p / (at_p - at_q) * (q - p));
-    }
-    polygon_.swap(cut_);
   }
 
   const CoverFaces& f_;
