@@ -131,6 +131,12 @@ TEST_F(GltfCheck, WhatIsNoGltfIsSaidToBeNone) {
   expect(gltf_with("\"byteLength\":72", "\"byteLength\":80"), "announces 80 bytes and holds 72");
 }
 
+TEST_F(GltfCheck, ManyNodesAreReadInTheTimeOfAnImport) {
+  std::string nodes;
+  for (int i = 0; i < 100'000; ++i) nodes += R"(,{"name":"n"})";
+  expect(gltf_with(R"({"mesh":0})", R"({"mesh":0})" + nodes), "imported");
+}
+
 // Nodes of which each holds the next one; the last has the mesh.
 std::string nodes_in_each_other(int levels) {
   std::string nodes;

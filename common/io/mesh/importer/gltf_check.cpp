@@ -85,21 +85,55 @@ GltfParts parts_of_gltf(std::string_view bytes, bool binary) {
   return {bytes, {}};
 }
 
-// Of two members with one name assimp takes the first, others the last.
-json parsed_gltf(std::string_view text) {
-  std::vector<std::set<std::string>> open;
-  std::string twice;
-  const auto watch = [&](int depth, json::parse_event_t event, json& value) {
-    if (static_cast<std::size_t>(depth) > kMostLevels) throw GltfFault{too_deep("lists")};
-    if (event == json::parse_event_t::object_start) open.emplace_back();
-    if (event == json::parse_event_t::object_end) open.pop_back();
-    if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
-      twice = value.get<std::string>();
+/// Looks at a text as it is read: how deep it goes, and for two members with one name, of which
+/// assimp takes the first and others the last. The parser itself, where it is watched, walks each
+/// list again after each of its objects.
+class GltfMembers final : public nlohmann::json_sax<json> {
+ public:
+  const std::string& twice() const { return twice_; }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return opened(); }
+  bool start_array(std::size_t) override { return opened(); }
+  bool end_object() override { return closed(); }
+  bool end_array() override { return closed(); }
+  bool key(string_t& name) override {
+    if (!open_.back().insert(name).second) twice_ = name;
     return true;
-  };
+  }
+  /// The parser that makes the document says it.
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override {
+    return false;
+  }
+
+ private:
+  bool opened() {
+    open_.emplace_back();
+    if (open_.size() > kMostLevels) throw GltfFault{too_deep("lists")};
+    return true;
+  }
+  bool closed() {
+    open_.pop_back();
+    return true;
+  }
+
+  std::vector<std::set<std::string>> open_;  ///< the names of each list and object that is open
+  std::string twice_;
+};
+
+json parsed_gltf(std::string_view text) {
+  GltfMembers members;
+  json::sax_parse(text, &members);
   try {
-    json gltf = json::parse(text, watch);
-    if (!twice.empty()) throw GltfFault{"has " + in_quotes(twice) + " twice; keep one"};
+    json gltf = json::parse(text);
+    if (!members.twice().empty())
+      throw GltfFault{"has " + in_quotes(members.twice()) + " twice; keep one"};
     return gltf;
   } catch (const json::parse_error& error) {
     throw GltfFault{"its JSON is damaged or was cut off, at byte " + std::to_string(error.byte)};
