@@ -40,23 +40,38 @@ struct Round {
   double server_cpu_us = NAN, tick_cpu_us = NAN, tick_waited_us = NAN;  ///< a tick
 };
 
-enum class Beside { kNobody, kGatewayAlone, kPagesThatLook, kBotsThatMove, kPagesThatMove };
+enum class Beside {
+  kNobody,
+  kGatewayAlone,
+  kPagesElsewhere,  ///< that look on at another session of the same machine
+  kPagesThatLook,
+  kBotsThatMove,
+  kPagesThatMove
+};
 
 Round round_of(Beside beside, double seconds) {
   Round round;
   BenchServer server(kScene);
+  std::unique_ptr<BenchServer> elsewhere;
   const double start_s = steady_s();
-  const std::string last = std::to_string(seconds);
   // What lives beside the bot that measures is there before it, and after.
   std::unique_ptr<test::Program> movers;
   std::unique_ptr<BenchGateway> gateway;
   std::unique_ptr<PageLoad> pages;
+  const auto one_bot = [&](BenchServer& of, double bot_s) {
+    return of.bots({"--users", "1", "--behaviour", "shake", "--rate", kMeasuringRate, "--seed", "1",
+                    "--seconds", std::to_string(bot_s)});
+  };
+  if (beside == Beside::kPagesElsewhere) {
+    elsewhere = std::make_unique<BenchServer>(kScene);
+    movers = one_bot(*elsewhere, seconds + 30.0);
+  }
   if (beside == Beside::kBotsThatMove) {
     movers =
         server.bots({"--users", std::to_string(kPages), "--behaviour", "shake", "--first-part", "1",
                      "--rate", "60", "--seed", "2", "--seconds", std::to_string(seconds + 30.0)});
   } else if (beside != Beside::kNobody) {
-    gateway = std::make_unique<BenchGateway>(server);
+    gateway = std::make_unique<BenchGateway>(elsewhere ? *elsewhere : server);
     PageLoad::Shape shape;
     shape.pages = beside == Beside::kGatewayAlone ? 0 : kPages;
     shape.moves = beside == Beside::kPagesThatMove;
@@ -67,8 +82,7 @@ Round round_of(Beside beside, double seconds) {
     }
   }
   sleep_s(std::max(kSettled_s - (steady_s() - start_s), 0.0));
-  auto bot = server.bots({"--users", "1", "--behaviour", "shake", "--rate", kMeasuringRate,
-                          "--seed", "1", "--seconds", last});
+  auto bot = one_bot(server, seconds);
   if (pages) pages->mark();
   const double begin_s = steady_s(), cpu_s = gateway ? gateway->cpu_s() : 0.0;
   const double server_cpu_s = server.cpu_s();
@@ -93,6 +107,7 @@ Round round_of(Beside beside, double seconds) {
   }
   pages.reset();
   gateway.reset();
+  if (elsewhere) elsewhere->close();
   const Json closing = server.close();
   const Json document = Json::parse(bot->out(), nullptr, false);
   if (exit_code != 0 || !closing.is_object() || !document.is_object()) {
@@ -160,8 +175,18 @@ void section_look(Report& report, const WebOptions& options) {
   const std::vector<Kind> kinds = compare(report, options, "16 pages that look on",
                                           {{"nobody", Beside::kNobody},
                                            {"a gateway without pages", Beside::kGatewayAlone},
+                                           {"16 pages of another session", Beside::kPagesElsewhere},
                                            {"16 pages", Beside::kPagesThatLook}});
-  // One bot shakes a part that is clear of all others.
+  // What the machine pays for programs beside the server, whoever's they are, and what the session
+  // pays for its own pages. One bot shakes a part that is clear of all others.
+  const auto beyond_strangers = [&](auto get) {
+    return median_of(kinds.back().rounds, get) / median_of(kinds[2].rounds, get);
+  };
+  report.note(fmt::format(
+      "Beside 16 pages of its own the tick's p50 is {:.2f} times and the CPU of its thread {:.2f} "
+      "times what they are beside another session with 16 pages on the same machine.",
+      beyond_strangers([](const Round& r) { return r.tick_p50_us; }),
+      beyond_strangers([](const Round& r) { return r.tick_cpu_us; })));
   report.note(fmt::format(
       "The step of a tick computes the same in all three rows. Beside 16 pages its p50 is {:.2f} "
       "times as long as beside nobody, and all else that the tick does {:.2f} times as long.",
