@@ -131,8 +131,8 @@ struct Shell {
   std::vector<std::uint32_t> triangles;
   TriangleMesh mesh;
   Box box;
-  int sign = 0;  ///< 1 outward, -1 inward, 0 open or a sheet
-  std::vector<std::uint32_t> within;
+  int sign = 0;                              ///< 1 outward, -1 inward, 0 open or a sheet
+  std::vector<std::uint32_t> within, holds;  ///< others that it lies in, and that lie in it
   std::unique_ptr<const Solid> solid;
 
   const Solid& as_solid() {
@@ -185,6 +185,31 @@ bool lies_within(const Shell& inner, Shell& outer) {
     }
   }
   return any;
+}
+
+/// Fills in which shells lie within which. Only those are asked whose boxes may hold each other
+/// along x: a mesh may have as many shells as a quarter of its triangles.
+void find_nesting(std::vector<Shell>& shells) {
+  std::vector<std::uint32_t> by_low;
+  double widest_mm = 0.0;
+  for (std::uint32_t i = 0; i < shells.size(); ++i) {
+    if (shells[i].sign == 0) continue;
+    by_low.push_back(i);
+    widest_mm = std::max(widest_mm, shells[i].box.hi.x() - shells[i].box.lo.x());
+  }
+  const auto low_of = [&](std::uint32_t i) { return shells[i].box.lo.x(); };
+  std::sort(by_low.begin(), by_low.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return low_of(a) < low_of(b); });
+  for (const std::uint32_t inner : by_low) {
+    const auto from = std::partition_point(by_low.begin(), by_low.end(), [&](std::uint32_t j) {
+      return low_of(j) + widest_mm < low_of(inner);
+    });
+    for (auto j = from; j != by_low.end() && low_of(*j) <= low_of(inner); ++j)
+      if (*j != inner && lies_within(shells[inner], shells[*j])) {
+        shells[inner].within.push_back(*j);
+        shells[*j].holds.push_back(inner);
+      }
+  }
 }
 
 }  // namespace
@@ -281,11 +306,7 @@ ShellsTurned orient_shells(TriangleMesh& mesh) {
   }
   std::vector<std::uint32_t> order(shells.size());
   std::iota(order.begin(), order.end(), 0U);
-  for (Shell& inner : shells)
-    for (std::uint32_t j = 0; j < shells.size(); ++j)
-      if (&shells[j] != &inner && inner.sign != 0 && shells[j].sign != 0 &&
-          lies_within(inner, shells[j]))
-        inner.within.push_back(j);
+  find_nesting(shells);
   // Outermost first: the winding number outside of a shell is that of all around it.
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return shells[a].within.size() < shells[b].within.size();
@@ -295,12 +316,12 @@ ShellsTurned orient_shells(TriangleMesh& mesh) {
     int around = 0;
     for (const std::uint32_t j : shells[i].within) around += shells[j].sign;
     if (shells[i].sign >= 0 || around > 0) continue;
-    for (std::uint32_t j = 0; j < shells.size(); ++j) {
-      const auto& within = shells[j].within;
-      if (j != i && std::find(within.begin(), within.end(), i) == within.end()) continue;
+    const auto over = [&](std::uint32_t j) {
       shells[j].sign = -shells[j].sign;
       turn[j] = !turn[j];
-    }
+    };
+    over(i);
+    for (const std::uint32_t j : shells[i].holds) over(j);
   }
   ShellsTurned turned;
   turned.shells = pieces.count();

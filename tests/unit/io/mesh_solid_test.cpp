@@ -92,6 +92,29 @@ TEST(OrientShells, NestingDecides) {
   EXPECT_NEAR(volume(inside_out(together(core, together(hollow, outer))), 3), all, 1e-6);
 }
 
+TEST(OrientShells, ManyAreTurnedEachByWhatIsAroundIt) {
+  // Bodies of all widths in a row and above each other, each with a hollow and a core in it.
+  TriangleMesh mesh;
+  double volume_mm3 = 0.0;
+  std::uint32_t turned = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double half = 1.0 + i % 7;
+    const Vec3 at(9.0 * (i % 20), 20.0 * (i / 20), 0);
+    const auto add = [&](double share, bool outward, bool wrong) {
+      const TriangleMesh one = box(Vec3(half, half, half) * share, at);
+      mesh = together(mesh, outward == wrong ? inside_out(one) : one);
+      volume_mm3 += (outward ? 8.0 : -8.0) * std::pow(half * share, 3);
+      turned += wrong ? 1 : 0;
+    };
+    const bool wrong = i % 3 == 0;
+    add(0.25, true, wrong || i % 5 == 0);
+    add(1.0, true, wrong);
+    add(0.5, false, wrong);
+  }
+  EXPECT_EQ(orient_shells(mesh).turned, turned);
+  EXPECT_NEAR(signed_volume_mm3(mesh), volume_mm3, 1e-6);
+}
+
 TEST(AlignNeighbours, TheFewerAreTurned) {
   TriangleMesh mesh = box({1, 1, 1}, Vec3::Zero(), 4);
   const TriangleMesh good = mesh;
