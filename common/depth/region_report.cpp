@@ -265,7 +265,9 @@ std::optional<SharedInside> find_middle_in_both(const PairFrame& pair, double le
   for (const int own : {0, 1}) {
     const Vec3 x_W = pair.X_W[own] * pair.bodies[own].solid->sphere().center_mm;
     SharedInside shared{x_W, 0.0, std::numeric_limits<double>::infinity(), {0, 0}};
-    for (const int i : {0, 1}) {
+    // The other part first: parts that only touch are told apart by it, and from the middle of a
+    // ball each of its triangles is as near.
+    for (const int i : {1 - own, own}) {
       const SurfacePoint at = nearest_surface(*pair.bodies[i].solid, pair.X_W[i].inverse() * x_W);
       ++evaluations;
       shared.depth_mm += at.depth_mm;

@@ -14,6 +14,7 @@ const std::vector<SessionSection>& session_sections() {
       {"presence", "who is killed without a goodbye", section_presence},
       {"restart", "a server that is killed and started again", section_restart},
       {"scene", "50 MB of meshes for eight at once", section_scene},
+      {"added", "parts of 50 MB that are added and pushed", section_added},
       {"lossy", "a link that loses, delays, doubles and reorders", section_lossy},
       {"security", "what it costs to be met with keys", section_security},
       {"guided", "shafts put into bores by hands that tremble", section_guided},

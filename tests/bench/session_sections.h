@@ -26,6 +26,7 @@ void section_join(Report& report, const SessionOptions& options);
 void section_presence(Report& report, const SessionOptions& options);
 void section_restart(Report& report, const SessionOptions& options);
 void section_scene(Report& report, const SessionOptions& options);
+void section_added(Report& report, const SessionOptions& options);
 void section_lossy(Report& report, const SessionOptions& options);
 void section_security(Report& report, const SessionOptions& options);
 void section_guided(Report& report, const SessionOptions& options);

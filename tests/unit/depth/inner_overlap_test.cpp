@@ -5,6 +5,7 @@
 #include <random>
 
 #include "common/depth/convex_overlap.h"
+#include "common/depth/region_report.h"
 #include "common/evaluation/band.h"
 #include "common/generators/generators.h"
 #include "common/geometry/recognition/recognition.h"
@@ -45,6 +46,21 @@ TEST(InnerOverlap, OneWithinTheOther) {
   for (const double z : {0.0, 3.0, 12.0})
     expect_delta({solid(box({20, 20, 20})), solid(box({5, 5, 5}, {0, 0, z}))},
                  z <= 15 ? 25.0 - z : 0.0);
+}
+
+// To ask for the nearest of its own triangles at the middle of a ball looks at all of them.
+TEST(InnerOverlap, BallsThatTouchAreNotAskedInTheirOwnMiddles) {
+  const SolidPtr ball = solid(sphere(10.0));
+  Case c{ball, ball};
+  c.X_WB = Pose::translation({19.9, 0, 0});
+  std::uint64_t evaluations = 0;
+  EXPECT_FALSE(find_middle_in_both(frame_of(c), 1.0, evaluations));
+  EXPECT_EQ(evaluations, 2U) << "the middle of each in the other";
+  c.X_WB = Pose::translation({2.0, 0, 0});
+  const auto shared = find_middle_in_both(frame_of(c), 1.0, evaluations);
+  ASSERT_TRUE(shared);
+  EXPECT_EQ(evaluations, 6U);
+  EXPECT_NEAR(shared->depth_mm, 18.0, 0.4);
 }
 
 TEST(InnerOverlap, APegInABlockWithoutAHole) {
