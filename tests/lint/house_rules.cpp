@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -130,6 +131,9 @@ constexpr std::size_t kMostClassLines = 300, kMostFunctionLines = 60, kMostTestL
 // A document is read beside code: a longer line does not fit.
 constexpr std::size_t kMostLineLength = 160;
 
+// The documents that a newcomer reads to their end, and their most words.
+const std::map<std::string, std::size_t> kMostWords = {{"README.md", 900}, {"CHANGELOG.md", 600}};
+
 const std::set<std::string> kCodeEndings = {".h", ".hpp", ".cpp", ".c"};
 const std::set<std::string> kTextEndings = {
     ".h",    ".hpp", ".cpp",   ".c",    ".mjs", ".js",  ".html", ".css", ".md", ".txt",
@@ -212,6 +216,7 @@ class HouseCheck {
       if (is_code) add_comment(line, comments);
     }
     citations(name, comments);
+    words(name, text.str());
     if (path.filename() == "main.cpp") too_long(name, "", lines, kMostMainLines);
     if (is_code) lengths(name, text.str());
   }
@@ -288,6 +293,17 @@ class HouseCheck {
     if (length > static_cast<std::ptrdiff_t>(kMostLineLength))
       broken_.push_back(place + ": " + std::to_string(length) + " characters, at most " +
                         std::to_string(kMostLineLength));
+  }
+
+  void words(const std::string& name, const std::string& text) {
+    const auto most = kMostWords.find(name);
+    if (most == kMostWords.end()) return;
+    std::istringstream all(text);
+    const auto count = static_cast<std::size_t>(std::distance(
+        std::istream_iterator<std::string>(all), std::istream_iterator<std::string>()));
+    if (count > most->second)
+      broken_.push_back(name + ": " + std::to_string(count) + " words, at most " +
+                        std::to_string(most->second));
   }
 
   // The comments of a file as one text, so that a citation may go over two lines.

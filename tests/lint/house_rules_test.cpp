@@ -220,6 +220,15 @@ TEST_F(PlantedTree, LongLinesOfDocuments) {
   write("server/README.md", "What lives here.\n" + line + "µµ\n");
   expect_one("server/README.md:2", "161 characters, at most 160");
 }
+TEST_F(PlantedTree, AFirstDocumentOfManyWords) {
+  std::string words;
+  for (int i = 0; i < 900; ++i) words += i % 10 == 9 ? "word\n" : "word ";
+  write("README.md", words);
+  write("server/README.md", words + words);
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+  write("README.md", words + "one more");
+  expect_one("README.md", "902 words, at most 900");
+}
 TEST_F(PlantedTree, CitationsOfWhatIsNotThere) {
   write("common/math/README.md", "## 2 Rotations\n");
   write("common/math/pose.h", "// As in the README,\n// section 2, and math/README.md.\n");

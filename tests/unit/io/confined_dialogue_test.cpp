@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/io/mesh/confined_child.h"
+#include "tests/support/effort.h"
 #include "tests/support/test_folder.h"
 
 namespace mortise {
@@ -88,7 +89,9 @@ TEST_F(Dialogue, NobodyWaitsLongerThanAllowed) {
     EXPECT_TRUE(left);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(took.count(), 30.0);
+  if (test::timed()) {
+    EXPECT_LT(took.count(), 30.0);
+  }
 }
 
 }  // namespace

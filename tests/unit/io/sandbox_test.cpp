@@ -17,6 +17,7 @@
 #include <functional>
 
 #include "common/io/mesh/mesh_import.h"
+#include "tests/support/effort.h"
 #include "tests/support/test_folder.h"
 
 namespace mortise {
@@ -105,7 +106,9 @@ TEST_F(NamedFile, ThatIsNoFileIsNotWaitedFor) {
   EXPECT_NE(imported("pipe.bin"), "imported");
   EXPECT_NE(imported("below"), "imported");
   EXPECT_NE(imported("nowhere.bin"), "imported");
-  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
+  if (test::timed()) {
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
+  }
 }
 
 /// What `act` returns in a process of its own, within the sandbox of a file.
