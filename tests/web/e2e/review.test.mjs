@@ -77,6 +77,19 @@ test('"since" counts while nothing happens', async () => {
   await until(async () => ((await since()) - first + 60) % 60 >= 2, () => `two seconds beyond ${first} s`);
 });
 
+test('the section is drawn anew in other colours and at another size', async () => {
+  const drawing = () => eva.locator('#clash canvas').evaluate((canvas) => /** @type {HTMLCanvasElement} */ (canvas).toDataURL());
+  const dark = await drawing();
+  await eva.click('#do_theme');
+  await until(async () => (await drawing()) !== dark, () => 'the section in light colours');
+  await eva.click('#do_theme');
+  await until(async () => (await drawing()) === dark, () => 'the section as it was');
+  await eva.setViewportSize({ width: 1024, height: 720 });
+  const fits = () => eva.locator('#clash canvas').evaluate((canvas) => Math.abs(/** @type {HTMLCanvasElement} */ (canvas).width - canvas.clientWidth) <= 1);
+  await until(fits, () => 'the section as wide as its place');
+  await eva.setViewportSize({ width: 1280, height: 720 });
+});
+
 test('a link leads a colleague to the clash and the view, with the address of their own', async () => {
   await row(eva, 'plate_k6 × peg_k6').click();
   await eva.focus('#canvas');

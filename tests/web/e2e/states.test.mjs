@@ -105,8 +105,16 @@ test('at 390 pixels one looks on and reviews by touch, with targets of 44 pixels
   await page.locator('#place_left').tap();
   await page.locator('#parts > li', { hasText: 'block' }).first().tap();
   await page.locator('#hand strong', { hasText: 'block' }).waitFor(PATIENCE);
+  await page.locator('#hand button:has-text("Grab")').tap();
+  await page.locator('#hand .quiet', { hasText: 'in your hand' }).waitFor(PATIENCE);
   assert.deepEqual(await smallTargets(page), []);
+  const [view, hand] = await Promise.all(['.view', '#hand'].map((part) => page.locator(part).boundingBox()));
+  assert.ok(view && hand && hand.y - view.y > 100, 'beside a list, the bar of the hand leaves room for the view and what it says');
   await page.locator('#place_none').tap();
+  assert.ok(await page.getByLabel('along or about Z').isVisible());
+  assert.deepEqual(await smallTargets(page), []);
+  assert.deepEqual(await cutOff(page), []);
+  await page.locator('#hand button:has-text("Release")').tap();
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(wide <= 0, `the page is ${wide} pixels too wide`);
   await page.context().close();

@@ -26,11 +26,18 @@ export class SectionDrawing {
   constructor({ session, partsView }) {
     this.session = session;
     this.partsView = partsView;
+    // Its colours and points are those of the page as it was when it was drawn.
+    new MutationObserver(() => this.#drawAgain()).observe(document.documentElement, { attributeFilter: ['data-theme'] });
+    new ResizeObserver(() => this.#drawAgain()).observe(this.canvas);
   }
 
   turn() {
     this.#turned = !this.#turned;
-    if (this.#clash) this.show(this.#clash);
+    this.#drawAgain();
+  }
+
+  #drawAgain() {
+    if (this.#clash && this.canvas.clientWidth > 0) this.show(this.#clash);
   }
 
   /** @param {Clash} clash */
