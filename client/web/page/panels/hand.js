@@ -72,10 +72,12 @@ export function makeHand(desk, arriving) {
     if (!shown || !session.mayAct) return;
     const mine = session.isMine(shown);
     if (mine) mover.drop(shown.id);
+    const { tool } = choice; // who takes another one before the answer keeps it
     const parts = choice.together;
     const reply = await commands.ask(mine ? 'release' : 'grab', parts.length > 1 ? { parts } : { part: shown.id });
-    if (reply.done && !mine && choice.tool === 'select') choice.chooseTool('move');
-    if (reply.done && mine) choice.chooseTool('select');
+    if (!reply.done || choice.tool !== tool) return;
+    if (mine) choice.chooseTool('select');
+    else if (tool === 'select') choice.chooseTool('move');
   }
 
   /** One step along or about a world axis. @param {number} axis @param {number} sign @param {boolean} turn */

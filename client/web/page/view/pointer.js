@@ -2,6 +2,11 @@
 
 const STILL_PIXELS = { mouse: 4, touch: 12 };
 
+/** Has the pointer not gone from where it was pressed? @param {{x: number, y: number}} down @param {PointerEvent} event */
+export function isStill(down, event) {
+  return Math.hypot(event.clientX - down.x, event.clientY - down.y) < (event.pointerType === 'touch' ? STILL_PIXELS.touch : STILL_PIXELS.mouse);
+}
+
 /**
  * @param {import('../desk.js').Desk} desk
  * @param {(part: import('../session/session.js').Part, point: import('three').Vector3) => boolean} pickFeature
@@ -14,8 +19,7 @@ export function makePointer({ session, choice, stage, partsView, marks, handles,
     down = { x: event.clientX, y: event.clientY, grips: handles.grips };
   }, { capture: true });
   canvas.addEventListener('pointerup', (event) => {
-    const still = Math.hypot(event.clientX - down.x, event.clientY - down.y) < (event.pointerType === 'touch' ? STILL_PIXELS.touch : STILL_PIXELS.mouse);
-    if (!still || down.grips || event.button !== 0) return;
+    if (!isStill(down, event) || down.grips || event.button !== 0) return;
     const clash = choice.tool === 'align' || choice.tool === 'measure' ? 0 : marks.hit(event);
     if (clash) {
       choice.chooseClash(clash);
