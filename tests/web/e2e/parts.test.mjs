@@ -7,7 +7,7 @@ import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
 import { PATIENCE, choose, until, whenListed } from '../support/people.mjs';
-import { box } from '../support/solids.mjs';
+import { box, glb, obj } from '../support/solids.mjs';
 
 const session = new BrowserSession('parts');
 let browser, addresses, eva, tom;
@@ -36,13 +36,13 @@ const file = (name, text) => {
   return path;
 };
 
-/** Files that are dropped on the page. */
+/** Files that are dropped on the page. @param {import('playwright-core').Page} page @param {Array<[string, string | Uint8Array]>} files */
 async function drop(page, files) {
   const carried = await page.evaluateHandle((all) => {
     const data = new DataTransfer();
-    for (const [name, text] of all) data.items.add(new File([text], name));
+    for (const [name, bytes] of all) data.items.add(new File([Uint8Array.from(bytes)], name));
     return data;
-  }, files);
+  }, files.map(([name, content]) => /** @type {[string, number[]]} */ ([name, [...Buffer.from(content)]])));
   await page.dispatchEvent('.view', 'dragover', { dataTransfer: carried });
   await page.dispatchEvent('.view', 'drop', { dataTransfer: carried });
 }
@@ -151,6 +151,17 @@ test('a file replaces a part: everybody sees it and is told what became of its c
   for (const page of [eva, tom]) await whenListed(page, 'clashes', 'real, bracket × cover');
 });
 
+test('an OBJ and a GLB file that are dropped become parts, each in its unit, and everybody has the verdict', async () => {
+  await drop(tom, [['pad.obj', obj([20, 20, 20], [500, 0, 0])], ['stud.glb', glb([0.02, 0.02, 0.02], [0.515, 0, 0])]]);
+  await tom.locator('#units_list li', { hasText: 'pad.obj' }).getByText('20 × 20 × 20 mm').waitFor(PATIENCE);
+  await tom.locator('#units_list li', { hasText: 'stud.glb' }).waitFor(PATIENCE);
+  await tom.click('#units_add');
+  for (const page of [eva, tom]) await whenListed(page, 'clashes', 'real, pad × stud');
+  await tom.locator('#clashes > li[aria-label*="pad × stud"]').click();
+  assert.match(await tom.locator('#clash dl').textContent() ?? '', /Overlap5\.000 mm/, 'metres there, millimetres here');
+  await tom.locator('#arriving > li').first().waitFor({ ...PATIENCE, state: 'detached' });
+});
+
 test('fits of bores and shafts that were found are proposed, and set at once for all', async () => {
   const plate = join(session.folder, 'plate.stl');
   const peg = join(session.folder, 'peg.stl');
@@ -178,7 +189,7 @@ test('a STEP file becomes all its parts, each where the file has it', async () =
   const row = tom.locator('#arriving > li', { hasText: 'tensioner' });
   await row.waitFor(PATIENCE);
   await tom.waitForFunction(() => ![...document.querySelectorAll('#arriving > li')].some((li) => !li.classList.contains('bad')), undefined, { timeout: 240_000 });
-  for (const page of [eva, tom]) await page.waitForFunction(() => document.querySelectorAll('#parts > li').length === 4 + 19, undefined, PATIENCE);
+  for (const page of [eva, tom]) await page.waitForFunction(() => document.querySelectorAll('#parts > li').length === 6 + 19, undefined, PATIENCE);
   assert.equal(await tom.locator('#arriving').textContent(), '', 'its three tolerances are used, and nothing was left out');
   if (process.env.MORTISE_PICTURES) await tom.screenshot({ path: join(process.env.MORTISE_PICTURES, 'step.png') });
   for (const left of await tom.locator('#arriving button').all()) await left.click();

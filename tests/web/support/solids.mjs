@@ -26,6 +26,42 @@ export function box(size) {
   return mesh(points, quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]));
 }
 
+/** That box as an OBJ. @param {[number, number, number]} size @param {[number, number, number]} at */
+export function obj(size, at) {
+  const { points, triangles } = box(size);
+  const rows = (letter, /** @type {number[]} */ numbers) => Array.from({ length: numbers.length / 3 }, (_, i) => `${letter} ${numbers.slice(3 * i, 3 * i + 3).join(' ')}\n`).join('');
+  return rows('v', [...points].map((x, i) => x + at[i % 3])) + rows('f', [...triangles].map((i) => i + 1));
+}
+
+/** That box as a GLB of one node, its numbers in metres. @param {[number, number, number]} size @param {[number, number, number]} at */
+export function glb(size, at) {
+  const { points, triangles } = box(size);
+  const chunk = (/** @type {string} */ type, /** @type {Buffer} */ bytes, /** @type {string} */ filler) => {
+    const data = Buffer.concat([bytes, Buffer.alloc(-bytes.length & 3, filler)]);
+    const head = Buffer.alloc(8);
+    head.writeUInt32LE(data.length, 0);
+    head.write(type, 4);
+    return Buffer.concat([head, data]);
+  };
+  const half = size.map((x) => x / 2);
+  const scene = {
+    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, translation: at }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: points.length / 3, type: 'VEC3', min: half.map((x) => -x), max: half },
+      { bufferView: 1, componentType: 5125, count: triangles.length, type: 'SCALAR' },
+    ],
+    bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: points.byteLength }, { buffer: 0, byteOffset: points.byteLength, byteLength: triangles.byteLength }],
+    buffers: [{ byteLength: points.byteLength + triangles.byteLength }],
+  };
+  const chunks = [chunk('JSON', Buffer.from(JSON.stringify(scene)), ' '), chunk('BIN\0', Buffer.concat([Buffer.from(points.buffer), Buffer.from(triangles.buffer)]), '\0')];
+  const head = Buffer.alloc(12);
+  head.write('glTF');
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(chunks.reduce((sum, { length }) => sum + length, 12), 8);
+  return Buffer.concat([head, ...chunks]);
+}
+
 /** Negative inside. @param {[number, number, number]} size @param {number[]} x */
 export function boxDistance(size, x) {
   const out = x.map((value, axis) => Math.abs(value) - size[axis] / 2);
