@@ -17,12 +17,15 @@ mkdir -p "build/$2/bin"
 touch "build/$2/build.ninja"
 for option; do case $option in -D*) echo "$option" | sed 's/-D\(.*\)=/\1:BOOL=/' >>"build/$2/CMakeCache.txt" ;; esac; done
 TXT
-# Nothing to do where `fresh` is; otherwise a program is made that says its name and what it is given.
+# Nothing to do where `fresh` is; otherwise a program is made that says its name and what it is given. The server of the demo ends
+# once its bots have said theirs.
 cat >>"$work/bin/ninja" <<'TXT'
 folder=$2 # absolute
 [ "$3" != -n ] || { [ ! -e "$folder/fresh" ] || echo 'ninja: no work to do.'; exit 0; }
 shift 2
 for target; do printf '#!/bin/sh\necho "ran %s $* in $PWD"\n' "$target" >"$folder/bin/$target"; chmod +x "$folder/bin/$target"; done
+[ ! -e "$folder/bin/mortise-server" ] ||
+  echo 'case $* in *" demo "*) until grep -qs ran sessions/*.bots.txt; do sleep 0.02; done ;; esac' >>"$folder/bin/mortise-server"
 TXT
 # Every package is there.
 echo 'shift 2; for package; do echo "$package installed"; done' >>"$work/bin/dpkg-query"
@@ -89,6 +92,37 @@ exits 0 open saved.zip --seconds 3
 grep -q "^ran mortise-replay unpack saved.zip --out sessions/saved-[0-9-]* in" said || fail "unpack a saved scenario: $(cat said)"
 grep -q "^ran mortise-server sessions/saved-[0-9-]*/scenario.yaml --session assembly " said || fail "open a saved scenario: $(cat said)"
 rm saved.zip
+
+# files open a session with its page: server and gateway are of one session and log, and the server, which keeps the addresses at the
+# bottom of the terminal, reads them where the gateway writes them, which is quiet
+one_session() {  # one_session SCENARIO SESSION SECONDS
+  local served
+  served=$(grep -E "^ran mortise-server $1 --session $2 " said) || fail "no server of $1: $(cat said)"
+  [[ $served =~ \ --domain\ ([0-9]+)\ --live\ --duration\ $3\ --log\ (sessions/[^ ]+)\.mcap\ --addresses\ ([^ ]+)\ in ]] || fail "how it serves: $served"
+  [ "${BASH_REMATCH[3]}" = "${BASH_REMATCH[2]}.web.txt" ] || fail "where the server reads addresses: $served"
+  grep -qx "ran mortise-web --session $2 --domain ${BASH_REMATCH[1]} --http-port 0 --log ${BASH_REMATCH[2]}.mcap --addresses ${BASH_REMATCH[3]} --quiet in $work" said ||
+    fail "no gateway beside $served: $(cat said)"
+}
+touch A.stl B.stl x.step
+exits 0 open A.stl B.stl --unit cm --seconds 3
+called "^ninja -C $work/build/release mortise-server mortise-web mortise-import mortise-inspect\$"
+one_session 'sessions/A-[0-9-]*[.]yaml' assembly 3
+grep -qx "ran mortise-inspect --unit cm $work/A.stl $work/B.stl in $work" sessions/A-*.yaml || fail "the scenario of two meshes: $(cat sessions/A-*.yaml)"
+exits 1 open A.stl none.stl
+grep -q 'none.stl: there is no such file' said || fail "open a file that is not there: $(cat said)"
+exits 0 open x.step --fix frame/base --seconds 3
+called "^ninja -C $work/build/release mortise-import-step\$"
+called "^ninja -C $work/build/release mortise-server mortise-web mortise-import mortise-check\$"
+one_session 'sessions/x-[0-9-]*[.]yaml' assembly 3
+grep -q "^ran mortise-check x.step --session sessions/x-[0-9-]*[.]yaml --fix frame/base in" said || fail "open a STEP assembly: $(cat said)"
+exits 2 open x.step A.stl
+rm -r A.stl B.stl x.step sessions
+exits 0 demo --web --seconds 9
+called "^ninja -C $work/build/release mortise-server mortise-bot mortise-web\$"
+one_session "$work/scenarios/gearbox.yaml" demo 9
+grep -qE "^ran mortise-bot --session demo .* --play $work/scenarios/gearbox.play.yaml --quiet --duration 7 --for-people in" sessions/gearbox-*.bots.txt ||
+  fail "the bots of the demo wait for people, and their report is in a file: $(cat sessions/*.bots.txt)"
+rm -r sessions
 
 # packages are made with all that they may contain: STEP and Python as well
 mkdir -p build/release/packages
