@@ -9,6 +9,7 @@ import { Session } from './session/session.js';
 import { Uploads } from './session/uploads.js';
 import { Stops } from './session/stops.js';
 import { Stage } from './view/stage.js';
+import { Ground } from './view/ground.js';
 import { Camera } from './view/camera.js';
 import { ClashMarks } from './view/clash_marks.js';
 import { Handles } from './view/handles.js';
@@ -65,6 +66,7 @@ export function makeDesk() {
 
   const stage = new Stage(/** @type {HTMLCanvasElement} */ (byId('canvas')));
   const partsView = new PartsView(stage, (hash) => connection.mesh(hash), (text) => say(text, 'bad'));
+  const ground = new Ground(stage, partsView);
   const camera = new Camera(stage, (view) => line.state === 'open' && send({ type: 'view', ...view }));
   const marks = new ClashMarks(stage);
   const way = new WayGhost(stage, partsView);
@@ -74,7 +76,7 @@ export function makeDesk() {
   const labels = new Labels(stage, session, partsView, byId('labels'));
   labels.sources.push(() => marks.notes, () => way.notes);
   const flights = makeFlights({ session, choice, camera, partsView, section });
-  return { session, choice, line, connection, send, commands, uploads, mover, stops, stage, partsView, camera, marks, way, heat, section, handles, labels, say, ...flights };
+  return { session, choice, line, connection, send, commands, uploads, mover, stops, stage, partsView, ground, camera, marks, way, heat, section, handles, labels, say, ...flights };
 }
 
 /** @typedef {ReturnType<typeof makeDesk>} Desk */

@@ -67,7 +67,7 @@ makeFaceHover(desk);
 makePointer(desk, (part, hit) => tools.some(({ pick }) => pick(part, hit)));
 makeKeyboard({
   grab: hand.toggle, gather: () => choice.part && choice.gather(choice.part), step: hand.stepBy, stepSize: hand.changeStep, tool: toolbar.chooseTool, section: toolbar.toggleSection, cancel: toolbar.cancel,
-  undo: () => toolbar.change('undo'), redo: () => toolbar.change('redo'), ghost: () => choice.setGhost(!choice.ghost), hide: toolbar.hide, isolate: toolbar.isolate, unhide: () => choice.showAll(), picture: toolbar.takePicture, play: timeline.toggle,
+  undo: () => toolbar.change('undo'), redo: () => toolbar.change('redo'), ghost: () => choice.setGhost(!choice.ghost), ground: toolbar.toggleGround, hide: toolbar.hide, isolate: toolbar.isolate, unhide: () => choice.showAll(), picture: toolbar.takePicture, play: timeline.toggle,
   fit: () => desk.showAll(), part: () => desk.showPart(choice.part), from: (side) => desk.showAll(side),
   turnView: (right, up) => camera.turn(right, up), closer: (times) => camera.closer(times),
   nextClash: () => desk.goClash(1), lastClash: () => desk.goClash(-1),

@@ -262,6 +262,52 @@ test('a side of the cube looks from there, and the view is saved as a picture', 
   assert.ok(bytes.length > 5000);
 });
 
+/** Of a picture of the view without what lies on it: how bright its pixels are, 0 … 765, row by row. */
+async function brightness(page) {
+  const cover = (visibility) => page.evaluate((how) => document.querySelectorAll('.view > :not(#canvas)').forEach((element) => (element.style.visibility = how)), visibility);
+  await cover('hidden');
+  await page.locator('#canvas').blur(); // its outline is no part of the view
+  const png = (await page.locator('#canvas').screenshot()).toString('base64');
+  await cover('');
+  return page.evaluate(async (text) => {
+    const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
+    const { width, height } = picture;
+    const pen = new OffscreenCanvas(width, height).getContext('2d');
+    pen.drawImage(picture, 0, 0);
+    const { data } = pen.getImageData(0, 0, width, height);
+    return { width, sums: Array.from({ length: width * height }, (_, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2]) };
+  }, png);
+}
+
+test('the ground under a part is darker than beside it, until its shadow is turned off or a plane cuts', async () => {
+  await choose(ann, 'block');
+  await ann.focus('#canvas');
+  for (const key of ['i', '0', 'z']) await ann.keyboard.press(key);
+  await drawn(ann);
+  const on = await brightness(ann);
+  await ann.click('#view_ground');
+  await ann.locator('#view_ground[aria-pressed="false"]').waitFor(PATIENCE);
+  await drawn(ann);
+  const off = await brightness(ann);
+  const darker = on.sums.map((sum, i) => off.sums[i] - sum);
+  const edge = (i) => i - (i % on.width) + 8; // in the same row, at the edge of the view
+  const bare = (i) => Math.abs(off.sums[i] - off.sums[edge(i)]) <= 6;
+  const at = darker.reduce((most, by, i) => (by > darker[most] && bare(i) ? i : most), 0);
+  const beside = edge(at);
+  assert.ok(on.sums[at] < on.sums[beside] - 20, `${on.sums[at]} under the part, ${on.sums[beside]} beside it`);
+  assert.ok(darker.every((by) => by >= -6), 'a shadow makes nothing brighter');
+  await ann.click('#view_ground');
+  await ann.focus('#canvas');
+  await ann.keyboard.press('x');
+  await ann.locator('#section_bar:not([hidden])').waitFor(PATIENCE);
+  await drawn(ann);
+  const cut = await brightness(ann);
+  assert.ok(Math.abs(cut.sums[at] - cut.sums[beside]) <= 6, `cut: ${cut.sums[at]}, beside it ${cut.sums[beside]}`);
+  await ann.focus('#canvas');
+  await ann.keyboard.press('x');
+  await ann.keyboard.press('u');
+});
+
 test('a snap takes the declared fit before what is nearer', async () => {
   await grab(ann, 'peg_g6');
   await ann.click('#tool_align');

@@ -1,4 +1,5 @@
 // Many parts of many shapes: those that look alike are drawn by one call, and each of them is still shown, hidden, seen through and cut by itself.
+// The shadow on the ground is one more call for all of them.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage } from '../support/browser.mjs';
@@ -7,6 +8,8 @@ import { PATIENCE } from '../support/people.mjs';
 
 const PARTS = 200;
 const SHAPES = 50;
+/** The map of the shadow is blurred along both sides and laid on the ground. */
+const SHADOW = 3;
 let gateway, browser, page;
 
 /** What one picture draws: calls, and bodies among all that is drawn of triangles. @param {boolean} [alone] in a browser that draws one by one */
@@ -47,15 +50,18 @@ after(async () => {
   gateway?.close();
 });
 
-/** Until a picture has so many bodies. @param {number} bodies */
+/** Calls of a picture that has so many bodies, once there is one. @param {number} bodies */
 async function bodies(bodies) {
-  await page.waitForFunction((n) => window.picture?.bodies === n, bodies, PATIENCE).catch(async () => assert.fail(`${JSON.stringify(await page.evaluate(() => window.picture))}, not ${bodies} bodies`));
-  return page.evaluate(() => window.picture.calls);
+  const found = page.waitForFunction((n) => window.picture?.bodies === n && window.picture.calls, bodies, PATIENCE);
+  return (await found.catch(async () => assert.fail(`${JSON.stringify(await page.evaluate(() => window.picture))}, not ${bodies} bodies`))).jsonValue();
 }
 
 test('a picture of many parts of many shapes takes few calls', async () => {
-  const calls = await bodies(PARTS);
+  const calls = await bodies(2 * PARTS + SHADOW);
   assert.ok(calls <= 8, `${calls} calls`);
+  await page.focus('#canvas');
+  await page.keyboard.press('s'); // without the shadow
+  assert.equal(await bodies(PARTS), calls - SHADOW - 1);
 });
 
 test('one of them is hidden, chosen among ghosts, and cut', async () => {
@@ -73,7 +79,7 @@ test('one of them is hidden, chosen among ghosts, and cut', async () => {
   assert.deepEqual(page.complaints, []);
 });
 
-test('a browser that draws one by one draws the same', async () => {
+test('a browser that draws one by one draws the same, without the shadow', async () => {
   const size = page.viewportSize();
   await page.context().close();
   page = await openPage(browser, gateway.address, { first: { content: `(${counting})(true)` }, view: size });

@@ -12,7 +12,7 @@ const plainKey = (key) => (/** @type {KeyboardEvent} */ event) => event.key.toLo
 const withCtrl = (key, shift = false) => (/** @type {KeyboardEvent} */ event) => event.key.toLowerCase() === key && (event.ctrlKey || event.metaKey) && event.shiftKey === shift;
 
 /**
- * @param {Record<'grab' | 'gather' | 'fit' | 'part' | 'section' | 'ghost' | 'hide' | 'isolate' | 'unhide' | 'picture' | 'undo' | 'redo' | 'cancel' | 'play' | 'nextClash' | 'lastClash', () => unknown>
+ * @param {Record<'grab' | 'gather' | 'fit' | 'part' | 'section' | 'ghost' | 'ground' | 'hide' | 'isolate' | 'unhide' | 'picture' | 'undo' | 'redo' | 'cancel' | 'play' | 'nextClash' | 'lastClash', () => unknown>
  *   & {tool: (tool: 'select' | 'move' | 'rotate' | 'align' | 'measure') => void, from: (side: string) => void, step: (axis: number, sign: number, turn: boolean) => boolean,
  *      stepSize: (by: number) => void, turnView: (right: number, up: number) => void, closer: (times: number) => void}} act
  */
@@ -29,6 +29,7 @@ export function makeKeyboard(act) {
     { keys: '0 1 2 3', text: 'Look from: isometric, top, front, right', is: (e) => '0123'.includes(e.key) && !e.ctrlKey, run: (e) => act.from(['iso', 'top', 'front', 'right'][Number(e.key)]) },
     { keys: '+ −', text: 'Closer, farther', is: (e) => ['+', '=', '-'].includes(e.key) && !e.ctrlKey, run: (e) => act.closer(e.key === '-' ? 0.8 : 1.25) },
     { keys: 'X H', text: 'Section plane; make other parts transparent', is: (e) => plainKey('x')(e) || plainKey('h')(e), run: (e) => (e.key.toLowerCase() === 'x' ? act.section() : act.ghost()) },
+    { keys: 'S', text: 'Shadow on the ground, or none', is: plainKey('s'), run: act.ground },
     { keys: 'D I U', text: 'Hide the chosen or gathered parts; show them alone; show all', is: (e) => ['d', 'i', 'u'].some((key) => plainKey(key)(e)), run: (e) => ({ d: act.hide, i: act.isolate, u: act.unhide })[/** @type {'d'} */ (e.key.toLowerCase())]() },
     { keys: 'P', text: 'Save a picture of the view', is: plainKey('p'), run: act.picture },
     { keys: 'Ctrl+Z', text: 'Undo your last move of the part', is: withCtrl('z'), run: act.undo },

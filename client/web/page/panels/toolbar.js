@@ -7,7 +7,7 @@ import { pictureOf } from '../view/picture.js';
 /** @typedef {import('../session/choice.js').Tool} Tool */
 
 /** @param {import('../desk.js').Desk} desk */
-export function makeToolbar({ session, choice, commands, section, mover, showAll, showPart, partsView, stage, say }) {
+export function makeToolbar({ session, choice, commands, section, mover, showAll, showPart, partsView, ground, stage, say }) {
   drawIcons(document);
   const policy = selectById('policy');
   policy.append(...POLICIES.map(([value, text]) => el('option', { value, title: text }, value[0].toUpperCase() + value.slice(1))));
@@ -35,6 +35,11 @@ export function makeToolbar({ session, choice, commands, section, mover, showAll
     section.bounds = partsView.bounds();
     if (!section.on && section.across !== 'clash') section.centre();
     section.set(!section.on);
+  }
+
+  function toggleGround() {
+    ground.set(!ground.on);
+    setPressed(byId('view_ground'), ground.on);
   }
 
   async function takePicture() {
@@ -79,6 +84,8 @@ export function makeToolbar({ session, choice, commands, section, mover, showAll
   byId('view_part').onclick = () => showPart(choice.part);
   byId('view_section').onclick = toggleSection;
   byId('view_ghost').onclick = () => choice.setGhost(!choice.ghost);
+  byId('view_ground').onclick = toggleGround;
+  setPressed(byId('view_ground'), ground.on);
   byId('view_picture').onclick = takePicture;
   byId('do_undo').onclick = () => change('undo');
   byId('do_redo').onclick = () => change('redo');
@@ -96,5 +103,5 @@ export function makeToolbar({ session, choice, commands, section, mover, showAll
   choice.on('part', refresh);
   for (const what of /** @type {const} */ (['me', 'scene', 'decision'])) session.on(what, refresh);
   refresh();
-  return { chooseTool, change, toggleSection, cancel, takePicture, hide, isolate };
+  return { chooseTool, change, toggleSection, toggleGround, cancel, takePicture, hide, isolate };
 }

@@ -3,7 +3,7 @@ import * as THREE from 'three';
 
 /** @typedef {import('./parts_view.js').Shown} Shown */
 /** @typedef {import('./looks.js').Look} Look */
-/** @typedef {{faces: THREE.Mesh, inside: THREE.Mesh, edges: THREE.LineSegments}} Drawn */
+/** @typedef {{faces: THREE.Mesh, inside: THREE.Mesh, edges: THREE.LineSegments, caster: THREE.Mesh}} Drawn */
 
 const LEAST_VERTICES = 1 << 17; // above 65,536: an index of a shape never changes its size
 const INDEX_BYTES = 4;
@@ -35,6 +35,8 @@ class Store extends THREE.BatchedMesh {
 export class Bodies {
   /** Nothing in it has a pose of its own: no walk over it in each picture. */
   group = new THREE.Group();
+  /** All faces but those that are seen through, once more: they throw the shadow. */
+  casters = new THREE.Scene();
   #faces = new Store();
   #edges = new Store();
   /** @type {Map<Shown, number>} */
@@ -45,7 +47,7 @@ export class Bodies {
   /** @param {import('./looks.js').Looks} looks */
   constructor(looks) {
     this.looks = looks;
-    this.group.updateMatrixWorld = () => {};
+    this.group.updateMatrixWorld = this.casters.updateMatrixWorld = () => {};
   }
 
   /** Anew where somebody came, went or looks otherwise. @param {Iterable<Shown>} all */
@@ -100,18 +102,19 @@ export class Bodies {
     texture.needsUpdate = true;
     /** @type {any} */ (drawn.faces)._indirectTexture?.dispose();
     const faces = pieces(this.#faces, list.map(({ shape }) => shape.faces));
-    for (const object of [drawn.faces, drawn.inside]) fill(object, this.#faces, this.#faces, texture, faces);
+    for (const object of [drawn.faces, drawn.inside, drawn.caster]) fill(object, this.#faces, this.#faces, texture, faces);
     fill(drawn.edges, this.#edges, this.#faces, texture, pieces(this.#edges, list.map(({ shape }) => shape.edges)));
   }
 
   /** @param {Look} look @returns {Drawn} */
   #make(look) {
     const { looks } = this;
-    const drawn = { faces: new THREE.Mesh(undefined, looks.faces(look)), inside: new THREE.Mesh(undefined, looks.inside(look)), edges: new THREE.LineSegments(undefined, looks.edges(look)) };
+    const drawn = { faces: new THREE.Mesh(undefined, looks.faces(look)), inside: new THREE.Mesh(undefined, looks.inside(look)), edges: new THREE.LineSegments(undefined, looks.edges(look)), caster: new THREE.Mesh(undefined, looks.faces(look)) };
     // What is seen through is drawn after what is not.
     drawn.faces.renderOrder = look === 'ghost' ? 1 : 0;
     for (const object of Object.values(drawn)) Object.assign(object, { matrixAutoUpdate: false, matrixWorldAutoUpdate: false, frustumCulled: false });
-    this.group.add(...Object.values(drawn));
+    this.group.add(drawn.faces, drawn.inside, drawn.edges);
+    if (look !== 'ghost') this.casters.add(drawn.caster);
     this.#drawn.set(look, drawn);
     return drawn;
   }

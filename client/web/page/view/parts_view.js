@@ -23,6 +23,8 @@ export class PartsView {
   looks = new Looks();
   #bodies = new Bodies(this.looks);
   #gathered = true;
+  /** Another one whenever what is shown stands or looks otherwise. */
+  version = 0;
   #generation = 0;
 
   /**
@@ -84,6 +86,7 @@ export class PartsView {
   #gather() {
     if (this.#gathered) return;
     this.#gathered = true;
+    ++this.version;
     this.#bodies.gather(this.shown.values());
   }
 
@@ -95,6 +98,7 @@ export class PartsView {
       place(shown);
       this.#bodies.place(shown);
     }
+    ++this.version;
     this.stage.ask();
   }
 
@@ -126,6 +130,11 @@ export class PartsView {
   boxesOf(parts) {
     const shown = [...parts].flatMap((part) => this.shown.get(part.id) ?? []);
     return shown.flatMap(({ faces }) => faces.geometry.boundingBox?.clone().applyMatrix4(faces.matrixWorld) ?? []);
+  }
+
+  /** What throws the shadow. */
+  get casters() {
+    return this.#bodies.casters;
   }
 
   /** Box of all parts. */
