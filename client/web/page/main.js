@@ -19,6 +19,7 @@ import { makeProposedRules } from './panels/proposed_rules.js';
 import { makeReport } from './panels/report.js';
 import { makeRules } from './panels/rules.js';
 import { makeSectionBar } from './panels/section_bar.js';
+import { makeSpaceMouse } from './panels/space_mouse.js';
 import { makeStatistics } from './panels/statistics.js';
 import { makeStatus } from './panels/status.js';
 import { makeTheme } from './panels/theme.js';
@@ -72,6 +73,7 @@ makeKeyboard({
   turnView: (right, up) => camera.turn(right, up), closer: (times) => camera.closer(times),
   nextClash: () => desk.goClash(1), lastClash: () => desk.goClash(-1),
 });
+makeSpaceMouse(desk);
 byId('line_state').onclick = join.ask;
 session.on('join_refused', (text) => join.refused(text));
 session.on('welcome', () => join.welcome());

@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, test } from 'node:test';
+import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
 import { PATIENCE, choose, drawn, grab, moveBy, position, settled, settledElsewhere, ticksPass, until, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
@@ -317,6 +318,57 @@ test('a snap takes the declared fit before what is nearer', async () => {
   await ann.click('#align_bar button:has-text("Free")');
   await ann.click('#tool_select');
   await release(ann);
+});
+
+/** A 3D mouse as WebHID has one: `push` tells the same report again and again, as it does while it is pushed. */
+const withSpaceMouse = () => {
+  const device = Object.assign(new EventTarget(), { vendorId: 0x256f, productName: 'SpaceMouse', opened: false, open: async () => void (device.opened = true) });
+  const requestDevice = async ({ filters }) => (filters.some(({ vendorId }) => vendorId === device.vendorId) ? [device] : []);
+  Object.defineProperty(navigator, 'hid', { value: Object.assign(new EventTarget(), { getDevices: async () => [], requestDevice }) });
+  let telling;
+  const tell = (reportId, counts) => device.opened && device.dispatchEvent(Object.assign(new Event('inputreport'), { reportId, data: new DataView(Int16Array.from(counts).buffer) }));
+  window.push = (...report) => {
+    clearInterval(telling);
+    telling = setInterval(() => tell(...report), 20);
+  };
+  window.letGo = () => {
+    clearInterval(telling);
+    for (const id of [1, 2]) tell(id, [0, 0, 0]);
+  };
+};
+
+test('a 3D mouse that the browser knows turns the view, and moves the part in hand', async () => {
+  const cid = await openPage(session.browser, session.addresses.designer, { name: 'cid', first: withSpaceMouse });
+  await whenListed(cid, 'parts', 'block');
+  await cid.click('#do_help');
+  await cid.click('#connect_space_mouse');
+  await cid.getByText('SpaceMouse is connected').waitFor(PATIENCE);
+  await cid.click('#keys button:has-text("Close")');
+  const eye = () => cid.evaluate(() => document.getElementById('compass')?.toDataURL());
+  const first = await eye();
+  await cid.evaluate(() => window.push(2, [0, 0, -350]));
+  await until(async () => (await eye()) !== first, () => 'the view turns');
+  await cid.evaluate(() => window.letGo());
+  await grab(cid, 'block');
+  await cid.locator('#tool_move[aria-pressed="true"]').waitFor(PATIENCE);
+  await lookAtItsFront(cid);
+  const [from, front] = [await settled(cid), await eye()];
+  await cid.evaluate(() => window.push(1, [350, 0, 0]));
+  await until(async () => (await position(cid))[0] > from[0] + 1, () => 'the part goes to the right');
+  await cid.evaluate(() => window.letGo());
+  const to = await settled(cid);
+  assert.ok(Math.hypot(to[1] - from[1], to[2] - from[2]) < 1e-3, `not to the right: from ${from} to ${to}`);
+  assert.equal(await eye(), front, 'the view stays while a part is in hand');
+  await release(cid);
+  assert.deepEqual(cid.complaints, []);
+  await cid.context().close();
+});
+
+test('a browser without WebHID has no button for a 3D mouse', async () => {
+  const page = await openPage(session.browser, session.addresses.designer, { first: () => delete Navigator.prototype.hid });
+  await page.locator('#join[open]').waitFor(PATIENCE);
+  assert.equal(await page.evaluate(() => document.getElementById('connect_space_mouse').hidden), true);
+  await page.context().close();
 });
 
 test('nothing was complained of', () => {

@@ -55,8 +55,10 @@ export function makeKeyboard(act) {
   help.append(
     el('h2', { id: 'keys_title' }, 'Keys'),
     el('table', {}, el('tbody', {}, ...bindings.map(({ keys, text }) => el('tr', {}, el('td', {}, el('kbd', {}, keys)), el('td', {}, text))))),
-    el('p', {}, 'In a list: arrows choose, Enter shows. Mouse: left turns, right shifts, wheel zooms, double click shows a part.'),
-    el('div', { class: 'row end' }, el('button', { class: 'primary', onclick: () => help.close() }, 'Close')),
+    el('p', {}, 'In a list: arrows choose, Enter shows. Mouse: left turns, right shifts, wheel zooms, double click shows a part. With the tool Move, left drags a part, also one that nobody holds.'),
+    el('div', { class: 'row end' },
+      el('button', { id: 'connect_space_mouse', type: 'button', hidden: true, title: 'It moves the view, or the part in hand with the tools Move and Turn' }, 'Connect a 3D mouse'),
+      el('button', { class: 'primary', autofocus: true, onclick: () => help.close() }, 'Close')),
   );
 
   function showHelp() {

@@ -126,14 +126,29 @@ export class Camera {
     this.flyTo(new THREE.Vector3(...view.p), new THREE.Vector3(...view.target));
   }
 
-  /** @param {number} right @param {number} up rad */
-  turn(right, up) {
+  /** From the target to the eye, once the eye went round it. @param {number} right @param {number} up rad */
+  #turned(right, up) {
     const back = this.stage.camera.position.clone().sub(this.target);
     const ball = new THREE.Spherical().setFromVector3(new THREE.Vector3(back.x, back.z, -back.y));
     ball.theta += right;
     ball.phi = THREE.MathUtils.clamp(ball.phi - up, 0.01, Math.PI - 0.01);
     const turned = new THREE.Vector3().setFromSpherical(ball);
-    this.flyTo(new THREE.Vector3(turned.x, -turned.z, turned.y).add(this.target), this.target, true);
+    return new THREE.Vector3(turned.x, -turned.z, turned.y);
+  }
+
+  /** @param {number} right @param {number} up rad */
+  turn(right, up) {
+    this.flyTo(this.#turned(right, up).add(this.target), this.target, true);
+    this.onHand();
+  }
+
+  /** As if what is looked at were pushed right, up and towards the eye (in views) and turned (rad); z of the world stays up. @param {import('../session/motion.js').Increment} by */
+  drive({ t, r }) {
+    const { camera } = this.stage;
+    const back = this.#turned(-r[1], r[0]).multiplyScalar(Math.exp(-t[2]));
+    const view = 2 * back.length() * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2));
+    const target = new THREE.Vector3(-t[0] * view, -t[1] * view, 0).applyQuaternion(camera.quaternion).add(this.target);
+    this.flyTo(back.add(target), target, true);
     this.onHand();
   }
 
