@@ -1,13 +1,17 @@
-// A part that took another mesh, and then its server is gone: the session goes on with that mesh.
+// Parts that took another mesh, came, went or were made to stand, and then the server is gone: the
+// session goes on with them.
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/hash.h"
 #include "common/generators/generators.h"
 #include "common/messages/names.h"
 #include "tests/network/second_server.h"
+#include "tests/support/cube_file.h"
 #include "tests/support/stl_file.h"
 
 namespace mortise::test {
@@ -36,6 +40,10 @@ class ReplacedPeg : public SecondServer {
   std::string first_mesh() {
     if (first_mesh_.empty()) first_mesh_ = mesh_of_peg(*anna_);
     return first_mesh_;
+  }
+  bool all_see(const std::function<bool(const Client&)>& so) {
+    return wait_until(
+        [&] { return so(*anna_->client) && so(*ben_->client) && so(*otto_->client); });
   }
   /// As all three see it: this mesh, and one open clash of this class.
   bool all_have(const std::string& mesh, CollisionClass is) {
@@ -168,6 +176,54 @@ TEST_F(ReplacedPeg, ASessionThatGoesOnFromItsLogHasTheNewMeshAndUndoesIt) {
   EXPECT_TRUE(all_have(first_mesh(), CollisionClass::kFake)) << again->errors();
   undo(true);
   EXPECT_TRUE(all_have(thick, kOfThick)) << told();
+}
+
+TEST_F(ReplacedPeg, ASessionThatGoesOnFromItsLogHasThePartsThatCameAndWent) {
+  const auto first = lead_with_peg();
+  ASSERT_FALSE(HasFailure());
+  Client& anna = *anna_->client;
+  // A post in the block that then stands, and another one that is taken away.
+  const std::vector<std::byte> file = cube_file(5.0);
+  const std::string hash = content_hash(file);
+  EXPECT_NE(anna.upload(0, "post.stl", 1.0, file), 0u);
+  EXPECT_NE(anna.add_part(0, "post", hash, Pose::translation({104, 0, 0}), true), 0u);
+  EXPECT_NE(anna.add_part(0, "spare", hash, Pose::translation({200, 0, 0}), true), 0u);
+  ASSERT_TRUE(all_see([](const Client& client) {
+    return client.find_part("post") && client.find_part("spare") &&
+           client.open_clashes().size() == 2;
+  })) << told();
+  const PartId post = anna.find_part("post"), spare = anna.find_part("spare");
+  anna.set_moving(0, post, false);
+  anna.remove_part(0, spare);
+  const auto as_it_was = [&](const Client& client) {
+    return client.find_part("post") == post && !client.parts().at(post).info.moving &&
+           !client.find_part("spare") && client.open_clashes().size() == 2;
+  };
+  ASSERT_TRUE(all_see(as_it_was)) << told();
+  const auto clashes_before = clashes(*anna_);
+  turn(2.2);  // two flushes later all of it is on disk
+  first->signal(SIGKILL);
+  EXPECT_EQ(first->wait(kPatience_s), 128 + SIGKILL);
+
+  auto again = go_on({"--log", logs()});
+  ASSERT_TRUE(all_see(as_it_was)) << again->errors();
+  EXPECT_EQ(clashes(*anna_), clashes_before);
+  // Who comes now gets the mesh, and what was done is taken back.
+  Guest late(domain_, "late");
+  const std::string mesh = anna.parts().at(post).info.mesh_hash;
+  bool has_mesh = false;
+  EXPECT_TRUE(wait_until([&] {
+    for (const MeshBytes& bytes : late.listen().meshes) has_mesh |= bytes.hash == mesh;
+    return has_mesh && as_it_was(*late.client);
+  }));
+  anna.undo(0, post);
+  anna.undo(0, spare);
+  EXPECT_TRUE(all_see([&](const Client& client) {
+    return client.find_part("spare") == spare && client.parts().at(post).info.moving;
+  })) << told();
+  again->signal(SIGINT);
+  EXPECT_EQ(again->wait(kPatience_s), 0) << again->errors();
+  expect_verified();
 }
 
 }  // namespace
