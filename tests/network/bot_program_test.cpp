@@ -2,12 +2,17 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
+#include <vector>
 
+#include "common/evaluation/clash_line.h"
 #include "tests/network/domain.h"
 #include "tests/network/program.h"
 #include "tests/network/same_everywhere.h"
@@ -126,6 +131,89 @@ TEST(BotProgram, AReportThatCannotBeWrittenIsNoSuccess) {
                 "--junit", "/proc/none/bots.xml", "--limit", "lost_events=0"});
   EXPECT_EQ(bots.wait(kPatience_s), 1);
   EXPECT_NE(bots.errors().find("/proc/none/bots.xml"), std::string::npos) << bots.errors();
+}
+
+constexpr char kPressed[] = R"(
+acts:
+  - user: anna
+    part: red
+    steps: [{by: [0, 0, -12], seconds: 0.4}, {by: [0, 0, 12], seconds: 0.4}, {by: [0, 0, -12], seconds: 0.4}]
+)";
+
+// red is pressed into the base, and nothing touches blue.
+TEST(BotProgram, HoldsTheWorstClassThatIsToldOfTwoParts) {
+  TestFolder folder;
+  const std::string domain = std::to_string(own_domain());
+  Program server(folder.path(), "mortise-server",
+                 {folder.write("blocks.yaml", blocks_yaml()), "--domain", domain, "--no-log"});
+  const auto exit_code = [&](std::vector<std::string> arguments, std::string& said) {
+    arguments.insert(arguments.end(), {"--domain", domain, "--wait", "20"});
+    Program bot(folder.path(), "mortise-bot", arguments);
+    const int code = bot.wait(kPatience_s);
+    said = bot.errors();
+    return code;
+  };
+  std::string said;
+  EXPECT_EQ(
+      exit_code({"--behaviour", "script", "--play", folder.write("play.yaml", kPressed), "--limit",
+                 "expect_clash red,base=real", "--limit", "expect_clash red,blue=none"},
+                said),
+      0)
+      << said;
+  // The second one was not there when it happened, and knows what is open.
+  EXPECT_EQ(
+      exit_code({"--observer", "--duration", "1", "--limit", "expect_clash base,red=potential",
+                 "--limit", "expect_clash base,blue=none", "--limit", "expect_clash blue,red=real"},
+                said),
+      5);
+  EXPECT_NE(said.find("base, red: real is told, potential expected"), std::string::npos) << said;
+  EXPECT_NE(said.find("blue, red: none is told, real expected"), std::string::npos) << said;
+  EXPECT_EQ(said.find("base, blue"), std::string::npos) << "this one holds: " << said;
+}
+
+// What people read while it runs: a line for who comes and goes and for each clash, its class
+// first.
+TEST(ServerMessages, OfALiveRunAreAKnownFewAndNoneIsTooWide) {
+  TestFolder folder;
+  const std::string domain = std::to_string(own_domain()), wide = " red_" + std::string(60, 'w');
+  std::string yaml = blocks_yaml(), play = kPressed;
+  yaml.replace(yaml.find(" red,"), 4, wide);
+  play.replace(play.find(" red\n"), 4, wide);
+  Program server(folder.path(), "mortise-server",
+                 {folder.write("blocks.yaml", yaml), "--domain", domain, "--log",
+                  (folder.path() / "live.mcap").string(), "--live", "--json"});
+  Program bot(folder.path(), "mortise-bot",
+              {"--domain", domain, "--wait", "20", "--behaviour", "script", "--play",
+               folder.write("play.yaml", play), "--linger", "0.5"});
+  ASSERT_EQ(bot.wait(kPatience_s), 0) << bot.errors();
+  server.signal(SIGTERM);
+  ASSERT_EQ(server.wait(kPatience_s), 0) << server.errors();
+
+  const std::string pair = "base × red_w+…w+ +", clash = "clash [0-9]+";
+  const std::vector<std::pair<std::string, std::regex>> known = {
+      {"session", std::regex("session 'default' of .*: 3 parts, 60 Hz, policy report, domain .*")},
+      {"log", std::regex("log .*live.mcap")},
+      {"people", std::regex("anna (joined|left)")},
+      {"begin", std::regex("REAL  " + pair + "[0-9.]+ [µm]+ deep +" + clash + " by anna")},
+      {"end", std::regex("ENDED  " + pair + "was real for [0-9.]+ s +" + clash)},
+      {"live", std::regex("[0-9.]+ s, [01] users? \\| open: [0-9]+ real, 0 potential, 0 fake \\| "
+                          "tick p99 [0-9.]+ ms( \\| [0-9]+ deadlines missed)?")},
+      {"overload", std::regex("warning: overload: .*")}};  // of a busy machine
+  std::set<std::string> seen;
+  std::istringstream lines(server.errors());
+  for (std::string line; std::getline(lines, line);) {
+    ASSERT_GT(line.size(), 9u) << server.errors();
+    const std::string message = line.substr(9);  // behind the time of day
+    const auto is = std::find_if(known.begin(), known.end(), [&](const auto& kind) {
+      return std::regex_match(message, kind.second);
+    });
+    ASSERT_NE(is, known.end()) << "nobody asked for: " << line << "\n" << server.errors();
+    seen.insert(is->first);
+    if (is->first == "session" || is->first == "log") continue;  // these name files
+    EXPECT_LE(columns_of(message), kClashLineColumns) << message;
+  }
+  for (const char* kind : {"session", "log", "people", "begin", "end", "live"})
+    EXPECT_TRUE(seen.contains(kind)) << kind << "\n" << server.errors();
 }
 
 TEST(ServerMessages, EachLineIsAnObject) {
