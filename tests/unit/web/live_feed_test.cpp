@@ -285,6 +285,28 @@ TEST_F(PagesOnASession, AStoppedPageIsBehindByOneFrameAndNoEvent) {
   EXPECT_EQ(bob.count("events"), ann.count("events"));
 }
 
+TEST_F(PagesOnASession, AllGetTheOneFrameThatWasEncoded) {
+  come(ann, "ann");
+  come(bob, "bob");
+  feed->enter(eve);
+  grab(ann, kPeg);
+  for (Page* page : {&ann, &bob, &eve}) page->reads = false;
+  move(ann, kPeg, -2.5);
+  turn(2);
+  std::vector<SharedBytes> frames;
+  for (Page* page : {&ann, &bob, &eve}) {
+    const auto encode_anew = [](const std::vector<PartId>&) -> SharedBytes {
+      ADD_FAILURE() << "the frame of all pages would have done";
+      return std::make_shared<const std::string>();
+    };
+    while (const auto message = page->outbox.next(encode_anew))
+      if (message->binary) frames.push_back(message->bytes);
+  }
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[0].get(), frames[1].get());
+  EXPECT_EQ(frames[0].get(), frames[2].get());
+}
+
 TEST_F(PagesOnASession, ShowEachOtherWhereTheyLookFrom) {
   come(ann, "ann");
   come(bob, "bob");
