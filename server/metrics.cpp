@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "common/base/nearest_rank.h"
+
 namespace mortise {
 
 std::size_t DurationHistogram::bucket_of(std::uint64_t ns) {
@@ -33,11 +35,11 @@ void DurationHistogram::clear() { *this = DurationHistogram{}; }
 
 double DurationHistogram::percentile_us(double fraction) const {
   if (count_ == 0) return 0.0;
-  const double wanted = fraction * static_cast<double>(count_);
+  const std::uint64_t wanted = nearest_rank(count_, fraction) + 1;
   std::uint64_t seen = 0;
   for (std::size_t i = 0; i < buckets_.size(); ++i) {
     seen += buckets_[i];
-    if (seen > 0 && static_cast<double>(seen) >= wanted) {
+    if (seen >= wanted) {
       return static_cast<double>(std::min(top_of(i), max_ns_)) * 1e-3;
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "client/bot/stream_digest.h"
+#include "common/base/nearest_rank.h"
 
 namespace mortise {
 namespace {
@@ -149,11 +150,7 @@ bool from_bytes(const std::vector<std::uint8_t>& bytes, ProcessReport& report) {
 
 Json percentiles(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const auto at = [&](double fraction) {
-    if (values.empty()) return 0.0;
-    const double rank = std::ceil(fraction * static_cast<double>(values.size()));
-    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-  };
+  const auto at = [&](double fraction) { return quantile_of_sorted(values, fraction); };
   return {{"count", values.size()},
           {"p50", at(0.5)},
           {"p90", at(0.9)},

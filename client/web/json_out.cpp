@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/json_text.h"
+#include "common/base/nearest_rank.h"
 #include "common/messages/names.h"
 
 namespace mortise::web {
@@ -175,9 +176,8 @@ Json json_of(const SessionPulse& pulse) {
 Json percentiles_of(std::vector<double> samples_ms) {
   if (samples_ms.empty()) return nullptr;
   std::sort(samples_ms.begin(), samples_ms.end());
-  const std::size_t last = samples_ms.size() - 1;
-  return {{"p50", number(samples_ms[last / 2])},
-          {"p99", number(samples_ms[last * 99 / 100])},
+  return {{"p50", number(quantile_of_sorted(samples_ms, 0.5))},
+          {"p99", number(quantile_of_sorted(samples_ms, 0.99))},
           {"samples", samples_ms.size()}};
 }
 

@@ -5,6 +5,7 @@
 
 #include "tests/bench/session_load.h"
 #include "tests/bench/session_sections.h"
+#include "tests/bench/statistics.h"
 #include "tests/network/key_ring.h"
 
 namespace mortise::bench {
@@ -59,13 +60,6 @@ Cost run(const test::KeyRing* keys, double tick_hz, double seconds) {
   }
   cost.ran = server.close().is_object() && !std::isnan(cost.clients_cpu);
   return cost;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/nearest_rank.h"
+
 namespace mortise::bench {
 namespace {
 
@@ -22,8 +24,7 @@ double process_cpu_s() { return clock_s(CLOCK_PROCESS_CPUTIME_ID); }
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(nearest_rank(values.size(), q));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }

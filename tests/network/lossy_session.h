@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/base/nearest_rank.h"
 #include "common/base/result.h"
 #include "common/messages/event.h"
 #include "server/inbox.h"
@@ -35,11 +36,7 @@ struct LossyRun {
   double missed = 0.0;                  ///< share of deadlines
   std::uint64_t carried = 0, lost = 0;  ///< IP packets
 
-  double percentile_ms(double p) const {
-    return took_s.empty()
-               ? 0.0
-               : 1e3 * took_s[static_cast<std::size_t>(p * static_cast<double>(took_s.size() - 1))];
-  }
+  double percentile_ms(double p) const { return 1e3 * quantile_of_sorted(took_s, p); }
 };
 
 /// Fails in one line where no such link can be made, or nobody joined across it.

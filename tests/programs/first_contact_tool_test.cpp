@@ -4,10 +4,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "common/io/mesh/obj_exact.h"
 
@@ -83,6 +87,25 @@ TEST_F(Tool, UnitsAreThoseOfTheFiles) {
   ASSERT_EQ(run_motions("a,linear,0,0,0,-5,3,0,1,0,0,0,5,3,0,1,0,0,0\n", "--unit in"), 0);
   const std::string out = read("out.csv");
   EXPECT_NE(out.find("a,free,1,1,113.592253256989"), std::string::npos) << out;
+}
+
+// Of 40 times the 99th percentile is the largest, and the median the twentieth.
+TEST_F(Tool, SaysPercentilesByNearestRank) {
+  std::string rows;
+  for (int i = 0; i < 40; ++i)
+    rows += "m" + std::to_string(i) + ",linear,0,0,0,-5,0." + std::to_string(10 + i) +
+            ",0,1,0,0,0,5,0,0,1,0,0,0\n";
+  ASSERT_EQ(run_motions(rows), 0) << read("stderr");
+  std::vector<double> time_us;
+  std::istringstream out(read("out.csv"));
+  std::string line;
+  for (std::getline(out, line); std::getline(out, line);)
+    time_us.push_back(std::stod(line.substr(line.rfind(',') + 1)));
+  ASSERT_EQ(time_us.size(), 40U);
+  std::sort(time_us.begin(), time_us.end());
+  char said[80];
+  std::snprintf(said, sizeof said, "median %.1f us, p99 %.1f us\n", time_us[19], time_us[39]);
+  EXPECT_NE(read("stdout").find(said), std::string::npos) << read("stdout") << said;
 }
 
 TEST_F(Tool, WhatMayLieInAnOpenMeshIsNotFree) {

@@ -8,6 +8,7 @@
 
 #include "client/tools/first_contact/motions_file.h"
 #include "common/base/json_text.h"
+#include "common/base/nearest_rank.h"
 #include "common/base/ranges.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
@@ -139,8 +140,8 @@ void summarize(const std::vector<Row>& rows) {
       count[static_cast<int>(ContactState::kContact)],
       count[static_cast<int>(ContactState::kUndecided)],
       count[static_cast<int>(ContactState::kTouchingAtStart)],
-      count[static_cast<int>(ContactState::kOverlappingAtStart)], time_us[time_us.size() / 2],
-      time_us[(99 * (time_us.size() - 1)) / 100]);
+      count[static_cast<int>(ContactState::kOverlappingAtStart)], quantile_of_sorted(time_us, 0.5),
+      quantile_of_sorted(time_us, 0.99));
   if (hidden > 0)
     std::printf("%d motions: no inside: one mesh is open and the other may lie within it\n",
                 hidden);

@@ -10,6 +10,7 @@
 #include "common/base/hash.h"
 #include "common/base/ids.h"
 #include "common/base/in_quotes.h"
+#include "common/base/nearest_rank.h"
 #include "common/base/plain_text.h"
 #include "common/base/ranges.h"
 #include "common/base/result.h"
@@ -138,6 +139,18 @@ TEST(Ranges, WhatIsNotFiniteLiesInNone) {
   EXPECT_FALSE(within(2.0 * kLongest_mm, kLongest_mm));
   EXPECT_FALSE(within(std::nan(""), kLongest_mm));
   EXPECT_FALSE(within(HUGE_VAL, kLongest_mm));
+}
+
+TEST(NearestRank, IsTheCeilingOfTheShare) {
+  EXPECT_EQ(nearest_rank(40, 0.99), 39U);
+  EXPECT_EQ(nearest_rank(100, 0.99), 98U);
+  EXPECT_EQ(nearest_rank(101, 0.99), 99U);
+  EXPECT_EQ(nearest_rank(100, 0.07), 6U) << "0.07 * 100 is a little more than 7";
+  EXPECT_EQ(nearest_rank(2, 0.5), 0U);
+  EXPECT_EQ(nearest_rank(1, 0.0), 0U);
+  EXPECT_EQ(nearest_rank(3, 1.0), 2U);
+  EXPECT_EQ(quantile_of_sorted({1.0, 2.0, 3.0}, 0.5), 2.0);
+  EXPECT_EQ(quantile_of_sorted({}, 0.5), 0.0);
 }
 
 TEST(InQuotes, IsOneLineOfBoundedLength) {

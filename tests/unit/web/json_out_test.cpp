@@ -117,6 +117,7 @@ TEST(JsonOut, PercentilesOfNothingAreNull) {
   const Json json = percentiles_of({3.0, 1.0, 2.0});
   EXPECT_EQ(json["p50"], 2.0);
   EXPECT_EQ(json["samples"], 3);
+  EXPECT_EQ(json["p99"], 3.0) << "by nearest rank p99 of few samples is the largest";
 }
 
 }  // namespace
