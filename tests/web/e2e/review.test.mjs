@@ -11,9 +11,12 @@ import { PEGS } from '../support/scenario.mjs';
 const session = new BrowserSession('review');
 let browser, addresses, eva, tom;
 
-// Beside the pegs a shell that is open at its top, and a ball that fits into it: what lies inside is not known.
+// Beside the pegs a shell that is open at its top, and a ball that fits into it: what lies inside is not known. And parts of two sub-assemblies.
 const OPEN = `${PEGS.replace('fits:', `  - {name: shell, mesh: {file: shell.stl, unit: mm}, pose: {position: [-60, 80, 0]}}
   - {name: ball, generator: {kind: block, x: 4, y: 4, z: 4}, moving: true, pose: {position: [-60, 80, 40]}}
+  - {name: arm/left/jaw, generator: {kind: block, x: 8, y: 8, z: 8}, moving: true, pose: {position: [60, 80, 40]}}
+  - {name: arm/left/pad, generator: {kind: block, x: 8, y: 8, z: 8}, pose: {position: [60, 80, 20]}}
+  - {name: arm/right/jaw, generator: {kind: block, x: 8, y: 8, z: 8}, pose: {position: [67, 80, 20]}}
 fits:`)}`;
 
 /** Five sides of a cube of 20 mm. */
@@ -142,6 +145,25 @@ test('clashes stand in groups', async () => {
   assert.ok(await tom.locator('#clash').isHidden());
   await tom.getByLabel('Groups').selectOption('');
   assert.equal(await tom.locator('#clashes > li.head').count(), 0);
+});
+
+test('clashes stand in groups by the sub-assemblies of their parts', async () => {
+  await tom.getByLabel('Groups').selectOption('assembly');
+  await tom.getByLabel('What a real contact does').selectOption('report'); // else it stands at the first of both
+  await grab(eva, 'arm/left/jaw');
+  await moveBy(eva, [0, 0, -15]);
+  for (const pair of ['arm/left/jaw × arm/left/pad', 'arm/left/jaw × arm/right/jaw']) await whenListed(tom, 'clashes', `real, ${pair}`);
+  const listed = await tom.locator('#clashes > li').evaluateAll((rows) => rows.map((li) => (li.classList.contains('head') ? '' : '  ') + (li.querySelector('.grow') ?? li).textContent));
+  assert.deepEqual(listed, [
+    'arm/left', '  arm/left/jaw × arm/left/pad',
+    'arm/left × arm/right', '  arm/left/jaw × arm/right/jaw',
+    'In no sub-assembly', '  plate_p6 × peg_p6', '  plate_k6 × peg_k6',
+  ]);
+  await eva.locator('#do_undo').click();
+  for (const page of [eva, tom]) await page.locator('#clashes > li[aria-label*="arm/left"]').first().waitFor({ ...PATIENCE, state: 'detached' });
+  await tom.getByLabel('What a real contact does').selectOption('stop');
+  await eva.click('#hand button:has-text("Release")');
+  await tom.getByLabel('Groups').selectOption('');
 });
 
 test('a fit is set from the clash itself, and the verdict flips for everybody', async () => {
