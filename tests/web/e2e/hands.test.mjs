@@ -23,14 +23,17 @@ async function release(page) {
   await page.locator('#tool_select[aria-pressed="true"]').waitFor({ ...PATIENCE, state: 'attached' });
 }
 
-/** The chosen part fills the view, seen from the front: its plane is that of X and Z. */
-async function lookAtItsFront(page) {
+/** The chosen part fills the view, seen from the side of this key. */
+async function lookAtIt(page, key) {
   await page.focus('#canvas');
-  await page.keyboard.press('2');
+  await page.keyboard.press(key);
   await drawn(page);
   await page.keyboard.press('z');
   await drawn(page);
 }
+
+/** The plane of the view is that of X and Z. */
+const lookAtItsFront = (page) => lookAtIt(page, '2');
 
 /** Takes what is in the view beside its middle, where handles may stand, and drags it, pixels. */
 async function drag(page, [right, down]) {
@@ -53,6 +56,23 @@ async function alignStray(page) {
   await page.click('#align_bar button:has-text("Align")');
   await page.getByText('Kept:').waitFor(PATIENCE);
   await settled(page);
+}
+
+/** Of a picture of the view without what lies on it: how bright its pixels are, 0 … 765, row by row. */
+async function brightness(page) {
+  const cover = (visibility) => page.evaluate((how) => document.querySelectorAll('.view > :not(#canvas)').forEach((element) => (element.style.visibility = how)), visibility);
+  await cover('hidden');
+  await page.locator('#canvas').blur(); // its outline is no part of the view
+  const png = (await page.locator('#canvas').screenshot()).toString('base64');
+  await cover('');
+  return page.evaluate(async (text) => {
+    const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
+    const { width, height } = picture;
+    const pen = new OffscreenCanvas(width, height).getContext('2d');
+    pen.drawImage(picture, 0, 0);
+    const { data } = pen.getImageData(0, 0, width, height);
+    return { width, sums: Array.from({ length: width * height }, (_, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2]) };
+  }, png);
 }
 
 test('"Move by" clears its numbers after use', async () => {
@@ -197,6 +217,37 @@ test('a click, another with Ctrl, and G: both parts are in hand', async () => {
   assert.equal(await ann.locator('#parts > li.gathered').count(), 0);
 });
 
+test('in the view as well: a click, another with Ctrl, and G', async () => {
+  await choose(ann, 'block');
+  await ann.locator('#parts > li', { hasText: 'peg_g6' }).click({ modifiers: ['Control'] });
+  await ann.focus('#canvas');
+  for (const key of ['i', '2', 'Escape', 'Escape']) await ann.keyboard.press(key);
+  await ann.locator('#hand').waitFor({ ...PATIENCE, state: 'hidden' });
+  await drawn(ann);
+  const { width, sums } = await brightness(ann);
+  const solid = sums.flatMap((sum, i) => (Math.abs(sum - sums[i - (i % width) + 8]) > 60 ? [i] : []));
+  const [left, right] = [Math.min(...solid.map((i) => i % width)) + 12, Math.max(...solid.map((i) => i % width)) - 12];
+  const box = await ann.locator('#canvas').boundingBox();
+  /** In the middle of what is seen in this column. */
+  const press = (x) => {
+    const rows = solid.filter((i) => i % width === x).map((i) => Math.floor(i / width));
+    return ann.mouse.click(box.x + x, box.y + (rows[0] + rows[rows.length - 1]) / 2);
+  };
+  await press(left);
+  await ann.locator('#hand strong', { hasText: 'block' }).waitFor(PATIENCE);
+  await ann.keyboard.down('Control');
+  await press(right);
+  await ann.keyboard.up('Control');
+  await ann.locator('#parts > li.gathered', { hasText: 'peg_g6' }).waitFor(PATIENCE);
+  assert.equal(await ann.locator('#parts > li.gathered').count(), 2);
+  await ann.keyboard.press('g');
+  await bob.locator('#people > li', { hasText: 'holds 2' }).filter({ hasText: 'ann' }).waitFor(PATIENCE);
+  await ann.keyboard.press('g');
+  await bob.locator('#people > li', { hasText: 'holds 2' }).waitFor({ ...PATIENCE, state: 'hidden' });
+  await ann.locator('#tool_select[aria-pressed="true"]').waitFor({ ...PATIENCE, state: 'attached' });
+  for (const key of ['u', 'Escape', 'Escape']) await ann.keyboard.press(key);
+});
+
 test('parts are hidden, shown alone, and shown again; what is hidden is not hit', async () => {
   await choose(ann, 'block');
   await ann.focus('#canvas');
@@ -215,6 +266,27 @@ test('parts are hidden, shown alone, and shown again; what is hidden is not hit'
   await ann.click('#hand button[aria-label^="Show it alone"]');
   await ann.locator('#hidden_count', { hasText: '7 hidden' }).waitFor(PATIENCE);
   await ann.click('#show_hidden');
+});
+
+test('the face under the pointer lights up, and no other', async () => {
+  await choose(ann, 'block');
+  await ann.focus('#canvas');
+  for (const key of ['i', 'k']) await ann.keyboard.press(key);
+  await lookAtIt(ann, '0');
+  const box = await ann.locator('#canvas').boundingBox();
+  const [x, y] = [Math.round(box.width / 2), Math.round(box.height / 2)];
+  const faces = { front: [x - 70, y + 40], right: [x + 80, y + 20], top: [x - 10, y - 85] };
+  await ann.mouse.move(box.x + 30, box.y + box.height / 2);
+  await drawn(ann);
+  const dark = await brightness(ann);
+  await ann.mouse.move(box.x + faces.front[0], box.y + faces.front[1]);
+  await ann.locator('#labels > div', { hasText: /^block: / }).waitFor(PATIENCE);
+  await drawn(ann);
+  const lit = await brightness(ann);
+  const by = ([right, down]) => lit.sums[down * lit.width + right] - dark.sums[down * lit.width + right];
+  assert.ok(by(faces.front) > 30, `by ${by(faces.front)}`);
+  assert.deepEqual([by(faces.right), by(faces.top)], [0, 0]);
+  for (const key of ['Escape', 'u']) await ann.keyboard.press(key);
 });
 
 test('what is between two faces is measured, with what the session has judged of them', async () => {
@@ -263,28 +335,11 @@ test('a side of the cube looks from there, and the view is saved as a picture', 
   assert.ok(bytes.length > 5000);
 });
 
-/** Of a picture of the view without what lies on it: how bright its pixels are, 0 … 765, row by row. */
-async function brightness(page) {
-  const cover = (visibility) => page.evaluate((how) => document.querySelectorAll('.view > :not(#canvas)').forEach((element) => (element.style.visibility = how)), visibility);
-  await cover('hidden');
-  await page.locator('#canvas').blur(); // its outline is no part of the view
-  const png = (await page.locator('#canvas').screenshot()).toString('base64');
-  await cover('');
-  return page.evaluate(async (text) => {
-    const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
-    const { width, height } = picture;
-    const pen = new OffscreenCanvas(width, height).getContext('2d');
-    pen.drawImage(picture, 0, 0);
-    const { data } = pen.getImageData(0, 0, width, height);
-    return { width, sums: Array.from({ length: width * height }, (_, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2]) };
-  }, png);
-}
-
 test('the ground under a part is darker than beside it, until its shadow is turned off or a plane cuts', async () => {
   await choose(ann, 'block');
   await ann.focus('#canvas');
-  for (const key of ['i', '0', 'z']) await ann.keyboard.press(key);
-  await drawn(ann);
+  await ann.keyboard.press('i');
+  await lookAtIt(ann, '0');
   const on = await brightness(ann);
   await ann.click('#view_ground');
   await ann.locator('#view_ground[aria-pressed="false"]').waitFor(PATIENCE);
@@ -312,10 +367,28 @@ test('the ground under a part is darker than beside it, until its shadow is turn
 test('a snap takes the declared fit before what is nearer', async () => {
   await grab(ann, 'peg_g6');
   await ann.click('#tool_align');
-  await ann.click('#align_bar button:has-text("Snap")');
+  await ann.locator('#align_bar option[value="end_lower"]').first().waitFor({ ...PATIENCE, state: 'attached' });
+  const own = ann.getByLabel('Feature of the part in your hand');
+  const [, , z] = await settled(ann);
+  await moveBy(ann, [0, 0, 16 - z]); // 1 mm above the plate, 5 mm beside its bore
+  await until(async () => (await position(ann))[2] === 16, () => 'the peg comes above the plate');
+  /** Snaps, tells how far that was, mm, and frees the part again. */
+  async function snap(feature, says) {
+    await own.selectOption(feature);
+    await ann.click('#align_bar button:has-text("Snap")');
+    const said = ann.locator('#said > div', { hasText: says });
+    await said.waitFor(PATIENCE);
+    await settled(ann);
+    await ann.click('#align_bar button:has-text("Free")');
+    await ann.locator('#align_bar', { hasText: 'Kept:' }).waitFor({ ...PATIENCE, state: 'hidden' });
+    return Number(/, (\S+) mm and \S+ degrees away/.exec(await said.textContent())?.[1]);
+  }
+  const nearer = await snap('end_lower', "'peg_g6.end_lower' coplanar with 'plate_g6.top'");
+  assert.equal(nearer, 1);
+  await moveBy(ann, [0, 0, 1]); // to where it was
+  await until(async () => (await position(ann))[2] === 16, () => 'the peg is back above the plate');
+  assert.equal(await snap('', "'peg_g6.journal' coaxial with 'plate_g6.bore'"), 5);
   await ann.getByText('their fit is Ø20 H7/g6').first().waitFor(PATIENCE);
-  await ann.getByText('Kept: journal coaxial with plate_g6 bore').waitFor(PATIENCE);
-  await ann.click('#align_bar button:has-text("Free")');
   await ann.click('#tool_select');
   await release(ann);
 });
