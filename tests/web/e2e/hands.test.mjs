@@ -1,4 +1,4 @@
-// What hands do: every stop says why, asking for a part, several parts, hiding, measuring, dragging, pictures.
+// What hands do: every stop says why, asking for a part, several parts, hiding, measuring, dragging, the shadow on the ground, pictures, a 3D mouse.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, test } from 'node:test';
