@@ -61,7 +61,7 @@ struct PairMemo {
   /// see work_budget.h. By WorkStage.
   struct Effort {
     std::uint32_t wanted = 0;  ///< tests or evaluations; 0: not yet asked
-    std::uint8_t waited = 0;
+    std::uint32_t waited = 0;
   };
   std::array<Effort, 3> effort;
   bool touched = false;            ///< listed in SessionState::touched

@@ -41,6 +41,64 @@ bool may_go_on(const PairWork& pair) {
   return pair.contact_short && pair.contact_cap < kMostContactTests;
 }
 
+void begin(PairWork& pair, std::uint64_t cap) {
+  pair.contact_cap = cap;
+  pair.contact_short = false;
+  pair.clear_of_band = pair.clear_of_touch = 0.0;
+}
+
+// Has it waited so long that it is asked whatever is left, if it is the first?
+bool is_due(const PairWork& pair) {
+  const std::uint32_t waited = waited_of(pair, WorkStage::kContact);
+  return waited > 0 && waited % kLongestFirst_ticks == 0;
+}
+
+// Sets PairWork::contact_cap of the first of these pairs and returns how many are asked next, at
+// once: as many as the tick has work for, at least two. 0: the tick has no work left.
+std::size_t share(Scratch::Impl& work, std::span<const std::uint32_t> order, bool first_is_due) {
+  const std::uint64_t left = work.contact_budget.left(spent(work));
+  if (order.empty() || (left == 0 && !first_is_due)) return 0;
+  std::uint64_t shared = 0;
+  std::size_t count = 0;
+  for (; count < order.size(); ++count) {
+    PairWork& pair = work.pairs[order[count]];
+    pair.contact_cap = first_is_due && count == 0 ? kMostContactTests : share_of(pair);
+    pair.contact_start = pair.contact_tests;
+    shared += pair.contact_cap;
+    if (left == 0) return 1;
+    if (count >= kLeastBatch && shared > left) break;
+  }
+  return count;
+}
+
+void ask_each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const AskPair& ask) {
+  work.pool.for_each(pairs.size(), [&](std::size_t i, int thread) {
+    ask(work.pairs[pairs[i]], work.ccd[static_cast<std::size_t>(thread)]);
+  });
+}
+
+// Asks pairs as long as the tick has work; those that could go on are added to `again`. Returns the
+// pairs for which there was none.
+std::span<const std::uint32_t> ask_while_it_lasts(Scratch::Impl& work,
+                                                  std::span<const std::uint32_t> order,
+                                                  bool first_is_due, const AskPair& ask,
+                                                  std::vector<std::uint32_t>& again) {
+  while (const std::size_t count = share(work, order, first_is_due)) {
+    first_is_due = false;
+    const auto batch = order.first(count);
+    order = order.subspan(count);
+    ask_each(work, batch, ask);
+    for (const std::uint32_t i : batch) {
+      PairWork& pair = work.pairs[i];
+      note_effort(
+          pair, WorkStage::kContact,
+          {pair.contact_tests - pair.contact_start, pair.contact_cap, pair.contact_short, 0});
+      if (may_go_on(pair)) again.push_back(i);
+    }
+  }
+  return order;
+}
+
 }  // namespace
 
 void open_contact_budget(const World& world, const SessionState& state, Scratch::Impl& work) {
@@ -52,19 +110,27 @@ void close_contact_budget(SessionState& state, const Scratch::Impl& work) {
   state.saved_tests = work.contact_budget.close(spent(work));
 }
 
-std::size_t share_contact_work(Scratch::Impl& work, std::span<const std::uint32_t> order) {
-  const std::uint64_t left = work.contact_budget.left(spent(work));
-  if (left == 0) return 0;
-  std::uint64_t shared = 0;
-  std::size_t count = 0;
-  for (; count < order.size(); ++count) {
-    PairWork& pair = work.pairs[order[count]];
-    pair.contact_cap = share_of(pair);
-    pair.contact_start = pair.contact_tests;
-    shared += pair.contact_cap;
-    if (count >= kLeastBatch && shared > left) break;
+// 1. as many of the earliest in the order as the tick has work for, each with its share.
+// 2. whose share did not do goes on with all that a pair may have, as long as there is work.
+void ask_in_turn(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
+                 const AskPair& ask) {
+  const bool limited = work.contact_budget.is_limited();
+  for (const std::uint32_t i : pairs) begin(work.pairs[i], limited ? 0 : kCcdWorkCap);
+  if (!limited) return ask_each(work, pairs, ask);
+  in_order(world, std::span(work.pairs).first(work.pair_count), pairs, WorkStage::kContact,
+           work.order);
+  work.dear.clear();
+  work.still_dear.clear();
+  const bool first_is_due = !work.order.empty() && is_due(work.pairs[work.order.front()]);
+  const std::span<const std::uint32_t> rest =
+      ask_while_it_lasts(work, work.order, first_is_due, ask, work.dear);
+  ask_each(work, rest, ask);  // without work: those that are known to stay clear need none
+  ask_while_it_lasts(work, work.dear, false, ask, work.still_dear);
+  for (const std::uint32_t i : pairs) {
+    PairWork& pair = work.pairs[i];
+    pair.counts.pairs_waiting += pair.contact_waits ? 1U : 0U;
+    note_waiting(pair, WorkStage::kContact, !pair.contact_waits && !may_go_on(pair));
   }
-  return count;
 }
 
 void share_touch_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
@@ -76,17 +142,6 @@ void share_touch_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs)
       std::clamp(work.contact_budget.left(spent(work)) / count, kFirstShare, kMostContactTests);
   for (const std::uint32_t i : pairs)
     if (is_unasked(i)) work.pairs[i].contact_cap = each;
-}
-
-bool note_contact_effort(PairWork& pair) {
-  note_effort(pair, WorkStage::kContact,
-              {pair.contact_tests - pair.contact_start, pair.contact_cap, pair.contact_short, 0});
-  return may_go_on(pair);
-}
-
-void note_contact_waiting(PairWork& pair) {
-  pair.counts.pairs_waiting += pair.contact_waits ? 1U : 0U;
-  note_waiting(pair, WorkStage::kContact, !pair.contact_waits && !may_go_on(pair));
 }
 
 }  // namespace mortise

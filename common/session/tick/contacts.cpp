@@ -298,61 +298,9 @@ void search_stop_time(PairWork& pair, bool slides, CcdScratch& ccd) {
 
 }  // namespace
 
-namespace {
-
-void begin_contact(PairWork& pair, std::uint64_t cap) {
-  pair.contact_cap = cap;
-  pair.contact_short = false;
-  pair.clear_of_band = pair.clear_of_touch = 0.0;
-}
-
-template <class Ask>
-void each(Scratch::Impl& work, std::span<const std::uint32_t> pairs, const Ask& ask) {
-  work.pool.for_each(pairs.size(), [&](std::size_t i, int thread) {
-    ask(work.pairs[pairs[i]], work.ccd[static_cast<std::size_t>(thread)]);
-  });
-}
-
-// Asks pairs as long as the tick has work; those that could go on are added to `again`. Returns the
-// pairs for which there was none.
-template <class Ask>
-std::span<const std::uint32_t> ask_in_turn(Scratch::Impl& work,
-                                           std::span<const std::uint32_t> order, const Ask& ask,
-                                           std::vector<std::uint32_t>& again) {
-  while (const std::size_t count = share_contact_work(work, order)) {
-    const auto batch = order.first(count);
-    order = order.subspan(count);
-    each(work, batch, ask);
-    for (const std::uint32_t i : batch)
-      if (note_contact_effort(work.pairs[i])) again.push_back(i);
-  }
-  return order;
-}
-
-// 1. as many of the earliest in the order as the tick has work for, each with its share.
-// 2. whose share did not do goes on with all that a pair may have, as long as there is work.
-void ask_within_budget(const World& world, Scratch::Impl& work,
-                       std::span<const std::uint32_t> pairs) {
-  const auto ask = [&](PairWork& pair, CcdScratch& ccd) {
-    ask_pair(world, work.switches, pair, ccd);
-  };
-  const bool limited = work.contact_budget.is_limited();
-  for (const std::uint32_t i : pairs) begin_contact(work.pairs[i], limited ? 0 : kCcdWorkCap);
-  if (!limited) return each(work, pairs, ask);
-  std::vector<std::uint32_t> order =
-      in_order(world, std::span(work.pairs).first(work.pair_count), pairs, WorkStage::kContact);
-  std::vector<std::uint32_t> again;
-  std::span<const std::uint32_t> rest = ask_in_turn(work, order, ask, again);
-  each(work, rest, ask);  // without work: those that are known to stay clear need none
-  std::vector<std::uint32_t> dear = std::exchange(again, {});
-  ask_in_turn(work, dear, ask, again);
-  for (const std::uint32_t i : pairs) note_contact_waiting(work.pairs[i]);
-}
-
-}  // namespace
-
 void ask_pairs(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
-  ask_within_budget(world, work, pairs);
+  ask_in_turn(world, work, pairs,
+              [&](PairWork& pair, CcdScratch& ccd) { ask_pair(world, work.switches, pair, ccd); });
   work.asked.clear();
   for (const std::uint32_t i : pairs)
     if (work.pairs[i].wants_stop_time) work.asked.push_back(i);

@@ -38,11 +38,12 @@ constexpr std::uint64_t kLeastTelling = 200, kMostTelling = 4'000, kKeptForVerdi
 // A search that has come to nothing is not repeated for so many ticks while nothing has changed;
 // nor one from the same place for another push, for 2, 4, 8 ... ticks: a short one finds whether
 // the parts leave each other.
-constexpr std::uint8_t kStalledTicks = 30;
+constexpr std::uint32_t kStalledTicks = 30;
 // The pair that is first in the order and has waited so many ticks is served whatever is left: one
 // in a tick, so that a tick takes one pair's most work in advance and no more. Without it a pair
 // that needs nearly a whole tick's work waits for ever in a session that is always a little short.
-constexpr std::uint8_t kLongestWait_ticks = 8;
+constexpr std::uint32_t kLongestWait_ticks = 8;
+static_assert(kLongestWait_ticks < kLongestFirst_ticks && kStalledTicks <= kHeldLead_ticks);
 
 std::uint64_t spent(const Scratch::Impl& work) {
   std::uint64_t sum = 0;
@@ -65,16 +66,12 @@ std::uint64_t wanted_of(const PairWork& pair, WorkStage stage, std::uint64_t mos
   return std::min<std::uint64_t>(wanted == 0 ? kFirstEffort : wanted, most);
 }
 
-std::uint8_t waited_of(const PairWork& pair, WorkStage stage) {
-  return pair.memo->effort[static_cast<std::size_t>(stage)].waited;
-}
-
 // Is it known from where it stands that a search for its stop is of little use?
-bool rests(const PairWork& pair, std::uint8_t waited) {
+bool rests(const PairWork& pair, std::uint32_t waited) {
   if (waited >= kStalledTicks) return false;
   if (is_stalled(pair) && pair.memo->stalled->in_full) return true;
   const int times = times_in_vain(pair);
-  return times > 0 && waited < std::min<int>(kStalledTicks, 1 << std::min(times, 5));
+  return times > 0 && waited < std::min(kStalledTicks, 1U << std::min(times, 5));
 }
 
 // It is given half as much again as it needed the last time, and mostly needs that again.
@@ -136,7 +133,7 @@ class Sharing {
       pair.cap = most_;
       return true;
     }
-    const std::uint8_t waited = waited_of(pair, stage_);
+    const std::uint32_t waited = waited_of(pair, stage_);
     const bool at_rest = stage_ == WorkStage::kStop && rests(pair, waited);
     const std::uint64_t wanted = wanted_of(pair, stage_, most_);
     const bool overdue = !at_rest && is_first_ && waited >= kLongestWait_ticks;
@@ -202,10 +199,9 @@ std::uint64_t depth_work_left(const Scratch::Impl& work) {
 
 void serve_in_turn(const World& world, Scratch::Impl& work, std::span<const std::uint32_t> pairs,
                    WorkStage stage, const ServePair& serve) {
-  const std::vector<std::uint32_t> all =
-      in_order(world, std::span(work.pairs).first(work.pair_count), pairs, stage);
+  in_order(world, std::span(work.pairs).first(work.pair_count), pairs, stage, work.order);
   Sharing sharing(world, work, stage);
-  for (std::span<const std::uint32_t> order = all; !order.empty();) {
+  for (std::span<const std::uint32_t> order = work.order; !order.empty();) {
     const auto served = order.first(sharing.round(order));
     work.pool.for_each(served.size(), [&](std::size_t i, int thread) {
       serve(work.pairs[served[i]], work.ccd[static_cast<std::size_t>(thread)]);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -111,6 +112,8 @@ struct PairWork {
   std::optional<AskedEarlier> blocked, passed;  ///< policy slide: first time that it held a part
                                                 ///< back; near, and left again
 
+  std::array<bool, 3> aged{};  ///< by WorkStage: that it waits is counted for this tick
+
   // Work on first contact, in tests; see contact_budget.h.
   std::uint64_t contact_cap = kCcdWorkCap;  ///< of one question
   std::uint64_t contact_tests = 0;          ///< used in the tick
@@ -191,6 +194,8 @@ struct Scratch::Impl {
   std::vector<std::uint32_t> asked;    ///< pairs that want work of the stage
   std::vector<std::uint32_t> unasked;  ///< pairs of stage 4 that want none
   std::vector<std::uint32_t> to_ask;   ///< pairs to ask about contact: all, or those of a round
+  /// In the order in which a stage serves them; whose share of first contact did not do.
+  std::vector<std::uint32_t> order, dear, still_dear;
   std::vector<SlidingGroup> sliding;
 };
 

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "common/session/tick/tick_work.h"
 
 namespace mortise {
 namespace {
 
-// So many ticks a pair that nobody holds waits behind one that is held.
-constexpr int kHeldLead_ticks = 30;
 // An estimate stays within these: fewer are used by any question, more are given to none.
 constexpr std::uint64_t kLeastWanted = 100, kMostWanted = 100'000;
-// It is kept in 8 bits.
-constexpr int kLongestNoted_ticks = 250;
+// Half a year at 60 Hz. If the count ended sooner, who is served would be the oldest again before
+// the others had their turn.
+constexpr std::uint32_t kLongestNoted_ticks = 1'000'000'000;
 
 PairMemo::Effort& effort_of(PairWork& pair, WorkStage stage) {
   return pair.memo.change().effort[static_cast<std::size_t>(stage)];
@@ -54,17 +54,21 @@ bool is_held(const World& world, const PairWork& pair) {
          (pair.move_b >= 0 && world.parts[pair.b].holder);
 }
 
-std::vector<std::uint32_t> in_order(const World& world, std::span<const PairWork> work,
-                                    std::span<const std::uint32_t> pairs, WorkStage stage) {
-  std::vector<std::uint32_t> order(pairs.begin(), pairs.end());
+std::uint32_t waited_of(const PairWork& pair, WorkStage stage) {
+  return pair.memo->effort[static_cast<std::size_t>(stage)].waited;
+}
+
+void in_order(const World& world, std::span<const PairWork> work,
+              std::span<const std::uint32_t> pairs, WorkStage stage,
+              std::vector<std::uint32_t>& order) {
+  order.assign(pairs.begin(), pairs.end());
   const auto rank = [&](std::uint32_t i) {
-    const int waited = work[i].memo->effort[static_cast<std::size_t>(stage)].waited;
-    return std::tuple(work[i].lingers, -waited - (is_held(world, work[i]) ? kHeldLead_ticks : 0),
-                      i);
+    const std::int64_t waited = waited_of(work[i], stage);
+    const std::int64_t lead = is_held(world, work[i]) ? kHeldLead_ticks : 0;
+    return std::tuple(work[i].lingers, -waited - lead, i);
   };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t x, std::uint32_t y) { return rank(x) < rank(y); });
-  return order;
 }
 
 void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work) {
@@ -77,9 +81,10 @@ void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work) {
 }
 
 void note_waiting(PairWork& pair, WorkStage stage, bool served) {
-  const int before = pair.memo->effort[static_cast<std::size_t>(stage)].waited;
-  const int waited = served ? 0 : std::min(before + 1, kLongestNoted_ticks);
-  if (waited != before) effort_of(pair, stage).waited = static_cast<std::uint8_t>(waited);
+  const std::uint32_t before = waited_of(pair, stage);
+  if (!served && std::exchange(pair.aged[static_cast<std::size_t>(stage)], true)) return;
+  const std::uint32_t waited = served ? 0 : std::min(before + 1, kLongestNoted_ticks);
+  if (waited != before) effort_of(pair, stage).waited = waited;
 }
 
 }  // namespace mortise

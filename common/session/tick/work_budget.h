@@ -53,11 +53,24 @@ inline std::uint64_t less(std::uint64_t x, std::uint64_t y) { return x > y ? x -
 /// Does a user hold a part that moves in it?
 bool is_held(const World& world, const PairWork& pair);
 
+/// So many ticks a pair that nobody holds waits behind one that is held.
+inline constexpr std::uint32_t kHeldLead_ticks = 30;
+/// Who is first in the order of a stage is served after at most so many ticks.
+inline constexpr std::uint32_t kLongestFirst_ticks = 11;
+/// Where n pairs ask for the work of a stage, each is served after so many ticks in a row in which
+/// it asked for some, however little there is. The README of this room proves it.
+constexpr std::uint64_t longest_wait_ticks(std::uint64_t n) {
+  return kHeldLead_ticks + kLongestFirst_ticks * n;
+}
+
 /// The pairs in the order in which they are served: who has waited longest first. A pair whose
-/// parts nobody holds comes after one that is held, unless it has waited half a second longer (30
-/// ticks).
-std::vector<std::uint32_t> in_order(const World& world, std::span<const PairWork> work,
-                                    std::span<const std::uint32_t> pairs, WorkStage stage);
+/// parts nobody holds comes after one that is held, unless it has waited longer by the lead.
+void in_order(const World& world, std::span<const PairWork> work,
+              std::span<const std::uint32_t> pairs, WorkStage stage,
+              std::vector<std::uint32_t>& order);
+
+/// For how many ticks in a row it was not served.
+std::uint32_t waited_of(const PairWork& pair, WorkStage stage);
 
 /// What a pair used of the work that it was given in a stage.
 struct UsedWork {
@@ -69,7 +82,8 @@ struct UsedWork {
 /// that was not enough. An easy tick lowers the estimate by an eighth only, and the estimate of a
 /// pair that was given less than it wanted stays.
 void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work);
-/// Counts for how many ticks in a row the pair was not served.
+/// Counts for how many ticks in a row the pair was not served; once in a tick, however often it is
+/// asked.
 void note_waiting(PairWork& pair, WorkStage stage, bool served);
 
 }  // namespace mortise

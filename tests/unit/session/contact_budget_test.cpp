@@ -170,10 +170,11 @@ TEST(ContactBudget, HeldPartsComeFirstAndEverybodyHasATurn) {
     if (i % 4 != 0) world.find(some.balls[i])->holder = {};
   std::vector<int> served(all.size()), first(all.size(), -1);
   for (int tick = 0; tick < 100; ++tick) {
-    const std::vector<std::uint32_t> order =
-        in_order(world, std::span(work.pairs).first(40), all, WorkStage::kContact);
+    std::vector<std::uint32_t> order;
+    in_order(world, std::span(work.pairs).first(40), all, WorkStage::kContact, order);
     ASSERT_EQ(order.size(), all.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
+      work.pairs[order[k]].aged = {};
       note_waiting(work.pairs[order[k]], WorkStage::kContact, k < 2);
       if (k >= 2) continue;
       ++served[order[k]];
