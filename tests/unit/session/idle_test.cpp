@@ -62,6 +62,30 @@ TEST(IdleTick, DoesNoGeometryAndAllocatesNothing) {
   }
 }
 
+// One part moves past neighbours that it does not meet: all that is allocated is the list of poses
+// that is told.
+TEST(IdleTick, AFreeMoveAllocatesNothingButItsReport) {
+  SessionBuilder session = assembly();
+  session.world.tick_rate_hz = 60.0;
+  Scratch scratch(2);
+  play_tick(session.world, {}, scratch);
+  std::uint64_t asked = 0;
+  for (int i = 0; i < 200; ++i) {
+    // Turning beside its neighbour, so that their boxes meet.
+    const double sign = i % 2 == 0 ? 1.0 : -1.0;
+    const std::vector<Increment> increments{
+        session.push(UserId{1}, PartId{5}, sign * Vec3(0.5, 0, 0), sign * Vec3(0, 0, 0.7))};
+    const std::uint64_t before = allocations;
+    const StepReport report = step(session.world, increments, scratch);
+    const std::uint64_t allocated = allocations - before;
+    EXPECT_EQ(report.moved.size(), 1U);
+    ASSERT_EQ(report.counters.contacts.out, 0U) << "it met something: nothing is shown";
+    asked += report.counters.pairs.out + report.counters.pairs_budget;
+    EXPECT_LE(allocated, i < 20 ? 1000U : 1U) << i;
+  }
+  EXPECT_GT(asked, 100U) << "no pair was looked at: nothing is shown";
+}
+
 // Planted: the counter of allocations counts.
 TEST(IdleTick, AllocationsAreCounted) {
   if (!kCounts) GTEST_SKIP() << "sanitizer: allocations are not counted";
