@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Runs what newcomers do, each in a folder of its own, with the commands of the READMEs: newcomers.sh SOURCE BUILD [--write] [NAMES…]
-# Says the time of each command and what was seen. --write: keeps the times of all in TIMES.md. In a soak one may take two minutes.
+# Says the time of each command and what was seen. --write: keeps the times in TIMES.md; with NAMES, other rows there stay. In a soak one may take two minutes.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 export SOURCE=$1 BUILD=$2
 shift 2
 write=
 [ "${1:-}" != --write ] || { write=yes; shift; }
+all=(designer_stl designer_page designer_step python_user cpp_engineer test_engineer analyst)
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(designer_stl designer_step python_user cpp_engineer test_engineer analyst)
+[ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 MORTISE_PRESET=$(basename "$BUILD")
 export LC_ALL=C.UTF-8 MORTISE_PRESET DOMAIN=$((100 + $$ % 100)) PYTHONPATH=$BUILD/python PATH=$BUILD/bin:$PATH
 work=$(mktemp -d)
@@ -33,7 +34,8 @@ made() { local file; for file; do [ -s "$file" ] || { echo "FAILED: there is no 
 skip() { echo "SKIPPED: $*"; exit 77; }
 export -f run saw made skip
 
-rows=() code=0
+declare -A rows
+code=0
 for name in "${names[@]}"; do
   mkdir "$work/$name"
   ln -s "$SOURCE/mortise" "$SOURCE/scenarios" "$work/$name"
@@ -46,14 +48,17 @@ for name in "${names[@]}"; do
   echo "== $name: $((took_ms / 1000)).$((took_ms % 1000 / 100)) s"
   [ "${MORTISE_EFFORT:-1}" -le 1 ] || [ $took_ms -le $((most_s * 1000)) ] || { echo "FAILED: more than $most_s s"; code=1; }
   seen=$(grep '^    ' "$work/$name.txt" | grep -vE ' (ms|kB)$' | tail -n 1 | sed -E 's/^ +//; s/[|]//g; s/^(.{60}).+/\1…/')
-  rows+=("| $(sed -n '2s/^# \([^:]*\):.*/\1/p' "$here/$name.sh") | \`$name\` | $(grep -c '^\$ ' "$work/$name.txt") | $((took_ms / 1000)).$((took_ms % 1000 / 100)) | \`$seen\` |")
+  rows[$name]="| $(sed -n '2s/^# \([^:]*\):.*/\1/p' "$here/$name.sh") | \`$name\` | $(grep -c '^\$ ' "$work/$name.txt") | $((took_ms / 1000)).$((took_ms % 1000 / 100)) | \`$seen\` |"
 done
 if [ -n "$write" ] && [ $code -eq 0 ]; then
   {
     echo "# Times of newcomers"
-    echo "Written by \`newcomers.sh --write\` on $(date -u +%Y-%m-%d), $(nproc) cores, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $("$SOURCE/mortise" --version)."
+    echo "Written by \`newcomers.sh --write\`, last on $(date -u +%Y-%m-%d), $(nproc) cores, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $("$SOURCE/mortise" --version)."
     printf '\n| audience | script | commands | time, s | seen last |\n|---|---|---|---|---|\n'
-    printf '%s\n' "${rows[@]}"
-  } >"$here/TIMES.md"
+    for name in "${all[@]}"; do
+      if [ -n "${rows[$name]:-}" ]; then echo "${rows[$name]}"; else grep -F "| \`$name\` |" "$here/TIMES.md" || true; fi
+    done
+  } >"$work/times"
+  mv "$work/times" "$here/TIMES.md"
 fi
 exit $code
