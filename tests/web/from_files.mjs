@@ -1,5 +1,5 @@
 // What a designer with mesh files and a browser does: `mortise open`, join, drop the files, say their unit, read the verdict.
-// node tests/web/from_files.mjs MORTISE FILES: prints the verdict and the seconds, from the command in the shell to the row in the list.
+// node tests/web/from_files.mjs MORTISE FILE FILE: prints the verdict and the seconds, from the command in the shell to the row in the list.
 // node tests/web/from_files.mjs --why-not: prints why there can be no browser here, or an empty line.
 import { spawn } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -37,7 +37,8 @@ try {
   await page.dispatchEvent('.view', 'drop', { dataTransfer: carried });
   await page.getByLabel('Unit of their numbers').selectOption('mm');
   await page.click('#units_add');
-  const verdict = page.locator('#clashes > li[aria-label]').first();
+  const pair = files.map((file) => basename(file).replace(/\.[^.]*$/, '')).join(' × ');
+  const verdict = page.locator(`#clashes > li[aria-label*="${pair}"]`);
   await verdict.waitFor(PATIENCE);
   console.log(`${((Date.now() - began) / 1000).toFixed(1)} s after the command: ${await verdict.getAttribute('aria-label')}`);
   if (page.complaints.length > 0) throw new Error(page.complaints.join('\n'));
