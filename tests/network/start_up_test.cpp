@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "tests/network/domain.h"
 #include "tests/network/program.h"
@@ -84,6 +85,32 @@ TEST_F(StartUp, AnEmptyNewestLogIsPassedOverAndSaid) {
   EXPECT_NE(started.said.find("is empty; there is nothing to read; the log before it is taken"),
             std::string::npos)
       << started.said;
+}
+
+TEST_F(StartUp, ABrokenNewestLogIsPassedOverAndSaid) {
+  ASSERT_EQ(serve("true", "--log logs").code, 0);
+  const fs::path good = fs::directory_iterator(folder_.path() / "logs")->path();
+  std::ifstream in(good, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(in), {});
+  ASSERT_GT(bytes.size(), 1000U);
+  const std::string broken[] = {
+      std::string(5000, 'x'),                               // of something else
+      bytes.substr(0, 60),                                  // cut off in its front
+      bytes.substr(0, 8) + std::string(bytes.size(), '\0')  // whose blocks never came to disk
+  };
+  for (const std::string& text : broken) {
+    const fs::path newest = folder_.path() / "logs/default-20990101-000000.mcap";
+    std::ofstream(newest, std::ios::binary) << text;
+    const Started started = serve("true", "--restore logs --log other");
+    EXPECT_EQ(started.code, 0) << started.said;
+    EXPECT_NE(started.said.find(newest.filename().string() + ": "), std::string::npos);
+    EXPECT_NE(started.said.find("the log before it is taken: logs/" + good.filename().string()),
+              std::string::npos)
+        << started.said;
+    const Started alone = serve("true", "--restore " + newest.string() + " --log other");
+    EXPECT_EQ(alone.code, 3) << "by its name there is none before it: " << alone.said;
+    EXPECT_EQ(alone.lines(), 1U) << alone.said;
+  }
 }
 
 TEST_F(StartUp, WithoutFilesThreadsOrMemoryItSaysSoAndEnds) {
