@@ -4,24 +4,10 @@
 
 #include <algorithm>
 
+#include "common/messages/names.h"
+
 namespace mortise {
 namespace {
-
-std::string words_of(Unexamined why) {
-  switch (why) {
-    case Unexamined::kWaitsForContact:
-      return "waits for its turn to be searched for contact";
-    case Unexamined::kWaitsForDepth:
-      return "waits for its turn, until its depth is worked out";
-    case Unexamined::kGivenUp:
-      return "was given up at the most work that one pair may have";
-    case Unexamined::kNoInside:
-      return "has an open mesh, so that what lies inside of it is not known";
-    case Unexamined::kUnknown:
-      break;
-  }
-  return "has no verdict";
-}
 
 std::string name_of_part(const World& world, PartId id) {
   const Part* part = world.find(id);
@@ -51,7 +37,7 @@ std::string WaitingNews::after_tick(const StepReport& report, const World& world
   const std::size_t others = since_tick_.size() - 1;
   return fmt::format("{} × {} {}{}; no pair is reported as clear before it is judged",
                      name_of_part(world, longest->a), name_of_part(world, longest->b),
-                     words_of(longest->why),
+                     in_words(longest->why),
                      others == 0   ? ""
                      : others == 1 ? ", and one other pair waits"
                                    : fmt::format(", and {} other pairs wait", others));

@@ -140,7 +140,13 @@ Status Crew::find_parts() {
 }
 
 void Crew::poll(double wait_s) {
-  tally_.add(client_.poll(), client_);
+  const ClientUpdate update = client_.poll();
+  tally_.add(update, client_);
+  if (update.pulse) {
+    for (const std::string& line :
+         waiting_.after_pulse(*update.pulse, client_.parts(), client_.tick_rate_hz()))
+      spdlog::info("{}", line);
+  }
   client_.await_news(wait_s);
 }
 

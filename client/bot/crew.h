@@ -8,6 +8,7 @@
 #include "client/bot/load_report.h"
 #include "client/bot/options.h"
 #include "client/bot/tally.h"
+#include "client/bot/waiting_lines.h"
 #include "client/client.h"
 #include "common/base/result.h"
 
@@ -51,6 +52,7 @@ class Crew {
   std::vector<std::unique_ptr<Behaviour>> behaviours_;  ///< of those who are in
   std::vector<std::uint64_t> sent_seq_;                 ///< newest increment, by user
   Tally tally_;
+  WaitingLines waiting_{options_.quiet};
   std::uint64_t commands_sent_ = 0;
   double acted_s_ = 0.0;
 };

@@ -218,6 +218,22 @@ std::string_view name_of(Unexamined value) {
   return "?";
 }
 
+std::string_view in_words(Unexamined value) {
+  switch (value) {
+    case Unexamined::kWaitsForContact:
+      return "waits for its turn to be searched for contact";
+    case Unexamined::kWaitsForDepth:
+      return "waits for its turn, until its depth is worked out";
+    case Unexamined::kGivenUp:
+      return "was given up at the most work that one pair may have";
+    case Unexamined::kNoInside:
+      return "has an open mesh, so that what lies inside of it is not known";
+    case Unexamined::kUnknown:
+      break;
+  }
+  return "has no verdict";
+}
+
 std::string_view name_of(Role value) {
   switch (value) {
     case Role::kUnknown: return "unknown";

@@ -23,6 +23,8 @@ std::string_view name_of(Decision::Kind value);
 std::string_view name_of(ClashEvent::Kind value);
 std::string_view name_of(ReviewStatus value);
 std::string_view name_of(Unexamined value);
+/// What a pair without a verdict does or has, as the end of a sentence about it.
+std::string_view in_words(Unexamined value);
 std::string_view name_of(Role value);
 
 }  // namespace mortise
