@@ -1,5 +1,6 @@
 #include "client/web/answers.h"
 
+#include <charconv>
 #include <optional>
 
 #include "client/web/admission.h"
@@ -25,6 +26,34 @@ std::uint64_t resident_bytes() {
     std::fclose(file);
   }
   return resident * 4096;
+}
+
+// All of the text as a number, or none.
+template <class Number>
+std::optional<Number> number_of(std::string_view text) {
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), number);
+  if (error != std::errc{} || end != text.end()) return std::nullopt;
+  return number;
+}
+
+// "/clash/4.svg", "/clash/4.svg?tick=812"
+std::optional<WantedPicture> picture_of(std::string_view target) {
+  constexpr std::string_view kClashes = "/clash/", kEnding = ".svg", kTick = "?tick=";
+  if (!target.starts_with(kClashes)) return std::nullopt;
+  target.remove_prefix(kClashes.size());
+  WantedPicture wanted;
+  if (const auto at = target.find(kTick); at != std::string_view::npos) {
+    wanted.until_tick = number_of<std::uint64_t>(target.substr(at + kTick.size()));
+    if (!wanted.until_tick) return std::nullopt;
+    target = target.substr(0, at);
+  }
+  if (!target.ends_with(kEnding)) return std::nullopt;
+  target.remove_suffix(kEnding.size());
+  const auto clash = number_of<std::uint32_t>(target);
+  if (!clash) return std::nullopt;
+  wanted.clash = *clash;
+  return wanted;
 }
 
 Answer mesh(GatewayState& state, std::string_view path) {
@@ -183,11 +212,18 @@ Download download_of(const Request& request) {
   if (request.method() != http::verb::get) return Download::kNone;
   if (request.target() == "/report.html") return Download::kReport;
   if (request.target() == "/scenario.zip") return Download::kScenario;
+  if (picture_of(view_of(request.target()))) return Download::kPicture;
   return request.target() == "/session.mcap" ? Download::kLog : Download::kNone;
 }
 
-const std::function<Result<std::string>()>& maker_of(Download download,
-                                                     const GatewayOptions& options) {
+ReportMaker::Make maker_of(Download download, const Request& request,
+                           const GatewayOptions& options) {
+  if (download == Download::kPicture) {
+    if (!options.picture) return {};
+    return [make = options.picture, wanted = *picture_of(view_of(request.target()))] {
+      return make(wanted);
+    };
+  }
   if (download == Download::kScenario) return options.scenario;
   return download == Download::kLog ? options.log : options.report;
 }
@@ -197,8 +233,11 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
   ++state.traffic.requests;
   if (!is_own(state, request, from)) return wrong_host();
   if (auto refused = without_token(state, request, from)) return refused;
-  if (!maker_of(download, state.options))
-    return sentence(status::not_found, "this gateway knows no log; see --log");
+  if (!maker_of(download, request, state.options))
+    return sentence(status::not_found,
+                    download == Download::kPicture
+                        ? "no picture: this gateway knows no log; start it with --log FILE"
+                        : "this gateway knows no log; see --log");
   if (!state.reports.is_busy() && !state.ending) return std::nullopt;
   Answer answer =
       sentence(status::service_unavailable, "another download is being made; ask again");
@@ -207,8 +246,16 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
 }
 
 Answer answer_with(Download download, Result<std::string> bytes) {
+  if (!bytes && bytes.error().code == Code::kNotFound && download == Download::kPicture)
+    return sentence(status::not_found, "no picture: " + bytes.error().text);
   if (!bytes) return sentence(status::internal_server_error, "not made: " + bytes.error().text);
   auto body = std::make_shared<const std::string>(std::move(*bytes));
+  if (download == Download::kPicture)
+    return {status::ok,
+            "image/svg+xml",
+            std::move(body),
+            {{"Cache-Control", "no-store"},
+             {"Content-Security-Policy", "default-src 'none'; sandbox"}}};
   if (download != Download::kReport) {
     const bool is_log = download == Download::kLog;
     const std::string name = is_log ? "session.mcap" : "scenario.zip";

@@ -40,11 +40,13 @@ Answer answer_to_file(GatewayState& state, const std::string& ticket, std::vecto
 
 /// The report takes seconds, so another thread makes it (report_maker.h). refusal_of() gives
 /// the answer when there is none now.
-/// The same holds for the session's log, and for the scenario that it is saved as.
-enum class Download : std::uint8_t { kNone = 0, kReport, kLog, kScenario };
+/// The same holds for the session's log, for the scenario that it is saved as, and for the picture
+/// of a clash.
+enum class Download : std::uint8_t { kNone = 0, kReport, kLog, kScenario, kPicture };
 Download download_of(const Request& request);
-const std::function<Result<std::string>()>& maker_of(Download download,
-                                                     const GatewayOptions& options);
+/// Empty: there is no log to make it of.
+ReportMaker::Make maker_of(Download download, const Request& request,
+                           const GatewayOptions& options);
 std::optional<Answer> refusal_of(Download download, GatewayState& state, const Request& request,
                                  const std::string& from);
 Answer answer_with(Download download, Result<std::string> bytes);

@@ -1,6 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,12 @@
 #include "client/web/tokens.h"
 
 namespace mortise::web {
+
+/// A clash, as it was judged last up to a tick.
+struct WantedPicture {
+  std::uint32_t clash = 0;
+  std::optional<std::uint64_t> until_tick;
+};
 
 struct GatewayOptions {
   std::string address = "127.0.0.1";  ///< IPv4 to listen on
@@ -26,6 +34,8 @@ struct GatewayOptions {
   std::function<Result<std::string>()> log;
   /// The same of the session as a scenario with its meshes, in an archive.
   std::function<Result<std::string>()> scenario;
+  /// The same of a clash's picture, as SVG; kNotFound where the log does not have that clash.
+  std::function<Result<std::string>(const WantedPicture&)> picture;
   double turn_s = 0.004;  ///< time between two turns of the feed while a browser is connected
 };
 

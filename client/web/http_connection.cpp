@@ -152,7 +152,7 @@ void HttpConnection::take() {
 void HttpConnection::make(Download download) {
   if (auto refused = refusal_of(download, state_, parser_->get(), peer_)) return write(*refused);
   stream_.next_layer().expires_never();
-  state_.reports.start(stream_.get_executor(), maker_of(download, state_.options),
+  state_.reports.start(stream_.get_executor(), maker_of(download, parser_->get(), state_.options),
                        [self = shared_from_this(), download](Result<std::string> bytes) {
                          self->write(answer_with(download, std::move(bytes)));
                        });

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <thread>
 
+#include "client/report/clash_picture.h"
 #include "client/report/report.h"
 #include "client/saved/saved_session.h"
 #include "client/web/addresses.h"
@@ -104,6 +105,14 @@ Result<std::string> scenario_of(const std::string& log) try {
   return fail(Code::kRuntime, std::string("the session cannot be saved: ") + e.what());
 }
 
+Result<std::string> picture_of(const std::string& log, const WantedPicture& wanted) try {
+  ClashMoment moment{ClashId{wanted.clash}};
+  if (wanted.until_tick) moment.until_tick = *wanted.until_tick;
+  return clash_picture(log, moment);
+} catch (const std::exception& e) {  // memory
+  return fail(Code::kRuntime, std::string("the clash cannot be drawn: ") + e.what());
+}
+
 // Serves a feed until a signal comes.
 int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   GatewayOptions gateway_options = options.gateway;
@@ -114,6 +123,10 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
     gateway_options.log = [log, is_written] {
       if (is_written) await_writing(log);
       return bytes_of(log);
+    };
+    gateway_options.picture = [log, is_written](const WantedPicture& wanted) {
+      if (is_written) await_writing(log);
+      return picture_of(log, wanted);
     };
     gateway_options.scenario = [log, is_written] {
       if (is_written) await_writing(log);

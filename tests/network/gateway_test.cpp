@@ -53,10 +53,35 @@ TEST_F(GatewayFixture, GivesTheLogToWhoHasAToken) {
   EXPECT_EQ(http_request(port, "/report.html", bearer).status, 404);
 }
 
+TEST_F(GatewayFixture, GivesThePictureOfAClashToWhoHasAToken) {
+  options.picture = [](const web::WantedPicture& wanted) -> Result<std::string> {
+    if (wanted.clash == 9) return fail(Code::kNotFound, "the log has no clash 9");
+    return "<svg>" + std::to_string(wanted.clash) + "@" +
+           (wanted.until_tick ? std::to_string(*wanted.until_tick) : "end") + "</svg>";
+  };
+  serve();
+  const Fields bearer = {{"Authorization", "Bearer " + tokens.observer}};
+  EXPECT_EQ(http_request(port, "/clash/4.svg").status, 401);
+  const auto answer = http_request(port, "/clash/4.svg", bearer);
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body, "<svg>4@end</svg>");
+  EXPECT_EQ(answer.field("Content-Type"), "image/svg+xml");
+  EXPECT_EQ(http_request(port, "/clash/4.svg?tick=812", bearer).body, "<svg>4@812</svg>");
+  const auto missing = http_request(port, "/clash/9.svg", bearer);
+  EXPECT_EQ(missing.status, 404);
+  EXPECT_NE(missing.body.find("no picture: the log has no clash 9"), std::string::npos);
+  for (const char* wrong : {"/clash/x.svg", "/clash/-1.svg", "/clash/4", "/clash/.svg",
+                            "/clash/99999999999.svg", "/clash/4.svg?tick=", "/clash/4.svg?tick=1x"})
+    EXPECT_EQ(http_request(port, wrong, bearer).status, 404) << wrong;
+}
+
 TEST_F(GatewayFixture, SaysThatThereIsNoReport) {
   serve();
   const Fields bearer = {{"Authorization", "Bearer " + tokens.designer}};
   EXPECT_EQ(http_request(port, "/report.html", bearer).status, 404);
+  const auto picture = http_request(port, "/clash/1.svg", bearer);
+  EXPECT_EQ(picture.status, 404);
+  EXPECT_EQ(picture.body.find("no picture: this gateway knows no log"), 0u) << picture.body;
 }
 
 TEST_F(GatewayFixture, TwoPagesJoinMoveAndSeeTheSameClash) {

@@ -4,6 +4,7 @@ import { hasWay, pathSaid, waySaid } from '../session/way_out.js';
 import { bracket, percent, plain, small, span } from '../session/words.js';
 import { byId, el, setPressed, setText } from './dom.js';
 import { makeClashFit } from './clash_fit.js';
+import { makeClashPicture } from './clash_picture.js';
 import { makeClashReview } from './clash_review.js';
 import { fillDepthBar, fillScale } from './depth_bar.js';
 import { classMark, icon } from './icons.js';
@@ -33,8 +34,10 @@ export function makeClashDetail(desk) {
   const told = el('p', { class: 'way', role: 'status' });
   const cut = button('Cut the view here', 'section', () => cutAtClash(choice.clash));
   const turn = button('Section across or along', 'rotate', () => drawing.turn());
+  const picture = makeClashPicture(desk, current);
+  const draw = button('Picture of the verdict', 'page', () => picture.ask());
   panel.append(el('h3', {}, mark, title, link, close), bar, scale, figures, drawing.canvas,
-    el('div', { class: 'row' }, drawing.caption, fly, out, cut, turn), told, review.thread, review.form, fit.form, why);
+    el('div', { class: 'row' }, drawing.caption, draw, fly, out, cut, turn), picture.figure, told, review.thread, review.form, fit.form, why);
 
   function current() {
     return session.clashes.get(choice.clash) ?? null;
@@ -135,6 +138,7 @@ export function makeClashDetail(desk) {
     fit.show(clash);
     out.hidden = clash.ended === true || !hasWay(clash);
     drawing.show(clash);
+    picture.refresh();
   }
 
   /** What counts on while nothing happens. */
@@ -147,6 +151,7 @@ export function makeClashDetail(desk) {
 
   choice.on('clash', () => {
     endWay();
+    picture.drop();
     refresh();
     // The list has become shorter.
     document.querySelector('#clashes [aria-selected="true"]')?.scrollIntoView({ block: 'nearest' });
@@ -156,7 +161,10 @@ export function makeClashDetail(desk) {
     if (event.kind !== 'review') endWay(); // it was the way out of what has changed
     refresh();
   });
-  session.on('scene', endWay);
+  session.on('scene', () => {
+    endWay();
+    picture.drop();
+  });
   session.on('pulse', refreshTimes);
   session.on('replay', refreshTimes);
   for (const what of /** @type {const} */ (['scene', 'me', 'features', 'remarks', 'standing', 'users'])) session.on(what, refresh);

@@ -140,15 +140,25 @@ export class Connection {
     }
   }
 
-  /** @param {string} hash @returns {Promise<ArrayBuffer>} */
-  async mesh(hash) {
+  /** Asked again while the gateway says "later". @param {string} path @param {string} what it is, for who waits @returns {Promise<Response>} */
+  async #get(path, what) {
     const headers = { Authorization: `Bearer ${this.token}` };
     for (let tries = 0; tries < MESH_TRIES; ++tries) {
-      const answer = await fetch(`mesh/${encodeURIComponent(hash)}.bin`, { headers });
-      if (answer.ok) return answer.arrayBuffer();
-      if (answer.status !== 503) throw new Error(`mesh ${hash}: ${answer.status}`);
+      const answer = await fetch(path, { headers });
+      if (answer.ok) return answer;
+      if (answer.status !== 503) throw new Error((await answer.text()).trim() || `${what}: ${answer.status}`);
       await new Promise((done) => setTimeout(done, 1000 * Number(answer.headers.get('Retry-After') ?? 1)));
     }
-    throw new Error(`mesh ${hash} did not come`);
+    throw new Error(`${what} did not come`);
+  }
+
+  /** @param {string} hash @returns {Promise<ArrayBuffer>} */
+  async mesh(hash) {
+    return (await this.#get(`mesh/${encodeURIComponent(hash)}.bin`, `mesh ${hash}`)).arrayBuffer();
+  }
+
+  /** Of a clash, as SVG. @param {number} clash @param {number} tick as it was judged up to then @returns {Promise<string>} */
+  async picture(clash, tick) {
+    return (await this.#get(`clash/${clash}.svg?tick=${tick}`, 'the picture')).text();
   }
 }
