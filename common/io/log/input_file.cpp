@@ -39,6 +39,7 @@ std::span<const std::byte> InputFile::read(std::uint64_t offset, std::uint64_t l
     if (count <= 0) break;
     done += static_cast<std::size_t>(count);
   }
+  bytes_read_ += done;
   return std::span<const std::byte>(buffer).first(done);
 }
 

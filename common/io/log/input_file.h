@@ -21,11 +21,13 @@ class InputFile {
   /// Reads as much of [offset, offset + length) as the file has, into `buffer`, which only grows.
   std::span<const std::byte> read(std::uint64_t offset, std::uint64_t length,
                                   std::vector<std::byte>& buffer) const;
+  std::uint64_t bytes_read() const { return bytes_read_; }  ///< in all
 
  private:
   int descriptor_;
   bool open_ = false;
   std::uint64_t size_ = 0;
+  mutable std::uint64_t bytes_read_ = 0;
 };
 
 }  // namespace mortise

@@ -21,29 +21,40 @@ namespace {
 // A damaged file must not fill the report with one line per byte.
 constexpr std::size_t kMostNotes = 50;
 
+// A chunk's head up to its records. Names of compressions are short.
+constexpr std::size_t kLongestCompression = 32;
+constexpr std::size_t kChunkHeadBytes =
+    mcap::kRecordHeaderBytes + mcap::kChunkFixedBytes + kLongestCompression;
+
+// What such a head, cut at the end of the file, says of its compression; nothing: its lengths
+// contradict each other, or the `left` bytes from it to the end of the file.
+std::optional<std::string> compression_of(std::span<const std::byte> head, std::uint64_t left) {
+  ByteReader reader(head.first(std::min(head.size(), kChunkHeadBytes)));
+  reader.u8();
+  const std::uint64_t length = reader.u64();
+  if (!reader.ok() || length > left - mcap::kRecordHeaderBytes) return std::nullopt;
+  reader.raw(8 + 8 + 8 + 4);
+  std::string compression = reader.string();
+  const std::uint64_t stored = reader.u64();
+  const std::uint64_t fixed = mcap::kChunkFixedBytes + compression.size();
+  if (!reader.ok() || length < fixed || stored != length - fixed) return std::nullopt;
+  return compression;
+}
+
 // The next place at or after `from` that is a chunk by all its lengths; the size of the file when
-// there is none. Linear: each byte is looked at once.
+// there is none. Linear: what is read is a small multiple of the bytes up to that place.
 std::uint64_t find_chunk(const InputFile& file, std::uint64_t from,
                          std::vector<std::byte>& buffer) {
-  constexpr std::uint64_t kWindow = 1 << 16;  // bytes read at once
-  constexpr std::size_t kHeadBytes = mcap::kRecordHeaderBytes + mcap::kChunkFixedBytes + 4;
-  for (std::uint64_t start = from; start < file.size(); start += kWindow) {
-    const auto window = file.read(start, kWindow + kHeadBytes, buffer);
-    for (std::size_t i = 0; i < window.size() && i < kWindow; ++i) {
+  constexpr std::uint64_t kFirstWindow = 256, kWindow = 1 << 16;  // bytes read at once
+  std::uint64_t bytes = kFirstWindow;
+  for (std::uint64_t start = from; start < file.size();
+       start += bytes, bytes = std::min(2 * bytes, kWindow)) {
+    const auto window = file.read(start, bytes + kChunkHeadBytes, buffer);
+    for (std::size_t i = 0; i < window.size() && i < bytes; ++i) {
       if (window[i] != std::byte{mcap::kChunk}) continue;
       const std::uint64_t here = start + i;
-      ByteReader reader(window.subspan(i, std::min(kHeadBytes, window.size() - i)));
-      reader.u8();
-      const std::uint64_t length = reader.u64();
-      const std::uint64_t content_at = here + mcap::kRecordHeaderBytes;
-      if (!reader.ok() || content_at > file.size() || length > file.size() - content_at) continue;
-      reader.raw(8 + 8 + 8 + 4);
-      const std::string compression = reader.string();
-      const std::uint64_t stored = reader.u64();
-      const std::uint64_t fixed = mcap::kChunkFixedBytes + compression.size();
-      if (reader.ok() && (compression.empty() || compression == "zstd") && length >= fixed &&
-          stored == length - fixed)
-        return here;
+      const auto compression = compression_of(window.subspan(i), file.size() - here);
+      if (compression && (compression->empty() || *compression == "zstd")) return here;
     }
   }
   return file.size();
@@ -118,6 +129,40 @@ std::string moved_text(std::uint64_t found_at, std::uint64_t told_at) {
          (is_less ? "taken out" : "added") + " before this place, after the file had been closed";
 }
 
+// False: the length is damaged, by what is known without the content.
+bool has_likely_length(const InputFile& file, std::uint64_t at, std::uint8_t opcode,
+                       std::uint64_t length, std::vector<std::byte>& buffer) {
+  if (opcode == mcap::kFooter) return length == mcap::kFooterBytes;
+  if (opcode == mcap::kDataEnd) return length <= mcap::kFooterBytes;
+  if (opcode != mcap::kChunk) return true;
+  return compression_of(file.read(at, kChunkHeadBytes, buffer), file.size() - at).has_value();
+}
+
+// Bytes that may still be read from places that the scan perhaps goes back to: no more than the
+// file in all. Reading each of many absurd records up to the end would take its square.
+struct Doubt {
+  std::uint64_t left = 0;
+  bool takes(std::uint64_t bytes) {
+    if (bytes > left) return false;
+    left -= bytes;
+    return true;
+  }
+};
+
+// Does such a record end there, by its own check or by the record that begins there?
+bool ends_at(std::uint64_t at, std::uint8_t opcode, const InputFile& file,
+             std::uint64_t index_start, std::vector<std::byte>& buffer) {
+  return opcode >= mcap::kDataEnd || has_own_check(opcode) ||
+         (at < index_start && begins_record(file, at, buffer));
+}
+
+// The index that was told to be elsewhere, where it is at `at`.
+std::optional<mcap::Index> moved_index(const InputFile& file, std::uint64_t told_at,
+                                       std::uint64_t at, Doubt& doubt) {
+  if (told_at == 0 || !doubt.takes(file.size() - at)) return std::nullopt;
+  return mcap::read_index(file, at);
+}
+
 class Scanner {
  public:
   Scanner(const InputFile& file, const McapHandler& handler, const McapLimits& limits,
@@ -126,7 +171,6 @@ class Scanner {
     const std::uint64_t size = file.size();
     expansion_left_ = size > UINT64_MAX / limits.expansion ? UINT64_MAX : size * limits.expansion;
     expansion_left_ = std::max(expansion_left_, limits.expansion_floor_bytes);
-    scan_.file_bytes = size;
   }
 
   McapScan run();
@@ -152,6 +196,7 @@ class Scanner {
   McapScan scan_;
   std::uint64_t at_ = 0;  ///< of the record in work
   std::uint64_t expansion_left_ = 0;
+  Doubt doubt_{file_.size()};
   bool crc_known_ = true;
   std::uint32_t crc_ = 0;
   mcap::Index index_;  ///< empty: there is none that is whole
@@ -187,8 +232,12 @@ McapScan Scanner::run() {
     const std::uint64_t length = reader.u64();
     const std::uint64_t content_at = at_ + mcap::kRecordHeaderBytes;
     Next next = Next::kResync;
-    if (reader.ok() && opcode != 0 && content_at <= file_.size() &&
-        length <= file_.size() - content_at) {
+    const bool is_inside = reader.ok() && opcode != 0 && content_at <= file_.size() &&
+                           length <= file_.size() - content_at;
+    const bool ends_well =
+        is_inside && ends_at(content_at + length, opcode, file_, index_.start, search_buffer_);
+    if (is_inside && has_likely_length(file_, at_, opcode, length, search_buffer_) &&
+        (ends_well || doubt_.takes(length))) {
       if (opcode != mcap::kDataEnd) crc_ = crc32(head, crc_);
       const auto content = file_.read(content_at, length, buffer_);
       if (content.size() == length) {
@@ -198,10 +247,7 @@ McapScan Scanner::run() {
       }
     }
     if (next == Next::kEnd) break;
-    if (next == Next::kGoOn && opcode < mcap::kDataEnd && !has_own_check(opcode) &&
-        (content_at + length >= index_.start ||
-         !begins_record(file_, content_at + length, search_buffer_)))
-      next = Next::kResync;
+    if (next == Next::kGoOn && !ends_well) next = Next::kResync;
     if (next == Next::kGoOn) {
       if (handler_.is_enough && handler_.is_enough()) break;
       at_ = content_at + length;
@@ -279,7 +325,7 @@ Scanner::Next Scanner::data_end(std::span<const std::byte> content, std::uint64_
       std::ranges::equal(magic, std::as_bytes(std::span(mcap::kMagic))) &&
       (summary_start == next_offset || (summary_start == 0 && footer_at == next_offset));
   if (!closed) {
-    const auto moved = summary_start == 0 ? std::nullopt : mcap::read_index(file_, next_offset);
+    const auto moved = moved_index(file_, summary_start, next_offset, doubt_);
     if (moved && reader.ok() && content.size() == 4) {
       note(moved_text(next_offset, summary_start));
       scan_.stated = stated_of(*moved, channels_);
@@ -451,7 +497,10 @@ Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler&
     return fail(Code::kInvalidInput,
                 file.string() +
                     ": is no session log (MCAP): it does not begin as one; is it the right file?");
-  return Scanner(input, handler, limits, std::move(index).value_or(mcap::Index{})).run();
+  McapScan scan = Scanner(input, handler, limits, std::move(index).value_or(mcap::Index{})).run();
+  scan.file_bytes = input.size();
+  scan.bytes_read = input.bytes_read();
+  return scan;
 }
 
 }  // namespace mortise

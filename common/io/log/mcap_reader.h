@@ -62,6 +62,7 @@ struct McapScan {
   std::string profile, library;
   bool complete = false;  ///< footer and closing magic were found
   std::uint64_t file_bytes = 0, records = 0, chunks = 0, messages = 0, attachments = 0;
+  std::uint64_t bytes_read = 0;  ///< with those that were read again
   std::uint64_t lost_chunks = 0, lost_attachments = 0;
   /// How many messages the index states, by topic; empty: there is none that is whole.
   std::map<std::string, std::uint64_t> stated;
@@ -71,7 +72,8 @@ struct McapScan {
 /// Reads an MCAP file from front to back: a file without its tail, or with damage in the middle,
 /// gives all chunks that are whole. Of the index it takes schemas and channels alone, where it is
 /// whole. Fails only when the file cannot be opened, or neither begins nor ends as MCAP. Never
-/// throws on any content; memory is bounded by the limits and the size of the file.
+/// throws on any content; memory is bounded by the limits and the size of the file, and what is
+/// read, by a small multiple of that size, whatever its lengths say.
 Result<McapScan> scan_mcap(const std::filesystem::path& file, const McapHandler& handler,
                            const McapLimits& limits = {});
 

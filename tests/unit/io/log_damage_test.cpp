@@ -6,6 +6,7 @@
 
 #include "common/io/log/log_chain.h"
 #include "common/io/log/mcap_format.h"
+#include "common/io/log/mcap_reader.h"
 #include "common/io/log/replay.h"
 #include "common/io/log/session_log_recover.h"
 #include "common/io/log/tick_sequence.h"
@@ -231,6 +232,55 @@ TEST(LogDamage, AChunkThatWasCutOutIsMissed) {
     EXPECT_EQ(again->gaps[0].reason, gap.reason);
     fs::remove(recovered);
   }
+}
+
+std::string little(std::uint64_t value, int bytes) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i));
+  return text;
+}
+
+std::string record(std::uint8_t opcode, std::uint64_t length, const std::string& content = {}) {
+  return static_cast<char>(opcode) + little(length, 8) + content;
+}
+
+/// A file of very many chunks without a record, each with another record behind it that says so
+/// many bytes less than the rest of the file, and at its end a footer that tells of an index.
+std::string many_tiny_chunks(std::uint8_t opcode, std::uint64_t less) {
+  constexpr std::size_t kUnits = 3000;
+  const std::string magic(mcap::kMagic.begin(), mcap::kMagic.end());
+  const std::string chunk =
+      record(mcap::kChunk, mcap::kChunkFixedBytes, std::string(mcap::kChunkFixedBytes, '\0'));
+  const std::string footer =
+      record(mcap::kFooter, mcap::kFooterBytes, little(1, 8) + little(1, 8) + little(1, 4)) + magic;
+  const bool is_whole = less == 0;  // an end of data of the right length
+  const std::size_t unit = chunk.size() + mcap::kRecordHeaderBytes + (is_whole ? 4 : 0);
+  const std::size_t total = magic.size() + kUnits * unit + footer.size();
+  std::string bytes = magic;
+  for (std::size_t i = 0; i < kUnits; ++i) {
+    bytes += chunk;
+    const std::size_t left = total - bytes.size() - mcap::kRecordHeaderBytes;
+    bytes += is_whole ? record(opcode, 4, little(0, 4)) : record(opcode, left - less);
+  }
+  return bytes + footer;
+}
+
+/// Whatever the lengths of a hostile log say, it is read in a time that goes by its size.
+TEST(LogDamage, ManyTinyChunksAndAbsurdLengthsAreReadInLinearTime) {
+  const test::TestFolder folder;
+  const fs::path file = folder.path() / "hostile.mcap";
+  for (int opcode = 0; opcode <= mcap::kDataEnd + 1; ++opcode)
+    for (const std::uint64_t less : {0, 1, 7, 29}) {
+      if (less == 0 && opcode != mcap::kDataEnd) continue;
+      SCOPED_TRACE(std::to_string(opcode) + ", " + std::to_string(less) + " less");
+      const std::string bytes = many_tiny_chunks(static_cast<std::uint8_t>(opcode), less);
+      std::ofstream(file, std::ios::binary) << bytes;
+      const auto scan = scan_mcap(file, {});
+      ASSERT_TRUE(scan) << scan.error().text;
+      EXPECT_GE(scan->bytes_read, bytes.size() / 2) << "something else was read";
+      EXPECT_LE(scan->bytes_read, 20 * bytes.size());
+      EXPECT_FALSE(scan->complete);
+    }
 }
 
 }  // namespace
