@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <deque>
 #include <fstream>
 #include <iostream>
@@ -284,8 +285,24 @@ Result<bool> Service::follow_leader() {
   return true;
 }
 
+// Also where a log continues: its times may be right, those of certificates are not.
+void say_clock_that_is_not_set() {
+  constexpr std::time_t kFirst_s = 1'577'836'800;  // 2020: no server of this kind ran before
+  const std::time_t now_s = std::time(nullptr);
+  if (now_s >= kFirst_s) return;
+  std::tm utc{};
+  gmtime_r(&now_s, &utc);
+  char day[32];
+  std::strftime(day, sizeof day, "%Y-%m-%d", &utc);
+  spdlog::warn(
+      "the clock of this machine shows {}: times and names of the log, and the term, go by it; set "
+      "the clock and start again",
+      day);
+}
+
 // 5. the tick loop and what looks at it
 void Service::open_loop() {
+  say_clock_that_is_not_set();
   if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
   // No tick is logged before the term of its server: so the next one finds a later term in the log.
   clock_.emplace(std::max(term_ns(), followed_ns_));

@@ -88,6 +88,40 @@ TEST_F(ClockJump, AnHourOnAndAnHourBack) {
   expect_in_log(known, first_log(), {anna_.get(), ben_.get()});
 }
 
+TEST_F(ClockJump, BeforeTheYear1970NobodyStarts) {
+  wall_.step(-std::time(nullptr) - kHour_s);
+  const std::unique_ptr<Program> server = lead();
+  EXPECT_EQ(server->wait(kPatience_s), 1);
+  const std::string said = server->errors();
+  EXPECT_NE(said.find("shows a time before 1970; set it"), std::string::npos) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+}
+
+/// As a machine without a battery begins. Times and terms go on from there.
+TEST_F(ClockJump, AClockThatWasNeverSetIsSaidAndServesASession) {
+  wall_.step(-std::time(nullptr) + 60);
+  std::unique_ptr<Program> server = lead();
+  EXPECT_TRUE(says(*server, "the clock of this machine shows 1970-01-01")) << server->errors();
+  come_in();
+  drag(0.5);
+  kill_and_restore(server);
+  kill_and_restore(server);
+  EXPECT_EQ(lost_of_acknowledged(*server), 0U) << "of " << acknowledged_.size();
+  std::int64_t last_ns = 0;
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(logs())) files.insert(entry.path());
+  EXPECT_EQ(files.size(), 3U);
+  for (const auto& file : files) {  // in the order of their names
+    EXPECT_NE(file.filename().string().find("-1970"), std::string::npos) << file;
+    const auto log = read_session_log(file);
+    ASSERT_TRUE(log) << log.error().text;
+    ASSERT_FALSE(log->ticks.empty()) << file;
+    EXPECT_GT(log->ticks.front().time_ns, last_ns) << file;
+    last_ns = log->ticks.back().time_ns;
+  }
+  EXPECT_LT(last_ns, kHour_s * 1'000'000'000);
+}
+
 /// Its own clock shows an hour less than the ticks that it followed.
 TEST_F(ClockJump, OneThatTakesOverGoesOnLaterThanTheOneThatLed) {
   auto [first, second] = both();

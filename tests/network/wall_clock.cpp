@@ -86,8 +86,10 @@ time_t time(time_t* now) noexcept {
 int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex,
                            const timespec* deadline) {
   static auto* const wait = next<decltype(pthread_cond_timedwait)>("pthread_cond_timedwait");
-  // By which clock, the condition alone knows: the machine has been up for less than half its time.
-  const bool is_wall = deadline->tv_sec > machine_s(CLOCK_REALTIME).tv_sec / 2;
+  // By which clock, the condition alone knows: the one that is nearer.
+  const std::int64_t wall_s = machine_s(CLOCK_REALTIME).tv_sec + ahead_s();
+  const bool is_wall = std::abs(deadline->tv_sec - wall_s) <
+                       std::abs(deadline->tv_sec - machine_s(CLOCK_MONOTONIC).tv_sec);
   const timespec machine_deadline = is_wall ? as_machine_s(*deadline) : *deadline;
   return wait(condition, mutex, &machine_deadline);
 }
