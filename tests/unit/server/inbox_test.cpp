@@ -332,6 +332,38 @@ TEST(Inbox, OneParticipantDoesNotTakeEverySeat) {
   EXPECT_EQ(inbox.users_present(), 32U);
 }
 
+/// The share goes by the number of seats, is not a participant's for ever, and is nobody's loss
+/// where there are few.
+TEST(Inbox, TheShareOfOneParticipantIsAllSeatsButASixteenth) {
+  for (const std::uint32_t max_users : {1U, 2U, 15U, 16U, 17U, 64U, 256U}) {
+    SCOPED_TRACE(max_users);
+    const std::uint32_t kept = max_users / 16;
+    World world = small_world();
+    Inbox inbox({.max_users = max_users});
+    Intake intake;
+    std::uint64_t nonce = 0;
+    const auto gets_in = [&](const ClientKey& client) {
+      ServerInput input;
+      input.joins.push_back({client, ++nonce, "user " + std::to_string(nonce), "designer"});
+      inbox.admit(std::move(input), world, 0, intake);
+      return bool(intake.join_replies.at(0).user);
+    };
+    for (std::uint32_t i = 0; i < max_users - kept; ++i) ASSERT_TRUE(gets_in("many")) << i;
+    EXPECT_FALSE(gets_in("many"));
+    for (std::uint32_t i = 0; i < kept; ++i) {
+      EXPECT_TRUE(gets_in("other " + std::to_string(i)));
+      EXPECT_FALSE(gets_in("many")) << "what others have left is not its own";
+    }
+    EXPECT_FALSE(gets_in("late"));
+    EXPECT_EQ(inbox.users_present(), max_users);
+    ServerInput gone;
+    gone.lost.push_back({UserId{}, "many", false});
+    inbox.admit(std::move(gone), world, 0, intake);
+    EXPECT_EQ(inbox.users_present(), kept);
+    EXPECT_TRUE(gets_in("many")) << "it has none now";
+  }
+}
+
 /// Who is told that an increment was taken, and not that it was refused, holds it for done.
 TEST(Inbox, WhatIsRefusedIsAcknowledgedOnceThatIsTold) {
   World world = small_world();
