@@ -38,3 +38,18 @@ test('what has a fit is not proposed, however it is written', () => {
   assert.deepEqual(proposedFits(scene({ standing: said({ feature: undefined, other_feature: undefined }) })), []);
   assert.equal(proposedFits(scene({ standing: said({ text: '' }) })).length, 1);
 });
+
+test('the code that is declared for the size elsewhere is proposed, and stands first; of two nothing is', () => {
+  const elsewhere = (text) => ({ kind: 'set tolerance', part: 7, feature: 'bore', other: 8, other_feature: 'journal', text });
+  const codes = (standing) => proposedFits(scene({ standing })).map((fit) => fit.code);
+  assert.deepEqual(codes([]), ['']);
+  assert.deepEqual(codes([elsewhere('Ø20 H7/g6'), elsewhere('Ø20 H7/g6'), elsewhere('Ø12 H7/p6')]), ['Ø20 H7/g6']);
+  assert.deepEqual(codes([elsewhere('Ø20 H7/g6'), elsewhere('Ø20 H7/k6')]), ['']);
+  assert.deepEqual(codes([elsewhere('H7/g6'), elsewhere('Ø19.9 H7/g6')]), ['']);
+
+  const two = scene({ standing: [elsewhere('Ø20 H7/g6')] });
+  two.features.get(1).unshift(round('hole', 5, true, [40, 0, 0]));
+  two.parts.set(3, { id: 3, p: [40, 0, 0], q: UPRIGHT, moving: true });
+  two.features.set(3, [round('pin', 4.95, false)]);
+  assert.deepEqual(proposedFits(two).map(({ bore, code }) => [bore.feature, code]), [['bore', 'Ø20 H7/g6'], ['hole', '']]);
+});

@@ -21,8 +21,8 @@ export function makeProposedRules({ session, commands, say }) {
   const place = ({ part, feature }) => `${session.partName(part)}.${plain(feature)}`;
 
   /** @param {ProposedFit} fit */
-  async function set({ bore, shaft }) {
-    return (await commands.ask('fit', { part: bore.part, feature: bore.feature, other: shaft.part, other_feature: shaft.feature, text: code.value.trim() })).done;
+  async function set({ bore, shaft, code: declared }) {
+    return (await commands.ask('fit', { part: bore.part, feature: bore.feature, other: shaft.part, other_feature: shaft.feature, text: code.value.trim() || declared })).done;
   }
 
   function refresh() {
@@ -30,15 +30,16 @@ export function makeProposedRules({ session, commands, say }) {
     proposed = session.mayAct ? proposedFits(session) : [];
     box.hidden = proposed.length === 0;
     setText(count, `${proposed.length}`);
-    for (const button of box.querySelectorAll('button')) button.disabled = code.value.trim() === '';
+    all.disabled = code.value.trim() === '' && proposed.some((fit) => fit.code === '');
     keepRows(rows, proposed, ({ bore, shaft }) => [bore.part, bore.feature, shaft.part, shaft.feature].join(' '),
       () => el('li', {}, el('span', { class: 'grow' }), el('span', { class: 'quiet' }), el('button', { type: 'button' }, 'Set')),
       (row, fit) => {
         const [name, clearance, one] = /** @type {[HTMLElement, HTMLElement, HTMLButtonElement]} */ ([...row.children]);
         setText(name, `${place(fit.bore)} × ${place(fit.shaft)}`);
         name.title = name.textContent ?? '';
-        setText(clearance, Math.abs(fit.clearance) < 5e-5 ? 'of one size' : `${small(Math.abs(fit.clearance))} ${fit.clearance < 0 ? 'too thick' : 'of play'}`);
-        one.disabled = code.value.trim() === '';
+        const size = Math.abs(fit.clearance) < 5e-5 ? 'of one size' : `${small(Math.abs(fit.clearance))} ${fit.clearance < 0 ? 'too thick' : 'of play'}`;
+        setText(clearance, fit.code && code.value.trim() === '' ? `${fit.code}, as declared elsewhere` : size);
+        one.disabled = code.value.trim() === '' && fit.code === '';
         one.setAttribute('aria-label', `Set: ${name.title}`);
         one.onclick = () => set(fit);
       });
