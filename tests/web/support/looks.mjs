@@ -50,7 +50,7 @@ export function paleTexts(page) {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     for (let node = walker.nextNode(); node; node = walker.nextNode()) {
       const element = node.parentElement;
-      if (!node.textContent.trim() || !element.checkVisibility() || element.closest('svg, [disabled], script, #labels, #heat_legend .zone')) continue;
+      if (!node.textContent.trim() || !element.checkVisibility() || element.closest('svg, [disabled], script, #heat_legend .zone')) continue;
       const back = ground(element);
       const alpha = faded(element);
       const own = numbers(getComputedStyle(element).color);
