@@ -3,6 +3,7 @@
 
 #include "client/api/convert.h"
 #include "client/api/part_body.h"
+#include "common/base/ranges.h"
 #include "common/generators/generators.h"
 #include "common/geometry/recognition/recognition.h"
 #include "common/geometry/topology.h"
@@ -13,8 +14,6 @@
 
 namespace mortise::api {
 namespace {
-
-constexpr double kLargestPoint_mm = 1e7;  // as of files
 
 Feature feature_of(const mortise::Feature& f) {
   return {f.name,
@@ -65,7 +64,7 @@ Result<Part> Part::from_mesh(const Mesh& mesh, const std::string& name) {
     return Error{Code::kInvalidInput, "part " + name + ": " + what};
   };
   for (std::size_t i = 0; i < mesh.points_mm.size(); ++i)
-    if (!is_within(mesh.points_mm[i], kLargestPoint_mm))
+    if (!is_within(mesh.points_mm[i], kLongestInPart_mm))
       return bad("point " + std::to_string(i) +
                  " is not finite or lies beyond 10 km; check the unit");
   std::vector<double> coordinates;

@@ -17,6 +17,12 @@ static_assert(kLongest_mm * 2.0 * kUnitRoundoff < 1e-6 && kLongest_mm < kLargest
 /// of sizes stay normal numbers.
 inline constexpr double kShortest_mm = 1e-6;
 
+/// Largest coordinate of a mesh in its own frame, mm (ten kilometres): beyond it doubles resolve
+/// less than a nanometre in the engine's products, and no part is so large; a wrong unit is. At
+/// every door for meshes: files, STEP, uploads, the library's API. kLargestCoordinate_mm, which is
+/// larger, is what the engine takes, and what it reads of its own states and logs.
+inline constexpr double kLongestInPart_mm = 1e7;
+
 /// Largest number of any other kind.
 inline constexpr double kLargestNumber = 1e9;
 

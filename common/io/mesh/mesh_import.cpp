@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/base/in_quotes.h"
+#include "common/base/ranges.h"
 #include "common/io/mesh/importer_process.h"
 #include "common/io/mesh/mesh_clean.h"
 #include "common/io/mesh/mesh_orient.h"
@@ -21,10 +22,6 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 6> kReadable = {".stl", ".obj", ".ply", ".gltf", ".glb", ".dae"};
 /// Shapes all the same, and refused with a reason of their own.
 constexpr std::array<const char*, 5> kOther = {".3mf", ".step", ".stp", ".iges", ".igs"};
-
-/// Ten kilometres: beyond it doubles resolve less than a nanometre in the engine's products, and no
-/// part is so large; a wrong unit is.
-constexpr double kLargestCoordinate_mm = 1e7;
 
 /// Two corners that are one in the drawing are no farther apart than this many times the rounding
 /// of a coordinate: each is off by it in three directions, and a little for the sum.
@@ -125,7 +122,7 @@ void note_findings(const RawSoup& soup, double unit_mm, ImportReport& report) {
 
 Result<ImportedMesh> made_of(const RawSoup& soup, const std::string& file, double unit_mm) {
   const double largest_mm = largest_coordinate(soup.coordinates) * unit_mm;
-  if (largest_mm > kLargestCoordinate_mm)
+  if (largest_mm > kLongestInPart_mm)
     return fail(Code::kInvalidInput, file + ": a coordinate of " + number(largest_mm) +
                                          " mm lies beyond 10 km; check the unit of the mesh");
   ImportedMesh imported;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/base/ranges.h"
 #include "common/io/state/bytes.h"
 
 namespace mortise {
@@ -12,8 +13,6 @@ namespace {
 constexpr std::uint32_t kDocument = 0x32535453, kQueries = 0x31515453, kAnswers = 0x31415453;
 // Longer than names and notes are; a file cannot fill memory with them.
 constexpr std::size_t kLongestStepText = 4096;
-constexpr double kLargestStepNumber =
-    1e9;  // of any number that is a length; beyond it a unit is wrong
 
 Error damaged(const std::string& what) {
   return fail(Code::kRuntime, "the STEP importer's answer is damaged (" + what + ")");
@@ -127,17 +126,17 @@ class StepReader {
     }
     return one_line(in_.text(size));
   }
-  double number(double most = kLargestStepNumber) {
+  double number(double most = kLongest_mm) {
     const double x = in_.f64();
     if (!(std::fabs(x) <= most)) wrong("a number is not finite, or far too large");
     return x;
   }
   double number_or_none() {
     const double x = in_.f64();
-    if (!std::isnan(x) && !(std::fabs(x) <= kLargestStepNumber)) wrong("a number is far too large");
+    if (!std::isnan(x) && !(std::fabs(x) <= kLongest_mm)) wrong("a number is far too large");
     return x;
   }
-  Vec3 vector(double most = kLargestStepNumber) {
+  Vec3 vector(double most = kLongest_mm) {
     const double x = number(most), y = number(most), z = number(most);
     return {x, y, z};
   }
@@ -193,7 +192,8 @@ class StepReader {
     if (triangles > kMostStepTriangles) wrong("too many triangles");
     if (!good()) return part;
     part.mesh.points_mm.reserve(points);
-    for (std::uint32_t i = 0; good() && i < points; ++i) part.mesh.points_mm.push_back(vector(1e7));
+    for (std::uint32_t i = 0; good() && i < points; ++i)
+      part.mesh.points_mm.push_back(vector(kLongestInPart_mm));
     for (std::uint32_t i = 0; good() && i < triangles; ++i) {
       std::array<std::uint32_t, 3> corners{};
       for (std::uint32_t& corner : corners) {

@@ -55,6 +55,7 @@ TEST(Part, WhatIsNoMeshIsRefused) {
     mesh.points_mm[2].y() = x;
     EXPECT_FALSE(Part::from_mesh(mesh)) << x;
   }
+  EXPECT_TRUE(Part::from_mesh(box_mesh(Vec3::Zero(), Vec3(1e7, 10, 10)))) << "as of a file";
   EXPECT_FALSE(Part::from_mesh({}));
   mesh = box_mesh(Vec3::Zero(), Vec3(10, 10, 0));
   mesh.triangles = {{0, 1, 1}};

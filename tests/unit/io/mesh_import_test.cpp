@@ -12,6 +12,7 @@
 #include <fstream>
 #include <random>
 
+#include "common/base/ranges.h"
 #include "common/geometry/topology.h"
 #include "common/io/mesh/mesh_clean.h"
 #include "common/io/mesh/raw_soup.h"
@@ -506,6 +507,17 @@ TEST(MeshImportData, StatedDefectsComeOut) {
   // Stated are 2 duplicates as well: both are copies of triangles without area, dropped before.
   EXPECT_EQ(report("wallhole.obj").duplicate_triangles, 0U);
   EXPECT_EQ(report("wallhole.obj").boundary_edges, 0U);
+}
+
+TEST(MeshImportRange, ACoordinateIsTakenUpToTenKilometres) {
+  const auto with = [](double x) {
+    std::vector<double> coordinates = {0, 0, 0, x, 0, 0, 0, 5, 0};
+    return mesh_of_triangles(std::move(coordinates), "a.obj");
+  };
+  EXPECT_TRUE(with(kLongestInPart_mm));
+  const auto refused = with(-std::nextafter(kLongestInPart_mm, HUGE_VAL));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("beyond 10 km"), std::string::npos) << refused.error().text;
 }
 
 TEST(MeshImportData, EveryMeshImportsOrSaysWhyNot) {
