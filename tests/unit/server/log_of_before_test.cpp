@@ -13,6 +13,8 @@
 #include "common/session/world/commands.h"
 #include "common/session/world/decisions.h"
 #include "server/restore.h"
+#include "server/standby.h"
+#include "server/tick_bytes.h"
 #include "tests/support/small_scenarios.h"
 
 namespace mortise {
@@ -181,6 +183,40 @@ TEST(LogOfVersion, MovesOf020ArePlayedAgainAndGoneOnWith) {
   Scratch scratch(1);
   EXPECT_EQ(step(world, {}, scratch).tick, log.ticks.back().tick + 1);
   EXPECT_EQ(world.find(kRed)->X_WP.p, Vec3(0, 0, 20));
+}
+
+// One that stands by beside a leader of that version: what went into each of its ticks, and the
+// hash that it had, in order.
+TEST(LogOfVersion, TicksOf020AreFollowedInStep) {
+  const auto read = read_session_log(kFolder / "moves.mcap");
+  ASSERT_TRUE(read) << read.error().text;
+  const SessionLog& log = *read;
+  auto scene = scene_of(log);
+  ASSERT_TRUE(scene) << scene.error().text;
+  SessionStatistics statistics;
+  Follower follower(scene->world, statistics, nullptr, 1);
+  const auto told = [](const TickRecord& record) {
+    FollowedTick tick;
+    tick.tick = record.tick;
+    tick.state_hash = record.report.state_hash;
+    tick.time_ns = record.time_ns;
+    tick.decisions = record.decisions;
+    tick.increments = record.increments;
+    return ToldTick{tick.tick, encode(tick)};
+  };
+  ASSERT_EQ(log.ticks.size(), 50U);
+  for (std::size_t i = 0; i + 1 < log.ticks.size(); ++i) {
+    const Status taken = follower.take(told(log.ticks[i]));
+    ASSERT_TRUE(taken) << "tick " << log.ticks[i].tick << ": " << taken.error().text;
+  }
+  EXPECT_EQ(follower.ticks(), 49U);
+  EXPECT_EQ(scene->world.find(kRed)->X_WP.p, Vec3(8, 4, 22));
+  EXPECT_EQ(scene->world.find(kBlue)->X_WP.p, Vec3(32, 8, 24));
+  TickRecord last = log.ticks.back();
+  last.report.state_hash ^= 1;
+  const Status differs = follower.take(told(last));
+  ASSERT_FALSE(differs) << "each hash is compared";
+  EXPECT_EQ(differs.error().code, Code::kMismatch);
 }
 
 // A later engine may judge with other bits: it says the same, within its accuracy.
