@@ -24,7 +24,7 @@ std::vector<std::byte> encode_state(const World& world);
 Status restore_state(World& world, std::span<const std::byte> bytes);
 
 /// Version of the layout of these bytes; a checkpoint of another version is not read.
-inline constexpr std::uint8_t kStateLayout = 4;
+inline constexpr std::uint8_t kStateLayout = 3;
 
 /// A state that another thread can serialize later, once.
 using StateDraft = std::function<std::vector<std::byte>()>;

@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+#include <limits>
+
 #include "common/ccd/distance.h"
 #include "common/io/state/state_bytes.h"
 #include "common/session/memory/session_state.h"
@@ -164,7 +167,14 @@ void fields(A& a, PairMemo::Stalled& x) {
 template <class A>
 void fields(A& a, PairMemo::Effort& x) {
   auto& [wanted, waited] = x;
-  a(wanted, waited);
+  // A byte, as it is in all files; who has waited longer than that has the whole number behind it.
+  constexpr std::uint8_t kLonger = std::numeric_limits<std::uint8_t>::max();
+  auto few = static_cast<std::uint8_t>(std::min<std::uint32_t>(waited, kLonger));
+  a(wanted, few);
+  if (few == kLonger)
+    a(waited);
+  else if constexpr (A::reads())
+    waited = few;
 }
 /// But for what is about copies of it.
 template <class A>

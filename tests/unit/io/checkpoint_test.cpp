@@ -1,6 +1,7 @@
 // A checkpoint holds all that a session is: from any of them it goes on as if it had never stopped,
 // bit for bit, to its end.
 #include "common/io/state/checkpoint.h"
+#include "common/io/state/state_fields.h"
 
 #include <algorithm>
 #include <cstring>
@@ -311,6 +312,21 @@ TEST(Checkpoint, NumbersWithoutSenseAreRefusedOrComputedWith) {
 
 // Written by a program that did not count them: the last eight bytes of what is counted are
 // missing.
+TEST(Checkpoint, APairMayHaveWaitedForAnyNumberOfTicks) {
+  for (const std::uint32_t waited : {0U, 1U, 254U, 255U, 256U, 70'000U, 4'294'967'295U}) {
+    PairMemo::Effort effort{12, waited}, back;
+    state_bytes::Writer out;
+    out(effort);
+    const std::vector<std::byte> bytes = out.take();
+    EXPECT_EQ(bytes.size(), waited < 255 ? 5U : 9U) << "older files have a byte";
+    state_bytes::Reader in(bytes);
+    in(back);
+    EXPECT_TRUE(in.at_end());
+    EXPECT_EQ(back.waited, waited);
+    EXPECT_EQ(back.wanted, 12U);
+  }
+}
+
 TEST(CheckpointRecord, TotalsOfBeforeLackEventTimesAtLatest) {
   StepReport report;
   report.counters.event_times_at_latest = 3;
