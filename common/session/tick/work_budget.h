@@ -58,7 +58,7 @@ inline constexpr std::uint32_t kHeldLead_ticks = 30;
 /// Who is first in the order of a stage is served after at most so many ticks.
 inline constexpr std::uint32_t kLongestFirst_ticks = 11;
 /// Where n pairs ask for the work of a stage, each is served after so many ticks in a row in which
-/// it asked for some, however little there is. The README of this room proves it.
+/// it asked for some, however little there is. The README of this room proves it, and for whom.
 constexpr std::uint64_t longest_wait_ticks(std::uint64_t n) {
   return kHeldLead_ticks + kLongestFirst_ticks * n;
 }
