@@ -14,9 +14,10 @@ bool waits(const Scratch::Impl& work, std::int32_t index) {
   bool any = false;
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     const PairWork& pair = work.pairs[i];
-    if (!pair.blocks || (pair.move_a != index && pair.move_b != index)) continue;
+    if (!pair.status.blocks || (pair.ids.move_a != index && pair.ids.move_b != index)) continue;
     const bool had_none =
-        pair.contact_waits || (pair.short_of_work && pair.cap == 0 && times_in_vain(pair) == 0);
+        pair.effort.contact_waits ||
+        (pair.answer.short_of_work && pair.effort.cap == 0 && times_in_vain(pair) == 0);
     if (!had_none) return false;
     any = true;
   }

@@ -12,13 +12,13 @@ namespace {
 PairWork& next_pair(Scratch::Impl& work) {
   if (work.pair_count == work.pairs.size()) work.pairs.emplace_back();
   PairWork& pair = work.pairs[work.pair_count++];
-  std::vector<SeenRegion> seen = std::move(pair.seen);
-  std::vector<char> keeps = std::move(pair.keeps);
+  std::vector<SeenRegion> seen = std::move(pair.judged.seen);
+  std::vector<char> keeps = std::move(pair.judged.keeps);
   pair = PairWork{};
-  pair.seen = std::move(seen);
-  pair.keeps = std::move(keeps);
-  pair.seen.clear();
-  pair.keeps.clear();
+  pair.judged.seen = std::move(seen);
+  pair.judged.keeps = std::move(keeps);
+  pair.judged.seen.clear();
+  pair.judged.keeps.clear();
   return pair;
 }
 
@@ -45,45 +45,47 @@ void set_up(const World& world, SessionState& state, const Scratch::Impl& work, 
             const PairRule* rule, PairWork& pair) {
   const Part& a = world.parts[indices.a];
   const Part& b = world.parts[indices.b];
-  pair.a = indices.a;
-  pair.b = indices.b;
-  pair.solid_a = a.solid.get();
-  pair.solid_b = b.solid.get();
-  pair.rule = rule;
+  pair.ids.a = indices.a;
+  pair.ids.b = indices.b;
+  pair.ids.solid_a = a.solid.get();
+  pair.ids.solid_b = b.solid.get();
+  pair.ids.rule = rule;
   JudgementQuery bands;
   bands.a = &a;
   bands.b = &b;
   bands.rule = rule;
-  pair.band_a = &band_a_of(bands);
-  pair.band_b = &band_b_of(bands);
-  pair.band_mm = pair.band_a->farthest_mm() + pair.band_b->farthest_mm();
-  pair.memo = MemoInUse(state.memo(pair.a, pair.b));
+  pair.ids.band_a = &band_a_of(bands);
+  pair.ids.band_b = &band_b_of(bands);
+  pair.ids.band_mm = pair.ids.band_a->farthest_mm() + pair.ids.band_b->farthest_mm();
+  pair.ids.memo = MemoInUse(state.memo(pair.ids.a, pair.ids.b));
   const auto open = state.open.find({a.id, b.id});
-  if (open != state.open.end()) pair.open = &open->second;
-  const std::uint64_t placements = state.parts[pair.a].placements + state.parts[pair.b].placements;
-  if (pair.memo->placements != placements) {
-    PairMemo& memo = pair.memo.change();
+  if (open != state.open.end()) pair.ids.open = &open->second;
+  const std::uint64_t placements =
+      state.parts[pair.ids.a].placements + state.parts[pair.ids.b].placements;
+  if (pair.ids.memo->placements != placements) {
+    PairMemo& memo = pair.ids.memo.change();
     memo.placements = placements;
     memo.not_contained = false;
     memo.allowed_depth_mm = std::numeric_limits<double>::infinity();
     memo.held.reset();
     memo.stalled.reset();
-    memo.not_judged = memo.not_seen = pair.open != nullptr;
+    memo.not_judged = memo.not_seen = pair.ids.open != nullptr;
   }
-  pair.move_a = work.move_of_part[pair.a];
-  pair.move_b = work.move_of_part[pair.b];
+  pair.ids.move_a = work.move_of_part[pair.ids.a];
+  pair.ids.move_b = work.move_of_part[pair.ids.b];
   const auto motion_of = [&](std::int32_t move, const Part& part) {
     if (move >= 0) return work.moves[static_cast<std::size_t>(move)].motion;
     Motion still = still_motion(part.X_WP);
     still.reference_P = part.solid->sphere().center_mm;
     return still;
   };
-  pair.motion_a = motion_of(pair.move_a, a);
-  pair.motion_b = motion_of(pair.move_b, b);
-  pair.placed = !pair.motion_a.moves() && !pair.motion_b.moves();
-  pair.together = a.group && a.group == b.group && pair.move_a >= 0 && pair.move_b >= 0 &&
-                  !work.moves[static_cast<std::size_t>(pair.move_a)].placed &&
-                  !work.moves[static_cast<std::size_t>(pair.move_b)].placed;
+  pair.segment.motion_a = motion_of(pair.ids.move_a, a);
+  pair.segment.motion_b = motion_of(pair.ids.move_b, b);
+  pair.ids.placed = !pair.segment.motion_a.moves() && !pair.segment.motion_b.moves();
+  pair.status.together = a.group && a.group == b.group && pair.ids.move_a >= 0 &&
+                         pair.ids.move_b >= 0 &&
+                         !work.moves[static_cast<std::size_t>(pair.ids.move_a)].placed &&
+                         !work.moves[static_cast<std::size_t>(pair.ids.move_b)].placed;
 }
 
 // Does it move, or was it put somewhere? Who is only looked at for one of its pairs is not.

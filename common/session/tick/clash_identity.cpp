@@ -22,7 +22,7 @@ double apart(const OpenClash& clash, const SeenRegion& seen) {
 }
 
 double least_radius_mm(const PairWork& pair) {
-  return std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
+  return std::min(pair.ids.solid_a->sphere().radius_mm, pair.ids.solid_b->sphere().radius_mm);
 }
 
 // Is a region near enough to continue a clash? The deepest point of a flat contact may lie anywhere
@@ -41,20 +41,21 @@ void pair_up(PairWork& pair, const std::vector<OpenClash>& open, double radius_m
   };
   std::vector<Option> options;
   std::vector<char> taken(open.size(), 0);
-  for (const SeenRegion& seen : pair.seen)
+  for (const SeenRegion& seen : pair.judged.seen)
     if (seen.open >= 0) taken[static_cast<std::size_t>(seen.open)] = 1;
   for (std::size_t c = 0; c < open.size(); ++c)
-    for (std::size_t r = 0; r < pair.seen.size(); ++r) {
-      if (taken[c] || pair.seen[r].open >= 0) continue;
-      const double d = apart(open[c], pair.seen[r]);
-      const double gate = wide ? radius_mm : gate_mm(open[c], pair.seen[r].verdict, radius_mm);
+    for (std::size_t r = 0; r < pair.judged.seen.size(); ++r) {
+      if (taken[c] || pair.judged.seen[r].open >= 0) continue;
+      const double d = apart(open[c], pair.judged.seen[r]);
+      const double gate =
+          wide ? radius_mm : gate_mm(open[c], pair.judged.seen[r].verdict, radius_mm);
       if (d <= gate) options.push_back({d, static_cast<int>(c), static_cast<int>(r)});
     }
   std::sort(options.begin(), options.end(), [](const Option& x, const Option& y) {
     return std::tie(x.distance_mm, x.clash, x.region) < std::tie(y.distance_mm, y.clash, y.region);
   });
   for (const Option& option : options) {
-    SeenRegion& seen = pair.seen[static_cast<std::size_t>(option.region)];
+    SeenRegion& seen = pair.judged.seen[static_cast<std::size_t>(option.region)];
     char& is_taken = taken[static_cast<std::size_t>(option.clash)];
     if (is_taken || seen.open >= 0) continue;
     is_taken = 1;
@@ -66,8 +67,8 @@ void pair_up(PairWork& pair, const std::vector<OpenClash>& open, double radius_m
 // may fall into several regions from one tick to the next. So the worst of them goes on with the
 // clash that has held the pair near there, before others may.
 void go_on_holding(PairWork& pair, const std::vector<OpenClash>& open, double radius_mm) {
-  if (pair.seen.empty()) return;
-  SeenRegion& worst = pair.seen.front();
+  if (pair.judged.seen.empty()) return;
+  SeenRegion& worst = pair.judged.seen.front();
   double nearest = radius_mm;
   for (std::size_t c = 0; c < open.size(); ++c) {
     if (open[c].worst_class != CollisionClass::kReal) continue;
@@ -147,11 +148,11 @@ struct Times {
 };
 
 Times times_of(const PairWork& pair) {
-  Times times{1.0, pair.t_potential, pair.t_real};
-  if (pair.placed)
+  Times times{1.0, pair.judged.t_potential, pair.judged.t_real};
+  if (pair.ids.placed)
     times.contact = 0.0;
-  else if (pair.meets)
-    times.contact = pair.tau + (1.0 - pair.tau) * pair.t_contact;
+  else if (pair.answer.meets)
+    times.contact = pair.segment.tau + (1.0 - pair.segment.tau) * pair.answer.t_contact;
   return times;
 }
 
@@ -186,8 +187,8 @@ void begin(const World& world, SessionState& state, const PairWork& pair, const 
            const Times& times, StepReport& report) {
   OpenClash clash;
   clash.last.clash = ClashId{state.next_clash++};
-  clash.last.part_a = world.parts[pair.a].id;
-  clash.last.part_b = world.parts[pair.b].id;
+  clash.last.part_a = world.parts[pair.ids.a].id;
+  clash.last.part_b = world.parts[pair.ids.b].id;
   clash.last.begin_tick = world.tick;
   clash.worst_class = seen.verdict.collision_class;
   clash.worst_delta_mm = seen.verdict.delta_mm;
@@ -203,12 +204,12 @@ void begin(const World& world, SessionState& state, const PairWork& pair, const 
 // The clashes of one pair that were open before the tick: change, end, or go on in silence.
 void update(const World& world, SessionState& state, const PairWork* pair,
             std::vector<OpenClash>& open, StepReport& report) {
-  if (pair && pair->together) return;  // they stand to each other as before
-  const bool known = pair && pair->asked;
+  if (pair && pair->status.together) return;  // they stand to each other as before
+  const bool known = pair && pair->status.asked;
   for (std::size_t c = 0; c < open.size(); ++c) {
     const SeenRegion* seen = nullptr;
     if (known)
-      for (const SeenRegion& region : pair->seen)
+      for (const SeenRegion& region : pair->judged.seen)
         if (region.open == static_cast<int>(c)) seen = &region;
     const Times times = known ? times_of(*pair) : Times{};
     if (seen) take_in(open[c], *seen);
@@ -217,7 +218,7 @@ void update(const World& world, SessionState& state, const PairWork* pair,
         tell(world, state, open[c], ClashEvent::Kind::kChange, times, report);
       continue;
     }
-    if (!seen && known && pair->keeps[c]) continue;
+    if (!seen && known && pair->judged.keeps[c]) continue;
     tell(world, state, open[c], ClashEvent::Kind::kEnd, times, report);
   }
   std::erase_if(open,
@@ -229,7 +230,7 @@ void update(const World& world, SessionState& state, const PairWork* pair,
 bool is_at(const OpenClash& clash, const CertainPlace& place, const PairWork& pair) {
   const bool of_a = place.role == 0;
   const std::string& face = of_a ? clash.now.face_a : clash.now.face_b;
-  const SurfaceBand& band = of_a ? *pair.band_a : *pair.band_b;
+  const SurfaceBand& band = of_a ? *pair.ids.band_a : *pair.ids.band_b;
   if (!face.empty() && face == band.face_of(place.triangle).name) return true;
   const double away_mm = (place.point_S - (of_a ? clash.p_A : clash.p_B)).norm();
   return away_mm <= gate_mm(clash, clash.now, least_radius_mm(pair));
@@ -237,42 +238,42 @@ bool is_at(const OpenClash& clash, const CertainPlace& place, const PairWork& pa
 
 void match_clashes(const World& world, PairWork& pair, double distance_mm) {
   const double radius_mm = least_radius_mm(pair);
-  if (!pair.open) {
+  if (!pair.ids.open) {
     // What stopped the pair is the worst of what it would have met, and one clash.
-    if (pair.blocks && pair.seen.size() > 1) pair.seen.resize(1);
-    for (SeenRegion& seen : pair.seen) seen.tell = true;
+    if (pair.status.blocks && pair.judged.seen.size() > 1) pair.judged.seen.resize(1);
+    for (SeenRegion& seen : pair.judged.seen) seen.tell = true;
     return;
   }
-  const std::vector<OpenClash>& open = *pair.open;
-  if (pair.blocks) go_on_holding(pair, open, radius_mm);
+  const std::vector<OpenClash>& open = *pair.ids.open;
+  if (pair.status.blocks) go_on_holding(pair, open, radius_mm);
   // 1. Near the same place; then what is left over, with a wider gate: a clash that jumps over its
   //    part from tick to tick is still one clash.
   pair_up(pair, open, radius_mm, false);
   pair_up(pair, open, radius_mm, true);
-  pair.keeps.assign(open.size(), 0);
-  if (pair.blocks) {
+  pair.judged.keeps.assign(open.size(), 0);
+  if (pair.status.blocks) {
     // The same; and where the part was stopped nobody looked: what was open there stays.
-    pair.keeps.assign(open.size(), 1);
+    pair.judged.keeps.assign(open.size(), 1);
     std::size_t kept = 0;
-    for (std::size_t r = 0; r < pair.seen.size(); ++r)
-      if (r == 0 || pair.seen[r].open >= 0) {
-        if (kept != r) pair.seen[kept] = std::move(pair.seen[r]);
+    for (std::size_t r = 0; r < pair.judged.seen.size(); ++r)
+      if (r == 0 || pair.judged.seen[r].open >= 0) {
+        if (kept != r) pair.judged.seen[kept] = std::move(pair.judged.seen[r]);
         ++kept;
       }
-    pair.seen.resize(kept);
+    pair.judged.seen.resize(kept);
   }
-  const bool anew = pair.memo->not_judged || (pair.memo->not_seen && !pair.blocks);
-  for (SeenRegion& seen : pair.seen) {
+  const bool anew = pair.ids.memo->not_judged || (pair.ids.memo->not_seen && !pair.status.blocks);
+  for (SeenRegion& seen : pair.judged.seen) {
     if (seen.open < 0) {
       seen.tell = true;
     } else {
       const OpenClash& clash = open[static_cast<std::size_t>(seen.open)];
-      pair.keeps[static_cast<std::size_t>(seen.open)] = 1;
+      pair.judged.keeps[static_cast<std::size_t>(seen.open)] = 1;
       seen.tell = change_is_due(clash, seen.verdict, world.tick, anew);
       const bool better = seen.verdict.collision_class < clash.last.verdict.collision_class;
       // At rest, where the depth cannot be known well enough, what a fresh look says is told.
-      seen.tell |= better && pair.in_full && pair.undecided;
-      pair.unsettled |= better && !seen.tell;
+      seen.tell |= better && pair.judged.in_full && pair.status.undecided;
+      pair.judged.unsettled |= better && !seen.tell;
     }
   }
   // 2. Hysteresis: not interfering any more, but by less than can be told for certain.
@@ -280,17 +281,17 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
   for (const OpenClash& clash : open) h = std::max(h, hysteresis_mm(clash.now));
   // Edges reach farther than faces, but only where they meet; that is known exactly.
   const double faces_mm =
-      std::max(0.0, pair.band_a->largest_offset_mm + pair.band_b->largest_offset_mm);
+      std::max(0.0, pair.ids.band_a->largest_offset_mm + pair.ids.band_b->largest_offset_mm);
   const bool close = distance_mm <= faces_mm + h;
   const bool barely =
-      std::any_of(pair.judgement.overlap.regions.begin(), pair.judgement.overlap.regions.end(),
-                  [&](const OverlapRegion& region) {
+      std::any_of(pair.judged.judgement.overlap.regions.begin(),
+                  pair.judged.judgement.overlap.regions.end(), [&](const OverlapRegion& region) {
                     return region.possible_mm.hi <= 0.0 && region.possible_mm.hi > -h;
                   });
   // Nothing trembles at rest.
-  if (!pair.seen.empty() || anew || pair.placed || !(close || barely)) return;
-  pair.keeps.assign(open.size(), 1);
-  pair.owed = pair.lingers = true;
+  if (!pair.judged.seen.empty() || anew || pair.ids.placed || !(close || barely)) return;
+  pair.judged.keeps.assign(open.size(), 1);
+  pair.status.owed = pair.status.lingers = true;
 }
 
 void end_unjudged_clashes(const World& world, SessionState& state, StepReport& report) {
@@ -317,9 +318,9 @@ void report_clashes(const World& world, SessionState& state, Scratch::Impl& work
     const IndexPair key{a.value - 1, b.value - 1};
     const auto it =
         std::lower_bound(work.pairs.begin(), last, key, [](const PairWork& x, IndexPair y) {
-          return IndexPair{x.a, x.b} < y;
+          return IndexPair{x.ids.a, x.ids.b} < y;
         });
-    return it != last && it->a == key.a && it->b == key.b ? &*it : nullptr;
+    return it != last && it->ids.a == key.a && it->ids.b == key.b ? &*it : nullptr;
   };
   const auto is_still = [&](PartId part) {
     const std::int32_t index = work.move_of_part[part.value - 1];
@@ -341,8 +342,8 @@ void report_clashes(const World& world, SessionState& state, Scratch::Impl& work
   // 2. New ones, in the order of pairs.
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     const PairWork& pair = work.pairs[i];
-    if (!pair.asked) continue;
-    for (const SeenRegion& seen : pair.seen)
+    if (!pair.status.asked) continue;
+    for (const SeenRegion& seen : pair.judged.seen)
       if (seen.open < 0) {
         begin(world, state, pair, seen, times_of(pair), report);
         state.clashes_changed = true;

@@ -3,9 +3,9 @@
 
 namespace mortise {
 
-/// The open clash that each region of pair.seen continues, whether its event is due, and which open
-/// clashes stay although nothing was seen of them. Reads pair.judgement; distance_mm: of the meshes
-/// at the end, infinite when not asked.
+/// The open clash that each region of pair.judged.seen continues, whether its event is due, and
+/// which open clashes stay although nothing was seen of them. Reads pair.judged.judgement;
+/// distance_mm: of the meshes at the end, infinite when not asked.
 void match_clashes(const World& world, PairWork& pair, double distance_mm);
 
 /// Is the place one of the clash: on the face of its part that the clash names, or near it?

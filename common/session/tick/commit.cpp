@@ -26,7 +26,7 @@ void commit(World& world, SessionState& state, Scratch::Impl& work, StepReport& 
   // What the tick had no work for is looked at as it stands, should it not move on.
   state.owed.clear();
   for (std::size_t i = 0; i < work.pair_count; ++i)
-    if (work.pairs[i].owed) state.owed.push_back({work.pairs[i].a, work.pairs[i].b});
+    if (work.pairs[i].status.owed) state.owed.push_back({work.pairs[i].ids.a, work.pairs[i].ids.b});
   if (world.guides.empty()) return;
   std::vector<PartId> moved, held_back;
   for (const Move& move : work.moves)

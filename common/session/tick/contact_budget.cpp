@@ -24,27 +24,27 @@ constexpr std::size_t kLeastBatch = 2;
 
 std::uint64_t spent(const Scratch::Impl& work) {
   std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < work.pair_count; ++i) sum += work.pairs[i].contact_tests;
+  for (std::size_t i = 0; i < work.pair_count; ++i) sum += work.pairs[i].effort.contact_tests;
   return sum;
 }
 
 std::uint64_t share_of(const PairWork& pair) {
-  if (pair.contact_short) return kMostContactTests;
+  if (pair.effort.contact_short) return kMostContactTests;
   const std::uint32_t wanted =
-      pair.memo->effort[static_cast<std::size_t>(WorkStage::kContact)].wanted;
+      pair.ids.memo->effort[static_cast<std::size_t>(WorkStage::kContact)].wanted;
   return wanted == 0 ? kFirstShare
                      : std::clamp<std::uint64_t>(wanted, kLeastShare, kMostContactTests);
 }
 
 // Was it cut short, and may it have more?
 bool may_go_on(const PairWork& pair) {
-  return pair.contact_short && pair.contact_cap < kMostContactTests;
+  return pair.effort.contact_short && pair.effort.contact_cap < kMostContactTests;
 }
 
 void begin(PairWork& pair, std::uint64_t cap) {
-  pair.contact_cap = cap;
-  pair.contact_short = false;
-  pair.clear_of_band = pair.clear_of_touch = 0.0;
+  pair.effort.contact_cap = cap;
+  pair.effort.contact_short = false;
+  pair.effort.clear_of_band = pair.effort.clear_of_touch = 0.0;
 }
 
 // Has it waited so long that it is asked whatever is left, if it is the first?
@@ -62,9 +62,9 @@ std::size_t share(Scratch::Impl& work, std::span<const std::uint32_t> order, boo
   std::size_t count = 0;
   for (; count < order.size(); ++count) {
     PairWork& pair = work.pairs[order[count]];
-    pair.contact_cap = first_is_due && count == 0 ? kMostContactTests : share_of(pair);
-    pair.contact_start = pair.contact_tests;
-    shared += pair.contact_cap;
+    pair.effort.contact_cap = first_is_due && count == 0 ? kMostContactTests : share_of(pair);
+    pair.effort.contact_start = pair.effort.contact_tests;
+    shared += pair.effort.contact_cap;
     if (left == 0) return 1;
     if (count >= kLeastBatch && shared > left) break;
   }
@@ -90,9 +90,9 @@ std::span<const std::uint32_t> ask_while_it_lasts(Scratch::Impl& work,
     ask_each(work, batch, ask);
     for (const std::uint32_t i : batch) {
       PairWork& pair = work.pairs[i];
-      note_effort(
-          pair, WorkStage::kContact,
-          {pair.contact_tests - pair.contact_start, pair.contact_cap, pair.contact_short, 0});
+      note_effort(pair, WorkStage::kContact,
+                  {pair.effort.contact_tests - pair.effort.contact_start, pair.effort.contact_cap,
+                   pair.effort.contact_short, 0});
       if (may_go_on(pair)) again.push_back(i);
     }
   }
@@ -128,20 +128,20 @@ void ask_in_turn(const World& world, Scratch::Impl& work, std::span<const std::u
   ask_while_it_lasts(work, work.dear, false, ask, work.still_dear);
   for (const std::uint32_t i : pairs) {
     PairWork& pair = work.pairs[i];
-    pair.counts.pairs_waiting += pair.contact_waits ? 1U : 0U;
-    note_waiting(pair, WorkStage::kContact, !pair.contact_waits && !may_go_on(pair));
+    pair.effort.counts.pairs_waiting += pair.effort.contact_waits ? 1U : 0U;
+    note_waiting(pair, WorkStage::kContact, !pair.effort.contact_waits && !may_go_on(pair));
   }
 }
 
 void share_touch_work(Scratch::Impl& work, std::span<const std::uint32_t> pairs) {
-  const auto is_unasked = [&](std::uint32_t i) { return work.pairs[i].touch_unasked; };
+  const auto is_unasked = [&](std::uint32_t i) { return work.pairs[i].answer.touch_unasked; };
   const auto count =
       static_cast<std::uint64_t>(std::count_if(pairs.begin(), pairs.end(), is_unasked));
   if (count == 0) return;
   const std::uint64_t each =
       std::clamp(work.contact_budget.left(spent(work)) / count, kFirstShare, kMostContactTests);
   for (const std::uint32_t i : pairs)
-    if (is_unasked(i)) work.pairs[i].contact_cap = each;
+    if (is_unasked(i)) work.pairs[i].effort.contact_cap = each;
 }
 
 }  // namespace mortise

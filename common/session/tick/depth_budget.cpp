@@ -47,7 +47,8 @@ static_assert(kLongestWait_ticks < kLongestFirst_ticks && kStalledTicks <= kHeld
 
 std::uint64_t spent(const Scratch::Impl& work) {
   std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < work.pair_count; ++i) sum += work.pairs[i].counts.depth_evaluations;
+  for (std::size_t i = 0; i < work.pair_count; ++i)
+    sum += work.pairs[i].effort.counts.depth_evaluations;
   return sum;
 }
 
@@ -62,14 +63,14 @@ Left left_of(const WorkBudget& budget, std::uint64_t used) {
 }
 
 std::uint64_t wanted_of(const PairWork& pair, WorkStage stage, std::uint64_t most) {
-  const std::uint32_t wanted = pair.memo->effort[static_cast<std::size_t>(stage)].wanted;
+  const std::uint32_t wanted = pair.ids.memo->effort[static_cast<std::size_t>(stage)].wanted;
   return std::min<std::uint64_t>(wanted == 0 ? kFirstEffort : wanted, most);
 }
 
 // Is it known from where it stands that a search for its stop is of little use?
 bool rests(const PairWork& pair, std::uint32_t waited) {
   if (waited >= kStalledTicks) return false;
-  if (is_stalled(pair) && pair.memo->stalled->in_full) return true;
+  if (is_stalled(pair) && pair.ids.memo->stalled->in_full) return true;
   const int times = times_in_vain(pair);
   return times > 0 && waited < std::min(kStalledTicks, 1U << std::min(times, 5));
 }
@@ -111,7 +112,7 @@ class Sharing {
 
   void note_spent(std::span<const std::uint32_t> served) {
     for (const std::uint32_t i : served)
-      spent_ += work_.pairs[i].counts.depth_evaluations - work_.pairs[i].stage_start;
+      spent_ += work_.pairs[i].effort.counts.depth_evaluations - work_.pairs[i].effort.stage_start;
   }
 
  private:
@@ -126,11 +127,11 @@ class Sharing {
 
   // False: there is no work for it in this round; in the next one it is the first.
   bool give(PairWork& pair, bool is_last_chance) {
-    pair.stage_start = pair.counts.depth_evaluations;
-    pair.most_work = most_;
-    pair.limited = limited_;
+    pair.effort.stage_start = pair.effort.counts.depth_evaluations;
+    pair.effort.most_work = most_;
+    pair.effort.limited = limited_;
     if (!limited_) {
-      pair.cap = most_;
+      pair.effort.cap = most_;
       return true;
     }
     const std::uint32_t waited = waited_of(pair, stage_);
@@ -145,12 +146,12 @@ class Sharing {
             expected(wanted));
     else
       put_off(pair, at_rest);
-    note_waiting(pair, stage_, served || pair.lingers);
+    note_waiting(pair, stage_, served || pair.status.lingers);
     return true;
   }
 
   void serve(PairWork& pair, std::uint64_t cap, std::uint64_t taken) {
-    pair.cap = cap;
+    pair.effort.cap = cap;
     left_.saved = less(left_.saved, less(taken, left_.own));
     left_.own = less(left_.own, taken);
   }
@@ -162,13 +163,13 @@ class Sharing {
   // nothing again; a short search is of use to others.
   void put_off(PairWork& pair, bool at_rest) {
     const bool glances = stage_ == WorkStage::kStop && !is_stalled(pair) && left_.own >= kGlance;
-    pair.cap = glances ? kGlance : 0;
-    left_.own = less(left_.own, pair.cap);
-    if (stage_ == WorkStage::kVerdict && pair.lingers) return;
+    pair.effort.cap = glances ? kGlance : 0;
+    left_.own = less(left_.own, pair.effort.cap);
+    if (stage_ == WorkStage::kVerdict && pair.status.lingers) return;
     // What is saved is kept for who has waited longest.
     kept_for_the_first_ |= !at_rest;
     if (kept_for_the_first_) left_.saved = 0;
-    ++pair.counts.pairs_waiting;
+    ++pair.effort.counts.pairs_waiting;
   }
 
   Scratch::Impl& work_;
@@ -221,15 +222,16 @@ void share_telling_work(Scratch::Impl& work, std::span<const std::uint32_t> pair
               : kUnlimitedEffort;
   for (const std::uint32_t i : pairs) {
     PairWork& pair = work.pairs[i];
-    pair.stage_start = pair.counts.depth_evaluations;
-    pair.cap = pair.most_work = each;
-    pair.limited = limited;
+    pair.effort.stage_start = pair.effort.counts.depth_evaluations;
+    pair.effort.cap = pair.effort.most_work = each;
+    pair.effort.limited = limited;
   }
 }
 
 void note_depth_effort(PairWork& pair, WorkStage stage, bool capped) {
   note_effort(pair, stage,
-              {pair.counts.depth_evaluations - pair.stage_start, pair.cap, capped, kFirstEffort});
+              {pair.effort.counts.depth_evaluations - pair.effort.stage_start, pair.effort.cap,
+               capped, kFirstEffort});
 }
 
 }  // namespace mortise

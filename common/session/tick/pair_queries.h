@@ -7,12 +7,12 @@ namespace mortise {
 /// Of the pair as it stands at time t of its segment.
 inline OverlapQuery overlap_query(const PairWork& pair, double t) {
   OverlapQuery query;
-  query.a = pair.solid_a;
-  query.b = pair.solid_b;
-  query.band_a = pair.band_a;
-  query.band_b = pair.band_b;
-  query.X_WA = pair.motion_a.pose_at(t);
-  query.X_WB = pair.motion_b.pose_at(t);
+  query.a = pair.ids.solid_a;
+  query.b = pair.ids.solid_b;
+  query.band_a = pair.ids.band_a;
+  query.band_b = pair.ids.band_b;
+  query.X_WA = pair.segment.motion_a.pose_at(t);
+  query.X_WB = pair.segment.motion_b.pose_at(t);
   return query;
 }
 
@@ -20,9 +20,9 @@ inline OverlapQuery overlap_query(const PairWork& pair, double t) {
 inline SweptQuery swept_query(const PairWork& pair) {
   SweptQuery query;
   query.at_target = overlap_query(pair, 1.0);
-  query.motion_a = pair.motion_a;
-  query.motion_b = pair.motion_b;
-  query.certain_free = pair.certain_free;
+  query.motion_a = pair.segment.motion_a;
+  query.motion_b = pair.segment.motion_b;
+  query.certain_free = pair.answer.certain_free;
   return query;
 }
 

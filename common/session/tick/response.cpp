@@ -39,34 +39,12 @@ Motion rest_of(const Move& move, double t) {
   return rest;
 }
 
-AskedEarlier asked_until(const PairWork& pair, double t) {
-  AskedEarlier asked{pair.tau,           pair.t_contact,    pair.t_enter,
-                     pair.t_stop,        pair.motion_a,     pair.motion_b,
-                     pair.entered,       pair.meets,        pair.overlaps_at_start,
-                     pair.short_of_work, pair.stop_gave_up, pair.touch_unasked,
-                     pair.place,         pair.certain_free};
-  asked.t_end = t;
-  return asked;
-}
-
 // Judged is what was asked then.
 void take_back(PairWork& pair, const AskedEarlier& asked) {
-  pair.asked = pair.near = true;
-  pair.touching = false;
-  pair.tau = asked.tau;
-  pair.t_contact = asked.t_contact;
-  pair.t_enter = asked.t_enter;
-  pair.t_stop = asked.t_stop;
-  pair.motion_a = asked.motion_a;
-  pair.motion_b = asked.motion_b;
-  pair.entered = asked.entered;
-  pair.meets = asked.meets;
-  pair.overlaps_at_start = asked.overlaps_at_start;
-  pair.short_of_work = asked.short_of_work;
-  pair.stop_gave_up = asked.stop_gave_up;
-  pair.touch_unasked = asked.touch_unasked;
-  pair.place = asked.place;
-  pair.certain_free = asked.certain_free;
+  pair.status.asked = pair.status.near = true;
+  pair.status.touching = false;
+  pair.segment = asked.segment;
+  pair.answer = asked.answer;
 }
 
 class Response {
@@ -100,8 +78,9 @@ class Response {
     double t = 1.0;
     for (std::size_t i = 0; i < work_.pair_count; ++i) {
       const PairWork& pair = work_.pairs[i];
-      if (pair.t_stop < t && (active(work_, pair.move_a) || active(work_, pair.move_b)))
-        t = pair.t_stop;
+      if (pair.answer.t_stop < t &&
+          (active(work_, pair.ids.move_a) || active(work_, pair.ids.move_b)))
+        t = pair.answer.t_stop;
     }
     for (SlidingGroup& sliding : work_.sliding) {
       if (move_at(sliding.moves.front()).stopped) continue;
@@ -115,8 +94,9 @@ class Response {
     const std::int32_t number = move_at(sliding.moves.front()).sliding;
     double t = 1.0;
     for (std::size_t i = 0; i < work_.pair_count; ++i)
-      for (const std::int32_t move : {work_.pairs[i].move_a, work_.pairs[i].move_b})
-        if (move >= 0 && move_at(move).sliding == number) t = std::min(t, work_.pairs[i].t_stop);
+      for (const std::int32_t move : {work_.pairs[i].ids.move_a, work_.pairs[i].ids.move_b})
+        if (move >= 0 && move_at(move).sliding == number)
+          t = std::min(t, work_.pairs[i].answer.t_stop);
     return t;
   }
 
@@ -133,7 +113,9 @@ class Response {
     }
     const bool banded = std::any_of(
         work_.pairs.begin(), work_.pairs.begin() + static_cast<std::ptrdiff_t>(work_.pair_count),
-        [&](const PairWork& pair) { return pair.blocks && pair.t_stop == t && !pair.plain(); });
+        [&](const PairWork& pair) {
+          return pair.status.blocks && pair.answer.t_stop == t && !pair.ids.plain();
+        });
     const double back_mm = banded ? kBandLift_mm : kBackOff_mm;
     return fastest_mm > 0.0 ? std::max(changed_at_, t - back_mm / fastest_mm) : t;
   }
@@ -143,9 +125,11 @@ class Response {
     responding_.clear();
     for (std::size_t i = 0; i < work_.pair_count; ++i) {
       PairWork& pair = work_.pairs[i];
-      if (pair.t_stop != t || !(active(work_, pair.move_a) || active(work_, pair.move_b))) continue;
-      pair.blocks = true;
-      for (const std::int32_t move : {pair.move_a, pair.move_b})
+      if (pair.answer.t_stop != t ||
+          !(active(work_, pair.ids.move_a) || active(work_, pair.ids.move_b)))
+        continue;
+      pair.status.blocks = true;
+      for (const std::int32_t move : {pair.ids.move_a, pair.ids.move_b})
         if (active(work_, move)) add_responding(move);
     }
     for (const SlidingGroup& sliding : work_.sliding)
@@ -192,36 +176,39 @@ class Response {
     };
     for (std::uint32_t i = 0; i < work_.pair_count; ++i) {
       const PairWork& pair = work_.pairs[i];
-      if (pair.together || pair.placed) continue;
-      if (!changed(pair.move_a) && !changed(pair.move_b)) continue;
-      if (active(work_, pair.move_a) || active(work_, pair.move_b)) work_.to_ask.push_back(i);
+      if (pair.status.together || pair.ids.placed) continue;
+      if (!changed(pair.ids.move_a) && !changed(pair.ids.move_b)) continue;
+      if (active(work_, pair.ids.move_a) || active(work_, pair.ids.move_b))
+        work_.to_ask.push_back(i);
     }
     for (const std::uint32_t i : work_.to_ask) {
       PairWork& pair = work_.pairs[i];
       remember(pair, t);
-      pair.tau = t;
-      if (pair.move_a >= 0) pair.motion_a = rest_of(move_at(pair.move_a), t);
-      if (pair.move_b >= 0) pair.motion_b = rest_of(move_at(pair.move_b), t);
+      pair.segment.tau = t;
+      if (pair.ids.move_a >= 0) pair.segment.motion_a = rest_of(move_at(pair.ids.move_a), t);
+      if (pair.ids.move_b >= 0) pair.segment.motion_b = rest_of(move_at(pair.ids.move_b), t);
     }
     ask_pairs(world_, work_, work_.to_ask);
   }
 
   void remember(PairWork& pair, double t) {
-    if (pair.blocks && !pair.blocked) pair.blocked = asked_until(pair, t);
-    const double enters = pair.tau + (1.0 - pair.tau) * pair.t_enter;
-    if (pair.asked && pair.near && !pair.blocks && enters < t && !pair.passed)
-      pair.passed = asked_until(pair, t);
+    if (pair.status.blocks && !pair.status.blocked)
+      pair.status.blocked = AskedEarlier{pair.segment, pair.answer, t};
+    const double enters = pair.segment.tau + (1.0 - pair.segment.tau) * pair.answer.t_enter;
+    if (pair.status.asked && pair.status.near && !pair.status.blocks && enters < t &&
+        !pair.status.passed)
+      pair.status.passed = AskedEarlier{pair.segment, pair.answer, t};
   }
 
   // A pair that held somebody back is judged as it was then; one that was near and left again is
   // told as passing.
   void settle(PairWork& pair) {
-    if (pair.blocked) {
-      take_back(pair, *pair.blocked);
-      pair.blocks = true;
-    } else if (pair.passed && !(pair.asked && pair.near)) {
-      take_back(pair, *pair.passed);
-      pair.t_left = pair.passed->t_end;
+    if (pair.status.blocked) {
+      take_back(pair, *pair.status.blocked);
+      pair.status.blocks = true;
+    } else if (pair.status.passed && !(pair.status.asked && pair.status.near)) {
+      take_back(pair, *pair.status.passed);
+      pair.status.t_left = pair.status.passed->t_end;
     }
   }
 
@@ -241,9 +228,12 @@ void respond(const World& world, Scratch::Impl& work, StepReport& report) {
 void note_held(const World& world, Scratch::Impl& work) {
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    if (!pair.blocks || !pair.place.known() || std::isfinite(pair.memo->allowed_depth_mm)) continue;
-    pair.memo.change().held = PairMemo::Held{world.parts[pair.a].X_WP, world.parts[pair.b].X_WP,
-                                             pair.place, pair.stop_gave_up};
+    if (!pair.status.blocks || !pair.answer.place.known() ||
+        std::isfinite(pair.ids.memo->allowed_depth_mm))
+      continue;
+    pair.ids.memo.change().held =
+        PairMemo::Held{world.parts[pair.ids.a].X_WP, world.parts[pair.ids.b].X_WP,
+                       pair.answer.place, pair.answer.stop_gave_up};
   }
 }
 

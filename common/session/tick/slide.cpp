@@ -79,8 +79,8 @@ struct Side {
 };
 
 Side side_of(const PairWork& pair, const Scratch::Impl& work, std::int32_t sliding) {
-  const bool a = pair.move_a >= 0 && move_at(work, pair.move_a).sliding == sliding;
-  const bool b = pair.move_b >= 0 && move_at(work, pair.move_b).sliding == sliding;
+  const bool a = pair.ids.move_a >= 0 && move_at(work, pair.ids.move_a).sliding == sliding;
+  const bool b = pair.ids.move_b >= 0 && move_at(work, pair.ids.move_b).sliding == sliding;
   return {a, a != b};
 }
 
@@ -88,10 +88,10 @@ Side side_of(const PairWork& pair, const Scratch::Impl& work, std::int32_t slidi
 OverlapQuery certain_query(const PairWork& pair, const Pose& X_WA, const Pose& X_WB,
                            Refinement refinement) {
   OverlapQuery query;
-  query.a = pair.solid_a;
-  query.b = pair.solid_b;
-  query.band_a = pair.band_a;
-  query.band_b = pair.band_b;
+  query.a = pair.ids.solid_a;
+  query.b = pair.ids.solid_b;
+  query.band_a = pair.ids.band_a;
+  query.band_b = pair.ids.band_b;
   query.X_WA = X_WA;
   query.X_WB = X_WB;
   query.refinement = refinement;
@@ -105,8 +105,8 @@ OverlapQuery certain_query(const PairWork& pair, const Pose& X_WA, const Pose& X
 
 OverlapResult ask(PairWork& pair, const OverlapQuery& query, CcdScratch& ccd) {
   OverlapResult overlap = find_overlap(query, ccd);
-  ++pair.counts.depth_queries;
-  pair.counts.depth_evaluations += overlap.evaluations;
+  ++pair.effort.counts.depth_queries;
+  pair.effort.counts.depth_evaluations += overlap.evaluations;
   return overlap;
 }
 
@@ -129,15 +129,16 @@ void add_banded_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool i
     for (const HoldPlace& place : hold_places(query, region, kBandReach_mm))
       add(place, region.has_witness && region.certain_mm.lo > kDeepeningSlack_mm);
   }
-  if (any || !pair.place.known()) return;
-  for (const HoldPlace& place : hold_places(query, pair.place, kBandReach_mm)) add(place, false);
+  if (any || !pair.answer.place.known()) return;
+  for (const HoldPlace& place : hold_places(query, pair.answer.place, kBandReach_mm))
+    add(place, false);
 }
 
 void add_plain_holds(PairWork& pair, const Pose& X_WA, const Pose& X_WB, bool is_a, CcdScratch& ccd,
                      std::vector<Hold>& holds) {
   ContactPlacesQuery query;
-  query.a = pair.solid_a;
-  query.b = pair.solid_b;
+  query.a = pair.ids.solid_a;
+  query.b = pair.ids.solid_b;
   query.X_WA = X_WA;
   query.X_WB = X_WB;
   query.reach_mm = kReach_mm;
@@ -237,20 +238,20 @@ Holding what_holds(const World& world, Scratch::Impl& work, SlidingGroup& slidin
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
     const Side side = side_of(pair, work, number);
-    if (!side.of_group || pair.placed || pair.no_inside()) continue;
+    if (!side.of_group || pair.ids.placed || pair.ids.no_inside()) continue;
     // A leg that only leans on a part is free of it: what held the group before is looked at again.
-    if (!pair.asked && !pair.blocked) continue;
-    if (pair.blocks && pair.undecided) {
+    if (!pair.status.asked && !pair.status.blocked) continue;
+    if (pair.status.blocks && pair.status.undecided) {
       holding.known = false;
       return holding;
     }
-    const Pose X_WA = pose_at(work, world, pair.move_a, pair.a, t);
-    const Pose X_WB = pose_at(work, world, pair.move_b, pair.b, t);
-    if (pair.plain() && !pair.overlaps_at_start) {
+    const Pose X_WA = pose_at(work, world, pair.ids.move_a, pair.ids.a, t);
+    const Pose X_WB = pose_at(work, world, pair.ids.move_b, pair.ids.b, t);
+    if (pair.ids.plain() && !pair.answer.overlaps_at_start) {
       add_plain_holds(pair, X_WA, X_WB, side.a, ccd, holding.plain);
     } else {
       holding.banded = true;
-      if (pair.blocks) add_banded_holds(pair, X_WA, X_WB, side.a, ccd, sliding.holds);
+      if (pair.status.blocks) add_banded_holds(pair, X_WA, X_WB, side.a, ccd, sliding.holds);
     }
   }
   return holding;
@@ -329,10 +330,10 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sli
   bool banded = false;
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    if (!side_of(pair, work, number).of_group || pair.placed || pair.no_inside()) continue;
-    if (!pair.asked && !pair.blocked) continue;
+    if (!side_of(pair, work, number).of_group || pair.ids.placed || pair.ids.no_inside()) continue;
+    if (!pair.status.asked && !pair.status.blocked) continue;
     holding.push_back(&pair);
-    banded |= !pair.plain();
+    banded |= !pair.ids.plain();
   }
   Twist away{sliding.wanted.shift_mm - sliding.given.shift_mm,
              sliding.wanted.turn_rad - sliding.given.turn_rad};
@@ -347,14 +348,15 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sli
                              static_cast<int>(std::ceil(leg_mm / kLookEvery_mm)));
   CcdScratch& ccd = work.ccd.front();
   const auto held_at = [&](PairWork& pair, double t) {
-    Pose X_W[2] = {pose_at(work, world, pair.move_a, pair.a, t),
-                   pose_at(work, world, pair.move_b, pair.b, t)};
+    Pose X_W[2] = {pose_at(work, world, pair.ids.move_a, pair.ids.a, t),
+                   pose_at(work, world, pair.ids.move_b, pair.ids.b, t)};
     const bool is_a = side_of(pair, work, number).a;
     Pose& X = X_W[is_a ? 0 : 1];
     const Vec3 center_W =
-        (is_a ? move_at(work, pair.move_a) : move_at(work, pair.move_b)).leg.reference_P;
+        (is_a ? move_at(work, pair.ids.move_a) : move_at(work, pair.ids.move_b)).leg.reference_P;
     X = rigid_motion(X, X * center_W, tried).X_W1;
-    if (pair.plain()) return surfaces_cross(*pair.solid_a, X_W[0], *pair.solid_b, X_W[1], ccd);
+    if (pair.ids.plain())
+      return surfaces_cross(*pair.ids.solid_a, X_W[0], *pair.ids.solid_b, X_W[1], ccd);
     // Only what is proven free is let go.
     const OverlapResult overlap =
         ask(pair, certain_query(pair, X_W[0], X_W[1], Refinement::kDecided), ccd);

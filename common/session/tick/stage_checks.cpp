@@ -19,27 +19,29 @@ std::span<const PairWork> pairs_of(const Scratch::Impl& work) {
 void check_pairs(const World& world, const Scratch::Impl& work) {
   const PairWork* before = nullptr;
   for (const PairWork& pair : pairs_of(work)) {
-    MORTISE_CHECK(pair.a < pair.b && pair.b < world.parts.size(),
+    MORTISE_CHECK(pair.ids.a < pair.ids.b && pair.ids.b < world.parts.size(),
                   "a pair is of two parts, the lower index first");
-    MORTISE_CHECK(!before || before->a < pair.a || (before->a == pair.a && before->b < pair.b),
+    MORTISE_CHECK(!before || before->ids.a < pair.ids.a ||
+                      (before->ids.a == pair.ids.a && before->ids.b < pair.ids.b),
                   "each pair stands once, in order");
-    MORTISE_CHECK(pair.move_a >= 0 || pair.move_b >= 0, "one part of a pair has a move");
-    MORTISE_CHECK(pair.solid_a && pair.solid_b && pair.band_a && pair.band_b,
+    MORTISE_CHECK(pair.ids.move_a >= 0 || pair.ids.move_b >= 0, "one part of a pair has a move");
+    MORTISE_CHECK(pair.ids.solid_a && pair.ids.solid_b && pair.ids.band_a && pair.ids.band_b,
                   "a pair has two solids with a band each");
-    MORTISE_CHECK(pair.band_mm >= 0.0, "the distance at which a pair is looked at is a length");
+    MORTISE_CHECK(pair.ids.band_mm >= 0.0, "the distance at which a pair is looked at is a length");
     before = &pair;
   }
 }
 
 void check_contacts(const Scratch::Impl& work) {
   for (const PairWork& pair : pairs_of(work)) {
-    if (!pair.asked) continue;
-    MORTISE_CHECK(pair.tau >= 0.0 && pair.tau < 1.0, "a leg begins before the tick ends");
-    MORTISE_CHECK(
-        within_tick(pair.t_contact) && within_tick(pair.t_enter) && within_tick(pair.t_stop),
-        "contact, entry and stop are times of the tick");
-    MORTISE_CHECK(pair.apart_at_end_mm >= 0.0, "a distance is not negative");
-    MORTISE_CHECK(!pair.blocks || pair.near, "a pair that holds a part back is near");
+    if (!pair.status.asked) continue;
+    MORTISE_CHECK(pair.segment.tau >= 0.0 && pair.segment.tau < 1.0,
+                  "a leg begins before the tick ends");
+    MORTISE_CHECK(within_tick(pair.answer.t_contact) && within_tick(pair.answer.t_enter) &&
+                      within_tick(pair.answer.t_stop),
+                  "contact, entry and stop are times of the tick");
+    MORTISE_CHECK(pair.status.apart_at_end_mm >= 0.0, "a distance is not negative");
+    MORTISE_CHECK(!pair.status.blocks || pair.status.near, "a pair that holds a part back is near");
   }
   for (const Move& move : work.moves) {
     MORTISE_CHECK(within_tick(move.stop), "a stop is a time of the tick");
@@ -49,8 +51,8 @@ void check_contacts(const Scratch::Impl& work) {
 
 void check_verdicts(const Scratch::Impl& work) {
   for (const PairWork& pair : pairs_of(work)) {
-    const int open = pair.open ? static_cast<int>(pair.open->size()) : 0;
-    for (const SeenRegion& region : pair.seen) {
+    const int open = pair.ids.open ? static_cast<int>(pair.ids.open->size()) : 0;
+    for (const SeenRegion& region : pair.judged.seen) {
       const Verdict& verdict = region.verdict;
       MORTISE_CHECK(region.open >= -1 && region.open < open, "a region continues an open clash");
       MORTISE_CHECK(verdict.collision_class != CollisionClass::kNone, "a region has a class");
@@ -60,7 +62,7 @@ void check_verdicts(const Scratch::Impl& work) {
       MORTISE_CHECK(verdict.margin_mm >= 0.0, "a margin is a distance");
       MORTISE_CHECK(verdict.probability == kProbabilityUnknown || within_tick(verdict.probability),
                     "a probability is at most 1");
-      MORTISE_CHECK(verdict.collision_class != CollisionClass::kReal || !pair.no_inside(),
+      MORTISE_CHECK(verdict.collision_class != CollisionClass::kReal || !pair.ids.no_inside(),
                     "real needs two insides");
     }
   }

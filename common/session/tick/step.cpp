@@ -20,13 +20,14 @@ namespace mortise {
 namespace {
 
 Unexamined why_unexamined(const PairWork& pair) {
-  if (pair.contact_waits) return Unexamined::kWaitsForContact;
+  if (pair.effort.contact_waits) return Unexamined::kWaitsForContact;
   // Who is owed a verdict is judged again in the next tick, with more work.
-  if (pair.counts.pairs_waiting > 0 || (pair.owed && !pair.goes_on && !pair.lingers))
+  if (pair.effort.counts.pairs_waiting > 0 ||
+      (pair.status.owed && !pair.status.goes_on && !pair.status.lingers))
     return Unexamined::kWaitsForDepth;
-  if (pair.undecided || pair.withdrawal_unsure || pair.counts.not_examined > 0)
+  if (pair.status.undecided || pair.status.withdrawal_unsure || pair.effort.counts.not_examined > 0)
     return Unexamined::kGivenUp;
-  return pair.hidden ? Unexamined::kNoInside : Unexamined::kUnknown;
+  return pair.status.hidden ? Unexamined::kNoInside : Unexamined::kUnknown;
 }
 
 // Counts of the pairs, added in their order, and which have no verdict.
@@ -35,26 +36,27 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepReport& r
   std::vector<std::uint32_t> open_parts;
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     const PairWork& pair = work.pairs[i];
-    accumulate(counters, pair.counts);
-    if (!pair.asked) {
-      ++(pair.together ? counters.pairs_still : counters.pairs_budget);
+    accumulate(counters, pair.effort.counts);
+    if (!pair.status.asked) {
+      ++(pair.status.together ? counters.pairs_still : counters.pairs_budget);
       continue;
     }
     ++counters.pairs.out;
     ++counters.contacts.in;
     if (const Unexamined why = why_unexamined(pair); why != Unexamined::kUnknown)
-      report.unexamined.push_back({world.parts[pair.a].id, world.parts[pair.b].id, why});
-    if (pair.undecided || pair.withdrawal_unsure) ++counters.not_examined;
-    if (pair.undecided) {
+      report.unexamined.push_back({world.parts[pair.ids.a].id, world.parts[pair.ids.b].id, why});
+    if (pair.status.undecided || pair.status.withdrawal_unsure) ++counters.not_examined;
+    if (pair.status.undecided) {
       ++counters.contacts_undecided;
-    } else if (pair.near || pair.touching) {
+    } else if (pair.status.near || pair.status.touching) {
       ++counters.contacts.out;
     } else {
       ++counters.contacts_clear;
     }
-    if (pair.hidden && !pair.undecided && !pair.withdrawal_unsure) ++counters.not_examined;
-    if (!pair.near || !pair.judgement.overlap.no_inside) continue;
-    for (const std::uint32_t part : {pair.a, pair.b})
+    if (pair.status.hidden && !pair.status.undecided && !pair.status.withdrawal_unsure)
+      ++counters.not_examined;
+    if (!pair.status.near || !pair.judged.judgement.overlap.no_inside) continue;
+    for (const std::uint32_t part : {pair.ids.a, pair.ids.b})
       if (!world.parts[part].solid->has_inside()) open_parts.push_back(part);
   }
   std::sort(open_parts.begin(), open_parts.end());
@@ -65,7 +67,8 @@ void count_pairs_of(const World& world, const Scratch::Impl& work, StepReport& r
 void note_changed_memos(SessionState& state, Scratch::Impl& work) {
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    if (pair.memo.changed()) state.touch(SessionState::key_of(pair.a, pair.b), pair.memo.change());
+    if (pair.ids.memo.changed())
+      state.touch(SessionState::key_of(pair.ids.a, pair.ids.b), pair.ids.memo.change());
   }
 }
 

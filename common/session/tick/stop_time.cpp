@@ -72,7 +72,7 @@ double narrowest_mm(const SurfaceBand& band) {
 // Upper bound of the certain depth of a place that an overlap does not speak of: it is not even
 // possible there.
 double elsewhere_mm(const PairWork& pair) {
-  return -narrowest_mm(*pair.band_a) - narrowest_mm(*pair.band_b);
+  return -narrowest_mm(*pair.ids.band_a) - narrowest_mm(*pair.ids.band_b);
 }
 
 // Bracket of the deepest overlap that is certain at one time of the segment, mm.
@@ -98,10 +98,10 @@ Look certain_depth(PairWork& pair, double t, double accuracy_mm, Refinement refi
   query.ignore_below_mm = ignore_below_mm;
   query.work_cap = work_cap;
   query.prove_not_certain = true;
-  query.want_delta = pair.band_a->trivial && pair.band_b->trivial;
+  query.want_delta = pair.ids.band_a->trivial && pair.ids.band_b->trivial;
   const OverlapResult overlap = find_overlap(query, ccd);
-  ++pair.counts.depth_queries;
-  pair.counts.depth_evaluations += overlap.evaluations;
+  ++pair.effort.counts.depth_queries;
+  pair.effort.counts.depth_evaluations += overlap.evaluations;
   Look look;
   look.depth_mm = {elsewhere_mm(pair), elsewhere_mm(pair)};
   for (const OverlapRegion& region : overlap.regions) {
@@ -123,7 +123,8 @@ bool slides(const PairWork& pair, const Look& look, double t, double speed_mm) {
   const auto end = [&](const Motion& motion) -> Vec3 {
     return motion.X_W1 * (motion.pose_at(t).inverse() * look.point_W);
   };
-  const double approach_mm = -look.normal_W.dot(end(pair.motion_a) - end(pair.motion_b));
+  const double approach_mm =
+      -look.normal_W.dot(end(pair.segment.motion_a) - end(pair.segment.motion_b));
   return approach_mm < kLeastApproach * (1.0 - t) * speed_mm;
 }
 
@@ -139,13 +140,13 @@ struct Advance {
 //   1. depth at t; not below zero for certain: the last t was the last one proven.
 //   2. go on by as much time as the parts need for that depth.
 Advance advance_to_real(PairWork& pair, double t_start, CcdScratch& ccd) {
-  const double speed_mm =
-      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  const double speed_mm = relative_travel_upper_bound_mm(
+      {pair.ids.solid_a, pair.ids.solid_b, pair.segment.motion_a, pair.segment.motion_b});
   Advance advance;
   double t = advance.t_free = t_start;
   for (int i = 0; i < kAdvanceSteps; ++i) {
     const Look look = certain_depth(pair, t, kAdvanceAccuracy_mm, Refinement::kDecided, kAll,
-                                    pair.cap_of(kLookWorkCap), ccd);
+                                    pair.effort.cap_of(kLookWorkCap), ccd);
     const Interval& depth_mm = look.depth_mm;
     if (look.witnessed && t == 0.0) {
       advance.state = Advanced::kRealAtStart;
@@ -181,18 +182,18 @@ Look withdrawal_look(PairWork& pair, double t, double ignore_below_mm, CcdScratc
 // the least surfaces lie below them. Infinite where that is not found in a later tick: then what
 // was found in the first one holds on.
 double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
-  const bool begins = !std::isfinite(pair.memo->allowed_depth_mm);
+  const bool begins = !std::isfinite(pair.ids.memo->allowed_depth_mm);
   Look look = withdrawal_look(pair, 0.0, kAll, ccd);
   if (look.capped && begins) look = withdrawal_look(pair, 0.0, kAll, ccd, kWithdrawalStartWorkCap);
-  pair.withdrawal_unsure |= look.capped;
+  pair.status.withdrawal_unsure |= look.capped;
   if (look.capped && !begins) return kInfinity;
   // A look that is unfinished even so has found too little, and would hold the part.
   const double depth_mm = std::max(0.0, look.capped ? look.depth_mm.hi : look.depth_mm.lo);
-  if (!look.has_place || pair.no_inside()) return depth_mm;
+  if (!look.has_place || pair.ids.no_inside()) return depth_mm;
   const OverlapQuery query = overlap_query(pair, 0.0);
   const PairFrame frame(query);
   const auto inner = find_inner_overlap(frame, {std::span(&look.point_W, 1), depth_mm},
-                                        kInnerWorkCap, pair.counts.depth_evaluations);
+                                        kInnerWorkCap, pair.effort.counts.depth_evaluations);
   return inner ? std::max(depth_mm, inner->depth_mm.lo - frame.reach_mm(Layer::kLower)) : depth_mm;
 }
 
@@ -200,7 +201,7 @@ double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
 double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   // Between two looks the depth may have grown and shrunk again; a quarter of a tick is short.
   constexpr int kLooks = 4;
-  double& allowed_mm = pair.memo.change().allowed_depth_mm;
+  double& allowed_mm = pair.ids.memo.change().allowed_depth_mm;
   allowed_mm = std::min(allowed_mm, depth_at_start_mm(pair, ccd));
   // The less it interferes, the less it may gain: what one tick grants must not be the licence of
   // the next.
@@ -209,7 +210,7 @@ double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
   int free = 0;
   for (int i = 1; i <= kLooks; ++i) {
     const Look look = withdrawal_look(pair, t_most * i / kLooks, most_mm, ccd);
-    pair.withdrawal_unsure |= look.capped;
+    pair.status.withdrawal_unsure |= look.capped;
     if (look.depth_mm.lo > most_mm) return t_most * free / kLooks;
     free = i;
     // Where one look is not finished, those between it and the end are not either.
@@ -222,82 +223,84 @@ double withdrawal_until(PairWork& pair, double t_most, CcdScratch& ccd) {
 // long. It continues its motion by a step so small that nothing can be missed between two checks.
 // From there it is searched like any other.
 double leave_brink(PairWork& pair, CcdScratch& ccd) {
-  const double speed_mm =
-      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  const double speed_mm = relative_travel_upper_bound_mm(
+      {pair.ids.solid_a, pair.ids.solid_b, pair.segment.motion_a, pair.segment.motion_b});
   return withdrawal_until(pair, std::min(1.0, kLeaveBrink_mm / speed_mm), ccd);
 }
 
 PairMemo::Stalled push_of(const PairWork& pair) {
   const double rim_mm =
-      std::min(pair.solid_a->sphere().radius_mm, pair.solid_b->sphere().radius_mm);
-  return {pair.motion_a.X_W0,
-          pair.motion_b.X_W0,
-          pair.motion_a.v_W - pair.motion_b.v_W,
-          rim_mm * (pair.motion_a.w_W - pair.motion_b.w_W),
+      std::min(pair.ids.solid_a->sphere().radius_mm, pair.ids.solid_b->sphere().radius_mm);
+  return {pair.segment.motion_a.X_W0,
+          pair.segment.motion_b.X_W0,
+          pair.segment.motion_a.v_W - pair.segment.motion_b.v_W,
+          rim_mm * (pair.segment.motion_a.w_W - pair.segment.motion_b.w_W),
           false,
           false,
           0};
 }
 
 SearchedTime start_of_search(PairWork& pair, const FirstContact& touch) {
-  double t_start = pair.t_enter;
-  if (largest_lower_offset_mm(*pair.band_a) + largest_lower_offset_mm(*pair.band_b) <= 0.0) {
+  double t_start = pair.answer.t_enter;
+  if (largest_lower_offset_mm(*pair.ids.band_a) + largest_lower_offset_mm(*pair.ids.band_b) <=
+      0.0) {
     // Real needs an overlap of the meshes.
     if (touch.state == ContactState::kFree) return {1.0, true};
     if (touch.state == ContactState::kUndecided) return {touch.t_clear, true};
     if (touch.state == ContactState::kContact) t_start = touch.t_contact;
   }
-  pair.held_again = is_held_again(pair);
-  if (pair.held_again) ++pair.counts.pairs_held_again;
-  return pair.held_again ? SearchedTime{0.0, true} : SearchedTime{t_start, false};
+  pair.status.held_again = is_held_again(pair);
+  if (pair.status.held_again) ++pair.effort.counts.pairs_held_again;
+  return pair.status.held_again ? SearchedTime{0.0, true} : SearchedTime{t_start, false};
 }
 
 double free_time(PairWork& pair, bool slides, CcdScratch& ccd) {
   SweptQuery query = swept_query(pair);
   query.slides = slides;
-  const double t_start = pair.t_stop_start;
+  const double t_start = pair.effort.t_stop_start;
   // Faces without width may touch anywhere: the depth never lacks anything, and says no time.
   const bool may_touch = elsewhere_mm(pair) > -kAdvanceAccuracy_mm;
   const Advance advance =
       may_touch ? Advance{Advanced::kUnsure, t_start} : advance_to_real(pair, t_start, ccd);
   if (advance.state == Advanced::kRealAtStart) return withdrawal_time(pair, ccd);
-  const double allowed_mm = pair.memo->allowed_depth_mm;
-  if (std::isfinite(allowed_mm)) pair.memo.change().allowed_depth_mm = kInfinity;
+  const double allowed_mm = pair.ids.memo->allowed_depth_mm;
+  if (std::isfinite(allowed_mm)) pair.ids.memo.change().allowed_depth_mm = kInfinity;
   if (advance.state == Advanced::kDone) return advance.t_free;
 
-  query.at_target.work_cap = pair.cap_of(kRealTimeWorkCap);
+  query.at_target.work_cap = pair.effort.cap_of(kRealTimeWorkCap);
   const InterferenceTime real = find_interference_time(query, ccd);
-  ++pair.counts.depth_queries;
-  pair.counts.depth_evaluations += real.evaluations;
-  pair.place = real.certain_place;
+  ++pair.effort.counts.depth_queries;
+  pair.effort.counts.depth_evaluations += real.evaluations;
+  pair.answer.place = real.certain_place;
   if (real.real_at_start) return withdrawal_time(pair, ccd);
   const double t_free = std::max(advance.t_free, real.t_free);
   if (real.capped && t_free == 0.0 && std::isfinite(allowed_mm)) {
-    pair.memo.change().allowed_depth_mm = allowed_mm;
+    pair.ids.memo.change().allowed_depth_mm = allowed_mm;
     return leave_brink(pair, ccd);
   }
-  if (real.capped) pair.undecided = true;
+  if (real.capped) pair.status.undecided = true;
   return t_free;
 }
 
 }  // namespace
 
 bool is_held_again(PairWork& pair) {
-  const auto& held = pair.memo->held;
+  const auto& held = pair.ids.memo->held;
   // Who slides goes another way than what was held.
-  if (!held || pair.blocked || std::isfinite(pair.memo->allowed_depth_mm) ||
-      !identical(held->X_WA, pair.motion_a.X_W0) || !identical(held->X_WB, pair.motion_b.X_W0))
+  if (!held || pair.status.blocked || std::isfinite(pair.ids.memo->allowed_depth_mm) ||
+      !identical(held->X_WA, pair.segment.motion_a.X_W0) ||
+      !identical(held->X_WB, pair.segment.motion_b.X_W0))
     return false;
-  const double speed_mm =
-      relative_travel_upper_bound_mm({pair.solid_a, pair.solid_b, pair.motion_a, pair.motion_b});
+  const double speed_mm = relative_travel_upper_bound_mm(
+      {pair.ids.solid_a, pair.ids.solid_b, pair.segment.motion_a, pair.segment.motion_b});
   const auto holds_at = [&](double path_mm) {
     const double t = path_mm < speed_mm ? path_mm / speed_mm : 1.0;
-    return is_certain_at(overlap_query(pair, t), held->place, pair.counts.depth_evaluations);
+    return is_certain_at(overlap_query(pair, t), held->place, pair.effort.counts.depth_evaluations);
   };
   const bool again = std::any_of(std::begin(kHeldPaths_mm), std::end(kHeldPaths_mm), holds_at) ||
                      (held->gave_up && std::any_of(std::begin(kHeldAfterGivingUp_mm),
                                                    std::end(kHeldAfterGivingUp_mm), holds_at));
-  if (again) pair.place = held->place;
+  if (again) pair.answer.place = held->place;
   return again;
 }
 
@@ -305,24 +308,24 @@ double withdrawal_time(PairWork& pair, CcdScratch& ccd) { return withdrawal_unti
 
 void note_stalled(PairWork& pair) {
   const std::uint8_t in_vain = times_in_vain(pair);
-  if (pair.memo->stalled) pair.memo.change().stalled.reset();
-  if (!pair.undecided || pair.t_stop > 0.0) return;
-  PairMemo::Stalled& stalled = pair.memo.change().stalled.emplace(push_of(pair));
-  stalled.in_full = !pair.short_of_work;
+  if (pair.ids.memo->stalled) pair.ids.memo.change().stalled.reset();
+  if (!pair.status.undecided || pair.answer.t_stop > 0.0) return;
+  PairMemo::Stalled& stalled = pair.ids.memo.change().stalled.emplace(push_of(pair));
+  stalled.in_full = !pair.answer.short_of_work;
   stalled.in_vain =
-      static_cast<std::uint8_t>(std::min(in_vain + (pair.short_of_work ? 0 : 1), 250));
+      static_cast<std::uint8_t>(std::min(in_vain + (pair.answer.short_of_work ? 0 : 1), 250));
 }
 
 std::uint8_t times_in_vain(const PairWork& pair) {
-  const auto& before = pair.memo->stalled;
-  return before && identical(before->X_WA, pair.motion_a.X_W0) &&
-                 identical(before->X_WB, pair.motion_b.X_W0)
+  const auto& before = pair.ids.memo->stalled;
+  return before && identical(before->X_WA, pair.segment.motion_a.X_W0) &&
+                 identical(before->X_WB, pair.segment.motion_b.X_W0)
              ? before->in_vain
              : std::uint8_t{0};
 }
 
 bool is_stalled(const PairWork& pair) {
-  const auto& before = pair.memo->stalled;
+  const auto& before = pair.ids.memo->stalled;
   if (!before) return false;
   const PairMemo::Stalled now = push_of(pair);
   const auto dot = [](const PairMemo::Stalled& x, const PairMemo::Stalled& y) {
@@ -333,35 +336,37 @@ bool is_stalled(const PairWork& pair) {
 }
 
 double free_by_covers(PairWork& pair) {
-  if (pair.plain() || pair.no_inside()) return 0.0;
-  if (!pair.certain_free)
-    pair.certain_free = certain_free_until(swept_query(pair), pair.counts.depth_evaluations);
-  const double t = pair.certain_free->t;
+  if (pair.ids.plain() || pair.ids.no_inside()) return 0.0;
+  if (!pair.answer.certain_free)
+    pair.answer.certain_free =
+        certain_free_until(swept_query(pair), pair.effort.counts.depth_evaluations);
+  const double t = pair.answer.certain_free->t;
   // Who has come out is not withdrawn any more.
-  if (t > 0.0 && std::isfinite(pair.memo->allowed_depth_mm))
-    pair.memo.change().allowed_depth_mm = kInfinity;
+  if (t > 0.0 && std::isfinite(pair.ids.memo->allowed_depth_mm))
+    pair.ids.memo.change().allowed_depth_mm = kInfinity;
   return t;
 }
 
 SearchedTime stop_time_without_search(PairWork& pair, const FirstContact& touch) {
   // Without an inside there is no depth and so no real verdict: nobody is stopped.
-  if (pair.no_inside())
+  if (pair.ids.no_inside())
     return {touch.state == ContactState::kUndecided ? touch.t_clear : 1.0, true};
   SearchedTime time = start_of_search(pair, touch);
   if (!time.known) time.t = std::max(time.t, free_by_covers(pair));
   const bool by_covers = !time.known && time.t >= 1.0;
   time.known |= by_covers;
-  pair.t_stop_start = time.t;
+  pair.effort.t_stop_start = time.t;
   // A word rests on no more than touching.
-  pair.never_real = time.known && time.t >= 1.0 && std::isinf(pair.memo->allowed_depth_mm) &&
-                    (!by_covers || pair.certain_free->closely);
+  pair.status.never_real = time.known && time.t >= 1.0 &&
+                           std::isinf(pair.ids.memo->allowed_depth_mm) &&
+                           (!by_covers || pair.answer.certain_free->closely);
   return time;
 }
 
 double stop_time_with_bands(PairWork& pair, bool slides, CcdScratch& ccd) {
   const double t_free = free_time(pair, slides, ccd);
   // Who withdraws is real all the while.
-  pair.never_real = t_free >= 1.0 && std::isinf(pair.memo->allowed_depth_mm);
+  pair.status.never_real = t_free >= 1.0 && std::isinf(pair.ids.memo->allowed_depth_mm);
   return t_free;
 }
 

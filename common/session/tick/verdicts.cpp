@@ -31,7 +31,7 @@ struct SegmentMotion {
 };
 
 SegmentMotion as_asked(const PairWork& pair) {
-  return {pair.motion_a, pair.motion_b, pair.t_contact, pair.t_enter};
+  return {pair.segment.motion_a, pair.segment.motion_b, pair.answer.t_contact, pair.answer.t_enter};
 }
 
 SeenRegion seen_at(const Verdict& verdict, const Pose& X_WA, const Pose& X_WB) {
@@ -44,15 +44,15 @@ SeenRegion seen_at(const Verdict& verdict, const Pose& X_WA, const Pose& X_WB) {
 
 JudgementQuery query_at_end(const World& world, const PairWork& pair, const SegmentMotion& motion) {
   JudgementQuery query;
-  query.a = &world.parts[pair.a];
-  query.b = &world.parts[pair.b];
-  query.rule = pair.rule;
+  query.a = &world.parts[pair.ids.a];
+  query.b = &world.parts[pair.ids.b];
+  query.rule = pair.ids.rule;
   query.motion_a = motion.a;
   query.motion_b = motion.b;
   query.t_contact = motion.t_contact;
   query.want_gpd = false;
-  if (pair.in_full) query.refinement = Refinement::kFull;
-  query.work_cap = query.whole_cap = pair.cap_of(kTickOverlapCap);
+  if (pair.judged.in_full) query.refinement = Refinement::kFull;
+  query.work_cap = query.whole_cap = pair.effort.cap_of(kTickOverlapCap);
   return query;
 }
 
@@ -63,19 +63,20 @@ bool is_certain(const OverlapRegion& region) {
 
 Judgement judge(PairWork& pair, const JudgementQuery& query, CcdScratch& ccd) {
   Judgement judgement = judge_pair(query, ccd);
-  count(query, judgement, pair.counts);
+  count(query, judgement, pair.effort.counts);
   for (const OverlapRegion& region : judgement.overlap.regions)
-    if (region.capped && !is_certain(region)) pair.undecided = true;
+    if (region.capped && !is_certain(region)) pair.status.undecided = true;
   return judgement;
 }
 
 void judge_at_end(const World& world, PairWork& pair, const SegmentMotion& motion,
                   CcdScratch& ccd) {
-  pair.judged = query_at_end(world, pair, motion);
-  pair.judgement = judge(pair, pair.judged, ccd);
-  for (std::size_t i = 0; i < pair.judgement.verdicts.size(); ++i) {
-    pair.seen.push_back(seen_at(pair.judgement.verdicts[i], motion.a.X_W1, motion.b.X_W1));
-    pair.seen.back().of_judgement = static_cast<int>(i);
+  pair.judged.query = query_at_end(world, pair, motion);
+  pair.judged.judgement = judge(pair, pair.judged.query, ccd);
+  for (std::size_t i = 0; i < pair.judged.judgement.verdicts.size(); ++i) {
+    pair.judged.seen.push_back(
+        seen_at(pair.judged.judgement.verdicts[i], motion.a.X_W1, motion.b.X_W1));
+    pair.judged.seen.back().of_judgement = static_cast<int>(i);
   }
 }
 
@@ -100,20 +101,22 @@ Motion as_moved(const Scratch::Impl& work, std::int32_t index, const Motion& seg
 
 // Time of the tick up to which a part of the pair moves.
 double end_of(const Scratch::Impl& work, const PairWork& pair) {
-  double end = pair.tau;
-  for (const std::int32_t index : {pair.move_a, pair.move_b})
+  double end = pair.segment.tau;
+  for (const std::int32_t index : {pair.ids.move_a, pair.ids.move_b})
     if (index >= 0) end = std::max(end, work.moves[static_cast<std::size_t>(index)].stop);
   return end;
 }
 
 SegmentMotion as_moved(const Scratch::Impl& work, const PairWork& pair) {
-  if (pair.t_left < 1.0) return up_to(as_asked(pair), (pair.t_left - pair.tau) / (1.0 - pair.tau));
+  if (pair.status.t_left < 1.0)
+    return up_to(as_asked(pair),
+                 (pair.status.t_left - pair.segment.tau) / (1.0 - pair.segment.tau));
   SegmentMotion motion = as_asked(pair);
-  motion.a = as_moved(work, pair.move_a, pair.motion_a, pair.tau);
-  motion.b = as_moved(work, pair.move_b, pair.motion_b, pair.tau);
-  const double local_end = (end_of(work, pair) - pair.tau) / (1.0 - pair.tau);
-  motion.t_contact = share_of(pair.t_contact, local_end);
-  motion.t_enter = pair.t_enter > 0.0 ? share_of(pair.t_enter, local_end) : 0.0;
+  motion.a = as_moved(work, pair.ids.move_a, pair.segment.motion_a, pair.segment.tau);
+  motion.b = as_moved(work, pair.ids.move_b, pair.segment.motion_b, pair.segment.tau);
+  const double local_end = (end_of(work, pair) - pair.segment.tau) / (1.0 - pair.segment.tau);
+  motion.t_contact = share_of(pair.answer.t_contact, local_end);
+  motion.t_enter = pair.answer.t_enter > 0.0 ? share_of(pair.answer.t_enter, local_end) : 0.0;
   return motion;
 }
 
@@ -134,21 +137,21 @@ void prefix(Verdict& verdict, const char* what, double t) {
 std::optional<SeenRegion> passing(const World& world, PairWork& pair, const SegmentMotion& whole,
                                   CcdScratch& ccd) {
   ContactQuery back;
-  back.a = pair.solid_a;
-  back.b = pair.solid_b;
+  back.a = pair.ids.solid_a;
+  back.b = pair.ids.solid_b;
   back.motion_a = backward(whole.a);
   back.motion_b = backward(whole.b);
-  back.separation_mm = pair.band_mm;
+  back.separation_mm = pair.ids.band_mm;
   back.check_contained = false;
-  back.ignore_touching_at_start = pair.plain();
-  back.work_cap = std::max(pair.contact_cap, kLeastWorkBack);
+  back.ignore_touching_at_start = pair.ids.plain();
+  back.work_cap = std::max(pair.effort.contact_cap, kLeastWorkBack);
   const FirstContact last = first_contact(back, ccd);
   note_contact_work(pair, last.work);
-  if (last.state == ContactState::kUndecided) pair.undecided = true;
+  if (last.state == ContactState::kUndecided) pair.status.undecided = true;
   const double t_out = std::max(whole.t_enter, 1.0 - last.t_clear);
   for (const double share : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875}) {
-    if (pair.left() == 0) {
-      pair.undecided = true;
+    if (pair.effort.left() == 0) {
+      pair.status.undecided = true;
       break;
     }
     const double t = whole.t_enter + share * (t_out - whole.t_enter);
@@ -158,7 +161,7 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Segm
     const Judgement judgement = judge(pair, query, ccd);
     if (judgement.verdicts.empty()) continue;
     SeenRegion region = seen_at(judgement.verdicts.front(), there.a.X_W1, there.b.X_W1);
-    prefix(region.verdict, "worst found", pair.tau + (1.0 - pair.tau) * t);
+    prefix(region.verdict, "worst found", pair.segment.tau + (1.0 - pair.segment.tau) * t);
     return region;
   }
   return std::nullopt;
@@ -170,13 +173,15 @@ std::optional<SeenRegion> passing(const World& world, PairWork& pair, const Segm
 void look_at_attempt(const World& world, PairWork& pair, CcdScratch& ccd) {
   const SegmentMotion asked = as_asked(pair);
   judge_at_end(world, pair, asked, ccd);
-  for (const OverlapRegion& region : pair.judgement.overlap.regions)
-    if (!pair.place.known()) pair.place = region.certain_place;
-  if (pair.seen.empty() || pair.seen.front().verdict.collision_class != CollisionClass::kReal) {
-    pair.seen.clear();
-    if (auto region = passing(world, pair, asked, ccd)) pair.seen.push_back(std::move(*region));
+  for (const OverlapRegion& region : pair.judged.judgement.overlap.regions)
+    if (!pair.answer.place.known()) pair.answer.place = region.certain_place;
+  if (pair.judged.seen.empty() ||
+      pair.judged.seen.front().verdict.collision_class != CollisionClass::kReal) {
+    pair.judged.seen.clear();
+    if (auto region = passing(world, pair, asked, ccd))
+      pair.judged.seen.push_back(std::move(*region));
   }
-  for (SeenRegion& seen : pair.seen) prefix(seen.verdict, "stopped", pair.t_stop);
+  for (SeenRegion& seen : pair.judged.seen) prefix(seen.verdict, "stopped", pair.answer.t_stop);
 }
 
 bool is_stopped(const Scratch::Impl& work, std::int32_t move) {
@@ -186,72 +191,74 @@ bool is_stopped(const Scratch::Impl& work, std::int32_t move) {
 // What is told is proven to go on to the end of the tick; or the place that holds a part is one
 // that is told, or holds it again; or the same push comes to nothing again.
 bool stays_told(const World& world, const Scratch::Impl& work, const PairWork& pair) {
-  if (pair.memo->not_judged) return false;
-  if (pair.blocks && pair.stalled) return pair.memo->stalled->judged;
-  if (!pair.near) return false;
-  if (!pair.blocks) return pair.goes_on;
-  return (pair.held_again && is_told_real(pair)) ||
+  if (pair.ids.memo->not_judged) return false;
+  if (pair.status.blocks && pair.effort.stalled) return pair.ids.memo->stalled->judged;
+  if (!pair.status.near) return false;
+  if (!pair.status.blocks) return pair.status.goes_on;
+  return (pair.status.held_again && is_told_real(pair)) ||
          (work.switches.told_goes_on && is_told_there(world, pair));
 }
 
 // What is told holds to the end of the tick only where nobody was stopped before. Else, and where a
 // class is perhaps left, the pair is looked at if there is work, and told to go on if not.
 void note_going_on(const World& world, const Scratch::Impl& work, PairWork& pair) {
-  const bool stopped = is_stopped(work, pair.move_a) || is_stopped(work, pair.move_b);
-  pair.goes_on &= pair.near && !pair.blocks && !stopped;
-  pair.lingers = !pair.goes_on && pair.near && !pair.blocks && !stopped &&
-                 work.switches.told_goes_on && lingers(world, pair);
+  const bool stopped = is_stopped(work, pair.ids.move_a) || is_stopped(work, pair.ids.move_b);
+  pair.status.goes_on &= pair.status.near && !pair.status.blocks && !stopped;
+  pair.status.lingers = !pair.status.goes_on && pair.status.near && !pair.status.blocks &&
+                        !stopped && work.switches.told_goes_on && lingers(world, pair);
 }
 
 // Nobody looked: the open clashes stay as they are. What is proven to go on is looked at once its
 // parts rest.
 void keep_told(PairWork& pair) {
-  pair.seen.clear();
-  pair.judgement = {};
-  if (pair.open) pair.keeps.assign(pair.open->size(), 1);
-  pair.owed |= pair.goes_on || pair.lingers;
+  pair.judged.seen.clear();
+  pair.judged.judgement = {};
+  if (pair.ids.open) pair.judged.keeps.assign(pair.ids.open->size(), 1);
+  pair.status.owed |= pair.status.goes_on || pair.status.lingers;
 }
 
 void look_at_pair(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
   const SegmentMotion motion = as_moved(work, pair);
-  pair.seen.clear();
-  pair.unsettled = false;
-  if (pair.blocks) {
+  pair.judged.seen.clear();
+  pair.judged.unsettled = false;
+  if (pair.status.blocks) {
     look_at_attempt(world, pair, ccd);
   } else {
     judge_at_end(world, pair, motion, ccd);
-    if (pair.seen.empty() && pair.touch_unasked) ask_touch(pair, ccd);
-    if (pair.seen.empty() && (pair.entered || (pair.meets && !pair.overlaps_at_start)))
+    if (pair.judged.seen.empty() && pair.answer.touch_unasked) ask_touch(pair, ccd);
+    if (pair.judged.seen.empty() &&
+        (pair.answer.entered || (pair.answer.meets && !pair.answer.overlaps_at_start)))
       if (auto region = passing(world, pair, motion, ccd)) {
         region->passing = true;
-        pair.seen.push_back(std::move(*region));
+        pair.judged.seen.push_back(std::move(*region));
       }
   }
-  if (pair.t_left < 1.0)
-    for (SeenRegion& seen : pair.seen) seen.passing = true;
+  if (pair.status.t_left < 1.0)
+    for (SeenRegion& seen : pair.judged.seen) seen.passing = true;
   double distance_mm = kInfinity;
-  if (pair.open && pair.judgement.overlap.regions.empty()) {
-    const DistanceResult result = pair_distance(
-        pair, motion.a.X_W1, motion.b.X_W1, 2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
+  if (pair.ids.open && pair.judged.judgement.overlap.regions.empty()) {
+    const DistanceResult result =
+        pair_distance(pair, motion.a.X_W1, motion.b.X_W1,
+                      2.0 * (pair.ids.band_mm + kClashHysteresisMost_mm), ccd);
     if (result.within_limit) distance_mm = result.distance_mm;
   }
   match_clashes(world, pair, distance_mm);
 }
 
 void note_seen(PairWork& pair) {
-  if (!pair.memo->not_judged && !pair.memo->not_seen) return;
-  PairMemo& memo = pair.memo.change();
+  if (!pair.ids.memo->not_judged && !pair.ids.memo->not_seen) return;
+  PairMemo& memo = pair.ids.memo.change();
   memo.not_judged = memo.not_seen = false;
 }
 
 // Clear of the band, but an open clash ends only at some distance.
 void look_at_clear_pair(const World& world, const Scratch::Impl& work, PairWork& pair,
                         CcdScratch& ccd) {
-  pair.seen.clear();
-  pair.judgement = {};
+  pair.judged.seen.clear();
+  pair.judged.judgement = {};
   const SegmentMotion motion = as_moved(work, pair);
-  const DistanceResult result = pair_distance(pair, motion.a.X_W1, motion.b.X_W1,
-                                              2.0 * (pair.band_mm + kClashHysteresisMost_mm), ccd);
+  const DistanceResult result = pair_distance(
+      pair, motion.a.X_W1, motion.b.X_W1, 2.0 * (pair.ids.band_mm + kClashHysteresisMost_mm), ccd);
   match_clashes(world, pair, result.within_limit ? result.distance_mm : kInfinity);
   note_seen(pair);
 }
@@ -268,7 +275,7 @@ void take_depth(const Verdict& from, Verdict& to) {
 }
 
 bool anything_to_tell(const PairWork& pair) {
-  return std::any_of(pair.seen.begin(), pair.seen.end(),
+  return std::any_of(pair.judged.seen.begin(), pair.judged.seen.end(),
                      [](const SeenRegion& seen) { return seen.tell; });
 }
 
@@ -277,71 +284,73 @@ bool anything_to_tell(const PairWork& pair) {
 // that are told stay.
 void put_off(PairWork& pair) {
   keep_told(pair);
-  if (pair.lingers) return;
-  pair.undecided = true;
-  pair.owed = !pair.blocks || !pair.open;
+  if (pair.status.lingers) return;
+  pair.status.undecided = true;
+  pair.status.owed = !pair.status.blocks || !pair.ids.open;
 }
 
 // After a decision: what was open is judged by what holds now, and as the parts stand.
 void note_judged(PairWork& pair) {
-  if (!pair.blocks) return note_seen(pair);
-  if (pair.memo->not_judged) pair.memo.change().not_judged = false;
+  if (!pair.status.blocks) return note_seen(pair);
+  if (pair.ids.memo->not_judged) pair.ids.memo.change().not_judged = false;
 }
 
 // A class was left, but perhaps only because no more was asked than what class it is now. While
 // parts move that may be; when they rest it is asked once.
 void settle(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
-  if (!pair.unsettled || pair.blocks) return;
-  if (!pair.placed) {
-    pair.owed = true;
+  if (!pair.judged.unsettled || pair.status.blocks) return;
+  if (!pair.ids.placed) {
+    pair.status.owed = true;
     return;
   }
-  pair.in_full = true;
+  pair.judged.in_full = true;
   look_at_pair(world, work, pair, ccd);
 }
 
 void examine(const World& world, const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
-  if (pair.cap == 0) {
+  if (pair.effort.cap == 0) {
     put_off(pair);
     return;
   }
-  const bool was_undecided = std::exchange(pair.undecided, false);
+  const bool was_undecided = std::exchange(pair.status.undecided, false);
   look_at_pair(world, work, pair, ccd);
   settle(world, work, pair, ccd);
-  const bool capped = pair.undecided;
-  if (capped && pair.may_have_more()) {
+  const bool capped = pair.status.undecided;
+  if (capped && pair.effort.may_have_more()) {
     put_off(pair);
   } else {
-    pair.tells = anything_to_tell(pair);
+    pair.judged.tells = anything_to_tell(pair);
     note_judged(pair);
   }
-  if (pair.blocks && !pair.owed && pair.memo->stalled) pair.memo.change().stalled->judged = true;
+  if (pair.status.blocks && !pair.status.owed && pair.ids.memo->stalled)
+    pair.ids.memo.change().stalled->judged = true;
   note_depth_effort(pair, WorkStage::kVerdict, capped);
-  pair.undecided |= was_undecided;
+  pair.status.undecided |= was_undecided;
 }
 
 // Contact, times and the separating motion are needed only where somebody is told of them.
 void complete(const Scratch::Impl& work, PairWork& pair, CcdScratch& ccd) {
-  if (pair.touch_unasked) {
+  if (pair.answer.touch_unasked) {
     ask_touch(pair, ccd);
-    pair.judged.t_contact = (pair.blocks ? as_asked(pair) : as_moved(work, pair)).t_contact;
+    pair.judged.query.t_contact =
+        (pair.status.blocks ? as_asked(pair) : as_moved(work, pair)).t_contact;
   }
   find_event_times(pair, end_of(work, pair), ccd);
-  const std::uint64_t looked = pair.judgement.overlap.evaluations;
-  pair.judged.whole_cap = looked + pair.left();
-  add_depths(pair.judged, pair.judgement, ccd);
-  pair.counts.depth_evaluations += pair.judgement.overlap.evaluations - looked;
-  for (SeenRegion& seen : pair.seen)
+  const std::uint64_t looked = pair.judged.judgement.overlap.evaluations;
+  pair.judged.query.whole_cap = looked + pair.effort.left();
+  add_depths(pair.judged.query, pair.judged.judgement, ccd);
+  pair.effort.counts.depth_evaluations += pair.judged.judgement.overlap.evaluations - looked;
+  for (SeenRegion& seen : pair.judged.seen)
     if (seen.of_judgement >= 0)
-      take_depth(pair.judgement.verdicts[static_cast<std::size_t>(seen.of_judgement)],
+      take_depth(pair.judged.judgement.verdicts[static_cast<std::size_t>(seen.of_judgement)],
                  seen.verdict);
 }
 
 }  // namespace
 
 bool is_told_real(const PairWork& pair) {
-  return !pair.memo->not_judged && pair.open &&
-         std::any_of(pair.open->begin(), pair.open->end(), [](const OpenClash& clash) {
+  return !pair.ids.memo->not_judged && pair.ids.open &&
+         std::any_of(pair.ids.open->begin(), pair.ids.open->end(), [](const OpenClash& clash) {
            return clash.now.collision_class == CollisionClass::kReal;
          });
 }
@@ -350,21 +359,21 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
   work.asked.clear();
   work.unasked.clear();
   work.pool.for_each(work.pair_count, [&](std::size_t i, int) {
-    work.pairs[i].tells = false;
-    if (work.pairs[i].asked) note_going_on(world, work, work.pairs[i]);
+    work.pairs[i].judged.tells = false;
+    if (work.pairs[i].status.asked) note_going_on(world, work, work.pairs[i]);
   });
   for (std::uint32_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    if (!pair.asked) continue;
+    if (!pair.status.asked) continue;
     // A part that was stopped before this pair came near is clear of it.
-    const bool looked_at =
-        pair.near && (pair.placed || pair.blocks || as_moved(work, pair).t_enter < 1.0);
+    const bool looked_at = pair.status.near && (pair.ids.placed || pair.status.blocks ||
+                                                as_moved(work, pair).t_enter < 1.0);
     // Who was held back only because there was no work to let it go on has met nothing yet.
-    if (looked_at && pair.blocks && pair.short_of_work)
+    if (looked_at && pair.status.blocks && pair.answer.short_of_work)
       put_off(pair);
     else if (looked_at)
       (stays_told(world, work, pair) ? work.unasked : work.asked).push_back(i);
-    else if (pair.open)
+    else if (pair.ids.open)
       work.unasked.push_back(i);
   }
   work.pool.for_each(work.unasked.size(), [&](std::size_t i, int thread) {
@@ -377,7 +386,7 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
   share_touch_work(work, work.asked);
   serve_in_turn(world, work, work.asked, WorkStage::kVerdict,
                 [&](PairWork& pair, CcdScratch& ccd) { examine(world, work, pair, ccd); });
-  std::erase_if(work.asked, [&](std::uint32_t i) { return !work.pairs[i].tells; });
+  std::erase_if(work.asked, [&](std::uint32_t i) { return !work.pairs[i].judged.tells; });
   share_telling_work(work, work.asked);
   share_touch_work(work, work.asked);
   work.pool.for_each(work.asked.size(), [&](std::size_t i, int thread) {
@@ -385,7 +394,7 @@ void find_verdicts(const World& world, Scratch::Impl& work) {
   });
   for (std::size_t i = 0; i < work.pair_count; ++i) {
     PairWork& pair = work.pairs[i];
-    pair.owed |= pair.asked && pair.open && pair.memo->not_seen;
+    pair.status.owed |= pair.status.asked && pair.ids.open && pair.ids.memo->not_seen;
   }
 }
 

@@ -17,7 +17,7 @@ constexpr std::uint64_t kLeastWanted = 100, kMostWanted = 100'000;
 constexpr std::uint32_t kLongestNoted_ticks = 1'000'000'000;
 
 PairMemo::Effort& effort_of(PairWork& pair, WorkStage stage) {
-  return pair.memo.change().effort[static_cast<std::size_t>(stage)];
+  return pair.ids.memo.change().effort[static_cast<std::size_t>(stage)];
 }
 
 }  // namespace
@@ -50,12 +50,12 @@ std::int64_t WorkBudget::close(std::uint64_t used) const {
 }
 
 bool is_held(const World& world, const PairWork& pair) {
-  return (pair.move_a >= 0 && world.parts[pair.a].holder) ||
-         (pair.move_b >= 0 && world.parts[pair.b].holder);
+  return (pair.ids.move_a >= 0 && world.parts[pair.ids.a].holder) ||
+         (pair.ids.move_b >= 0 && world.parts[pair.ids.b].holder);
 }
 
 std::uint32_t waited_of(const PairWork& pair, WorkStage stage) {
-  return pair.memo->effort[static_cast<std::size_t>(stage)].waited;
+  return pair.ids.memo->effort[static_cast<std::size_t>(stage)].waited;
 }
 
 void in_order(const World& world, std::span<const PairWork> work,
@@ -65,14 +65,14 @@ void in_order(const World& world, std::span<const PairWork> work,
   const auto rank = [&](std::uint32_t i) {
     const std::int64_t waited = waited_of(work[i], stage);
     const std::int64_t lead = is_held(world, work[i]) ? kHeldLead_ticks : 0;
-    return std::tuple(work[i].lingers, -waited - lead, i);
+    return std::tuple(work[i].status.lingers, -waited - lead, i);
   };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t x, std::uint32_t y) { return rank(x) < rank(y); });
 }
 
 void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work) {
-  const std::uint64_t noted = pair.memo->effort[static_cast<std::size_t>(stage)].wanted;
+  const std::uint64_t noted = pair.ids.memo->effort[static_cast<std::size_t>(stage)].wanted;
   const std::uint64_t before = noted == 0 ? work.first : noted;
   const std::uint64_t next = work.capped ? std::max(before, 2 * work.cap)
                                          : std::max(work.used + work.used / 2, before - before / 8);
@@ -82,7 +82,7 @@ void note_effort(PairWork& pair, WorkStage stage, const UsedWork& work) {
 
 void note_waiting(PairWork& pair, WorkStage stage, bool served) {
   const std::uint32_t before = waited_of(pair, stage);
-  if (!served && std::exchange(pair.aged[static_cast<std::size_t>(stage)], true)) return;
+  if (!served && std::exchange(pair.effort.aged[static_cast<std::size_t>(stage)], true)) return;
   const std::uint32_t waited = served ? 0 : std::min(before + 1, kLongestNoted_ticks);
   if (waited != before) effort_of(pair, stage).waited = waited;
 }

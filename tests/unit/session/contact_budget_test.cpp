@@ -51,8 +51,9 @@ struct Sockets {
     tests = unanswered = 0;
     const Scratch::Impl& work = scratch.impl();
     for (std::size_t i = 0; i < work.pair_count; ++i) {
-      tests += work.pairs[i].contact_tests;
-      unanswered += work.pairs[i].contact_waits || work.pairs[i].contact_short ? 1U : 0U;
+      tests += work.pairs[i].effort.contact_tests;
+      unanswered +=
+          work.pairs[i].effort.contact_waits || work.pairs[i].effort.contact_short ? 1U : 0U;
     }
     waiting += report.counters.pairs_waiting;
     not_examined += report.counters.not_examined;
@@ -174,7 +175,7 @@ TEST(ContactBudget, HeldPartsComeFirstAndEverybodyHasATurn) {
     in_order(world, std::span(work.pairs).first(40), all, WorkStage::kContact, order);
     ASSERT_EQ(order.size(), all.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
-      work.pairs[order[k]].aged = {};
+      work.pairs[order[k]].effort.aged = {};
       note_waiting(work.pairs[order[k]], WorkStage::kContact, k < 2);
       if (k >= 2) continue;
       ++served[order[k]];

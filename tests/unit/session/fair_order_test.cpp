@@ -50,14 +50,15 @@ class FairPlay {
     for (std::uint32_t i = 0; i < memos_.size(); ++i) {
       PairWork& pair = work().pairs[i];
       pair = PairWork{};
-      pair.a = pair.b = i;
-      pair.move_a = 0;
-      pair.memo = MemoInUse(memos_[i]);
+      pair.ids.a = pair.ids.b = i;
+      pair.ids.move_a = 0;
+      pair.ids.memo = MemoInUse(memos_[i]);
       if (draw(100) == 0) world_.parts[i].holder = UserId{static_cast<std::uint32_t>(draw(2))};
       if (!shy_[i] || draw(3) == 0) asking.push_back(i);
     }
     if (stage_ != WorkStage::kContact && !asking.empty() && besides_most_ > 0)
-      work().pairs[asking[0]].counts.depth_evaluations += draw(besides_most_);  // other stages
+      work().pairs[asking[0]].effort.counts.depth_evaluations +=
+          draw(besides_most_);  // other stages
     std::fill(served_.begin(), served_.end(), false);
     ask(asking);
     std::vector<std::uint32_t> again;  // whose parts were stopped: another round of the response
@@ -65,7 +66,7 @@ class FairPlay {
       if (i % 2 == 1) again.push_back(i);
     ask(again);
     if (stage_ == WorkStage::kContact && besides_most_ > 0 && !asking.empty())
-      work().pairs[asking[0]].contact_tests += draw(besides_most_);  // what is told
+      work().pairs[asking[0]].effort.contact_tests += draw(besides_most_);  // what is told
     close_contact_budget(state_, work());
     close_depth_budget(state_, work());
     for (std::uint32_t i = 0; i < memos_.size(); ++i) {
@@ -79,19 +80,20 @@ class FairPlay {
     if (stage_ == WorkStage::kContact)
       return ask_in_turn(world_, work(), pairs, [&](PairWork& pair, CcdScratch&) {
         const std::uint64_t need = 1 + draw(need_most_);
-        pair.contact_waits = pair.contact_cap == 0;
-        pair.contact_short = !pair.contact_waits && need > pair.contact_cap;
-        pair.contact_tests += std::min(need, pair.contact_cap);
-        if (!pair.contact_waits && (!pair.contact_short || pair.contact_cap >= kMostContactTests))
-          served_[pair.a] = true;
+        pair.effort.contact_waits = pair.effort.contact_cap == 0;
+        pair.effort.contact_short = !pair.effort.contact_waits && need > pair.effort.contact_cap;
+        pair.effort.contact_tests += std::min(need, pair.effort.contact_cap);
+        if (!pair.effort.contact_waits &&
+            (!pair.effort.contact_short || pair.effort.contact_cap >= kMostContactTests))
+          served_[pair.ids.a] = true;
       });
-    for (const std::uint32_t i : pairs) work().pairs[i].counts.pairs_waiting = 0;
+    for (const std::uint32_t i : pairs) work().pairs[i].effort.counts.pairs_waiting = 0;
     serve_in_turn(world_, work(), pairs, stage_, [&](PairWork& pair, CcdScratch&) {
       const std::uint64_t need = 1 + draw(need_most_);
-      pair.counts.depth_evaluations += std::min(need, pair.cap);
-      if (pair.counts.pairs_waiting > 0) return;
-      note_depth_effort(pair, stage_, need > pair.cap);
-      served_[pair.a] = true;
+      pair.effort.counts.depth_evaluations += std::min(need, pair.effort.cap);
+      if (pair.effort.counts.pairs_waiting > 0) return;
+      note_depth_effort(pair, stage_, need > pair.effort.cap);
+      served_[pair.ids.a] = true;
     });
   }
 
@@ -125,13 +127,13 @@ TEST(FairOrder, APairAgesOnceInATick) {
   PairMemo memo;
   for (std::uint32_t tick = 1; tick <= 600; ++tick) {
     PairWork pair;
-    pair.memo = MemoInUse(memo);
+    pair.ids.memo = MemoInUse(memo);
     for (int round = 0; round < 3; ++round) note_waiting(pair, WorkStage::kContact, false);
     ASSERT_EQ(waited_of(pair, WorkStage::kContact), tick);
     ASSERT_EQ(waited_of(pair, WorkStage::kVerdict), 0U);
   }
   PairWork pair;
-  pair.memo = MemoInUse(memo);
+  pair.ids.memo = MemoInUse(memo);
   note_waiting(pair, WorkStage::kContact, true);
   EXPECT_EQ(waited_of(pair, WorkStage::kContact), 0U);
 }

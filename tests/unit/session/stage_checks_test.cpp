@@ -22,22 +22,22 @@ struct Planted {
     session.add("b", cube_mesh(10.0), at(20, 0, 0), true);
     work.moves.resize(1);
     PairWork pair;
-    pair.b = 1;
-    pair.move_a = 0;
+    pair.ids.b = 1;
+    pair.ids.move_a = 0;
     const std::vector<Part>& parts = session.world.parts;
-    pair.solid_a = parts[0].solid.get();
-    pair.solid_b = parts[1].solid.get();
-    pair.band_a = &parts[0].band;
-    pair.band_b = &parts[1].band;
-    pair.asked = true;
+    pair.ids.solid_a = parts[0].solid.get();
+    pair.ids.solid_b = parts[1].solid.get();
+    pair.ids.band_a = &parts[0].band;
+    pair.ids.band_b = &parts[1].band;
+    pair.status.asked = true;
     SeenRegion region;
     region.verdict.collision_class = CollisionClass::kFake;
-    pair.seen.push_back(region);
+    pair.judged.seen.push_back(region);
     work.pairs.push_back(std::move(pair));
     work.pair_count = 1;
   }
   PairWork& pair() { return work.pairs.front(); }
-  Verdict& verdict() { return pair().seen.front().verdict; }
+  Verdict& verdict() { return pair().judged.seen.front().verdict; }
 
   void check() {
     check_pairs(session.world, work);
@@ -56,31 +56,35 @@ void with(Change change) {
 TEST(StageChecks, WhatIsRightPasses) { Planted{}.check(); }
 
 TEST(StageChecks, AWrongPairIsFound) {
-  EXPECT_DEATH(with([](Planted& p) { p.pair().b = 0; }), "the lower index first");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().b = 2; }), "the lower index first");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().ids.b = 0; }), "the lower index first");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().ids.b = 2; }), "the lower index first");
   EXPECT_DEATH(with([](Planted& p) {
                  p.work.pairs.push_back(p.pair());
                  p.work.pair_count = 2;
                }),
                "each pair stands once");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().move_a = -1; }), "one part of a pair has a move");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().band_b = nullptr; }), "two solids with a band");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().band_mm = -1.0; }), "is a length");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().ids.move_a = -1; }), "one part of a pair has a move");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().ids.band_b = nullptr; }), "two solids with a band");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().ids.band_mm = -1.0; }), "is a length");
 }
 
 TEST(StageChecks, AWrongContactIsFound) {
-  EXPECT_DEATH(with([](Planted& p) { p.pair().tau = 1.0; }), "before the tick ends");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().t_contact = 1.5; }), "times of the tick");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().t_stop = std::nan(""); }), "times of the tick");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().apart_at_end_mm = -1e-3; }), "is not negative");
-  EXPECT_DEATH(with([](Planted& p) { p.pair().blocks = true; }), "holds a part back is near");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().segment.tau = 1.0; }), "before the tick ends");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().answer.t_contact = 1.5; }), "times of the tick");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().answer.t_stop = std::nan(""); }),
+               "times of the tick");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().status.apart_at_end_mm = -1e-3; }),
+               "is not negative");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().status.blocks = true; }),
+               "holds a part back is near");
   EXPECT_DEATH(with([](Planted& p) { p.work.moves[0].stop = 2.0; }), "a time of the tick");
   EXPECT_DEATH(with([](Planted& p) { p.work.moves[0].X_WP_end.p.x() = std::nan(""); }),
                "a pose is finite");
 }
 
 TEST(StageChecks, AWrongVerdictIsFound) {
-  EXPECT_DEATH(with([](Planted& p) { p.pair().seen[0].open = 0; }), "continues an open clash");
+  EXPECT_DEATH(with([](Planted& p) { p.pair().judged.seen[0].open = 0; }),
+               "continues an open clash");
   EXPECT_DEATH(with([](Planted& p) { p.verdict().collision_class = CollisionClass::kNone; }),
                "a region has a class");
   EXPECT_DEATH(with([](Planted& p) { p.verdict().delta_mm = {2.0, 1.0}; }), "lower end first");
