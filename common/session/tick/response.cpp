@@ -7,6 +7,7 @@
 #include "common/session/tick/contacts.h"
 #include "common/session/tick/depth_budget.h"
 #include "common/session/tick/slide.h"
+#include "common/session/tick/statistics.h"
 
 namespace mortise {
 namespace {
@@ -47,56 +48,84 @@ void take_back(PairWork& pair, const AskedEarlier& asked) {
   pair.answer = asked.answer;
 }
 
-class Response {
+// The response of one island: what no other island has a part in.
+class IslandResponse {
  public:
-  Response(const World& world, Scratch::Impl& work, StepReport& report)
-      : world_(world), work_(work), counters_(report.counters) {}
+  IslandResponse(const World& world, Scratch::Impl& work, Island& island, CcdScratch& ccd)
+      : world_(world), work_(work), island_(island), ccd_(ccd) {}
 
-  // Time runs on; the pair that would become real first holds its movers back, everybody else goes
-  // on, and only the pairs of a part whose path changed have to be asked again. Under stop every
-  // round stops at least one part, under slide every round costs some body one of its legs: there
-  // are at most as many rounds as that. Equal times respond together: the order of parts plays no
-  // role.
-  void run() {
-    work_.sliding.clear();
-    while (true) {
-      const double t = next_time();
-      if (t >= 1.0) break;
-      ++counters_.rounds;
-      find_responding(t);
-      changed_at_ = backed_off(t);
-      for (const std::int32_t move : responding_) respond(move, changed_at_);
-      ask_again(changed_at_);
+  // Finds the time of the next round and who responds then.
+  void look_ahead() {
+    island_.t = next_time();
+    island_.responding.clear();
+    if (island_.t < 1.0) find_responding();
+  }
+
+  // Those who respond slide on or stop; whoever still moves meets the others where they are then.
+  void respond(bool may_slide) {
+    island_.to_ask.clear();
+    if (island_.t >= 1.0) return;
+    island_.changed_at = backed_off(island_.t);
+    for (const std::int32_t move : island_.responding) {
+      if (may_slide && start_leg(world_, work_, island_, move, island_.changed_at, ccd_)) continue;
+      stop(move);
     }
-    for (std::size_t i = 0; i < work_.pair_count; ++i) settle(work_.pairs[i]);
+    find_changed();
   }
 
  private:
   Move& move_at(std::int32_t index) { return work_.moves[static_cast<std::size_t>(index)]; }
+  PairWork& pair_at(std::uint32_t index) { return work_.pairs[index]; }
 
   double next_time() {
     double t = 1.0;
-    for (std::size_t i = 0; i < work_.pair_count; ++i) {
-      const PairWork& pair = work_.pairs[i];
+    for (const std::uint32_t i : island_.pairs) {
+      const PairWork& pair = pair_at(i);
       if (pair.answer.t_stop < t &&
           (active(work_, pair.ids.move_a) || active(work_, pair.ids.move_b)))
         t = pair.answer.t_stop;
     }
-    for (SlidingGroup& sliding : work_.sliding) {
-      if (move_at(sliding.moves.front()).stopped) continue;
-      if (sliding.look_due) look_for_release(world_, work_, sliding, blocked_at(sliding));
-      t = std::min(t, sliding.look);
+    for (const std::int32_t index : island_.moves) {
+      SlidingGroup* sliding = sliding_led_by(index);
+      if (!sliding || move_at(index).stopped) continue;
+      if (sliding->look_due)
+        look_for_release(world_, work_, island_, *sliding, blocked_at(*sliding), ccd_);
+      t = std::min(t, sliding->look);
     }
     return t;
+  }
+
+  // Null: it does not slide, or another move of its group stands for it.
+  SlidingGroup* sliding_led_by(std::int32_t index) {
+    const std::int32_t number = move_at(index).sliding;
+    if (number < 0) return nullptr;
+    SlidingGroup& sliding = work_.sliding[static_cast<std::size_t>(number)];
+    return sliding.moves.front() == index ? &sliding : nullptr;
   }
 
   double blocked_at(const SlidingGroup& sliding) {
     const std::int32_t number = move_at(sliding.moves.front()).sliding;
     double t = 1.0;
-    for (std::size_t i = 0; i < work_.pair_count; ++i)
-      for (const std::int32_t move : {work_.pairs[i].ids.move_a, work_.pairs[i].ids.move_b})
-        if (move >= 0 && move_at(move).sliding == number)
-          t = std::min(t, work_.pairs[i].answer.t_stop);
+    for (const std::uint32_t i : island_.pairs)
+      for (const std::int32_t move : {pair_at(i).ids.move_a, pair_at(i).ids.move_b})
+        if (move >= 0 && move_at(move).sliding == number) t = std::min(t, pair_at(i).answer.t_stop);
+    return t;
+  }
+
+  // The last time at which those who respond, or what they may meet, took another path.
+  double changed_before() {
+    double t = 0.0;
+    const auto look = [&](std::int32_t index) {
+      if (index < 0) return;
+      const Move& move = move_at(index);
+      t = std::max(t, move.stopped ? move.stop : move.leg_start);
+    };
+    for (const std::uint32_t i : island_.pairs) {
+      const PairIds& ids = pair_at(i).ids;
+      if (!responds(ids.move_a) && !responds(ids.move_b)) continue;
+      look(ids.move_a);
+      look(ids.move_b);
+    }
     return t;
   }
 
@@ -105,90 +134,78 @@ class Response {
   double backed_off(double t) {
     if (world_.policy != Policy::kSlide) return t;
     double fastest_mm = 0.0;
-    for (const std::int32_t index : responding_) {
+    for (const std::int32_t index : island_.responding) {
       const Move& move = move_at(index);
       const double radius_mm = world_.parts[move.part].solid->sphere().radius_mm;
       fastest_mm = std::max(
           fastest_mm, move.leg.travel_upper_bound_mm(radius_mm, 0.0, 1.0) / (1.0 - move.leg_start));
     }
-    const bool banded = std::any_of(
-        work_.pairs.begin(), work_.pairs.begin() + static_cast<std::ptrdiff_t>(work_.pair_count),
-        [&](const PairWork& pair) {
+    const bool banded =
+        std::any_of(island_.pairs.begin(), island_.pairs.end(), [&](std::uint32_t i) {
+          const PairWork& pair = pair_at(i);
           return pair.status.blocks && pair.answer.t_stop == t && !pair.ids.plain();
         });
     const double back_mm = banded ? kBandLift_mm : kBackOff_mm;
-    return fastest_mm > 0.0 ? std::max(changed_at_, t - back_mm / fastest_mm) : t;
+    return fastest_mm > 0.0 ? std::max(changed_before(), t - back_mm / fastest_mm) : t;
   }
 
   // The movers of every pair of that time, one for each body, by index.
-  void find_responding(double t) {
-    responding_.clear();
-    for (std::size_t i = 0; i < work_.pair_count; ++i) {
-      PairWork& pair = work_.pairs[i];
-      if (pair.answer.t_stop != t ||
+  void find_responding() {
+    for (const std::uint32_t i : island_.pairs) {
+      PairWork& pair = pair_at(i);
+      if (pair.answer.t_stop != island_.t ||
           !(active(work_, pair.ids.move_a) || active(work_, pair.ids.move_b)))
         continue;
       pair.status.blocks = true;
       for (const std::int32_t move : {pair.ids.move_a, pair.ids.move_b})
         if (active(work_, move)) add_responding(move);
     }
-    for (const SlidingGroup& sliding : work_.sliding)
-      if (sliding.look == t && !move_at(sliding.moves.front()).stopped)
-        add_responding(sliding.moves.front());
-    std::sort(responding_.begin(), responding_.end());
+    for (const std::int32_t index : island_.moves)
+      if (const SlidingGroup* sliding = sliding_led_by(index);
+          sliding && sliding->look == island_.t && !move_at(index).stopped)
+        add_responding(index);
+    std::sort(island_.responding.begin(), island_.responding.end());
+  }
+
+  bool moves_with(std::int32_t index, std::int32_t other) {
+    return index == other || (move_at(index).group && move_at(index).group == move_at(other).group);
+  }
+
+  bool responds(std::int32_t index) {
+    return index >= 0 && std::any_of(island_.responding.begin(), island_.responding.end(),
+                                     [&](std::int32_t other) { return moves_with(index, other); });
   }
 
   void add_responding(std::int32_t move) {
-    const bool known = std::any_of(responding_.begin(), responding_.end(), [&](std::int32_t other) {
-      return other == move || (move_at(move).group && move_at(move).group == move_at(other).group);
-    });
-    if (!known) responding_.push_back(move);
+    if (!responds(move)) island_.responding.push_back(move);
   }
 
-  // A leg is looked for along what holds the body, which costs as much as a search.
-  bool may_slide() {
-    if (world_.policy != Policy::kSlide) return false;
-    if (depth_work_left(work_) > 0 || !work_.switches.work_budget) return true;
-    ++counters_.slides_cut_short;
-    return false;
-  }
-
-  void respond(std::int32_t index, double t) {
-    if (may_slide() && start_leg(world_, work_, index, t, counters_)) return;
-    for (Move& move : work_.moves) {
-      if (&move != &move_at(index) && !(move.group && move.group == move_at(index).group)) continue;
-      if (!move.motion.moves() || move.stopped) continue;
+  void stop(std::int32_t index) {
+    const double t = island_.changed_at;
+    for (const std::int32_t other : island_.moves) {
+      Move& move = move_at(other);
+      if (!moves_with(index, other) || !move.motion.moves() || move.stopped) continue;
       const double start = move.leg_start;
       move.X_WP_end = move.leg.pose_at((t - start) / (1.0 - start));
       move.stop = t;
       move.stopped = true;
-      ++counters_.stopped_parts;
+      ++island_.counts.stopped_parts;
     }
   }
 
-  // Whoever still moves meets the others where they are now.
-  void ask_again(double t) {
-    work_.to_ask.clear();
-    const auto changed = [&](std::int32_t index) {
-      if (index < 0) return false;
-      const Move& move = move_at(index);
-      return move.stopped ? move.stop == t : move.sliding >= 0 && move.leg_start == t;
-    };
-    for (std::uint32_t i = 0; i < work_.pair_count; ++i) {
-      const PairWork& pair = work_.pairs[i];
+  void find_changed() {
+    const double t = island_.changed_at;
+    for (const std::uint32_t i : island_.pairs) {
+      PairWork& pair = pair_at(i);
       if (pair.status.together || pair.ids.placed) continue;
-      if (!changed(pair.ids.move_a) && !changed(pair.ids.move_b)) continue;
-      if (active(work_, pair.ids.move_a) || active(work_, pair.ids.move_b))
-        work_.to_ask.push_back(i);
-    }
-    for (const std::uint32_t i : work_.to_ask) {
-      PairWork& pair = work_.pairs[i];
+      if (!responds(pair.ids.move_a) && !responds(pair.ids.move_b)) continue;
+      if (!active(work_, pair.ids.move_a) && !active(work_, pair.ids.move_b)) continue;
+      island_.to_ask.push_back(i);
       remember(pair, t);
       pair.segment.tau = t;
       if (pair.ids.move_a >= 0) pair.segment.motion_a = rest_of(move_at(pair.ids.move_a), t);
       if (pair.ids.move_b >= 0) pair.segment.motion_b = rest_of(move_at(pair.ids.move_b), t);
     }
-    ask_pairs(world_, work_, work_.to_ask);
   }
 
   void remember(PairWork& pair, double t) {
@@ -198,6 +215,79 @@ class Response {
     if (pair.status.asked && pair.status.near && !pair.status.blocks && enters < t &&
         !pair.status.passed)
       pair.status.passed = AskedEarlier{pair.segment, pair.answer, t};
+  }
+
+  const World& world_;
+  Scratch::Impl& work_;
+  Island& island_;
+  CcdScratch& ccd_;
+};
+
+// In an island time runs on; the pair that would become real first holds its movers back, everybody
+// else goes on, and only the pairs of a part whose path changed have to be asked again. Under stop
+// every round stops at least one part, under slide every round costs some body one of its legs:
+// there are at most as many rounds as that. Equal times respond together: the order of parts plays
+// no role. Islands know nothing of each other, so that their rounds run side by side; only the work
+// of the tick is shared among the pairs of all.
+class Response {
+ public:
+  Response(const World& world, Scratch::Impl& work, StepCounters& counters)
+      : world_(world), work_(work), counters_(counters) {}
+
+  void run() {
+    work_.sliding.clear();
+    work_.islands.find(work_.moves, std::span(work_.pairs).first(work_.pair_count),
+                       !work_.switches.islands);
+    while (true) {
+      in_each([](IslandResponse& island) { island.look_ahead(); });
+      if (!any_responds()) break;
+      ++counters_.rounds;
+      const bool may_slide = prepare_slides();
+      in_each([may_slide](IslandResponse& island) { island.respond(may_slide); });
+      ask_again();
+    }
+    for (std::size_t i = 0; i < work_.islands.size(); ++i)
+      accumulate(counters_, work_.islands[i].counts);
+    for (std::size_t i = 0; i < work_.pair_count; ++i) settle(work_.pairs[i]);
+  }
+
+ private:
+  template <class Body>
+  void in_each(const Body& body) {
+    work_.pool.for_each(work_.islands.size(), [&](std::size_t i, int thread) {
+      IslandResponse island(world_, work_, work_.islands[i],
+                            work_.ccd[static_cast<std::size_t>(thread)]);
+      body(island);
+    });
+  }
+
+  bool any_responds() {
+    for (std::size_t i = 0; i < work_.islands.size(); ++i)
+      if (work_.islands[i].t < 1.0) return true;
+    return false;
+  }
+
+  // A leg is looked for along what holds the body, which costs as much as a search.
+  bool prepare_slides() {
+    if (world_.policy != Policy::kSlide) return false;
+    const bool may = depth_work_left(work_) > 0 || !work_.switches.work_budget;
+    for (std::size_t i = 0; i < work_.islands.size(); ++i) {
+      Island& island = work_.islands[i];
+      if (!may) island.counts.slides_cut_short += island.responding.size();
+      for (const std::int32_t move : island.responding)
+        if (may) prepare_leg(world_, work_, move);
+    }
+    return may;
+  }
+
+  void ask_again() {
+    work_.to_ask.clear();
+    for (std::size_t i = 0; i < work_.islands.size(); ++i) {
+      const std::vector<std::uint32_t>& more = work_.islands[i].to_ask;
+      work_.to_ask.insert(work_.to_ask.end(), more.begin(), more.end());
+    }
+    std::sort(work_.to_ask.begin(), work_.to_ask.end());
+    ask_pairs(world_, work_, work_.to_ask);
   }
 
   // A pair that held somebody back is judged as it was then; one that was near and left again is
@@ -215,14 +305,12 @@ class Response {
   const World& world_;
   Scratch::Impl& work_;
   StepCounters& counters_;
-  std::vector<std::int32_t> responding_;
-  double changed_at_ = 0.0;  ///< time of the last round
 };
 
 }  // namespace
 
 void respond(const World& world, Scratch::Impl& work, StepReport& report) {
-  if (holds_back(world.policy)) Response(world, work, report).run();
+  if (holds_back(world.policy)) Response(world, work, report.counters).run();
 }
 
 void note_held(const World& world, Scratch::Impl& work) {

@@ -57,20 +57,8 @@ Pose pose_at(const Scratch::Impl& work, const World& world, std::int32_t index, 
   return move.leg.pose_at(tick_to_leg(move, t));
 }
 
-SlidingGroup& sliding_of(const World& world, Scratch::Impl& work, std::int32_t index) {
-  Move& move = work.moves[static_cast<std::size_t>(index)];
-  if (move.sliding < 0) {
-    const auto number = static_cast<std::int32_t>(work.sliding.size());
-    SlidingGroup& sliding = work.sliding.emplace_back();
-    sliding.group = moving_group_of(world, move.part);
-    sliding.relations = relations_of(world, sliding.group);
-    for (const std::uint32_t part : sliding.group.parts)
-      if (const std::int32_t m = work.move_of_part[part]; m >= 0) {
-        sliding.moves.push_back(m);
-        work.moves[static_cast<std::size_t>(m)].sliding = number;
-      }
-  }
-  return work.sliding[static_cast<std::size_t>(move.sliding)];
+SlidingGroup& sliding_of(Scratch::Impl& work, std::int32_t index) {
+  return work.sliding[static_cast<std::size_t>(move_at(work, index).sliding)];
 }
 
 struct Side {
@@ -231,11 +219,11 @@ struct Holding {
   std::vector<Hold> plain;
 };
 
-Holding what_holds(const World& world, Scratch::Impl& work, SlidingGroup& sliding,
-                   std::int32_t number, double t) {
+Holding what_holds(const World& world, Scratch::Impl& work, const Island& island,
+                   SlidingGroup& sliding, double t, CcdScratch& ccd) {
   Holding holding;
-  CcdScratch& ccd = work.ccd.front();
-  for (std::size_t i = 0; i < work.pair_count; ++i) {
+  const std::int32_t number = move_at(work, sliding.moves.front()).sliding;
+  for (const std::uint32_t i : island.pairs) {
     PairWork& pair = work.pairs[i];
     const Side side = side_of(pair, work, number);
     if (!side.of_group || pair.ids.placed || pair.ids.no_inside()) continue;
@@ -275,11 +263,25 @@ TangentQuery tangent_query(const SlidingGroup& sliding, const Motion& wanted, co
 
 }  // namespace
 
-bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, double t,
-               StepCounters& counters) {
-  const bool first = move_at(work, index).sliding < 0;
-  SlidingGroup& sliding = sliding_of(world, work, index);
-  const std::int32_t number = move_at(work, index).sliding;
+void prepare_leg(const World& world, Scratch::Impl& work, std::int32_t index) {
+  Move& move = work.moves[static_cast<std::size_t>(index)];
+  if (move.sliding >= 0) return;
+  const auto number = static_cast<std::int32_t>(work.sliding.size());
+  SlidingGroup& sliding = work.sliding.emplace_back();
+  sliding.group = moving_group_of(world, move.part);
+  sliding.relations = relations_of(world, sliding.group);
+  for (const std::uint32_t part : sliding.group.parts)
+    if (const std::int32_t m = work.move_of_part[part]; m >= 0) {
+      sliding.moves.push_back(m);
+      work.moves[static_cast<std::size_t>(m)].sliding = number;
+    }
+}
+
+bool start_leg(const World& world, Scratch::Impl& work, Island& island, std::int32_t index,
+               double t, CcdScratch& ccd) {
+  StepCounters& counters = island.counts;
+  SlidingGroup& sliding = sliding_of(work, index);
+  const bool first = sliding.legs == 0;
   const Move& lead = move_at(work, sliding.moves.front());
   if (!first) sliding.stalls = t - lead.leg_start < kStalled ? sliding.stalls + 1 : 0;
   if (sliding.legs >= kMostLegs || sliding.stalls > kMostStalls) {
@@ -291,7 +293,7 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
 
   // 1. what holds it
   if (!first) carry_on(sliding, tick_to_leg(lead, t), lead.leg.X_W0 * lead.leg.reference_P);
-  Holding holding = what_holds(world, work, sliding, number, t);
+  Holding holding = what_holds(world, work, island, sliding, t, ccd);
   if (!holding.known) return false;
   if (holding.banded && sliding.legs >= kMostBandLegs) {
     ++counters.slides_cut_short;
@@ -320,15 +322,15 @@ bool start_leg(const World& world, Scratch::Impl& work, std::int32_t index, doub
   return true;
 }
 
-void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sliding,
-                      double t_end) {
+void look_for_release(const World& world, Scratch::Impl& work, const Island& island,
+                      SlidingGroup& sliding, double t_end, CcdScratch& ccd) {
   sliding.look_due = false;
   sliding.look = 2.0;
   const std::int32_t number = move_at(work, sliding.moves.front()).sliding;
   const Move& lead = move_at(work, sliding.moves.front());
   std::vector<PairWork*> holding;
   bool banded = false;
-  for (std::size_t i = 0; i < work.pair_count; ++i) {
+  for (const std::uint32_t i : island.pairs) {
     PairWork& pair = work.pairs[i];
     if (!side_of(pair, work, number).of_group || pair.ids.placed || pair.ids.no_inside()) continue;
     if (!pair.status.asked && !pair.status.blocked) continue;
@@ -346,7 +348,6 @@ void look_for_release(const World& world, Scratch::Impl& work, SlidingGroup& sli
   const double leg_mm = travel_mm(sliding.given, sliding.group.radius_mm);
   const int looks = std::min(banded ? kMostBandLooks : kMostLooks,
                              static_cast<int>(std::ceil(leg_mm / kLookEvery_mm)));
-  CcdScratch& ccd = work.ccd.front();
   const auto held_at = [&](PairWork& pair, double t) {
     Pose X_W[2] = {pose_at(work, world, pair.ids.move_a, pair.ids.a, t),
                    pose_at(work, world, pair.ids.move_b, pair.ids.b, t)};

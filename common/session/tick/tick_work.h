@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/session/tick/islands.h"
 #include "common/session/tick/pair_work.h"
 #include "common/session/tick/step.h"
 #include "common/session/tick/tangent_cone.h"
@@ -51,6 +52,7 @@ struct StepSwitches {
   bool work_budget = true;         ///< false: every pair has the most that one may have
   bool held_places = true;         ///< false: who is held is found held by a search each tick
   bool told_goes_on = true;        ///< false: what is told is looked at anew each tick
+  bool islands = true;             ///< false: all that moves responds as one island
 };
 
 struct Scratch::Impl {
@@ -73,6 +75,7 @@ struct Scratch::Impl {
   /// In the order in which a stage serves them; whose share of first contact did not do.
   std::vector<std::uint32_t> order, dear, still_dear;
   std::vector<SlidingGroup> sliding;
+  Islands islands;  ///< of the response
 };
 
 }  // namespace mortise

@@ -70,7 +70,9 @@ INSTANTIATE_TEST_SUITE_P(Policies, Determinism,
                          ::testing::Values(Setting{Policy::kReport, false},
                                            Setting{Policy::kReport, true},
                                            Setting{Policy::kStop, false},
-                                           Setting{Policy::kStop, true}));
+                                           Setting{Policy::kStop, true},
+                                           Setting{Policy::kSlide, false},
+                                           Setting{Policy::kSlide, true}));
 
 // Who is pushed on where it is held stays there by one look at the place that held it; a search
 // says the same.
