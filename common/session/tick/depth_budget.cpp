@@ -98,15 +98,25 @@ class Sharing {
   }
 
   // Gives work to the first of the order, as many as there is for, and returns how many those are.
-  // Where there is none for the first, that one waits.
+  // Where there is none for the first, that one waits, and so do those after it that would want
+  // more than the tick has left even if those before them used nothing.
   std::size_t round(std::span<const std::uint32_t> order) {
     left_ = left_now();
     std::uint64_t sum = 0;
     for (const std::uint32_t i : order) sum += expected(wanted_of(work_.pairs[i], stage_, most_));
     // What nobody needs is shared, should somebody need more than it expects.
     more_ = sum > left_.own ? 0 : (left_.own - sum) / order.size();
+    const std::uint64_t most_left = left_.own;
+    bool all_wait = true;
+    const auto has_no_chance = [&](const PairWork& pair) {
+      return all_wait && expected(wanted_of(pair, stage_, most_)) > most_left;
+    };
     std::size_t count = 0;
-    while (count < order.size() && give(work_.pairs[order[count]], count == 0)) ++count;
+    for (; count < order.size(); ++count) {
+      PairWork& pair = work_.pairs[order[count]];
+      if (!give(pair, count == 0 || has_no_chance(pair))) break;
+      all_wait &= kept_for_the_first_;
+    }
     return std::max<std::size_t>(count, 1);
   }
 

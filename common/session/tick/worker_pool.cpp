@@ -1,6 +1,18 @@
 #include "common/session/tick/worker_pool.h"
 
 namespace mortise {
+namespace {
+
+// A thread looks so often whether it has something to do before it sleeps, for to be woken takes
+// longer than most rounds of a tick. It gives its core to whoever wants it in between.
+constexpr int kLooks = 100;
+
+template <class Ready>
+void look_for_a_while(const Ready& ready) {
+  for (int i = 0; i < kLooks && !ready(); ++i) std::this_thread::yield();
+}
+
+}  // namespace
 
 WorkerPool::WorkerPool(int threads) {
   for (int t = 1; t < threads; ++t)
@@ -24,6 +36,7 @@ void WorkerPool::run(std::size_t count, void* body, Call call) {
   }
   start_.notify_all();
   take_indices(0);
+  look_for_a_while([this] { return inside_ == 0; });
   std::unique_lock lock(mutex_);
   open_ = false;  // who comes late finds nothing to do: where other programs have the core, it may
                   // come milliseconds late
@@ -38,6 +51,7 @@ void WorkerPool::take_indices(int thread) {
 void WorkerPool::work(const std::stop_token& stop, int thread) {
   std::uint64_t seen = 0;
   while (true) {
+    look_for_a_while([&] { return round_ != seen; });
     {
       std::unique_lock lock(mutex_);
       if (!start_.wait(lock, stop, [&] { return open_ && round_ != seen; })) return;

@@ -44,9 +44,9 @@ class WorkerPool {
   std::mutex mutex_;
   std::condition_variable_any start_;
   std::condition_variable done_;
-  std::uint64_t round_ = 0;  // guarded by mutex_
-  bool open_ = false;        // guarded by mutex_: indices of the round are left to take
-  int inside_ = 0;           // guarded by mutex_: workers that take indices of the round
+  std::atomic<std::uint64_t> round_ = 0;  // written under mutex_
+  bool open_ = false;            // guarded by mutex_: indices of the round are left to take
+  std::atomic<int> inside_ = 0;  // written under mutex_: workers that take indices of the round
   std::size_t count_ = 0;
   void* body_ = nullptr;
   Call call_ = nullptr;
