@@ -27,7 +27,9 @@ void add_session(ProgramOptions& app, ServerOptions& o) {
   add("--policy", o.policy, "Response to a real contact instead of the scenario's")
       .one_of({"stop", "slide", "report"});
   add("--rate", o.rate_hz, "Ticks a second instead of the scenario's").in_range(1.0, 1000.0);
-  add("--threads", o.threads, "Threads of the engine; the results are the same")
+  add("--threads", o.threads,
+      "Threads of the engine; ticks get work for so many. The log says so: a replay decides alike "
+      "on any number")
       .in_range(1, 256)
       .shows_default();
   add("--duration", o.duration_s, "End after so many seconds; 0: at a signal").not_negative();

@@ -51,6 +51,10 @@ Result<SessionStart> read_from_scenario(const ServerOptions& options) {
     start.scenario_yaml =
         with_top_level(start.scenario_yaml, "tick_rate_hz", fmt::format("{}", options.rate_hz));
   }
+  if (options.threads > 1) {  // so that a replay has the work of these ticks, on any machine
+    start.scenario_yaml =
+        with_top_level(start.scenario_yaml, "threads", fmt::format("{}", options.threads));
+  }
   auto reading = read_scenario_text(start.scenario_yaml, options.scenario);
   if (!reading) return reading.error();
   add_assembly(*reading);

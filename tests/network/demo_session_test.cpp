@@ -67,7 +67,7 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
 
   Program server(folder.path(), "mortise-server",
                  {scenario, "--domain", domain, "--session", "demo", "--log", log, "--duration",
-                  "9.5", "--json", "--live"});
+                  "9.5", "--threads", "2", "--json", "--live"});
   const auto participant = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(),
                      {"--domain", domain, "--session", "demo", "--wait", "10", "--json"});
@@ -137,6 +137,8 @@ TEST(DemoSession, AllParticipantsSeeTheSameAndTheLogPlaysAgain) {
   EXPECT_TRUE(read->complete);
   EXPECT_EQ(read->ticks.size(), closing["statistics"]["ticks"].get<std::size_t>());
   EXPECT_NE(read->scenario_yaml.find("four blocks"), std::string::npos);
+  // Its ticks had work for two threads, and one decides the same.
+  EXPECT_NE(read->scenario_yaml.find("threads: 2"), std::string::npos);
   if (std::filesystem::exists(program_path("mortise-replay"))) {
     Program replay(folder.path(), "mortise-replay", {"verify", log});
     EXPECT_EQ(replay.wait(kPatience_s), 0) << replay.out() << replay.errors();

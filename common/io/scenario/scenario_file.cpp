@@ -1,6 +1,7 @@
 #include "common/io/scenario/scenario_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "common/base/file_text.h"
@@ -38,6 +39,9 @@ void read_units(YamlContext& context, const YamlMap& top) {
               in_quotes(*text) + " is not known" + did_you_mean(*text, length_unit_names()));
 }
 
+// As many as the server may be started with.
+constexpr double kMostThreads = 256.0;
+
 void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
   read_units(context, top);
   if (const auto name = top.text("name")) {
@@ -52,6 +56,12 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
       scenario.tick_rate_hz = *rate;
     else
       top.error("tick_rate_hz", "must lie between 1 and 1000");
+  }
+  if (const auto threads = top.number("threads")) {
+    if (*threads >= 1.0 && *threads <= kMostThreads && *threads == std::floor(*threads))
+      scenario.threads = static_cast<int>(*threads);
+    else
+      top.error("threads", "must be a whole number between 1 and 256");
   }
   if (const auto policy = top.text("policy")) {
     if (const auto known = policy_named(*policy))
@@ -213,8 +223,8 @@ ScenarioReading read_document(const YAML::Node& document, const std::string& nam
   context.file = name;
   const YamlMap top(
       context, document, "scenario",
-      {"name", "units", "tick_rate_hz", "policy", "max_jump", "lease_s", "deviation", "min_gap",
-       "min_gaps", "assembly", "parts", "fits", "exclusions", "approvals", "users"});
+      {"name", "units", "tick_rate_hz", "threads", "policy", "max_jump", "lease_s", "deviation",
+       "min_gap", "min_gaps", "assembly", "parts", "fits", "exclusions", "approvals", "users"});
   if (top.usable()) {
     read_head(context, top, reading.scenario);
     read_list(context, top, "parts", reading.scenario, read_part);

@@ -188,6 +188,7 @@ class SceneLoader {
     World& world = scene_.world;
     world.name = scenario_.name;
     world.tick_rate_hz = scenario_.tick_rate_hz;
+    world.threads = scenario_.threads;
     world.policy = scenario_.policy;
     world.max_jump_mm = scenario_.max_jump_mm;
     world.lease_s = scenario_.lease_s;

@@ -46,7 +46,7 @@ void put_rules(Writer& out, const World& world) {
 
 // All but the memos. The members of a world are named here as those of the rest in state_fields.
 void put_frame(Writer& out, const World& world) {
-  const auto& [name, tick_rate_hz, policy, max_jump_mm, lease_s, tick, parts, users, pair_rules,
+  const auto& [name, tick_rate_hz, threads, policy, max_jump_mm, lease_s, tick, parts, users, pair_rules,
                approved_at_start, may_hold, declared, standing, remarks, rules, shapes, edits,
                restated, guides, next_constraint, next_group, recognized, evaluates, state] = world;
   out(tick, policy, edits, restated);

@@ -15,8 +15,8 @@ enum class WorkStage : std::uint8_t { kContact = 0, kStop = 1, kVerdict = 2 };
 /// How much of one kind of work ticks may spend. Work is counted and never timed, so that a replay
 /// decides the same.
 struct WorkRules {
-  double per_second = 0.0;
-  std::int64_t least = 0;         ///< in a tick, however high the tick rate is
+  double per_second = 0.0;        ///< of a session for one thread, see World::threads
+  std::int64_t least = 0;         ///< in a tick of it, however high the tick rate is
   std::int64_t saved_ticks = 0;   ///< what ticks may save together, in ticks' own work
   std::int64_t owed_ticks = 0;    ///< more than this is not paid back, in ticks' own work
   double extra_per_second = 0.0;  ///< saved in every tick, whatever it used

@@ -180,6 +180,7 @@ struct Scenario {
   std::string file;      ///< path it came from, for messages and relative meshes
   double unit_mm = 1.0;  ///< of a length as its file writes it
   double tick_rate_hz = 60.0;
+  int threads = 1;  ///< of the server: ticks get work for so many
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;  ///< largest translation of one increment
   double lease_s = 5.0;

@@ -79,6 +79,7 @@ struct SessionState;  ///< caches and open clashes between ticks, session/sessio
 struct World {
   std::string name;
   double tick_rate_hz = 60.0;
+  int threads = 1;  ///< ticks get work for so many, whatever number plays them; see work_budget.h
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;
   double lease_s = 5.0;

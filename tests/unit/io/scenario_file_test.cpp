@@ -243,6 +243,8 @@ std::vector<Fault> faults() {
       {good + "tick_rate_hz: fast\n", 7, "expected a number"},
       {good + "tick_rate_hz: 0\n", 7, "between 1 and 1000"},
       {good + "tick_rate_hz: .nan\n", 7, "expected a number"},
+      {good + "threads: 0\n", 7, "between 1 and 256"},
+      {good + "threads: 1.5\n", 7, "a whole number"},
       {good + "max_jump: -1\n", 7, "greater than 0"},
       {good + "lease_s: 0\n", 7, "between 0.1"},
       {good + "users: [{name: u}]\n", 7, "may_hold is missing"},
@@ -480,6 +482,17 @@ TEST(ScenarioDoor, DeepAndExpandingYamlIsRefused) {
     bomb += "a" + n + ": &a" + n + " [" + before + ", " + before + "]\n";
   }
   EXPECT_FALSE(read_scenario_text(bomb, "a.yaml"));
+}
+
+// Ticks get work for so many threads, however many play them.
+TEST(ScenarioFile, SaysForHowManyThreadsItIs) {
+  for (const auto& [text, threads] : {std::pair("", 1), {"threads: 3\n", 3}}) {
+    const auto reading = read_scenario_text(head(std::string(text) + "parts: []\n"), "a.yaml");
+    ASSERT_TRUE(reading);
+    const auto scene = load_scene(reading->scenario, default_meshes());
+    ASSERT_TRUE(scene) << scene.error().text;
+    EXPECT_EQ(scene->world.threads, threads);
+  }
 }
 
 TEST(ScenarioFile, MayBeginWithoutParts) {

@@ -201,8 +201,31 @@ TEST(WorkBudget, WhatUsersHoldComesFirst) {
   EXPECT_GE(told, 14) << "the peg in the hand waits behind others";
 }
 
+// A session for three threads has their work in its ticks, on however many it is played.
+TEST(WorkBudget, GrowsWithTheThreadsOfTheSession) {
+  World world;
+  world.tick = 2;
+  const WorkRules rules{.per_second = 60'000.0, .least = 500, .saved_ticks = 2, .owed_ticks = 1};
+  for (const auto& [threads, own] : {std::pair(1, 1'000U), {2, 1'700U}, {4, 3'100U}}) {
+    world.threads = threads;
+    WorkBudget budget;
+    budget.open(rules, world, 0, true);
+    EXPECT_EQ(budget.own(), own);
+  }
+  std::uint64_t waiting[2] = {0, 0};
+  for (const int threads : {1, 3}) {
+    Row row(Policy::kStop, true);
+    row.session.world.threads = threads;
+    for (int i = 0; i < 40; ++i)
+      waiting[threads == 3] += row.push(Vec3(0.25, 0, 0)).counters.pairs_waiting;
+  }
+  EXPECT_GT(waiting[0], 20U) << "nothing is shown";
+  EXPECT_LT(2 * waiting[1], waiting[0]);
+}
+
 TEST(WorkBudget, ThreadsChangeNothing) {
   Row one(Policy::kStop, true), two(Policy::kStop, true);
+  one.session.world.threads = two.session.world.threads = 2;
   Scratch threads(3);
   for (int i = 0; i < 40; ++i) {
     std::vector<Increment> same;
