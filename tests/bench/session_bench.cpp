@@ -19,6 +19,7 @@ const std::vector<SessionSection>& session_sections() {
       {"security", "what it costs to be met with keys", section_security},
       {"guided", "shafts put into bores by hands that tremble", section_guided},
       {"pushed", "pegs in their holes that are all pushed at once", section_pushed},
+      {"plays", "the demo, played again and again, also beside busy loops", section_plays},
   };
   return all;
 }

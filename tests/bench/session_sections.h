@@ -31,6 +31,7 @@ void section_lossy(Report& report, const SessionOptions& options);
 void section_security(Report& report, const SessionOptions& options);
 void section_guided(Report& report, const SessionOptions& options);
 void section_pushed(Report& report, const SessionOptions& options);
+void section_plays(Report& report, const SessionOptions& options);
 
 using SessionSection = BenchSection<SessionOptions>;
 const std::vector<SessionSection>& session_sections();
