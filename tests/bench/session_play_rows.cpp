@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/math/interval.h"
 #include "tests/bench/session_load.h"
 #include "tests/bench/session_sections.h"
 #include "tests/bench/statistics.h"
