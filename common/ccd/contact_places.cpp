@@ -7,6 +7,7 @@
 
 #include "common/base/check.h"
 #include "common/ccd/pair_tree.h"
+#include "common/math/unit.h"
 
 namespace mortise {
 namespace {
@@ -172,6 +173,9 @@ ContactPlaces contact_places(const ContactPlacesQuery& query, CcdScratch& scratc
   ContactPlaces found{{}, left > 0};
   if (found.all || !query.all_or_none) found.places = places.outermost();
   for (ContactPlace& place : found.places) {
+    MORTISE_CHECK(
+        is_unit(place.normal_W) && place.point_W.allFinite() && place.gap_mm <= query.reach_mm,
+        "a place has a unit normal and lies within reach");
     place.point_W = query.X_WB * Vec3(place.point_W + b.bvh().origin);
     place.normal_W = query.X_WB.q * place.normal_W;
   }

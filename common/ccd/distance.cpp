@@ -196,11 +196,21 @@ class Search {
   bool seeded_ = false;
 };
 
+void check(const Solid& a, const Solid& b, const DistanceResult& result) {
+  MORTISE_CHECK(result.distance_mm >= 0.0, "a distance is not negative");
+  MORTISE_CHECK(result.triangle_a < a.mesh().triangles.size() &&
+                    result.triangle_b < b.mesh().triangles.size(),
+                "the nearest triangles are those of the parts");
+  MORTISE_CHECK(result.point_a_W.allFinite() && result.point_b_W.allFinite(),
+                "the nearest points are finite");
+}
+
 }  // namespace
 
 DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                         CcdScratch& scratch, double limit_mm, const DistanceResult* seed) {
   MORTISE_CHECK(limit_mm >= 0.0, "a limit must be a length");
+  MORTISE_CHECK(valid(X_WA) && valid(X_WB), "poses must be finite and their quaternions unit");
   PairMotion motion(a, still_motion(X_WA), b, still_motion(X_WB));
   motion.at(0.0);
   Search search(motion, a.bvh(), b.bvh(), limit_mm, 0.0, scratch);
@@ -215,6 +225,7 @@ DistanceResult distance(const Solid& a, const Pose& X_WA, const Solid& b, const 
   result.triangle_b = best.triangle_b;
   result.point_a_W = motion.to_world(best.point_a, 0.0);
   result.point_b_W = motion.to_world(best.point_b, 0.0);
+  check(a, b, result);
   return result;
 }
 

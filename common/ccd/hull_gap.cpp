@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
 #include "common/math/simplex.h"
+#include "common/math/unit.h"
 
 namespace mortise::ccd {
 namespace {
@@ -86,6 +88,7 @@ HullGap hull_gap(const PairMotion& motion, const Bvh& a, const Bvh& b, const Vec
     size = now;
   }
   best.apart = best.gap_mm > motion.rounding_mm();
+  MORTISE_CHECK(!best.apart || is_unit(best.n), "hulls are apart along a unit direction");
   best.pairs = simplex.count;
   for (int k = 0; k < simplex.count; ++k) {
     best.leaf_a[k] = simplex.tag[k].a;

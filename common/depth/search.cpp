@@ -369,6 +369,10 @@ Sample sample_at(const PairFrame& pair, Layer layer, int role, std::uint32_t tri
 
 std::vector<Bracket> search_depth(const SearchQuery& query, SearchScratch& scratch,
                                   std::uint64_t& evaluations) {
+  MORTISE_CHECK(query.pair != nullptr && query.roots != nullptr, "a search has a pair and roots");
+  for (const Root& root : *query.roots)
+    MORTISE_CHECK(root.region < query.regions && (root.role == 0 || root.role == 1),
+                  "a root is of one of the parts and of a region");
   std::vector<Bracket> brackets = Search(query, scratch, evaluations).run();
   for (const Bracket& bracket : brackets)
     MORTISE_CHECK(bracket.best.depth_mm <= bracket.hi_mm, "a bracket has its lower end first");

@@ -226,6 +226,8 @@ SurfaceBand with_statements(const SurfaceBand& band, const Solid& solid, const F
   for (SurfaceBand::Face& face : stated.faces)
     state(face, face.feature >= 0 ? of_feature[static_cast<std::size_t>(face.feature)] : rest);
   summarize(stated, solid);
+  MORTISE_CHECK(valid(stated, solid.mesh().triangles.size()),
+                "a band has a face for each triangle and brackets with their lower ends first");
   return stated;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
@@ -113,6 +115,7 @@ std::optional<Interval> interference_probability(const InterferenceZones& zones)
                            : sizes.at(middle_mm);
   };
   const double x = p_at(modelled.lo), y = p_at(modelled.hi);
+  MORTISE_CHECK(0.0 <= std::min(x, y) && std::max(x, y) <= 1.0, "a probability is up to one");
   return Interval{std::min(x, y), std::max(x, y)};
 }
 

@@ -1,5 +1,6 @@
 #include "common/evaluation/verdict.h"
 
+#include "common/base/check.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -23,6 +24,9 @@ Thresholds thresholds_of(Interval delta_mm, Interval certain_mm, Interval possib
 }
 
 CollisionClass classify(const ClassifyInput& input) {
+  MORTISE_CHECK(
+      input.delta_mm.ordered() && input.certain_mm.ordered() && input.possible_mm.ordered(),
+      "a class is made of brackets with their lower ends first");
   const bool never = input.possible_mm.hi <= 0.0;
   if (!meshes_overlap(input) && never) return CollisionClass::kNone;
   if (input.no_inside) return CollisionClass::kPotential;

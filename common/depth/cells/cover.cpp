@@ -1,13 +1,16 @@
 #include "common/depth/cells/cover.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "common/base/check.h"
 #include "common/depth/cells/cover_faces.h"
 #include "common/depth/cells/cover_hollow.h"
 #include "common/depth/cells/cover_outside.h"
 #include "common/depth/cells/cover_prism.h"
 #include "common/depth/cells/cover_profile.h"
 #include "common/depth/cells/cover_voids.h"
+#include "common/math/unit.h"
 
 namespace mortise {
 namespace {
@@ -29,6 +32,36 @@ void set_heights(CoverLayer& layer) {
       }
       layer.heights_mm.push_back(along);
     }
+}
+
+void check(const ConvexCell& cell) {
+  for (const HalfSpace& face : cell.faces)
+    MORTISE_CHECK(is_unit(face.n) && std::isfinite(face.c_mm),
+                  "a face of a cell has a unit normal and a finite place");
+  MORTISE_CHECK(cell.middle.allFinite(), "the middle of a cell is a point");
+  if (!cell.round) return;
+  MORTISE_CHECK(is_unit(cell.axis) && is_unit(cell.across[0]) && is_unit(cell.across[1]),
+                "a round cell has unit directions");
+  for (std::size_t i = 0; i < cell.circles.size(); ++i)
+    MORTISE_CHECK(
+        cell.circles[i].r_mm >= 0.0 && (i == 0 || cell.circles[i - 1].z_mm < cell.circles[i].z_mm),
+        "the circles of a round cell ascend");
+}
+
+// What CoverLayer promises to those who bound a depth by it.
+void check(const CoverLayer& layer) {
+  for (const ConvexCell& cell : layer.cells) check(cell);
+  for (const Void& v : layer.voids) {
+    for (const VoidWall& wall : v.walls)
+      MORTISE_CHECK(is_unit(wall.axis) && std::isfinite(wall.r_mm) && std::isfinite(wall.slope) &&
+                        0.0 < wall.cosine && wall.cosine <= 1.0 + kUnitDirectionSlack,
+                    "the wall of a void is a finite cylinder or cone");
+    for (const HalfSpace& plane : v.planes)
+      MORTISE_CHECK(is_unit(plane.n) && !std::isnan(plane.c_mm),
+                    "a plane of a void has a unit normal");
+  }
+  MORTISE_CHECK(layer.heights_mm.size() == layer.cells.size() * layer.voids.size(),
+                "a layer has heights of each cell beside each void");
 }
 
 }  // namespace
@@ -65,6 +98,7 @@ Cover find_cover(const Body& body) {
     layer.cells = std::move(outside.cells[i]);
     for (const LayerVoids& v : voids) layer.voids.push_back(v.of[i]);
     set_heights(layer);
+    check(layer);
   }
   return cover;
 }

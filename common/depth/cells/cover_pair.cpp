@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
 #include "common/depth/cells/least_reach.h"
+#include "common/math/unit.h"
 
 namespace mortise {
 namespace {
@@ -355,6 +357,7 @@ bool CoverPair::turn_apart(const Views& views, Cells& cells, double limit_mm,
 // the span is halved. Anything else is looked for where that is not so, over long spans, and over
 // the shortest ones before they are taken for the end.
 CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double accuracy_mm) const {
+  MORTISE_CHECK(limit_mm >= 0.0 && accuracy_mm >= 0.0, "a limit must be a length");
   CoverFree free;
   std::vector<Cells> all = all_cells();
   if (!apart(views_at(path.pose(0, 0.0)), all, limit_mm, free.work)) {
@@ -389,6 +392,7 @@ CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double ac
     const double middle = 0.5 * (now.span.t0 + now.span.t1);
     if (i >= kMostSpans || length <= moment || !(middle > now.span.t0) || !(middle < now.span.t1)) {
       free.t_free = now.span.t0;
+      MORTISE_CHECK(0.0 <= free.t_free && free.t_free <= 1.0, "a time is one of the tick");
       return free;
     }
     open.push_back({{middle, now.span.t1}, now.cells});
@@ -420,6 +424,8 @@ bool CoverPair::apart(const Views& views, std::vector<Cells>& all, double limit_
 }
 
 CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const {
+  MORTISE_CHECK(valid(X_BA), "a pose must be finite and its quaternion unit");
+  MORTISE_CHECK(!std::isnan(least_mm), "what counts as least is a number");
   const Views views = views_at(X_BA);
   CoverOverlap overlap;
   overlap.most_mm = least_mm;
@@ -433,6 +439,10 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   }
   if (deciding == nullptr || deciding->keeper.role < 0) return overlap;
   overlap.keeper = deciding->keeper;
+  MORTISE_CHECK(overlap.keeper.by_void
+                    ? overlap.keeper.v < parts_[1 - overlap.keeper.role]->voids.size()
+                    : is_unit(overlap.keeper.n),
+                "what keeps two cells apart is a void of a part or a unit direction");
   overlap.places_S = places_of(*deciding, views);
   return overlap;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/base/check.h"
 #include "common/depth/cells/deepest.h"
 #include "common/depth/cells/tight_box.h"
 
@@ -25,6 +26,8 @@ constexpr double kWorthTightening = 0.8;
 constexpr double kNarrowWindow = 0.5;
 // A wider window is made with room, so that it is wide enough for what it newly contains.
 constexpr double kReachShare = 1.01;
+// The deepest point may be this far outside of the box that holds it: rounding of a linear program.
+constexpr double kOutside_mm = 1e-6;
 
 // Where both parts can be.
 Box core_of(const SharpQuery& query) {
@@ -203,10 +206,41 @@ class SharpSearch {
   SharpDecision decision_;
 };
 
+void check(const SharpQuery& query) {
+  for (const SharpPart& part : {query.a, query.b})
+    MORTISE_CHECK(part.solid != nullptr && part.planes != nullptr,
+                  "each part has a solid and its plane faces");
+  MORTISE_CHECK(valid(query.X_BA), "a pose must be finite and its quaternion unit");
+  MORTISE_CHECK(query.depth_mm >= 0.0 && query.depth_mm <= kLargestCoordinate_mm,
+                "a depth must be a length");
+}
+
+void check(const SharpQuery& query, const SharpDepth& depth) {
+  MORTISE_CHECK(depth.margin_mm.ordered() && depth.overlap_mm.ordered(),
+                "a bracket has its lower end first");
+  MORTISE_CHECK(0.0 < depth.facing && depth.facing <= 1.0, "a share that faces is up to one");
+  if (!depth.has_point) return;
+  MORTISE_CHECK(core_of(query).grown(kOutside_mm).overlaps({depth.point_B, depth.point_B}),
+                "the deepest point lies where both bodies can be");
+  MORTISE_CHECK(
+      depth.face_a < query.a.planes->faces.size() && depth.face_b < query.b.planes->faces.size(),
+      "the deciding faces are those of the parts");
+}
+
+// What SharpDecision promises.
+void check(const SharpQuery& query, const SharpDecision& decision) {
+  if (decision.state != SharpDecision::State::kDecided) return;
+  check(query, decision.least);
+  check(query, decision.largest);
+  MORTISE_CHECK(decision.least.margin_mm.lo <= decision.largest.margin_mm.hi,
+                "the least bodies lie within the largest");
+}
+
 }  // namespace
 
 // A wider window is tried where an edge or tip asks for it.
 SharpDecision decide(const SharpQuery& query) {
+  check(query);
   double face_mm = query.depth_mm;
   for (const SharpPart& part : {query.a, query.b})
     for (const PlaneFace& face : part.planes->faces)
@@ -220,8 +254,10 @@ SharpDecision decide(const SharpQuery& query) {
     result.programs += programs;
     const double needed_mm = search.needed_reach_mm();
     if (result.state != SharpDecision::State::kTooSharp ||
-        needed_mm > PlaneFaces::kMostTravel * face_mm)
+        needed_mm > PlaneFaces::kMostTravel * face_mm) {
+      check(query, result);
       return result;
+    }
     programs = result.programs;
     reach_mm = kReachShare * needed_mm;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/check.h"
 #include "common/base/constants.h"
 
 namespace mortise {
@@ -22,7 +23,12 @@ constexpr double kRoundings = 64.0;
 
 LinearProgram::LinearProgram(int variables, const Vector& lo, const Vector& hi,
                              const Vector& objective)
-    : variables_(variables), lo_(lo), hi_(hi), objective_(objective) {}
+    : variables_(variables), lo_(lo), hi_(hi), objective_(objective) {
+  MORTISE_CHECK(variables >= 1 && variables <= kMostVariables, "a program has some variables");
+  for (int k = 0; k < variables; ++k)
+    MORTISE_CHECK(lo[k] <= hi[k] && std::isfinite(hi[k] - lo[k]),
+                  "every variable lies between finite bounds, the lower one first");
+}
 
 LinearProgram::Level& LinearProgram::set_up() {
   Level& top = level_[variables_];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/ccd/contact_places.h"
 #include "common/geometry/signed_distance.h"
 
@@ -280,7 +281,15 @@ class Holds {
 }  // namespace
 
 HeldBy held_by_balls(const HoldsQuery& query, CcdScratch& scratch, std::uint64_t& work) {
-  return Holds(query, scratch, work).bound();
+  MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
+  MORTISE_CHECK(valid(query.X_WA) && valid(query.X_WB),
+                "poses must be finite and their quaternions unit");
+  MORTISE_CHECK(0.0 <= query.known_mm && query.known_mm <= query.limit_mm,
+                "what is known is no more than what parts them");
+  HeldBy held = Holds(query, scratch, work).bound();
+  MORTISE_CHECK(query.known_mm <= held.least_mm && held.least_mm <= query.limit_mm,
+                "a lower bound does not fall, nor pass what parts them");
+  return held;
 }
 
 }  // namespace mortise::gpd

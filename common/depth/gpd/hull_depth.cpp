@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/base/constants.h"
+#include "common/math/unit.h"
 
 namespace mortise::gpd {
 namespace {
@@ -204,6 +206,10 @@ ConvexBody hull_of(const ConvexCell& cell, const Pose& X_W) {
 
 HullDepth hull_depth(const ConvexBody& a, const ConvexBody& b, double accuracy_mm,
                      int most_supports) {
+  MORTISE_CHECK(accuracy_mm >= 0.0, "an accuracy must be a length");
+  MORTISE_CHECK(
+      a.middle_W.allFinite() && b.middle_W.allFinite() && a.radius_mm >= 0.0 && b.radius_mm >= 0.0,
+      "a body has a middle and a radius");
   const Vec3 apart = a.middle_W - b.middle_W;
   const double rounding_mm = kRoundingFactor * kUnitRoundoff *
                              (2.0 * (a.radius_mm + b.radius_mm) + a.scale_mm + b.scale_mm);
@@ -232,6 +238,9 @@ HullDepth hull_depth(const ConvexBody& a, const ConvexBody& b, double accuracy_m
     }
   }
   result.supports = difference.asked;
+  MORTISE_CHECK(0.0 <= result.depth_mm.lo && result.depth_mm.ordered(),
+                "a depth has its lower end first");
+  MORTISE_CHECK(is_unit(result.normal_W), "a way out goes along a unit direction");
   return result;
 }
 

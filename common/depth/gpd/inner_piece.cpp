@@ -4,8 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/depth/gpd/hull_depth.h"
 #include "common/geometry/signed_distance.h"
+#include "common/math/unit.h"
 
 namespace mortise::gpd {
 namespace {
@@ -126,6 +128,7 @@ class Pieces {
 }  // namespace
 
 std::optional<ConvexCell> inner_piece(const Solid& part, const Vec3& x, std::size_t most_planes) {
+  MORTISE_CHECK(x.allFinite(), "a piece is sought around a point");
   const TriangleMesh& mesh = part.mesh();
   const double slack_mm = kSlackShare * (part.bvh().extent_mm + x.norm());
   std::vector<Near> all(mesh.triangles.size());
@@ -149,6 +152,8 @@ std::optional<ConvexCell> inner_piece(const Solid& part, const Vec3& x, std::siz
     if (!(c - n.dot(x) > slack_mm)) return std::nullopt;
     planes.push_back({n, c});
   }
+  for (const HalfSpace& plane : planes)
+    MORTISE_CHECK(is_unit(plane.n) && plane.n.dot(x) < plane.c_mm, "the point lies in its piece");
   std::optional<ConvexCell> cell = polytope_cell(planes);
   if (!cell) return std::nullopt;
   for (const HalfSpace& plane : planes)

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/check.h"
+
 namespace mortise {
 namespace {
 
@@ -168,6 +170,9 @@ LayerDepths depths_of_layers(const SolidPtr& a, const SolidPtr& b, const GpdQuer
   least.hi = std::min(least.hi, most.hi);
   least.lo = std::min(least.lo, least.hi);
   most.lo = std::clamp(least.lo, most.lo, most.hi);
+  MORTISE_CHECK(0.0 <= least.lo && least.ordered() && most.ordered() && least.lo <= most.lo &&
+                    least.hi <= most.hi,
+                "the depth of the least bodies is no more than that of the largest");
   return depths;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
+
 namespace mortise::gpd {
 namespace {
 
@@ -127,6 +129,7 @@ LeastDistance least_distance(const std::vector<Row>& rows) {
     return least;
   }
   least.z = -r.head<6>() / r[kSeven - 1] * scale;
+  MORTISE_CHECK(least.z.allFinite() && least.bound >= 0.0, "a least distance is a length");
   for (const Row& row : rows)
     if (row.g.dot(least.z) < row.h - 1e-6 * scale - 1e-12) least.solved = false;
   return least;

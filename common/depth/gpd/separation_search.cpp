@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/check.h"
 #include "common/base/constants.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/start_state.h"
@@ -373,7 +374,17 @@ bool is_apart(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB
 }
 
 Separation find_separation(const SeparationQuery& query, CcdScratch& scratch) {
-  return Search(query, scratch).run();
+  MORTISE_CHECK(query.a != nullptr && query.b != nullptr, "a query needs two solids");
+  MORTISE_CHECK(valid(query.X_WA) && valid(query.X_WB),
+                "poses must be finite and their quaternions unit");
+  MORTISE_CHECK(query.least_mm >= 0.0 && query.enough_mm >= 0.0, "lengths are not negative");
+  for (const Vec3& n : query.directions)
+    MORTISE_CHECK(n.allFinite(), "a direction to try is finite");
+  const Separation separation = Search(query, scratch).run();
+  MORTISE_CHECK(separation.found == std::isfinite(separation.length_mm) &&
+                    separation.length_mm >= 0.0 && separation.xi.allFinite(),
+                "a way that is found has a length");
+  return separation;
 }
 
 }  // namespace mortise::gpd

@@ -5,6 +5,7 @@
 
 #include "common/base/ranges.h"
 #include "common/io/state/bytes.h"
+#include "common/math/unit.h"
 
 namespace mortise {
 namespace {
@@ -143,7 +144,7 @@ class StepReader {
   Vec3 direction() {
     const Vec3 v = vector(2.0);
     if (std::fabs(v.norm() - 1.0) > 1e-6) wrong("a direction is not of length 1");
-    return v;
+    return is_unit(v) ? v : Vec3(v.normalized());
   }
   Pose pose() {
     Pose X;

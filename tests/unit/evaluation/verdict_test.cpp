@@ -161,5 +161,13 @@ TEST(Verdict, PlanarBlocksWithProfileZones) {
   EXPECT_EQ(class_at(-0.2), CollisionClass::kNone);
 }
 
+TEST(Verdict, ABracketHasItsLowerEndFirst) {
+  ClassifyInput input;
+  input.certain_mm = {0.2, 0.1};
+  EXPECT_DEATH(classify(input), "lower ends first");
+  input.certain_mm = {0.0, std::nan("")};
+  EXPECT_DEATH(classify(input), "lower ends first");
+}
+
 }  // namespace
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/math/unit.h"
 #include "tests/support/effort.h"
 #include "tests/unit/io/step_samples.h"
 
@@ -38,6 +39,14 @@ TEST(StepDocument, IsReadAsItWasWritten) {
   EXPECT_EQ(read->statements[0].upper, -0.007);
   EXPECT_TRUE(std::isnan(read->statements[0].limit_upper));
   EXPECT_EQ(read->not_solid, document.not_solid);
+}
+
+TEST(StepDocument, DirectionsAreOfLengthOneBehindIt) {
+  StepDocument document = full_document();
+  for (StepFace& face : document.parts[1].faces) face.surface.axis *= 1.0 + 1e-7;
+  const auto read = decode_step(encode(document));
+  ASSERT_TRUE(read) << read.error().text;
+  for (const StepFace& face : read->parts[1].faces) EXPECT_TRUE(is_unit(face.surface.axis));
 }
 
 TEST(StepDocument, IsRefusedWhereverItIsCut) {
