@@ -1,12 +1,11 @@
 #include "server/announcer.h"
 
-#include <spdlog/spdlog.h>
-
 #include <fstream>
 #include <sstream>
 #include <utility>
 
 #include "common/evaluation/clash_line.h"
+#include "common/io/progress_log.h"
 #include "common/messages/names.h"
 
 namespace mortise {
@@ -71,21 +70,20 @@ void Announcer::say_people(const TickLoop& loop) {
     const std::string name = user != nullptr ? user->name : "?";
     switch (decision.kind) {
       case Decision::Kind::kJoin:
-        spdlog::info("{} joined", decision.user_name);
+        log_info("{} joined", decision.user_name);
         break;
       case Decision::Kind::kLeave:
-        spdlog::info("{} left", name);
+        log_info("{} left", name);
         break;
       case Decision::Kind::kLivelinessLost:
-        spdlog::warn("{} left without goodbye; its parts are free", name);
+        log_warning("{} left without goodbye; its parts are free", name);
         break;
       case Decision::Kind::kLeaseEnd:
-        spdlog::warn("{} was silent for {:g} s: '{}' is free", name, world.lease_s,
-                     part != nullptr ? part->name : "?");
+        log_warning("{} was silent for {:g} s: '{}' is free", name, world.lease_s,
+                    part != nullptr ? part->name : "?");
         break;
       default:
-        spdlog::debug("{}: {} '{}'", name, name_of(decision.kind),
-                      part != nullptr ? part->name : "?");
+        log_debug("{}: {} '{}'", name, name_of(decision.kind), part != nullptr ? part->name : "?");
     }
   }
 }
@@ -133,29 +131,29 @@ void Announcer::say_end(const ClashEvent& event, const World& world, const Sessi
 }
 
 void Announcer::say_line(const std::string& line, CollisionClass collision_class) const {
-  spdlog::info("{}", style_.color ? coloured_line(line, collision_class) : line);
+  log_info("{}", style_.color ? coloured_line(line, collision_class) : line);
 }
 
 void Announcer::say_trouble(const TickLoop& loop) {
   for (const std::string& who : loop.last_intake().turned_away) {
     if (++turned_away_said_ > kMostTurnedAway) break;  // counted in the closing document
-    spdlog::warn("{}", who);
+    log_warning("{}", who);
   }
   if (const std::string news = waiting_.after_tick(loop.last_report(), loop.world()); !news.empty())
-    spdlog::warn("{}", news);
+    log_warning("{}", news);
   if (loop.seconds() - trouble_at_s_ < kTroubleEvery_s) return;
   trouble_at_s_ = loop.seconds();
   const SessionPulse pulse = loop.pulse();
   const TickMetrics& metrics = loop.metrics();
   if (metrics.overloads > overloads_) {
-    spdlog::warn(
+    log_warning(
         "overload: {} ticks ran past their deadline, {} deadlines missed (tick p99 {:.1f} ms of "
         "{:.1f} ms)",
         metrics.overloads - overloads_, metrics.missed_deadlines - missed_,
         pulse.tick_p99_us * 1e-3, 1e3 / loop.world().tick_rate_hz);
   }
   if (pulse.refused > refused_)
-    spdlog::warn("{} increments refused ({} in all)", pulse.refused - refused_, pulse.refused);
+    log_warning("{} increments refused ({} in all)", pulse.refused - refused_, pulse.refused);
   say_log(loop);
   overloads_ = metrics.overloads;
   missed_ = metrics.missed_deadlines;
@@ -166,13 +164,12 @@ void Announcer::say_log(const TickLoop& loop) {
   if (loop.log() != nullptr && !log_failed_) {
     if (const Status status = loop.log()->status(); !status) {
       log_failed_ = true;
-      spdlog::error("{}; the session continues, and unrecorded ticks are counted",
-                    status.error().text);
+      log_error("{}; the session continues, and unrecorded ticks are counted", status.error().text);
     }
   }
   if (!log_failed_ && loop.log_dropped_ticks() > dropped_)
-    spdlog::warn("the log's disk is too slow: {} ticks are missing in it (marked as a gap)",
-                 loop.log_dropped_ticks() - dropped_);
+    log_warning("the log's disk is too slow: {} ticks are missing in it (marked as a gap)",
+                loop.log_dropped_ticks() - dropped_);
   dropped_ = loop.log_dropped_ticks();
 }
 
@@ -182,7 +179,7 @@ void Announcer::say_live(const TickLoop& loop) {
   live_at_s_ = loop.seconds();
   const std::string line = live_line(loop.pulse(), loop.seconds());
   if (!style_.terminal) {
-    spdlog::info("{}", line);
+    log_info("{}", line);
     return;
   }
   if (addresses_.empty() && !options_.addresses.empty()) {

@@ -1,10 +1,12 @@
 #include "server/console.h"
 
-#include <spdlog/pattern_formatter.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <utility>
 
@@ -13,33 +15,21 @@
 namespace mortise {
 namespace {
 
-/// The time of day in a file, and "warning: " or "error: " before what is no news.
-class ConsoleLines final : public spdlog::formatter {
- public:
-  explicit ConsoleLines(const ConsoleStyle& style)
-      : style_(style), time_("%H:%M:%S ", spdlog::pattern_time_type::local, "") {}
-  void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& out) override {
-    if (!style_.terminal) time_.format(message, out);
-    if (message.level >= spdlog::level::warn) {
-      const bool error = message.level >= spdlog::level::err;
-      const std::string word = error ? "error" : "warning";
-      append(style_.color ? (error ? "\033[31;1m" : "\033[33;1m") + word + "\033[0m" : word, out);
-      append(": ", out);
-    }
-    out.append(message.payload.data(), message.payload.data() + message.payload.size());
-    append("\n", out);
-  }
-  std::unique_ptr<spdlog::formatter> clone() const override {
-    return std::make_unique<ConsoleLines>(style_);
-  }
+std::string time_of_day(std::chrono::system_clock::time_point time) {
+  return fmt::format("{:%H:%M:%S}", fmt::localtime(std::chrono::system_clock::to_time_t(time)));
+}
 
- private:
-  static void append(const std::string& text, spdlog::memory_buf_t& out) {
-    out.append(text.data(), text.data() + text.size());
+/// The time of day in a file, and "warning: " or "error: " before what is no news.
+std::string line_of(const LogMessage& message, const ConsoleStyle& style) {
+  std::string line;
+  if (!style.terminal) line = time_of_day(message.time) + " ";
+  if (message.level >= LogLevel::kWarning) {
+    const std::string word{name_of(message.level)};
+    const char* const color = message.level == LogLevel::kError ? "\033[31;1m" : "\033[33;1m";
+    line += (style.color ? color + word + "\033[0m" : word) + ": ";
   }
-  ConsoleStyle style_;
-  spdlog::pattern_formatter time_;
-};
+  return line.append(message.text) + "\n";
+}
 
 }  // namespace
 
@@ -53,13 +43,8 @@ ConsoleStyle style_of_stderr() {
   return style;
 }
 
-std::unique_ptr<spdlog::formatter> console_lines(const ConsoleStyle& style) {
-  return std::make_unique<ConsoleLines>(style);
-}
-
-Console::Console(std::FILE* out, StyleNow style) : out_(out), style_(std::move(style)) {
-  set_formatter_(console_lines(style_()));
-}
+Console::Console(std::FILE* out, StyleNow style)
+    : out_(out), style_(std::move(style)), style_of_messages_(style_()) {}
 
 void Console::stay(std::vector<std::string> lines) {
   const std::lock_guard lock(mutex_);
@@ -77,9 +62,9 @@ void Console::leave() {
   std::fflush(out_);
 }
 
-void Console::sink_it_(const spdlog::details::log_msg& message) {
-  spdlog::memory_buf_t line;
-  formatter_->format(message, line);
+void Console::take(const LogMessage& message) {
+  const std::string line = line_of(message, style_of_messages_);
+  const std::lock_guard lock(mutex_);
   clear();
   std::fwrite(line.data(), 1, line.size(), out_);
   draw();

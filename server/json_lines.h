@@ -1,12 +1,12 @@
 #pragma once
-#include <spdlog/formatter.h>
+#include <string>
 
-#include <memory>
+#include "common/io/progress_log.h"
 
 namespace mortise {
 
 /// One JSON object a line: {"time": ISO 8601 UTC with ms, "level", "program", "message"}. For
 /// collectors of messages; no colours.
-std::unique_ptr<spdlog::formatter> json_lines();
+std::string json_line(const LogMessage& message);
 
 }  // namespace mortise

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   const mortise::ServerOptions& options = line.options;
   std::shared_ptr<mortise::Console> console;
   if (options.messages == "json") {
-    mortise::begin_progress_log("mortise-server", options.quiet, mortise::json_lines());
+    mortise::begin_progress_log("mortise-server", options.quiet, mortise::json_line);
   } else {
     console = std::make_shared<mortise::Console>();
     mortise::begin_progress_log("mortise-server", options.quiet, console);

@@ -1,7 +1,5 @@
 #include "server/serve.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -14,6 +12,7 @@
 #include <random>
 
 #include "common/base/json_text.h"
+#include "common/io/progress_log.h"
 #include "common/session/world/ready_world.h"
 #include "idl/dds_channel.h"
 #include "server/announcer.h"
@@ -47,7 +46,7 @@ std::string random_name() {
 }
 
 int say(const Error& error) {
-  spdlog::error("{}", error.text);
+  log_error("{}", error.text);
   return exit_code_of(error.code);
 }
 
@@ -61,18 +60,18 @@ Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& 
                             options.standby_of.empty(), [] { return stop_asked || drain_asked; });
   if (!played) return fail(played.error().code, start.source + ": " + played.error().text);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-  spdlog::info("restored from {}: {} ticks{}; {} played again in {:.2f} s, each as it was logged",
-               start.source, played->ticks,
-               from_tick > 0 ? fmt::format(", the state after tick {} from a checkpoint", from_tick)
-                             : std::string(),
-               played->ticks_computed, took.count());
+  log_info("restored from {}: {} ticks{}; {} played again in {:.2f} s, each as it was logged",
+           start.source, played->ticks,
+           from_tick > 0 ? fmt::format(", the state after tick {} from a checkpoint", from_tick)
+                         : std::string(),
+           played->ticks_computed, took.count());
   if (played->ticks_left_out > 0) {
-    spdlog::warn("{} ticks of {} are left out: {}", played->ticks_left_out, start.source,
-                 played->left_out_because);
+    log_warning("{} ticks of {} are left out: {}", played->ticks_left_out, start.source,
+                played->left_out_because);
   }
   // The log of a server that still leads is never closed.
   if (options.standby_of.empty() && !played->missing_at_end.empty())
-    spdlog::warn("{}: {}", start.source, played->missing_at_end);
+    log_warning("{}: {}", start.source, played->missing_at_end);
   start.log.reset();
   resumed = std::move(*played);
   return resumed;
@@ -98,7 +97,7 @@ int close_session(const ServerOptions& options, Closing closing, SessionLogWrite
     std::ofstream out(options.stats);
     out << json_text(closing_json(closing, loop)) << "\n";
     if (!out.flush()) {
-      spdlog::error("{}: cannot be written", options.stats);
+      log_error("{}: cannot be written", options.stats);
       exit_code = kExitRuntime;
     }
   }
@@ -182,7 +181,7 @@ Result<bool> Service::begin() {
   if (Status opened = open_channel(); !opened) return opened.error();
   if (Status opened = open_log(); !opened) {
     if (!is_to_stop()) return opened.error();
-    spdlog::info("{}", opened.error().text);
+    log_info("{}", opened.error().text);
     return false;
   }
   if (stands_by()) {
@@ -210,7 +209,7 @@ Result<bool> Service::find_leader() {
   if (!opened) return opened.error();
   standby_ = std::move(*opened);
   if (Status fencing = open_fencing(standby_->own_key()); !fencing) return fencing.error();
-  spdlog::info("standing by: waiting for the server of session '{}'", options_.network.session);
+  log_info("standing by: waiting for the server of session '{}'", options_.network.session);
   manager_.ready("standing by for session " + options_.network.session);
   auto found = await_leader(*standby_, told_, [this] { return beats_until_stop(); });
   manager_.busy();  // the log is read
@@ -268,7 +267,7 @@ Result<bool> Service::follow_leader() {
   auto& line = static_cast<StandbyChannel&>(*channel_);
   auto ended = follow(
       line, std::move(told_), follower, [this] { return beats_until_stop(); },
-      [](const std::string& note) { spdlog::info("standing by: {}", note); });
+      [](const std::string& note) { log_info("standing by: {}", note); });
   if (!ended || !*ended) return ended;
   seats_ = follower.seats();
   followed_ns_ = follower.time_ns();
@@ -278,10 +277,10 @@ Result<bool> Service::follow_leader() {
       return may.error();
   if (Status taken = line.take_over(); !taken) return taken.error();
   if (log_.writer)
-    if (Status named = log_.writer->take_name(); !named) spdlog::error("{}", named.error().text);
-  spdlog::warn("the server of session '{}' {}: taken over at tick {}, {} users",
-               options_.network.session, follower.handed_over() ? "hands over" : "is gone",
-               world.tick, seats_.size());
+    if (Status named = log_.writer->take_name(); !named) log_error("{}", named.error().text);
+  log_warning("the server of session '{}' {}: taken over at tick {}, {} users",
+              options_.network.session, follower.handed_over() ? "hands over" : "is gone",
+              world.tick, seats_.size());
   return true;
 }
 
@@ -294,7 +293,7 @@ void say_clock_that_is_not_set() {
   gmtime_r(&now_s, &utc);
   char day[32];
   std::strftime(day, sizeof day, "%Y-%m-%d", &utc);
-  spdlog::warn(
+  log_warning(
       "the clock of this machine shows {}: times and names of the log, and the term, go by it; set "
       "the clock and start again",
       day);
@@ -303,11 +302,11 @@ void say_clock_that_is_not_set() {
 // 5. the tick loop and what looks at it
 void Service::open_loop() {
   say_clock_that_is_not_set();
-  if (const Status first = run_before_others(); !first) spdlog::info("{}", first.error().text);
+  if (const Status first = run_before_others(); !first) log_info("{}", first.error().text);
   // No tick is logged before the term of its server: so the next one finds a later term in the log.
   clock_.emplace(std::max(term_ns(), followed_ns_));
   if (const double ahead_s = clock_->ahead_s(); ahead_s > kSayAhead_s)
-    spdlog::warn(
+    log_warning(
         "the clock of this machine is {:.0f} s behind the last tick of {}: the log's "
         "times go on from there",
         ahead_s, start_->source);
@@ -332,12 +331,12 @@ void Service::open_loop() {
 
 void Service::say_session() const {
   const World& world = start_->scene.world;
-  spdlog::info("session '{}' of {}: {} parts, {:g} Hz, policy {}, domain {} on {}",
-               options_.network.session, start_->source, world.parts.size(), world.tick_rate_hz,
-               closing_.policy, options_.network.domain, options_.network.interface);
-  if (!closing_.log_file.empty()) spdlog::info("log {}", closing_.log_file);
+  log_info("session '{}' of {}: {} parts, {:g} Hz, policy {}, domain {} on {}",
+           options_.network.session, start_->source, world.parts.size(), world.tick_rate_hz,
+           closing_.policy, options_.network.domain, options_.network.interface);
+  if (!closing_.log_file.empty()) log_info("log {}", closing_.log_file);
   for (const std::string& part : closing_.parts_without_inside)
-    spdlog::warn(
+    log_warning(
         "'{}' has no inside (it is open): crossing is found, depth is not, and what lies within it "
         "is not examined",
         part);
@@ -348,7 +347,7 @@ Status Service::open_metrics() {
   auto opened = MetricsEndpoint::open(options_.metrics_address, *options_.metrics_port);
   if (!opened) return opened.error();
   metrics_ = std::move(*opened);
-  spdlog::info("metrics at http://{}:{}/metrics", options_.metrics_address, metrics_->port());
+  log_info("metrics at http://{}:{}/metrics", options_.metrics_address, metrics_->port());
   return ok();
 }
 
@@ -366,7 +365,7 @@ void Service::play() {
 
 void Service::after_tick(Announcer& announcer) {
   announcer.after_tick(*loop_);
-  for (const std::string& note : held_->take_notes()) spdlog::warn("{}", note);
+  for (const std::string& note : held_->take_notes()) log_warning("{}", note);
   manager_.beat();
   if (!metrics_) return;
   metrics_->beat();
@@ -388,15 +387,15 @@ int Service::end() {
   }
   if (loop_->superseded()) {
     const std::string& by = loop_->superseded_by();
-    spdlog::error("another server leads session '{}' since{}; start this one with --standby-of {}",
-                  options_.network.session, by.empty() ? "" : ", the one at " + by,
-                  options_.network.session);
+    log_error("another server leads session '{}' since{}; start this one with --standby-of {}",
+              options_.network.session, by.empty() ? "" : ", the one at " + by,
+              options_.network.session);
   } else if (was_barred) {
-    spdlog::error("{}", bar);
+    log_error("{}", bar);
     // One that stands by goes on with the session, and takes nothing more from this one.
     if (!fencing_ && !held_->follower_in_step()) say_goodbye();
   } else if (drain_->end() != Drain::End::kNone) {
-    spdlog::info("{}", drain_->text(options_.network.session, closing_.log_file));
+    log_info("{}", drain_->text(options_.network.session, closing_.log_file));
   } else {
     say_goodbye();
   }

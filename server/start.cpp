@@ -1,7 +1,5 @@
 #include "server/start.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "common/io/log/log_file.h"
 #include "common/io/log/replay.h"
+#include "common/io/progress_log.h"
 #include "common/io/scenario/assembly_parts.h"
 #include "common/io/usage.h"
 #include "idl/identity.h"
@@ -28,9 +27,9 @@ Status say_findings(const std::vector<Finding>& findings, bool usable, const std
   for (const Finding& finding : findings) {
     if (finding.is_error) {
       ++errors;
-      spdlog::error("{}", finding.text);
+      log_error("{}", finding.text);
     } else {
-      spdlog::warn("{}", finding.text);
+      log_warning("{}", finding.text);
     }
   }
   if (usable) return ok();
@@ -81,10 +80,10 @@ Result<SessionStart> read_from_log(const fs::path& file) {
   auto log = read_session_log(file, {.keep_checkpoints = 2});
   // A log that cannot be read is bad input, whatever the reason.
   if (!log) return fail(Code::kInvalidInput, log.error().text);
-  for (const std::string& note : log->notes) spdlog::warn("{}: {}", file.string(), note);
+  for (const std::string& note : log->notes) log_warning("{}: {}", file.string(), note);
   auto at = scene_at_last_checkpoint(*log);
   if (!at) return fail(at.error().code, file.string() + ": " + at.error().text);
-  for (const std::string& note : at->notes) spdlog::warn("{}: {}", file.string(), note);
+  for (const std::string& note : at->notes) log_warning("{}: {}", file.string(), note);
   SessionStart start;
   start.source = file.string();
   start.scenario_name = log->scenario_name;
@@ -141,7 +140,7 @@ Result<SessionStart> read_start(const ServerOptions& options) {
     // Who stands by takes none but the log of the one that leads.
     const bool last = i + 1 == logs.size() || !options.standby_of.empty();
     if (start || last) return start;
-    spdlog::warn("{}; the log before it is taken: {}", start.error().text, logs[i + 1].string());
+    log_warning("{}; the log before it is taken: {}", start.error().text, logs[i + 1].string());
   }
   if (options.scenario.empty()) {
     return fail(Code::kInvalidInput,
@@ -149,8 +148,8 @@ Result<SessionStart> read_start(const ServerOptions& options) {
                             "scenario to begin with",
                             options.restore, options.network.session));
   }
-  spdlog::info("{} holds no log of session '{}': {} begins anew", options.restore,
-               options.network.session, options.scenario);
+  log_info("{} holds no log of session '{}': {} begins anew", options.restore,
+           options.network.session, options.scenario);
   return read_from_scenario(options);
 }
 

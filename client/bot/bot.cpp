@@ -1,7 +1,6 @@
 #include "client/bot/bot.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <csignal>
@@ -14,6 +13,7 @@
 #include "client/bot/load_text.h"
 #include "client/bot/processes.h"
 #include "common/base/json_text.h"
+#include "common/io/progress_log.h"
 #include "common/io/scenario/play_file.h"
 #include "idl/dds_channel.h"
 
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 int run_crew(const BotOptions& options, std::optional<Play> play, ProcessReport& report) {
   auto channel = open_client_channel(options.network);
   if (!channel) {
-    spdlog::error("{}", channel.error().text);
+    log_error("{}", channel.error().text);
     return exit_code_of(channel.error().code);
   }
   return Crew(options, **channel, std::move(play)).run(report);
@@ -65,7 +65,7 @@ int conclude(const BotOptions& options, Json document) {
   std::cout << (options.json ? json_text(document) + "\n" : load_text(document)) << std::flush;
   if (Status written = write_junit(options.junit, results, document["seconds"].get<double>());
       !written) {
-    spdlog::error("{}", written.error().text);
+    log_error("{}", written.error().text);
     return kExitRuntime;
   }
   int exit_code = kExitOk;
@@ -73,11 +73,11 @@ int conclude(const BotOptions& options, Json document) {
     if (result.holds) continue;
     exit_code = kExitThreshold;
     if (result.limit.name == kExpectClash) {
-      spdlog::error("{}", result.meaning);
+      log_error("{}", result.meaning);
       continue;
     }
-    spdlog::error("{}: {} is {:.3f}, above the limit of {:g}", result.limit.name, result.meaning,
-                  result.figure, result.limit.bound);
+    log_error("{}: {} is {:.3f}, above the limit of {:g}", result.limit.name, result.meaning,
+              result.figure, result.limit.bound);
   }
   return exit_code;
 }
@@ -89,7 +89,7 @@ int run_bot(const BotOptions& options) {
   if (options.behaviour == "script" && !options.observer) {
     auto read = read_play(options.play);
     if (!read) {
-      spdlog::error("{}", read.error().text);
+      log_error("{}", read.error().text);
       return exit_code_of(read.error().code);
     }
     play = std::move(*read);

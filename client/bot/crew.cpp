@@ -1,12 +1,11 @@
 #include "client/bot/crew.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
 
+#include "common/io/progress_log.h"
 #include "common/math/interval.h"
 #include "idl/dds_channel.h"
 
@@ -40,14 +39,13 @@ int Crew::run(ProcessReport& report) {
   add_users_due(0.0);
   if (!wait_until_joined()) return kExitRuntime;
   if (!options_.quiet) {
-    spdlog::info("{} joined session '{}': {} parts, {:g} Hz, policy {}", names_.front(),
-                 client_.session(), client_.parts().size(), client_.tick_rate_hz(),
-                 client_.policy());
+    log_info("{} joined session '{}': {} parts, {:g} Hz, policy {}", names_.front(),
+             client_.session(), client_.parts().size(), client_.tick_rate_hz(), client_.policy());
   }
   if (!options_.for_people || wait_for_people()) {
     listen(options_.delay_s);
     if (Status found = find_parts(); !found) {
-      spdlog::error("{}", found.error().text);
+      log_error("{}", found.error().text);
       return exit_code_of(found.error().code);
     }
     act();
@@ -93,7 +91,7 @@ bool Crew::wait_until_joined() {
   };
   while (any(JoinState::kJoining) || any(JoinState::kRefused) || !client_.synced()) {
     if (stop_asked) {
-      spdlog::error("stopped before all users had joined: nothing was done");
+      log_error("stopped before all users had joined: nothing was done");
       return false;
     }
     if (any(JoinState::kRefused) || seconds_since(start) > options_.wait_s) {
@@ -116,11 +114,11 @@ bool Crew::wait_for_people() {
 void Crew::say_why_not_joined() const {
   for (LocalUser user = 0; user < client_.user_count(); ++user) {
     if (client_.join_state(user) == JoinState::kRefused) {
-      spdlog::error("{} was refused: {}", names_[user], client_.refusal_text(user));
+      log_error("{} was refused: {}", names_[user], client_.refusal_text(user));
       return;
     }
   }
-  spdlog::error(
+  log_error(
       "no server of session '{}' answered on domain {} at {} within {:g} s; start mortise-server "
       "first, or wait longer with --wait",
       options_.network.session, options_.network.domain, looked_at(options_.network),
@@ -145,7 +143,7 @@ void Crew::poll(double wait_s) {
   if (update.pulse) {
     for (const std::string& line :
          waiting_.after_pulse(*update.pulse, client_.parts(), client_.tick_rate_hz()))
-      spdlog::info("{}", line);
+      log_info("{}", line);
   }
   client_.await_news(wait_s);
 }

@@ -1,7 +1,6 @@
 #include "client/bot/processes.h"
 
 #include <poll.h>
-#include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 #include <csignal>
 
 #include "client/bot/crew.h"
+#include "common/io/progress_log.h"
 
 namespace mortise {
 namespace {
@@ -102,7 +102,7 @@ int run_processes(int count, const std::function<int(int, ProcessReport&)>& work
     children.push_back({pid, ends[0], {}});
   }
   if (children.size() < static_cast<std::size_t>(count)) {
-    spdlog::error("only {} of {} processes could be started", children.size(), count);
+    log_error("only {} of {} processes could be started", children.size(), count);
   }
   gather(children);
   int worst = children.size() < static_cast<std::size_t>(count) ? kExitRuntime : kExitOk;
@@ -113,7 +113,7 @@ int run_processes(int count, const std::function<int(int, ProcessReport&)>& work
       reports.push_back(std::move(report));
       continue;
     }
-    spdlog::error("process {} ended with {} and without a report", k + 1, exit_code);
+    log_error("process {} ended with {} and without a report", k + 1, exit_code);
     worst = std::max(worst, exit_code == kExitOk ? static_cast<int>(kExitRuntime) : exit_code);
   }
   return worst;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <pthread.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <csignal>
@@ -18,6 +17,7 @@
 #include "client/web/replay_feed.h"
 #include "client/web/step_reader.h"
 #include "common/io/log/log_chain.h"
+#include "common/io/progress_log.h"
 #include "common/messages/names.h"
 #include "idl/dds_channel.h"
 
@@ -25,7 +25,7 @@ namespace mortise::web {
 namespace {
 
 int fail_with(const Error& error) {
-  spdlog::error("{}", error.text);
+  log_error("{}", error.text);
   return error.code == Code::kNotFound ? kExitBadInput : exit_code_of(error.code);
 }
 
@@ -59,7 +59,7 @@ Result<Tokens> tokens_of(const WebOptions& options) {
 
 void warn_without_three(const PageFiles& page) {
   if (!page.has_three()) {
-    spdlog::warn(
+    log_warning(
         "three.js is not installed: the page has no 3D view until `npm ci --omit=dev` was run in "
         "{}",
         page.folder().string());
@@ -137,7 +137,7 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   if (!page) return fail_with(page.error());
   auto tokens = tokens_of(options);
   if (!tokens) return fail_with(tokens.error());
-  const auto say = [](const std::string& line) { spdlog::warn("{}", line); };
+  const auto say = [](const std::string& line) { log_warning("{}", line); };
   auto gateway = Gateway::open(gateway_options, *tokens, *page, feed, say);
   if (!gateway) return fail_with(gateway.error());
   if (Status said = say_addresses({options.addresses, options.tokens}, **gateway, *tokens); !said)
@@ -145,7 +145,7 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   warn_without_three(*page);
   stop_signal.then_stop(**gateway);
   (*gateway)->run();
-  spdlog::info("ended; {}", feed.statistics().dump());
+  log_info("ended; {}", feed.statistics().dump());
   return kExitOk;
 }
 
@@ -154,17 +154,17 @@ int serve_session(const WebOptions& options, StopSignal& stop_signal) {
   if (!channel) return fail_with(channel.error());
   Client client(**channel);
   LiveFeed feed(client, options.gateway.limits, read_brought_step);
-  spdlog::info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.network.session,
-               options.network.domain);
+  log_info("session '{}' on domain {} for browsers; Ctrl-C ends it", options.network.session,
+           options.network.domain);
   return serve(options, feed, stop_signal);
 }
 
 int serve_log(const WebOptions& options, StopSignal& stop_signal) {
-  spdlog::info("computing {} again", options.replay);
+  log_info("computing {} again", options.replay);
   auto recording = read_recording(options.replay);
   if (!recording) return fail_with(recording.error());
-  for (const std::string& note : recording->notes) spdlog::warn("{}: {}", options.replay, note);
-  spdlog::info(
+  for (const std::string& note : recording->notes) log_warning("{}: {}", options.replay, note);
+  log_info(
       "{:.1f} s of session '{}' for browsers; Ctrl-C ends it",
       static_cast<double>(recording->last_tick - recording->first_tick) / recording->tick_rate_hz,
       recording->session);

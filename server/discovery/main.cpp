@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -26,11 +24,12 @@ int main(int argc, char** argv) {
 
   const auto opened = mortise::DiscoveryServer::open(command.where);
   if (!opened) {
-    spdlog::error("{}", opened.error().text);
+    mortise::log_error("{}", opened.error().text);
     return mortise::exit_code_of(opened.error().code);
   }
   mortise::DiscoveryServer& server = **opened;
-  spdlog::info("hears at {}; servers and clients name it with --discovery-server", server.place());
+  mortise::log_info("hears at {}; servers and clients name it with --discovery-server",
+                    server.place());
   using Clock = std::chrono::steady_clock;
   const auto left_s = [&command, begun = Clock::now()] {
     const std::chrono::duration<double> past = Clock::now() - begun;
@@ -38,7 +37,7 @@ int main(int argc, char** argv) {
   };
   while (stop_asked == 0 && left_s() > 0.0)
     server.run_for(std::min(kTurn_s, left_s()), [](bool is_warning, const std::string& line) {
-      spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, "{}", line);
+      mortise::log_text(is_warning ? mortise::LogLevel::kWarning : mortise::LogLevel::kInfo, line);
     });
   const mortise::DiscoveryCounts counts = server.counts();
   std::fputs((command.json ? discovery_json(counts) : discovery_text(counts)).c_str(), stdout);

@@ -95,7 +95,7 @@ const std::vector<NamedHere>& named_here() {
       {"Fast DDS",
        std::regex("(fastdds|fastrtps|fastcdr)/.*"),
        {"idl/", "tests/unit/idl/fast_dds_overrides_test."}},
-      {"spdlog", std::regex("spdlog/.*"), {"server/", "client/", "common/io/progress_log."}},
+      {"spdlog", std::regex("spdlog/.*"), {"common/io/progress_log.cpp"}},
       {"zstd", std::regex("zstd\\.h"), {"common/io/log/mcap_"}},
       {"SQLite", std::regex("sqlite3\\.h"), {"client/report/", "tests/unit/replay/export_test."}},
       {"libzip",

@@ -137,6 +137,15 @@ TEST_F(PlantedTree, LibrariesInTheirRooms) {
     expect_one("common/session/tick/step.h:1", library + " is not named here");
   }
 }
+TEST_F(PlantedTree, OneUnitIncludesTheLibraryOfMessages) {
+  write("common/io/progress_log.cpp", "#include <spdlog/spdlog.h>\n");
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+  for (const char* other : {"common/io/progress_log.h", "server/main.cpp", "client/bot/bot.cpp"}) {
+    write(other, "#include <spdlog/spdlog.h>\n");
+    expect_one(other, "spdlog is not named here");
+    write(other, "");
+  }
+}
 TEST_F(PlantedTree, IncludesBeginAtTheRoot) {
   write("server/main.cpp", "#include \"inbox.h\"\n");
   expect_one("server/main.cpp:1", "does not begin at the root");

@@ -15,8 +15,8 @@ class ConsoleTest : public ::testing::Test {
   std::shared_ptr<Console> console(ConsoleStyle style) {
     return std::make_shared<Console>(out_, [style] { return style; });
   }
-  static void say(Console& console, spdlog::level::level_enum level, const char* text) {
-    console.log(spdlog::details::log_msg("server", level, text));
+  static void say(Console& console, LogLevel level, const char* text) {
+    console.take({level, std::chrono::system_clock::now(), "server", text});
   }
   std::string printed() {
     std::fflush(out_);
@@ -61,15 +61,15 @@ class ConsoleTest : public ::testing::Test {
 
 TEST_F(ConsoleTest, BeginsNewsWithItsOwnFirstWordOnATerminal) {
   const auto made = console({.terminal = true, .columns = 100});
-  say(*made, spdlog::level::info, "REAL  cover × bearing");
-  say(*made, spdlog::level::warn, "overload");
-  say(*made, spdlog::level::err, "no room");
+  say(*made, LogLevel::kInfo, "REAL  cover × bearing");
+  say(*made, LogLevel::kWarning, "overload");
+  say(*made, LogLevel::kError, "no room");
   EXPECT_EQ(printed(), "REAL  cover × bearing\nwarning: overload\nerror: no room\n");
 }
 
 TEST_F(ConsoleTest, KeepsTheTimeOfDayInAFile) {
   const auto made = console({});
-  say(*made, spdlog::level::info, "REAL  cover × bearing");
+  say(*made, LogLevel::kInfo, "REAL  cover × bearing");
   const std::string line = printed();
   ASSERT_EQ(line.size(), std::string("12:30:01 REAL  cover × bearing\n").size());
   EXPECT_EQ(line[2], ':');
@@ -78,16 +78,16 @@ TEST_F(ConsoleTest, KeepsTheTimeOfDayInAFile) {
 
 TEST_F(ConsoleTest, ColoursWarningsOnlyWhereColoursAreWanted) {
   const auto made = console({.terminal = true, .color = true});
-  say(*made, spdlog::level::warn, "overload");
+  say(*made, LogLevel::kWarning, "overload");
   EXPECT_EQ(printed(), "\033[33;1mwarning\033[0m: overload\n");
 }
 
 TEST_F(ConsoleTest, HasLinesThatStayBelowAllMessages) {
   const auto made = console({.terminal = true, .columns = 20});
   made->stay({"1.0 s, 0 users and more than fits", "http://a.long/address"});  // two rows each
-  say(*made, spdlog::level::info, "ann joined");
+  say(*made, LogLevel::kInfo, "ann joined");
   made->stay({"2.0 s", "http://a.long/address"});
-  say(*made, spdlog::level::info, "REAL  a × b");
+  say(*made, LogLevel::kInfo, "REAL  a × b");
   EXPECT_EQ(seen(20), (std::vector<std::string>{"ann joined", "REAL  a × b", "2.0 s",
                                                 "http://a.long/addres", "s"}));
 }
@@ -97,7 +97,7 @@ TEST_F(ConsoleTest, LeavesThemBehindAtTheEnd) {
   made->stay({"0.5 s", "http://x"});
   made->stay({"1.0 s", "http://x"});
   made->leave();
-  say(*made, spdlog::level::info, "ended");
+  say(*made, LogLevel::kInfo, "ended");
   EXPECT_EQ(seen(80), (std::vector<std::string>{"1.0 s", "http://x", "ended", ""}));
 }
 
