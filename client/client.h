@@ -59,7 +59,7 @@ class Client final : public ClientCommands {
   /// Returns when something may have come for poll(), or after so long (seconds) at the latest. No
   /// later than a fiftieth of a second, because poll() sends what is due meanwhile.
   void await_news(double at_most_s) {
-    constexpr double kLongestWait_s = 0.02;
+    constexpr double kLongestWait_s = 0.02;  // see above
     channel_.await_input(static_cast<std::int64_t>(std::min(at_most_s, kLongestWait_s) * 1e9));
   }
 

@@ -110,6 +110,7 @@ std::size_t parameter_list_length(const Bytes& list, bool is_announced) {
 
 /// Serialized payload: encapsulation known (CDR or parameter list, XCDR1), parameter lists whole.
 bool payload_ok(const Bytes& payload) {
+  // Encapsulations: 0 and 1 are CDR, 2 and 3 parameter lists; odd ones are little endian.
   constexpr std::uint8_t kLastKnown = 3, kFirstParameterList = 2;
   if (!payload.has(4) || payload.u8(0) != 0 || payload.u8(1) > kLastKnown) return false;
   if (payload.u8(1) < kFirstParameterList) return true;
@@ -120,6 +121,7 @@ bool payload_ok(const Bytes& payload) {
 bool sequence_ok(std::int64_t sequence) { return sequence > 0 && sequence < kMaxSequence; }
 
 bool data_ok(const Bytes& body, std::uint8_t flags) {
+  // Bits of the flags of DATA (RTPS 2.2, section 9.4.5.3).
   constexpr std::uint8_t kInlineQos = 2, kDataOrKey = 4 | 8;
   if (!body.has(20) || body.u16(2) != kOctetsToInlineQos || !sequence_ok(body.sequence(12))) {
     return false;
@@ -175,19 +177,19 @@ bool acknack_ok(const Bytes& body) {
 // believes them before it knows whether they are genuine, and decrypts beyond the end of the
 // datagram.
 bool secure_prefix_ok(const Bytes& body) {
-  constexpr std::size_t kSecureHeaderSize = 20;
+  constexpr std::size_t kSecureHeaderSize = 20;  // kind, key id, session id, suffix: 4 + 4 + 4 + 8
   return body.data.size() == kSecureHeaderSize;
 }
 
 bool secure_body_ok(const Bytes& body) {
-  constexpr std::uint64_t kMostPadding = 3;
+  constexpr std::uint64_t kMostPadding = 3;  // to a multiple of four bytes
   if (!body.has(4)) return false;
   const std::uint64_t room = body.data.size() - 4, length = Bytes{body.data, false}.u32(0);
   return length <= room && room - length <= kMostPadding;
 }
 
 bool secure_postfix_ok(const Bytes& body) {
-  constexpr std::size_t kMacSize = 16, kReceiverMacSize = 20;
+  constexpr std::size_t kMacSize = 16, kReceiverMacSize = 20;  // of AES-GCM; with a key id
   if (!body.has(kMacSize + 4)) return false;
   const std::uint64_t macs = Bytes{body.data, false}.u32(kMacSize);
   return body.data.size() == kMacSize + 4 + macs * kReceiverMacSize;
@@ -215,7 +217,7 @@ class SecureOrder {
 };
 
 bool submessage_ok(std::uint8_t id, std::uint8_t flags, const Bytes& body) {
-  constexpr std::uint8_t kInvalidateFlag = 2;
+  constexpr std::uint8_t kInvalidateFlag = 2;  // of INFO_TS: no time follows
   switch (id) {
     case kPad:
       return true;

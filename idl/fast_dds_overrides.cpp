@@ -181,6 +181,7 @@ struct SessionKey {
 /// One place for each of what is kept; another that falls on it takes it. So datagrams with numbers
 /// of sessions that never were cost what they cost the library, and no memory.
 struct SessionKeys {
+  /// Chosen: a few for each of the peers of a large session.
   static constexpr std::size_t kPlaces = 1024;
 
   SessionKey& place_of(const Key& master, std::uint32_t session) {

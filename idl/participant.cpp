@@ -32,7 +32,7 @@ using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::Locator_t;
 
 constexpr int kMaxDomain = 232;  // 7400 + 250 * 233 is no port any more
-constexpr int kMaxPort = 65535;
+constexpr int kMaxPort = 65535;  // of UDP
 // A client asks for the server so often (measured: 67 of 67 joins within 0.6 s; with 3 s 4 of 41
 // took more than 2 s).
 constexpr double kAnnouncementPeriod_s = 0.5;

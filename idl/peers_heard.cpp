@@ -7,6 +7,8 @@
 namespace mortise {
 namespace {
 
+// In the header of RTPS, behind its name, version and vendor; and the submessage SRTPS_PREFIX of
+// DDS-Security, with which all of an encrypted datagram begins.
 constexpr std::size_t kPrefixAt = 8;
 constexpr std::byte kEncrypted{0x33};
 
@@ -17,7 +19,7 @@ bool is_encrypted(std::span<const std::byte> datagram) {
 }
 
 void PeersHeard::watch(const Prefix& peer, Time now) {
-  constexpr int kLongGone = 16;
+  constexpr int kLongGone = 16;  // chosen: one that is only slow is still counted as silent
   const std::lock_guard lock(mutex_);
   if (!heard_.emplace(peer, now).second) return;
   std::erase_if(heard_, [&](const auto& entry) {

@@ -7,6 +7,7 @@ namespace mortise {
 /// compute (it waits for something, is stopped, or has no processor) hangs.
 class TickWatch {
  public:
+  /// As above. A tick of ten seconds is a session that nobody can work in.
   static constexpr double kLate_s = 1.0, kLongTick_s = 10.0;
   /// Processor time in a time of kLate_s that counts as computing. A thread that only looks again
   /// and again takes less.

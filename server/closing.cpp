@@ -74,7 +74,7 @@ std::string inbox_lines(const InboxCounters& c) {
 
 // Those with trouble first; a session of hundreds names ten.
 std::string user_lines(const TickLoop& loop) {
-  constexpr std::size_t kMostLines = 10;
+  constexpr std::size_t kMostLines = 10;  // chosen: the rest of the report stays in sight
   const std::vector<UserCounters>& counters = loop.inbox().user_counters();
   std::vector<std::size_t> order(std::min(counters.size(), loop.world().users.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -18,6 +18,8 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 
+// An answer holds a lease or one key, some hundred bytes; etcd takes no request of more than 1.5
+// MB.
 constexpr std::size_t kMostAnswer_bytes = 1 << 20;
 
 std::string base64(std::string_view text) {

@@ -10,6 +10,7 @@
 namespace mortise {
 namespace {
 
+// A lease is renewed six times in its length. Who waits for another looks ten times a second.
 constexpr double kRenew_s = 1.0, kAgain_s = 0.1;
 
 // Of a clock that goes on while the machine sleeps.

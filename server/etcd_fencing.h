@@ -19,6 +19,8 @@ namespace mortise {
 /// no lease is there; who takes over, that the word names it. A thread of its own asks.
 class EtcdFencing final : public Fencing {
  public:
+  /// Whole seconds, as etcd counts. While its nodes elect a leader they are silent, up to 2 s by
+  /// its own defaults: three times that.
   static constexpr int kLease_s = 6;
   /// Without a lease for so long this server ends: what is not said grows.
   static constexpr double kWithoutLease_s = 60.0;

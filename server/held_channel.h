@@ -21,6 +21,7 @@ namespace mortise {
 /// and is silent is not waited for longer than kPatience_s of the time in which this process ran.
 class HeldChannel final : public ServerChannel {
  public:
+  /// Longer than a user who does nothing is silent (0.3 s), short enough to be felt as one hitch.
   static constexpr double kPatience_s = 0.5;
   /// Longer, where fewer than half of the users are heard either: it may be us who are cut off.
   static constexpr double kPatienceCutOff_s = 4.0;

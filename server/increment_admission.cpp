@@ -9,6 +9,7 @@
 namespace mortise {
 namespace {
 
+// What of a user is queued is counted by the second, and forgotten after two.
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 }  // namespace

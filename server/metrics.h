@@ -19,6 +19,7 @@ class DurationHistogram {
   std::uint64_t count_up_to(std::int64_t ns) const;
 
  private:
+  /// A bucket is 1/32 of its lower end wide, 3.2 %; 48 octaves of them reach to 2^52 ns, 52 days.
   static constexpr int kPerOctave = 32;
   static constexpr int kOctaves = 48;
   static std::size_t bucket_of(std::uint64_t ns);

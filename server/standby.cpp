@@ -18,6 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// One wait for news at most: a sixteenth of a tick of 60 Hz.
 constexpr std::int64_t kTurn_ns = 1'000'000;
 // One that was killed is known to be gone within 2 s.
 constexpr auto kAnotherMayBeGone = std::chrono::seconds(5);

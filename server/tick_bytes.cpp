@@ -11,6 +11,7 @@ void put(ByteWriter& out, const std::vector<std::byte>& bytes) {
   out.raw(bytes);
 }
 
+// User and nonce of a byte each, a text of none behind its length of four bytes.
 constexpr std::uint64_t kLeastSeat_bytes = 6;
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace mortise {
 /// one for each whole block of 64 sequence numbers.
 class StreamDigest {
  public:
-  static constexpr std::uint64_t kBlock = 64;
+  static constexpr std::uint64_t kBlock = 64;  ///< chosen: a gap costs the rest of one block
 
   /// Events in order of seq. After a gap the block that it interrupts is dropped.
   void add(const ClashEvent& event);

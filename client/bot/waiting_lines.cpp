@@ -7,6 +7,7 @@
 namespace mortise {
 namespace {
 
+// A wait of a few ticks ends before anybody has read of it.
 constexpr double kTellWaiting_s = 0.5;
 
 std::string name_of_part(const std::map<PartId, KnownPart>& parts, PartId id) {

@@ -12,6 +12,7 @@
 namespace mortise {
 namespace {
 
+// A square of so many units for each view, a title above, and a share of it free around the part.
 constexpr double kSide = 300.0, kTitle = 18.0, kRoom = 0.06;
 constexpr double kPixelsPerUnit = 1.5;
 // Labels in numbers; beyond, they hide each other.

@@ -37,6 +37,7 @@ double x_of(double s, double seconds) { return kLeft + kWidth * std::clamp(s / s
 
 // As many letters as stand before the plot.
 std::string shortened(const std::string& text) {
+  // kLeft has room for them, 7 px each.
   constexpr std::size_t kMost = 42;
   return text.size() <= kMost ? text : text.substr(0, kMost - 3) + "...";
 }

@@ -10,6 +10,7 @@ namespace {
 
 using Type = Table::Type;
 
+// Steps of 1, 2 and 5. To both sides they make a zone wider by IT3 to IT10 of a size of 50 mm.
 constexpr double kWidenings_mm[] = {-0.05, -0.02, -0.01, -0.005, -0.002, 0.0,
                                     0.002, 0.005, 0.01,  0.02,   0.05};
 

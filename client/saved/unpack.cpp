@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 
 // One message: what it is, how many bytes follow, and these.
 enum class Told : char { kName = 'N', kBytes = 'B', kEnd = 'E', kRefused = 'R', kDone = 'D' };
+// What a pipe of Linux takes at once.
 constexpr std::size_t kMostOfMessage = 1 << 16;
 
 // Of the process that reads; chosen.

@@ -3,6 +3,7 @@
 namespace mortise::web {
 namespace {
 
+// A line a second of each kind: a flood of bad clients must not fill the disk with messages.
 constexpr double kSayEvery_s = 1.0;
 
 }  // namespace

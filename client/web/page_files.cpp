@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A file is held in memory while it is sent. The largest of the page, of three.js, has 1.5 MB.
 constexpr std::uintmax_t kLargestFile = 32u << 20;
 
 // What is not in here is not served.

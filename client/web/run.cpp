@@ -68,7 +68,7 @@ void warn_without_three(const PageFiles& page) {
 
 // A log as it is now, also while a server writes it.
 Result<std::string> bytes_of(const std::string& log) try {
-  constexpr std::uintmax_t kMost_bytes = std::uintmax_t{1} << 30;
+  constexpr std::uintmax_t kMost_bytes = std::uintmax_t{1} << 30;  // held while it is sent
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(log, error);
   if (error) return fail(Code::kRuntime, "the log cannot be read: " + error.message());
@@ -85,6 +85,8 @@ Result<std::string> bytes_of(const std::string& log) try {
 
 // A server writes what was decided to its log within a second: what was before this call is read.
 void await_writing(const std::string& log) {
+  // Half as long again as the second, for a busy disk; no look for the time of a file costs
+  // anything at 50 a second.
   constexpr auto kWritten = std::chrono::milliseconds(1500), kTurn = std::chrono::milliseconds(20);
   const auto after = std::filesystem::file_time_type::clock::now() + kTurn;
   const auto until = std::chrono::steady_clock::now() + kWritten;

@@ -23,10 +23,12 @@
 namespace mortise {
 namespace {
 
-// Evaluations of a search that only has to find points, not to prove that there are none.
 // Whether only the meshes overlap is searched where so much work is left: more than a tick gives.
 constexpr std::uint64_t kSecondLook = 20'000;
 
+// Evaluations of a search that only has to find points, not to prove that there are none. Chosen:
+// with half or four times as many the classes of 600 random pairs (convex and csg of tests/bench)
+// are the same, with a quarter one is lost.
 constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;

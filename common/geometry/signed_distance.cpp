@@ -92,7 +92,7 @@ struct FloatPoint {
 
   // None is above the squared distance from the box.
   void distances2(const Bvh::Node& node, float (&distance2)[Bvh::kWidth]) const {
-    constexpr int kQuad = 4;
+    constexpr int kQuad = 4;  // floats of a register of 16 bytes, which every processor has
     typedef float Quad __attribute__((vector_size(16)));
     const Quad zero{}, most = zero + std::numeric_limits<float>::max();
     for (int begin = 0; begin < Bvh::kWidth; begin += kQuad) {

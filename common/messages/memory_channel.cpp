@@ -307,7 +307,7 @@ class MemoryClient final : public ClientChannel {
   }
   /// There is none to ring: whoever waits looks once a millisecond.
   void await_input(std::int64_t at_most_ns) override {
-    constexpr std::int64_t kLook_ns = 1'000'000;
+    constexpr std::int64_t kLook_ns = 1'000'000;  // far below a tick of 60 Hz
     std::this_thread::sleep_for(std::chrono::nanoseconds(std::min(at_most_ns, kLook_ns)));
   }
   ChannelCounters counters() const override {

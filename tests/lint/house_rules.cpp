@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tests/lint/blocks.h"
+#include "tests/lint/constants.h"
 
 namespace mortise::lint {
 namespace {
@@ -219,6 +220,10 @@ class HouseCheck {
     words(name, text.str());
     if (path.filename() == "main.cpp") too_long(name, "", lines, kMostMainLines);
     if (is_code) lengths(name, text.str());
+    if (is_code && !name.starts_with("tests/"))
+      for (const BareConstant& bare : constants_without_reason(text.str()))
+        broken_.push_back(name + ":" + std::to_string(bare.line) + ": " + bare.name +
+                          " has no reason: say above or behind it why it is so large");
   }
 
   void remember_readme(const Room& room) {

@@ -247,6 +247,28 @@ TEST_F(PlantedTree, CitationsOfWhatIsNotThere) {
   write("common/math/pose.h", std::string("const int x = 1;  ///< see missing") + ".md\n");
   expect_one("common/math/pose.h", std::string("cites missing") + ".md");
 }
+TEST_F(PlantedTree, NumbersWithoutAReason) {
+  const auto bare = [&](const std::string& text) {
+    write("server/inbox.cpp", text);
+    expect_one("server/inbox.cpp", "has no reason");
+  };
+  const auto said = [&](const std::string& text) {
+    write("server/inbox.cpp", text);
+    EXPECT_EQ(broken_house_rules(root_), std::vector<std::string>{}) << text;
+  };
+  bare("constexpr int kMost = 40;\n");
+  bare("void f() {\n  constexpr double kWait_s = 1.0;\n}\n");
+  bare("static constexpr std::chrono::seconds kPatience{3};\n");
+  bare("// Of this alone.\nconstexpr int kMost = 40;\n\nconstexpr int kLeast = 4;\n");
+  bare("constexpr int kMost = 40;  // as many as fit\nconstexpr int kLeast = 4;\n");
+  bare("constexpr double kSteps_mm[] = {\n    0.5, 0.7};\n");
+  bare("constexpr auto kWait = std::chrono::milliseconds(20);\n");
+  said("constexpr int kMost = 40;  // as many as fit\n");
+  said("// As many as fit, and a tenth.\nconstexpr int kMost = 40;\nconstexpr int kLeast = 4;\n");
+  said("constexpr double kUmPerMm = 1e3;\nconstexpr std::uint8_t kKindCount = 22;\n");
+  said("constexpr std::uint32_t kNone = 0xffffffffU;\nconstexpr double kTurn = 2.0 * kPi;\n");
+  said("constexpr char kDigits[] = \"0123456789\";\nconstexpr int kOutside = -1;\n");
+}
 TEST_F(PlantedTree, PathsOfAMachine) {
   write("server/README.md", std::string("see /") + "work/main/x\n");
   expect_one("server/README.md:1", "somebody's machine");

@@ -208,7 +208,7 @@ class TextWriter {
   void not_judged() {
     if (report_.not_judged.empty()) return;
     text_ += title("Not judged", 33);
-    constexpr std::size_t kMost = 10;
+    constexpr std::size_t kMost = 10;  // chosen: what clashes stays in sight
     for (std::size_t i = 0; i < report_.not_judged.size(); ++i) {
       if (!style_.verbose && i == kMost) {
         text_ +=

@@ -44,9 +44,9 @@ constexpr std::array<ThreadSize, 24> kThreads = {{{"M1.6", 1.6, 0.35},
                                                   {"5/16-18 UNC", 7.938, 1.411},
                                                   {"3/8-16 UNC", 9.525, 1.588}}};
 
-constexpr double kOffAxis_mm = 0.05;  // of hole and shaft that belong together
-constexpr double kOffAngle = 1.5e-3;  // sine
-constexpr double kLeastLength_mm = 0.02;
+constexpr double kOffAxis_mm = 0.05;        // of hole and shaft that belong together
+constexpr double kOffAngle = 1.5e-3;        // sine
+constexpr double kLeastLength_mm = 0.02;    // along the axis that both share; less is a rim
 constexpr double kSameSize_mm = 2e-3;       // of diameters: one nominal size
 constexpr double kScrewSize = 0.06;         // a screw is drawn up to this share off its size
 constexpr double kInsertLeast_mm = 0.1;     // interference; below it a press fit is possible

@@ -11,6 +11,7 @@
 namespace mortise {
 namespace {
 
+// The ports of domain 233 would be above 65535. A server hears at a port and at the next one.
 constexpr int kMaxDomain = 232, kMaxPort = 65534;
 // Each is a participant of its own, with its threads and sockets.
 constexpr std::size_t kMostPlaces = 32;

@@ -116,6 +116,7 @@ inline Lanes bend_reach(float n_w, const float* w, float speed2, const float* n,
                        n_w * w[2] - speed2 * n[2], half);
 }
 
+// The axes of a box.
 constexpr float kUnit[3][3] = {{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
 
 // For how long eight pairs of boxes stay apart: the longest time that one of seven directions

@@ -28,7 +28,7 @@ constexpr double kLeastHalfAngle_rad = 1e-4;
 // Points are taken four at a time. Each lane has its own sums, which are added in one order: the
 // result does not depend on how wide the registers of the machine are.
 using Lanes = Eigen::Array4d;
-constexpr std::size_t kLanes = 4;
+constexpr std::size_t kLanes = 4;  // of Lanes
 
 // Point, axis, sizes.
 constexpr int parameters_of(SurfaceKind kind) {

@@ -64,6 +64,8 @@ enum class Agreement : std::uint8_t {
   /// classes and brackets of depth that meet, and poses within kOtherBuild_mm.
   kWithinAccuracy = 1,
 };
+/// As much as a part may be pressed deeper without being held (kDeepeningSlack_mm): what a replay
+/// may differ by without another answer. Below the tolerances of ISO 286 from IT3 on.
 inline constexpr double kOtherBuild_mm = 1e-3;
 
 /// Computes a logged session again tick by tick in `world`, as scene_of(log) made it, and compares

@@ -54,6 +54,7 @@ GuidedState guided_state(const World& world, PartId part);
 /// recognized when the scene is loaded: at that size it holds up the tick for a fraction of a
 /// second (tests/bench/FIGURES.md, "Recognition beside the import"). Null: no such feature.
 const Feature* find_feature(const World& world, PartId part, const std::string& name);
+/// Triangles; see find_feature().
 inline constexpr std::size_t kRecognizedOnDemand = 20'000;
 /// All that are recognized in a mesh; null: it is larger than that, and nobody has searched it.
 const std::vector<Feature>* recognized_in(const World& world, const Solid& solid);

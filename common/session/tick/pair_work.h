@@ -113,7 +113,7 @@ struct PairEffort {
   /// The cap of one question: never 0, so that the answer is at least a bracket. A hundred
   /// evaluations look at the deepest pair of triangles and those beside it.
   std::uint64_t cap_of(std::uint64_t most) const {
-    constexpr std::uint64_t kGlance = 100;
+    constexpr std::uint64_t kGlance = 100;  // see above
     return std::min(most, std::max(left(), kGlance));
   }
 };

@@ -50,6 +50,7 @@ std::uint64_t little_number(std::string_view bytes, std::uint64_t at, unsigned s
 
 // A header of magic, version and length; chunks of length, kind and bytes.
 GltfParts parts_of_glb(std::string_view bytes) {
+  // Sizes in bytes, and the kinds "JSON" and "BIN" as little endian numbers.
   constexpr std::uint64_t kHead = 12, kChunkHead = 8, kText = 0x4e4f534a, kBinary = 0x004e4942;
   const GltfFault cut{"is no whole binary glTF: it was cut off; export it again"};
   if (!bytes.starts_with("glTF"))
@@ -356,6 +357,7 @@ class GltfCheck {
   }
 
   void check_primitive(const json& primitive, const std::string& where) {
+    // Modes of the format: from 0, points, to 6, a fan of triangles.
     constexpr std::uint64_t kTriangles = 4, kTriangleFan = 6;
     const std::uint64_t mode = whole(primitive, "mode", where, kTriangles);
     if (mode > kTriangleFan) throw GltfFault{where + " is of no kind that there is"};
