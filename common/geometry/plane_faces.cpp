@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/constants.h"
+#include "common/geometry/across_material.h"
 
 namespace mortise {
 namespace {
@@ -161,29 +162,32 @@ Travel corner_travel(const std::vector<PlaneFace>& faces, const std::vector<std:
   return most;
 }
 
-void find_travel(const TriangleMesh& mesh, PlaneFaces& planes) {
-  std::vector<std::vector<std::uint32_t>> at(mesh.points_mm.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint32_t face = planes.face_of_triangle[t];
-    if (face >= PlaneFaces::kWithoutArea) continue;
-    for (const std::uint32_t p : mesh.triangles[t])
-      if (std::find(at[p].begin(), at[p].end(), face) == at[p].end()) at[p].push_back(face);
-  }
+void find_travel(const Solid& solid, PlaneFaces& planes) {
   const auto offset_mm = [](const PlaneFace& face) {
     return std::max(std::fabs(face.offset_mm.lo), std::fabs(face.offset_mm.hi));
   };
   double usual_mm = 0.0;
   for (const PlaneFace& face : planes.faces)
     usual_mm = std::max(usual_mm, PlaneFaces::kUsualTravel * offset_mm(face));
-  planes.travel_of.resize(at.size());
-  for (std::uint32_t p = 0; p < at.size(); ++p) {
-    const Travel travel = planes.travel_of[p] = corner_travel(planes.faces, at[p]);
-    double most_mm = 0.0;
-    for (const std::uint32_t f : at[p])
-      most_mm = std::max(most_mm, PlaneFaces::kMostTravel * offset_mm(planes.faces[f]));
-    planes.most_travel.take({std::min(travel.by_band_mm, most_mm),
+  const std::size_t points = solid.mesh().points_mm.size();
+  planes.travel_of.resize(points);
+  std::vector<double> most_mm(points, 0.0);
+  std::vector<std::uint32_t> at;
+  Fans(solid.mesh(), solid.topology()).each([&](std::uint32_t p, const auto& fan) {
+    at.clear();
+    for (const std::uint32_t t : fan)
+      if (const std::uint32_t face = planes.face_of_triangle[t];
+          face < PlaneFaces::kWithoutArea && std::find(at.begin(), at.end(), face) == at.end())
+        at.push_back(face);
+    planes.travel_of[p].take(corner_travel(planes.faces, at));
+    for (const std::uint32_t f : at)
+      most_mm[p] = std::max(most_mm[p], PlaneFaces::kMostTravel * offset_mm(planes.faces[f]));
+  });
+  for (std::uint32_t p = 0; p < points; ++p) {
+    const Travel& travel = planes.travel_of[p];
+    planes.most_travel.take({std::min(travel.by_band_mm, most_mm[p]),
                              std::min(travel.per_mm, PlaneFaces::kMostTravel),
-                             std::min(travel.outward_mm, most_mm)});
+                             std::min(travel.outward_mm, most_mm[p])});
     if (travel.by_band_mm > usual_mm || travel.per_mm > PlaneFaces::kUsualTravel)
       planes.sharp_points.push_back(p);
   }
@@ -199,7 +203,7 @@ bool is_plane_band(const SurfaceBand& band, const SurfaceBand::Face& face) {
 
 PlaneFaces find_plane_faces(const Solid& solid, const SurfaceBand& band) {
   PlaneFaces planes = Merge(solid, band).run();
-  find_travel(solid.mesh(), planes);
+  find_travel(solid, planes);
   return planes;
 }
 

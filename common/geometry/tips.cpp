@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/geometry/across_material.h"
 #include "common/geometry/plane_faces.h"
 
 namespace mortise {
@@ -77,9 +78,8 @@ class TipFinder {
   }
 
   void add_edge(std::uint32_t t, std::uint32_t k) {
-    const std::uint32_t other = topology_.neighbor[t][k];
-    if (topology_.edge_kind[t][k] != EdgeKind::kConvex || other < t || is_one_face(t, other))
-      return;
+    const auto [other, convex] = across_material(mesh_, topology_, t, k);
+    if (!convex || other < t || is_one_face(t, other)) return;
     Tip tip;
     tip.triangles = {t, other, other};
     tip.from = mesh_.corner(t, static_cast<int>(k));
@@ -108,20 +108,20 @@ class TipFinder {
 
   // Triangles of different faces, by corner.
   void add_corners() {
-    std::vector<std::vector<std::uint32_t>> at(mesh_.points_mm.size());
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
-      for (const std::uint32_t p : mesh_.triangles[t])
-        if (std::none_of(at[p].begin(), at[p].end(),
+    std::vector<std::uint32_t> at;
+    Fans(mesh_, topology_).each([&](std::uint32_t p, const auto& fan) {
+      at.clear();
+      for (const std::uint32_t t : fan)
+        if (std::none_of(at.begin(), at.end(),
                          [&](std::uint32_t other) { return is_one_face(t, other); }))
-          at[p].push_back(t);
-    for (std::uint32_t p = 0; p < at.size(); ++p) {
-      const std::size_t count = at[p].size();
-      if (count < 3 || count > kMostFacesOfCorner) continue;
+          at.push_back(t);
+      const std::size_t count = at.size();
+      if (count < 3 || count > kMostFacesOfCorner) return;
       for (std::size_t i = 0; i < count; ++i)
         for (std::size_t j = i + 1; j < count; ++j)
           for (std::size_t k = j + 1; k < count; ++k)
-            add_corner(mesh_.points_mm[p], {at[p][i], at[p][j], at[p][k]});
-    }
+            add_corner(mesh_.points_mm[p], {at[i], at[j], at[k]});
+    });
   }
 
   void add_corner(const Vec3& x, const std::array<std::uint32_t, 3>& triangles) {

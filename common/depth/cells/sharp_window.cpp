@@ -8,6 +8,8 @@
 #include "common/depth/body.h"
 #include "common/depth/cells/linear_program.h"
 #include "common/depth/triangles_in.h"
+#include "common/geometry/across_material.h"
+#include "common/geometry/signed_distance.h"
 
 namespace mortise {
 namespace {
@@ -15,8 +17,14 @@ namespace {
 // Points of proof keep away from planes by more than rounding and the corners' distance from them.
 constexpr double kLeastApart_mm = 1e-8;
 constexpr double kNoises = 4.0;
+// A point in the plane of faces is at least so many times what points of proof keep away off the
+// part: what that plane is off its faces is little beside it.
+constexpr double kOffPart = 8.0;
 // A polygon with less area holds no point of proof, mm^2.
 constexpr double kLeastArea_mm2 = 1e-8;
+// A window is wider than its reach by room for points of proof: by so many times what they keep
+// away, and so that a facet across it has area.
+constexpr double kRoom = 4.0, kLeastRoom_mm = 2e-4;
 // A point of proof near a corner of what is left of a facet: this share of the way to it.
 constexpr double kTowardsCorner = 0.98;
 // Clauses that are kept of one question; the shortest.
@@ -64,9 +72,10 @@ void clip(std::vector<Vec3>& polygon, std::vector<Vec3>& spare, const Vec3& n, d
 
 SharpWindow::SharpWindow(const Solid& solid, const PlaneFaces& planes, const Box& core,
                          double reach_mm, double depth_mm)
-    : solid_(solid), planes_(planes), box_(core.grown(reach_mm)) {
+    : solid_(solid), planes_(planes) {
   apart_mm_ = std::max({kLeastApart_mm, kNoises * planes.noise_mm,
                         kRoundingFactor * kUnitRoundoff * solid.bvh().extent_mm});
+  box_ = core.grown(reach_mm + std::max(kLeastRoom_mm, kRoom * apart_mm_));
   gather();
   if (state_ == State::kReady) need_reach(core, depth_mm);
   if (state_ == State::kReady && !(needed_reach_mm_ <= reach_mm)) state_ = State::kTooSharp;
@@ -101,12 +110,13 @@ void SharpWindow::gather() {
 void SharpWindow::need_reach(const Box& core, double depth_mm) {
   const Topology& topology = solid_.topology();
   const auto take = [&](double travel_mm) {
-    needed_reach_mm_ = std::max(needed_reach_mm_, travel_mm + 2.0 * apart_mm_);
+    needed_reach_mm_ = std::max(needed_reach_mm_, travel_mm);
   };
   for (std::size_t i = 0; i < faces_.size(); ++i)
     for (const std::uint32_t t : triangles_[i])
       for (int k = 0; k < 3; ++k) {
-        const std::uint32_t beyond = topology.neighbor[t][k];
+        const std::uint32_t beyond =
+            across_material(solid_.mesh(), topology, t, static_cast<std::uint32_t>(k)).triangle;
         if (beyond == Topology::kNone) continue;  // the part is open there
         const std::uint32_t other = planes_.face_of_triangle[beyond];
         if (other < PlaneFaces::kWithoutArea && other > faces_[i])
@@ -189,13 +199,41 @@ std::vector<FaceSet> SharpWindow::find_clauses(FaceSet held) {
     for (const std::uint32_t t : triangles_[g])
       if (take_facet(t, cuts_off_) && clip_to(held, false)) clauses_of_facet(g, found);
   }
+  if (found.empty()) clauses_in_plane(held, found);
   std::sort(found.begin(), found.end(), shorter);
   if (found.size() > kMostClauses) found.resize(kMostClauses);
   if (!found.empty()) return found;
   // No border of the part lies in what the held faces leave: it is wholly in or wholly out.
   Vec3 z;
-  if (middle(held, false, z) && !is_inside(z)) found.push_back(outside_of(z));
+  if (middle(held, 0, 0, z) && !is_inside(z)) found.push_back(outside_of(z));
   return found;
+}
+
+FaceSet SharpWindow::both_ways(FaceSet half_spaces) const {
+  const Vec3 middle = box_.center(), half = box_.half();
+  FaceSet found = 0;
+  for (std::size_t i = 0; i < faces_.size(); ++i)
+    for (std::size_t j = i + 1; j < faces_.size(); ++j) {
+      if (!(half_spaces >> i & half_spaces >> j & 1)) continue;
+      const PlaneFace &a = planes_.faces[faces_[i]], &b = planes_.faces[faces_[j]];
+      const Vec3 n = a.n + b.n;
+      const double apart_mm = std::fabs(n.dot(middle) - (a.c + b.c)) + n.cwiseAbs().dot(half);
+      if (apart_mm <= apart_mm_) found |= FaceSet{1} << i | FaceSet{1} << j;
+    }
+  return found;
+}
+
+// Between two bodies that touch with an edge a point may hold the faces of both, and there is no
+// room inside of them. A point in their plane and far enough off the part is outside of it, too.
+void SharpWindow::clauses_in_plane(FaceSet held, std::vector<FaceSet>& found) const {
+  const FaceSet plane = both_ways(held);
+  if (plane == 0) return;
+  for (std::size_t g = 0; g < faces_.size(); ++g) {
+    Vec3 z;
+    if (held >> g & 1 || !middle(held & ~plane, FaceSet{1} << g, plane, z)) continue;
+    if (!is_inside(z) && nearest_point(solid_, z).distance_mm >= kOffPart * apart_mm_)
+      found.push_back(outside_of(z) & ~plane);
+  }
 }
 
 const std::vector<FaceSet>& SharpWindow::clauses(FaceSet held) {
@@ -214,7 +252,7 @@ bool SharpWindow::find_least(FaceSet held) {
     }
   }
   Vec3 y;
-  return middle(failed, true, y) && is_inside(y);
+  return middle(0, failed, 0, y) && is_inside(y);
 }
 
 bool SharpWindow::in_least(FaceSet held) {
@@ -223,24 +261,23 @@ bool SharpWindow::in_least(FaceSet held) {
   return place->second;
 }
 
-bool SharpWindow::middle(FaceSet half_spaces, bool outside, Vec3& at) const {
+bool SharpWindow::middle(FaceSet inside_of, FaceSet outside_of, FaceSet in_plane_of,
+                         Vec3& at) const {
   const Vec3 half = box_.half(), origin = box_.center();
   LinearProgram program(4, {-half.x(), -half.y(), -half.z(), 0.0},
                         {half.x(), half.y(), half.z(), half.minCoeff()}, {0.0, 0.0, 0.0, 1.0});
-  const auto add = [&](const Vec3& n, double c) {
-    program.rows.push_back({{n.x(), n.y(), n.z(), 1.0}, c - n.dot(origin)});
+  const auto add = [&](const Vec3& n, double c, double weight) {
+    program.rows.push_back({{n.x(), n.y(), n.z(), weight}, c - n.dot(origin)});
   };
   for (int k = 0; k < 3; ++k) {
-    add(Vec3::Unit(k), box_.hi[k]);
-    add(-Vec3::Unit(k), -box_.lo[k]);
+    add(Vec3::Unit(k), box_.hi[k], 1.0);
+    add(-Vec3::Unit(k), -box_.lo[k], 1.0);
   }
   for (std::size_t i = 0; i < faces_.size(); ++i) {
-    if (!(half_spaces >> i & 1)) continue;
     const PlaneFace& face = planes_.faces[faces_[i]];
-    if (outside)
-      add(-face.n, -face.c);
-    else
-      add(face.n, face.c);
+    if (inside_of >> i & 1) add(face.n, face.c, 1.0);
+    if (outside_of >> i & 1) add(-face.n, -face.c, 1.0);
+    if (in_plane_of >> i & 1) add(face.n, face.c + apart_mm_, 0.0);
   }
   LinearProgram::Optimum optimum;
   if (!program.maximize(optimum) || optimum.y[3] < 2.0 * apart_mm_) return false;

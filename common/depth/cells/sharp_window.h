@@ -57,6 +57,10 @@ class SharpWindow {
   void need_reach(const Box& core, double depth_mm);
   std::vector<FaceSet> find_clauses(FaceSet held);
   bool find_least(FaceSet held);
+  // Faces of a set that look both ways from one plane: no point is inside of both, so where both
+  // are held those of the plane stand for it.
+  FaceSet both_ways(FaceSet half_spaces) const;
+  void clauses_in_plane(FaceSet held, std::vector<FaceSet>& found) const;
   void clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const;
   // What is left of polygon_ in the box; of a facet, unless a plane that all must hold cuts it off;
   // inside of the half-spaces, or outside of them.
@@ -65,8 +69,8 @@ class SharpWindow {
   bool clip_to(FaceSet half_spaces, bool outside);
   FaceSet outside_of(const Vec3& x) const;
   bool is_inside(const Vec3& x) const;
-  /// A point well inside the half-spaces (outside of them) and the box.
-  bool middle(FaceSet half_spaces, bool outside, Vec3& at) const;
+  /// A point well inside of half-spaces, outside of others, in the plane of others, and in the box.
+  bool middle(FaceSet inside_of, FaceSet outside_of, FaceSet in_plane_of, Vec3& at) const;
 
   const Solid& solid_;
   const PlaneFaces& planes_;

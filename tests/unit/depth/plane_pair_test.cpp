@@ -1,11 +1,13 @@
 // Pairs of parts with plane faces and bands, as find_overlap judges them by their sharp bodies.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "common/depth/cells/sharp_window.h"
 #include "common/evaluation/band.h"
+#include "common/geometry/tips.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/overlap_case.h"
 #include "tests/unit/depth/random_polyhedra.h"
@@ -167,6 +169,73 @@ TEST(PlanePair, FlatPartsHaveTheThresholdsOfTheirTolerances) {
   EXPECT_EQ(agreed_class(tab_in_slot(0.2)), CollisionClass::kNone);
   EXPECT_EQ(agreed_class(tab_in_slot(0.25)), CollisionClass::kNone);
   EXPECT_EQ(agreed_class(tab_in_slot(-0.25)), CollisionClass::kReal);
+}
+
+/// Two blocks in one mesh; points that both have are one.
+SolidPtr joined(const SolidPtr& a, const SolidPtr& b) {
+  TriangleMesh mesh = a->mesh();
+  std::vector<std::uint32_t> at;
+  for (const Vec3& p : b->mesh().points_mm) {
+    const auto known = std::find(mesh.points_mm.begin(), mesh.points_mm.end(), p);
+    at.push_back(static_cast<std::uint32_t>(known - mesh.points_mm.begin()));
+    if (known == mesh.points_mm.end()) mesh.points_mm.push_back(p);
+  }
+  for (const auto& [i, j, k] : b->mesh().triangles) mesh.triangles.push_back({at[i], at[j], at[k]});
+  return std::make_shared<const Solid>(std::move(mesh));
+}
+
+/// Written to a file of single precision, turned as it may lie in an assembly.
+SolidPtr turned(const SolidPtr& solid, const Pose& X) {
+  TriangleMesh mesh = solid->mesh();
+  for (Vec3& p : mesh.points_mm) p = (X * p).cast<float>().cast<double>();
+  return std::make_shared<const Solid>(std::move(mesh));
+}
+
+SurfaceBand plus_minus_of_file(const SolidPtr& solid, double t_mm) {
+  BandInput input;
+  input.solid = solid.get();
+  input.estimate = true;
+  input.rest = {{-t_mm, t_mm}, "plus minus"};
+  input.quantum_mm = 2e-6;  // half a step of single precision at 60 mm
+  return build_band(input);
+}
+
+// What two bodies have beside each other where they share an edge or a corner makes no tip.
+TEST(PlanePair, BodiesThatShareAnEdgeOrACornerAreDecided) {
+  Pose X;
+  X.q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
+  X.p = Vec3(17, -33, 21);
+  for (const double step_mm : {0.0, 20.0}) {
+    const SolidPtr both =
+        joined(block({-20, -20, -20}, {0, 0, 0}), block({0, 0, -20 + step_mm}, {20, 20, step_mm}));
+    ASSERT_EQ(both->topology().manifold(), false);
+    for (const double t_mm : {0.0, 0.01})
+      for (const double overlap_mm : {0.03, 0.001, -0.001, -0.03}) {
+        OverlapCase c;
+        c.a = turned(both, X);
+        // Beside the shared edge; below the shared corner.
+        const double z_mm = step_mm > 0.0 ? -20.0 + overlap_mm : overlap_mm;
+        c.b = turned(step_mm > 0.0 ? block({-4, -4, z_mm - 8.0}, {4, 4, z_mm})
+                                   : block({-4, -4, -z_mm}, {4, 4, 8.0 - z_mm}),
+                     X);
+        c.band_a = plus_minus_of_file(c.a, t_mm);
+        c.band_b = plus_minus_of_file(c.b, 0.0);
+        const CollisionClass told = agreed_class(c);
+        const bool free = told == CollisionClass::kNone || told == CollisionClass::kFake;
+        const bool right = overlap_mm > t_mm    ? told == CollisionClass::kReal
+                           : overlap_mm > -t_mm ? told == CollisionClass::kPotential
+                                                : free;
+        EXPECT_TRUE(right) << step_mm << " " << t_mm << " " << overlap_mm << " "
+                           << static_cast<int>(told);
+      }
+  }
+}
+
+TEST(PlanePair, AnEdgeThatTwoBodiesShareHasTheTipsOfBoth) {
+  const SolidPtr one = block({-20, -20, -20}, {0, 0, 0}), other = block({0, 0, -20}, {20, 20, 0});
+  const SolidPtr both = joined(one, other);
+  EXPECT_EQ(find_tips(*both, plus_minus(both, 0.1)).size(),
+            2 * find_tips(*one, plus_minus(one, 0.1)).size());
 }
 
 // The classes of find_overlap against linear programs over the half-spaces.
