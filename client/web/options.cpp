@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "common/io/build_info.h"
@@ -29,10 +30,21 @@ void add_what_is_shown(ProgramOptions& app, WebOptions& o) {
       .group(kLogGroup)
       .reads_file()
       .excludes("--session");
-  app.add("--log", o.log,
+  app.add("--read-log", o.read_log,
           "Log that the server of the session writes, where this machine can read it: pages "
           "can download a report of the session so far")
       .group(kLogGroup)
+      .reads_file()
+      .excludes("--replay");
+  // Until 0.3: elsewhere --log says where a log is written.
+  app.add_word(
+         "--log",
+         [&o](const std::string& file) {
+           std::fputs("mortise-web: --log is called --read-log now\n", stderr);
+           o.read_log = file;
+         },
+         "")
+      .group("")
       .reads_file()
       .excludes("--replay");
 }

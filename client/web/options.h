@@ -9,7 +9,7 @@ namespace mortise::web {
 struct WebOptions {
   DdsOptions network;
   std::string replay;     ///< show this session log instead; empty: a live session
-  std::string log;        ///< of the live session, for reports; empty: there are none
+  std::string read_log;   ///< of the live session, for reports; empty: there are none
   std::string page;       ///< folder
   std::string tokens;     ///< file; empty: made for this run
   std::string addresses;  ///< see AddressesTo

@@ -118,7 +118,7 @@ Result<std::string> picture_of(const std::string& log, const WantedPicture& want
 // Serves a feed until a signal comes.
 int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
   GatewayOptions gateway_options = options.gateway;
-  if (const std::string& log = options.replay.empty() ? options.log : options.replay;
+  if (const std::string& log = options.replay.empty() ? options.read_log : options.replay;
       !log.empty()) {
     gateway_options.report = [log] { return report_page(log); };
     const bool is_written = options.replay.empty();

@@ -100,7 +100,7 @@ one_session() {  # one_session SCENARIO SESSION SECONDS
   served=$(grep -E "^ran mortise-server $1 --session $2 " said) || fail "no server of $1: $(cat said)"
   [[ $served =~ \ --domain\ ([0-9]+)\ --live\ --duration\ $3\ --log\ (sessions/[^ ]+)\.mcap\ --addresses\ ([^ ]+)\ in ]] || fail "how it serves: $served"
   [ "${BASH_REMATCH[3]}" = "${BASH_REMATCH[2]}.web.txt" ] || fail "where the server reads addresses: $served"
-  grep -qx "ran mortise-web --session $2 --domain ${BASH_REMATCH[1]} --http-port 0 --log ${BASH_REMATCH[2]}.mcap --addresses ${BASH_REMATCH[3]} --quiet in $work" said ||
+  grep -qx "ran mortise-web --session $2 --domain ${BASH_REMATCH[1]} --http-port 0 --read-log ${BASH_REMATCH[2]}.mcap --addresses ${BASH_REMATCH[3]} --quiet in $work" said ||
     fail "no gateway beside $served: $(cat said)"
 }
 touch A.stl B.stl x.step

@@ -72,7 +72,7 @@ TEST_F(NamedFiles, NoOutputOverwritesAnInput) {
       {"mortise-server", "s.yaml --no-log --duration 0.1 --stats s.yaml", "s.yaml"},
       {"mortise-server", "s.yaml --no-log --duration 0.1 --stats b.obj", "b.obj"},
       {"mortise-web", "--replay m.csv --addresses m.csv", "m.csv"},
-      {"mortise-web", "--log m.csv --addresses m.csv", "m.csv"},
+      {"mortise-web", "--read-log m.csv --addresses m.csv", "m.csv"},
       {"mortise-web", "--tokens s.yaml --addresses s.yaml", "s.yaml"},
       {"mortise-web", "--certificate s.yaml --key m.csv --addresses s.yaml", "s.yaml"},
       {"mortise-web", "--certificate s.yaml --key m.csv --addresses m.csv", "m.csv"},

@@ -9,21 +9,46 @@
 namespace mortise::test {
 namespace {
 
-TEST(Version, EachProgramSaysWhichBuildItIs) {
-  const TestFolder folder;
-  int asked = 0;
+std::vector<std::string> commands() {
+  std::vector<std::string> all;
   for (const auto& entry : std::filesystem::directory_iterator(MORTISE_BIN_DIR)) {
     const std::string program = entry.path().filename();
-    if (!program.starts_with("mortise-") || program.starts_with("mortise-import"))
-      continue;  // no command
-    Program one(folder.path(), program, {"--version"});
-    EXPECT_EQ(one.wait(60.0), 0) << program << ": " << one.errors();
-    EXPECT_EQ(one.out(), version_line(program) + "\n");
-    ++asked;
+    if (program.starts_with("mortise-") && !program.starts_with("mortise-import"))
+      all.push_back(program);
   }
-  EXPECT_GE(asked, 12);
+  return all;
+}
+
+std::string said_to(const std::string& program, const std::string& option) {
+  const TestFolder folder;
+  Program one(folder.path(), program, {option});
+  EXPECT_EQ(one.wait(60.0), 0) << program << ": " << one.errors();
+  return one.out();
+}
+
+TEST(Version, EachProgramSaysWhichBuildItIs) {
+  EXPECT_GE(commands().size(), 12u);
+  for (const std::string& program : commands())
+    EXPECT_EQ(said_to(program, "--version"), version_line(program) + "\n");
   EXPECT_NE(version_line("x").find(engine_version()), std::string::npos);
   EXPECT_NE(version_line("x").find(build_fingerprint().substr(0, 12)), std::string::npos);
+}
+
+// One word, one meaning: --log says where a log is written, which the server alone does.
+TEST(Options, OnlyTheServerHasALogToWrite) {
+  for (const std::string& program : commands()) {
+    const bool has_log = said_to(program, "--help").find("  --log ") != std::string::npos;
+    EXPECT_EQ(has_log, program == "mortise-server") << program;
+  }
+}
+
+TEST(Options, TheGatewayTakesTheOldNameOfTheLogThatItReads) {
+  const TestFolder folder;
+  Program web(folder.path(), "mortise-web",
+              {"--log", "none.mcap", "--page", "nowhere", "--addresses", "-"});
+  web.wait(60.0);
+  EXPECT_EQ(web.errors().find("mortise-web: --log is called --read-log now\n"), 0u) << web.errors();
+  EXPECT_EQ(web.errors().find("no such option"), std::string::npos) << web.errors();
 }
 
 TEST(Version, FilesThatNobodyConfiguresSayTheSame) {

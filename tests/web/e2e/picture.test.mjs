@@ -15,7 +15,7 @@ before(async () => {
   const log = join(session.folder, 'picture.mcap');
   await session.serve(PEGS, ['--log', log]);
   const without = await session.open();
-  await session.show(undefined, ['--log', log]);
+  await session.show(undefined, ['--read-log', log]);
   [eva] = await session.join('Eva');
   unlogged = await openPage(session.browser, without.observer);
   await whenListed(eva, 'parts', 'peg_k6');

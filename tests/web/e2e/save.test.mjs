@@ -33,7 +33,7 @@ async function said(page) {
 before(async () => {
   const log = join(first.folder, 'first.mcap');
   await first.serve(EMPTY, ['--log', log]);
-  await first.show(undefined, ['--log', log]);
+  await first.show(undefined, ['--read-log', log]);
   [eva] = await first.join('Eva');
 }, { timeout: 240_000 });
 
