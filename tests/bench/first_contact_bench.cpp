@@ -7,6 +7,7 @@ const std::vector<Section>& sections() {
   static const std::vector<Section> all = {
       {"rows", "first contact beside its peers: time against error", section_rows},
       {"distance", "distance of two meshes beside FCL's", section_distance},
+      {"bounds", "distance beside rectangle swept spheres, crossing beside FCL's", section_bounds},
       {"build", "building of the tree beside FCL's", section_build},
       {"triangles", "cost against the number of triangles", section_triangles},
       {"threads", "cost against the number of threads", section_threads},

@@ -13,6 +13,7 @@ struct Options : BenchOptions {
 /// Each adds its tables, notes and bars to the report.
 void section_rows(Report& report, const Options& options);
 void section_distance(Report& report, const Options& options);
+void section_bounds(Report& report, const Options& options);
 void section_build(Report& report, const Options& options);
 void section_triangles(Report& report, const Options& options);
 void section_threads(Report& report, const Options& options);
