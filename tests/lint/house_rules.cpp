@@ -135,6 +135,9 @@ constexpr std::size_t kMostLineLength = 160;
 // The documents that a newcomer reads to their end, and their most words.
 const std::map<std::string, std::size_t> kMostWords = {{"README.md", 900}, {"CHANGELOG.md", 600}};
 
+// The document that says where things are.
+const std::string kNamesPlaces = "CONTRIBUTING.md";
+
 const std::set<std::string> kCodeEndings = {".h", ".hpp", ".cpp", ".c"};
 const std::set<std::string> kTextEndings = {
     ".h",    ".hpp", ".cpp",   ".c",    ".mjs", ".js",  ".html", ".css", ".md", ".txt",
@@ -217,6 +220,7 @@ class HouseCheck {
       if (is_code) add_comment(line, comments);
     }
     citations(name, comments);
+    if (name == kNamesPlaces) places(name, text.str());
     words(name, text.str());
     if (path.filename() == "main.cpp") too_long(name, "", lines, kMostMainLines);
     if (is_code) lengths(name, text.str());
@@ -309,6 +313,20 @@ class HouseCheck {
     if (count > most->second)
       broken_.push_back(name + ": " + std::to_string(count) + " words, at most " +
                         std::to_string(most->second));
+  }
+
+  // What stands between backticks and has a slash is a path from the root, or begins that of a
+  // file.
+  void places(const std::string& name, const std::string& text) {
+    static const std::regex kPlace("`([A-Za-z0-9_.-]+/[A-Za-z0-9_./-]*)`");
+    for (auto place = std::sregex_iterator(text.begin(), text.end(), kPlace);
+         place != std::sregex_iterator(); ++place) {
+      const fs::path path = root_ / (*place)[1].str();
+      const bool is_there = fs::exists(path) || fs::exists(path.string() + ".h") ||
+                            fs::exists(path.string() + ".cpp");
+      if (!is_there && (*place)[1].str()[0] != '.')
+        broken_.push_back(name + ": names " + (*place)[1].str() + ", which is not there");
+    }
   }
 
   // The comments of a file as one text, so that a citation may go over two lines.

@@ -269,6 +269,12 @@ TEST_F(PlantedTree, NumbersWithoutAReason) {
   said("constexpr std::uint32_t kNone = 0xffffffffU;\nconstexpr double kTurn = 2.0 * kPi;\n");
   said("constexpr char kDigits[] = \"0123456789\";\nconstexpr int kOutside = -1;\n");
 }
+TEST_F(PlantedTree, PlacesThatAreNotThere) {
+  write("CONTRIBUTING.md", "See `common/math`, `common/math/pose`, `client/<name>`, `a word`.\n");
+  EXPECT_TRUE(broken_house_rules(root_).empty());
+  write("CONTRIBUTING.md", "See `common/math/poses`.\n");
+  expect_one("CONTRIBUTING.md", "names common/math/poses, which is not there");
+}
 TEST_F(PlantedTree, PathsOfAMachine) {
   write("server/README.md", std::string("see /") + "work/main/x\n");
   expect_one("server/README.md:1", "somebody's machine");
