@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { proposedFits } from '../../../client/web/page/session/proposed_fits.js';
+import { fitGroups, proposedFits, setFits, sizeText } from '../../../client/web/page/session/proposed_fits.js';
 
 const UPRIGHT = [0, 0, 0, 1];
 const ON_ITS_SIDE = [Math.SQRT1_2, 0, 0, Math.SQRT1_2];
@@ -52,4 +52,40 @@ test('the code that is declared for the size elsewhere is proposed, and stands f
   two.parts.set(3, { id: 3, p: [40, 0, 0], q: UPRIGHT, moving: true });
   two.features.set(3, [round('pin', 4.95, false)]);
   assert.deepEqual(proposedFits(two).map(({ bore, code }) => [bore.feature, code]), [['bore', 'Ø20 H7/g6'], ['hole', '']]);
+});
+
+/** As many fits as there are pairs of parts, of bores and shafts of these diameters. */
+const fits = (pairs, hole = 6, pin = 5.99, code = '') => pairs.map(([a, b]) => ({ bore: { part: a, feature: 'bore' }, shaft: { part: b, feature: 'journal' }, hole, pin, clearance: hole - pin, code }));
+const named = new Map([[1, 'arm/plate'], [2, 'arm/dowel_1'], [3, 'arm/dowel_2'], [4, 'arm/dowel_12'], [5, 'arm/bolt_1'], [6, 'side_2/plate']]);
+const nameOf = (id) => named.get(id) ?? '';
+
+test('numbered siblings of one size are one group, each where its first one stands', () => {
+  const groups = fitGroups([...fits([[1, 2]]), ...fits([[1, 5]], 8), ...fits([[1, 3], [1, 4]]), ...fits([[1, 4]], 6, 5.98), ...fits([[6, 2]])], nameOf);
+  assert.deepEqual(groups.map(({ places, fits: all }) => [places.join(' × '), sizeText(all[0].hole), all.map(({ shaft }) => shaft.part)]), [
+    ['arm/plate × arm/dowel*', 'Ø6', [2, 3, 4]], ['arm/plate × arm/bolt*', 'Ø8', [5]], ['arm/plate × arm/dowel*', 'Ø6', [4]], ['side*/plate × arm/dowel*', 'Ø6', [2]]]);
+  assert.equal(fitGroups([...fits([[1, 2]]), ...fits([[1, 3]], 6 + 1e-9, 5.99 - 1e-9)], nameOf).length, 1, 'what recognition makes of a size is one size');
+  assert.equal(fitGroups([...fits([[1, 2]]), ...fits([[1, 3]], 6, 5.99, 'Ø6 H7/g6')], nameOf).length, 2, 'what is declared elsewhere stands apart');
+});
+
+test('all of a group are asked for one after the other, and what is refused is kept with its reason', async () => {
+  const asked = [];
+  let open = 0;
+  const request = async (what, keys) => {
+    assert.equal(++open, 1, 'one at a time');
+    await null;
+    --open;
+    asked.push([what, keys.part, keys.feature, keys.other, keys.other_feature, keys.text]);
+    return keys.other === 3 ? { id: 1, done: false, refusal: 'bad_statement', text: 'Ø6 H7/g6 does not go with Ø6.4' } : { id: 1, done: true };
+  };
+  const told = await setFits(request, fits([[1, 2], [1, 3], [1, 4]]), () => 'H7/g6');
+  assert.deepEqual(asked, [2, 3, 4].map((pin) => ['fit', 1, 'bore', pin, 'journal', 'H7/g6']));
+  assert.deepEqual(told.done.map(({ shaft }) => shaft.part), [2, 4]);
+  assert.deepEqual(told.missed.map(({ fit, why }) => [fit.shaft.part, why]), [[3, 'Ø6 H7/g6 does not go with Ø6.4']]);
+});
+
+test('where nobody answers, the rest is counted and not asked', async () => {
+  let asked = 0;
+  const request = async () => (++asked === 1 ? { id: 1, done: true } : { id: 2, done: false, refusal: 'no_answer', text: 'The session did not answer' });
+  const told = await setFits(request, fits([[1, 2], [1, 3], [1, 4]]), () => 'H7/g6');
+  assert.deepEqual([asked, told.done.length, told.missed.map(({ why }) => why)], [2, 1, ['The session did not answer', 'The session did not answer']]);
 });

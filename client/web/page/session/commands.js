@@ -21,8 +21,16 @@ export class Commands {
 
   /** @param {string} what of the table of commands in protocol.md @param {object} keys @returns {Promise<Reply>} */
   async ask(what, keys) {
+    const reply = await this.request(what, keys);
+    if (!reply.done) this.say(reply.text || `Refused: ${reply.refusal}`, 'bad');
+    else if (reply.text) this.say(reply.text, '');
+    return reply;
+  }
+
+  /** As ask, but nothing is said: for many commands of which the caller says one sum. @param {string} what @param {object} keys @returns {Promise<Reply>} */
+  request(what, keys) {
     const id = this.#next++;
-    const reply = await new Promise((/** @type {(reply: Reply) => void} */ done) => {
+    return new Promise((/** @type {(reply: Reply) => void} */ done) => {
       if (!this.send({ type: 'command', id, do: what, ...keys })) {
         done({ id, done: false, refusal: 'not_connected', text: 'Not connected: nothing was sent' });
         return;
@@ -33,9 +41,6 @@ export class Commands {
         done(answer);
       });
     });
-    if (!reply.done) this.say(reply.text || `Refused: ${reply.refusal}`, 'bad');
-    else if (reply.text) this.say(reply.text, '');
-    return reply;
   }
 
   /** @param {Reply} reply */

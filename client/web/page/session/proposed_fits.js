@@ -2,7 +2,11 @@
 import { placed, rotate } from './motion.js';
 
 /** @typedef {import('./session.js').Feature} Feature */
-/** @typedef {{bore: {part: number, feature: string}, shaft: {part: number, feature: string}, clearance: number, code: string}} ProposedFit clearance of diameters, as modelled, mm; the code that this size has elsewhere, or empty */
+/** @typedef {import('./session.js').Reply} Reply */
+/** @typedef {{part: number, feature: string}} End */
+/** @typedef {{bore: End, shaft: End, hole: number, pin: number, clearance: number, code: string}} ProposedFit diameters and their difference, as modelled, mm; the code that this size has elsewhere, or empty */
+/** @typedef {{key: string, places: [string, string], fits: ProposedFit[]}} FitGroup patterns of the paths of the two parts; at least one fit, all with the same sizes and code */
+/** @typedef {{done: ProposedFit[], missed: Array<{fit: ProposedFit, why: string}>}} SetFits */
 
 const LIKE_SIZES = 0.03;
 const AXES = Math.cos(Math.PI / 180);
@@ -33,10 +37,54 @@ export function proposedFits({ parts, features, standing }) {
       const end = (/** @type {typeof bore} */ { part, feature }) => ({ part: part.id, feature: feature.name });
       const keys = [[bore.feature.name, shaft.feature.name], ['', '']].map(([a, b]) => `${bore.part.id} ${a} ${shaft.part.id} ${b}`);
       if (keys.some((key) => stated.has(key))) continue;
-      found.push({ bore: end(bore), shaft: end(shaft), clearance: 2 * (bore.feature.radius - shaft.feature.radius), code: codeOf(2 * bore.feature.radius) });
+      const [hole, pin] = [2 * bore.feature.radius, 2 * shaft.feature.radius];
+      found.push({ bore: end(bore), shaft: end(shaft), hole, pin, clearance: hole - pin, code: codeOf(hole) });
     }
   }
   return found.sort((x, y) => Number(y.code !== '') - Number(x.code !== ''));
+}
+
+/** "arm/servo_2/horn" as "arm/servo*" and its horn: siblings that are numbered are of one kind, as in `check --propose`. @param {string} path */
+const patternOf = (path) => path.split('/').map((piece) => piece.replace(/^(.*)_\d+$/, '$1*')).join('/');
+
+/** A diameter as it is written, to the micrometre. @param {number} mm */
+export const sizeText = (mm) => `Ø${Number(mm.toFixed(3))}`;
+
+/** Fits of parts of one pattern and of one size, each group where its first one stands. @param {ProposedFit[]} fits @param {(part: number) => string} nameOf @returns {FitGroup[]} */
+export function fitGroups(fits, nameOf) {
+  /** @type {Map<string, FitGroup>} */
+  const groups = new Map();
+  for (const fit of fits) {
+    const places = /** @type {[string, string]} */ ([fit.bore, fit.shaft].map(({ part }) => patternOf(nameOf(part))));
+    const key = [...places, sizeText(fit.hole), sizeText(fit.pin), fit.code].join('|');
+    const group = groups.get(key) ?? { key, places, fits: [] };
+    group.fits.push(fit);
+    groups.set(key, group);
+  }
+  return [...groups.values()];
+}
+
+/**
+ * One after the other, so that nothing is lost in a queue that is full; each that is refused is kept with the reason. Where nobody answers, the rest is not asked.
+ * @param {(what: string, keys: object) => Promise<Reply>} request @param {ProposedFit[]} fits @param {(fit: ProposedFit) => string} codeOf an empty one drops the fit
+ * @returns {Promise<SetFits>}
+ */
+export async function setFits(request, fits, codeOf) {
+  /** @type {SetFits} */
+  const told = { done: [], missed: [] };
+  let silent = '';
+  for (const fit of fits) {
+    const { bore, shaft } = fit;
+    const reply = silent ? null : await request('fit', { part: bore.part, feature: bore.feature, other: shaft.part, other_feature: shaft.feature, text: codeOf(fit) });
+    if (reply?.done) {
+      told.done.push(fit);
+      continue;
+    }
+    const why = reply ? reply.text || `refused: ${reply.refusal}` : silent;
+    told.missed.push({ fit, why });
+    if (reply?.refusal === 'not_connected' || reply?.refusal === 'no_answer') silent = why;
+  }
+  return told;
 }
 
 /** The code that is declared for a diameter: "Ø20 H7/g6"; none where a size has several. @param {any[]} standing @returns {(diameter: number) => string} */
