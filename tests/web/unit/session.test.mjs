@@ -84,3 +84,17 @@ test('a token is taken from the address only when it is one', () => {
   assert.equal(tokenOf('#token=a b'), '');
   assert.equal(tokenOf(''), '');
 });
+
+test('a clash that comes before the name of an added part is told once the name is there, and not where it has ended', () => {
+  const session = begun();
+  const told = [];
+  session.on('event', ({ clash: id, a, b }) => told.push(`#${id} ${session.partName(a)} × ${session.partName(b)}`));
+  session.apply({ type: 'events', events: [clash(7, { b: 5, class: 'real' }), clash(8, { b: 5, class: 'real' })] });
+  assert.deepEqual([told, session.openClashes().length], [[], 3], 'it is in the list at once');
+  const scene = { type: 'scene', session: 's', tick: 9, tick_rate_hz: 60, policy: 'stop', parts: [part(1), part(2), part(5, { name: 'added' })], users: [], clashes: [clash(3), clash(7, { b: 5, class: 'real' })], standing: [] };
+  session.apply(scene);
+  assert.deepEqual(told, ['#7 p1 × added']);
+  session.apply(scene);
+  session.apply({ type: 'events', events: [clash(9, { b: 5 })] });
+  assert.deepEqual(told, ['#7 p1 × added', '#9 p1 × added'], 'once');
+});

@@ -239,6 +239,7 @@ export class Session extends Signals {
     for (const part of m.parts) if (part.features?.length) this.features.set(part.id, part.features);
     this.serverPresent = true;
     for (const what of /** @type {const} */ (['scene', 'server', 'users', 'clashes', 'standing', 'remarks', 'unexamined'])) this.emit(what, undefined);
+    this.#tellNamed();
   }
 
   /** @param {any} m */
@@ -261,8 +262,23 @@ export class Session extends Signals {
     this.clashes.set(event.clash, event.kind === 'end' && before ? { ...before, kind: 'end', ended: true, review: event.review } : event);
     const ended = [...this.clashes.values()].filter((clash) => clash.ended);
     for (const clash of ended.slice(0, Math.max(0, ended.length - MOST_ENDED))) this.clashes.delete(clash.clash);
-    this.emit('event', event);
+    if (event.ended || this.#isNamed(event)) this.emit('event', event);
+    else this.#unnamed.push(event);
     this.emit('clashes', undefined);
+  }
+
+  /** Of a part that was added just now: clashes and parts come by ways of their own, so a clash may be here before the name. It is told when the name is. @type {Clash[]} */
+  #unnamed = [];
+
+  /** @param {Clash} clash */
+  #isNamed({ a, b }) {
+    return this.parts.has(a) && this.parts.has(b);
+  }
+
+  #tellNamed() {
+    const named = this.#unnamed.filter((event) => this.#isNamed(event) && this.clashes.has(event.clash) && !this.clashes.get(event.clash)?.ended);
+    this.#unnamed = [];
+    for (const event of named) this.emit('event', event);
   }
 
   /** @param {any} m */
