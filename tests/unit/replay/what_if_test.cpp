@@ -181,6 +181,26 @@ TEST(WhatIf, WiderZonesGiveTheClassesThatTheReportForetells) {
   EXPECT_GE(other, 2U);
 }
 
+TEST(WhatIf, SweepsGiveTheSameAtAnyNumberOfThreads) {
+  const auto log = played("blocks_profile");
+  ASSERT_TRUE(log);
+  const auto swept = [&](int jobs) {
+    std::vector<Variant> variants;
+    for (const char* zone : {"+-0.02", "+-0.05", "+-0.1", "+-0.2"})
+      variants.push_back({variants.size(), {std::string("tolerance base_1 = ") + zone}, {}, {}});
+    EXPECT_TRUE(check_variants(*log, variants, jobs));
+    std::size_t done = 0;  // told by one thread at a time
+    compute_variants(*log, variants, jobs, [&](std::size_t) { ++done; });
+    EXPECT_EQ(done, variants.size());
+    return variants;
+  };
+  const std::vector<Variant> alone = swept(1), together = swept(3);
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(together[i].error, "");
+    expect_same(alone[i].clashes, together[i].clashes);
+  }
+}
+
 TEST(WhatIf, SweepsAreSpelledOut) {
   const auto list = variants_of("tolerance a = ±[0.01, 0.02]");
   ASSERT_TRUE(list);
