@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { joinAs, openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { cutOff, paleTexts, skippedHeadings, smallTargets } from '../support/looks.mjs';
+import { coveredWords, cutOff, paleTexts, skippedHeadings, smallTargets } from '../support/looks.mjs';
 import { PATIENCE, choose, drawn, grab, moveBy, settled, until, whenListed } from '../support/people.mjs';
 import { PEGS } from '../support/scenario.mjs';
 
@@ -82,6 +82,7 @@ test('text stands out from its ground by 4.5 or more, in both themes', async () 
     await choose(page, 'block');
     await page.click('#clash_filters .chip >> nth=2');
     await page.locator('#clashes > li').first().click();
+    assert.ok(await page.locator('#heat_legend .zone').first().isVisible(), 'its letters are among what is looked at');
     for (const tab of ['clashes', 'rules', 'statistics']) {
       await page.click(`#tab_${tab}`);
       await drawn(page);
@@ -89,6 +90,28 @@ test('text stands out from its ground by 4.5 or more, in both themes', async () 
     }
     await page.context().close();
   }
+});
+
+test('words of the view, as why a part stops, lie under nothing at any size', async () => {
+  const page = await openPage(browser, addresses.designer, { name: 'fay' });
+  await grab(page, 'peg_p6');
+  await page.locator('#clashes > li', { hasText: 'plate_p6 × peg_p6' }).click();
+  await page.locator('#heat_legend:not([hidden])').waitFor(PATIENCE);
+  for (const [width, height] of [[1440, 900], [1024, 768], [800, 600], [390, 844]]) {
+    await page.setViewportSize({ width, height });
+    await page.getByLabel('along or about Z').evaluate((field) => (/** @type {HTMLInputElement} */ (field).value = '-28'));
+    await page.locator('#hand button:has-text("Move by")').evaluate((button) => /** @type {HTMLElement} */ (button).click()); // also where numbers have no room
+    await page.locator('#labels > div', { hasText: 'Stop: ' }).waitFor(PATIENCE);
+    await page.focus('#canvas');
+    // Near, so that words come to stand at the edges and corners, where bars, the legend and what was said are.
+    for (const key of ['0', '2', 'z', '+', '+']) {
+      await page.keyboard.press(key);
+      await drawn(page);
+      assert.deepEqual(await coveredWords(page), [], `${width} × ${height}, ${key}`);
+    }
+  }
+  await page.locator('#hand button:has-text("Release")').click();
+  await page.context().close();
 });
 
 test('at 390 pixels one looks on and reviews by touch, with targets of 44 pixels', async () => {

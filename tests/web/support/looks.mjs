@@ -40,26 +40,51 @@ export function paleTexts(page) {
       const s = c[i] / 255;
       return sum + [0.2126, 0.7152, 0.0722][i] * (s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4);
     }, 0);
-    const ground = (element) => {
-      const own = numbers(getComputedStyle(element).backgroundColor);
-      const under = (own[3] ?? 1) === 1 || !element.parentElement ? own : ground(element.parentElement);
-      return over(own, under);
+    /** All colours that may lie behind its text: a gradient has several, and stripes lie over others. */
+    const grounds = (element) => {
+      const { backgroundColor, backgroundImage } = getComputedStyle(element);
+      const own = numbers(backgroundColor);
+      const image = (backgroundImage.match(/rgba?\([^)]*\)/g) ?? []).map(numbers);
+      const isOpaque = (colour) => (colour[3] ?? 1) === 1;
+      let under = image.filter(isOpaque);
+      if (under.length === 0) under = isOpaque(own) || !element.parentElement ? [own] : grounds(element.parentElement).map((back) => over(own, back));
+      return [...under, ...image.filter((colour) => !isOpaque(colour)).flatMap((stripe) => under.map((back) => over(stripe, back)))];
     };
     const faded = (element) => (element ? Number(getComputedStyle(element).opacity) * faded(element.parentElement) : 1);
     const bad = new Set();
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     for (let node = walker.nextNode(); node; node = walker.nextNode()) {
       const element = node.parentElement;
-      if (!node.textContent.trim() || !element.checkVisibility() || element.closest('svg, [disabled], script, #heat_legend .zone')) continue;
-      const back = ground(element);
+      if (!node.textContent.trim() || !element.checkVisibility() || element.closest('svg, [disabled], script')) continue;
       const alpha = faded(element);
       const own = numbers(getComputedStyle(element).color);
-      const front = over([own[0], own[1], own[2], (own[3] ?? 1) * alpha], back);
-      const [light, dark] = [luminance(front), luminance(back)].sort((x, y) => y - x);
-      const ratio = (light + 0.05) / (dark + 0.05);
+      const ratio = Math.min(...grounds(element).map((back) => {
+        const front = over([own[0], own[1], own[2], (own[3] ?? 1) * alpha], back);
+        const [light, dark] = [luminance(front), luminance(back)].sort((x, y) => y - x);
+        return (light + 0.05) / (dark + 0.05);
+      }));
       if (ratio < 4.5) bad.add(`${ratio.toFixed(2)}: ${element.className || element.tagName} "${node.textContent.trim().slice(0, 30)}"`);
     }
     return [...bad];
+  });
+}
+
+/** Words of the view that lie under something, on each other or out of it. @param {import('playwright-core').Page} page @returns {Promise<string[]>} */
+export function coveredWords(page) {
+  return page.evaluate(() => {
+    const view = document.querySelector('.view');
+    const words = [...document.querySelectorAll('#labels > div')].filter((word) => word.checkVisibility());
+    const others = [...view.children].filter((other) => !['canvas', 'labels'].includes(other.id) && other.checkVisibility());
+    const frame = view.getBoundingClientRect();
+    return words.flatMap((word, i) => {
+      const { left, right, top, bottom } = word.getBoundingClientRect();
+      const out = left < frame.left - 1 || right > frame.right + 1 || top < frame.top - 1 || bottom > frame.bottom + 1 ? ['out of the view'] : [];
+      const under = [...others, ...words.slice(0, i)].filter((other) => {
+        const o = other.getBoundingClientRect();
+        return Math.min(right, o.right) - Math.max(left, o.left) > 1 && Math.min(bottom, o.bottom) - Math.max(top, o.top) > 1;
+      }).map((other) => other.id || other.className);
+      return [...out, ...under].map((what) => `${word.textContent}: ${what}`);
+    });
   });
 }
 

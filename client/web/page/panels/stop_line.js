@@ -21,7 +21,7 @@ export function makeStopLine({ session, choice, stops, labels, stage }) {
     stage.ask();
   }
 
-  labels.sources.push(() => {
+  labels.sources.unshift(() => { // before other words: it has its place first
     const part = session.parts.get(choice.part);
     return note && part ? [{ at: new THREE.Vector3(...placed(part, part.reference)), text: `Stop: ${note}` }] : [];
   });
