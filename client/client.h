@@ -35,6 +35,9 @@ class Client final : public ClientCommands {
   /// Asks to join; the answer comes by poll(). role: designer | observer | bot.
   LocalUser add_user(const std::string& name, const std::string& role);
   void leave(LocalUser user);
+  /// The person is out of reach for now: the user stays joined and keeps what it holds until the
+  /// session's leases end.
+  void set_away(LocalUser user, bool away) { own_.set_away(user, away); }
 
   JoinState join_state(LocalUser user) const { return own_.state(user); }
   UserId user_id(LocalUser user) const { return own_.id(user); }  ///< none while not joined

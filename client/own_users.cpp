@@ -163,7 +163,8 @@ void OwnUsers::send_what_is_due(std::int64_t now_ns) {
     if (user.state == JoinState::kJoined &&
         now_ns - user.heartbeat_at_ns >= in_ns(options_.heartbeat_s)) {
       user.heartbeat_at_ns = now_ns;
-      channel_.heartbeat(user.id);
+      // Of nobody: this client lives, and no lease is renewed.
+      channel_.heartbeat(user.away ? UserId{} : user.id);
     }
     if (user.state == JoinState::kJoined && !user.unacknowledged.empty() &&
         now_ns - user.unacknowledged.last_sent_ns() >= in_ns(options_.repeat_after_s)) {

@@ -19,6 +19,8 @@ class OwnUsers {
 
   LocalUser add(const std::string& name, const std::string& role);
   void leave(LocalUser user, std::int64_t now_ns);
+  /// While away a user stays joined and is not heard: the leases of what it holds go on.
+  void set_away(LocalUser user, bool away) { users_[user].away = away; }
   std::size_t count() const { return users_.size(); }  ///< those who left included
   JoinState state(LocalUser user) const { return users_[user].state; }
   UserId id(LocalUser user) const { return users_[user].id; }
@@ -53,6 +55,7 @@ class OwnUsers {
     Unacknowledged unacknowledged;
     bool was_joined = false;     ///< joins again by itself, also when refused
     bool awaits_answer = false;  ///< left while a join was not answered yet
+    bool away = false;           ///< its leases are not renewed
     bool in_doubt = false;       ///< the server may count us as absent: ask to join again
     std::optional<std::int64_t> join_sent_ns, unacked_since_ns;
     std::int64_t heartbeat_at_ns = 0;

@@ -108,6 +108,7 @@ void Browser::end(CloseCode code, const std::string& reason) {
   if (!close_reason_.empty() || gone_) return;
   close_code_ = code;
   close_reason_ = reason;
+  goodbye_ = code != CloseCode::try_again_later;
   close_by_s_ = state_.now_s() + kGoodbye_s;
   outbox_ = Outbox();  // no use to who is closed
   outbox_.say(text_of({{"type", "error"}, {"text", reason}, {"closing", true}}));
@@ -192,7 +193,10 @@ void Browser::close() {
 
 void Browser::failed(beast::error_code error) {
   if (gone_) return;
-  if (error == beast::error::timeout) {
+  if (error == websocket::error::closed) {
+    const auto code = socket_.reason().code;  // what a browser says when its page is left
+    goodbye_ = goodbye_ || code == CloseCode::normal || code == CloseCode::going_away;
+  } else if (error == beast::error::timeout) {
     note(Incident::kSilent, entered_ ? "no answer to a ping; closed" : "no handshake in time");
   } else if (error == websocket::error::message_too_big) {
     note(
@@ -209,7 +213,12 @@ void Browser::drop() {
   if (gone_) return;
   gone_ = true;
   ++state_.traffic.closed;
-  if (entered_) state_.feed.leave(*this);
+  if (entered_) {
+    if (goodbye_)
+      state_.feed.leave(*this);
+    else
+      state_.feed.lose(*this);
+  }
   socket_.next_layer().next_layer().close();
   state_.browsers.erase(shared_from_this());
 }

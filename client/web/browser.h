@@ -61,6 +61,7 @@ class Browser final : public Viewer, public std::enable_shared_from_this<Browser
   CloseCode close_code_ = CloseCode::none;
   std::string close_reason_;  ///< not empty: to be closed
   bool entered_ = false, closing_ = false, gone_ = false;
+  bool goodbye_ = false;  ///< one of the two has ended it for good
 };
 
 }  // namespace mortise::web

@@ -41,6 +41,8 @@ class Feed {
   virtual const char* mode() const = 0;  ///< "live" or "replay"
   virtual void enter(Viewer& viewer) = 0;
   virtual void leave(Viewer& viewer) = 0;  ///< frees what it held
+  /// Its line broke without a goodbye: it may come back on another one.
+  virtual void lose(Viewer& viewer) { leave(viewer); }
   /// Fails with a sentence for the page when the message makes no sense in this state.
   virtual Status take(Viewer& viewer, const PageMessage& message) = 0;
   /// Sends news to the viewers. Called every few milliseconds with a monotonic clock.

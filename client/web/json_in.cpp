@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostNameBytes = kMostUserName_bytes;
+constexpr std::size_t kLeastPageBytes = 16, kMostPageBytes = 64;  // see JoinWish
 // More than any field of a person needs; the session bounds each further.
 constexpr std::size_t kMostTextBytes = 4096;
 constexpr double kLargestId = 9007199254740992.0;  // 2^53, as far as a page counts exactly
@@ -131,6 +132,12 @@ class Keys {
 JoinWish join_of(Keys& keys) {
   JoinWish wish{keys.text("name", kMostNameBytes)};
   if (!is_name(wish.name, kMostNameBytes)) throw Wrong{"'name' is empty, blank or not printable"};
+  if (keys.has("page")) {
+    wish.page = keys.text("page", kMostPageBytes);
+    // A shorter one could be guessed.
+    if (wish.page.size() < kLeastPageBytes)
+      throw Wrong{"'page' has less than " + std::to_string(kLeastPageBytes) + " bytes"};
+  }
   return wish;
 }
 

@@ -13,6 +13,7 @@ namespace mortise::web {
 /// Messages of a page (protocol.md), checked: ids in range, numbers finite, texts bounded.
 struct JoinWish {
   std::string name;
+  std::string page = {};  ///< known to this page alone, the same on its next line; empty: none
 };
 struct MoveWish {
   PartId part;

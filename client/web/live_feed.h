@@ -23,6 +23,7 @@ class LiveFeed final : public Feed {
   const char* mode() const override { return "live"; }
   void enter(Viewer& viewer) override;
   void leave(Viewer& viewer) override { seats_.leave(viewer); }
+  void lose(Viewer& viewer) override { seats_.lose(viewer); }
   Status take(Viewer& viewer, const PageMessage& message) override {
     return seats_.take(viewer, message);
   }

@@ -26,6 +26,11 @@ Json reply_json(std::uint64_t id, Refusal refusal, const std::string& text, Part
           {"holder", holder.value}};
 }
 
+SharedBytes joined_text(UserId user, const std::string& name, Role role) {
+  return text_of(
+      {{"type", "joined"}, {"user", user.value}, {"name", name}, {"role", name_of(role)}});
+}
+
 double unix_ms() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration<double, std::milli>(now).count();
@@ -37,11 +42,45 @@ void PageSeats::leave(Viewer& viewer) {
   const auto found = seats_.find(&viewer);
   if (found == seats_.end()) return;
   uploads_.leave(viewer);
-  if (found->second.user) {
-    client_.leave(*found->second.user);
-    left_s_[found->second.name] = now_s_;
-  }
+  if (found->second.user) go(*found->second.user, found->second.name);
   seats_.erase(found);
+}
+
+void PageSeats::go(LocalUser user, const std::string& name) {
+  client_.leave(user);
+  left_s_[name] = now_s_;
+}
+
+void PageSeats::lose(Viewer& viewer) {
+  const auto found = seats_.find(&viewer);
+  if (found == seats_.end()) return;
+  set_aside(viewer, found->second);
+  leave(viewer);
+}
+
+void PageSeats::set_aside(const Viewer& viewer, Seat& seat) {
+  if (seat.user && away_.keep({*seat.user, seat.name, seat.page, viewer.role()})) seat.user.reset();
+}
+
+// A page that is back, perhaps before its old line was found to be broken.
+bool PageSeats::take_up(Viewer& viewer, Seat& seat) {
+  if (seat.page.empty()) return false;
+  for (auto& [other, old] : seats_) {
+    if (other == &viewer || old.page != seat.page) continue;
+    set_aside(*other, old);
+    if (old.user) go(*old.user, old.name);
+    old = Seat();
+  }
+  seat.user = away_.take_up({0, seat.name, seat.page, viewer.role()});
+  if (seat.user && client_.join_state(*seat.user) == JoinState::kJoined)
+    viewer.say(joined_text(client_.user_id(*seat.user), seat.name, viewer.role()));
+  return seat.user.has_value();
+}
+
+// A name belongs to who is here: to another page of the same person, say.
+void PageSeats::end_away(const std::string& name) {
+  for (const auto& away : away_.take_ended([&](const auto& one) { return one.name == name; }))
+    go(away.user, away.name);
 }
 
 Status PageSeats::take(Viewer& viewer, const PageMessage& message) {
@@ -75,6 +114,9 @@ void PageSeats::join(Viewer& viewer, Seat& seat, const JoinWish& wish) {
     return viewer.say(text_of({{"type", "join_refused"}, {"text", text}}));
   }
   seat.name = wish.name;
+  seat.page = wish.page;
+  if (take_up(viewer, seat)) return;
+  end_away(seat.name);
   seat.user = client_.add_user(wish.name, std::string(name_of(viewer.role())));
   const auto left = left_s_.find(wish.name);
   if (left != left_s_.end()) seat.give_up_s = left->second + kNameIsFreeAfter_s;
@@ -116,6 +158,7 @@ void PageSeats::upload(Viewer& viewer, Seat& seat, const UploadWish& wish) {
 void PageSeats::begin_turn(double now_s) {
   now_s_ = now_s;
   uploads_.turn(now_s);
+  end_away("");
   std::erase_if(left_s_, [&](const auto& row) { return now_s - row.second > kNameIsFreeAfter_s; });
 }
 
@@ -159,10 +202,7 @@ void PageSeats::tell_joins(const ClientUpdate& update) {
   for (const LocalUser user : update.joined) {
     auto* row = seat_of(user);
     if (row == nullptr) continue;
-    row->first->say(text_of({{"type", "joined"},
-                             {"user", client_.user_id(user).value},
-                             {"name", row->second.name},
-                             {"role", name_of(row->first->role())}}));
+    row->first->say(joined_text(client_.user_id(user), row->second.name, row->first->role()));
   }
   for (auto& [viewer, seat] : seats_) {
     if (seat.rejoin_s > 0.0 && now_s_ >= seat.rejoin_s) {

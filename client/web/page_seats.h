@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/client.h"
+#include "client/web/away_users.h"
 #include "client/web/feed.h"
 #include "client/web/limits.h"
 #include "client/web/page_uploads.h"
@@ -23,6 +24,8 @@ class PageSeats {
 
   void enter(Viewer& viewer) { seats_[&viewer]; }
   void leave(Viewer& viewer);  ///< its user leaves as well
+  /// Its line broke: its user keeps what it holds while its leases last, for the page to come back.
+  void lose(Viewer& viewer);
   /// Fails with a sentence for the page when this cannot be meant.
   Status take(Viewer& viewer, const PageMessage& message);
 
@@ -49,6 +52,7 @@ class PageSeats {
   struct Seat {
     std::optional<LocalUser> user;
     std::string name;
+    std::string page;        ///< see JoinWish
     double rejoin_s = 0.0;   ///< a join was refused: time of the next attempt; 0: none
     double give_up_s = 0.0;  ///< end of these attempts
     std::map<std::uint64_t, std::uint64_t> asked;  ///< sequence of a command to the page's id
@@ -66,6 +70,10 @@ class PageSeats {
   void command(Viewer& viewer, Seat& seat, const CommandWish& wish);
   static void refuse(Viewer& viewer, const CommandWish& wish, Refusal refusal,
                      const std::string& text);
+  bool take_up(Viewer& viewer, Seat& seat);
+  void set_aside(const Viewer& viewer, Seat& seat);
+  void end_away(const std::string& name);
+  void go(LocalUser user, const std::string& name);
   void tell_refusals();
   void tell_pulse(const ClientUpdate& update);
   void tell_views();
@@ -75,6 +83,7 @@ class PageSeats {
   Client& client_;
   Limits limits_;
   PageUploads uploads_;
+  AwayUsers away_{client_};
   std::map<Viewer*, Seat> seats_;
   std::uint64_t foreign_names_ = 0;       ///< joins under another name than that of the token
   std::map<std::string, double> left_s_;  ///< names that left lately, and when

@@ -23,6 +23,8 @@ T read(const std::string& text) {
 
 TEST(PageMessage, ReadsWhatThePageSends) {
   EXPECT_EQ(read<JoinWish>(R"({"type":"join","name":"Änne 2"})").name, "Änne 2");
+  EXPECT_EQ(read<JoinWish>(R"({"type":"join","name":"ann","page":"0123456789abcdef"})").page,
+            "0123456789abcdef");
   const auto move = read<MoveWish>(R"({"type":"move","part":3,"t":[1,-2.5,1e-3],"r":[0,0,0.1]})");
   EXPECT_EQ(move.part, PartId{3});
   EXPECT_EQ(move.translation_mm, Vec3(1, -2.5, 1e-3));
@@ -131,6 +133,7 @@ TEST(PageMessage, RefusesWhatIsNone) {
       {R"({"type":"fly"})", "not a type of message"},
       {R"({"type":"join"})", "'name' is missing"},
       {R"({"type":"join","name":""})", "'name' is empty"},
+      {R"({"type":"join","name":"ann","page":"guess me"})", "'page' has less than 16 bytes"},
       {R"({"type":"join","name":"a\nb"})", "not printable"},
       {R"({"type":"join","name":"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"})",
        "more than 64"},

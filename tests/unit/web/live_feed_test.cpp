@@ -76,6 +76,12 @@ struct PagesOnASession : testing::Test {
     turn(4);
     ASSERT_EQ(page.last("joined")["name"], name);
   }
+  void come_as(Page& page, const std::string& name, const std::string& key) {
+    feed->enter(page);
+    say(page, R"({"type":"join","name":")" + name + R"(","page":")" + key + R"("})");
+    turn(4);
+    ASSERT_EQ(page.last("joined")["name"], name);
+  }
   void grab(Page& page, PartId part) {
     say(page, R"({"type":"command","id":1,"do":"grab","part":)" + std::to_string(part.value) + "}");
     turn(2);
@@ -158,7 +164,7 @@ TEST_F(PagesOnASession, ThatGoAwayLetGoAtOnce) {
   come(bob, "bob");
   grab(ann, kPeg);
   move(ann, kPeg, -1.0);
-  feed->leave(ann);  // a crash looks no different
+  feed->leave(ann);
   turn(2);
   EXPECT_EQ(bob.seen[kPeg].holder.value, 0u);
   EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 24.0);  // what was sent before still counts
@@ -169,6 +175,77 @@ TEST_F(PagesOnASession, ThatGoAwayLetGoAtOnce) {
   move(ann, kPeg, -1.0);
   turn(2);
   EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 23.0);
+}
+
+const std::string kAnnsPage = "ann's page, 16 bytes or more";
+
+TEST_F(PagesOnASession, WhoseLineBreaksGoOnWithWhatTheyHeld) {
+  come_as(ann, "ann", kAnnsPage);
+  come(bob, "bob");
+  grab(ann, kPeg);
+  const Json user = ann.last("joined")["user"];
+  feed->lose(ann);
+  turn(10);
+  EXPECT_EQ(bob.seen[kPeg].holder.value, user);
+  ann = Page(Role::kDesigner);
+  come_as(ann, "ann", kAnnsPage);
+  EXPECT_EQ(ann.last("joined")["user"], user);
+  EXPECT_EQ(ann.last("scene")["parts"][1]["holder"], user);
+  move(ann, kPeg, -1.0);
+  turn(2);
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 24.0);
+}
+
+TEST_F(PagesOnASession, ABrokenLineThatNobodyNoticedYetGivesWay) {
+  come_as(ann, "ann", kAnnsPage);
+  grab(ann, kPeg);
+  come_as(bob, "ann", kAnnsPage);  // the same page on its next line
+  EXPECT_EQ(bob.last("joined")["user"], ann.last("joined")["user"]);
+  move(bob, kPeg, -1.0);
+  turn(2);
+  EXPECT_EQ(bob.seen[kPeg].X_WP.p.z(), 24.0);
+  feed->lose(ann);
+  turn(2);
+  EXPECT_EQ(bob.seen[kPeg].holder.value, bob.last("joined")["user"]);
+}
+
+TEST_F(PagesOnASession, WhoseLineStaysBrokenHoldOnlyAsLongAsTheirLease) {
+  scene.world.lease_s = 0.4;
+  come_as(ann, "ann", kAnnsPage);
+  come(bob, "bob");
+  grab(ann, kPeg);
+  const auto pass = [&](double seconds, const auto& done) {
+    for (double s = 0.0; s < seconds && !done(); s += 0.01) {
+      turn();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  };
+  const auto is_free = [&] { return !bob.seen[kPeg].holder; };
+  pass(0.8, is_free);
+  ASSERT_FALSE(is_free()) << "with a line the lease is renewed";
+  feed->lose(ann);
+  pass(20.0, is_free);
+  ASSERT_TRUE(is_free());
+  EXPECT_EQ(bob.last("decisions")["decisions"][0]["kind"], "lease end");
+  turn(10);
+  EXPECT_EQ(bob.last("decisions")["decisions"][0]["kind"], "leave") << "and who holds nothing goes";
+  ann = Page(Role::kDesigner);
+  come_as(ann, "ann", kAnnsPage);
+  EXPECT_EQ(ann.last("scene")["parts"][1]["holder"], 0);
+}
+
+TEST_F(PagesOnASession, AreNotKeptFromTheirNameByTheirOwnBrokenLine) {
+  come_as(ann, "ann", kAnnsPage);
+  come(bob, "bob");
+  grab(ann, kPeg);
+  feed->lose(ann);
+  ann = Page(Role::kDesigner);
+  feed->enter(ann);
+  say(ann, R"({"type":"join","name":"ann","page":"another page of hers"})");
+  turn(20);
+  EXPECT_EQ(ann.last("joined")["name"], "ann");
+  EXPECT_EQ(ann.count("join_refused"), 0u);
+  EXPECT_FALSE(bob.seen[kPeg].holder) << "the other page cannot know what was in hand";
 }
 
 TEST_F(PagesOnASession, LoadedAnewWithinOneTickAreLetInUnderTheirName) {

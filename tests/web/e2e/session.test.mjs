@@ -258,6 +258,35 @@ test('who comes late sees all; a name is text, whatever it says', async () => {
   await late.context().close();
 });
 
+test('a line that breaks in mid-drag leaves the part in hand, and the page goes on with it', async () => {
+  const carl = await openPage(browser, addresses.designer, { name: 'carl', first: () => {
+    const window = /** @type {any} */ (globalThis);
+    const Line = window.WebSocket;
+    window.WebSocket = class extends Line {
+      constructor(...of) {
+        super(...of);
+        window.lines = (window.lines ?? 0) + 1;
+        window.line = this;
+      }
+    };
+  } });
+  await grab(carl, 'block');
+  const [x, y, z] = await settled(carl);
+  await moveBy(carl, [0, 0, 300]);
+  await carl.waitForFunction((from) => Number(/^\S+, \S+, (\S+) mm/.exec(document.querySelector('#hand .pose')?.textContent ?? '')?.[1]) > from, z, PATIENCE);
+  await carl.evaluate(() => /** @type {any} */ (globalThis).line.close(4000, 'as one that is silent'));
+  await carl.waitForFunction(() => /** @type {any} */ (globalThis).lines === 2, undefined, PATIENCE);
+  await carl.locator('#status_server', { hasText: 'You are carl' }).waitFor(PATIENCE);
+  await carl.locator('#hand .quiet', { hasText: 'in your hand' }).waitFor(PATIENCE);
+  const from = await settled(carl);
+  await moveBy(carl, [0, 0, 5]);
+  const to = await settledElsewhere(carl, from);
+  assert.ok(to[2] > from[2] + 4.9 && Math.abs(to[0] - x) + Math.abs(to[1] - y) < 1e-3, `from ${from} to ${to}`);
+  await moveBy(carl, [0, 0, z - to[2]]);
+  await settledElsewhere(carl, to);
+  await carl.context().close();
+});
+
 test('a reload in mid-drag frees the part', async () => {
   await choose(ann, 'peg_k6'); // still in her hand
   const from = await position(ann);

@@ -85,6 +85,24 @@ test('a token is taken from the address only when it is one', () => {
   assert.equal(tokenOf(''), '');
 });
 
+test('what was held is held again after the line was away, or is said not to be', () => {
+  const back = (holders) => {
+    const session = begun();
+    session.applyPoses(readPoseFrame(poseFrame(8, [1, 2].map((id) => ({ part: id, holder: 9, p: [0, 0, 0], q: [0, 0, 0, 1], classes: 0 })))));
+    const dropped = [];
+    session.on('dropped', (parts) => dropped.push(...parts.map(({ id, holder }) => [id, holder])));
+    session.lost();
+    session.lost(); // an attempt that failed tells nothing new
+    session.apply({ type: 'server', present: true });
+    session.apply({ type: 'scene', session: 's', tick: 9, tick_rate_hz: 60, policy: 'stop', parts: [part(1, { holder: holders[0] }), part(2, { holder: holders[1] })], users: [], clashes: [], standing: [] });
+    assert.deepEqual(dropped, [], 'who one is is not known yet');
+    session.apply({ type: 'joined', user: 9, name: 'ann', role: 'designer' });
+    return { dropped, held: session.heldByMe().map(({ id }) => id) };
+  };
+  assert.deepEqual(back([9, 9]), { dropped: [], held: [1, 2] });
+  assert.deepEqual(back([0, 4]), { dropped: [[1, 0], [2, 4]], held: [] });
+});
+
 test('a clash that comes before the name of an added part is told once the name is there, and not where it has ended', () => {
   const session = begun();
   const told = [];

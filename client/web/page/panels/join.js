@@ -2,6 +2,8 @@
 import { byId, inputById, setText } from './dom.js';
 
 const KEPT = 'mortise.name';
+/** Of this page alone, for as long as it is open: a new line goes on with what was held on the old one. */
+const PAGE = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
 
 /** @param {import('../session/session.js').Session} session @param {(message: object) => boolean} send */
 export function makeJoin(session, send) {
@@ -10,7 +12,7 @@ export function makeJoin(session, send) {
   let name = '';
   field.value = localStorage.getItem(KEPT) ?? '';
 
-  const join = () => name !== '' && send({ type: 'join', name });
+  const join = () => name !== '' && send({ type: 'join', name, page: PAGE });
 
   byId('join_go').addEventListener('click', (event) => {
     event.preventDefault();

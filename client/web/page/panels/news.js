@@ -13,6 +13,9 @@ export function changeSaid(name, before, now) {
   return `Clashes of ${name}: ${[kept > 0 && `${kept} as before`, gone > 0 && `${gone} gone`, fresh > 0 && `${fresh} new`].filter(Boolean).join(', ')}`;
 }
 
+/** Of a part that one held before the line was away. @param {string} part @param {string} holder empty: nobody */
+export const droppedSaid = (part, holder) => `You no longer hold ${part}: ${holder ? `${holder} took it` : 'the session let it go'} while you were away`;
+
 /** @param {import('../desk.js').Desk} desk */
 export function makeNews({ session, say }) {
   /** @param {any} d */
@@ -24,10 +27,11 @@ export function makeNews({ session, say }) {
       case 'join':
         return mine ? '' : `${d.name ?? who} is here`;
       case 'leave':
-      case 'liveliness lost':
         return mine ? '' : `${who} is gone`;
+      case 'liveliness lost':
+        return mine ? 'The session heard nothing of your gateway for a moment: what you held is free' : `${who} is gone`;
       case 'lease end':
-        return `${who} let ${part} lie too long: it is free`;
+        return `${mine ? 'You' : who} let ${part} lie too long: it is free`;
       case 'ask for hand-over':
         return d.other_user === session.me ? `${who} asks you for ${part}` : mine ? `You asked ${session.userName(d.other_user)} for ${part}` : '';
       case 'hand-over':
@@ -96,6 +100,9 @@ export function makeNews({ session, say }) {
   session.on('waits', ({ a, b, why }) => say(`${session.partName(a)} × ${session.partName(b)} ${wordsOf(why)}. It may clash.`, 'bad'));
   session.on('refused', (increments) => {
     for (const { part, reason } of increments) say(`${session.partName(part)} did not move: ${plain(reason)}`, 'bad');
+  });
+  session.on('dropped', (parts) => {
+    for (const { id, holder } of parts) say(droppedSaid(session.partName(id), holder ? session.userName(holder) : ''), 'bad');
   });
   session.on('error', (text) => say(text, 'bad'));
 }

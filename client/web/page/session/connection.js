@@ -4,7 +4,8 @@
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 const PING_MS = 5000;
-const SILENCE_MS = 15000;
+/** Pings without an answer, after which the line is broken. Not a time: a page that stood still has yet to read what came meanwhile. */
+const MOST_UNANSWERED = 3;
 const MESH_TRIES = 40;
 
 /** @typedef {'connecting' | 'open' | 'waiting' | 'refused'} LineState */
@@ -33,7 +34,7 @@ export class Connection {
   /** @type {WebSocket | null} */
   #socket = null;
   #wait = FIRST_WAIT_MS;
-  #heard = 0;
+  #unanswered = 0;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #again;
 
@@ -65,7 +66,7 @@ export class Connection {
     socket.onopen = () => {
       opened = true;
       this.#wait = FIRST_WAIT_MS;
-      this.#heard = performance.now();
+      this.#unanswered = 0;
       this.on.state('open', UNTROUBLED);
     };
     socket.onmessage = ({ data }) => this.#take(data);
@@ -97,7 +98,7 @@ export class Connection {
 
   /** @param {string | ArrayBuffer} data */
   #take(data) {
-    this.#heard = performance.now();
+    this.#unanswered = 0;
     if (typeof data !== 'string') {
       this.on.poses(data);
       return;
@@ -109,10 +110,11 @@ export class Connection {
 
   #ping() {
     if (this.#socket?.readyState !== WebSocket.OPEN) return;
-    if (performance.now() - this.#heard > SILENCE_MS) {
+    if (this.#unanswered >= MOST_UNANSWERED) {
       this.#socket.close(4000, 'silent');
       return;
     }
+    ++this.#unanswered;
     this.send({ type: 'ping', at: performance.now() });
   }
 

@@ -47,6 +47,7 @@ const MOTIONS = new Set(['unknown', 'undo', 'redo', 'reset', 'add part', 'replac
  * @property {void} users @property {any} decision @property {void} standing @property {any} pulse @property {void} server
  * @property {void} me @property {Array<{part: number, reason: string, count: number}>} refused @property {View[]} views
  * @property {void} features @property {any} timeline @property {any} replay @property {string} mesh @property {string} error
+ * @property {Part[]} dropped held before the line or the server was gone, and not any more now that it is back
  * @property {void} welcome @property {string} join_refused @property {void} remarks @property {void} unexamined @property {import('./unexamined.js').Told} waits @property {void} draining @property {import('./uploads.js').UploadTold} upload
  */
 
@@ -118,9 +119,25 @@ export class Session extends Signals {
     return [...this.clashes.values()].filter((clash) => !clash.ended);
   }
 
+  /** Held when the line or the server was lost, and whether a scene has come since. @type {{parts: number[], told: boolean}} */
+  #before = { parts: [], told: false };
+
+  #nobody() {
+    if (this.me !== 0) this.#before = { parts: this.heldByMe().map(({ id }) => id), told: false };
+    this.me = 0;
+  }
+
+  /** Back again: what of it is still held? */
+  #again() {
+    if (this.me === 0 || !this.#before.told) return;
+    const dropped = this.#before.parts.flatMap((id) => this.parts.get(id) ?? []).filter((part) => !this.isMine(part));
+    this.#before = { parts: [], told: false };
+    if (dropped.length > 0) this.emit('dropped', dropped);
+  }
+
   /** The line broke: nobody is joined and nothing is held until a scene says so again. */
   lost() {
-    this.me = 0;
+    this.#nobody();
     this.serverPresent = false;
     this.views.clear();
     this.emit('me', undefined);
@@ -171,7 +188,7 @@ export class Session extends Signals {
     join_refused: (m) => this.emit('join_refused', m.text),
     server: (m) => {
       this.serverPresent = m.present;
-      if (!m.present) this.me = 0;
+      if (!m.present) this.#nobody();
       if (m.present) this.draining = false;
       this.emit('server', undefined);
       this.emit('me', undefined);
@@ -182,6 +199,7 @@ export class Session extends Signals {
       this.myName = m.name;
       if (m.role) this.role = m.role;
       this.emit('me', undefined);
+      this.#again();
     },
     events: (m) => m.events.forEach((/** @type {Clash} */ event) => this.#event(event)),
     decisions: (m) => m.decisions.forEach((/** @type {any} */ decision) => this.#decision(decision)),
@@ -238,8 +256,10 @@ export class Session extends Signals {
     this.draining = false;
     for (const part of m.parts) if (part.features?.length) this.features.set(part.id, part.features);
     this.serverPresent = true;
+    this.#before.told = true;
     for (const what of /** @type {const} */ (['scene', 'server', 'users', 'clashes', 'standing', 'remarks', 'unexamined'])) this.emit(what, undefined);
     this.#tellNamed();
+    this.#again();
   }
 
   /** @param {any} m */

@@ -39,7 +39,7 @@ function waiting({ trouble, why, retryAt }, now) {
   if (trouble === 'full') return { kind: 'full', title: 'The gateway takes no more browsers', again: true, text: `Close the page where it is not needed. ${next}` };
   const closed = trouble === 'closed' && why !== '' ? `It said: ${why}. ` : '';
   return { kind: 'gateway', title: 'No line to the gateway', again: true,
-    text: `${closed}What is shown is the last that was heard; nothing that you do is sent, and parts in your hand are free. ${next} If it stays away, start mortise web again.` };
+    text: `${closed}What is shown is the last that was heard; nothing that you do is sent. What is in your hand stays yours for some seconds. ${next} If it stays away, start mortise web again.` };
 }
 
 /** @param {Seen} seen @param {number} gone s @returns {Words} */
